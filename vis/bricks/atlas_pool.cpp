@@ -42,7 +42,7 @@ BrickAtlas& AtlasPool::atlasFor(int components) {
     };
     for (Atlas& atlas : list)
         if (!roomiest || unused(atlas) > unused(*roomiest)) roomiest = &atlas;
-    // Half of what is left at most: the rest is for other formats.
+    // Use at most half of the remaining budget, so that atlases of other formats still have room.
     const std::size_t left = budget_ > used ? (budget_ - used) / 2 : 0;
     const std::size_t slots = std::min({useful, left / bytes, driver_.textureBytes / bytes});
     if (roomiest && (unused(*roomiest) > roomiest->most / 4 || slots < roomiest->most / 2)) return *roomiest->texture;
@@ -51,7 +51,7 @@ BrickAtlas& AtlasPool::atlasFor(int components) {
     return *list.emplace_back(std::move(texture), most).texture;
 }
 
-/// Half as large, and again, where the driver has no memory for it.
+/// Creates an atlas, halving its size as long as the driver is out of memory.
 std::unique_ptr<BrickAtlas> AtlasPool::make(int components, std::size_t slots) {
     for (;; slots /= 2) {
         try {
@@ -75,7 +75,8 @@ bool AtlasPool::grow(int components, Atlas& atlas, bool beyond, const std::funct
     const std::size_t former = atlas.texture->capacity();
     const std::size_t slots = beyond ? former * 2 : std::min(former * 2, atlas.most);
     if (slots <= former || slots * slotBytes(components) > driver_.textureBytes) return false;
-    const std::size_t most = std::exchange(atlas.most, former); // kept if there is no more
+    const std::size_t most =
+        std::exchange(atlas.most, former); // keep the former size as the limit if no larger atlas can be made
     std::unique_ptr<BrickAtlas> larger;
     try {
         larger = make(components, slots);

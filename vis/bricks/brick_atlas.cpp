@@ -23,7 +23,7 @@ GLenum texelLayout(int components) {
 BrickAtlas::BrickAtlas(int brickSize, int components, bool exact, std::size_t slots, int maxTextureSize)
     : exact_(exact), edge_(brickSize + 2 * kHalo) {
     const int edge = edge_, most = std::max(1, maxTextureSize / edge);
-    // As cubic as possible.
+    // As close to a cube as possible.
     glm::ivec3 count(1);
     count.x = std::clamp(int(std::ceil(std::cbrt(double(slots)))), 1, most);
     count.y = std::clamp(int(std::ceil(std::sqrt(double(slots) / count.x))), 1, most);

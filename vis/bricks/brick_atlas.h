@@ -12,13 +12,14 @@ namespace tessera::vis {
 GLenum texelFormat(int components, bool exact);
 GLenum texelLayout(int components);
 
-/// A 3D texture of equal slots, each for one brick with its halo.
+/// A 3D texture divided into slots of equal size, each for one brick with its halo.
 class BrickAtlas {
 public:
-    /// Room for at least `slots` bricks as far as the driver's texture size allows. Throws MachineError when refused.
+    /// Allocates at least `slots` slots, limited by the driver's maximal texture size. Throws MachineError when the
+    /// driver refuses.
     BrickAtlas(int brickSize, int components, bool exact, std::size_t slots, int maxTextureSize);
 
-    /// First texel of a free slot, with one reference; nullopt if the atlas is full.
+    /// Reserves a slot with a reference count of 1 and returns its first texel; nullopt if the atlas is full.
     std::optional<glm::ivec3> allocate();
     /// Adds a reference to a slot: several times of a channel can share the same texels.
     void share(glm::ivec3 slot) { ++holders_[number(slot)]; }
@@ -43,11 +44,11 @@ private:
     bool exact_ = false;
     int edge_ = 0;
     std::vector<glm::ivec3> free_;
-    std::vector<int> holders_; ///< of each slot
+    std::vector<int> holders_; ///< reference count per slot
 };
 
-/// Page table of one channel: for each brick of full resolution the first texel of its part of a slot, then its level,
-/// kAbsent (no present sample) or kNowhere (not resident).
+/// Page table of one channel: for each brick at full resolution, the first texel of its part of a slot and the level
+/// stored there, or kAbsent (no present sample) or kNowhere (not resident).
 struct PageTable {
     static constexpr std::uint16_t kNowhere = 254, kAbsent = 255;
     explicit PageTable(glm::ivec3 bricks);

@@ -5,13 +5,13 @@
 
 namespace tessera::vis {
 
-/// Bricks of a channel that one picture needs: for each brick of full resolution, x fastest, the wanted level and its
-/// urgency (smaller: sooner).
+/// The bricks of a channel that one picture needs: for each brick at full resolution, x fastest, the wanted level and
+/// the priority (smaller is more urgent).
 struct BrickDemand {
-    static constexpr std::uint8_t kNotWanted = 255; ///< out of sight, transparent or hidden
+    static constexpr std::uint8_t kNotWanted = 255; ///< outside the view, transparent or occluded
     std::vector<std::uint8_t> level;
     std::vector<float> priority;
-    std::vector<std::uint8_t> hidden; ///< 1: behind what is opaque; its level is what is wanted all the same
+    std::vector<std::uint8_t> hidden; ///< 1: occluded by something opaque; `level` is still the level wanted
     bool operator==(const BrickDemand&) const = default;
 };
 

@@ -8,7 +8,8 @@ namespace tessera::vis {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kPlain = 1.5f; ///< times the distance of a brick of no importance; of the most important ones 1 less
+constexpr float kPlain =
+    1.5f; ///< distance factor of a brick of importance 0; the factor of the most important ones is 1 less
 constexpr std::size_t kMostBlocks = std::size_t(1) << 18;
 
 std::size_t volumeOf(glm::ivec3 size) {
@@ -25,7 +26,7 @@ template <class Function> void eachIndex(glm::ivec3 begin, glm::ivec3 end, Funct
             for (int x = begin.x; x < end.x; ++x) function(glm::ivec3(x, y, z));
 }
 
-/// Ranges of bricks and their neighbours in texel units, with room for the prefilter's overshoot.
+/// Value ranges of bricks including their neighbours, in texel units, widened by the overshoot of the prefilter.
 BlockRanges rangesOfBricks(const volume::BrickGrid& grid, const ChannelSummary& summary,
                            const TexelEncoding& encoding) {
     BlockRanges out;
@@ -65,7 +66,8 @@ BlockRanges blockGrid(const volume::BrickGrid& grid) {
 BlockRanges onBlockGrid(const volume::BrickGrid& grid, const BlockRanges& coarse) {
     BlockRanges out = blockGrid(grid);
     const double edge = double(coarse.edge) * (1 << coarse.level), phase = grid.levelPhase(coarse.level);
-    // Coarse samples reach over one coarse texel on either side of a block: a coarse block's range has that already.
+    // Interpolation of coarse samples reads one coarse texel beyond a block; the range of a coarse block already
+    // includes it.
     eachIndex(glm::ivec3(0), out.count, [&](glm::ivec3 block) {
         const glm::dvec3 lo = (glm::dvec3(block * out.edge) - phase) / edge,
                          hi = (glm::dvec3((block + 1) * out.edge) - phase) / edge;
@@ -90,7 +92,7 @@ BrickLevels::BrickLevels(const volume::BrickGrid& grid, const ChannelSummary& su
         made.bricks.resize(volumeOf(made.count), {State::Absent});
     }
     sight_.resize(volumeOf(grid.count()));
-    // A brick is absent where it and its neighbours have no sample.
+    // A brick is absent if neither it nor any neighbour has a present sample.
     eachIndex(glm::ivec3(0), grid.count(), [&](glm::ivec3 brick) {
         const std::size_t i = linear(brick, grid.count());
         if (brickRanges_.min[i] <= brickRanges_.max[i])
@@ -216,7 +218,7 @@ std::vector<BrickLevels::Guest> BrickLevels::guests(std::uint64_t frame) const {
     return out;
 }
 
-/// The pages of all bricks that `covered` stands for.
+/// Updates the pages of all full-resolution bricks within `covered`.
 void BrickLevels::resolve(const BrickId& covered) {
     const glm::ivec3 first = covered.index << covered.level;
     eachIndex(first, glm::min(first + (1 << covered.level), grid_.count()),
@@ -248,7 +250,7 @@ void BrickLevels::resolveFine(glm::ivec3 brick) {
     }
 }
 
-/// Block ranges of one brick: of its texels, or where there are none of what is known before decoding.
+/// Sets the block ranges of one brick: from its texels, or, if it has none, from the statistics known before decoding.
 void BrickLevels::setBlocks(glm::ivec3 brick, const BlockRanges* from) {
     const std::size_t whole = linear(brick, grid_.count());
     const glm::ivec3 first = brick * blocksPerBrick_;

@@ -6,21 +6,21 @@
 
 namespace tessera::vis {
 
-/// A brick in an atlas: `brickSize` texels a side at level l, so it covers 2^l bricks of full resolution along each
+/// A brick in an atlas: `brickSize` texels a side at level l, hence the extent of 2^l full-resolution bricks along each
 /// axis.
 struct BrickId {
     int level = 0;
     glm::ivec3 index{0};
 };
 
-/// Residency of the bricks of one channel at all levels, and its page table: every place shows the finest resident
-/// brick. The coarsest level is loaded first and never evicted, so there are no holes.
+/// Residency of the bricks of one channel at all levels, and its page table. Every position is drawn from the finest
+/// resident brick. The coarsest level is loaded first and never evicted, so there are no holes.
 class BrickLevels {
 public:
     BrickLevels(const volume::BrickGrid& grid, const ChannelSummary& summary, const TexelEncoding& encoding);
 
-    /// Sets what a view needs now; null: the coarsest level. Replaces the previous demand. At equal distance, more
-    /// important bricks are more urgent.
+    /// Replaces the demand of a view; null: the coarsest level. Among bricks at the same distance, more important ones
+    /// are more urgent.
     void want(const BrickDemand* demand, std::uint64_t frame);
     /// Number of wanted bricks that are not resident.
     int missing() const { return missing_; }
@@ -31,16 +31,16 @@ public:
     /// Cancels all requests.
     void forgetAsked();
 
-    /// Whether a brick is part of the channel and not resident.
+    /// Whether a brick belongs to the channel and is not resident.
     bool lacks(const BrickId& id) const { return at(id).state == State::Away || at(id).state == State::Asked; }
     bool holds(const BrickId& id) const { return at(id).state == State::Here; }
     void put(const BrickId& id, glm::ivec3 slot, const BlockRanges& blocks, int time);
-    /// Shares the texels of a brick with another time of the channel where it is resident.
+    /// Shares the texels of a brick that is resident for another time of the channel.
     void putFrom(const BrickId& id, const BrickLevels& other);
-    /// The time from which the texels of a resident brick were made.
+    /// The time whose texels a resident brick shows.
     int time(const BrickId& id) const { return at(id).time; }
     glm::ivec3 slot(const BrickId& id) const { return at(id).slot; }
-    /// Evicts a brick and returns its slot; a coarser brick is shown instead.
+    /// Evicts a brick and returns its slot; the next coarser resident brick is drawn instead.
     glm::ivec3 take(const BrickId& id);
     /// An eviction candidate: `stale` if no view wanted it since `frame`.
     struct Guest {
@@ -50,28 +50,28 @@ public:
         float priority = 0;
     };
     std::vector<Guest> guests(std::uint64_t frame) const;
-    /// Bricks of full resolution that were hidden in a view since `frame`, and seen in none.
+    /// Number of full-resolution bricks that were occluded in some view since `frame` and visible in none.
     int hidden(std::uint64_t since) const;
     float priority(const BrickId& id) const { return at(id).priority; }
-    /// Of bricks of full resolution, 0..1; empty: not known.
+    /// Importance per full-resolution brick, 0..1; empty: unknown.
     const std::vector<float>& importance() const { return importance_; }
-    /// Every resident slot, to release or to move.
+    /// Calls `change` for every resident slot, to release or move it.
     template <class Function> void eachSlot(Function&& change) {
         for (Level& level : levels_)
             for (Brick& brick : level.bricks)
                 if (brick.state == State::Here) change(brick.slot);
     }
-    /// After slots moved.
+    /// Rebuilds the page table after slots were moved.
     void resolveAll();
 
     /// Whether the coarsest level is complete, so that the channel can be drawn.
     bool drawable() const { return coarsestMissing_ == 0; }
     int resident() const { return resident_; }
-    /// The page table with every change in it.
+    /// The page table, with all changes uploaded.
     GLuint pageTexture();
-    /// Ranges of blocks of cells at full resolution, of what is shown.
+    /// Value ranges of the full-resolution blocks, from the bricks drawn.
     const BlockRanges& blocks() const { return blocks_; }
-    /// Ranges of whole bricks, known before anything is decoded.
+    /// Value ranges of whole bricks, known before decoding.
     const BlockRanges& brickRanges() const { return brickRanges_; }
 
 private:
@@ -98,13 +98,13 @@ private:
 
     volume::BrickGrid grid_;
     std::vector<Level> levels_;
-    /// The last frames in which a brick of full resolution was hidden in a view, and visible in one.
+    /// The last frames in which a full-resolution brick was occluded in some view, and visible in some view.
     struct Sight {
         std::uint64_t hidden = 0, seen = 0;
     };
     std::vector<Sight> sight_;
-    std::vector<float> importance_; ///< of bricks of full resolution; empty: not known
-    std::vector<BrickId> pending_;  ///< wanted and away
+    std::vector<float> importance_; ///< per full-resolution brick; empty: unknown
+    std::vector<BrickId> pending_;  ///< wanted, not resident
     std::uint64_t call_ = 0;
     int missing_ = 0, coarsestMissing_ = 0, resident_ = 0;
     PageTable pages_;
@@ -113,10 +113,11 @@ private:
     int blocksPerBrick_ = 1;
 };
 
-/// The grid that block ranges of every channel are given on: edge 8 at full resolution, more where that would be more
-/// than a quarter of a million blocks.
+/// The grid of the block ranges of all channels: blocks of 8 cells at full resolution, larger if there would be more
+/// than a quarter of a million.
 BlockRanges blockGrid(const volume::BrickGrid& grid);
-/// Ranges of a coarser level on the grid of full resolution: each block takes those of every block it may touch.
+/// Maps ranges of a coarser level to the full-resolution grid: each block takes the union of the coarse blocks it may
+/// touch.
 BlockRanges onBlockGrid(const volume::BrickGrid& grid, const BlockRanges& coarse);
 
 } // namespace tessera::vis

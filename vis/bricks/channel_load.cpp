@@ -10,7 +10,7 @@ namespace tessera::vis {
 
 namespace {
 
-/// A brick of absent samples, in place of one that cannot be read.
+/// A brick of absent samples, used in place of an unreadable one.
 SharedBrick absentBrick(const volume::BrickGrid& grid, const volume::BrickKey& key) {
     volume::BrickSamples brick;
     brick.size = grid.brickSamples(key.index, key.level);
@@ -19,7 +19,7 @@ SharedBrick absentBrick(const volume::BrickGrid& grid, const volume::BrickKey& k
     return std::make_shared<const volume::BrickSamples>(std::move(brick));
 }
 
-/// One part of a channel: which samples are its own.
+/// The samples of one part of a channel.
 class OnePart {
 public:
     OnePart(const volume::BrickSource& source, const ChannelKey& key)
@@ -27,7 +27,7 @@ public:
           label_(volume::labelChannel(source.info(), parameter_).value_or(-1)) {}
 
     enum class Share { None, Some, All };
-    /// Of the samples of a brick, as far as the label's range there tells.
+    /// How many samples of a brick belong to the part, as far as the range of the label in the brick tells.
     Share share(glm::ivec3 brick) const {
         constexpr float kMostLabels = 4096;
         const volume::BrickStats stats = source_.stats({label_, key_.time, 0, brick});
@@ -58,8 +58,8 @@ private:
     int label_;
 };
 
-/// `byBrick`: bricks are loaded one by one, so it matters which come first. Of a part: the range is that of the whole
-/// channel, so that all parts are encoded alike.
+/// `byBrick`: bricks are loaded individually, so their order of importance matters. For a part, the range is that of
+/// the whole channel, so that all parts share one encoding.
 ChannelSummary summarize(const volume::BrickSource& source, const ChannelKey& of, bool byBrick, const OnePart* part) {
     ChannelSummary summary;
     const glm::ivec3 count = source.grid().count();
@@ -95,7 +95,7 @@ void load(LoadExchange& exchange, const LoadRequest& request, LoadedTexels& out,
             summarize(source, request.key, request.brick.has_value(), part ? &*part : nullptr));
     const ChannelStats& own = out.summary->all;
     const bool many = source.info().times.size() > 1;
-    // Bricks of a channel stay alike though the range of all times may have grown since the first one.
+    // Bricks of a channel keep one encoding, even if the range over all times has grown since the first was loaded.
     out.encoding = request.encoding ? *request.encoding
                                     : makeEncoding(many ? commonStats(own, source.info().channelRange(channel)) : own,
                                                    categorical, request.exact, request.key.prefiltered);

@@ -10,34 +10,33 @@
 #include <stop_token>
 #include <string>
 
-/// Decoding threads: one channel at one level, or one brick of it, to texels. No OpenGL.
+/// Work of the decoding threads: turns one channel at one level, or one brick of it, into texels. Without OpenGL.
 namespace tessera::vis {
 
 struct ChannelKey {
     int channel = 0, time = 0;
     bool prefiltered = true;
-    int part = -1; ///< the samples of this part alone (volume/field/parts.h); -1: all
+    int part = -1; ///< only the samples of this part (volume/field/parts.h); -1: all samples
     auto operator<=>(const ChannelKey&) const = default;
 };
 
-/// What is known of a channel at one time before any texel.
+/// Statistics of a channel at one time, known before any texel.
 struct ChannelSummary {
     ChannelStats all;
     std::vector<volume::BrickStats> bricks; ///< x fastest
-    std::vector<float> importance;          ///< of them, 0..1; empty: not known
+    std::vector<float> importance;          ///< per brick, 0..1; empty: unknown
 };
 
-/// Texels ready to upload, or a flag that there are none.
+/// Texels ready for upload, or a flag that nothing is present.
 struct LoadedTexels {
     ChannelKey key;
     int level = 0;
-    std::optional<glm::ivec3>
-        brick; ///< one brick of the level's own (vis/bricks/brick_levels.h), else the whole channel
+    std::optional<glm::ivec3> brick; ///< one brick at its own level (vis/bricks/brick_levels.h), else the whole channel
     std::shared_ptr<const ChannelSummary> summary;
     TexelEncoding encoding;
     TexelBlock block;
     bool failed = false;
-    /// A brick that could not be read is drawn as absent, so the channel needs coverage from now on.
+    /// A brick was unreadable and is drawn as absent, so the channel needs coverage from now on.
     bool damaged = false;
 };
 
@@ -48,7 +47,7 @@ struct LoadExchange {
     std::mutex mutex;
     std::vector<LoadedTexels> loaded;
     std::vector<std::string> messages;
-    std::set<std::string> said; ///< each message comes once
+    std::set<std::string> said; ///< messages already reported, so that each is reported once
 
     void say(const std::string& message);
 };
@@ -57,14 +56,13 @@ struct LoadRequest {
     ChannelKey key;
     int level = 0;
     std::optional<glm::ivec3> brick;
-    std::shared_ptr<const ChannelSummary> summary; ///< null: find out
-    std::optional<TexelEncoding> encoding;         ///< of the channel's other bricks; none: find out
+    std::shared_ptr<const ChannelSummary> summary; ///< null: computed by the job
+    std::optional<TexelEncoding> encoding;         ///< of the other bricks of the channel; none: chosen by the job
     bool exact = false;
-    bool coverage = false; ///< wanted even if no sample is known to be absent
+    bool coverage = false; ///< store coverage even if no sample is known to be absent
 };
 
-/// Executes a request and stores the result, or the failure, in the exchange. Never throws; stores nothing when
-/// stopped.
+/// Executes a request and stores its result or failure in the exchange. Never throws; stores nothing when stopped.
 void loadTexels(LoadExchange& exchange, const LoadRequest& request, std::stop_token stop);
 
 } // namespace tessera::vis

@@ -11,7 +11,7 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr double kFirst = 1e6; ///< in priority: what something is seen of at once
+constexpr double kFirst = 1e6; ///< priority offset of bricks that are needed for a first picture
 
 std::size_t texelCount(glm::ivec3 size) {
     return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
@@ -27,7 +27,7 @@ Residency::Residency(const RendererOptions& options, const Driver& driver)
 Residency::~Residency() = default;
 
 void Residency::setSource(std::shared_ptr<const volume::BrickSource> source, SameSamples same) {
-    jobs_.cancel(); // jobs that still run write into the former exchange
+    jobs_.cancel(); // running jobs keep writing into the former exchange
     for (std::string& message : takeMessages()) messages_.push_back(std::move(message));
     uploads_.clear();
     ++revision_;
@@ -52,7 +52,7 @@ void Residency::setBudgets(std::size_t texture, std::size_t memory) {
     channels_.setBudget(texture);
 }
 
-/// The finest level that fits into one texture.
+/// The finest level at which a channel fits into one texture.
 int Residency::textureLevel() const {
     const volume::BrickGrid& grid = exchange_->source->grid();
     const std::size_t components = grid.lattice.kind == volume::LatticeKind::BCC ? 4 : 2; // with coverage
@@ -92,7 +92,7 @@ void Residency::want(const ChannelKey& key, double priority, bool coarseFirst,
 void Residency::wantBricks(const ChannelKey& key, ResidentChannel& channel, double priority,
                            std::shared_ptr<const BrickDemand> demand) {
     if (channel.shown) {
-        // Less may be in sight.
+        // Another demand may need fewer bricks.
         if (channel.wantedAnew(demand, frame_)) channel.shown->room = ChannelTexture::Room::Left;
         channel.demand = std::move(demand);
         channel.shown->bricks->want(channel.demand.get(), frame_);
@@ -140,7 +140,7 @@ const ChannelTexture* Residency::find(const ChannelKey& key) const {
     return channel && channel->drawable() ? channel : nullptr;
 }
 
-/// One texel, or one page, of nothing.
+/// Creates the one-texel texture and one-entry page table of absent samples.
 void Residency::makeNothing() {
     nothing_ = {};
     nothing_.texture = std::make_shared<const Texture>(makeTexture3D(glm::ivec3(1), GL_RGBA16, GL_LINEAR, "nothing"));

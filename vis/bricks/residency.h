@@ -5,8 +5,8 @@
 
 #include <deque>
 
-/// Which channels are on the GPU, and how they get there: decoded and packed on threads, coarse first, uploaded a part
-/// per frame, within a budget.
+/// Keeps the wanted channels in GPU memory within a budget: bricks are decoded and packed on threads, coarse levels
+/// first, and uploaded in limited amounts per frame.
 namespace tessera::vis {
 
 class Residency {
@@ -14,43 +14,43 @@ public:
     Residency(const RendererOptions& options, const Driver& driver);
     ~Residency();
 
-    /// Textures and decoded bricks of the samples that the former source has too stay.
+    /// Changes the data set. Textures and decoded bricks of samples that both data sets share are kept.
     void setSource(std::shared_ptr<const volume::BrickSource> source, SameSamples same = {});
-    /// Bytes of textures and of decoded bricks. A smaller atlas, or a larger one where bricks had no room, is filled
-    /// anew, coarse first.
+    /// Sets the budgets in bytes for textures and decoded bricks. If an atlas must shrink, or can grow because bricks
+    /// had no room, it is refilled, coarse levels first.
     void setBudgets(std::size_t texture, std::size_t memory);
-    /// Share of a parameter's range: bricks that move less from one time to another are drawn with the same texels.
+    /// Fraction of a parameter's range: bricks that change by less between two times share texels.
     void setKeptChange(double share) { keptChange_ = share; }
 
-    /// A new frame begins, of all views: textures not wanted in one of the last few frames may leave if the budget asks
-    /// for it.
+    /// Begins a frame of all views. Textures that were not wanted in the last few frames may be evicted if the budget
+    /// requires it.
     void beginFrame() { ++frame_; }
     std::uint64_t frame() const { return frame_; }
-    /// Says that a channel is needed in this frame and queues what is missing. `coarseFirst`: get a first picture soon.
-    /// `demand`: which bricks of a bricked channel; null: the coarsest level alone.
+    /// Requests a channel for this frame and queues missing data. `coarseFirst`: load a coarse level first for an early
+    /// picture. `demand`: the bricks of a bricked channel; null: the coarsest level only.
     void want(const ChannelKey& key, double priority, bool coarseFirst, std::shared_ptr<const BrickDemand> demand);
-    /// Whether channels of this data set are cut into bricks.
+    /// Whether channels of this data set are divided into bricks.
     bool bricked() const { return exchange_ && textureLevel() > 0; }
-    /// What is known of a channel, whether it can be drawn yet or not.
+    /// The entry of a channel, drawable or not; null if unknown.
     const ChannelTexture* known(const ChannelKey& key) const;
-    /// Keeps a channel that is shown though another time of it is wanted.
+    /// Keeps a channel that is still drawn while another time of it is wanted.
     void keep(const ChannelKey& key);
-    /// What is here of a channel, if anything.
+    /// The drawable data of a channel; null if there is none.
     const ChannelTexture* find(const ChannelKey& key) const;
-    /// A texture of absent samples, for a channel that is not here.
+    /// A texture of absent samples, bound in place of a channel that is not resident.
     const ChannelTexture& nothing() const { return nothing_; }
-    /// A page table of nothing, for the same.
+    /// The corresponding page table.
     GLuint nothingPages() const { return nothingPages_->texture.name(); }
-    /// True when nothing better than find() will come.
+    /// True if find() will not improve any more.
     bool settled(const ChannelKey& key) const;
-    /// Bricks of a channel still shown coarser than they were wanted last.
+    /// Number of bricks of a channel that are drawn coarser than last wanted.
     int missing(const ChannelKey& key) const;
 
-    /// Takes what the threads have finished and uploads at most `bytes` of it.
+    /// Uploads finished results of the threads, at most `bytes`.
     void update(std::size_t bytes);
-    /// Blocks until everything wanted in this frame is here, over the budget if need be.
+    /// Blocks until everything wanted in this frame is resident, exceeding the budget if necessary.
     void finish();
-    /// Changes whenever what find() gives changed.
+    /// Changes whenever the result of find() changes.
     std::uint64_t revision() const { return revision_ + channels_.drops(); }
 
     ResidencyInfo info() const;
@@ -96,11 +96,11 @@ private:
     ChannelTexture nothing_;
     std::unique_ptr<PageTable> nothingPages_;
     std::uint64_t frame_ = 1, revision_ = 0;
-    bool waiting_ = false; ///< finish() runs: the budget may be exceeded
+    bool waiting_ = false; ///< finish() is running: the budget may be exceeded
     double keptChange_ = 0;
     int uploaded_ = 0, kept_ = 0; ///< bricks
     std::vector<std::string> messages_;
-    JobQueue jobs_; ///< last: its threads end before anything else goes
+    JobQueue jobs_; ///< last member: its threads end before the other members are destroyed
 };
 
 } // namespace tessera::vis

@@ -6,7 +6,8 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr int kBricksInFlight = 12; ///< brick jobs queued per channel: few, so that the order follows the view
+constexpr int kBricksInFlight =
+    12; ///< queued jobs per channel; few, so that the loading order follows changes of the view
 
 } // namespace
 
@@ -33,7 +34,7 @@ void Residency::queueBricks(const ChannelKey& key, ResidentChannel& channel, dou
     }
 }
 
-/// The first brick of a channel says how it is encoded.
+/// The first decoded brick of a channel determines its encoding.
 void Residency::beginBricks(const LoadedTexels& first, ResidentChannel& channel) {
     ChannelTexture made;
     made.encoding = first.encoding;
@@ -47,11 +48,11 @@ void Residency::beginBricks(const LoadedTexels& first, ResidentChannel& channel)
 
 void Residency::takeBrick(LoadedTexels& brick, ResidentChannel& channel) {
     channel.bricksInFlight = std::max(0, channel.bricksInFlight - 1);
-    if (channel.coverage && !brick.encoding.coverage) return; // read before a damaged brick was found
+    if (channel.coverage && !brick.encoding.coverage) return; // decoded before a damaged brick was found
     if (!channel.shown) beginBricks(brick, channel);
     ChannelTexture& shown = *channel.shown;
     const BrickId id{brick.level, *brick.brick};
-    // The channel may have been dropped and begun anew since the brick was asked for.
+    // The channel may have been dropped and created again since the brick was requested.
     if (!shown.bricks || !(shown.encoding == brick.encoding) || !shown.bricks->lacks(id)) return;
     const std::optional<glm::ivec3> slot = channels_.slotFor(shown, shown.bricks->priority(id), {frame_, waiting_});
     if (!slot) {

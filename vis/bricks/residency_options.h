@@ -5,31 +5,33 @@
 #include <cstddef>
 #include <optional>
 
-/// What may be held on the GPU, and what is.
+/// Memory limits of the renderer, and what is in use.
 namespace tessera::vis {
 
 struct RendererOptions {
-    /// Bytes of textures, and of decoded bricks kept in RAM, if that is less than the scene's limits.
+    /// Budgets in bytes for textures and for decoded bricks in RAM; they apply if lower than the scene's limits.
     std::size_t textureBudget = ~std::size_t(0), memoryBudget = ~std::size_t(0);
     int decodeThreads = 2;
-    /// Largest channel, in texels, kept as one texture: cheapest to sample. Larger ones are cut into bricks.
+    /// Largest channel in texels that is kept as a single texture, which is cheapest to sample. Larger ones are divided
+    /// into bricks.
     std::size_t denseTexels = std::size_t(32) << 20;
-    bool exactTextures = false; ///< 32-bit float bricks instead of 16-bit: for comparison with the reference
-    /// Bytes of data textures that the driver is taken to have; more is refused as a driver does. For tests.
+    bool exactTextures = false; ///< store bricks as 32-bit float instead of 16-bit, for comparison with the reference
+    /// Simulated memory of the driver for data textures in bytes; larger allocations are refused. For tests.
     std::size_t driverMemory = ~std::size_t(0);
-    std::optional<Driver> driver = {}; ///< taken to be this one; none: as it says. For tests.
-    bool countSamples = false; ///< instead of colours, readLinear gives how often each ray reconstructed a layer (red)
+    std::optional<Driver> driver = {}; ///< replaces the detected driver profile, for tests
+    bool countSamples =
+        false; ///< readLinear returns, instead of colours, the number of reconstructions of each ray (in red)
 };
 
-/// What a data set has in common with the one that was shown before it: its first channels, at the first times, have
-/// the same samples in the same bricks.
+/// What a data set shares with the one drawn before: the first channels, at the first times, have identical samples in
+/// identical bricks.
 struct SameSamples {
     int channels = 0, times = 0;
 };
 
-/// Bytes in use and allowed; bricks in textures, bricks that a view wants and that are not there yet, bricks not wanted
-/// since they are hidden in every view that would show them, jobs under way; of this data set so far, bricks uploaded,
-/// and bricks of another time that were shown with texels that were there.
+/// Bytes in use and their limits; resident bricks, wanted bricks that are not resident, bricks not wanted because all
+/// views that would show them find them occluded, running jobs; and, since the data set was opened, uploaded bricks and
+/// bricks that reused texels of another time.
 struct ResidencyInfo {
     std::size_t textureBytes = 0, textureBudget = 0, memoryBytes = 0, memoryBudget = 0;
     int bricksResident = 0, bricksWanted = 0, bricksHidden = 0, bricksQueued = 0, bricksUploaded = 0, bricksKept = 0;

@@ -2,10 +2,10 @@
 
 #include "volume/bricks/parts_bricks.h"
 
-/// What of a former source stays.
+/// Keeping textures when the data set changes.
 namespace tessera::vis {
 
-/// Whether the samples of a key's part are those that they were in the former source.
+/// Whether the samples that belong to a key's part are the same as in the former source.
 bool Residency::samePart(const LoadExchange& former, const ChannelKey& key, SameSamples same) const {
     if (key.part < 0) return true;
     const auto parameterIn = [&](const volume::DatasetInfo& info) {
@@ -17,8 +17,7 @@ bool Residency::samePart(const LoadExchange& former, const ChannelKey& key, Same
            parameterIn(now).parts == parameterIn(then).parts;
 }
 
-/// Drops what the source has not in common with the former one, on the same grid. What was under way is asked for
-/// again.
+/// Drops what the source does not share with the former one on the same grid. Unfinished jobs are requested again.
 void Residency::keepSame(const LoadExchange& former, SameSamples same) {
     exchange_->bricks->adopt(*former.bricks, [&](const volume::BrickKey& key) {
         return key.channel < same.channels && key.time < same.times;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-/// What the threads have loaded becomes textures.
+/// Uploads of the results of the decoding threads.
 namespace tessera::vis {
 
 void Residency::update(std::size_t bytes) {
@@ -17,7 +17,7 @@ void Residency::update(std::size_t bytes) {
     bool changed = false;
     while (!uploads_.empty() && bytes > 0) {
         ResidentChannel* const found = channels_.find(uploads_.front().item.key);
-        if (!found) { // dropped since
+        if (!found) { // dropped since it was requested
             uploads_.pop_front();
             continue;
         }
@@ -41,7 +41,7 @@ void Residency::update(std::size_t bytes) {
     channels_.evict(frame_);
 }
 
-/// Takes in one item, at most about so many bytes of it; false when there is more of it.
+/// Uploads one item, at most about `bytes` of it; false if some of it remains.
 bool Residency::upload(Upload& upload, ResidentChannel& channel, std::size_t& bytes) {
     LoadedTexels& item = upload.item;
     if (item.brick && item.damaged) {
@@ -58,7 +58,7 @@ bool Residency::upload(Upload& upload, ResidentChannel& channel, std::size_t& by
     return true;
 }
 
-/// A damaged brick is drawn as absent, and the channel has no coverage in its texels: it begins anew, with it.
+/// Reloads a channel with coverage after a damaged brick, which is drawn as absent, was found in a channel without.
 void Residency::beginAnew(const ChannelKey& key, const ResidentChannel& former) {
     ResidentChannel fresh;
     fresh.used = former.used;
@@ -71,7 +71,7 @@ void Residency::beginAnew(const ChannelKey& key, const ResidentChannel& former) 
 void Residency::uploadBrick(LoadedTexels& brick, ResidentChannel& channel) {
     if (!brick.failed) {
         takeBrick(brick, channel);
-    } else if (channel.shown) { // out of memory, say: what is here stays as it is
+    } else if (channel.shown) { // for example out of memory: keep what is resident
         channel.bricksInFlight = std::max(0, channel.bricksInFlight - 1);
         channel.shown->bricks->forget({brick.level, *brick.brick});
         channel.shown->room = ChannelTexture::Room::Never;
@@ -79,7 +79,7 @@ void Residency::uploadBrick(LoadedTexels& brick, ResidentChannel& channel) {
     channel.ended(brick.failed && !channel.shown);
 }
 
-/// A few slices of a whole channel, at most `bytes` but one at least; true when all of it is here.
+/// Uploads a few slices of a whole channel, at most `bytes` but at least one slice; true when all are uploaded.
 bool Residency::uploadWhole(Upload& upload, ResidentChannel& channel, std::size_t& bytes) {
     LoadedTexels& item = upload.item;
     const TexelBlock& block = item.block;
@@ -115,11 +115,11 @@ bool Residency::uploadWhole(Upload& upload, ResidentChannel& channel, std::size_
     return true;
 }
 
-/// The driver has no memory for a whole channel: channels that no view uses now give way, or it is shown coarser.
-/// True where that leaves something to try.
+/// Handles the driver's refusal of memory for a whole channel: drops channels that no view uses now, else uses a
+/// coarser level. True if another attempt makes sense.
 bool Residency::refused(const LoadedTexels& item) {
     if (item.brick) return false;
-    if (channels_.dropUnused(frame_, item.key)) return true; // once more
+    if (channels_.dropUnused(frame_, item.key)) return true; // try again
     ResidentChannel& channel = *channels_.find(item.key);
     if (item.level + 1 >= exchange_->source->grid().levels) return false;
     exchange_->say("the graphics driver has not enough memory for full resolution; " +

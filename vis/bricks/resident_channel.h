@@ -10,70 +10,69 @@
 
 namespace tessera::vis {
 
-inline constexpr std::uint64_t kFramesInUse = 2; ///< what one of the last frames used stays
+inline constexpr std::uint64_t kFramesInUse = 2; ///< channels used in the last frames are not evicted
 
-/// One channel at one time on the GPU: a texture of the whole where that is small enough, else bricks in an atlas.
+/// One channel at one time on the GPU: a single texture if it is small enough, else bricks in an atlas.
 struct ChannelTexture {
-    /// For bricks that are missing.
+    /// Whether missing bricks can be loaded.
     enum class Room {
         Left,
-        None, ///< the atlas is full: they stay missing, unless the budget may be exceeded
-        Never ///< the driver has no memory for them either
+        None, ///< the atlas is full: no more bricks, unless the budget may be exceeded
+        Never ///< the driver has no memory for more bricks
     };
-    std::shared_ptr<const Texture> texture; ///< several times may share it; null where there are bricks
+    std::shared_ptr<const Texture> texture; ///< may be shared by several times; null for bricked channels
     int level = 0;                          ///< of the texture
-    int madeOf = 0;                         ///< time that it shows
+    int madeOf = 0;                         ///< the time whose samples it shows
     TexelEncoding encoding;
     glm::ivec3 size{0}; ///< texels with halo
     BlockRanges wholeBlocks;
     std::size_t bytes = 0;
-    std::unique_ptr<BrickLevels> bricks; ///< null where the texture is all there is
+    std::unique_ptr<BrickLevels> bricks; ///< null if a single texture holds the channel
     BrickAtlas* atlas = nullptr;
     Room room = Room::Left;
 
     /// Texel ranges on blockGrid().
     const BlockRanges& blocks() const { return bricks ? bricks->blocks() : wholeBlocks; }
-    /// Missing bricks stay so; `beyond`: though the budget may be exceeded.
+    /// Missing bricks cannot be loaded; `beyond`: although the budget may be exceeded.
     bool full(bool beyond) const { return room == Room::Never || (room == Room::None && !beyond); }
-    /// Something shows everywhere, or never will.
+    /// Something is resident everywhere, or never will be.
     bool drawable() const { return !bricks || bricks->drawable() || room != Room::Left; }
-    /// Shows the texture of another time.
+    /// A copy that shares the texture, for another time.
     ChannelTexture sharedWhole() const;
 };
 
-/// A channel at one time that views asked for: what is here of it and what is done for it.
+/// A requested channel at one time: its resident data and the state of its loading.
 struct ResidentChannel {
     enum class Work {
         None,
-        Loading, ///< a job for the whole channel, or its first brick, is under way
-        Failed   ///< nothing more will come
+        Loading, ///< a job for the whole channel, or for its first brick, is running
+        Failed   ///< loading failed for good
     };
     Work work = Work::None;
     std::shared_ptr<const ChannelSummary> summary;
     std::optional<ChannelTexture> shown;
-    bool coverage = false;                     ///< a damaged brick asks for it
-    int bricksInFlight = 0;                    ///< jobs for bricks
-    int finest = 0;                            ///< level of a whole channel for which the driver has memory
-    std::uint64_t used = 0;                    ///< last frame that wanted it
-    std::shared_ptr<const BrickDemand> demand; ///< of the view that asked last
+    bool coverage = false;                     ///< required because of a damaged brick
+    int bricksInFlight = 0;                    ///< running brick jobs
+    int finest = 0;                            ///< finest level of a whole channel that fits the driver's memory
+    std::uint64_t used = 0;                    ///< last frame in which it was wanted
+    std::shared_ptr<const BrickDemand> demand; ///< of the view that requested it last
 
-    /// A job has ended; `failed`: nothing more will come.
+    /// A job has ended; `failed`: there will be no further results.
     void ended(bool failed) { work = failed || work == Work::Failed ? Work::Failed : Work::None; }
     bool hasBricks() const { return shown && shown->bricks; }
-    /// Notes in a frame what a view wants of the bricks. True where no view wanted that so far, or where one wants no
-    /// more what it wanted.
+    /// Records the demand of a view in a frame. True if no view had that demand, or if a view dropped its former one.
     bool wantedAnew(const std::shared_ptr<const BrickDemand>& demand, std::uint64_t frame);
-    /// Nothing better will come of a channel of which level `finest` fits into one texture (0 or more: a whole one).
+    /// Whether no better data will come; `textureLevel`: finest level that fits into one texture (0: whole channels).
     bool settled(int textureLevel, bool beyond) const;
-    /// Bricks still shown coarser than they were wanted last, of `all`.
+    /// Number of bricks, of `all`, that are drawn coarser than last wanted.
     int missing(int all) const;
 
 private:
     struct Wanted {
         std::shared_ptr<const BrickDemand> demand;
-        std::uint64_t frame = 0; ///< in which a view wanted it last
+        std::uint64_t frame = 0; ///< last frame in which a view wanted it
     };
-    std::vector<Wanted> wanted_; ///< of the views of the last frames
+    std::vector<Wanted> wanted_; ///< demands of the views in the last frames
 };
 
 } // namespace tessera::vis

@@ -9,7 +9,7 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr float kMuchLess = 1.25f; ///< a brick in sight gives way only to one this many times as urgent
+constexpr float kMuchLess = 1.25f; ///< a visible brick is evicted only for one this many times as urgent
 
 } // namespace
 
@@ -25,7 +25,7 @@ void ResidentChannels::clear(const volume::BrickGrid& grid) {
     clearAtlases();
 }
 
-/// Drops all atlases, none of which may be in use.
+/// Frees all atlases; none may be in use.
 void ResidentChannels::clearAtlases() {
     candidates_ = {};
     atlases_.clear(grid_.brickSize, grid_.count());
@@ -47,7 +47,7 @@ void ResidentChannels::setBudget(std::size_t bytes) {
 
 std::size_t ResidentChannels::bytes() const {
     std::size_t total = atlases_.bytes();
-    for (const auto& [key, channel] : channels_) // of a shared texture each counts its part
+    for (const auto& [key, channel] : channels_) // a shared texture counts for its users in equal parts
         if (channel.shown && channel.shown->texture)
             total += channel.shown->bytes / std::size_t(std::max(1L, channel.shown->texture.use_count()));
     return total;
@@ -108,7 +108,8 @@ std::optional<glm::ivec3> ResidentChannels::slotFor(ChannelTexture& channel, flo
     }
 }
 
-/// Frees a slot of a channel's atlas: of a channel or a brick that no view wanted lately, or of one far less urgent.
+/// Frees a slot of a channel's atlas by evicting a channel or brick that no view wanted lately, or a far less urgent
+/// brick.
 bool ResidentChannels::makeRoom(const ChannelTexture& channel, float priority, const Moment& moment) {
     if (dropOldest(channel, moment.since())) return true;
     if (candidates_.of != channel.atlas || candidates_.frame != moment.frame) findCandidates(channel.atlas, moment);
@@ -137,7 +138,7 @@ bool ResidentChannels::dropOldest(const ChannelTexture& channel, std::uint64_t s
     return true;
 }
 
-/// The bricks of an atlas in the order in which they may leave.
+/// Sorts the bricks of an atlas in order of eviction.
 void ResidentChannels::findCandidates(const BrickAtlas* atlas, const Moment& moment) {
     candidates_ = {atlas, moment.frame, {}};
     for (const auto& [key, channel] : channels_)
@@ -150,8 +151,7 @@ void ResidentChannels::findCandidates(const BrickAtlas* atlas, const Moment& mom
     });
 }
 
-/// A larger atlas with everything of the former one in it, within the budget or, for a picture that must be complete,
-/// beyond.
+/// Moves an atlas into a larger one, within the budget or, for a picture that must be complete, beyond it.
 bool ResidentChannels::grow(const BrickAtlas* atlas, bool beyond) {
     return atlases_.grow(atlas, beyond, [&](BrickAtlas& larger) {
         std::map<std::array<int, 3>, glm::ivec3> moved; // slots, which several times may share

@@ -6,57 +6,58 @@
 
 namespace tessera::vis {
 
-/// What is on the GPU of one data set: the channels that views asked for and the atlases of their bricks; who gives way
-/// where there is no more room, and who shows the texels of another time.
+/// The resident channels of one data set and the atlases of their bricks; decides what is evicted and which texels are
+/// shared between times.
 class ResidentChannels {
 public:
     using Map = std::map<ChannelKey, ResidentChannel>;
 
-    /// `say` takes messages.
+    /// `say` receives messages.
     ResidentChannels(const RendererOptions& options, const Driver& driver, std::function<void(const std::string&)> say);
 
-    /// Drops everything; what comes has this grid.
+    /// Drops everything; later channels have this grid.
     void clear(const volume::BrickGrid& grid);
-    /// Bytes of textures. A smaller atlas, or a larger one where bricks had no room, is filled anew: then all channels
-    /// in bricks are dropped.
+    /// Sets the texture budget in bytes. If an atlas must shrink, or can grow because bricks had no room, all bricked
+    /// channels are dropped and loaded again.
     void setBudget(std::size_t bytes);
     std::size_t budget() const { return budget_; }
     /// Bytes of all textures.
     std::size_t bytes() const;
-    /// Throws MachineError where the driver has no memory for so many bytes more.
+    /// Throws MachineError if the driver has no memory for that many more bytes.
     void reserve(std::size_t bytes) const;
 
     Map& all() { return channels_; }
     const Map& all() const { return channels_; }
-    /// A channel; null where nobody asked for it.
+    /// Finds a channel; null if it was never requested.
     ResidentChannel* find(const ChannelKey& key);
     const ResidentChannel* find(const ChannelKey& key) const;
     void drop(const ChannelKey& key);
-    /// Drops whole channels that no view wanted lately, the oldest first, while there is too much.
+    /// Drops whole channels that no view wanted lately, the oldest first, until the budget is met.
     void evict(std::uint64_t frame);
-    /// Drops whole channels that are not wanted in this frame, but for one; false where there were none.
+    /// Drops whole channels that are not wanted in this frame, except one; false if there were none.
     bool dropUnused(std::uint64_t frame, const ChannelKey& but);
-    /// Counts what was dropped.
+    /// Number of drops so far.
     std::uint64_t drops() const { return drops_; }
 
-    /// Where a channel's bricks go. Throws MachineError when the driver has no memory for an atlas.
+    /// The atlas for a channel's bricks. Throws MachineError if the driver has no memory for one.
     BrickAtlas& atlasFor(int components) { return atlases_.atlasFor(components); }
-    /// Who gives way in a frame; `beyond`: the budget may be exceeded.
+    /// Eviction rules of a frame; `beyond`: the budget may be exceeded.
     struct Moment {
         std::uint64_t frame = 0;
         bool beyond = false;
-        /// What was wanted before this frame may leave.
+        /// Whatever was last wanted before this frame may be evicted.
         std::uint64_t since() const { return beyond ? frame : frame > kFramesInUse ? frame - kFramesInUse : 0; }
     };
-    /// A free slot of a channel's atlas for a brick of that priority, made free if need be; nullopt: the atlas is full.
+    /// A free slot of a channel's atlas for a brick of that priority, by eviction if necessary; nullopt: the atlas is
+    /// full.
     std::optional<glm::ivec3> slotFor(ChannelTexture& channel, float priority, const Moment& moment);
 
-    /// Shows a channel, or a brick of one, with the texels of another time, if there are any that will do. `level`: the
-    /// coarsest that a whole channel may have.
+    /// Reuses the texels of another time for a channel, or for a brick of one, if they changed little enough. `level`:
+    /// the coarsest level accepted for a whole channel.
     bool reuseWhole(const ChannelKey& key, ResidentChannel& channel, const Unchanged& unchanged, int level) const;
     bool reuseBrick(const ChannelKey& key, ResidentChannel& channel, const BrickId& id,
                     const Unchanged& unchanged) const;
-    /// How another part of the channel is encoded, if one is here: all are alike.
+    /// The encoding of another resident part of the channel, if any; all parts have the same one.
     std::optional<TexelEncoding> encodingOfParts(const ChannelKey& key) const;
 
 private:
@@ -68,10 +69,10 @@ private:
 
     std::size_t budget_, driverMemory_;
     volume::BrickGrid grid_;
-    AtlasPool atlases_; ///< outlives the channels
+    AtlasPool atlases_; ///< destroyed after the channels
     Map channels_;
     std::uint64_t drops_ = 0;
-    /// Bricks that could make room in an atlas, the first to go last, as they are in a frame.
+    /// Eviction candidates of an atlas in one frame; the first to be evicted comes last.
     struct Candidate {
         ChannelKey key;
         BrickLevels::Guest brick;

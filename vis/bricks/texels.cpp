@@ -67,15 +67,15 @@ glm::ivec3 levelTexels(const BrickGrid& grid, int level) {
 
 namespace {
 
-/// Consecutive output samples that come from one brick.
+/// Consecutive output samples from one brick.
 struct Run {
     int brick, begin, end;
 };
 
 struct Axis {
-    std::vector<int> sample; ///< within its brick
+    std::vector<int> sample; ///< index within its brick
     std::vector<Run> runs;
-    /// How many samples from `begin` on follow one another in the brick.
+    /// Number of samples from `begin` on that are adjacent in the brick.
     int adjacent(int begin, int end) const {
         int last = begin + 1;
         while (last < end && sample[std::size_t(last)] == sample[std::size_t(last) - 1] + 1) ++last;
@@ -83,7 +83,7 @@ struct Axis {
     }
 };
 
-/// Where the output samples of one axis come from. `perTexel` samples per texel, the sublattices alternating.
+/// Sources of the output samples along one axis. `perTexel`: samples per texel, with the sublattices alternating.
 Axis mapAxis(int begin, int end, int halo, int whole, int edge, int perTexel) {
     Axis axis;
     for (int i = (begin - halo) * perTexel; i < (end + halo) * perTexel; ++i) {
@@ -132,7 +132,7 @@ BrickSamples gatherBox(const BrickGrid& grid, const BrickKey& which, const Texel
                 const std::size_t to = indexOfTexel({0, y, z}, out.size);
                 const std::size_t source =
                     indexOfTexel({0, axes[1].sample[std::size_t(y)], axes[2].sample[std::size_t(z)]}, from->size);
-                for (int x = rx.begin, count = 0; x < rx.end; x += count) { // beyond the lattice one by one
+                for (int x = rx.begin, count = 0; x < rx.end; x += count) { // samples beyond the lattice individually
                     count = axes[0].adjacent(x, rx.end);
                     const std::size_t sample = source + std::size_t(axes[0].sample[std::size_t(x)]);
                     std::copy_n(&from->values[sample], count, &out.values[to + std::size_t(x)]);
@@ -148,17 +148,17 @@ namespace {
 
 struct Extent {
     float least = std::numeric_limits<float>::infinity(), most = -std::numeric_limits<float>::infinity();
-    void take(float low, float high) { // NaN is neither
+    void take(float low, float high) { // a NaN changes neither bound
         least = low < least ? low : least;
         most = high > most ? high : most;
     }
 };
 
-/// Texel ranges of what blocks see of every row: those of one texel more on every side belong to a block, since
-/// interpolation inside it reaches them.
+/// Texel ranges per block from rows of texels. A block includes one texel beyond each side, which interpolation inside
+/// it reads.
 struct RowRanges {
     glm::ivec3 size; ///< texels with halo
-    int blocks;      ///< along a row
+    int blocks;      ///< per row
     std::vector<float> min, max;
 
     explicit RowRanges(glm::ivec3 of) : size(of), blocks((of.x - 2 * kHalo + kBlockTexels - 1) / kBlockTexels) {
@@ -166,7 +166,7 @@ struct RowRanges {
         min.resize(total);
         max.resize(total);
     }
-    /// `texels`: those of one row, `samples` values each.
+    /// `texels`: one row, with `samples` values per texel.
     void take(std::size_t row, const float* texels, int samples) {
         for (int x = 0; x < blocks; ++x) {
             const int lo = x * kBlockTexels + kHalo - 1, hi = std::min(lo + kBlockTexels + 2, size.x);
@@ -203,8 +203,8 @@ BlockRanges blockRanges(const RowRanges& rows, int level) {
     return blocks;
 }
 
-/// Packs one row of a sublattice, whose samples begin at `first`, into component `sublattice` of the texels of `row`,
-/// and as numbers, NaN where absent, into `plain`.
+/// Packs one row of a sublattice, starting at `first`, into component `sublattice` of the texels of `row`; writes the
+/// unpacked values, NaN where absent, to `plain`.
 void packRow(const BrickSamples& samples, std::size_t first, const TexelEncoding& encoding, int perTexel,
              int sublattice, std::size_t row, std::vector<float>& plain, TexelBlock& out) {
     const std::size_t width = std::size_t(out.size.x);
@@ -251,7 +251,7 @@ TexelBlock makeTexels(const BrickGrid& grid, const BrickKey& which, const TexelB
     (encoding.exact ? out.exact.resize(texels * std::size_t(out.components))
                     : out.normalised.resize(texels * std::size_t(out.components)));
     RowRanges ranges(out.size);
-    // A layer at a time, so that what lies between bricks and texels stays small.
+    // Layer by layer, to keep the intermediate buffer small.
     const int layer = grid.brickSize;
     for (int z = box.begin.z; z < box.end.z; z += layer) {
         const TexelBox part{

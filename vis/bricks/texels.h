@@ -8,50 +8,50 @@
 #include <span>
 #include <vector>
 
-/// From bricks to the texels of a 3D texture: gathered with a halo, filtered, normalised and packed. No GL.
+/// Converts bricks to texels of a 3D texture: gathers them with a halo, filters, normalises and packs. Without OpenGL.
 namespace tessera::vis {
 
-inline constexpr int kHalo = 2; ///< texels around what a texture covers: central differences reach that far
-inline constexpr int kBlockTexels = kStepBlock; ///< edge of a block of the empty-space map
+inline constexpr int kHalo = 2;                 ///< texels around the covered box, for central differences
+inline constexpr int kBlockTexels = kStepBlock; ///< edge of a block for empty-space skipping
 
-/// How the numbers of a texture become values: physical = offset + scale * texel.
+/// How texel values map to physical values: physical = offset + scale * texel.
 struct TexelEncoding {
-    bool coverage = false;   ///< a second set of components says how much of a sample is present
+    bool coverage = false;   ///< extra components hold the presence of each sample, 0..1
     bool exact = false;      ///< 32-bit float texels, else 16-bit normalised
-    bool prefiltered = true; ///< Prefiltered (volume/reconstruct/reconstruct.h), else the samples as they are
+    bool prefiltered = true; ///< by the filter Prefiltered (volume/reconstruct/reconstruct.h), else unfiltered samples
     double offset = 0, scale = 1;
     bool operator==(const TexelEncoding&) const = default;
 };
 
-/// Value range of a channel at one time, over present samples.
+/// Value range of the present samples of a channel at one time.
 struct ChannelStats {
     double min = 0, max = 0;
     bool someAbsent = false, allAbsent = false;
 };
 ChannelStats channelStats(std::span<const volume::BrickStats> bricks);
 
-/// The range that a channel is encoded with: that of all its times, so that unchanged bricks can keep their texels, if
-/// the time uses at least a sixteenth of it; else its own.
+/// The range used for encoding: that of all times, so that unchanged bricks can share texels, if this time covers at
+/// least a sixteenth of it; else its own range.
 ChannelStats commonStats(const ChannelStats& own, Range allTimes);
 
-/// The encoding that holds a channel: unfiltered values in [0, 1] of the 16 bits minus headroom for the prefilter's
-/// overshoot (2/3 of the range on either side). Categorical values are stored as integers.
+/// The encoding of a channel: unfiltered values in [0, 1], 16 bits with headroom of 2/3 of the range on either side for
+/// the overshoot of the prefilter. Categorical values are stored as integers.
 TexelEncoding makeEncoding(const ChannelStats& stats, bool categorical, bool exact, bool prefiltered);
 
-/// Texels of a level: (CC) its samples, (BCC) one texel per pair of samples.
+/// Texels of a level: one per sample (CC), or one per pair of samples (BCC).
 glm::ivec3 levelTexels(const volume::BrickGrid& grid, int level);
 
-/// Which texels of which level: [begin, end).
+/// A box [begin, end) of texels of a level.
 struct TexelBox {
     int level = 0;
     glm::ivec3 begin{0}, end{0};
     glm::ivec3 size() const { return end - begin; }
 };
 
-/// Texel ranges per block, over everything that interpolation inside the block can touch; min > max: all absent.
+/// Texel ranges per block over all texels that interpolation inside it can read; min > max: all absent.
 struct BlockRanges {
     glm::ivec3 count{0};
-    int edge = kBlockTexels; ///< of a block, in texels of `level`
+    int edge = kBlockTexels; ///< edge of a block in texels of `level`
     int level = 0;
     std::vector<float> min, max; ///< texel units, x fastest
 };
@@ -62,18 +62,18 @@ struct BlockRanges {
 struct TexelBlock {
     glm::ivec3 size{0}; ///< with halo
     int components = 1;
-    std::vector<std::uint16_t> normalised; ///< either this
-    std::vector<float> exact;              ///< or this
+    std::vector<std::uint16_t> normalised; ///< 16-bit encoding, or
+    std::vector<float> exact;              ///< float encoding
     BlockRanges blocks;
     const void* data() const { return exact.empty() ? static_cast<const void*>(normalised.data()) : exact.data(); }
     std::size_t bytes() const { return normalised.size() * 2 + exact.size() * 4; }
 };
 
 using SharedBrick = std::shared_ptr<const volume::BrickSamples>;
-/// Returns one decoded brick; called from several threads at once.
+/// Returns one decoded brick; called concurrently.
 using ReadBrick = std::function<SharedBrick(const volume::BrickKey&)>;
 
-/// Samples of a box with `halo` texels around it, the nearest sample repeated beyond the lattice.
+/// Copies the samples of a box with `halo` texels around it; beyond the lattice the nearest sample is repeated.
 volume::BrickSamples gatherBox(const volume::BrickGrid& grid, const volume::BrickKey& which, const TexelBox& box,
                                int halo, const ReadBrick& read);
 

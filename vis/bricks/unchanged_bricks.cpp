@@ -10,7 +10,7 @@ bool Unchanged::bricks(const ChannelKey& key, int madeOf, glm::ivec3 first, glm:
     const volume::Parameter& parameter = info.parameters[std::size_t(channel.parameter)];
     const Range range = info.channelRange(channel);
     const double most = exactly || parameter.categorical ? 0 : share * (range.hi - range.lo);
-    // Which samples are of a part may change though no value does.
+    // The assignment of samples to parts may change even if no value does.
     const int label = key.part >= 0 ? volume::labelChannel(info, parameter).value_or(-1) : -1;
     for (int z = first.z; z < last.z; ++z)
         for (int y = first.y; y < last.y; ++y)

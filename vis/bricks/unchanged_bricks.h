@@ -2,23 +2,23 @@
 
 #include "vis/bricks/brick_levels.h"
 
-/// Which texels of one time will do for another.
+/// Decides whether texels of one time can be used for another.
 namespace tessera::vis {
 
-/// How much may change: a share of the parameter's range; labels may not change at all.
+/// Tolerance of a change, as a fraction of the parameter's range; labels must not change.
 struct Unchanged {
     const volume::BrickSource& source;
     double share = 0;
 
-    /// Whether no brick of [first, last) at full resolution changes more from the time `madeOf` to that of the key;
-    /// `exactly`: at all.
+    /// Whether no full-resolution brick of [first, last) changes more than tolerated from the time `madeOf` to that of
+    /// the key; `exactly`: whether none changes at all.
     bool bricks(const ChannelKey& key, int madeOf, glm::ivec3 first, glm::ivec3 last, bool exactly) const;
-    /// Whether the texels of a brick will do: what of its neighbours is in its halo counts. Of coarser levels nothing
-    /// is known but that they stay when nothing changes.
+    /// Whether the texels of a brick can be reused, including the neighbours' samples in its halo. For coarser levels
+    /// this is known only if nothing changes at all.
     bool brick(const ChannelKey& key, int madeOf, const BrickId& id) const;
 };
 
-/// Whether two keys are one channel, made in one way, at different times.
+/// Whether two keys differ only in time.
 bool otherTime(const ChannelKey& a, const ChannelKey& b);
 
 } // namespace tessera::vis

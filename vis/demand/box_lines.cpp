@@ -7,7 +7,7 @@ namespace tessera::vis {
 
 namespace {
 
-/// Whether the face of the box on side `sign` of `axis` looks at the viewer.
+/// Whether the face of the box on side `sign` of `axis` faces the viewer.
 bool faces(const Camera& camera, const Ray& middle, glm::dvec3 halfSize, int axis, double sign) {
     return camera.projection == Projection::Perspective ? sign * middle.origin[axis] > halfSize[axis]
                                                         : sign * middle.direction[axis] < 0;

@@ -18,7 +18,7 @@ std::optional<Tile> changedPixels(const Scene& before, const Scene& after, const
     Scene otherwise = after;
     otherwise.lenses = before.lenses;
     if (!sliceAtCursor(after)) otherwise.cursor = before.cursor;
-    // Shadows fall, what is out of focus spreads, and brushes made of lenses choose, beyond a lens.
+    // Shadows, context blur and lens brushes also change pixels outside a lens.
     if (!(otherwise == before) || after.lighting.shadows.any() || blursContext(after) || selectsLens(after.selection))
         return std::nullopt;
     const std::vector<PlacedLens> was = placeLenses(before, frame), is = placeLenses(after, frame);
@@ -31,7 +31,7 @@ std::optional<Tile> changedPixels(const Scene& before, const Scene& after, const
         placed.center = is[i].center;
         placed.toUnit = is[i].toUnit;
         placed.fromUnit = is[i].fromUnit;
-        // The interest that a magnifying lens shows is that of another place.
+        // A magnifying lens shows the degree of interest of another position.
         if (!(placed == is[i]) || (bends && is[i].focus > 0)) return std::nullopt;
         const std::optional<Tile> from = lensPixels(was[i], after.camera, size),
                                   to = lensPixels(is[i], after.camera, size);

@@ -17,17 +17,17 @@ std::size_t countOf(glm::ivec3 size) {
 }
 
 constexpr std::uint8_t kNotWanted = BrickDemand::kNotWanted;
-constexpr double kInLens = 0.5; ///< bricks in a lens are as urgent as those half as far away
+constexpr double kInLens = 0.5; ///< bricks in a lens are as urgent as others at half the distance
 
 /// An axis-aligned box in world space.
 struct WorldBox {
     glm::dvec3 centre, half;
-    double below(glm::dvec3 normal) const { // the least dot(normal, p)
+    double below(glm::dvec3 normal) const { // minimum of dot(normal, p)
         return glm::dot(normal, centre) - glm::dot(glm::abs(normal), half);
     }
 };
 
-/// What the picture sees, as planes and as the size of a pixel.
+/// The view frustum as planes, and the size of a pixel.
 class Sight {
 public:
     Sight(const Camera& camera, glm::ivec2 size) {
@@ -56,11 +56,11 @@ public:
             if (-box.below(-normals_[i]) < offsets_[i]) return false;
         return !perspective_ || -box.below(-forward_) > glm::dot(forward_, eye_);
     }
-    /// Distance along the view of the nearest point of a box; 0 when the eye is inside.
+    /// Depth of the nearest point of a box along the view; 0 when the eye is inside.
     double depth(const WorldBox& box) const { return std::max(0.0, box.below(forward_) - glm::dot(forward_, eye_)); }
     /// World size of a pixel at a depth.
     double pixel(double depth) const { return perspective_ ? pixel_ * std::max(depth, 1e-6) : pixel_; }
-    /// Distance of a point from the middle of the picture.
+    /// Distance of a point from the view axis, in world units.
     double aside(glm::dvec3 point) const {
         const glm::dvec3 from = point - eye_;
         return glm::length(from - forward_ * glm::dot(from, forward_));
@@ -74,7 +74,7 @@ private:
     double pixel_ = 0; ///< at depth 1, or everywhere
 };
 
-/// Marks bricks where a layer of the field shows something.
+/// Marks bricks in which a layer that uses the field is visible.
 void markShown(std::vector<std::uint8_t>& shown, const RayPlan& plan, int field, const Scene& scene,
                const volume::DatasetInfo& info) {
     RayPlan part = plan;
@@ -85,22 +85,22 @@ void markShown(std::vector<std::uint8_t>& shown, const RayPlan& plan, int field,
         if (!blocks || i >= blocks->distance.size() || blocks->distance[i] == 0) shown[i] = 1;
 }
 
-/// The coarsest level whose voxels, of `pixels` at full resolution, are no larger than `detail`.
+/// The coarsest level whose voxels, `pixels` large at full resolution, do not exceed `detail`.
 std::uint8_t levelOf(double pixels, double detail, int levels) {
     int level = 0;
     while (level + 1 < levels && pixels * double(2 << level) <= detail) ++level;
     return std::uint8_t(level);
 }
 
-/// The level of which light inside the volume is made, whatever the picture shows: its voxels are as large as the parts
-/// of a light cell that are sampled. Nothing where the scene has no such light.
+/// The level used for the light volume, independent of the picture: its voxels match the sample distance within a light
+/// cell. Empty if the scene has no such light.
 std::optional<std::uint8_t> lightLevel(const Scene& scene, const WorldFrame& frame, double voxel, int levels) {
     if (!scene.lighting.shadows.any()) return std::nullopt;
     const glm::dvec3 part = lightGrid(frame, scene.lighting.shadows).cell() / double(kMatterSamples);
     return levelOf(voxel, std::min({part.x, part.y, part.z}), levels);
 }
 
-/// How many times as large voxels may be where there is little to show.
+/// Factor by which the voxels of unimportant bricks may be larger.
 class Coarser {
 public:
     Coarser(std::span<const float> importance, double levels) : importance_(importance), levels_(levels) {
@@ -116,7 +116,7 @@ private:
     float most_ = 0;
 };
 
-/// Leaves the most urgent `share` of the wanted bricks.
+/// Keeps only the most urgent `share` of the wanted bricks.
 void keepMostUrgent(BrickDemand& demand, double share) {
     if (share >= 1) return;
     std::vector<float> priorities;
@@ -128,9 +128,9 @@ void keepMostUrgent(BrickDemand& demand, double share) {
         if (left == 0 || demand.priority[i] >= priorities[left]) demand.level[i] = kNotWanted;
 }
 
-/// Whether a box may reach into a lens.
+/// Whether a box may intersect a lens.
 bool meets(const PlacedLens& lens, const WorldBox& box) {
-    // How far the unit shape's coordinates go within the box, each by itself.
+    // Largest extent of the box along each unit-shape coordinate.
     glm::dvec3 reach(0);
     for (int axis = 0; axis < 3; ++axis) reach += glm::abs(glm::dvec3(lens.toUnit[axis])) * box.half[axis];
     if (lens.shape != LensShape::Disc) return lens.radius(box.centre) - glm::length(reach) < 1;
@@ -139,10 +139,10 @@ bool meets(const PlacedLens& lens, const WorldBox& box) {
     return glm::length(glm::dvec2(u)) - u.z < 1 + glm::length(glm::dvec2(reach)) + reach.z;
 }
 
-/// Where each field shows something: 1 or 0 per brick.
+/// Per field and brick, 1 if something is visible, else 0.
 using ShownBricks = std::vector<std::vector<std::uint8_t>>;
 
-/// By what is known of the bricks' values. Slices and brushes are not in it.
+/// From the known ranges of the bricks' values. Does not cover slices and brushes.
 ShownBricks shownByLayers(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info,
                           const std::vector<const BlockRanges*>& ranges, std::size_t bricks) {
     ShownBricks shown(plan.fields.size(), std::vector<std::uint8_t>(bricks, 0));
@@ -150,7 +150,7 @@ ShownBricks shownByLayers(RayPlan plan, const Scene& scene, const volume::Datase
         plan.fields[f].blocks = ranges[f];
         if (ranges[f]) markShown(shown[f], plan, int(f), scene, info);
     }
-    // What gives a layer its colours is looked at where the layer shows.
+    // A colour channel is needed wherever its layer is visible.
     if (std::ranges::none_of(plan.layers, [](const RayLayer& layer) { return layer.color >= 0; })) return shown;
     const ShownBricks shapes = shown;
     for (const RayLayer& layer : plan.layers)
@@ -159,7 +159,7 @@ ShownBricks shownByLayers(RayPlan plan, const Scene& scene, const volume::Datase
     return shown;
 }
 
-/// What a picture asks of its bricks, brick by brick.
+/// Chooses the wanted level of each brick of a picture.
 class Chooser {
 public:
     Chooser(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info, const volume::BrickGrid& grid,
@@ -174,13 +174,13 @@ public:
                 slicePlane(std::get<SliceLayer>(scene.layers[std::size_t(use.layer)].technique), frame_, scene.cursor));
     }
 
-    /// A brick in the picture.
+    /// A brick inside the view.
     struct Seen {
-        double pixels = 0; ///< edge of a voxel of full resolution
+        double pixels = 0; ///< edge of a full-resolution voxel on screen
         double detail = 0;
         float priority = 0;
     };
-    /// nullopt: not in the picture.
+    /// Returns nullopt if the box is outside the view.
     std::optional<Seen> look(const WorldBox& box) const {
         if (!sight_.sees(box)) return std::nullopt;
         const double depth = sight_.depth(box);
@@ -195,14 +195,14 @@ public:
         seen.priority = float((depth + 0.5 * sight_.aside(box.centre) + 0.25 * toCursor) * (inLens ? kInLens : 1));
         return seen;
     }
-    /// The box of a brick. One cell more on every side: the moved sublattice and interpolation reach that far.
+    /// The box of a brick, plus one cell on every side for the shifted sublattice and interpolation.
     WorldBox box(glm::ivec3 brick) const {
         const volume::Lattice& lattice = grid_.lattice;
         const glm::dvec3 lo = glm::dvec3(brick * grid_.brickSize) - 1.0, hi = lo + double(grid_.brickSize) + 2.0;
         const auto world = [&](glm::dvec3 cell) { return frame_.toWorld(lattice.origin + cell * lattice.spacing); };
         return {0.5 * (world(lo) + world(hi)), 0.5 * glm::abs(frame_.scale * lattice.spacing) * (hi - lo)};
     }
-    /// Adds to what is shown of brick i the slices through its box, and the brushes' fields where anything is.
+    /// Marks brick i for slices that cross its box, and for fields of brushes if anything in it is visible.
     void addSlicesAndBrushes(ShownBricks& shown, std::size_t i, const WorldBox& box) const {
         for (std::size_t s = 0; s < planes_.size(); ++s) {
             const double offset = planes_[s].offset;
@@ -212,7 +212,7 @@ public:
         if (std::ranges::none_of(shown, [i](const std::vector<std::uint8_t>& field) { return field[i] != 0; })) return;
         for (const int brush : plan_.brushFields) shown[std::size_t(brush)][i] = 1;
     }
-    /// The level wanted of a brick whose voxels may be `coarser` times as large; hidden: for light alone.
+    /// The wanted level of a brick whose voxels may be larger by `coarser`; hidden: only needed for the light volume.
     std::uint8_t level(const Seen& seen, double coarser, bool hidden) const {
         const std::uint8_t level = levelOf(seen.pixels, seen.detail * coarser, grid_.levels);
         if (!hidden) return level;
@@ -231,7 +231,7 @@ private:
     std::vector<Plane> planes_;
 };
 
-/// Fields of the same samples (drawn by functions of their own) want them together.
+/// Fields with the same samples but different transfer functions get a common demand.
 void joinSameSamples(std::vector<BrickDemand>& demands, const RayPlan& plan, const ShownBricks& shown) {
     for (std::size_t f = 0; f < demands.size(); ++f)
         for (std::size_t g = 0; g < demands.size(); ++g) {

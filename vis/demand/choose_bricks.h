@@ -6,29 +6,28 @@
 #include <memory>
 #include <span>
 
-/// Chooses the bricks that a picture needs, and their levels.
+/// Chooses the bricks that a picture needs and their levels.
 namespace tessera::vis {
 
 /// Inputs of the choice besides the scene.
 struct DemandSettings {
     glm::ivec2 size{512, 512}; ///< of the picture
-    double detail = 1;         ///< pixels: voxels smaller than this are wanted at a coarser level; 0 = full resolution
-    double importance = 0;     ///< levels: RenderParams::importance
-    double share = 1;          ///< of the bricks, the most urgent ones, that are wanted yet
+    double detail = 1;     ///< in pixels: a coarser level is used where voxels would be smaller; 0 = full resolution
+    double importance = 0; ///< in levels: RenderParams::importance
+    double share = 1;      ///< fraction of the bricks, the most urgent ones, that is requested
     bool operator==(const DemandSettings&) const = default;
 };
 
-/// One demand per field of a plan. `ranges`: per field, texel ranges of bricks (edge = brickSize); null: not known yet,
-/// that field's demand is null. Not wanted are bricks outside the picture and those where no layer that uses the field
-/// shows anything: transparent under its transfer function, away from its iso-value or slice plane.
+/// Returns one demand per field of a plan. `ranges`: per field, texel ranges of bricks (edge = brickSize); null if
+/// unknown, and then that field's demand is null. Bricks outside the view are not wanted, nor those in which no layer
+/// that uses the field is visible: transparent under its transfer function, or away from its iso-value or slice plane.
+/// || The level of a brick is the coarsest at which a voxel covers at most
 ///
-/// The level of a brick is the coarsest at which a voxel is no larger on screen than
+///     detail * lens's detail * 2^(settings.importance * (1 - importance / largest importance of a brick))
 ///
-///     detail * lens's detail * 2^(settings.importance * (1 - importance / that of the most important brick))
-///
-/// pixels; `importance`: per field, of its bricks, empty: not known, all alike.
-/// Near ones, those in the middle of the picture, near the cursor and in lenses come first. `hidden`: as of
-/// hiddenBricks(); such bricks are wanted for light inside the volume alone.
+/// pixels; `importance`: per field and brick, empty if unknown. Bricks near the eye, the centre of the picture or the
+/// cursor, and those in lenses, are more urgent. `hidden`: the result of hiddenBricks(); such bricks are wanted for the
+/// light volume only.
 std::vector<std::shared_ptr<const BrickDemand>>
 brickDemands(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info, const volume::BrickGrid& grid,
              const std::vector<const BlockRanges*>& ranges, const std::vector<std::span<const float>>& importance,

@@ -60,14 +60,14 @@ std::vector<Tile> coveredPixels(const Camera& camera, std::span<const OccupiedBo
         const auto found =
             projection.bounds((box.lo + box.hi) * 0.5, glm::dmat3(half.x, 0, 0, 0, half.y, 0, 0, 0, half.z));
         if (!found) return {{{0, 0}, size}};
-        const glm::dvec2 top(size); // beyond it nothing is drawn
+        const glm::dvec2 top(size); // nothing is drawn beyond it
         const glm::ivec2 begin(glm::floor(glm::clamp(found->lo - kMargin, glm::dvec2(0), top) / double(kCoverCell)));
         const glm::ivec2 end = glm::min(
             glm::ivec2(glm::ceil(glm::clamp(found->hi + kMargin, glm::dvec2(0), top) / double(kCoverCell))), cells);
         for (int y = begin.y; y < end.y; ++y)
             for (int x = begin.x; x < end.x; ++x) covered[std::size_t(y) * std::size_t(cells.x) + std::size_t(x)] = 1;
     }
-    // Runs of every row; one that lies on an equal one below makes it higher.
+    // Runs of cells per row; a run that equals the one below extends that rectangle.
     std::vector<Tile> tiles;
     for (int y = 0; y < cells.y; ++y)
         for (int x = 0; x < cells.x; ++x) {

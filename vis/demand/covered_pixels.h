@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-/// Part of a picture in which anything is visible: rays that meet no occupied block are not drawn.
+/// The part of a picture in which anything can be visible: rays that hit no occupied block are not cast.
 namespace tessera::vis {
 
 /// A box in world axes.
@@ -16,14 +16,14 @@ struct OccupiedBox {
     glm::dvec3 lo, hi;
 };
 
-/// Boxes that hold all occupied blocks: of groups of blocks, those at the border of the lattice up to the faces of the
-/// data's box. `blocks` is the grid that the distances are of.
+/// Boxes around all occupied blocks: one per group of blocks; those at the border of the lattice extend to the faces of
+/// the bounding box. `blocks` is the grid of the distances.
 std::vector<OccupiedBox> occupiedBoxes(const BlockDistances& distances, const BlockRanges& blocks,
                                        const volume::BrickGrid& grid, const WorldFrame& frame);
 
 inline constexpr int kCoverCell = 16; ///< pixels
-/// Rectangles apart from each other, out of cells of kCoverCell pixels, with every pixel whose rays (anywhere in the
-/// pixel or in one beside it) meet one of the boxes; the whole picture where a box reaches behind the eye.
+/// Disjoint rectangles, made of cells of kCoverCell pixels, that contain every pixel whose rays (anywhere in the pixel
+/// or in a neighbour) hit one of the boxes; the whole picture if a box extends behind the eye.
 std::vector<Tile> coveredPixels(const Camera& camera, std::span<const OccupiedBox> boxes, glm::ivec2 size);
 
 } // namespace tessera::vis

@@ -10,11 +10,11 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr double kReadBeyond = 3; ///< cells from a sample's place to the farthest that its value and gradient look at
-constexpr int kSplits = 2;        ///< times that a box is cut into eight to fit what hides it more closely
+constexpr double kReadBeyond = 3; ///< in cells: how far reconstruction and gradient read from a sample position
+constexpr int kSplits = 2;        ///< number of octree subdivisions of a box, for a closer depth test
 constexpr int kFewTiles = 4;
 
-/// Boxes in world space before or behind the ends of a picture's rays.
+/// Depth tests of world-space boxes against the termination depths of a picture.
 class RayEnds {
 public:
     explicit RayEnds(const ReachMap& reach)
@@ -26,7 +26,7 @@ public:
         forward_ = middle.direction;
     }
 
-    /// Whether a box lies in the picture, and behind.
+    /// Whether a box lies inside the picture and is occluded.
     bool hide(glm::dvec3 lo, glm::dvec3 hi) const {
         if (seenInTheMiddle(lo, hi)) return false;
         const std::optional<Tiles> tiles = tilesOf(lo, hi);
@@ -39,19 +39,19 @@ private:
         bool empty() const { return begin.x >= end.x || begin.y >= end.y; }
         int count() const { return (end.x - begin.x) * (end.y - begin.y); }
     };
-    /// Those that a box covers; nullopt where it reaches behind the eye.
+    /// The tiles that a box covers; nullopt if it extends behind the eye.
     std::optional<Tiles> tilesOf(glm::dvec3 lo, glm::dvec3 hi) const {
         const glm::dvec3 half = 0.5 * (hi - lo);
         const std::optional<PictureBounds> bounds =
             projection_.bounds(0.5 * (lo + hi), glm::dmat3(half.x, 0, 0, 0, half.y, 0, 0, 0, half.z));
         if (!bounds) return std::nullopt;
-        // Rays pass through the middles of pixels: the next ones count.
+        // Rays pass through pixel centres: include adjacent tiles.
         const glm::dvec2 top(reach_.tiles());
         return Tiles{glm::clamp(glm::floor((bounds->lo - 1.0) / double(kReachTile)), glm::dvec2(0), top),
                      glm::clamp(glm::ceil((bounds->hi + 1.0) / double(kReachTile)), glm::dvec2(0), top)};
     }
     float farthest(int x, int y) const { return reach_.farthest[std::size_t(y * reach_.tiles().x + x)]; }
-    /// What most boxes that are seen are: the quick answer.
+    /// Quick test: most visible boxes are visible at their centre.
     bool seenInTheMiddle(glm::dvec3 lo, glm::dvec3 hi) const {
         const glm::dvec4 clip = toClip_ * glm::dvec4(0.5 * (lo + hi), 1);
         if (!(clip.w > 0)) return false;
@@ -64,7 +64,7 @@ private:
         const glm::dvec3 half = 0.5 * (hi - lo);
         return glm::dot(forward_, 0.5 * (lo + hi) - eye_) - glm::dot(glm::abs(forward_), half);
     }
-    /// Of what lies outside of the picture nothing is seen.
+    /// Parts of a box outside the picture are not visible.
     bool behind(glm::dvec3 lo, glm::dvec3 hi, int splits) const {
         const std::optional<Tiles> tiles = tilesOf(lo, hi);
         if (!tiles) return false;
@@ -104,7 +104,7 @@ std::vector<std::uint8_t> hiddenBricks(const ReachMap& reach, const volume::Bric
             const glm::ivec3 brick(x, int(row % std::size_t(count.y)), int(row / std::size_t(count.y)));
             const glm::dvec3 a = world(glm::dvec3(brick * grid.brickSize)),
                              b = world(glm::dvec3((brick + 1) * grid.brickSize));
-            // Nothing is looked at outside of the box.
+            // Nothing is sampled outside the box.
             const glm::dvec3 lo = glm::clamp(glm::min(a, b) - room, -frame.halfSize, frame.halfSize),
                              hi = glm::clamp(glm::max(a, b) + room, -frame.halfSize, frame.halfSize);
             hidden[row * std::size_t(count.x) + std::size_t(x)] = ends.hide(lo, hi);

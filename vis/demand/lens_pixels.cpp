@@ -8,7 +8,7 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr double kBeside = 1.5; ///< pixels around
+constexpr double kBeside = 1.5; ///< margin in pixels
 
 } // namespace
 
@@ -44,7 +44,7 @@ std::vector<Tile> remainder(const Tile& whole, std::span<const Tile> cut) {
                 next.push_back(tile);
                 continue;
             }
-            // Below and above it, and in its rows at the left and right.
+            // Below and above the cut, then left and right of it.
             for (const Tile& part :
                  {Tile{tile.begin, {tile.end.x, common.begin.y}}, Tile{{tile.begin.x, common.end.y}, tile.end},
                   Tile{{tile.begin.x, common.begin.y}, {common.begin.x, common.end.y}},

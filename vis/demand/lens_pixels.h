@@ -8,15 +8,15 @@
 #include <span>
 #include <vector>
 
-/// Pixels of lenses in a picture. Outside them it is drawn without lenses and their layers, which software GL would
-/// evaluate everywhere.
+/// The pixels covered by lenses. All others are drawn by a program without lenses and their layers, since software GL
+/// evaluates both sides of every branch.
 namespace tessera::vis {
 
-/// Pixels of the rays that pass through a lens, of a picture of `size` pixels; nullopt where it reaches behind the eye.
+/// Bounds of the pixels whose rays cross a lens, in a picture of `size` pixels; nullopt if it extends behind the eye.
 std::optional<Tile> lensPixels(const PlacedLens& lens, const Camera& camera, glm::ivec2 size);
 
-/// Tiles apart from each other with all pixels that the lenses of a scene change; nullopt: any pixel may, as with
-/// lenses that act outside of themselves or choose what is brushed.
+/// Disjoint tiles with all pixels that the lenses of a scene change; nullopt: any pixel, as with lenses
+/// that act outside themselves or are used as brushes.
 std::optional<std::vector<Tile>> lensTiles(const std::vector<PlacedLens>& lenses, const Scene& scene, glm::ivec2 size);
 
 /// The remainder of a tile outside `cut`, as disjoint tiles.

@@ -5,12 +5,12 @@
 #include <glm/mat3x3.hpp>
 #include <optional>
 
-/// Bounding rectangles of bodies in a picture.
+/// Bounding rectangles of projected objects.
 namespace tessera::vis {
 
-inline constexpr double kNear = 1e-3; ///< world units before the eye from which lines and boxes can be drawn
+inline constexpr double kNear = 1e-3; ///< near distance in world units for drawing lines and boxes
 
-/// The rectangle of a picture, in pixels with y up, that a body covers; it may reach beyond the picture.
+/// Bounding rectangle in pixels, y up; may extend beyond the picture.
 struct PictureBounds {
     glm::dvec2 lo, hi;
 };
@@ -19,7 +19,7 @@ struct PictureBounds {
 class PictureProjection {
 public:
     PictureProjection(const Camera& camera, glm::ivec2 size);
-    /// Bounds of a box with centre and half edges (columns, world); nullopt where it reaches behind the eye.
+    /// Bounds of a projected box given by centre and half edges (columns, world); nullopt if it extends behind the eye.
     std::optional<PictureBounds> bounds(glm::dvec3 center, const glm::dmat3& halfEdges) const;
 
 private:

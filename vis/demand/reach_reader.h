@@ -11,21 +11,21 @@ namespace tessera::vis {
 /// Reads back the termination depths of a picture asynchronously, one picture at a time.
 class ReachReader {
 public:
-    /// Room for pictures up to this size. Throws MachineError when the driver has no memory for it.
+    /// Allocates buffers for pictures up to this size. Throws MachineError when the driver has no memory for them.
     void resize(glm::ivec2 size);
-    /// Begins with a picture of `size` pixels, the lower left one of which is texel `first` of `reach`. Changes the
-    /// framebuffer and viewport; the scissor must be off.
+    /// Starts reading a picture of `size` pixels whose lower left pixel is texel `first` of `reach`. Changes the
+    /// framebuffer and viewport; the scissor test must be off.
     void start(const Program& program, GLuint vertices, GLuint reach, glm::ivec2 first, glm::ivec2 size,
                const Camera& camera, const WorldFrame& frame);
     bool pending() const { return reader_.pending(); }
-    /// The result of start(), once it is available; `wait`: block until then.
+    /// Returns the result of start() once it is available; `wait`: blocks for it.
     std::optional<ReachMap> take(bool wait);
 
 private:
     Texture tiles_;
     Framebuffer framebuffer_;
     PixelReader reader_;
-    ReachMap map_; ///< under way
+    ReachMap map_; ///< being read
 };
 
 } // namespace tessera::vis

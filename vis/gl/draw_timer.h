@@ -7,17 +7,16 @@
 
 namespace tessera::vis {
 
-/// How long the driver takes for what is drawn: by waiting for it, or by timer queries that are read once they are
-/// answered, so that nothing stops.
+/// Measures the time of draw calls: with timer queries, read later without stalling, or else by waiting for the driver.
 class DrawTimer {
 public:
     explicit DrawTimer(bool queries = false) : queries_(queries) {}
 
-    /// Draws, and calls `took` with the milliseconds of it: before it returns, or from collect().
+    /// Runs `draw` and passes its time in milliseconds to `took`: before it returns, or from a later collect().
     void measure(const std::function<void()>& draw, std::function<void(double)> took);
-    /// Reads the queries that are answered; `wait`: all.
+    /// Reads available queries; `wait`: all queries.
     void collect(bool wait = false);
-    /// Measurements not read yet.
+    /// Number of measurements not read yet.
     std::size_t pending() const { return pending_.size(); }
     bool queries() const { return queries_; }
 

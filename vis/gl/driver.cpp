@@ -32,10 +32,10 @@ Driver currentDriver() {
     driver.fragmentSamplers = glNumber(GL_MAX_TEXTURE_IMAGE_UNITS);
     driver.texture3DEdge = glNumber(GL_MAX_3D_TEXTURE_SIZE);
     if (driver.software) {
-        constexpr int kTile = 64; // of llvmpipe
+        constexpr int kTile = 64; // tile size of llvmpipe in pixels
         driver.compilesAtFirstDraw = true;
         driver.sharedTile = kTile;
-        driver.textureBytes = std::size_t(1) << 30; // Mesa's software GL refuses more
+        driver.textureBytes = std::size_t(1) << 30; // Mesa's software GL refuses larger textures
         return driver;
     }
     GLint bits = 0;

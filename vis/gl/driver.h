@@ -5,26 +5,26 @@
 
 namespace tessera::vis {
 
-/// What the renderer has to know of the driver of a context.
+/// Properties of the driver that the renderer depends on.
 struct Driver {
-    std::string renderer; ///< as the driver calls itself
+    std::string renderer; ///< GL_RENDERER
 
-    /// It draws on the processor: waiting for it costs nothing.
+    /// Draws on the CPU, where waiting for the driver costs nothing.
     bool software = false;
-    /// It turns a program into machine code at its first draw, for the formats of what is bound then, and keeps that in
-    /// a cache on disk (Mesa's software GL): vis/gl/warm_up.h.
+    /// Compiles machine code at the first draw of a program, specialised for the formats bound then, and keeps it in a
+    /// disk cache (Mesa's software GL); see vis/gl/warm_up.h.
     bool compilesAtFirstDraw = false;
-    /// Edge, in pixels, of the tiles that its processors share; 0: nothing of that kind counts.
+    /// Edge in pixels of the tiles that are distributed to CPU cores; 0: not applicable.
     int sharedTile = 0;
-    /// GL_TIME_ELAPSED counts; else times are taken by waiting.
+    /// GL_TIME_ELAPSED works; otherwise times are measured by waiting.
     bool timerQueries = false;
 
-    int fragmentSamplers = 16;                  ///< of one program; GL 4.5 guarantees 16
-    int texture3DEdge = 2048;                   ///< texels
-    std::size_t textureBytes = ~std::size_t(0); ///< most of one texture
+    int fragmentSamplers = 16;                  ///< per program; GL 4.5 guarantees 16
+    int texture3DEdge = 2048;                   ///< maximum in texels
+    std::size_t textureBytes = ~std::size_t(0); ///< maximum of one texture
 };
 
-/// The driver of the current context.
+/// Queries the driver of the current context.
 Driver currentDriver();
 
 } // namespace tessera::vis

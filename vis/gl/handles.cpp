@@ -57,21 +57,21 @@ bool fillsWithNan() {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// Texels that show wherever they are read before they are written.
+/// Fills a new texture with values that are conspicuous if read before written.
 void fill(GLuint texture) {
     GLint type = GL_NONE;
     glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_RED_TYPE, &type);
     if (type == GL_UNSIGNED_INT) {
         constexpr std::array<GLuint, 4> kAll{~0u, ~0u, ~0u, ~0u};
         glClearTexImage(texture, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, kAll.data());
-    } else if (type != GL_NONE) { // depth has no NaN, and is always cleared
+    } else if (type != GL_NONE) { // depth formats have no NaN and are always cleared
         const float value = type == GL_FLOAT ? kNan : 1;
         const std::array texel{value, value, value, value};
         glClearTexImage(texture, 0, GL_RGBA, GL_FLOAT, texel.data());
     }
 }
 
-/// A texture whose storage `allocate` makes.
+/// A texture; `allocate` creates its storage.
 template <class Allocate>
 Texture checked(GLenum target, glm::ivec3 size, GLenum filter, const std::string& label, Allocate&& allocate) {
     GLuint name = 0;

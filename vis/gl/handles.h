@@ -7,7 +7,8 @@
 #include <string>
 #include <utility>
 
-/// Owners of GL objects: move-only, made by a function, deleted by the destructor (the context must be current).
+/// Owners of GL objects: move-only; created by functions and deleted by the destructor, which needs the context to be
+/// current.
 namespace tessera::vis {
 
 enum class ObjectKind { Buffer, Texture, Framebuffer, VertexArray, Query, Program };
@@ -40,22 +41,22 @@ using VertexArray = Handle<ObjectKind::VertexArray>;
 using Query = Handle<ObjectKind::Query>;
 using ProgramObject = Handle<ObjectKind::Program>;
 
-// Textures of one level with immutable storage, clamped to their edges; `filter` is GL_NEAREST or GL_LINEAR. Each
-// throws MachineError when the driver refuses the size, or has no memory for it. Nobody may count on what a new one
-// holds: with TESSERA_DEBUG_GL=nan in the environment it is NaN, or all bits set where the format has none.
+// Textures with one level of immutable storage, clamped to edge; `filter` is GL_NEAREST or GL_LINEAR. Each function
+// throws MachineError when the driver refuses the size or has no memory. The initial content is undefined; with
+// TESSERA_DEBUG_GL=nan in the environment it is NaN, or all bits set for integer formats.
 Texture makeTexture2D(glm::ivec2 size, GLenum format, GLenum filter, const std::string& label);
-/// Rows of texels, each filtered by itself.
+/// An array of 1D textures, each filtered separately.
 Texture makeTexture1DArray(int width, int rows, GLenum format, GLenum filter, const std::string& label);
 Texture makeTexture3D(glm::ivec3 size, GLenum format, GLenum filter, const std::string& label);
 /// A 3D texture of one texel.
 Texture makeUniform3D(glm::vec4 value, const std::string& label);
 Texture makeTexture2DArray(glm::ivec2 size, int layers, GLenum format, GLenum filter, const std::string& label);
-/// A cube map of one level, filtered linearly across its edges too (where GL_TEXTURE_CUBE_MAP_SEAMLESS is on).
+/// A cube map with one level, filtered linearly, also across edges if GL_TEXTURE_CUBE_MAP_SEAMLESS is enabled.
 Texture makeTextureCube(int edge, GLenum format, const std::string& label);
-/// A framebuffer with the given colour attachments, all written to. Throws MachineError when it is incomplete.
+/// A framebuffer that writes to all given colour attachments. Throws MachineError when it is incomplete.
 Framebuffer makeFramebuffer(std::initializer_list<GLuint> colorTextures, const std::string& label);
-/// A buffer of a fixed size and content. `content` null: to be written by GL, NaN before with TESSERA_DEBUG_GL=nan.
-/// `flags`: of glNamedBufferStorage.
+/// A buffer of fixed size. `content` null: written by GL later, NaN until then with TESSERA_DEBUG_GL=nan. `flags`: of
+/// glNamedBufferStorage.
 Buffer makeBuffer(GLsizeiptr bytes, const void* content, GLbitfield flags, const std::string& label);
 VertexArray makeVertexArray(const std::string& label);
 

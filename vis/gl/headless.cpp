@@ -18,7 +18,7 @@ struct HeadlessContext::Impl {
         if (context == EGL_NO_CONTEXT) return;
         eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         eglDestroyContext(display, context);
-        // The display is shared by every context of the process, so it stays initialised.
+        // The display is shared by all contexts of the process, so it is never terminated.
     }
 };
 
@@ -33,8 +33,8 @@ struct Candidate {
     EGLDisplay display;
 };
 
-/// Hardware devices first, then Mesa's surfaceless platform, then software devices, then the default display.
-/// eglGetPlatformDisplay itself is never called: libepoxy 1.5 aborts on it where only EGL 1.4 is advertised.
+/// EGL displays in order of preference: hardware devices, Mesa's surfaceless platform, software devices, the default
+/// display. Avoids eglGetPlatformDisplay, on which libepoxy 1.5 aborts if only EGL 1.4 is advertised.
 std::vector<Candidate> candidates() {
     std::vector<Candidate> hardware, software;
     const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
@@ -59,7 +59,7 @@ std::vector<Candidate> candidates() {
     return all;
 }
 
-/// What a driver that refuses 4.5 lacks, by a look at the best that it has.
+/// Explains what a driver without GL 4.5 lacks, from the best context it offers.
 std::string whyNot(EGLDisplay display, EGLConfig config) {
     const EGLint any[] = {EGL_NONE};
     const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, any);

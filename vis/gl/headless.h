@@ -4,8 +4,8 @@
 
 namespace tessera::vis {
 
-/// An off-screen GL 4.5 core context (EGL without a surface; works on Mesa's software GL and on GPU drivers), current
-/// on the thread that made it until destroyed. Throws MachineError when none can be had, saying what was tried.
+/// An off-screen GL 4.5 core context (EGL without a surface; works with Mesa's software GL and GPU drivers), current on
+/// the creating thread until destroyed. Throws MachineError with the attempts made if none is available.
 class HeadlessContext {
 public:
     explicit HeadlessContext(bool debug = false);

@@ -8,7 +8,7 @@ namespace tessera::vis {
 
 namespace {
 
-/// Order of the heap: the top is the smallest priority that came first.
+/// Heap order: the smallest priority on top; equal priorities in the order of insertion.
 constexpr auto later = [](const auto& a, const auto& b) {
     return a.priority != b.priority ? a.priority > b.priority : a.number > b.number;
 };

@@ -12,19 +12,19 @@ namespace tessera::vis {
 /// Priority of the threads of a queue (volume/base/background.h).
 enum class JobThreads { Equal, Background };
 
-/// Threads that run jobs, the most urgent first. Jobs must not throw, and should check the stop token regularly.
+/// A thread pool that runs the most urgent job first. Jobs must not throw and should check the stop token regularly.
 class JobQueue {
 public:
     using Work = std::function<void(std::stop_token)>;
 
     JobQueue(int count, JobThreads threads);
-    ~JobQueue(); ///< asks running jobs to stop, drops the others and waits
+    ~JobQueue(); ///< requests running jobs to stop, drops queued ones and waits
 
-    /// Smaller priorities run first; equal ones in the order they came.
+    /// Smaller priorities run first, equal ones in the order of insertion.
     void add(double priority, Work work);
-    /// Removes waiting jobs and requests running ones to stop, without waiting for them.
+    /// Removes queued jobs and requests running ones to stop, without waiting.
     void cancel();
-    /// Waits until a job ends or nothing is queued or running.
+    /// Waits until a job ends, or until nothing is queued or running.
     void waitForOne();
     int unfinished() const;
 

@@ -8,15 +8,15 @@
 
 namespace tessera::vis {
 
-/// Reads a texture of floats back without waiting for the driver, one reading at a time.
+/// Reads back a float texture asynchronously, one request at a time.
 class PixelReader {
 public:
-    /// Room for so many floats; a reading under way is forgotten.
+    /// Allocates room for that many floats and drops a pending request.
     void resize(std::size_t floats);
-    /// Begins to read the lower left `size` texels of a 2D texture; `format`: GL_RED, GL_RGBA, ...
+    /// Starts reading the lower left `size` texels of a 2D texture; `format`: GL_RED, GL_RGBA, ...
     void start(GLuint texture, glm::ivec2 size, GLenum format);
     bool pending() const { return fence_ != nullptr; }
-    /// Copies what was begun once it is here, and is true then; `wait`: until it is.
+    /// Copies the result and returns true once it is available; `wait`: blocks for it.
     bool take(std::span<float> into, bool wait);
     void forget() { fence_.reset(); }
 

@@ -7,8 +7,8 @@
 
 namespace tessera::vis {
 
-/// A small RGBA8 picture for a 2D plot on the GPU: smooth when shrunk, hard pixels when magnified. Needs a current GL
-/// context from the first upload until its destruction.
+/// An RGBA8 picture for a 2D plot: minified smoothly, magnified without interpolation. Needs a current GL context from
+/// the first upload until its destruction.
 class PlotTexture {
 public:
     PlotTexture();

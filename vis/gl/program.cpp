@@ -103,8 +103,8 @@ ComposedShader composeShader(const std::string& root, const ProgramRecipe& recip
 }
 
 std::string mapLines(std::string_view log, const std::vector<std::string>& files) {
-    // Mesa writes "0:20012(5): error: ...", others "0(20012) : error ..." or "ERROR: 0:20012: ...": in each the line
-    // is a number behind "0:" or "0(". Small numbers belong to file 0.
+    // Mesa writes "0:20012(5): error: ...", others "0(20012) : error ..." or "ERROR: 0:20012: ...": the line always
+    // follows "0:" or "0(". Small numbers belong to file 0.
     std::string out;
     for (std::size_t at = 0; at < log.size();) {
         const bool start = log[at] == '0' && at + 2 < log.size() && (log[at + 1] == ':' || log[at + 1] == '(') &&

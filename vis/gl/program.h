@@ -24,15 +24,15 @@ namespace tessera::vis {
 struct ProgramRecipe {
     std::string vertex, fragment;
     std::map<std::string, std::string> slots;
-    std::vector<std::pair<std::string, std::string>> defines; ///< `#define first second`, before everything else but
-                                                              ///< shaderConstants()
+    std::vector<std::pair<std::string, std::string>>
+        defines; ///< emitted as `#define first second` after shaderConstants()
 
     /// Equal for equal recipes: the key of a program cache.
     std::string key() const;
 };
 
-/// `member` of the i-th of `all`, a number or an enumerator, as an expression of i that folds to a constant once a loop
-/// is unrolled. (Not a constant array: Mesa turns such arrays into uniforms before it unrolls loops.)
+/// `member` of the i-th element of `all` as a GLSL expression in i that folds to a constant once a loop is unrolled.
+/// (Not a constant array: Mesa turns arrays into uniforms before unrolling.)
 template <class Each, class Member> std::string choice(const std::vector<Each>& all, Member member) {
     std::string chain = "0";
     for (std::size_t i = all.size(); i-- > 0;)
@@ -40,7 +40,8 @@ template <class Each, class Member> std::string choice(const std::vector<Each>& 
     return chain;
 }
 
-/// One stage, ready for the compiler. `#line` numbers are file * 10000 + line, with `files[file]` the path.
+/// Source of one stage after includes and slots are resolved. `#line` numbers are file * 10000 + line; `files[file]` is
+/// the path.
 struct ComposedShader {
     std::string text;
     std::vector<std::string> files;
@@ -49,18 +50,18 @@ struct ComposedShader {
 /// Resolves includes and slots. Throws Error naming the file and line of a missing include or slot.
 ComposedShader composeShader(const std::string& root, const ProgramRecipe& recipe);
 
-/// Both stages of a recipe, ready to be compiled by any thread.
+/// The composed source of both stages, which any thread can compile.
 struct ProgramText {
     std::string vertex, fragment; ///< file names
     ComposedShader vertexShader, fragmentShader;
 };
 ProgramText composeProgram(const ProgramRecipe& recipe);
 
-/// A compiler's message with "file * 10000 + line" turned into "path:line".
+/// Replaces "file * 10000 + line" in a compiler's message by "path:line".
 std::string mapLines(std::string_view log, const std::vector<std::string>& files);
 
-/// Text of a shader file: from the folder in the environment variable TESSERA_SHADER_DIR if it is set and has the
-/// file (for work on shaders), else as built in. Null when there is none.
+/// Source of a shader file: from the folder in the environment variable TESSERA_SHADER_DIR if it is set and has the
+/// file (for shader development), else the embedded text. Null if it does not exist.
 const std::string* shaderText(const std::string& path);
 
 class Program {
@@ -70,7 +71,7 @@ public:
     GLuint name() const { return object_.name(); }
     explicit operator bool() const { return bool(object_); }
 
-    /// Sets a uniform; names that the compiler dropped are ignored.
+    /// Sets a uniform; ignored if the compiler removed it.
     void set(const char* uniform, int value) const;
     void set(const char* uniform, float value) const;
     void set(const char* uniform, glm::ivec3 value) const;

@@ -7,7 +7,7 @@
 
 namespace tessera::vis {
 
-/// What both threads look at.
+/// State shared with the worker thread.
 struct ProgramCache::Shared {
     std::mutex mutex;
     std::condition_variable changed;
@@ -19,8 +19,8 @@ struct ProgramCache::Shared {
 
 struct ProgramCache::Entry {
     ProgramText text;
-    Program program;                            ///< touched by the thread whose stage it is
-    ProgramStage stage = ProgramStage::Linking; ///< under the mutex
+    Program program;                            ///< used only by the thread that owns the current stage
+    ProgramStage stage = ProgramStage::Linking; ///< guarded by the mutex
 };
 
 void ProgramCache::Shared::fail(Entry& entry, const std::string& reason) {
@@ -58,7 +58,7 @@ ProgramCache::Entry& ProgramCache::make(const ProgramRecipe& recipe, bool backgr
     const auto link = [entry, shared = shared_](ProgramStage next) {
         try {
             entry->program = linkProgram(entry->text);
-            glFinish(); // before another context may use it
+            glFinish(); // before another context uses it
             shared->reach(*entry, next);
         } catch (const Error& error) {
             shared->fail(*entry, error.what());
@@ -86,7 +86,7 @@ const Program* ProgramCache::find(const ProgramRecipe& recipe) {
     Entry& entry = make(recipe, false);
     std::unique_lock lock(shared_->mutex);
     shared_->changed.wait(lock, [&] { return !underWay(entry.stage); });
-    if (entry.stage == ProgramStage::Linked) entry.stage = ProgramStage::Ready; // its first draw happens here
+    if (entry.stage == ProgramStage::Linked) entry.stage = ProgramStage::Ready; // the caller draws it first
     return entry.stage == ProgramStage::Ready ? &entry.program : nullptr;
 }
 
@@ -103,16 +103,16 @@ void ProgramCache::warmUp(const ProgramRecipe& recipe, const Framebuffer& frameb
     const auto found = programs_.find(recipe.key());
     if (found == programs_.end() || !worker_) return;
     const DrawState state = captureDrawState(framebuffer);
-    glFlush(); // the other context sees the uniforms set here
+    glFlush(); // makes these uniforms visible to the other context
     shared_->reach(*found->second, ProgramStage::Warming);
     worker_->add(-1, [this, entry = found->second, state](std::stop_token) {
         double firstDraw = 0;
         try {
             const SharedContext::Use use(*context_);
             firstDraw = drawOnePixel(entry->program, state);
-        } catch (const std::exception&) { // no memory for it, say: the first draw happens in the first context then
+        } catch (const std::exception&) { // for example out of memory: then the first draw happens in the first context
         }
-        constexpr double kWorthIt = 25; // ms; hardware drivers, and code that was in the cache already, stay below
+        constexpr double kWorthIt = 25; // ms; hardware drivers and code already in the disk cache stay below
         if (firstDraw < kWorthIt)
             shared_->reach(*entry, ProgramStage::Ready);
         else
@@ -120,16 +120,15 @@ void ProgramCache::warmUp(const ProgramRecipe& recipe, const Framebuffer& frameb
     });
 }
 
-/// Mesa writes its disk cache on a thread of low priority. A second copy of the program shows whether the code is
-/// there: its first draw is then many times faster.
+/// Mesa writes its disk cache on a low-priority thread. Whether the code has been written shows in a second copy of the
+/// program: its first draw is then many times faster.
 bool ProgramCache::inDiskCache(const Drawn& drawn) {
     const Program copy = linkProgram(drawn.entry->text);
     copySamplerUnits(drawn.entry->program, copy);
     return drawOnePixel(copy, drawn.state) < 0.4 * drawn.firstDraw;
 }
 
-/// Looks a few times, later and later, whether the driver has put a drawn program into its cache; what else there is to
-/// do comes first.
+/// Checks repeatedly, at growing intervals, whether the driver has cached a drawn program; other jobs run in between.
 void ProgramCache::awaitDiskCache(const Drawn& drawn, std::size_t trial, Clock::time_point since) {
     using namespace std::chrono_literals;
     static constexpr std::chrono::milliseconds kPauses[] = {60ms, 250ms, 800ms};

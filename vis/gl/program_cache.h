@@ -10,40 +10,39 @@
 
 namespace tessera::vis {
 
-/// A cache of programs by recipe. New ones are compiled on a thread with its own context, if there is one, so that
-/// nobody waits for the compiler:
+/// A cache of programs by recipe. New ones are compiled on a thread with its own context, if available, without
+/// blocking the caller:
 ///
 ///     const ProgramAnswer answer = cache.request(recipe, 10);
 ///     if (answer.stage == ProgramStage::Linked) { set its uniforms, bind its textures; cache.warmUp(recipe, ...); }
 ///     if (answer.stage != ProgramStage::Ready) show the former picture;
 ///
-/// A program that does not compile is tried once; the reason becomes a message.
+/// A program that fails to compile is tried once; the error becomes a message.
 enum class ProgramStage {
-    Linking, ///< on the way
-    Linked,  ///< wants warmUp() once its uniforms and textures are set
-    Warming, ///< on the way
+    Linking, ///< in progress
+    Linked,  ///< needs warmUp() once its uniforms and textures are set
+    Warming, ///< in progress
     Ready,
     Failed
 };
 struct ProgramAnswer {
-    const Program* program = nullptr; ///< when Linked or Ready
+    const Program* program = nullptr; ///< null unless Linked or Ready
     ProgramStage stage = ProgramStage::Failed;
 };
 
 class ProgramCache {
 public:
-    /// `warmsUp`: programs want warmUp(), as Driver::compilesAtFirstDraw says; else they are ready once they are
-    /// linked.
+    /// `warmsUp`: programs need warmUp() (Driver::compilesAtFirstDraw); otherwise they are ready once linked.
     explicit ProgramCache(bool warmsUp = true);
-    ~ProgramCache(); ///< waits for a compilation that has begun
+    ~ProgramCache(); ///< waits for a running compilation
 
     /// The program of a recipe, compiled now if necessary; null if it does not compile.
     const Program* find(const ProgramRecipe& recipe);
-    /// The same in the background; waits at most this long. Ready at once if there is no second context.
+    /// The same in the background; waits at most this long. Synchronous if there is no second context.
     ProgramAnswer request(const ProgramRecipe& recipe, double milliseconds);
-    /// Makes the other context draw with a linked program in the current state, so that its machine code is ready here.
+    /// Draws with a linked program and the current state in the other context, so that its machine code is cached.
     void warmUp(const ProgramRecipe& recipe, const Framebuffer& framebuffer);
-    /// True once per program: its first draw may take long, so nobody should time it.
+    /// True once per program: its first draw may be slow and should not be timed.
     bool firstUse(const Program& program) { return drawn_.insert(program.name()).second; }
     std::vector<std::string> takeMessages();
 
@@ -51,7 +50,7 @@ private:
     struct Entry;
     struct Shared;
     Entry& make(const ProgramRecipe& recipe, bool background);
-    /// A program that the other context has drawn, how, and how long that took in milliseconds.
+    /// A program drawn by the other context, its draw state, and the time of that draw in milliseconds.
     struct Drawn {
         std::shared_ptr<Entry> entry;
         DrawState state;
@@ -65,8 +64,8 @@ private:
     std::map<std::string, std::shared_ptr<Entry>> programs_;
     std::shared_ptr<Shared> shared_;
     std::set<GLuint> drawn_;
-    std::unique_ptr<SharedContext> context_; ///< null: everything here and now
-    std::unique_ptr<JobQueue> worker_;       ///< last: its jobs end before anything else goes
+    std::unique_ptr<SharedContext> context_; ///< null: everything runs synchronously in the current context
+    std::unique_ptr<JobQueue> worker_;       ///< last member: its jobs end before the other members are destroyed
 };
 
 } // namespace tessera::vis

@@ -6,7 +6,7 @@ namespace tessera::vis {
 
 namespace {
 
-/// What the renderer uses, with the version of core OpenGL that has it.
+/// A feature used by the renderer, and the core OpenGL version that introduced it.
 struct Feature {
     int version; ///< 10 * major + minor
     const char *extension, *name;

@@ -4,8 +4,8 @@
 
 namespace tessera::vis {
 
-/// OpenGL 4.5 core features that the current context lacks, as text for an error message: its version, and each feature
-/// that neither the version nor an extension provides. Empty if nothing is missing.
+/// Lists the OpenGL 4.5 core features that the current context lacks, for an error message: the version, and each
+/// feature provided neither by the version nor by an extension. Empty if nothing is missing.
 std::string missingFeatures();
 
 } // namespace tessera::vis

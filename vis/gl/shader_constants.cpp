@@ -16,7 +16,7 @@ namespace {
 struct Enumeration {
     std::string_view prefix;
     std::span<const std::string_view> names; ///< of enumerators 0, 1, ...
-    bool bits = false;                       ///< shaders know 1 << enumerator
+    bool bits = false;                       ///< the constants are 1 << enumerator
 };
 constexpr Enumeration kEnumerations[] = {{"STYLE_", kRayStyleNames},       {"LOOKUP_", kRayLookupNames},
                                          {"LENS_SHAPE_", kLensShapeNames}, {"CLIP_KIND_", kClipKindNames},

@@ -10,7 +10,7 @@ std::unique_ptr<SharedContext> SharedContext::make() {
     const EGLDisplay display = eglGetCurrentDisplay();
     if (first == EGL_NO_CONTEXT || display == EGL_NO_DISPLAY) return nullptr;
     if (!epoxy_has_egl_extension(display, "EGL_KHR_surfaceless_context")) return nullptr;
-    // A shared context needs the configuration of the first one; 0 says that it has none.
+    // A shared context needs the configuration of the first one; 0: it has none.
     EGLint id = 0, found = 0;
     EGLConfig config = EGL_NO_CONFIG_KHR;
     eglQueryContext(display, first, EGL_CONFIG_ID, &id);
@@ -29,7 +29,7 @@ SharedContext::~SharedContext() {
 }
 
 SharedContext::Use::Use(const SharedContext& context) : context_(context) {
-    eglBindAPI(EGL_OPENGL_API); // per thread
+    eglBindAPI(EGL_OPENGL_API); // per-thread state
     eglMakeCurrent(context.display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context.context_);
 }
 

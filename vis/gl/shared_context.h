@@ -4,17 +4,18 @@
 
 namespace tessera::vis {
 
-/// A second context that shares textures, buffers and programs with the one that was current when it was made, for a
-/// worker thread: shaders compile there while the first one draws.
+/// A second context that shares textures, buffers and programs with the one current at its creation. A worker thread
+/// compiles shaders in it while the first context draws.
 class SharedContext {
 public:
-    /// Null if the current context is not an EGL context or the driver refuses: then everything runs in one context.
+    /// Returns null if the current context is not an EGL context or the driver refuses; then everything runs in one
+    /// context.
     static std::unique_ptr<SharedContext> make();
     ~SharedContext();
     SharedContext(const SharedContext&) = delete;
     SharedContext& operator=(const SharedContext&) = delete;
 
-    /// Current on the calling thread while it lives.
+    /// Makes the context current on the calling thread for the lifetime of the object.
     class Use {
     public:
         explicit Use(const SharedContext& context);

@@ -7,7 +7,7 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr GLuint kUnits = 50; // as many as ray_uniforms.h and present.cpp number
+constexpr GLuint kUnits = 50; // as many as numbered in ray_uniforms.h and present.cpp
 constexpr GLenum kTextureBindings[] = {GL_TEXTURE_BINDING_2D,       GL_TEXTURE_BINDING_3D,
                                        GL_TEXTURE_BINDING_1D_ARRAY, GL_TEXTURE_BINDING_2D_ARRAY,
                                        GL_TEXTURE_BINDING_CUBE_MAP, GL_TEXTURE_BINDING_BUFFER};
@@ -80,7 +80,7 @@ double drawOnePixel(const Program& program, const DrawState& state) {
     }
     glNamedFramebufferDrawBuffers(name, GLsizei(buffers.size()), buffers.data());
     for (const auto& [unit, texture] : state.textures)
-        if (glIsTexture(texture)) glBindTextureUnit(unit, texture); // it may be gone by now
+        if (glIsTexture(texture)) glBindTextureUnit(unit, texture); // it may have been deleted since
     const VertexArray vertices = makeVertexArray("warm-up");
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name);
     glViewport(0, 0, 4, 4);
@@ -92,9 +92,9 @@ double drawOnePixel(const Program& program, const DrawState& state) {
     glFinish();
     glUseProgram(0);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    for (const auto& [unit, texture] : state.textures) glBindTextureUnit(unit, 0); // keep none of them alive
+    for (const auto& [unit, texture] : state.textures) glBindTextureUnit(unit, 0); // release the references
     while (glGetError() != GL_NO_ERROR) {
-    } // a texture deleted just now: nothing lost but time
+    } // a texture was just deleted: only time is lost
     return threadMilliseconds() - start;
 }
 
