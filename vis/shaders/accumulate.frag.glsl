@@ -1,4 +1,4 @@
-// One more pass of a supersampled still: its share is the blend colour's.
+// Adds one pass to a supersampled frame. The blend colour is the weight of the pass.
 uniform sampler2D source, sourceReach;
 
 layout(location = 0) out vec4 outColor;

@@ -1,4 +1,4 @@
-// Meshes and lines (LINES) into a layer of surfaces by distance; each layer keeps what lies behind the former one.
+// Meshes and lines (LINES), depth peeled: each layer keeps the nearest surface behind the previous layer.
 #include "lib/light_bindings.glsl"
 #include "lib/color.glsl"
 #include "lib/clipping.glsl"
@@ -12,25 +12,25 @@
 in vec3 world, direction;
 in float value, side;
 
-uniform vec3 rayOrigin, forward; // of the ray through the middle of the picture
+uniform vec3 rayOrigin, forward; // of the ray through the centre of the picture
 uniform int perspective;
 uniform sampler2D colors; // linear light
 uniform float row;
-uniform vec2 map; // place in the row = value * x + y
+uniform vec2 map; // transfer function position = value * x + y
 uniform vec3 plain;
 uniform float opacity;
-uniform int lens; // that it is drawn in, -1: everywhere
+uniform int lens; // index of the lens that it is drawn in, -1: everywhere
 uniform float brushEffect;
 uniform sampler2DArray former, formerColors;
 uniform int peel;
-uniform int covers; // what is opaque hides all that lies behind it
+uniform int covers; // 1: an opaque surface occludes everything behind it
 
 layout(location = 0) out vec4 outColor;     // linear, premultiplied
-layout(location = 1) out vec2 outDistance; // along the ray; what brushes do to it
+layout(location = 1) out vec2 outDistance; // distance along the ray; BrushEffect of the layer
 
 #if LOOKS
-// A place of a surface as looks see it. `dx`, `dy`: its change from pixel to pixel, `turnX`, `turnY` that of its normal.
-// Shapes have no values to be steep in: they are as steep as can be.
+// Inputs of look shading for a surface. `dx`, `dy`: derivatives of the position with respect to the pixel; `turnX`,
+// `turnY`: those of the normal. A surface without a scalar field has maximal steepness.
 LookSample surfaceLook(vec3 normal, vec3 toViewer, float along, vec3 dx, vec3 dy, vec3 turnX, vec3 turnY) {
     LookSample at;
     at.share = 1.0;
@@ -43,7 +43,7 @@ LookSample surfaceLook(vec3 normal, vec3 toViewer, float along, vec3 dx, vec3 dy
     vec3 way = lookLight.xyz - world * lookLight.w;
     float front = clamp(0.5 + 0.5 * facing / kEdgeOn, 0.0, 1.0);
     at.light = (2.0 * front - 1.0) * dot(normal, way) * inversesqrt(max(dot(way, way), 1e-12));
-    // Curvature towards the viewer: how the normal turns along the way that lies in the surface and goes there.
+    // Curvature in the view direction: derivative of the normal along the tangent that points to the viewer.
     vec3 across = toViewer - facing * normal;
     across *= inversesqrt(max(dot(across, across), 1e-12));
     float xx = dot(dx, dx), yy = dot(dy, dy), xy = dot(dx, dy), x = dot(across, dx), y = dot(across, dy);
@@ -66,7 +66,7 @@ void main() {
     vec3 toViewer = perspective == 1 ? normalize(rayOrigin - world) : -forward;
     vec3 dx = dFdx(world), dy = dFdy(world);
 #if LINES
-    // As a tube: towards the viewer in the middle, away to the sides.
+    // Shaded as a tube: the normal points to the viewer in the middle and sideways at the edges.
     vec3 tangent = normalize(direction), beside = cross(tangent, toViewer);
     beside = dot(beside, beside) > 1e-8 ? normalize(beside) : vec3(0.0);
     vec3 normal = cross(beside, tangent) * sqrt(max(0.0, 1.0 - side * side)) + beside * side;

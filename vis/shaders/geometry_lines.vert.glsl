@@ -1,11 +1,11 @@
-// A segment of a line as a strip of two triangles, so many pixels wide.
+// A line segment as a screen-aligned strip of two triangles.
 layout(location = 0) in vec3 from;
 layout(location = 1) in vec3 to;
 layout(location = 2) in vec2 scalars;
 
 uniform vec3 worldScale, worldOffset; // world = physical * scale + offset
 uniform mat4 worldToClip;
-uniform vec2 pixels;     // size of the picture
+uniform vec2 pixels;     // size of the picture in pixels
 uniform float lineWidth; // pixels
 
 out vec3 world, direction; // direction: along the line

@@ -1,4 +1,4 @@
-// Vertices of a mesh, physical coordinates.
+// Vertices of a mesh in physical coordinates.
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in float scalar;
@@ -6,7 +6,7 @@ layout(location = 2) in float scalar;
 uniform vec3 worldScale, worldOffset; // world = physical * scale + offset
 uniform mat4 worldToClip;
 
-out vec3 world, direction; // direction: the normal, any length
+out vec3 world, direction; // direction: the normal, not normalised
 out float value, side;
 
 void main() {

@@ -1,5 +1,5 @@
-// Matter of the cells of the light grid: extinction per world unit (a), and times colour (rgb). The formula is written
-// down in vis/optics/light_volume.h. Pixel (x, y + gridSize.y * z) is cell (x, y, z).
+// Extinction per world unit (a) and extinction times colour (rgb) of each light grid cell, by the formula in
+// vis/optics/light_volume.h. Pixel (x, y + gridSize.y * z) is cell (x, y, z).
 #include "lib/bindings.glsl"
 #include "lib/tables.glsl"
 #include "lib/color.glsl"
@@ -18,12 +18,12 @@
 layout(location = 0) out vec4 outMatter;
 
 uniform ivec3 gridSize;
-uniform int matterSamples; // 8, no constant: not unrolled
+uniform int matterSamples; // 8; a uniform, so that the loop is not unrolled
 
 const float kThickest = 0.999;
 
 #if LAYERS > 0
-// Colour and opacity of a composite layer's sample, classified after interpolation.
+// Colour and opacity of a composite layer's sample, post-classified.
 vec4 colorAt(int i, vec3 p, vec2 s) {
     float x = s.x * layerMap[i].x + layerMap[i].y;
     vec3 g = vec3(0.0);
@@ -47,7 +47,7 @@ void main() {
     float mean[LAYERS], points[LAYERS];
     vec3 slope[LAYERS];
 #if PARTS
-    float part[LAYERS]; // of the first point: surfaces lie within one
+    float part[LAYERS]; // part of the first point; a surface lies within one part
 #endif
     for (int i = 0; i < LAYERS; ++i) {
         mean[i] = 0.0; points[i] = 0.0; slope[i] = vec3(0.0);

@@ -1,5 +1,5 @@
-// One splat into the sums of weighted blended order-independent transparency (M. McGuire, L. Bavoil 2013): colours
-// add, what shows through multiplies, so the order of the points does not matter.
+// Adds one splat to the sums of weighted blended order-independent transparency (M. McGuire, L. Bavoil 2013): colours
+// add up and transmittances multiply, so the order of points does not matter.
 flat in vec4 splat;
 flat in float weight;
 

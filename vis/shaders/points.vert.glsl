@@ -1,13 +1,13 @@
-// Points of a cloud in four dimensions as round splats.
+// Points in four dimensions as round splats.
 #include "lib/project4.glsl"
 
 layout(location = 0) in vec4 position; // within a ball of radius 1
-layout(location = 1) in vec4 color;    // linear, opacity of the middle of the splat
+layout(location = 1) in vec4 color;    // linear; a: opacity at the centre of the splat
 
 uniform mat4 rotation;
 uniform vec3 eyes;
-uniform vec2 perPixel; // clip units of one unit of the picture
-uniform float radius;  // pixels, of a splat that is not magnified
+uniform vec2 perPixel; // clip units per picture unit
+uniform float radius;  // in pixels, of a splat that is not magnified
 uniform float opacityPower;
 
 flat out vec4 splat; // linear colour, opacity
@@ -17,12 +17,12 @@ void main() {
     vec4 placed = project4(rotation * position, eyes);
     gl_Position = vec4(placed.xy * perPixel, placed.z * 2.0 - 1.0, 1.0);
     float wanted = radius * placed.w;
-    // A splat is never smaller than a pixel: below, it becomes fainter instead.
+    // A splat is at least a pixel wide; smaller ones are fainter instead.
     float drawn = max(wanted, 0.75);
     gl_PointSize = 2.0 * drawn + 1.0;
     float opacity = 1.0 - pow(1.0 - min(color.a, 0.999), opacityPower);
     splat = vec4(color.rgb, opacity * wanted * wanted / (drawn * drawn));
-    // McGuire and Bavoil 2013, equation 10, scaled so that sums of many stay within half floats.
+    // McGuire and Bavoil 2013, equation 10, scaled so that sums of many splats fit into half floats.
     float near = 1.0 - clamp(placed.z, 0.0, 1.0);
     weight = clamp(8.0 * near * near * near, 0.01, 8.0);
 }

@@ -1,4 +1,4 @@
-// The sums of points.frag.glsl over a background.
+// Composites the sums of points.frag.glsl over a background.
 #include "lib/color.glsl"
 
 uniform sampler2D sums;

@@ -1,5 +1,5 @@
-// Proxy geometry: one surface of a stack of planes or spheres, textured with composite layers; the frame buffer blends
-// the surfaces front to back. What a surface stands for is written down in vis/optics/proxy.h.
+// Proxy geometry: one of a stack of planes or spheres, textured with composite layers and blended front to back by the
+// frame buffer. Defined in vis/optics/proxy.h.
 #include "lib/bindings.glsl"
 #include "lib/tables.glsl"
 #include "lib/color.glsl"
@@ -17,7 +17,7 @@ flat in int surface;
 
 uniform int proxyShells;                 // 1: spheres around the eye, 0: planes
 uniform vec3 proxyNormal;                // of the planes
-uniform float proxyFirst, proxySpacing;  // of surface 0, and between surfaces: along the normal, or of the radius
+uniform float proxyFirst, proxySpacing;  // of surface 0 and between surfaces, as offset or radius
 
 layout(location = 0) out vec4 outColor; // linear, premultiplied
 layout(location = 1) out vec2 outPick; // distance along the ray; large: nothing noticeable
@@ -34,7 +34,7 @@ void main() {
     float slope = proxyShells == 1 ? 1.0 : dot(proxyNormal, direction);
     float t = proxyShells == 1 ? at : (at - dot(proxyNormal, origin)) / (abs(slope) < 1e-6 ? 1e-6 : slope);
     if (abs(slope) < 1e-6 || t < inside.x || t > inside.y) discard;
-    // It stands for the way to half of either neighbour, the outermost ones for all that is left of the box.
+    // A surface represents half the distance to either neighbour; the outermost ones also the rest of the box.
     float between = proxySpacing / abs(slope);
     float from = t - between < inside.x ? inside.x : t - 0.5 * between;
     float to = t + between > inside.y ? inside.y : t + 0.5 * between;

@@ -1,4 +1,4 @@
-// One triangle over the whole viewport for each proxy surface, the nearest first.
+// One triangle over the whole viewport per proxy surface, nearest first.
 flat out int surface;
 
 void main() {

@@ -1,10 +1,10 @@
-// The one ray loop: volume-like layers and slices of a scene, composited front to back in linear light. What happens
-// along a ray is written down in vis/optics/ray_setup.h; the reference ray caster does the same in double precision.
+// The ray loop for all ray layers and slices of a scene, composited front to back in linear light. The algorithm is
+// specified in vis/optics/ray_setup.h; the reference ray caster implements it in double precision.
 //
-// March until hit, then shade: the inner loop only advances until something contributes, so that software GL, which
-// has no branches, shades all lanes of a group at once. What leaves the inner loop is the sample's number alone; its
-// values are taken anew (Mesa 22.3 miscompiles values that leave divergent nested loops). Where shading is cheap (FLAT)
-// there is no inner loop.
+// March until hit, then shade: the inner loop only advances until a sample contributes, so that software GL, which
+// executes both sides of every branch, shades all lanes of a group at once. Only the sample number leaves the inner
+// loop; values are sampled again, since Mesa 22.3 miscompiles values that leave divergent nested loops. If shading is
+// cheap (FLAT), there is no inner loop.
 #include "lib/bindings.glsl"
 #include "lib/kept.glsl"
 #include "lib/tables.glsl"
@@ -23,14 +23,14 @@
 #include "lib/shown.glsl"
 
 layout(location = 0) out vec4 outColor; // linear, premultiplied
-layout(location = 1) out vec2 outPick; // distance along the ray of what a pixel shows, < 0: nothing; its interest
+layout(location = 1) out vec2 outPick; // distance along the ray of the picked sample, < 0: none; degree of interest
 
 #ifdef REACH
-layout(location = 2) out float outReach; // distance along the ray up to which anything was looked at; 0: nowhere
+layout(location = 2) out float outReach; // termination depth along the ray; 0: the ray misses the box
 #endif
 
-// Of the samples of an empty region the last ones that are taken all the same: where surfaces are looked for, and local
-// maxima end, between samples, one; where parts of the ray are classified from end to end, one more.
+// Number of samples at the end of an empty region that are still taken: 1 if iso-surfaces and local maxima are detected
+// between consecutive samples, 2 if segments are classified from end to end.
 #if HAS_SLABS
 #define LAST_EMPTY 2
 #elif ONLY_COMPOSITE
@@ -43,7 +43,7 @@ const float kOpaque = 0.995, kFlatGradient = 0.005;
 
 #include "lib/events.glsl"
 
-// How many samples the one that is taken at k stands for, none of them behind the next event.
+// Number of samples that the one taken at k represents (adaptive sampling), limited by the next event.
 int samplesFrom(int k) {
 #ifdef ADAPTIVE
     int most = ray.count - k;
@@ -61,13 +61,13 @@ int samplesFrom(int k) {
 int samples = 0;
 #endif
 
-// Of each layer what is known at the sample under way.
+// State of each layer at the current sample.
 #include "lib/classify.glsl"
 #include "lib/color_by.glsl"
 vec2 here[LAYERS];   // composite: value
-Noted before[LAYERS]; // iso: value at sample k - 1; slab: place at the front of sample k's part
+Noted before[LAYERS]; // iso: value at sample k - 1; slab: position at the front of sample k's segment
 #if HAS_SLABS
-Noted front[LAYERS];  // slab: the same of a sample that hits; `before` is then its back
+Noted front[LAYERS];  // slab: the same for a contributing sample; `before` is then its back
 #endif
 
 #if LOOKS
@@ -78,8 +78,8 @@ Noted front[LAYERS];  // slab: the same of a sample that hits; `before` is then 
 #include "lib/composite.glsl"
 #include "lib/projections.glsl"
 
-// Takes samples in until one contributes, and shows it, to the end of the ray or until nothing behind is seen. Returns
-// the sample it ends at.
+// Advances to the next contributing samples and composites them, until the ray ends or is opaque (early ray
+// termination). Returns the sample at which it ends.
 int march() {
     for (int i = 0; i < LAYERS; ++i) before[i] = kNothingNoted;
 #if HAS_SLABS
@@ -89,7 +89,7 @@ int march() {
     int k = 0;
     while (k < ray.count && color.a < kOpaque) {
         bool hit = false;
-        Noted previous[LAYERS]; // `before` at this sample; far below: absent or not known
+        Noted previous[LAYERS]; // `before` at this sample; kNothingNoted: absent or unknown
         for (int i = 0; i < LAYERS; ++i) previous[i] = before[i];
 #if !FLAT
         while (k < ray.count) {
@@ -97,12 +97,13 @@ int march() {
             vec3 p = cellsAt(float(k));
 #if SKIPPING
 #if HAS_SLABS
-            // From the front of this sample's part; the last empty one gives the next its front.
+            // Skip from the front of this sample's segment; the last empty sample supplies the front of the next
+            // segment.
             int leap = emptySamples(p - 0.5 * ray.cellsPerSample) - LAST_EMPTY;
 #else
             int leap = emptySamples(p) - LAST_EMPTY;
 #endif
-            // And on with the sample behind: software GL would take one in any case.
+            // Take the next sample in the same iteration: software GL would execute the rest of it anyway.
             if (leap > 0) {
                 k += leap;
                 p = cellsAt(float(k));
@@ -227,7 +228,7 @@ void main() {
     if (color.a < kOpaque) showEvents(kNowhere / 2.0);
 #endif
 #ifdef REACH
-    // Projections lie behind what is opaque and go no further.
+    // Projections are composited behind everything and do not extend the termination depth.
     outReach = !ray.meets ? 0.0 : color.a < kOpaque ? ray.inside.y : distanceAt(float(ended));
 #endif
 #if HAS_PROJECTION

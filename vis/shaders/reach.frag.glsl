@@ -1,4 +1,4 @@
-// How far the rays of a tile of pixels went (lib/bindings.glsl, REACH): the farthest of them.
+// The largest termination depth over a tile of pixels (REACH in raycast.frag.glsl).
 uniform sampler2D reach;
 uniform vec2 first, size; // of the picture within the buffer, in pixels
 

@@ -1,7 +1,6 @@
-// The picture as shown: background or paper, wire box behind, the ray caster's colour, wire box in front; linear light encoded
-// to sRGB at the end.
-// Compiled in, as software GL would do it all for every pixel: BLUR, LINES, TONE, PAPER, GROUND (else opacity and straight
-// colour in place of the ground): 0 or 1.
+// The final picture: background or paper, edges of the box behind, the ray caster's colour, edges in front; encoded to
+// sRGB at the end. Features are compiled in, since software GL would execute all of them for every pixel: BLUR, LINES,
+// TONE, PAPER, GROUND (0: output opacity and straight colour instead of blending with the ground), each 0 or 1.
 #include "lib/color.glsl"
 
 uniform sampler2D source;      // linear, premultiplied
@@ -11,12 +10,12 @@ uniform vec3 background;       // linear
 #if PAPER
 #include "lib/paper.glsl"
 uniform sampler2D grainTile;
-uniform vec2 paper;            // how much its tooth shows, texels per pixel
+uniform vec2 paper;            // depth of its grain, texels per pixel
 #endif
 #if LINES
 uniform vec3 boxColor;         // linear
 uniform int edgeCount;
-uniform vec4 edges[12];        // ends in pixels; the last `frontCount` of them lie in front of the volume
+uniform vec4 edges[12];        // end points in pixels; the last `frontCount` lie in front of the volume
 uniform int frontCount;
 uniform float lineWidth;       // pixels
 #endif
@@ -30,7 +29,7 @@ uniform vec2 tone;             // gain, white
 #include "lib/context_blur.glsl"
 uniform sampler2D seen;   // distance and degree of interest
 uniform float blurRadius; // pixels
-uniform int blurTaps;     // kBlurTaps, no constant: not unrolled
+uniform int blurTaps;     // kBlurTaps; a uniform, so that the loop is not unrolled
 #endif
 
 out vec4 outColor;
@@ -39,7 +38,7 @@ vec2 place(vec2 pixel) {
     return clamp(sourceFirst + pixel * sourceScale, sourceFirst, sourceLimit);
 }
 
-// What a pixel shows before the background: what is not brushed is out of focus.
+// Colour of a pixel before the background, with unselected samples blurred.
 vec4 picture(vec2 pixel) {
     vec4 own = textureLod(source, place(pixel), 0.0);
 #if BLUR
@@ -58,7 +57,7 @@ vec4 picture(vec2 pixel) {
 }
 
 #if LINES
-// Share of the pixel that lines first .. last - 1 cover.
+// Coverage of the pixel by lines first .. last - 1.
 float lines(int first, int last) {
     float covered = 0.0;
     for (int i = first; i < last; ++i) {
@@ -93,7 +92,7 @@ void main() {
     outColor = vec4(srgbFromLinear(color), 1.0);
 #else
 #if LINES
-    // A line behind is seen through what is before it.
+    // Lines behind are seen through the volume.
     volume += (1.0 - volume.a) * vec4(boxColor * behind, behind);
     volume = mix(volume, vec4(boxColor, 1.0), before);
 #endif

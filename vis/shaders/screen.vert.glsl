@@ -1,4 +1,4 @@
-// One triangle over the whole viewport, without any buffer.
+// One triangle over the whole viewport, without a vertex buffer.
 void main() {
     gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
 }

@@ -1,4 +1,5 @@
-// The nearest sample on BCC, of a tie the even one: (value, coverage). Twin: nearest() in volume/reconstruct/reconstruct.h.
+// The nearest BCC sample, ties to the even sublattice: (value, coverage). Twin: nearest() in
+// volume/reconstruct/reconstruct.h.
 vec2 bccNearest(int field, vec3 p) {
     vec3 even = sublatticeIndex(field, p, 0), odd = sublatticeIndex(field, p, 1);
     vec3 atEven = floor(even + 0.5), atOdd = floor(odd + 0.5);

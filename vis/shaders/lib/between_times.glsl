@@ -1,16 +1,16 @@
-// A channel at a place: mixed of two stored times where it lies between them, and of several parts the one that the
-// place belongs to. Included by the slots of reconstruction, which define reconstructFrame. Twins: Samples in
-// vis/reference/samples.h, volume/reconstruct/part_choice.h.
-//   LATER    fields i + LATER hold the later frames of fields i; 0: every field is on a stored time
-//   PARTS    1 where a channel has several parts (volume/field/parts.h), each in a field of its own: FIELD_PARTS(i) of them,
+// Reconstruction of a channel at a position: interpolated between two stored times if necessary, and restricted to the
+// part that the position belongs to. Included by the reconstruction slots, which define reconstructFrame. Twins:
+// Samples in vis/reference/samples.h, volume/reconstruct/part_choice.h.
+//   LATER    field i + LATER holds the later time of field i; 0: all fields are at stored times
+//   PARTS    1 if a channel has several parts (volume/field/parts.h), each in its own field: FIELD_PARTS(i) of them,
 //            part j > 0 in field FIELD_MORE(i) + j - 1, all in the texel units of field i; PART_MARGIN: kPartMargin
 
 #if defined(LATER) && LATER > 0
-uniform vec3 laterFrame[LATER]; // texel units of the later frame to those of the earlier: x * value + y; z its weight
+uniform vec3 laterFrame[LATER]; // later to earlier texel units: value * x + y; z: weight of the later
 #endif
 
-// (value, coverage) of one field. Of two times absent samples take no part, so a place is present where enough of both
-// frames is.
+// (value, coverage) of one field. Only present samples are interpolated between two times; the result is present where
+// the weighted coverage of both is sufficient.
 vec2 reconstructField(int field, vec3 p) {
     vec2 earlier = reconstructFrame(field, p);
 #if defined(LATER) && LATER > 0
@@ -24,11 +24,11 @@ vec2 reconstructField(int field, vec3 p) {
     return earlier;
 }
 
-// Reading: value, coverage of all parts, the part that it is of, and the coverage of that part.
+// Reading: value, total coverage of all parts, part index, coverage of that part.
 #if PARTS
 #define Reading vec4
 
-// At p: of the part whose samples carry the most weight there.
+// Reads the part whose samples have the largest weight at p.
 Reading readAt(int field, vec3 p) {
     vec2 own = reconstructField(field, p);
     vec4 best = vec4(own, 0.0, own.y);
@@ -40,7 +40,7 @@ Reading readAt(int field, vec3 p) {
     return best;
 }
 
-// (value, coverage) at p by the samples of one part alone, that of a reading.
+// (value, coverage) at p from the samples of the part of `like` only.
 vec2 readPart(int field, Reading like, vec3 p) {
     vec2 own = vec2(0.0);
     if (like.z == 0.0) own = reconstructField(field, p);
@@ -66,7 +66,7 @@ bool samePart(Reading a, Reading b) {
 }
 #endif
 
-// (value, coverage) at p; the place is absent where the coverage is below PRESENT_COVERAGE.
+// (value, coverage) at p; absent if the coverage is below PRESENT_COVERAGE.
 vec2 reconstruct(int field, vec3 p) {
     return readAt(field, p).xy;
 }

@@ -1,14 +1,15 @@
-// From samples to colour (linear, not premultiplied) and opacity of a layer kReferenceLength thick, for the composite
-// layers. Twin: classification in vis/reference/raycast.cpp; what the lookups mean stands in vis/optics/ray_setup.h.
+// Classification of composite layers: from samples to colour (linear, not premultiplied) and opacity of a layer
+// kReferenceLength thick. The kinds of classification are defined in vis/optics/ray_setup.h. Twin:
+// vis/reference/raycast.cpp.
 
-// Place of the gradient's magnitude, 0..1 and beyond.
+// Gradient magnitude relative to the transfer function's maximum, 0..1 or above.
 float gradientPlace(int layer, vec3 gradient) {
     return length(gradient) * layerMore[layer].x;
 }
 
 #if HAS_LATTICE
-// Of one field: the samples around p (data cells) are classified, their premultiplied colours summed by the weights of
-// trilinear interpolation (on BCC of both sublattices); `coverage`: sum of the weights of those present.
+// Classifies the samples of one field around p (data cells) and sums their premultiplied colours with trilinear weights
+// (on BCC over both sublattices); `coverage`: sum of the weights of present samples.
 vec4 latticeSum(int layer, int field, vec3 p, out float coverage) {
     vec4 sum = vec4(0.0);
     coverage = 0.0;
@@ -45,8 +46,8 @@ vec4 latticeSum(int layer, int field, vec3 p, out float coverage) {
     return sum;
 }
 
-// Pre-classification: the samples around p are classified, their colours interpolated as values are; of several parts
-// those of the one that carries the most weight. `share`: 1 where enough of all samples are present, else 0.
+// Pre-classification: the samples around p are classified and their colours interpolated. Of several parts, the one
+// with the largest weight is used. `share`: 1 if enough of all samples are present, else 0.
 vec4 latticeColor(int layer, vec3 p, out float share) {
     int field = LAYER_FIELD(layer);
     p = dataCells(p);
@@ -70,7 +71,7 @@ vec4 latticeColor(int layer, vec3 p, out float share) {
 }
 #endif
 
-// What is kept of a layer from sample to sample: a value or place (x), kUnknown where absent, and of which part.
+// Per layer, carried from sample to sample: a value or position (x), kUnknown if absent, and its part.
 #if PARTS
 #define Noted vec2
 const Noted kNothingNoted = vec2(kUnknown, 0.0);
@@ -98,8 +99,9 @@ bool joined(Noted a, Noted b) {
 #endif
 
 #if PLANES > 0
-// Pre-integration between the places of the values at the two ends of a sample's part of the ray, kUnknown where
-// absent. `share`: of that part, what is present. Between two parts the value jumps: each has a half.
+// Pre-integration over the ray segment of one sample, between the positions at its two ends, kUnknown if absent.
+// `share`: the present fraction of the segment. Between two parts the value jumps, so each part gets half of the
+// segment.
 vec4 slabColor(int layer, Noted front, Noted back, out float share) {
     float first = notedValue(front), last = notedValue(back);
     bool hasFront = first > kUnknown, hasBack = last > kUnknown;
@@ -113,7 +115,7 @@ vec4 slabColor(int layer, Noted front, Noted back, out float share) {
     return planeAt(LAYER_PLANE(layer), vec2(hasFront ? first : last, hasBack ? last : first));
 }
 
-// Place of the value at p, an end of a sample's part.
+// Transfer function position of the value at p, one end of a segment.
 Noted slabEnd(int layer, vec3 p) {
     Reading s = readAt(LAYER_FIELD(layer), p);
     return note(s, s.x * layerMap[layer].x + layerMap[layer].y);

@@ -1,4 +1,4 @@
-// Convex bodies that cut rays; twin: vis/scene/clipping.h. An interval is empty where x >= y.
+// Intersection of rays with convex clip bodies; twin: vis/scene/clipping.h. An interval is empty if x >= y.
 const float kFar = 1e6;
 
 vec2 clipSlab(float offset, float slope, float halfWidth) {
@@ -16,7 +16,7 @@ vec2 clipBall(vec3 offset, vec3 slope, float radius) {
     return a < 1e-12 ? apart : met;
 }
 
-// The part of a line inside a body: `kind`: CLIP_KIND_PLANE, ...
+// The interval of a line inside a body. `kind`: CLIP_KIND_PLANE, ...
 vec2 clipInside(int kind, vec3 center, vec3 axis, vec3 halfSize, vec3 origin, vec3 direction) {
     vec3 from = origin - center;
     float offset = dot(axis, from), slope = dot(axis, direction);

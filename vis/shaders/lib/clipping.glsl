@@ -1,7 +1,7 @@
-// The scene's clips (lib/bindings.glsl) along a ray. Positions on the ray are in samples once the holes are known.
+// The scene's clips (lib/bindings.glsl) along a ray. The intervals of holes are in units of samples.
 #include "lib/clip.glsl"
 
-// The part of an interval that planes and bodies to be kept leave.
+// Restricts an interval to the clips that keep their inside.
 vec2 clipRay(vec2 inside, vec3 origin, vec3 direction) {
 #if CLIPS > 0
     for (int i = 0; i < CLIPS; ++i) {
@@ -13,7 +13,7 @@ vec2 clipRay(vec2 inside, vec3 origin, vec3 direction) {
     return inside;
 }
 
-// Whether a world point is kept.
+// Whether a world point is inside all of these.
 bool clipKept(vec3 world) {
     bool kept = true;
 #if CLIPS > 0
@@ -31,10 +31,10 @@ bool clipKept(vec3 world) {
 }
 
 #if CLIP_HOLES
-vec2 clipHoles[CLIPS]; // of this ray, in samples; empty where x >= y
+vec2 clipHoles[CLIPS]; // of this ray, in samples; empty if x >= y
 #endif
 
-// `enter` and `step` world units; sample k lies at enter + (k + phase) step.
+// `enter` and `step` in world units; sample k lies at enter + (k + phase) * step.
 void findHoles(vec3 origin, vec3 direction, float enter, float step, float phase) {
 #if CLIP_HOLES
     for (int i = 0; i < CLIPS; ++i) {
@@ -44,7 +44,7 @@ void findHoles(vec3 origin, vec3 direction, float enter, float step, float phase
 #endif
 }
 
-// Share of sample k's length that lies in no hole.
+// Fraction of sample k's segment that lies in no hole.
 float clipCoverage(float k) {
     float left = 1.0;
 #if CLIP_HOLES
@@ -54,7 +54,7 @@ float clipCoverage(float k) {
     return max(left, 0.0);
 }
 
-// Whether a place on the ray lies in no hole.
+// Whether a position on the ray, in samples, lies in no hole.
 bool clipShows(float k) {
     bool shows = true;
 #if CLIP_HOLES
@@ -63,7 +63,7 @@ bool clipShows(float k) {
     return shows;
 }
 
-// Samples from k on that may be left out: the one after them and all before it lie, whole, in one hole.
+// Number of samples from k on that can be skipped: they and the sample after them lie entirely in one hole.
 int clipLeap(float k) {
     float leap = 0.0;
 #if CLIP_HOLES

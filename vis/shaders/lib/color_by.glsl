@@ -1,9 +1,9 @@
-// Layers that take their colours from another channel. COLORED: 1 where one does; LAYER_COLORED(i) which;
-// LAYER_COLOR(i): that channel's field; LAYER_COLOR_ROW(i): its row of the transfer table. Twin: Prepared::tinted in
+// Layers coloured by another channel. COLORED: 1 if there is one; LAYER_COLORED(i): 1 if layer i is; LAYER_COLOR(i):
+// field of the other channel; LAYER_COLOR_ROW(i): its row of the transfer table. Twin: Prepared::tinted in
 // vis/reference/prepared.h.
 #if LAYERS > 0
 
-// Colour (linear) of layer i for what a reading of that channel gives: where it is absent, the layer's plain one.
+// Colour (linear) of layer i for a value of that channel; the layer's plain colour where it is absent.
 vec3 colorOfReading(int i, float value, bool is, vec3 own) {
 #if COLORED
     if (LAYER_COLORED(i) == 1)
@@ -12,7 +12,7 @@ vec3 colorOfReading(int i, float value, bool is, vec3 own) {
     return own;
 }
 
-// Colour (linear) of layer i at p in place of its own.
+// Colour (linear) of layer i at p; `own` if it is not coloured by another channel.
 vec3 colorBy(int i, vec3 p, vec3 own) {
 #if COLORED
     if (LAYER_COLORED(i) == 1) {

@@ -1,7 +1,7 @@
-// Composite layers: the colour and opacity of what one sample stands for.
+// Composite layers: colour and opacity of a ray segment.
 #if HAS_COMPOSITE
 
-// Shows the sample at `at`, whose values are `here`; it stands for `together` samples, k the first of them.
+// Composites the sample at `at`, whose values are `here`. It represents `together` samples, the first of which is k.
 void showComposites(int k, float at, int together) {
     vec3 p = cellsAt(at), world = worldAt(at);
     for (int i = 0; i < LAYERS; ++i) {

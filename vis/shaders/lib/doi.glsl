@@ -1,23 +1,23 @@
-// Degree of interest of a place; twin: DoiFunction in vis/scene/selection.h. The brushes come as tests in a row (see
-// vis/raycast/brush_uniforms.h); kinds that no brush has are left out at compile time.
+// Degree of interest at a position; twin: DoiFunction in vis/scene/selection.h. Brushes are stored as consecutive tests
+// (vis/raycast/brush_uniforms.h); kinds of tests that no brush uses are not compiled.
 
 #if BRUSH_COLORS
-vec4 brushHolder = vec4(0.0); // of the last degreeOfInterest(): colour of the brush that holds most, how much it does
+vec4 brushHolder = vec4(0.0); // by the last degreeOfInterest(): colour of the brush that holds p most; how much
 #endif
 
 #if BRUSH_TESTS > 0
-// 1 up to one radius, 0 from 1 + soft on; `inverseSoft` 1e30 for a hard edge.
+// 1 up to radius 1, then linear to 0 at 1 + soft; `inverseSoft` is 1e30 for a hard edge.
 float radialDoi(float radii, float inverseSoft) {
     return radii > 1.0 ? max(0.0, 1.0 - (radii - 1.0) * inverseSoft) : 1.0;
 }
 
 #if BRUSH_LASSOS
-// Entry (i, j) of the lasso whose table begins at row `row`.
+// Entry (i, j) of the lasso table that starts at row `row`.
 float lassoEntry(int row, int i, int j) {
     return texelFetch(lassoTables, ivec2(i, row + j), 0).x;
 }
 
-// `place` in entries; linear between them, 0 beyond.
+// `place` in table entries; bilinear, 0 outside the table.
 float lassoDoi(int row, vec2 place) {
     const float kLast = float(LASSO_TABLE - 1);
     bool inside = place.x >= 0.0 && place.y >= 0.0 && place.x <= kLast && place.y <= kLast;
@@ -98,7 +98,7 @@ float degreeOfInterest(vec3 p) {
 #endif
 }
 
-// Factor on opacity of a layer that brushes affect so (BrushEffect of vis/scene/brush_effect.h).
+// Opacity factor of a layer with this effect of brushes (BrushEffect in vis/scene/brush_effect.h).
 float focusOpacity(float doi, int effect) {
     return effect == BRUSHED_FADE      ? mix(context.x, 1.0, doi)
            : effect == BRUSHED_NONE    ? 1.0
@@ -106,13 +106,13 @@ float focusOpacity(float doi, int effect) {
                                        : doi;
 }
 
-// Degree of interest that out-of-focus blur sees.
+// Degree of interest used for context blur.
 float focusInterest(float doi, int effect) {
     return effect == BRUSHED_NONE ? 1.0 : doi;
 }
 
-// Colour pulled towards its luminance, further by the factor `saturation`, and made darker or lighter, then towards the
-// colour of the brush that holds the place of the last degreeOfInterest().
+// Desaturates a colour, also by the factor `saturation`, changes its lightness, and mixes in the colour of the brush
+// that holds the position of the last degreeOfInterest() most.
 vec3 focusColor(vec3 color, float doi, float saturation, int effect) {
     float share = effect == BRUSHED_FADE ? doi : 1.0;
     vec3 c = mix(vec3(luminance(color)), color, mix(context.y, 1.0, share) * saturation);

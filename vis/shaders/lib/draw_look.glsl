@@ -1,18 +1,18 @@
-// Looks of layers: what the scene knows of them, put together. LAYER_LOOK(i): the parts of a layer's look, bits of
-// LookFeature in vis/gl/shader_constants.h; LOOKS: those of any layer.
+// Applies the looks of layers. LAYER_LOOK(i): bits of LookFeature (vis/gl/shader_constants.h) of layer i; LOOKS: their
+// union over all layers.
 #include "lib/look.glsl"
 #include "lib/grain.glsl"
 
 #define LOOK_OUTLINE (LOOK_CARTOON | LOOK_CHARCOAL)
 
-uniform vec4 lookLight;   // direction towards the first light, 0; or its position, 1
-uniform vec2 lookDepth;   // distance along the view where depth is 0, and its change per world unit
+uniform vec4 lookLight;   // first light: direction towards it, w = 0; or position, w = 1
+uniform vec2 lookDepth;   // view distance of depth 0; depth per world unit
 uniform vec2 lookPixel;   // world edge of a pixel: x + y * distance along the ray
-uniform float lookReach;  // distance over which curvature is measured, world
-uniform vec3 lookGround;  // colour of paper or background
-uniform vec2 lookShare[LAYERS]; // share = x + y * degree of interest
+uniform float lookReach;  // world distance over which curvature is measured
+uniform vec3 lookGround;  // colour of the paper or background
+uniform vec2 lookShare[LAYERS]; // share of the look = x + y * degree of interest
 #if (LOOKS & LOOK_TONE)
-uniform vec4 lookWarm[LAYERS], lookCool[LAYERS]; // colour; amount, share of the own colour
+uniform vec4 lookWarm[LAYERS], lookCool[LAYERS]; // colour; amount; share of the own colour
 #endif
 #if (LOOKS & LOOK_BOUNDARY)
 uniform vec3 lookBoundary[LAYERS];
@@ -26,17 +26,17 @@ uniform float lookDistanceExponent[LAYERS];
 #endif
 #if (LOOKS & LOOK_CARTOON)
 uniform vec3 lookCartoon[LAYERS];  // amount, steps, shadow
-uniform vec4 lookOutline[LAYERS];  // colour, pixels
+uniform vec4 lookOutline[LAYERS];  // colour; width in pixels
 #endif
 #if (LOOKS & LOOK_CHARCOAL)
 uniform vec3 lookStick[LAYERS]; // colour
-uniform vec3 lookTone[LAYERS], lookLine[LAYERS]; // of charcoalInk()
+uniform vec3 lookTone[LAYERS], lookLine[LAYERS]; // see charcoalInk()
 uniform vec4 lookMark[LAYERS];
-uniform vec4 lookGrain[LAYERS];                                    // texel in pixels, turn, local tone
+uniform vec4 lookGrain[LAYERS];                                    // texel in pixels, rotation, local tone
 uniform sampler2D grainTile;
 #endif
 #if (LOOKS & LOOK_WIRE)
-uniform vec4 lookWire[LAYERS];      // spacing in world units, pixels, retained, own colour
+uniform vec4 lookWire[LAYERS];      // spacing in world units, width in pixels, retained, own colour
 uniform vec3 lookWireColor[LAYERS];
 #endif
 

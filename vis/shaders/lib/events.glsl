@@ -1,17 +1,17 @@
-// Events: where slices and rasterised surfaces are met along the ray, nearest first.
+// Intersections of the ray with slices and rasterised surfaces, sorted by distance.
 #define EVENTS (SLICES + GEOMETRY)
 
 #if EVENTS > 0
 Met events[EVENTS];
-float passed = -1e8;        // events up to here are shown
-float nextEvent = kNowhere; // behind it
+float passed = -1e8;        // events up to here are composited
+float nextEvent = kNowhere; // the next event after that
 
-// Where a place at distance t lies among the samples.
+// Position in samples of distance t.
 float sampleAt(float t) {
     return (t - ray.inside.x) / ray.stepLength - ray.phase;
 }
 
-// The ray ends behind what is opaque.
+// Collects and sorts the intersections. The ray is shortened to end at an opaque surface.
 void findEvents() {
 #if SLICES > 0
     for (int i = 0; i < SLICES; ++i) {
@@ -25,7 +25,7 @@ void findEvents() {
         vec3 c = transfer(LAYERS + i, x).rgb;
         float level = x * (sliceMap[i].z + 1.0), width = fwidth(level);
 #if PARTS
-        // Where the value jumps there is no line: by the change within the part.
+        // Use the gradient within the part, so that a jump between parts draws no contour line.
         vec3 across = dFdx(world), up = dFdy(world);
         if (FIELD_PARTS(SLICE_FIELD(i)) > 1) {
             vec3 g = cellGradient(SLICE_FIELD(i), p, s.x, sliceMap[i].z > 0.5) / worldCell;
@@ -33,7 +33,7 @@ void findEvents() {
         }
 #endif
         if (sliceMap[i].z > 0.5 && width > 0.0) {
-            // Contours at level = 1, 2, ..., n; a line 1.4 pixels wide, dark on light colours and light on dark ones.
+            // Contours at level = 1, 2, ..., n; 1.4 pixels wide, dark on light colours and light on dark ones.
             float away = abs(level - clamp(floor(level + 0.5), 1.0, sliceMap[i].z)) / width;
             c = mix(c, vec3(luminance(c) > 0.18 ? 0.0 : 1.0), 0.75 * clamp(1.2 - away, 0.0, 1.0) / max(1.0, width * 2.0));
         }
@@ -56,7 +56,7 @@ void findEvents() {
         bool seen = ray.meets && t < 1e8;
         Met met = Met(seen ? sampleAt(t) : kNowhere, seen ? texelFetch(geometryColor, texel, 0) : vec4(0.0), 1.0);
 #if BRUSH_TESTS > 0
-        // Brushes act on what was lit: the rasteriser knows nothing of them.
+        // Brushes are applied here, after lighting, since the rasteriser does not know them.
         int effect = int(found.y + 0.5);
         float doi = degreeOfInterest(toCells(ray.origin + ray.direction * min(t, 1e3)));
         vec3 own = focusColor(met.color.rgb / max(met.color.a, 1e-6), doi, 1.0, effect);
@@ -65,7 +65,7 @@ void findEvents() {
         met.interest = focusInterest(doi, effect);
 #endif
         events[SLICES + i] = met;
-        // Nothing behind what is opaque: the ray ends there.
+        // The ray ends at an opaque surface.
         if (met.color.a >= kOpaque) ray.count = clamp(int(floor(min(met.at, 1e8))) + 1, 0, ray.count);
     }
 #endif
@@ -74,7 +74,7 @@ void findEvents() {
     nextEvent = events[0].at;
 }
 
-// Shows those up to `until` (in samples) that are not shown yet.
+// Composites pending events up to `until` (in samples).
 void showEvents(float until) {
     for (int i = 0; i < EVENTS; ++i)
         if (events[i].at > passed && events[i].at <= until) show(events[i]);

@@ -1,8 +1,8 @@
-// Places and changes of a channel, on top of the slot reconstruct.
+// Samples and gradients of a channel, based on the slot reconstruct.
 #include "lib/octahedral.glsl"
 #include "lib/place.glsl"
 
-const float kUnknown = -1e9; // in place of a value: absent, or not known
+const float kUnknown = -1e9; // replaces a value that is absent or unknown
 
 bool present(vec2 s) {
     return s.y >= PRESENT_COVERAGE;
@@ -13,7 +13,7 @@ bool present(Reading s) {
 }
 #endif
 
-// Edge of a cell of the level drawn at p of a reading's part.
+// Cell edge, at p, of the level drawn for the part of a reading.
 float readEdge(int field, Reading like, vec3 p) {
     float edge = cellEdge(field, p);
 #if PARTS
@@ -23,9 +23,9 @@ float readEdge(int field, Reading like, vec3 p) {
     return edge;
 }
 
-// Change over one worldCell edge per axis, in texel units, by differences as volume/reconstruct/gradient.h has them, of the part
-// that `like` is of: one-sided where it is absent, 0 where the value `centre` at p is then kUnknown. Zero unless
-// `needed`: the loop then ends early, which is what software GL has in place of branches.
+// Gradient in texel units per worldCell edge, by the differences of volume/reconstruct/gradient.h, within the part of
+// `like`: one-sided where one neighbour is absent, 0 if then the value `centre` at p is kUnknown too. Zero unless
+// `needed`, which ends the loop early; software GL executes both sides of a branch.
 vec3 partGradient(int field, Reading like, vec3 p, float centre, bool needed) {
     vec3 result = vec3(0.0);
     holdPage(field, p);
@@ -47,7 +47,7 @@ vec3 partGradient(int field, Reading like, vec3 p, float centre, bool needed) {
     return result * (gradientScale / edge);
 }
 
-// The same of the part that p belongs to.
+// The same for the part that p belongs to.
 vec3 cellGradient(int field, vec3 p, float centre, bool needed) {
 #if PARTS
     if (!needed) return vec3(0.0);
@@ -58,7 +58,7 @@ vec3 cellGradient(int field, vec3 p, float centre, bool needed) {
 #endif
 }
 
-// The gradient in world axes as shading uses it.
+// The gradient in world axes for shading, quantised if requested.
 vec3 shadingGradient(vec3 perCell) {
 #if NORMAL_BITS > 0
     return quantizedDirection(perCell / worldCell, NORMAL_BITS) * length(perCell / worldCell);

@@ -1,7 +1,7 @@
-// Paper grain and strokes fixed to the object; twin with the formulas: vis/optics/grain.h.
+// Object-space paper grain and strokes; formulas in the twin vis/optics/grain.h.
 
-// Tooth and strokes, 0..1, at a world place on a surface. `size`: wanted world edge of a texel; `turn` = cosine and sine
-// of the strokes' turn.
+// Grain and stroke values, 0..1, at a world position on a surface. `size`: desired world edge of a texel; `turn`:
+// cosine and sine of the rotation of the strokes.
 vec2 grainAt(sampler2D tile, vec3 place, vec3 normal, float size, vec2 turn) {
     float octave = log2(max(size, 1e-9)), whole = floor(octave), part = octave - whole;
     vec3 planes = normal * normal * normal * normal;

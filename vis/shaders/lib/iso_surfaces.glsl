@@ -1,8 +1,8 @@
-// Iso-surfaces: where the ray crosses them between two samples, and what is seen there.
+// Iso-surfaces: intersection with the ray between two samples, and shading.
 #if ISOS > 0
 
-// Shows those that are met between samples k - 1 and k of one part, nearest first, with the events before and between
-// them; the values at sample k are then `before` of their layers.
+// Composites the iso-surfaces between samples k - 1 and k of one part, nearest first, interleaved with the events
+// there. Afterwards `before` holds the values at sample k.
 void showSurfaces(int k) {
     Met surfaces[ISOS];
     vec3 p = cellsAt(float(k));

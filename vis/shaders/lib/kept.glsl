@@ -1,6 +1,6 @@
-// Software GL (Mesa 22.3) reads a uniform lane by lane at every place and in every round of a loop: what stands in
-// loops is read once a pixel, by keepUniforms(), and is a variable from here on. (All of them elements of arrays that
-// are copied one by one: of others the compiler finds out that they are copies of uniforms, and reads these.)
+// Software GL (Mesa 22.3) loads a uniform per lane at every use and in every loop iteration. keepUniforms() copies
+// those used in loops to variables once per pixel. (All copies are elements of arrays, copied one by one: otherwise the
+// compiler recognises copies of uniforms and reads the uniforms again.)
 
 vec3 keptScale[FIELDS], keptOffset[FIELDS], keptOdd[FIELDS], keptInverse[FIELDS];
 int keptLevel[FIELDS];

@@ -1,4 +1,4 @@
-// What the scene's lenses do at a world point; twins: lensAction, bend and confine in vis/scene/lens.h.
+// Effects of the scene's lenses at a world point; twins: lensAction, bend and confine in vis/scene/lens.h.
 #include "lib/lens.glsl"
 #include "lib/lens_bindings.glsl"
 
@@ -14,7 +14,7 @@ float lensWeightAt(int i, vec3 world) {
 }
 #endif
 
-// Factors on opacity and saturation of a layer of lens `own` (-1: of none).
+// Factors on opacity and saturation for a layer that belongs to lens `own` (-1: to none).
 vec2 lensAction(int own, vec3 world) {
     vec2 action = vec2(1.0);
 #if LENS_ACTS
@@ -27,7 +27,7 @@ vec2 lensAction(int own, vec3 world) {
     return action;
 }
 
-// Where the data that are shown at a place come from.
+// The world position whose data magnifying lenses show at `world`.
 vec3 lensBend(vec3 world) {
 #if LENS_BENDS
     vec3 most = max(halfSize, abs(world));
@@ -42,7 +42,7 @@ vec3 lensBend(vec3 world) {
     return world;
 }
 
-// A degree of interest as the lenses that confine the brushes leave it.
+// The degree of interest after lenses that confine the brushes.
 float lensConfine(float doi, vec3 world) {
 #if LENS_FOCUS
     float most = 0.0, share = 0.0;

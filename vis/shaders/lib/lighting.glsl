@@ -1,8 +1,8 @@
-// Surfaces under light, in linear light. Twins with the formulas and papers: vis/scene/lighting.h.
+// Surface reflection models, in linear light. Formulas and papers in the twins: vis/optics/surface_light.h.
 
 const float kEdgeOn = 0.25;
 
-// A place on a surface: unit vectors in world axes, and how much of the side that the normal points to is seen.
+// A shading point: unit vectors in world axes, and how much the side of the normal faces the viewer.
 struct Facing {
     vec3 normal, toViewer;
     float front;
@@ -24,12 +24,12 @@ vec3 phongLight(Facing at, vec3 albedo, vec3 toLight, vec4 surface) {
     return albedo * (surface.y * diffuse) + surface.z * specular;
 }
 
-// Factor for light that bounces between microfacets. `surface` = ambient, roughness, metalness, reflectance.
+// Compensation of multiple scattering between microfacets. `surface` = ambient, roughness, metalness, reflectance.
 vec3 physicalLost(vec3 straight, vec4 surface) {
     return 1.0 + straight * (1.0 / (1.0 - 0.5 * surface.y * surface.y * surface.y) - 1.0);
 }
 
-// Light that comes evenly from everywhere, colour 1: what the inside scatters, and what is mirrored.
+// Reflection of uniform light of colour 1 from all directions: diffuse and specular part.
 void physicalEvenLight(Facing at, vec3 albedo, vec4 surface, out vec3 diffuse, out vec3 specular) {
     float nv = abs(dot(at.normal, at.toViewer));
     vec4 r = surface.y * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
@@ -39,13 +39,13 @@ void physicalEvenLight(Facing at, vec3 albedo, vec4 surface, out vec3 diffuse, o
     diffuse = (1.0 - specular) * (1.0 - surface.z) * albedo;
 }
 
-// `even`: the diffuse share of physicalEvenLight.
+// `even`: the diffuse part from physicalEvenLight.
 vec3 physicalLight(Facing at, vec3 albedo, vec3 even, vec3 toLight, vec4 surface) {
     vec3 halfway = normalize(at.toViewer + toLight);
     float towards = dot(at.normal, toLight);
     float nl = abs(towards), nv = max(abs(dot(at.normal, at.toViewer)), 1e-3);
     float alpha = surface.y * surface.y, a2 = alpha * alpha;
-    // 1 - nh^2 as |n x h|^2: exact also where a polished surface mirrors the light.
+    // 1 - (n.h)^2 computed as |n x h|^2, accurate near the highlight of a smooth surface.
     vec3 across = cross(at.normal, halfway);
     float spread = a2 + dot(across, across) * (1.0 - a2);
     float visibility = 0.5 / (nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2));

@@ -1,13 +1,13 @@
-// What looks compute; twins with the formulas and papers: vis/optics/look_shading.h. A sample of no share or weight
-// comes through unchanged.
+// Shading formulas of looks; formulas and papers in the twins: vis/optics/look_shading.h. A sample with share or weight
+// 0 is unchanged.
 
-// A place as looks see it: n.l of the side that is seen, |n.v|, the rest as in LookSample.
+// Inputs of a look: n.l of the visible side, |n.v|, the rest as in LookSample (C++).
 struct LookSample {
     float light, facing, weight, steepness, curvature, depth, pixel, share, wire;
     vec2 grain;
 };
 
-// `retained`, `strength`, `exponent` of an enhancement.
+// `own` = retained, strength, exponent of an enhancement.
 float boundaryFactor(vec3 own, LookSample at) {
     return own.x + own.y * pow(clamp(at.steepness, 1e-6, 1.0), own.z);
 }
@@ -15,8 +15,8 @@ float silhouetteFactor(vec3 own, LookSample at) {
     return own.x + own.y * at.weight * pow(max(1.0 - at.facing, 1e-6), own.z);
 }
 
-// How much of a pixel lies on lines where a surface meets the planes at multiples of `spacing` along x, y and z, `width`
-// pixels wide.
+// Coverage of a pixel by the intersection lines of a surface with planes at multiples of `spacing` along x, y and z;
+// lines are `width` pixels wide.
 float wireCoverage(vec3 world, vec3 normal, vec3 toViewer, float spacing, float width, float pixel) {
     float along = dot(normal, toViewer), covered = 0.0;
     along = along < 0.0 ? min(along, -0.02) : max(along, 0.02);

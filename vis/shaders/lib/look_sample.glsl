@@ -1,7 +1,7 @@
-// A sample of the ray caster as looks see it (lib/draw_look.glsl); twin: lookSample in vis/reference/raycast.cpp.
+// Inputs of look shading for a sample of the ray caster; twin: lookSample in vis/reference/raycast.cpp.
 
-// `perCell`: gradient of cellGradient(), of the channel `field` at p; `t`: distance along the ray; `shown`: 0 spares
-// the gradients that nobody will see.
+// `perCell`: result of cellGradient() for the channel `field` at p; `t`: distance along the ray; `shown`: false skips
+// gradients that are not visible.
 LookSample lookSample(int i, int field, vec3 p, vec3 perCell, float weight, vec3 world, float t, vec3 direction,
                       float doi, bool shown) {
     LookSample at;

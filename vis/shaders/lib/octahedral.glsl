@@ -1,6 +1,6 @@
-// Directions of few bits: two coordinates of `bits` each on the unfolded octahedron (Q. Meyer et al.: On floating-point
-// normal vectors, 2010). Twin: quantizedDirection() in vis/optics/ray_setup.h. A direction of length 1, of any vector;
-// zero stays zero.
+// Directions quantised to `bits` per coordinate on the unfolded octahedron (Q. Meyer et al.: On floating-point normal
+// vectors, 2010). Returns a unit vector for a vector of any length; zero stays zero. Twin: quantizedDirection() in
+// vis/optics/ray_setup.h.
 vec3 quantizedDirection(vec3 v, int bits) {
     float sum = abs(v.x) + abs(v.y) + abs(v.z);
     if (!(sum > 0.0)) return vec3(0.0);

@@ -1,5 +1,5 @@
-// World and cells, and the place in the data that is seen at a place of the picture. Comes after the slot reconstruct:
-// what is read after it goes through the lenses that magnify.
+// Conversion between world and cells, and through magnifying lenses. Included after the slot reconstruct: later reads
+// through reconstruct, readAt and readPart are redirected through the lenses.
 #include "lib/lenses.glsl"
 
 vec3 toCells(vec3 world) {

@@ -1,7 +1,7 @@
-// Four dimensions to the picture. Twin of project() in vis/shapes/rotation4.h.
+// Projection from four dimensions to the picture. Twin: project() in vis/shapes/rotation4.h.
 
-// xy: place in -1..1 of the smaller side; z: depth 0..1; w: what a length there is magnified by. `rotated` lies within
-// a ball of radius 1; `eyes`: distance of the eye along w and along z, zoom.
+// xy: position in -1..1 of the shorter side; z: depth 0..1; w: magnification there. `rotated` lies within the unit
+// ball; `eyes`: distance of the eye along w and along z, zoom.
 vec4 project4(vec4 rotated, vec3 eyes) {
     float first = eyes.x / (eyes.x - rotated.w);
     float radius3 = eyes.x / sqrt(eyes.x * eyes.x - 1.0);

@@ -1,11 +1,10 @@
-// Projections: layers that look at the whole ray, and show one of its values. What each does stands in
-// vis/optics/ray_setup.h.
+// Projections (MIP, average, X-ray, ...): ray styles that evaluate the whole ray. Defined in vis/optics/ray_setup.h.
 #if HAS_PROJECTION
 
-// Best score and its sample; sums. A local maximum that is found has weight 1.
+// Best score and its sample; sums. weight is 1 once a local maximum is found.
 float best[LAYERS], bestAt[LAYERS], sum[LAYERS], weight[LAYERS], factor[LAYERS];
 #if COLORED
-vec2 tint[LAYERS]; // of sums: what they are coloured by, times its weight; that weight
+vec2 tint[LAYERS]; // of sums: weighted colour channel value; its weight
 #endif
 
 void beginProjections() {
@@ -21,11 +20,11 @@ void beginProjections() {
     }
 }
 
-// Looks at sample k at p: `x` the place of its value, `lens` its opacity in the layer's lens; where it is not present
-// nothing but that is seen.
+// Adds sample k at p: `x` is its transfer function position, `lens` the opacity in the layer's lens. An absent sample
+// (`is` false) only ends the rise to a local maximum.
 void project(int i, int k, vec3 p, float x, float lens, bool is) {
     float f = is ? focusOpacity(degreeOfInterest(p), LAYER_BRUSHED(i)) * lens : 0.0;
-    float place = clamp(x, 0.0, 1.0), share = f; // of the sum
+    float place = clamp(x, 0.0, 1.0), share = f; // weight in the colour sum
     if (LAYER_STYLE(i) == STYLE_AVERAGE) {
         sum[i] += is ? f * x : 0.0;
         weight[i] += f;
@@ -36,7 +35,7 @@ void project(int i, int k, vec3 p, float x, float lens, bool is) {
         sum[i] += share;
     } else {
         float score = (LAYER_STYLE(i) == STYLE_MINIMUM ? 1.0 - place : place) * f;
-        // A local maximum stands when the values fall again above the threshold.
+        // A local maximum above the threshold is final once values fall again.
         if (LAYER_STYLE(i) == STYLE_LOCALMAXIMUM)
             weight[i] = best[i] >= layerMore[i].y && (!is || score < best[i]) ? 1.0 : weight[i];
         bool better = is && score > best[i] && weight[i] == 0.0;
@@ -64,7 +63,7 @@ void showProjections() {
     for (int i = 0; i < LAYERS; ++i) {
         if (LAYER_STYLE(i) == STYLE_COMPOSITE || LAYER_STYLE(i) == STYLE_ISO) continue;
         vec4 c;
-        float alpha, at = 0.5 * float(ray.count), doi = 1.0; // sums belong to no place
+        float alpha, at = 0.5 * float(ray.count), doi = 1.0; // a sum has no position on the ray
         if (LAYER_STYLE(i) == STYLE_XRAY) {
             alpha = sum[i];
             c = transfer(i, alpha);

@@ -1,13 +1,13 @@
-// The samples of this pixel's ray; twin: RaySamples in vis/optics/ray_setup.h.
+// The sample positions along this pixel's ray; twin: RaySamples in vis/optics/ray_setup.h.
 
 struct RaySamples {
     vec3 origin, direction;
-    vec2 inside;         // entry and exit, distances along the ray
-    bool meets;          // whether it has an inside at all
+    vec2 inside;         // entry and exit as distances along the ray
+    bool meets;          // whether that interval is not empty
     int count;
     float stepLength;    // world units
     float phase;         // sample k lies at inside.x + (k + phase) * stepLength
-    vec3 first;          // place of sample 0, in cells
+    vec3 first;          // position of sample 0, in cells
     vec3 cellsPerSample;
 };
 RaySamples ray;

@@ -1,7 +1,7 @@
-// The lit colour of a sample, from what lib/bindings.glsl knows of light. Twin with the formulas: vis/optics/shade.h.
+// Lighting of a sample with the uniforms of lib/light_bindings.glsl. Formulas in the twin: vis/optics/shade.h.
 
 #if LIGHT_VOLUME
-// Shares of light that reach a world point, and light scattered there.
+// Transmitted fractions of the lights at a world point, and scattered light.
 void reachingLight(vec3 world, out vec4 shares, out vec3 scattered) {
     vec3 at = 0.5 + 0.5 * world / halfSize;
     shares = mix(vec4(1.0), textureLod(lightVisible, at, 0.0), shadowStrength.xxxy);
@@ -16,7 +16,7 @@ vec3 flatColor(vec3 albedo, vec4 shares, vec3 scattered) {
 }
 #endif
 
-// A sample without surface.
+// A sample without a surface.
 vec3 shadeFlat(vec3 albedo, vec3 place) {
 #if LIGHT_VOLUME
     vec4 shares;
@@ -50,7 +50,7 @@ vec3 shade(vec3 albedo, vec3 gradient, float weight, vec3 place, vec3 toViewer) 
     vec3 without = albedo;
     vec3 lit = around;
 #endif
-    // Few lights are unrolled; more of them share one program.
+    // One or two lights are unrolled; any larger number uses the same program.
     for (int i = 0; i < (LIGHTS <= 2 ? LIGHTS : lightCount); ++i) {
 #if POINT_LIGHTS
         vec3 way = lightPlace[i].xyz - place * lightPlace[i].w;

@@ -2,19 +2,19 @@
 
 const int kTableSize = TABLE_SIZE;
 
-// Colour (linear) and opacity of a row at x, clamped to 0..1: linear between the two nearest entries.
+// Colour (linear) and opacity of a table row at x, clamped to 0..1, linearly interpolated.
 vec4 tableAt(int row, float x) {
     float u = clamp(x, 0.0, 1.0) * float(kTableSize - 1) + 0.5;
     return textureLod(transferTable, vec2(u / float(kTableSize), float(row)), 0.0);
 }
 
-// The same of a layer, or of slice `use` - LAYERS.
+// The same for a layer, or for slice `use` - LAYERS.
 vec4 transfer(int use, float x) {
     return tableAt(TABLE_ROW(use), x);
 }
 
 #if PLANES > 0
-// Colour (linear) and opacity of a page of planeTable at 0..1 x 0..1, linear between its entries.
+// Colour (linear) and opacity from a page of planeTable at 0..1 x 0..1, bilinearly interpolated.
 vec4 planeAt(int page, vec2 at) {
     vec2 place = clamp(at, 0.0, 1.0) * float(PLANE_SIZE - 1) + vec2(0.5, float(page * PLANE_SIZE) + 0.5);
     vec4 c = textureLod(planeTable, place / vec2(PLANE_SIZE, PLANE_SIZE * PLANES), 0.0);
@@ -22,7 +22,7 @@ vec4 planeAt(int page, vec2 at) {
 }
 #endif
 
-// Whether transfer(layer, x) can have opacity: entry i says it for both ends of what lies between i and i + 1.
+// Whether transfer(layer, x) can have opacity: entry i holds the maximum of entries i and i + 1.
 bool opaqueAt(int layer, float x) {
 #if LAYERS > 0
     if (LAYER_INTERVAL(layer) == 1) return x > layerOpaque[layer].x && x < layerOpaque[layer].y;

@@ -1,5 +1,5 @@
-// Bright light brought into the range of a screen; twin with formulas and papers: vis/scene/tone.h.
-// `curve`: TONE_CURVE_NONE, ...; `gain` = 2^exposure.
+// Tone mapping to the range of a display; formulas and papers in the twin vis/scene/tone.h. `curve`: TONE_CURVE_NONE,
+// ...; `gain` = 2^exposure.
 vec3 toneMap(vec3 light, int curve, float gain, float white) {
     if (curve == TONE_CURVE_NONE) return light;
     vec3 x = max(light, vec3(0.0)) * gain;

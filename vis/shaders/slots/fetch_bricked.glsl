@@ -1,17 +1,17 @@
-// Slot fetch: bricks of any level in an atlas. A page table of full-resolution bricks says where each place is and at
-// which level; one fetch each, whatever the level. A brick is chosen by p for both sublattices, its halo holds what
-// either needs.
+// Slot fetch: bricks of any level in an atlas. A page table with one entry per full-resolution brick stores the atlas
+// position and the level of the resident brick: one fetch each, whatever the level. Both sublattices use the brick that
+// contains p; its halo holds the samples that either needs.
 uniform usampler3D pageTable[FIELDS];
 uniform sampler3D atlas[FIELDS];
 
-const uint kDeepest = 15u; // greater numbers in place of a level: nothing there
+const uint kDeepest = 15u; // larger values instead of a level: absent or not resident
 
 ivec3 brickAt(int field, vec3 p) {
     return clamp(ivec3(floor(p / float(BRICK_TEXELS))), ivec3(0), textureSize(pageTable[field], 0) - 1);
 }
 
 struct Page {
-    vec3 texel;  // of the atlas: place of p on the even sublattice
+    vec3 texel;  // position of p in the atlas, in texels, on the even sublattice
     float scale; // texels per cell, 2^-level; 0: absent
 };
 
@@ -24,8 +24,8 @@ Page pageAt(int field, vec3 p) {
                 scale);
 }
 
-// Inside of a brick and its halo one page is enough: a place near p is found in the brick of p. (Not on BCC, where it
-// gained nothing, nor where parts have pages of their own.)
+// Within a brick and its halo one page suffices: positions near p are looked up in the brick of p. (Not on BCC, where
+// it was no faster, nor if parts have their own pages.)
 Page heldPage = Page(vec3(0.0), 0.0);
 vec3 heldAt = vec3(0.0);
 bool held = false;
@@ -63,13 +63,13 @@ bool fineAt(int field, vec3 p) {
     return scale == 0.0 || scale == 1.0;
 }
 
-// Edge of a cell of the level drawn at p, in cells of full resolution.
+// Cell edge of the level drawn at p, in full-resolution cells.
 float cellEdge(int field, vec3 p) {
     float scale = pageFor(field, p).scale;
     return scale > 0.0 ? 1.0 / scale : 1.0;
 }
 
-// The texel with (even) index `at` at the level drawn at p, which lies near it.
+// The texel with index `at` (even sublattice) at the level drawn at p; `at` is near p.
 vec4 fetchTexel(int field, ivec3 at, vec3 p) {
     ivec3 brick = brickAt(field, p);
     uvec4 page = texelFetch(pageTable[field], brick, 0);

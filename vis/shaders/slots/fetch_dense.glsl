@@ -1,6 +1,6 @@
-// Slot fetch: each channel is one texture.
+// Slot fetch: each channel is a single texture.
 
-// Filtered texel of the even (x) or moved sublattice at p. CC: value, coverage; BCC: see vis/bricks/texels.h.
+// Filtered texel at p on the even sublattice (fetchOdd: odd). CC: value, coverage; BCC: see vis/bricks/texels.h.
 vec4 fetchEven(int field, vec3 p) {
     return textureLod(fieldTexture[field], p * fieldScale[field] + fieldOffset[field], 0.0);
 }
@@ -8,7 +8,7 @@ vec4 fetchOdd(int field, vec3 p) {
     return textureLod(fieldTexture[field], p * fieldScale[field] + fieldOffset[field] + fieldOdd[field], 0.0);
 }
 
-// What is read from here on lies within two texels of p, until releasePage().
+// Announces reads within two texels of p, until releasePage().
 void holdPage(int field, vec3 p) {}
 void releasePage() {}
 
@@ -17,12 +17,12 @@ bool fineAt(int field, vec3 p) {
     return fieldLevel[field] == 0;
 }
 
-// Edge of a cell of the level drawn at p, in cells of full resolution.
+// Cell edge of the level drawn at p, in full-resolution cells.
 float cellEdge(int field, vec3 p) {
     return exp2(float(fieldLevel[field]));
 }
 
-// The texel with (even) index `at` at the level of the texture; p lies near it.
+// The texel with index `at` (even sublattice) at the level of the texture; `at` is near p.
 vec4 fetchTexel(int field, ivec3 at, vec3 p) {
     return texelFetch(fieldTexture[field], clamp(at + HALO, ivec3(0), textureSize(fieldTexture[field], 0) - 1), 0);
 }

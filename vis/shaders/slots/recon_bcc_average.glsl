@@ -1,8 +1,8 @@
-// Slot reconstruct: the average of the trilinear interpolations of both sublattices (over prefiltered samples: quasi-
-// interpolation), or the nearest sample. Twin: linear() in volume/reconstruct/reconstruct.h.
+// Slot reconstruct: average of the trilinear interpolations on both sublattices (with prefiltered samples:
+// quasi-interpolation), or the nearest sample. Twin: linear() in volume/reconstruct/reconstruct.h.
 #include "lib/bcc_nearest.glsl"
 
-// (value, coverage) at p; the sample is absent where coverage < PRESENT_COVERAGE.
+// (value, coverage) at p; absent if coverage < PRESENT_COVERAGE.
 vec2 reconstructFrame(int field, vec3 p) {
     if (FIELD_NEAREST(field) == 1) return bccNearest(field, p);
     vec4 even = fetchEven(field, p), odd = fetchOdd(field, p);

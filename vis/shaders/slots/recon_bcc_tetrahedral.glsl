@@ -1,16 +1,17 @@
-// Slot reconstruct: linear box spline on BCC, the four corners of the tetrahedron around p (Entezari, Dyer, Moeller:
-// Linear and cubic box splines for the BCC lattice, 2004). Twin: tetrahedral() in volume/reconstruct/reconstruct.h.
+// Slot reconstruct: linear box spline on BCC, from the four corners of the tetrahedron around p (Entezari, Dyer,
+// Moeller: Linear and cubic box splines for the BCC lattice, 2004). Twin: tetrahedral() in
+// volume/reconstruct/reconstruct.h.
 #include "lib/bcc_nearest.glsl"
 
-// Value and presence of a lattice point given in half cells: all coordinates even, or all odd.
+// (value, coverage) of a lattice point given in half cells: all coordinates even, or all odd.
 vec2 latticePoint(int field, ivec3 corner, vec3 p) {
     vec4 texel = fetchTexel(field, corner >> 1, p);
     vec2 found = (corner.z & 1) == 1 ? texel.ga : texel.rb;
     return FIELD_COVERAGE(field) == 0 ? vec2(found.x, 1.0) : found;
 }
 
-// (value, coverage) at p; the sample is absent where coverage < PRESENT_COVERAGE. Coarse levels are no BCC lattice:
-// average there.
+// (value, coverage) at p; absent if coverage < PRESENT_COVERAGE. At coarse levels, whose sublattices do not form a BCC
+// lattice, the average of both is used.
 vec2 reconstructFrame(int field, vec3 p) {
     if (FIELD_NEAREST(field) == 1) return bccNearest(field, p);
     if (!fineAt(field, p)) {

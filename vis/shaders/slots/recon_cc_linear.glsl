@@ -1,6 +1,6 @@
-// Slot reconstruct: trilinear on the cubic Cartesian lattice, or the nearest sample. Twin: volume/reconstruct/reconstruct.h.
+// Slot reconstruct: trilinear on CC, or the nearest sample. Twin: volume/reconstruct/reconstruct.h.
 
-// (value, coverage) at p; the sample is absent where coverage < PRESENT_COVERAGE.
+// (value, coverage) at p; absent if coverage < PRESENT_COVERAGE.
 vec2 reconstructFrame(int field, vec3 p) {
     vec4 texel;
     if (FIELD_NEAREST(field) == 1)

@@ -1,4 +1,4 @@
-// Slot shade: the surface model is Phong.
+// Slot shade: Phong reflection model.
 #include "lib/lighting.glsl"
 
 vec3 surfaceLight(Facing at, vec3 albedo, vec3 even, vec3 toLight) {

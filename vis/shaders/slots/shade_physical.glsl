@@ -1,4 +1,4 @@
-// Slot shade: the surface model is GGX over Lambert.
+// Slot shade: GGX specular over a Lambertian base.
 #include "lib/lighting.glsl"
 
 vec3 surfaceLight(Facing at, vec3 albedo, vec3 even, vec3 toLight) {

@@ -1,14 +1,14 @@
-// Slot skip: Chebyshev distance to the nearest block that can contribute, in blocks; with ADAPTIVE 128 and more: it can,
-// by longer steps (vis/optics/adaptive_step.h).
+// Slot skip: empty-space skipping by the Chebyshev distance, in blocks, to the nearest block that can contribute. With
+// ADAPTIVE, values above 128 mark a contributing block and encode its step length (vis/optics/adaptive_step.h).
 #define SKIPPING 1
 #include "lib/block_walls.glsl"
 uniform usampler3D blockDistance;
 
-// Samples from p on (the one at p among them) that lie in empty blocks.
+// Number of samples from p on, including the one at p, that lie in empty blocks.
 int emptySamples(vec3 p) {
     vec3 q = p * blockPlace[0] + blockPlace[1], block = floor(q);
     ivec3 at = clamp(ivec3(block), ivec3(0), textureSize(blockDistance, 0) - 1);
-    // Blocks closer than `reach` are empty: the region from block - (reach - 1) to block + reach.
+    // All blocks closer than `reach` are empty: from block - (reach - 1) to block + reach.
     float reach = float(texelFetch(blockDistance, at, 0).r);
 #ifdef ADAPTIVE
     if (reach > 127.5) reach = 0.0;
@@ -19,7 +19,7 @@ int emptySamples(vec3 p) {
 #ifdef ADAPTIVE
 uniform float stepUnit;
 
-// Samples from p on (the one at p among them) that one in their middle may stand for.
+// Number of samples from p on, including the one at p, that a single sample in their middle may represent.
 int samplesTogether(vec3 p, float stepLength) {
     vec3 q = p * blockPlace[0] + blockPlace[1], block = floor(q);
     ivec3 at = clamp(ivec3(block), ivec3(0), textureSize(blockDistance, 0) - 1);

@@ -1,2 +1,2 @@
-// Slot skip: nothing is known to be empty.
+// Slot skip: no empty-space skipping.
 #define SKIPPING 0
