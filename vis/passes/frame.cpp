@@ -18,7 +18,7 @@ std::vector<Tile> tilesOf(const Tile& whole, int edge) {
     for (int y = whole.begin.y; y < whole.end.y; y += edge)
         for (int x = whole.begin.x; x < whole.end.x; x += edge)
             tiles.push_back(intersection({{x, y}, glm::ivec2(x, y) + edge}, whole));
-    const auto away = [&](const Tile& tile) { // from the middle, where one looks
+    const auto away = [&](const Tile& tile) { // squared distance from the centre, where the user looks
         const glm::ivec2 d = tile.begin + tile.end - whole.begin - whole.end;
         return d.x * d.x + d.y * d.y;
     };
@@ -26,8 +26,8 @@ std::vector<Tile> tilesOf(const Tile& whole, int edge) {
     return tiles;
 }
 
-/// Where a reduced picture begins in a buffer so that the corner of four of the tiles that the driver's processors
-/// share (Driver::sharedTile) lies in the middle of what is drawn of it.
+/// Offset of a reduced picture in its buffer, chosen so that the corner between four of the driver's tiles
+/// (Driver::sharedTile) lies in the middle of the drawn area: then more CPU cores share the work.
 glm::ivec2 placeInTiles(const Tile& drawn, glm::ivec2 picture, glm::ivec2 buffer, int edge) {
     if (edge == 0) return glm::ivec2(0);
     glm::ivec2 first = (edge - (drawn.begin + drawn.end) / 2 % edge) % edge;
@@ -36,8 +36,7 @@ glm::ivec2 placeInTiles(const Tile& drawn, glm::ivec2 picture, glm::ivec2 buffer
     return first;
 }
 
-/// The pixels of a reduced picture that show those of a tile of the whole, and what is blended with them when it is
-/// enlarged.
+/// The pixels of a reduced picture that show a tile of the full picture, plus a border for interpolation when enlarged.
 Tile reducedTile(const Tile& tile, glm::ivec2 reduced, glm::ivec2 whole) {
     const glm::dvec2 scale = glm::dvec2(reduced) / glm::dvec2(whole);
     return intersection({glm::ivec2(glm::floor(glm::dvec2(tile.begin) * scale)) - 1,
@@ -47,20 +46,20 @@ Tile reducedTile(const Tile& tile, glm::ivec2 reduced, glm::ivec2 whole) {
 
 } // namespace
 
-/// A variant that is being compiled leaves the former picture as it is.
+/// Keeps the former picture while a program variant is being compiled.
 void Renderer::Impl::postpone(ViewTarget& target, const Scene& scene) {
     if (!target.state.presented()) blank(target, scene);
     target.state.setDone(PictureState::Done::Nothing);
 }
 
-/// So does one that does not compile.
+/// Keeps the former picture if a program variant does not compile.
 void Renderer::Impl::giveUp(ViewTarget& target, const RenderCall& call) {
     target.shown.compiling = false;
     if (!target.state.presented() || call.request.wait) nothing(target, call.scene);
     target.state.setDone(PictureState::Done::Still);
 }
 
-/// Says once when lights or clips are left out, or parts of channels have no room.
+/// Reports once which lights, clips, lenses or channel parts exceed a limit.
 void Renderer::Impl::sayLimits(const RenderCall& call) {
     const Scene& scene = call.scene;
     const auto enabled = [](const auto& all) {
@@ -78,7 +77,7 @@ void Renderer::Impl::sayLimits(const RenderCall& call) {
     limits = now;
 }
 
-/// Binds the textures of a plan's fields and tables.
+/// Binds the textures of a plan's fields, and its tables.
 void Renderer::Impl::bindPlan(const ViewTarget& target, const RenderCall& call) {
     const RayPlan& plan = call.plan;
     const RayUnits units = rayUnits(plan);
@@ -96,8 +95,7 @@ void Renderer::Impl::bindPlan(const ViewTarget& target, const RenderCall& call) 
     glBindTextureUnit(GLuint(units.lassos), tools.brushes.update(plan.brushes));
 }
 
-/// Brings the program of `own`, which is all of the call or part of it, to where it can draw; false while that is on
-/// its way.
+/// Prepares the program of `own`, which is all or part of the call, for drawing; false while it is not ready.
 bool Renderer::Impl::ready(ViewTarget& target, const RenderCall& call, const RenderCall& own,
                            const ProgramAnswer& answer, const ProgramRecipe& recipe) {
     if (!answer.program) return false;
@@ -111,7 +109,7 @@ bool Renderer::Impl::ready(ViewTarget& target, const RenderCall& call, const Ren
         tools.programs.warmUp(recipe, target.buffers.full.framebuffer);
         return false;
     }
-    // The first draw compiles: do that before any clock runs.
+    // The first draw compiles machine code: make it now, before any timing.
     target.buffers.reduced.first = {0, 0};
     rays({.program = answer.program, .beyondPlan = {}, .beyondScene = {}}, call, target.buffers.reduced,
          {.size = size, .tile = {size / 2, size / 2 + 1}});
@@ -120,7 +118,7 @@ bool Renderer::Impl::ready(ViewTarget& target, const RenderCall& call, const Ren
     return true;
 }
 
-/// Beyond all lenses a program without them draws, once it is here.
+/// Adds a program without lenses for pixels outside all lenses, once it is ready.
 void Renderer::Impl::addBeyond(RayPrograms& programs, ViewTarget& target, const RenderCall& call) {
     programs.beyondPlan = beyondLenses(call.plan);
     if (programs.beyondPlan.empty() || drawnByProxy(call.scene) ||
@@ -135,7 +133,7 @@ void Renderer::Impl::addBeyond(RayPrograms& programs, ViewTarget& target, const 
     if (ready(target, call, beyond, answer, recipe)) programs.beyond = answer.program;
 }
 
-/// Between the samples of coarser levels there is nothing to see: steps are as long as their cells.
+/// Step lengths scale with the cells of the finest level wanted: there is no detail between coarser samples.
 void Renderer::Impl::setUniforms(const RayPrograms& programs, const ViewTarget& target, const RenderCall& call,
                                  double stepFactor) {
     const double factor = stepFactor * target.demand.cell();
@@ -146,7 +144,7 @@ void Renderer::Impl::setUniforms(const RayPrograms& programs, const ViewTarget& 
     set(programs.beyond, programs.beyondPlan, programs.beyondScene);
 }
 
-/// Draws what has changed smaller, with longer steps, and presents it.
+/// Draws the changed pixels at reduced resolution with longer steps, and presents them.
 void Renderer::Impl::drawReduced(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
                                  Pace::Reduction how) {
     PictureBuffers& buffers = target.buffers;
@@ -168,7 +166,7 @@ void Renderer::Impl::drawReduced(ViewTarget& target, const RenderCall& call, con
     glBindTextureUnit(0, call.plan.fields[0].texture);
 }
 
-/// Draws a tile of a pass into the full buffer and presents it.
+/// Draws one tile of a pass into the full buffer and presents it.
 void Renderer::Impl::drawTile(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const Tile& tile,
                               int pass) {
     const glm::ivec2 size = target.buffers.size;
@@ -190,8 +188,8 @@ void Renderer::Impl::drawTile(ViewTarget& target, const RenderCall& call, const 
     target.state.drewTile();
 }
 
-/// Draws what is stale once, then again with rays elsewhere in the pixels for a supersampled still, tile by tile while
-/// there is time.
+/// Draws the stale area tile by tile within the budget: a first pass, then passes with jittered rays for the
+/// supersampled frame.
 void Renderer::Impl::drawTiles(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
                                Clock::time_point start, bool lit) {
     const FrameRequest& request = call.request;
@@ -210,7 +208,7 @@ void Renderer::Impl::drawTiles(ViewTarget& target, const RenderCall& call, const
         target.pace.finishPass(state.stale().area(), target.buffers.everything().area());
         if (request.moving) break;
     }
-    // What is out of focus spreads over the borders of tiles.
+    // Context blur crosses the borders of tiles, so it needs the whole picture.
     if (blursContext(call.scene) && state.tilesDone() >= perPass) {
         present(target, call.scene, false, target.buffers.everything());
         glBindTextureUnit(0, call.plan.fields[0].texture);
@@ -218,7 +216,7 @@ void Renderer::Impl::drawTiles(ViewTarget& target, const RenderCall& call, const
     if (state.tilesDone() >= wanted && lit) state.setDone(PictureState::Done::Still);
 }
 
-/// Draws as much of the bound plan as the budget allows.
+/// Draws the bound plan as far as the budget allows.
 void Renderer::Impl::refine(ViewTarget& target, const RenderCall& call, Clock::time_point start) {
     const Scene& scene = call.scene;
     const FrameRequest& request = call.request;

@@ -13,22 +13,22 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr int kColors = 1024; ///< entries of a colour table's row
-/// Texture units that no plan of rays uses.
+constexpr int kColors = 1024; ///< entries per row of the colour table
+/// Texture units that no ray plan uses.
 constexpr int kTableUnit = 42, kFormerUnit = 43, kGrainUnit = 45, kFormerColorUnit = 46;
 
 template <class T> Buffer filledBuffer(const std::vector<T>& content, const char* label) {
     return makeBuffer(GLsizeiptr(content.size() * sizeof(T)), content.data(), 0, label);
 }
 
-/// Attribute `index` of `count` floats, `first` floats into an element.
+/// Vertex attribute `index` with `count` floats, at offset `first` (floats) within an element.
 void attribute(GLuint array, GLuint index, int count, int first) {
     glEnableVertexArrayAttrib(array, index);
     glVertexArrayAttribFormat(array, index, count, GL_FLOAT, GL_FALSE, GLuint(first) * GLuint(sizeof(float)));
     glVertexArrayAttribBinding(array, index, 0);
 }
 
-/// Position, normal, scalar of each vertex.
+/// Position, normal and scalar per vertex.
 std::vector<float> interleaved(const volume::SurfaceMesh& mesh) {
     std::vector<float> out;
     out.reserve(mesh.positions.size() * 7);
@@ -41,7 +41,7 @@ std::vector<float> interleaved(const volume::SurfaceMesh& mesh) {
     return out;
 }
 
-/// Both ends and their scalars of each segment.
+/// End points and their scalars per segment.
 std::vector<float> segmentsOf(const LineSet& lines) {
     std::vector<float> out;
     std::uint32_t first = 0;
@@ -158,14 +158,14 @@ const Program& GeometryPass::program(const GeometryJob& job, bool lines, int loo
 
 namespace {
 
-/// What all layers of a job have in common.
+/// Sets the uniforms that all layers of a job share.
 void setCommon(const Program& program, const GeometryJob& job) {
     const Scene& scene = job.scene;
     const glm::ivec2 size = job.size;
     const double aspect = double(size.x) / size.y;
     const WorldFrame frame = worldFrame(job.info.bounds, scene.stretch);
     const Ray middle = cameraRay(scene.camera, aspect, {0, 0});
-    // A ray's ndc is its pixel's plus 2 jitter / size, so what is drawn moves the other way.
+    // A jittered ray has the ndc of its pixel plus 2 jitter / size, so geometry moves the opposite way.
     const glm::dmat4 moved = glm::translate(glm::dmat4(1), glm::dvec3(-2.0 * job.jitter / glm::dvec2(size), 0));
     const glm::mat4 worldToClip(moved * projectionMatrix(scene.camera, aspect) * viewMatrix(scene.camera));
     program.set("worldScale", glm::vec3(frame.scale));
@@ -183,10 +183,10 @@ void setCommon(const Program& program, const GeometryJob& job) {
     program.set("colors", kTableUnit);
     program.set("former", kFormerUnit);
     program.set("formerColors", kFormerColorUnit);
-    program.set("covers", scene.selection.active() ? 0 : 1); // brushes take their share of the opacity later
+    program.set("covers", scene.selection.active() ? 0 : 1); // brushes change the opacity later
 }
 
-/// The state that geometry is drawn in, of which the depth test and the scissor are ended with it.
+/// Sets the GL state for geometry; the destructor restores depth test and scissor.
 class DrawingState {
 public:
     DrawingState(const GeometryJob& job) {
@@ -216,7 +216,7 @@ void clear(GLuint framebuffer) {
 
 } // namespace
 
-/// What is drawn, with the uniforms that all share.
+/// Collects the draw calls, with their common uniforms set.
 std::vector<GeometryPass::Draw> GeometryPass::collect(const GeometryJob& job, GrainTexture& grain) {
     std::vector<Draw> draws;
     for (std::size_t i = 0; i < job.scene.geometry.size(); ++i) {
@@ -247,7 +247,7 @@ void GeometryPass::drawOne(const Draw& each, const GeometryJob& job, int peel) c
     own.set("lens", each.lens);
     own.set("lineWidth", layer.style.lineWidth);
     own.set("brushEffect", float(int(layer.brushes)));
-    // Layers share variants: what looks say is set anew for each.
+    // Layers share program variants, so the uniforms of looks are set for each.
     setLookUniforms(own, {layer.style.look.any() ? &layer.style.look : nullptr}, job.scene, frame,
                     worldCell(job.info.lattice, frame), job.pictureSize, kGrainUnit);
     glUseProgram(own.name());
@@ -272,13 +272,13 @@ void GeometryPass::draw(GeometryBuffer& buffer, const GeometryJob& job, GrainTex
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
         clear(framebuffer);
         if (peel >= job.most) continue;
-        // A peel that shows nothing is the last: what follows it is not drawn.
+        // Stop after an empty peel: conditional rendering skips the following ones.
         if (peel > 0) glBeginConditionalRender(buffer.shown[std::size_t(peel) - 1].name(), GL_QUERY_WAIT);
         glBeginQuery(GL_ANY_SAMPLES_PASSED, buffer.shown[std::size_t(peel)].name());
         for (const Draw& each : draws) drawOne(each, job, peel);
         glEndQuery(GL_ANY_SAMPLES_PASSED);
         if (peel > 0) glEndConditionalRender();
-        glTextureBarrier(); // the next peel reads what this one wrote
+        glTextureBarrier(); // the next peel reads what this one has written
     }
 }
 

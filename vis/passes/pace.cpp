@@ -6,7 +6,7 @@
 namespace tessera::vis {
 
 bool Pace::beginCall() {
-    constexpr std::size_t kMostBehind = 8; // draws not measured yet
+    constexpr std::size_t kMostBehind = 8; // draws whose time is not known yet
     given_ = 0;
     collect(false);
     return timer_.pending() <= kMostBehind;
@@ -20,7 +20,8 @@ bool Pace::fits(double area, double left) const {
 Pace::Reduction Pace::reduction(double area, double budget, bool geometry) const {
     static constexpr Reduction kReductions[] = {{1.0, 1.0}, {1.5, 1.5}, {2.0, 2.0}, {3.0, 2.0},
                                                 {4.0, 2.0}, {6.0, 2.0}, {8.0, 3.0}, {8.0, 5.0}};
-    // Not smaller than the last: two processors would share one tile of software GL.
+    // No smaller than the last entry: below, all pixels would fall into a few tiles of software GL, and cores would be
+    // idle.
     if (!known()) return {};
     const double before = geometry ? geometry_ : 0;
     for (const Reduction& each : kReductions)
@@ -45,7 +46,7 @@ void Pace::beginPass(bool wait, double budget) {
     ++passNumber_;
     pass_ = measured_ = area_ = 0;
     scale_ = 1;
-    // Never the whole: what a coarse picture cost says little of the fine one.
+    // Never the whole picture: the cost of a coarse picture predicts that of the full one poorly.
     tileEdge_ = wait ? kWaiting : kLargest;
     const double perTile = wait ? 1e9 : std::max(budget / 3, 2.0);
     while (tileEdge_ > kSmallest && expected(double(tileEdge_) * tileEdge_) > perTile) tileEdge_ /= 2;
@@ -72,7 +73,7 @@ void Pace::finishPass(double area, double whole) {
     settle();
 }
 
-/// What all of a pass took says what the next one will.
+/// After a complete pass, its cost per pixel predicts the next one.
 void Pace::settle() {
     if (area_ > 0 && measured_ >= area_) perPixel_ = pass_ / area_;
 }

@@ -11,7 +11,7 @@ RayBuffer makeRayBuffer(glm::ivec2 size, bool exact, const char* label) {
     made.reach = makeTexture2D(size, GL_R32F, GL_NEAREST, label);
     made.framebuffer = makeFramebuffer({made.color.name(), made.pick.name(), made.reach.name()}, label);
     made.size = size;
-    made.clear(); // pictures and positions are read before every tile of the first one is drawn
+    made.clear(); // unwritten pixels may be read: the picture is presented before all tiles are drawn
     return made;
 }
 

@@ -7,14 +7,14 @@
 
 namespace tessera::vis {
 
-/// One buffer the ray caster draws into: linear premultiplied colour; distance of what a pixel shows and its interest;
-/// distance up to which its ray went.
+/// Render targets of the ray caster: linear premultiplied colour; distance and degree of interest of the picked sample;
+/// termination depth.
 struct RayBuffer {
     Texture color, pick, reach;
     Framebuffer framebuffer;
     glm::ivec2 size{0};
     glm::ivec2 first{0}; ///< texel of the picture's lower left pixel
-    /// Nothing in any pixel.
+    /// Clears all targets.
     void clear() const;
 };
 
@@ -22,49 +22,49 @@ struct RayBuffer {
 struct PictureBuffers {
     glm::ivec2 size{0};
     RayBuffer full;    ///< at the size of the picture, filled tile by tile
-    RayBuffer reduced; ///< a quick picture, of which `reducedSize` pixels are used
+    RayBuffer reduced; ///< a quick picture in its lower left `reducedSize` pixels
     glm::ivec2 reducedSize{0};
-    Texture output; ///< what is presented
+    Texture output; ///< the presented picture
     Framebuffer outputFramebuffer;
 
     Tile everything() const { return {glm::ivec2(0), size}; }
-    /// Buffers of that size. Throws MachineError when the driver has no memory for them.
+    /// Allocates buffers of that size. Throws MachineError when the driver has no memory for them.
     static PictureBuffers make(glm::ivec2 size, bool exact);
 };
 
-/// Which pixels of a view's buffers show its scene.
+/// Which pixels of a view's buffers are up to date.
 class PictureState {
 public:
     enum class Done {
         Nothing,
-        Full, ///< all of the full buffer shows the scene
-        Still ///< and every pass of a supersampled still is in it
+        Full, ///< the full buffer shows the scene
+        Still ///< converged: it also contains all passes of the supersampled frame
     };
 
-    /// Pixels of `part` are out of date.
+    /// Marks the pixels of `part` as out of date.
     void redraw(const Tile& part);
 
-    /// What the full buffer holds nothing of, or something else, when a pass over it begins.
+    /// The area of the full buffer that was out of date when the current pass began.
     const Tile& stale() const { return stale_; }
     Done done() const { return done_; }
     bool full() const { return done_ != Done::Nothing; }
     bool still() const { return done_ == Done::Still; }
     void setDone(Done done) { done_ = done; }
-    /// Tiles drawn of all passes over what is stale.
+    /// Number of tiles drawn in all passes over the stale area.
     int tilesDone() const { return tilesDone_; }
     void drewTile() { ++tilesDone_; }
-    /// The first pass over what is stale is done, and presented.
+    /// The first pass over the stale area is drawn and presented.
     void drewPass();
 
-    /// Pixels of the picture that the reduced buffer shows of the scene.
+    /// The area of the picture that the reduced buffer shows.
     const std::optional<Tile>& reduced() const { return reduced_; }
-    /// The reduced buffer shows what has changed, and that is presented.
+    /// The reduced picture of the changed area is drawn and presented.
     void drewReduced();
     void dropReduced() { reduced_.reset(); }
 
-    /// What the presented picture does not show yet.
+    /// The area that the presented picture does not show yet.
     const Tile& changed() const { return changed_; }
-    /// A picture, of whatever scene, is presented.
+    /// Whether a picture, of any scene, is presented.
     bool presented() const { return presented_; }
     void setPresented(bool presented) { presented_ = presented; }
 

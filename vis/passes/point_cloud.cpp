@@ -69,7 +69,7 @@ std::uint32_t PointCloud::draw(const CloudView& view) {
     if (const auto drawn = GLsizei(std::ceil(double(own.count) * share)); drawn > 0) {
         const glm::mat4 rotation(view.rotation);
         const double smaller = std::min(own.size.x, own.size.y);
-        // Radii are given for the middle of the picture, whose magnification depends on the eyes alone.
+        // Radii refer to the centre of the picture, where the magnification depends only on the eye distances.
         const double middle = project(view.projection, 1, glm::dvec4(0)).scale / view.projection.zoom;
         glProgramUniformMatrix4fv(own.splat.name(), glGetUniformLocation(own.splat.name(), "rotation"), 1, GL_FALSE,
                                   &rotation[0][0]);

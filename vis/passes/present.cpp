@@ -13,7 +13,7 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr int kSeenUnit = 44; ///< beyond those of any plan
+constexpr int kSeenUnit = 44; ///< beyond the units of any plan
 
 bool isRough(const std::optional<Paper>& paper) {
     return paper && paper->tooth > 0;
@@ -33,7 +33,7 @@ ProgramRecipe resolveRecipe(const Scene& scene, bool lines) {
 
 } // namespace
 
-/// Gives the program that presents pictures what it wants, but the place to draw to.
+/// Sets all uniforms and textures of the presenting program, except its viewport.
 void Renderer::Impl::setPresented(const Program& resolve, const ViewTarget& target, const Scene& scene,
                                   const BoxLines& lines, bool reduced) {
     const std::optional<Paper> paper = paperOf(scene);
@@ -84,7 +84,7 @@ void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduce
     target.state.setPresented(true);
 }
 
-/// Whether the program that presents the scene is there; else brings it on its way.
+/// Whether the program that presents the scene is ready; starts its compilation otherwise.
 bool Renderer::Impl::presentable(const ViewTarget& target, const Scene& scene) {
     const BoxLines lines = box(target, scene);
     const ProgramRecipe recipe = resolveRecipe(scene, !lines.edges.empty());
@@ -93,10 +93,10 @@ bool Renderer::Impl::presentable(const ViewTarget& target, const Scene& scene) {
         setPresented(*answer.program, target, scene, lines, false);
         tools.programs.warmUp(recipe, target.buffers.outputFramebuffer);
     }
-    return answer.stage == ProgramStage::Ready || answer.stage == ProgramStage::Failed; // present() says which
+    return answer.stage == ProgramStage::Ready || answer.stage == ProgramStage::Failed; // present() handles both
 }
 
-/// The background while the first picture is on its way, with the box as soon as that can be drawn.
+/// Shows the background, and the box once that can be drawn, until the first picture is ready.
 void Renderer::Impl::blank(ViewTarget& target, const Scene& scene) {
     if (presentable(target, scene)) return nothing(target, scene);
     const glm::vec4 ground(groundColor(scene), scene.showGround ? 1 : 0);
@@ -104,7 +104,7 @@ void Renderer::Impl::blank(ViewTarget& target, const Scene& scene) {
     glClearNamedFramebufferfv(target.buffers.outputFramebuffer.name(), GL_COLOR, 0, &ground.x);
 }
 
-/// The background alone: nothing is loaded, or the program does not compile.
+/// Shows only the background: nothing is loaded, or the program does not compile.
 void Renderer::Impl::nothing(ViewTarget& target, const Scene& scene) {
     target.buffers.full.clear();
     present(target, scene, false, target.buffers.everything());

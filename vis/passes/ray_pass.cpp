@@ -11,7 +11,7 @@
 
 namespace tessera::vis {
 
-/// The program variant that a bound plan wants.
+/// The program variant for a bound plan.
 ProgramRecipe Renderer::Impl::variant(const ViewTarget& target, const Scene& scene, const RayPlan& plan) const {
     const TablesContent& tables = target.tables.content();
     ProgramRecipe made = rayRecipe(plan, scene, source->grid(), tables.skip && !lensesBend(scene));
@@ -21,8 +21,8 @@ ProgramRecipe Renderer::Impl::variant(const ViewTarget& target, const Scene& sce
     return made;
 }
 
-/// Rasterises the geometry for a tile of a picture of this size, unless that is what the target has; of a reduced one
-/// the two nearest surfaces.
+/// Rasterises the geometry for a tile of a picture of this size, unless the target already has it. A reduced picture
+/// uses the two nearest surfaces only.
 void Renderer::Impl::geometry(ViewTarget& target, const RenderCall& call, glm::ivec2 size, const Tile& tile, int pass) {
     const int peels = peelsOf(call.scene);
     if (peels == 0) return;
@@ -49,7 +49,7 @@ void Renderer::Impl::geometry(ViewTarget& target, const RenderCall& call, glm::i
     glBindTextureUnit(GLuint(RayUnits::kGeometry) + 1, buffer.distance.name());
 }
 
-/// Blends the proxy surfaces front to back into the part of the buffer that is cleared and in the scissor.
+/// Blends the proxy surfaces front to back into the cleared part of the buffer inside the scissor rectangle.
 void Renderer::Impl::proxies(const Program& program, const RenderCall& call, const RayBuffer& buffer,
                              double stepFactor) {
     const ProxySurfaces surfaces = proxySurfaces(call.scene, call.grid().lattice, call.frame(), stepFactor);
@@ -62,13 +62,13 @@ void Renderer::Impl::proxies(const Program& program, const RenderCall& call, con
     glUseProgram(program.name());
     glEnable(GL_BLEND);
     glBlendFunci(0, GL_ONE_MINUS_DST_ALPHA, GL_ONE);
-    glBlendEquationi(1, GL_MIN); // the nearest noticeable surface
+    glBlendEquationi(1, GL_MIN); // keep the nearest noticeable surface
     glDrawArraysInstanced(GL_TRIANGLES, 0, 3, surfaces.count);
     glBlendEquation(GL_FUNC_ADD);
     glDisable(GL_BLEND);
 }
 
-/// Draws a tile with the rays of a pass.
+/// Draws a tile with the rays of one pass.
 void Renderer::Impl::rays(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer,
                           const RayTile& what) {
     const Scene& scene = call.scene;
@@ -85,7 +85,7 @@ void Renderer::Impl::rays(const RayPrograms& programs, const RenderCall& call, c
     glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 0, nothing);
     glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 1, nowhere);
     glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 2, unseen);
-    // Only where the box is.
+    // Restrict drawing to the pixels of the box.
     const glm::ivec4 box = boxPixels(scene.camera, call.frame().halfSize, size);
     const glm::ivec2 begin = glm::max(tile.begin, glm::ivec2(box)), end = glm::min(tile.end, glm::ivec2(box.z, box.w));
     if (begin.x >= end.x || begin.y >= end.y) return;
@@ -118,8 +118,9 @@ void Renderer::Impl::rays(const RayPrograms& programs, const RenderCall& call, c
     draw(remainder(whole.front(), *lensed));
 }
 
-/// Draws pass n > 0 of a supersampled still, beside, and makes it one n + 1-th of the picture. (Not by blending the
-/// rays themselves: software GL would compile their program anew. What a pixel picks stays that of its middle.)
+/// Draws pass n > 0 of a supersampled frame into a second buffer and blends it into the first with weight 1 / (n + 1).
+/// (Blending in the ray-casting program itself would make software GL compile it again. Picking keeps the pixel
+/// centre's result.)
 void Renderer::Impl::accumulate(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
                                 const RayTile& what) {
     const Tile& tile = what.tile;
@@ -136,12 +137,12 @@ void Renderer::Impl::accumulate(ViewTarget& target, const RenderCall& call, cons
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.buffers.full.framebuffer.name());
     glScissor(tile.begin.x, tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
     glUseProgram(average->name());
-    glBindVertexArray(tools.vertices.name()); // of a tile beside the box no ray was drawn
+    glBindVertexArray(tools.vertices.name()); // no ray was drawn for a tile outside the box
     glEnablei(GL_BLEND, 0);
     glBlendColor(0, 0, 0, 1 / float(what.pass + 1));
     glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
     glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    glEnablei(GL_BLEND, 2); // the farthest of all passes
+    glEnablei(GL_BLEND, 2); // keep the largest termination depth of all passes
     glBlendEquationi(2, GL_MAX);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBlendEquationi(2, GL_FUNC_ADD);

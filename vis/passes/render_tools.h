@@ -10,7 +10,7 @@
 
 #include <chrono>
 
-/// What the stages of a picture are given.
+/// Parameters of the stages of a picture.
 namespace tessera::vis {
 
 using Clock = std::chrono::steady_clock;
@@ -19,7 +19,7 @@ inline double millisecondsSince(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// What one call of Renderer::render() draws. `plan` is bound to what is resident by ViewDemand::bind().
+/// Input of one call of Renderer::render(). ViewDemand::bind() binds `plan` to resident data.
 struct RenderCall {
     const Scene& scene;
     const FrameRequest& request;
@@ -31,7 +31,7 @@ struct RenderCall {
     WorldFrame frame() const { return worldFrame(info().bounds, scene.stretch); }
 };
 
-/// What all pictures of a context are drawn with.
+/// Resources shared by all pictures of a context.
 struct RenderTools {
     explicit RenderTools(const Driver& given) : driver(given) {}
 

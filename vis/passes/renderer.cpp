@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kUploadPerFrame = std::size_t(24) << 20;
 
-/// What drawing needs and leaves as it was.
+/// GL state that drawing changes and restores.
 struct SavedState {
     GLint framebuffer = 0, viewport[4] = {0, 0, 0, 0};
     SavedState() {
@@ -35,7 +35,7 @@ struct SavedState {
     }
 };
 
-/// Whether anything drawn moves with the linked cursor.
+/// Whether anything drawn depends on the linked cursor.
 bool liesAtCursor(const Scene& scene) {
     return sliceAtCursor(scene) || std::any_of(scene.lenses.begin(), scene.lenses.end(),
                                                [](const Lens& lens) { return lens.enabled && lens.followsCursor; });
@@ -66,7 +66,7 @@ ViewTargetPtr Renderer::makeTarget() {
     return ViewTargetPtr(new ViewTarget(impl_->tools.driver));
 }
 
-/// Makes the target as large as the picture; false where the driver has no memory for that, which is said once.
+/// Resizes the target to the picture; returns false, with a single message, if the driver has no memory.
 bool Renderer::Impl::resize(ViewTarget& target, const FrameRequest& request) {
     try {
         target.resize(request.size, options.exactTextures);
@@ -79,26 +79,26 @@ bool Renderer::Impl::resize(ViewTarget& target, const FrameRequest& request) {
     }
 }
 
-/// Takes in what has been loaded, within the scene's limits.
+/// Uploads loaded data within the scene's limits.
 void Renderer::Impl::beginFrame(ViewTarget& target, const Scene& scene, const FrameRequest& request) {
     const RenderLimits& given = scene.render.limits;
     residency.setBudgets(std::min(options.textureBudget, std::size_t(given.textureMemory) << 20),
                          std::min(options.memoryBudget, std::size_t(given.brickMemory) << 20));
     residency.setKeptChange(double(given.keptChange));
-    // A frame of a window draws each of its targets once; a picture that is waited for stands for itself.
+    // A window draws each target once per frame; a picture drawn with `wait` counts as a frame of its own.
     if (request.wait || target.shown.frame == residency.frame()) residency.beginFrame();
     target.shown.frame = residency.frame();
     residency.update(request.wait ? ~std::size_t(0) : kUploadPerFrame);
 }
 
-/// Whether pictures of the scene tell which bricks they hide. Where a lens magnifies, rays see other places than those
-/// they pass.
+/// Whether pictures of the scene tell which bricks are occluded. With a magnifying lens, rays sample other positions
+/// than those they pass.
 bool Renderer::Impl::findsHidden(const Scene& scene) const {
     return scene.render.cullHidden && residency.bricked() && !lensesBend(scene) && !drawnByProxy(scene) &&
            !options.countSamples;
 }
 
-/// What the last picture of these data hid, as far as it counts for a scene.
+/// The bricks that the last picture of these data occluded; null if they cannot be used for a scene.
 const HiddenInView* Renderer::Impl::hiddenIn(const ViewTarget& target, const Scene& scene) const {
     return findsHidden(scene) && target.shown.source == source.get() ? &target.hidden.bricks() : nullptr;
 }
@@ -107,7 +107,7 @@ void Renderer::Impl::takeHidden(ViewTarget& target, bool wait) {
     target.hidden.take(wait, target.shown.source == source.get() && source ? &source->grid() : nullptr);
 }
 
-/// Asks for what the plan samples and binds what is here; false when it cannot be drawn yet.
+/// Requests what the plan samples and binds the resident part; false if it cannot be drawn yet.
 bool Renderer::Impl::bind(ViewTarget& target, const RenderCall& call, FrameStatus& status) {
     takeHidden(target, false);
     const std::optional<double> former = target.demand.time();
@@ -116,7 +116,7 @@ bool Renderer::Impl::bind(ViewTarget& target, const RenderCall& call, FrameStatu
     return any;
 }
 
-/// From here on the target shows the scene: what it holds of another one is out of date.
+/// Makes the scene that of the target and marks outdated pixels.
 void Renderer::Impl::show(ViewTarget& target, const Scene& scene) {
     ShownScene& shown = target.shown;
     const std::uint64_t resident = residency.revision();
@@ -134,7 +134,7 @@ void Renderer::Impl::show(ViewTarget& target, const Scene& scene) {
     shown.started = true;
 }
 
-/// Asks for what the scene shows and draws, or refines, what is here of it; false where nothing can be drawn.
+/// Requests the data of the scene and draws or refines what is resident; false if nothing can be drawn.
 bool Renderer::Impl::draw(ViewTarget& target, const RenderCall& call, Clock::time_point start, FrameStatus& status) {
     const bool any = !call.plan.empty() && bind(target, call, status);
     show(target, call.scene);
@@ -153,8 +153,8 @@ bool Renderer::Impl::draw(ViewTarget& target, const RenderCall& call, Clock::tim
     return any;
 }
 
-/// Draws the scene small from the coarsest bricks, then from more and more of the others, nearest first, so that most
-/// of what they hide is never asked for.
+/// Draws small pictures from the coarsest bricks, then with growing shares of the others, nearest first, so that most
+/// occluded bricks are never requested.
 void Renderer::Impl::probe(ViewTarget& target, const RenderCall& call) {
     ++target.shown.number;
     target.shown.scene = call.scene;
@@ -171,7 +171,7 @@ void Renderer::Impl::probe(ViewTarget& target, const RenderCall& call) {
     target.demand.setShare(1);
 }
 
-/// Whether the finished picture shows bricks that were taken to be hidden: what is wanted then is something else.
+/// Whether the finished picture shows bricks assumed to be occluded, so that other bricks are wanted.
 bool Renderer::Impl::reveals(ViewTarget& target, const RenderCall& call) {
     takeHidden(target, true);
     return target.demand.chooseAgain(residency, call, hiddenIn(target, call.scene));
@@ -180,12 +180,12 @@ bool Renderer::Impl::reveals(ViewTarget& target, const RenderCall& call) {
 /// Draws the scene as far as the request allows.
 void Renderer::Impl::drawAll(ViewTarget& target, const RenderCall& call, Clock::time_point start, FrameStatus& status) {
     const bool waits = call.request.wait, finds = !call.plan.empty() && findsHidden(call.scene);
-    // What the last picture hid will do to begin with.
+    // Occlusion in the last picture is a sufficient start.
     if (waits && finds && !target.hidden.any()) probe(target, call);
     bool any = false;
     do any = draw(target, call, start, status);
     while (waits && any && finds && reveals(target, call));
-    // What is hidden may be coarse, but it has to be known that it is.
+    // Occluded bricks may be coarse, but that they are occluded must be certain.
     if (any && finds) status.complete = status.complete && target.hidden.known();
 }
 

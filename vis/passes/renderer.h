@@ -12,7 +12,8 @@
 #include <string>
 #include <vector>
 
-/// The shared renderer: one per GL context. Needs a current GL 4.5 core context in every call, its destructor too.
+/// The renderer, shared by all views of a GL context. Every call, including the destructor, needs a current GL 4.5 core
+/// context.
 namespace tessera::vis {
 
 /// Result of picking: the first sample along the ray with noticeable opacity.
@@ -20,7 +21,7 @@ struct Pick {
     glm::dvec3 position; ///< physical
 };
 
-/// The picture of one view: framebuffers and the state of refinement. One per view; may be destroyed at any time.
+/// The picture of one view: framebuffers and the state of progressive refinement. May be destroyed at any time.
 class ViewTarget;
 struct ViewTargetDeleter {
     void operator()(ViewTarget* target) const;
@@ -34,27 +35,26 @@ public:
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    /// Shows another data set; drops every brick of the former one but for those they have in common. Null shows
-    /// nothing.
+    /// Changes the data set and drops the bricks of the former one, except those that both share. Null: shows nothing.
     void setSource(std::shared_ptr<const volume::BrickSource> source, SameSamples same = {});
     const volume::BrickSource* source() const;
 
-    /// A new, empty target for a view.
+    /// Creates an empty target for a view.
     ViewTargetPtr makeTarget();
-    /// Draws or refines the scene into the target. Repeated calls with an equal scene and request continue the
-    /// refinement. If the driver has no memory for a picture of this size, the former one is kept, with a message; a
-    /// request that waits throws MachineError.
+    /// Draws or refines the scene in the target. Repeated calls with the same scene and request continue the
+    /// refinement. If the driver has no memory for a picture of this size, the former one is kept and a message given;
+    /// a request with `wait` throws MachineError.
     FrameStatus render(ViewTarget& target, const Scene& scene, const FrameRequest& request);
-    /// What lies under a pixel (x right, y down, of the last request's size) of the target's last picture.
+    /// Picks at a pixel (x right, y down, in the size of the last request) of the target's last picture.
     std::optional<Pick> pick(ViewTarget& target, glm::ivec2 pixel);
-    /// Linear float RGBA of the target's last complete picture before the background, premultiplied, rows top down:
-    /// what the tests compare with the reference.
+    /// The target's last complete picture before the background: linear float RGBA, premultiplied, rows top down. Tests
+    /// compare it with the reference.
     std::vector<glm::vec4> readLinear(ViewTarget& target);
     /// RGBA8 of the picture, rows top down.
     std::vector<std::uint8_t> readPixels(ViewTarget& target, glm::ivec2& size);
 
     ResidencyInfo residency() const;
-    /// Messages since the last call (shader failures, damaged bricks), for the log pane.
+    /// Messages since the last call (shader errors, damaged bricks), for the log pane.
     std::vector<std::string> takeMessages();
 
 private:

@@ -6,26 +6,26 @@
 #include "vis/passes/renderer.h"
 #include "vis/passes/view_target.h"
 
-/// Inside the renderer: renderer.cpp has what is public, frame.cpp draws as much as there is time for, ray_pass.cpp
-/// draws tiles, present.cpp shows them. The stages before (ViewDemand, ViewTables, ViewLight, ViewHidden) have files of
-/// their own.
+/// Implementation of the renderer: renderer.cpp has the public functions, frame.cpp schedules drawing within the
+/// budget, ray_pass.cpp draws tiles, present.cpp presents them. The earlier stages (ViewDemand, ViewTables, ViewLight,
+/// ViewHidden) have their own files.
 namespace tessera::vis {
 
-/// The variants of the ray caster that one picture is drawn with.
+/// The ray-casting program variants of one picture.
 struct RayPrograms {
     const Program* program = nullptr;
-    const Program* beyond = nullptr; ///< beyond all lenses; null: that of the whole picture
-    RayPlan beyondPlan;              ///< what `beyond` draws
+    const Program* beyond = nullptr; ///< for pixels outside all lenses; null: same as `program`
+    RayPlan beyondPlan;              ///< the plan of `beyond`
     Scene beyondScene;
 };
 
-/// Which part of which picture rays draw.
+/// The part of a picture to cast rays for.
 struct RayTile {
     glm::ivec2 size{0}; ///< of the whole picture
     Tile tile;
-    const std::vector<Tile>* parts = nullptr; ///< of the tile only what lies in one of these; null: all
+    const std::vector<Tile>* parts = nullptr; ///< draw only what lies in one of these parts of the tile; null: all
     double stepFactor = 1;
-    int pass = 0; ///< of a supersampled still
+    int pass = 0; ///< of a supersampled frame
 };
 
 struct Renderer::Impl {
@@ -33,10 +33,10 @@ struct Renderer::Impl {
     Residency residency;
     std::shared_ptr<const volume::BrickSource> source;
     const volume::BrickSource* formerSource =
-        nullptr; ///< what `source` goes on with: its pictures stay until there are new
+        nullptr; ///< the source that `source` replaced with shared samples: its pictures stay until new ones are drawn
     RenderTools tools;
-    std::string limits;  ///< said last about what there is too much of
-    std::string refusal; ///< said last about a picture that the driver has no memory for
+    std::string limits;  ///< last message about exceeded limits
+    std::string refusal; ///< last message about refused memory
 
     explicit Impl(const RendererOptions& given, const Driver& driver)
         : options(given), residency(given, driver), tools(driver) {}

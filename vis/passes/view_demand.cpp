@@ -8,11 +8,11 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr std::size_t kSmallTexels = std::size_t(1) << 20; ///< channels up to here need no coarse picture first
+constexpr std::size_t kSmallTexels = std::size_t(1) << 20; ///< larger channels are first loaded at a coarse level
 constexpr double kAfterTheRest = 1e6;
-constexpr double kMovingDetail = 2; ///< coarser bricks will do while something moves
+constexpr double kMovingDetail = 2; ///< factor on the wanted voxel size during interaction
 
-/// Adds what a channel holds to the numbers of a frame.
+/// Adds the samples and bytes of a channel to the status.
 void addCost(FrameStatus& status, const volume::BrickGrid& grid, const ChannelTexture* channel) {
     if (!channel) return;
     const auto count = [](glm::ivec3 size) { return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z); };
@@ -54,7 +54,7 @@ PlanFrames framesAt(const RenderCall& call, double time) {
     return frames;
 }
 
-/// Gives the plan a field for each frame.
+/// Extends the plan's fields for interpolation between two stored times.
 void setFrames(RayPlan& plan, const PlanFrames& frames) {
     if (plan.later > 0) plan.fields.resize(std::size_t(plan.later));
     plan.later = int(frames.weights.size());
@@ -63,7 +63,7 @@ void setFrames(RayPlan& plan, const PlanFrames& frames) {
     if (plan.later > 0) plan.fields.insert(plan.fields.end(), once.begin(), once.end());
 }
 
-/// Edge of a cell of the finest level that any of the demands names, in cells of full resolution.
+/// Cell edge of the finest level in the demands, in full-resolution cells.
 double finestCell(const std::vector<std::shared_ptr<const BrickDemand>>& demands) {
     std::uint8_t finest = BrickDemand::kNotWanted;
     for (const auto& demand : demands)
@@ -71,7 +71,8 @@ double finestCell(const std::vector<std::shared_ptr<const BrickDemand>>& demands
     return finest == BrickDemand::kNotWanted ? 1 : double(1 << finest);
 }
 
-/// What two frames of a channel need together. (They lie in one picture, which hides the same of both.)
+/// Union of the demands of two stored times of a channel. (Both appear in one picture, so the same bricks of both are
+/// occluded.)
 std::shared_ptr<const BrickDemand> either(const std::shared_ptr<const BrickDemand>& a,
                                           const std::shared_ptr<const BrickDemand>& b) {
     if (!a || !b || *a == *b) return a ? b ? a : nullptr : nullptr;
@@ -87,7 +88,7 @@ std::shared_ptr<const BrickDemand> either(const std::shared_ptr<const BrickDeman
     return both;
 }
 
-/// Takes in ranges in other texel units; false, and empty, where the grids differ.
+/// Extends `into` by ranges in other texel units; empties it and returns false if the grids differ.
 bool unite(BlockRanges& into, const BlockRanges& other, const TexelEncoding& units, const TexelEncoding& otherUnits) {
     if (into.count != other.count || into.edge != other.edge || into.level != other.level || into.min.empty() ||
         other.min.empty()) {
@@ -106,7 +107,7 @@ bool unite(BlockRanges& into, const BlockRanges& other, const TexelEncoding& uni
     return true;
 }
 
-/// Fields of a plan's channels, at the earlier time, that have several parts.
+/// Indices of the fields, at the earlier time, whose channel has several parts.
 std::vector<std::size_t> partedFields(const RayPlan& plan) {
     std::vector<std::size_t> out;
     for (std::size_t i = 0; i < std::size_t(plan.channels); ++i)
@@ -114,7 +115,7 @@ std::vector<std::size_t> partedFields(const RayPlan& plan) {
     return out;
 }
 
-/// Ranges of all parts of a channel, in texels of its first; null where not all are known.
+/// Union of the ranges of all parts of a channel in texel units of the first; null if one is unknown.
 std::optional<BlockRanges> rangesOfParts(const RayPlan& plan, std::size_t i,
                                          std::span<const BlockRanges* const> ranges) {
     const BoundField& field = plan.fields[i];
@@ -129,7 +130,7 @@ std::optional<BlockRanges> rangesOfParts(const RayPlan& plan, std::size_t i,
     return all;
 }
 
-/// Binds a field to what is here of a channel, or to nothing; false where there is nothing.
+/// Binds a field to the resident data of a channel; false, and bound to absent samples, if there are none.
 bool bindField(const Residency& residency, BoundField& field, const ChannelKey& key) {
     const ChannelTexture* found = residency.find(key);
     const ChannelTexture& texture = found ? *found : residency.nothing();
@@ -149,13 +150,13 @@ bool bindField(const Residency& residency, BoundField& field, const ChannelKey& 
     return found != nullptr;
 }
 
-/// Whether something is here of all frames, or never will be.
+/// Whether all channels are resident, or never will be.
 bool allHere(const Residency& residency, const PlanFrames& frames) {
     return std::ranges::all_of(frames.keys,
                                [&](const ChannelKey& key) { return residency.find(key) || residency.settled(key); });
 }
 
-/// What a plan's fields want of bricks at one time: those whose frames are the `count` keys.
+/// The brick demands of a plan's fields at one time; `keys` are the channels of the fields.
 std::vector<std::shared_ptr<const BrickDemand>> demandsAt(const Residency& residency, const RenderCall& call,
                                                           std::span<const ChannelKey> keys,
                                                           const DemandSettings& settings,
@@ -173,7 +174,7 @@ std::vector<std::shared_ptr<const BrickDemand>> demandsAt(const Residency& resid
         importance[i] = channel->bricks->importance();
         known.fields[i].encoding = channel->encoding;
     }
-    // What is wanted of a channel is wanted of each of its parts.
+    // The demand of a channel applies to each of its parts.
     std::vector<BlockRanges> all;
     all.reserve(count);
     for (const std::size_t i : partedFields(known)) {
@@ -187,7 +188,7 @@ std::vector<std::shared_ptr<const BrickDemand>> demandsAt(const Residency& resid
     return wanted;
 }
 
-/// What failed to load is absent in any units: parts that are not here take those of one that is.
+/// Parts that failed to load are absent and adopt the texel units of a loaded part.
 void alignParts(const Residency& residency, RayPlan& plan, const std::vector<ChannelKey>& keys,
                 const std::vector<std::size_t>& parted, std::size_t times) {
     const std::size_t count = plan.fields.size() / times;
@@ -201,7 +202,7 @@ void alignParts(const Residency& residency, RayPlan& plan, const std::vector<Cha
         }
 }
 
-/// Block ranges of a plan's fields with those of all parts and of both times.
+/// Block ranges of a plan's fields, united over parts and over both times.
 std::vector<BlockRanges> unitedRanges(const RayPlan& plan, const std::vector<std::size_t>& parted, std::size_t times) {
     const std::size_t count = plan.fields.size() / times;
     std::vector<BlockRanges> out;
@@ -222,8 +223,7 @@ std::vector<BlockRanges> unitedRanges(const RayPlan& plan, const std::vector<std
 
 } // namespace
 
-/// Which bricks the picture needs, by what is known of the plan's channels at its frames; true when that is something
-/// else than before.
+/// Chooses the bricks of the picture from the known ranges of the channels; true if the choice changed.
 bool ViewDemand::choose(const Residency& residency, const RenderCall& call, const HiddenInView* hidden,
                         const std::vector<ChannelKey>& frames) {
     if (!residency.bricked()) {
@@ -263,7 +263,7 @@ bool ViewDemand::choose(const Residency& residency, const RenderCall& call, cons
     return true;
 }
 
-/// Asks for the frames of the scene's time.
+/// Requests the channels at the scene's time.
 PlanFrames ViewDemand::wantFrames(Residency& residency, const RenderCall& call, const HiddenInView* hidden) {
     const bool waits = call.request.wait;
     const PlanFrames wanted = framesAt(call, call.scene.time);
@@ -279,8 +279,8 @@ PlanFrames ViewDemand::wantFrames(Residency& residency, const RenderCall& call, 
     return wanted;
 }
 
-/// The frames to show: all channels of one picture show one time, the wanted one if each has something there, else the
-/// former one.
+/// Decides which time is shown: all channels of a picture show the same time, the wanted one if all are resident, else
+/// the former one.
 PlanFrames ViewDemand::showFrames(Residency& residency, const RenderCall& call, const PlanFrames& wanted,
                                   double& time) const {
     time = call.scene.time;
@@ -293,7 +293,7 @@ PlanFrames ViewDemand::showFrames(Residency& residency, const RenderCall& call, 
     return former;
 }
 
-/// While the time moves on, the frame after this one comes next.
+/// Prefetches the next stored time while an animation runs.
 void ViewDemand::wantNext(Residency& residency, const RenderCall& call, bool settled) {
     const std::vector<double>& times = call.info().times;
     const volume::TimePair now = volume::timesAround(times, call.scene.time);
@@ -323,7 +323,7 @@ bool ViewDemand::bind(Residency& residency, const RenderCall& call, const Hidden
         addCost(status, call.grid(), residency.find(shown.keys[i]));
     }
     bindRanges(residency, plan, shown.keys);
-    // Part of the channels would want a program of its own, for a moment.
+    // Drawing only some channels would need another program for a short time.
     if (!allHere(residency, shown)) any = false;
     if (any) {
         time_ = time;
@@ -334,7 +334,7 @@ bool ViewDemand::bind(Residency& residency, const RenderCall& call, const Hidden
     return any;
 }
 
-/// Block ranges of channels of several parts, and of those between two frames.
+/// Combines block ranges over parts and, between two stored times, over both.
 void ViewDemand::bindRanges(const Residency& residency, RayPlan& plan, const std::vector<ChannelKey>& frames) {
     const std::size_t times = plan.later > 0 ? 2 : 1;
     const std::vector<std::size_t> parted = partedFields(plan);

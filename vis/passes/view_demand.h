@@ -8,40 +8,40 @@
 
 namespace tessera::vis {
 
-/// The frames that a plan's fields show at a time: one each or, where one lies between two stored times, two each: the
-/// earlier of all, then the later of all.
+/// The channels of a plan's fields at a time: one stored time each or, between two stored times, all at the earlier one
+/// followed by all at the later one.
 struct PlanFrames {
     std::vector<ChannelKey> keys;
-    std::vector<double> weights; ///< of the later frame, per field; empty: all are on stored times
+    std::vector<double> weights; ///< weight of the later time per field; empty: all at stored times
 };
 
-/// What the bricks that a picture wants were chosen for.
+/// Everything that the choice of bricks depends on.
 struct DemandKey {
     Scene scene;
     DemandSettings settings;
     std::vector<ChannelKey> frames;
-    std::vector<ChannelKey> known;       ///< frames of which something is known
-    std::optional<std::uint64_t> hidden; ///< HiddenInView::revision(); none: nothing is taken to be hidden
+    std::vector<ChannelKey> known;       ///< channels whose summary is known
+    std::optional<std::uint64_t> hidden; ///< HiddenInView::revision(); none: occlusion is not used
     bool operator==(const DemandKey&) const = default;
 };
 
-/// The stage that asks for what a picture samples and binds its plan to what is here.
+/// The stage that requests the data of a picture and binds its plan to the resident part.
 class ViewDemand {
 public:
-    /// Asks for what the plan samples and binds the plan to what is here; false when it cannot be drawn yet. `hidden`:
-    /// what the last picture hid, null where that does not count. `status` is told what is missing.
+    /// Requests what the plan samples and binds the plan to resident data; false if it cannot be drawn yet. `hidden`:
+    /// bricks occluded in the last picture, null if unusable. Sets the missing bricks in `status`.
     bool bind(Residency& residency, const RenderCall& call, const HiddenInView* hidden, FrameStatus& status);
-    /// Chooses the bricks that a picture of the frames shown last needs; true when these are others than before.
+    /// Chooses bricks again for the times shown last; true if the choice changed.
     bool chooseAgain(const Residency& residency, const RenderCall& call, const HiddenInView* hidden) {
         return choose(residency, call, hidden, frames_);
     }
-    /// Wants only that share of the bricks, the most urgent ones: less than 1 while a picture is only probed.
+    /// Restricts the demand to the most urgent fraction of bricks; less than 1 for probing pictures.
     void setShare(double share) { share_ = share; }
     bool probing() const { return share_ < 1; }
 
-    /// Edge of a cell of the finest level wanted, in cells of full resolution.
+    /// Cell edge of the finest level wanted, in full-resolution cells.
     double cell() const { return cell_; }
-    /// The time of the data shown, and the frames that are; none before something was.
+    /// The time shown, and the channels at it; none before the first picture.
     std::optional<double> time() const { return time_; }
     const std::vector<ChannelKey>& frames() const { return frames_; }
 
@@ -61,12 +61,12 @@ private:
     void bindRanges(const Residency& residency, RayPlan& plan, const std::vector<ChannelKey>& frames);
 
     volume::Cached<DemandKey, Demands> chosen_;
-    Demands demands_; ///< chosen last, the former ones where they are equal
+    Demands demands_; ///< last choice; equal demands keep their address
     double cell_ = 1, share_ = 1;
     std::optional<double> time_;
     std::vector<ChannelKey> frames_;
-    int wantedTime_ = -1, timeStep_ = 0; ///< which way the time runs, in stored times
-    /// Of all parts and both times, per field.
+    int wantedTime_ = -1, timeStep_ = 0; ///< direction of an animation, in stored times
+    /// United over parts and both times, per field.
     volume::Cached<RangesKey, std::vector<BlockRanges>> ranges_;
 };
 

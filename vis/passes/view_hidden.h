@@ -7,37 +7,37 @@
 
 namespace tessera::vis {
 
-/// The stage that finds which bricks lie behind what is opaque: it reads back how far the rays of a view's pictures
-/// went. `scene`: the number of a scene, of which pictures differ by what has been loaded.
+/// The stage that finds occluded bricks by reading back the termination depths of a view's pictures. `scene`: a scene
+/// number; pictures of the same scene differ only in what is resident.
 class ViewHidden {
 public:
     void resize(glm::ivec2 size) { reach_.resize(size); }
-    /// The full buffer changes: what it hides is not known.
+    /// The full buffer has changed, so its occlusion is unknown.
     void forgetPicture() { known_ = final_ = false; }
-    /// Other data are shown.
+    /// The data set has changed.
     void forgetData();
 
     /// A reduced picture was drawn in this frame.
     void drewReduced() { reducedDrawn_ = true; }
-    /// Begins to read back what the picture just drawn hides.
+    /// Starts reading back the termination depths of the picture just drawn.
     void start(RenderTools& tools, const RenderCall& call, const PictureBuffers& buffers, const PictureState& state,
                std::uint64_t scene);
-    /// Takes what has come back; `wait`: until it has. `grid`: of the data it is of; null: these are shown no more.
+    /// Collects a result; `wait`: blocks for it. `grid`: of the data drawn; null: these are no longer shown.
     void take(bool wait, const volume::BrickGrid* grid);
 
-    /// What the full buffer hides is known as it is.
+    /// Whether the occlusion of the current full buffer is known.
     bool known() const { return known_; }
-    /// Whether a picture of these data was read back.
+    /// Whether a picture of these data has been read back.
     bool any() const { return scene_ != 0; }
     const HiddenInView& bricks() const { return hidden_; }
 
 private:
     HiddenInView hidden_;
-    std::uint64_t scene_ = 0; ///< that `hidden_` is of
+    std::uint64_t scene_ = 0; ///< scene of `hidden_`
     bool known_ = false;
     ReachReader reach_;
-    std::uint64_t reachScene_ = 0; ///< that what is under way is of
-    bool final_ = false;           ///< what is under way is of the full buffer as it is
+    std::uint64_t reachScene_ = 0; ///< scene of the pending result
+    bool final_ = false;           ///< the pending result is of the current full buffer
     bool reducedDrawn_ = false;
 };
 

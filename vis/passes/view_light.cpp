@@ -25,7 +25,7 @@ ViewLight::Progress ViewLight::bindMaps(RenderTools& tools, const RenderCall& ca
     return {here, changed};
 }
 
-/// The volume made last, or light as if there were no matter.
+/// Binds the last light volume, or unattenuated light if there is none.
 void ViewLight::bindTextures(const RenderTools& tools, GLuint firstUnit) const {
     glBindTextureUnit(firstUnit, baker_.version() > 0 ? baker_.visible() : tools.noShadow.name());
     glBindTextureUnit(firstUnit + 1, baker_.scattered() != 0 ? baker_.scattered() : tools.noLight.name());

@@ -6,15 +6,15 @@
 
 namespace tessera::vis {
 
-/// The stage that lights a view: maps of its surroundings, and the light volume of shadows.
+/// The stage that lights a view: environment maps and the light volume for shadows.
 class ViewLight {
 public:
     struct Progress {
-        bool done = true;     ///< what is bound shows this scene
-        bool changed = false; ///< what was drawn with other light is out of date
+        bool done = true;     ///< the bound light is that of the scene
+        bool changed = false; ///< pictures drawn with the former light are out of date
     };
-    /// Brings cube maps and light volume up to date and binds them. `matter`: what the volume's matter depends on
-    /// besides the scene.
+    /// Updates and binds the cube maps and the light volume. `matter`: inputs of the volume's extinction besides the
+    /// scene.
     Progress bind(RenderTools& tools, const RenderCall& call, const LightBaker::Matter& matter);
 
 private:
@@ -23,9 +23,9 @@ private:
     void bindTextures(const RenderTools& tools, GLuint firstUnit) const;
 
     LightMapTextures maps_;
-    bool mapsPending_ = false; ///< what was drawn shows surroundings that are not read yet
+    bool mapsPending_ = false; ///< the picture was drawn before the environment picture was read
     LightBaker baker_;
-    std::uint64_t version_ = 0; ///< of the light volume that was drawn with
+    std::uint64_t version_ = 0; ///< of the light volume used in the picture
 };
 
 } // namespace tessera::vis

@@ -13,11 +13,12 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr double kSkipOccupancy = 0.7;    ///< above, leaping costs more than it saves
-constexpr double kWorthSteps = 0.6;       ///< share of the samples left above which longer steps do
-constexpr std::uint8_t kStepTexels = 128; ///< in the texture of block distances: from here on codes of steps
+constexpr double kSkipOccupancy =
+    0.7; ///< share of occupied blocks above which empty-space skipping costs more than it saves
+constexpr double kWorthSteps = 0.6;       ///< the same for adaptive steps: share of the samples that remain
+constexpr std::uint8_t kStepTexels = 128; ///< texels of the block distance texture from this value on are step codes
 
-/// What the shader sees: distances, at most kStepTexels - 1 where there are steps, or kStepTexels and a step's code.
+/// The block distance texture: distances, at most kStepTexels - 1 if there are steps, or kStepTexels + step code.
 std::vector<std::uint8_t> blockTexels(const BlockDistances& blocks, const std::vector<std::uint8_t>& steps) {
     std::vector<std::uint8_t> texels = blocks.distance;
     for (std::size_t i = 0; i < steps.size(); ++i)
@@ -28,7 +29,7 @@ std::vector<std::uint8_t> blockTexels(const BlockDistances& blocks, const std::v
     return texels;
 }
 
-/// About the share of all samples that is taken where empty blocks are leapt over and steps are longer.
+/// Approximate share of samples that remain with empty-space skipping and adaptive steps.
 double workLeft(const BlockDistances& blocks, const std::vector<std::uint8_t>& steps, const Scene& scene,
                 const volume::DatasetInfo& info, const volume::Lattice& lattice) {
     std::array<double, kMostSteps + 1> left;
@@ -46,7 +47,7 @@ Scene tablesScene(const Scene& scene, const volume::DatasetInfo& info) {
     Scene used = scene;
     used.camera = {};
     used.cursor = glm::dvec3(0);
-    used.time = 0; // the frames tell
+    used.time = 0; // covered by the frames in the key
     used.geometry.clear();
     used.clips.clear();
     used.lighting = {};
@@ -54,7 +55,8 @@ Scene tablesScene(const Scene& scene, const volume::DatasetInfo& info) {
     used.background = used.boxColor = glm::vec3(0);
     used.paper.reset();
     used.showGround = used.showBox = false;
-    // Layers come and go with their lenses, and brushes are confined to some; where lenses lie is the camera's.
+    // Layers depend on the presence of their lenses, and brushes may be confined to some; the positions of lenses do
+    // not count.
     for (Lens& lens : used.lenses) lens = {.name = lens.name, .enabled = lens.enabled, .effect = lens.effect};
     used.render.limits = kUnused.limits;
     used.render.detail = kUnused.detail;

@@ -8,33 +8,34 @@
 
 namespace tessera::vis {
 
-/// What the tables of a picture are made of. `scene` has only what they depend on, and they are made of it.
+/// Everything that the tables of a picture depend on. `scene` is reduced to what matters, and the tables are made of
+/// it.
 struct TablesKey {
     Scene scene;
     std::uint64_t resident = 0;     ///< Residency::revision()
-    std::vector<ChannelKey> frames; ///< that are drawn
+    std::vector<ChannelKey> frames; ///< the channels drawn
     bool operator==(const TablesKey&) const = default;
 };
 
-/// A scene without what its tables do not depend on, such as its camera. What is not taken out here counts, so that a
-/// new member of the scene is never forgotten.
+/// Resets the members of a scene that its tables do not depend on, such as the camera. Members not reset here count, so
+/// that a new one cannot be forgotten.
 Scene tablesScene(const Scene& scene, const volume::DatasetInfo& info);
 
-/// What the tables say of a picture.
+/// What the tables imply for drawing.
 struct TablesContent {
-    bool adaptive = false;                            ///< take longer steps through smooth blocks
-    bool skip = false;                                ///< leap over empty blocks
+    bool adaptive = false;                            ///< use adaptive steps
+    bool skip = false;                                ///< use empty-space skipping
     std::vector<std::optional<glm::vec2>> opaque;     ///< RayLayer::opaque
-    std::optional<std::vector<OccupiedBox>> occupied; ///< nullopt: not known
+    std::optional<std::vector<OccupiedBox>> occupied; ///< nullopt: unknown
 };
 
-/// The stage that makes transfer tables and block distances of a view.
+/// The stage that makes the transfer tables and the block distances of a view.
 class ViewTables {
 public:
-    /// Brings the textures up to date and tells the plan's layers where they are opaque.
+    /// Updates the textures and sets the opaque intervals of the plan's layers.
     const TablesContent& update(const RenderCall& call, std::uint64_t resident, const std::vector<ChannelKey>& frames);
     void bind(const RayUnits& units) const;
-    /// The part of a picture of `size` pixels that rays can see anything in; null: all of it.
+    /// The part of a picture of `size` pixels in which anything can be visible; null: all of it.
     const std::vector<Tile>* covered(const RenderCall& call, glm::ivec2 size);
     const TablesContent& content() const { return content_.value(); }
 
@@ -50,7 +51,7 @@ private:
     void uploadBlocks(const BlockDistances& blocks, const std::vector<std::uint8_t>& steps);
 
     volume::Cached<TablesKey, TablesContent> content_;
-    volume::Cached<CoveredKey, std::vector<Tile>> covered_; ///< of what is occupied now
+    volume::Cached<CoveredKey, std::vector<Tile>> covered_; ///< for the current occupied boxes
     Texture table_, planes_, blocks_;
     int tableRows_ = 0, planePages_ = 0;
     glm::ivec3 blockCount_{0};

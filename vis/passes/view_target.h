@@ -9,21 +9,21 @@
 
 namespace tessera::vis {
 
-/// The scene that a view's buffers show.
+/// The scene whose picture is in a view's buffers.
 struct ShownScene {
     Scene scene;
     const volume::BrickSource* source = nullptr;
     std::uint64_t resident = 0; ///< Residency::revision()
-    bool started = false;       ///< the buffers hold something of it
-    bool compiling = false;     ///< the program that the picture waits for is on the way
-    std::uint64_t number = 0;   ///< counts the scenes, and times of data, drawn
-    std::uint64_t frame = 0;    ///< Residency::frame() in which it was drawn last
+    bool started = false;       ///< the buffers hold some of its picture
+    bool compiling = false;     ///< the program for the picture is being compiled
+    std::uint64_t number = 0;   ///< increases with each scene, or time of the data, drawn
+    std::uint64_t frame = 0;    ///< Residency::frame() of the last drawing
 };
 
-/// The rasterised layers of a view.
+/// The rasterised geometry of a view.
 class ViewGeometry {
 public:
-    /// The buffer shows a tile of a picture of `size` pixels in a pass of a supersampled still.
+    /// Whether the buffer holds this tile of a picture of `size` pixels in this pass of a supersampled frame.
     bool shows(glm::ivec2 size, const Tile& tile, int pass) const {
         return shown_ && shown_->size == size && shown_->pass == pass && united(shown_->tile, tile) == shown_->tile;
     }
@@ -41,7 +41,7 @@ private:
     std::optional<Shown> shown_;
 };
 
-/// The picture of one view: its buffers and the stages that lead to them, each of which owns its state.
+/// The picture of one view: its buffers, and the stages that produce it, each of which owns its state.
 class ViewTarget {
 public:
     explicit ViewTarget(const Driver& driver) : pace(driver.timerQueries) {}
@@ -56,9 +56,9 @@ public:
     ViewLight light;
     ViewHidden hidden;
 
-    /// Throws MachineError, and is as it was, when the driver has no memory for it.
+    /// Throws MachineError, leaving the target unchanged, when the driver has no memory for it.
     void resize(glm::ivec2 wanted, bool exact);
-    /// Pixels of `part` are out of date.
+    /// Marks the pixels of `part` as out of date.
     void redraw(const Tile& part);
 };
 

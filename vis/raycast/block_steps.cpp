@@ -9,12 +9,12 @@ namespace tessera::vis {
 
 namespace {
 
-/// A layer as blocks see it.
+/// The properties of a layer that bound its variation within blocks.
 struct BlockLayer {
     const BoundField* field;
-    std::optional<CurveMatter> matter; ///< none: of an iso-surface
-    glm::dvec2 map{0};                 ///< from texels to places
-    double value = 0;                  ///< of an iso-surface, texels
+    std::optional<CurveMatter> matter; ///< none for an iso-surface
+    glm::dvec2 map{0};                 ///< from texel values to transfer function positions
+    double value = 0;                  ///< iso-value, texel units
 };
 
 } // namespace
@@ -67,7 +67,7 @@ std::vector<std::uint8_t> blockSteps(const RayPlan& plan, const Scene& scene, co
 
 double samplesLeft(int code, const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice,
                    double edge) {
-    constexpr double kChord = 2.0 / 3; // of a cube, mean over all rays, in edges
+    constexpr double kChord = 2.0 / 3; // mean chord of a cube over all rays, in edges
     if (code == 0) return 1;
     const glm::dvec3 cell = worldCell(lattice, worldFrame(info.bounds, scene.stretch));
     const double sample = double(scene.render.stepVoxels) * (cell.x + cell.y + cell.z) / 3;

@@ -5,8 +5,8 @@
 
 namespace tessera::vis {
 
-/// For every block of the plan's common grid the code of its step length (stepCode() with stepUnit()), 0 where no
-/// longer step is possible. Empty: the scene has no adaptive steps, or the fields have no common grid.
+/// The step code (stepCode() with stepUnit()) of every block of the plan's common grid, 0 where steps cannot be longer.
+/// Empty: the scene has no adaptive steps, or the fields have no common grid.
 std::vector<std::uint8_t> blockSteps(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info,
                                      const volume::Lattice& lattice);
 

@@ -19,7 +19,7 @@ public:
         const std::size_t first = out.tests.size(), lassos = out.lassos.size();
         std::visit([&](const auto& region) { encode(region); }, brush.region);
         if (out.tests.size() == first) out.tests.emplace_back();
-        // Whole brushes only: half a brush would select more than it says.
+        // Omit whole brushes only: half of a brush would select too much.
         if (out.dropped > 0 || out.tests.size() > std::size_t(kMaxBrushTests)) {
             ++out.dropped;
             out.tests.resize(first);
@@ -44,14 +44,14 @@ private:
         made.y = y;
         return made;
     }
-    /// A test of two channels.
+    /// Adds a test on two channels.
     BrushTest& test(BrushTestKind kind, const std::string& x, const std::string& y) {
         BrushTest& made = test(kind, use(x), use(y));
         if (made.x < 0 || made.y < 0) made.x = made.y = -1;
         return made;
     }
 
-    /// Position of a channel among the brush fields, -1 where the data lack it.
+    /// Index of a channel among the brush fields, -1 if the data set lacks it.
     int use(const std::string& name) const {
         const std::optional<int> channel = info_.findChannel(name);
         const auto found = channel ? std::ranges::find(channels_, *channel) : channels_.end();

@@ -6,39 +6,44 @@
 
 #include <span>
 
-/// From the selection of a scene to what rays test: every brush becomes tests in a row, one per interval or one for
-/// another shape.
+/// Converts the selection of a scene to a list of tests: each brush becomes consecutive tests, one per interval, or one
+/// for any other shape.
 namespace tessera::vis {
 
 inline constexpr int kMaxBrushTests = 128;
-/// Labels are integers: a little room, so that [1, 1] means the label 1 in float too.
+/// Tolerance for labels, so that [1, 1] includes label 1 in single precision.
 inline constexpr double kLabelRoom = 0.25;
 
 /// One test, in physical units.
 struct BrushTest {
-    enum Flags { First = 1, Last = 2, Inverted = 4, Or = 8 }; ///< of its brush
+    enum Flags {
+        First = 1,
+        Last = 2,
+        Inverted = 4,
+        Or = 8
+    }; ///< position within its brush, and properties of the brush
     BrushTestKind kind = BrushTestKind::Always;
     int flags = 0;
-    /// Brush fields that it looks at; -1: the data lack the channel, which has no value anywhere. Of a lens, x has the
-    /// bits of the lenses.
+    /// Indices of the brush fields tested; -1: the data set lacks the channel, so the test fails everywhere. For a
+    /// lens, x is the bit mask of the lenses.
     int x = -1, y = -1;
     /// Range: lo, hi. Ellipse: centre, radii. Lasso: centre, half size of its table. Sphere, box: centre, in cells.
     glm::dvec4 place{0};
     glm::dvec3 inverseRadius{1}; ///< of a sphere or a box, in cells
     double correlation = 0;      ///< of an ellipse
-    double soft = 0;             ///< width of its edge; of ellipse, sphere and box in radii
-    int table = 0;               ///< of a lasso: place among BrushTests::lassos
-    glm::vec4 color{0};          ///< of its brush, linear; 1, or 0 where it holds nothing
+    double soft = 0;             ///< width of the soft edge; in radii for ellipse, sphere and box
+    int table = 0;               ///< of a lasso: index into BrushTests::lassos
+    glm::vec4 color{0};          ///< of its brush, linear; a: 1, or 0 if it holds nothing
 };
 
 struct BrushTests {
     std::vector<BrushTest> tests;
-    std::vector<LassoRegion> lassos; ///< whose tables the tests look up, in order
-    float start = 1;                 ///< what the first brush meets
-    int dropped = 0;                 ///< brushes beyond kMaxBrushTests, from the last one on
+    std::vector<LassoRegion> lassos; ///< in the order of the tables that the tests look up
+    float start = 1;                 ///< degree of interest before the first brush
+    int dropped = 0;                 ///< number of omitted brushes, counted from the last
 };
 
-/// The tests of a selection. `channels`: of each brush field.
+/// Converts a selection. `channels`: the channel of each brush field.
 BrushTests brushTests(const Selection& selection, const volume::DatasetInfo& info, std::span<const int> channels,
                       std::span<const PlacedLens> lenses);
 

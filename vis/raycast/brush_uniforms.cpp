@@ -8,17 +8,17 @@ namespace tessera::vis {
 
 namespace {
 
-/// 1 / soft, or a hard edge.
+/// 1 / soft, or a large number for a hard edge.
 double inverse(double soft) {
     return soft > 1e-30 ? 1 / soft : 1e30;
 }
 
-/// A test as the shader reads it, in texel units of its fields.
+/// A test in the shader's layout, in texel units of its fields.
 struct Shape {
     glm::vec4 a{0}, b{0};
 };
 
-/// Centre, and 1 / radius, in the texel units of two fields.
+/// Centre and 1 / radius in texel units of two fields.
 glm::vec4 planeOf(const BrushTest& test, const TexelEncoding& across, const TexelEncoding& up) {
     return {(test.place.x - across.offset) / across.scale, (test.place.y - up.offset) / up.scale,
             across.scale / test.place.z, up.scale / test.place.w};
@@ -63,7 +63,7 @@ std::vector<std::pair<std::string, std::string>> brushDefines(const BrushTests& 
     const auto has = [&](BrushTestKind kind) {
         return std::ranges::any_of(brushes.tests, [=](const BrushTest& test) { return test.kind == kind; });
     };
-    // Few sizes, so that a brush more rarely means another program.
+    // Capacities in few sizes, so that a new brush rarely needs another program.
     const int count = int(brushes.tests.size());
     define("BRUSH_TESTS", count == 0 ? 0 : count <= 8 ? 8 : count <= 32 ? 32 : kMaxBrushTests);
     define("BRUSH_RANGES", has(BrushTestKind::Range));

@@ -3,22 +3,22 @@
 #include "vis/gl/handles.h"
 #include "vis/raycast/ray_plan.h"
 
-/// From the brush tests of a plan to what lib/doi.glsl reads.
+/// Uniforms and constants of lib/doi.glsl from the brush tests of a plan.
 namespace tessera::vis {
 
-/// Which kinds of tests the program needs, and how many it has room for.
+/// Constants: which kinds of tests the program needs, and its capacity for tests.
 std::vector<std::pair<std::string, std::string>> brushDefines(const BrushTests& brushes, const Selection& selection);
 
-/// Whether what is not brushed is shown out of focus (vis/optics/context_blur.h); proxy geometry does not.
+/// Whether unselected samples are blurred (vis/optics/context_blur.h); not supported by proxy geometry.
 bool blursContext(const Scene& scene);
 
-/// Sets the brushes of a plan whose fields are bound, and how what they leave out is drawn.
+/// Sets the brush uniforms of a plan with bound fields, and the appearance of the context.
 void setBrushUniforms(const Program& program, const RayPlan& plan, const Selection& selection);
 
-/// The tables of lassos, stacked vertically, rebuilt when they change; reports dropped brushes.
+/// The lasso tables, stacked vertically in a texture that is rebuilt when they change; reports dropped brushes.
 class BrushTables {
 public:
-    /// The texture of the tests' lassos; 0 when there are none.
+    /// The texture of the lasso tables; 0 if there are none.
     GLuint update(const BrushTests& brushes);
     std::vector<std::string> takeMessages() { return std::exchange(messages_, {}); }
 

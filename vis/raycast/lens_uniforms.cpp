@@ -6,7 +6,7 @@ namespace tessera::vis {
 
 namespace {
 
-/// Whether something is drawn in a lens alone.
+/// Whether something is drawn only inside a lens.
 bool anyOwned(const Scene& scene) {
     const auto owned = [](const auto& layer) { return !layer.lens.empty(); };
     return std::any_of(scene.layers.begin(), scene.layers.end(), owned) ||

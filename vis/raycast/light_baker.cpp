@@ -19,10 +19,10 @@ bool sameSpread(const Shadows& a, const Shadows& b) {
 LightBaker::MatterKey LightBaker::keyOf(const Scene& scene, const LightGrid& grid, const Matter& matter) {
     MatterKey key{scene, placeLenses(scene, {}), grid, matter};
     Scene& used = key.scene;
-    used.lenses.clear(); // those that face the viewer turn with the camera, others may lie at the cursor
+    used.lenses.clear(); // lenses that face the viewer or follow the cursor move without a change of the scene
     used.camera = {};
     used.cursor = glm::dvec3(0);
-    used.time = 0; // `matter` tells
+    used.time = 0; // part of `matter`
     used.render = {};
     used.render.filter = scene.render.filter;
     used.lighting = {};
@@ -61,7 +61,8 @@ void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, con
     wanted_.shadows = scene.lighting.shadows;
     if (!matterReady_) drawMatter(pass, budgetMs, wait);
     if (!matterReady_ && !readMatter(wait)) return;
-    // A spreading that is under way is shown even if a light has moved since: light follows while the camera turns.
+    // A running propagation is finished and shown even if a light has moved since, so that light updates while the
+    // camera turns.
     while (true) {
         if (job_ && wait) worker_.join();
         if (job_ && job_->done) take();
@@ -71,7 +72,7 @@ void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, con
     }
 }
 
-/// Draws some rows of the extinction, and begins to read it back with the last ones.
+/// Draws some rows of the extinction; starts reading it back after the last one.
 void LightBaker::drawMatter(const Pass& pass, double budgetMs, bool wait) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point begin = Clock::now();
@@ -104,7 +105,7 @@ void LightBaker::drawMatter(const Pass& pass, double budgetMs, bool wait) {
     read_ = std::make_shared<vis::Matter<float>>(grid_.count());
 }
 
-/// Takes the extinction that was read back; false while it is on its way.
+/// Receives the extinction that was read back; false while it is pending.
 bool LightBaker::readMatter(bool wait) {
     if (!reader_.pending() || !reader_.take({&read_->data()->x, read_->size() * 4}, wait)) return false;
     matter_ = std::move(read_);
@@ -129,7 +130,7 @@ void LightBaker::start() {
         });
 }
 
-/// The finished job's light becomes textures.
+/// Uploads the light of a finished job.
 void LightBaker::take() {
     const LightVolume<float>& light = job_->result;
     const glm::ivec3 size = light.grid.size;

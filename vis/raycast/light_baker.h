@@ -13,34 +13,33 @@
 
 namespace tessera::vis {
 
-inline constexpr GLenum kMatterFormat = GL_RGBA32F; ///< of the texture that the matter is drawn to
+inline constexpr GLenum kMatterFormat = GL_RGBA32F; ///< of the texture of extinction
 
-/// Updates the textures of a picture's light volume (vis/optics/light_volume.h) without blocking the window: extinction
-/// is drawn a few rows per call; a separate thread adds meshes and propagates light. Until then the former volume is
-/// used.
+/// Updates the light volume textures of a picture (vis/optics/light_volume.h) without blocking the window: extinction
+/// is drawn a few rows per call; a thread adds meshes and propagates light. The former volume is used until then.
 class LightBaker {
 public:
     /// Inputs of the extinction besides the scene.
     struct Matter {
-        std::uint64_t revision = 0; ///< of what is resident
+        std::uint64_t revision = 0; ///< of the resident data
         double time = 0;            ///< of the data
         bool operator==(const Matter&) const = default;
     };
 
-    /// How the extinction is drawn.
+    /// How to draw the extinction.
     struct Pass {
         const Program& program;
-        const std::function<void(const Program&)>& setUniforms; ///< of the bound picture
+        const std::function<void(const Program&)>& setUniforms; ///< sets the uniforms of the bound picture
         GLuint vertices = 0;
-        bool waits = true; ///< for the driver after some rows, so that they fit into the budget
+        bool waits = true; ///< wait for the driver after some rows, to stay within the budget
     };
-    /// Continues the work. Changes the framebuffer, viewport and scissor. Works for about `budgetMs`, or until ready if
-    /// `wait`.
+    /// Continues the work for about `budgetMs`, or until it is finished if `wait`. Changes the framebuffer, viewport
+    /// and scissor.
     void update(const Scene& scene, const volume::DatasetInfo& info, const Matter& matter, const Pass& pass,
                 double budgetMs, bool wait);
     /// Whether the textures are up to date.
     bool ready() const;
-    /// Number of finished volumes; 0: there is none yet.
+    /// Number of finished volumes; 0: none yet.
     std::uint64_t version() const { return version_; }
     GLuint visible() const { return visible_.name(); }
     GLuint scattered() const { return scattered_.name(); }
@@ -55,7 +54,7 @@ private:
     };
     struct Job {
         Spread key;
-        std::shared_ptr<const vis::Matter<float>> matter; ///< with the meshes
+        std::shared_ptr<const vis::Matter<float>> matter; ///< including the meshes
         LightVolume<float> result;
         std::atomic<bool> done = false;
     };
@@ -66,7 +65,7 @@ private:
     void take();
 
     Spread wanted_, shown_;
-    /// What the matter is made of: the scene without what it does not depend on, and its lenses where they lie.
+    /// What the extinction depends on: the reduced scene, and its placed lenses.
     struct MatterKey {
         Scene scene;
         std::vector<PlacedLens> lenses;
@@ -78,21 +77,21 @@ private:
 
     std::optional<MatterKey> matterOf_;
     LightGrid grid_;
-    int rows_ = 0; ///< of the matter, drawn
+    int rows_ = 0; ///< rows of the extinction drawn so far
     bool matterReady_ = false;
     Texture atlas_;
     Framebuffer framebuffer_;
     PixelReader reader_;
     glm::ivec2 atlasSize_{0};
     MeshCasters casters_;
-    bool casting_ = false; ///< `casters_` are not in the matter yet
+    bool casting_ = false; ///< `casters_` are not yet added to the extinction
     std::shared_ptr<const vis::Matter<float>> matter_;
     std::shared_ptr<vis::Matter<float>> read_; ///< being read back
     std::shared_ptr<Job> job_;
     Texture visible_, scattered_;
     LightGrid shownGrid_;
     std::uint64_t version_ = 0;
-    std::jthread worker_; ///< last: joined before what it uses goes
+    std::jthread worker_; ///< last member: joined before the data it uses are destroyed
 };
 
 } // namespace tessera::vis

@@ -10,7 +10,7 @@ namespace tessera::vis {
 
 namespace {
 
-/// The lights that the shader looks at one by one.
+/// The lights that the shader evaluates individually.
 std::vector<PlacedLight> ownLights(const Scene& scene) {
     return scene.lighting.inMaps ? std::vector<PlacedLight>() : placeLights(scene.lighting, scene.camera);
 }
@@ -67,7 +67,7 @@ void setLightUniforms(const Program& program, const Scene& scene, const WorldFra
     program.set("lightCell", float(std::max({cell.x, cell.y, cell.z})));
 }
 
-/// Whether the picture that a lighting names is here, or will never be.
+/// Reads the environment picture of a lighting; true once it is available or has failed.
 bool LightMapTextures::readPicture(const Lighting& lighting, bool wait,
                                    const std::function<void(const std::string&)>& say) {
     const EnvironmentLight& environment = lighting.environment;
@@ -87,7 +87,7 @@ bool LightMapTextures::readPicture(const Lighting& lighting, bool wait,
         say(std::string("The surroundings cannot be shown: ") + error.what());
     }
     madeFor_.reset();
-    return path_ == environment.picture || readPicture(lighting, wait, say); // another one was wanted meanwhile
+    return path_ == environment.picture || readPicture(lighting, wait, say); // the path has changed meanwhile
 }
 
 bool LightMapTextures::update(const Lighting& lighting, const Camera& camera, bool wait,

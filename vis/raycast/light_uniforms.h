@@ -9,22 +9,22 @@
 #include <future>
 #include <optional>
 
-/// Variant and uniforms for light (vis/shaders/lib/bindings.glsl).
+/// Program constants and uniforms for lighting (vis/shaders/lib/light_bindings.glsl).
 namespace tessera::vis {
 
 void addLighting(ProgramRecipe& recipe, const Scene& scene);
-/// Texture units of the diffuse and specular maps and of the visible and scattered light: `firstUnit` and on.
+/// Texture units from `firstUnit` on: diffuse map, specular map, visible and scattered light.
 void setLightUniforms(const Program& program, const Scene& scene, const WorldFrame& frame, int firstUnit);
 
 /// The cube maps of a picture as textures.
 class LightMapTextures {
 public:
-    /// Makes what has changed; the environment's part only when that has. A picture of the surroundings is read by a
-    /// thread of its own, until then the former maps show. `wait`: until it is there. False while something is on its
-    /// way. A picture that cannot be read gives no light; `say` is told why, once.
+    /// Updates changed maps; the expensive environment part only if it changed. An environment picture is read by a
+    /// thread, and the former maps are used until then. `wait`: blocks for it. False while something is pending. An
+    /// unreadable picture gives no light and one message through `say`.
     bool update(const Lighting& lighting, const Camera& camera, bool wait,
                 const std::function<void(const std::string&)>& say);
-    /// Counts the changes of the maps.
+    /// Number of changes of the maps.
     std::uint64_t version() const { return version_; }
     GLuint diffuse() const { return diffuse_.name(); }
     GLuint specular() const { return specular_.name(); }
@@ -32,9 +32,9 @@ public:
 private:
     bool readPicture(const Lighting& lighting, bool wait, const std::function<void(const std::string&)>& say);
 
-    std::string path_;               ///< of what `picture_` is or will be
+    std::string path_;               ///< file of `picture_`, read or being read
     std::future<CubeMap> reading_;   ///< valid while the file is being read
-    std::optional<CubeMap> picture_; ///< nullopt: none, or it cannot be read
+    std::optional<CubeMap> picture_; ///< nullopt: none, or unreadable
     std::optional<Lighting> madeFor_;
     std::uint64_t version_ = 0;
     Camera camera_;

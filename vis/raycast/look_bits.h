@@ -4,7 +4,7 @@
 
 namespace tessera::vis {
 
-/// What a look does, as bits of LookFeature (vis/gl/shader_constants.h).
+/// The features of a look, as bits of LookFeature (vis/gl/shader_constants.h).
 int lookBits(const Look& look);
 
 } // namespace tessera::vis

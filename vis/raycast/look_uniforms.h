@@ -3,17 +3,17 @@
 #include "vis/gl/handles.h"
 #include "vis/raycast/ray_plan.h"
 
-/// Looks of a plan's layers as input of lib/draw_look.glsl.
+/// Uniforms of lib/draw_look.glsl from the looks of a plan's layers.
 namespace tessera::vis {
 
-/// Sets everything but the texture, which goes to `unit`. `looks`: of each layer, null where it has none. `size`:
-/// pixels of the picture at rest.
+/// Sets all uniforms; the grain texture is expected in `unit`. `looks`: per layer, null if it has none. `size`: full
+/// size of the picture in pixels.
 void setLookUniforms(const Program& program, const std::vector<const Look*>& looks, const Scene& scene,
                      const WorldFrame& frame, glm::dvec3 cell, glm::ivec2 size, int unit);
-/// The looks of a plan's layers.
+/// The looks of a plan's layers, null where a layer has none.
 std::vector<const Look*> looksOf(const RayPlan& plan, const Scene& scene);
 
-/// The grain tile as a texture, made at first use.
+/// The grain tile as a texture, created at first use.
 class GrainTexture {
 public:
     GLuint get();

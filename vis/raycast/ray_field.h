@@ -5,21 +5,20 @@
 /// Conversion between physical values, texel values and transfer-function positions of a channel.
 namespace tessera::vis {
 
-/// The transfer function of a field (that of its channel, or its layer's own) and the range it covers.
+/// The transfer function of a field (that of its channel, or of its layer) and its range.
 struct ChannelTransfer {
     const TransferFunction& function;
     Range range;
 };
 ChannelTransfer transferOf(const Scene& scene, const volume::DatasetInfo& info, const BoundField& field);
 
-/// x = texel * first + second is the place of a texel value in a channel's transfer function: the middle of it where
-/// the range has no width.
+/// Coefficients of the transfer function position x = texel * first + second; constant 1/2 if the range has no width.
 glm::dvec2 transferMap(const BoundField& field, const Scene& scene, const volume::DatasetInfo& info);
 
-/// The texel value of a physical value.
+/// Converts a physical value to texel units.
 double toTexel(const BoundField& field, double value);
 
-/// The block grid that all ray layers' channels have in common; null where they have none.
+/// The block grid that the channels of all ray layers share; null if they do not.
 const BlockRanges* commonBlocks(const RayPlan& plan);
 
 } // namespace tessera::vis

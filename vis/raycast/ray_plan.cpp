@@ -30,7 +30,7 @@ int fieldOf(RayPlan& plan, const volume::DatasetInfo& info, int channel, bool ra
     return int(plan.fields.size()) - 1;
 }
 
-/// Shows a field's nearest samples, and leaves out what is made of differences between samples.
+/// Replaces interpolation by nearest samples for a field, and removes what needs differences between samples.
 void drawNearest(RayPlan& plan, int field, const std::string& name) {
     plan.fields[std::size_t(field)].nearest = true;
     std::erase_if(plan.layers, [=](const RayLayer& layer) {
@@ -50,7 +50,7 @@ void drawNearest(RayPlan& plan, int field, const std::string& name) {
     plan.limit += (plan.limit.empty() ? "" : ", ") + name;
 }
 
-/// Gives the further parts of channels fields of their own, as far as there is room.
+/// Adds fields for the further parts of channels, as far as there is room.
 void addParts(RayPlan& plan, const volume::DatasetInfo& info, int mostFields) {
     plan.channels = int(plan.fields.size());
     for (int i = 0; i < plan.channels; ++i) {
@@ -84,12 +84,12 @@ std::string tooMany(const std::vector<std::string>& left) {
     return "too many parameters at once for the graphics driver: " + names + " left out; show fewer layers";
 }
 
-/// The channel a layer shows.
+/// The channel that a layer shows.
 const std::string& channelOf(const Layer& layer) {
     return std::visit([](const auto& technique) -> const std::string& { return technique.channel; }, layer.technique);
 }
 
-/// A volume layer of a plan; its field and the page of its table are added.
+/// Adds a volume layer, its field and its page of the plane tables to a plan.
 RayLayer volumeUse(RayPlan& plan, int layer, const VolumeLayer& volume, int channel, const Scene& scene,
                    const volume::DatasetInfo& info) {
     const volume::Channel known = info.channel(channel);
@@ -117,7 +117,7 @@ RayLayer volumeUse(RayPlan& plan, int layer, const VolumeLayer& volume, int chan
     return use;
 }
 
-/// Adds a layer of a scene, if rays meet it, and its fields.
+/// Adds a layer of the scene to the plan, with its fields, if rays intersect it.
 void planLayer(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info, int number) {
     const Layer& layer = scene.layers[std::size_t(number)];
     const std::optional<int> channel = info.findChannel(channelOf(layer));
@@ -126,11 +126,12 @@ void planLayer(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& inf
     const auto* surface = std::get_if<IsoLayer>(&layer.technique);
     const std::optional<int> color =
         colorByOf(layer.technique).empty() ? std::nullopt : info.findChannel(colorByOf(layer.technique));
-    // A function of its own is that of what it shows by colours: of a surface, that which colours it.
+    // A layer's own transfer function applies to its channel or, for a surface coloured by another channel, to that
+    // one.
     Layer shape = layer, colors = layer;
     (surface && color ? shape : colors).transfer.clear();
-    if (surface && surface->method == SurfaceMethod::Polygons) return; // comes as Scene::geometry
-    if (std::holds_alternative<FlowLayer>(layer.technique)) return;    // so does this
+    if (surface && surface->method == SurfaceMethod::Polygons) return; // drawn as Scene::geometry
+    if (std::holds_alternative<FlowLayer>(layer.technique)) return;    // also drawn as Scene::geometry
     if (std::holds_alternative<SliceLayer>(layer.technique)) {
         plan.slices.push_back({number, fieldOf(plan, info, *channel, false, layer), *lens, layer.brushes, 0});
         return;
@@ -148,7 +149,7 @@ void planLayer(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& inf
     if (color) plan.layers.back().color = fieldOf(plan, info, *color, false, colors);
 }
 
-/// The layers of a scene that rays meet, as far as there is room for their fields; returns the channels of the others.
+/// Adds the ray layers of a scene while there is room for their fields; returns the channels of the others.
 std::vector<std::string> planLayers(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
     std::vector<std::string> left;
     for (std::size_t i = 0; i < scene.layers.size(); ++i) {
@@ -161,7 +162,7 @@ std::vector<std::string> planLayers(RayPlan& plan, const Scene& scene, const vol
     return left;
 }
 
-/// The brushes, and the fields that they look at; adds to `left` those without room.
+/// Adds the brushes and their fields; channels without room are added to `left`.
 void planBrushes(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info, std::vector<std::string>& left) {
     const std::vector<std::string> brushed = selectedChannels(scene.selection);
     for (const std::string& name : brushed) {
@@ -176,7 +177,7 @@ void planBrushes(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& i
         if (std::find(plan.brushFields.begin(), plan.brushFields.end(), field) == plan.brushFields.end())
             plan.brushFields.push_back(field);
     }
-    // Brushes whose channels are unknown still decide: sample something.
+    // Brushes on unknown channels still have an effect, and the shader needs a field to sample.
     if (plan.brushFields.empty() && !brushed.empty()) plan.brushFields.push_back(0);
     std::vector<int> channels;
     for (const int field : plan.brushFields) channels.push_back(plan.fields[std::size_t(field)].channel);
@@ -186,7 +187,8 @@ void planBrushes(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& i
 } // namespace
 
 int mostFields(int samplers, const Scene& scene, bool bricked) {
-    // Transfer tables and block distances; lassos, planes, maps and a volume of light, grain, geometry.
+    // Textures besides fields: transfer tables and block distances; lassos, plane tables, light maps, light volume,
+    // grain, geometry.
     const auto charcoal = [](const Layer& layer) {
         const Look* look = lookOf(layer.technique);
         return look && look->charcoal;
@@ -212,7 +214,8 @@ RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info, int mostFi
     plan.lenses = placeLenses(scene, worldFrame(info.bounds, scene.stretch));
     std::vector<std::string> left = planLayers(plan, scene, info);
     plan.peels = peelsOf(scene);
-    if (plan.peels > 0 && plan.fields.empty() && !info.channels().empty()) fieldOf(plan, info, 0); // samplers need one
+    if (plan.peels > 0 && plan.fields.empty() && !info.channels().empty())
+        fieldOf(plan, info, 0); // GLSL needs at least one field sampler
     if (!plan.empty() && scene.selection.active()) planBrushes(plan, scene, info, left);
     addParts(plan, info, mostFields);
     if (!left.empty()) plan.limit += (plan.limit.empty() ? "" : "; ") + tooMany(left);

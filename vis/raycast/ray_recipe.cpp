@@ -9,19 +9,19 @@
 
 #include <algorithm>
 
-/// From a plan to the defines and slots of its program; what they mean is written in vis/shaders/lib/bindings.glsl.
+/// Constants and slots of the program for a plan; vis/shaders/lib/bindings.glsl documents them.
 namespace tessera::vis {
 
 namespace {
 
-/// Writes defines of a recipe.
+/// Adds defines to a recipe.
 struct Defines {
     ProgramRecipe& recipe;
 
     void text(const char* name, const std::string& value) { recipe.defines.emplace_back(name, value); }
     void number(const char* name, std::size_t value) { text(name, std::to_string(value)); }
     void flag(const char* name, bool value) { text(name, value ? "1" : "0"); }
-    /// One value per element of a list: name is "NAME(i)".
+    /// Adds one value per element of a list, as macro "NAME(i)".
     template <class Each, class Member> void each(const char* name, const std::vector<Each>& all, Member member) {
         text(name, choice(all, member));
     }
@@ -62,7 +62,7 @@ void addLayers(Defines define, const RayPlan& plan) {
     define.each("ISO_LAYER(i)", isos, [](int layer) { return layer; });
 }
 
-/// What any of the layers needs.
+/// Adds the constants that depend on any layer.
 void addNeeds(Defines define, const RayPlan& plan) {
     const auto any = [&](const auto& is) { return std::ranges::any_of(plan.layers, is); };
     const auto looksUp = [&](RayLookup lookup) {

@@ -14,10 +14,10 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr int kFocusGroup = 2;       ///< blocks along an edge
-constexpr float kTexelSlack = 1e-4f; ///< rounding of the textures and of their interpolation
+constexpr int kFocusGroup = 2;       ///< blocks along the edge of a group that shares interest bounds
+constexpr float kTexelSlack = 1e-4f; ///< tolerance for rounding of textures and their interpolation
 
-/// Page of a function of regions.
+/// Appends the page of a 2D transfer function.
 void addRegions(std::vector<glm::vec4>& table, const TransferFunction& function, Range range) {
     for (int y = 0; y < kPlaneSize; ++y)
         for (int x = 0; x < kPlaneSize; ++x) {
@@ -28,8 +28,8 @@ void addRegions(std::vector<glm::vec4>& table, const TransferFunction& function,
         }
 }
 
-/// Greatest opacity of a function of regions at each of the kTableSize places, over all gradients and what the page's
-/// interpolation can make of them.
+/// Largest opacity of a 2D transfer function at each of the kTableSize values over all gradient magnitudes, including
+/// interpolation of the page.
 std::vector<float> mostOpaque(const TransferFunction& function) {
     std::vector<float> columns(kPlaneSize, 0), out;
     for (int x = 0; x < kPlaneSize; ++x)
@@ -103,7 +103,7 @@ std::vector<std::optional<glm::vec2>> opaqueIntervals(const RayPlan& plan, const
             out.emplace_back();
             continue;
         }
-        // Entry i tells of what lies between i and i + 1.
+        // Entry i covers the interval from i to i + 1.
         const auto place = [&](const glm::vec4* entry) { return float(entry - row) / (kTableSize - 1); };
         out.emplace_back(glm::vec2(begin == row ? -kAny : place(begin), end == row + kTableSize ? kAny : place(end)));
     }
@@ -112,10 +112,10 @@ std::vector<std::optional<glm::vec2>> opaqueIntervals(const RayPlan& plan, const
 
 namespace {
 
-/// Answers whether some texel value between two gets opacity from a curve.
+/// Answers whether a curve has opacity anywhere in an interval of texel values.
 class OpacityRanges {
 public:
-    /// `opacity`: of kTableSize places; `map`: from texels to places 0..1.
+    /// `opacity`: of kTableSize positions; `map`: from texel values to positions 0..1.
     OpacityRanges(const std::vector<float>& opacity, glm::dvec2 map) : map_(map), before_(opacity.size() + 1, 0) {
         for (std::size_t i = 0; i < opacity.size(); ++i) before_[i + 1] = before_[i] + (opacity[i] > 0);
     }
@@ -130,10 +130,10 @@ public:
 
 private:
     glm::dvec2 map_;
-    std::vector<int> before_; ///< how many entries before the i-th have opacity
+    std::vector<int> before_; ///< entry i: number of entries before i with opacity
 };
 
-/// out = min(out, min(in at x - 1, x, x + 1) + 1) along a row.
+/// One row of a chamfer sweep: out = min(out, min(in at x - 1, x, x + 1) + 1).
 void nearRow(const std::uint8_t* in, std::uint8_t* out, int count) {
     const auto step = [&](int x, std::uint8_t least) {
         out[x] = std::min(out[x], std::uint8_t(least + (least < 255)));
@@ -144,7 +144,7 @@ void nearRow(const std::uint8_t* in, std::uint8_t* out, int count) {
     step(count - 1, std::min(in[count - 2], in[count - 1]));
 }
 
-/// Chebyshev distance of every block to the nearest one whose distance is 0, in place: two chamfer sweeps over all 26
+/// Chebyshev distance of every block to the nearest one with distance 0, in place. Two chamfer sweeps over all 26
 /// neighbours are exact.
 void spread(std::vector<std::uint8_t>& distance, glm::ivec3 count) {
     const auto row = [&](int y, int z) {
@@ -165,18 +165,18 @@ void spread(std::vector<std::uint8_t>& distance, glm::ivec3 count) {
     }
 }
 
-/// Whether a layer shows nothing of what is out of focus.
+/// Whether a layer shows nothing of the context.
 bool hidesContext(const RayLayer& layer, const Selection& selection) {
     return layer.brushes == BrushEffect::FocusOnly ||
            (layer.brushes == BrushEffect::Fade && selection.contextOpacity <= 0);
 }
 
-/// 1 for each block where every sample is out of focus; empty: nothing can be said, or no layer asks.
+/// 1 for each block that lies entirely in the context; empty: unknown, or no layer needs it.
 std::vector<std::uint8_t> outOfFocus(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info,
                                      const BlockRanges& grid) {
     const auto asks = [&](const RayLayer& layer) { return hidesContext(layer, scene.selection); };
     if (!scene.selection.active() || std::ranges::none_of(plan.layers, asks)) return {};
-    // Outside of these nothing is brushed.
+    // Outside such lenses nothing counts as context.
     if (std::ranges::any_of(scene.lenses, [](const Lens& lens) { return lens.effect == LensEffect::Focus; })) return {};
     const std::vector<volume::Channel> channels = info.channels();
     std::vector<const BoundField*> fields;
@@ -184,7 +184,7 @@ std::vector<std::uint8_t> outOfFocus(const RayPlan& plan, const Scene& scene, co
         const BoundField& field = plan.fields[std::size_t(index)];
         if (field.blocks && field.blocks->count == grid.count) fields.push_back(&field);
     }
-    // Bounds take a while: groups of blocks share them.
+    // Computing bounds is slow, so groups of blocks share them.
     std::vector<std::uint8_t> out(grid.min.size());
     const int edge = grid.edge <= kBlockTexels ? kFocusGroup : 1;
     const glm::ivec3 groups = (grid.count + edge - 1) / edge;
@@ -255,9 +255,9 @@ std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& s
                     const float lo = blocks.min[i] - kTexelSlack, hi = blocks.max[i] + kTexelSlack;
                     bool shows = true;
                     if (use.style == RayStyle::Iso) shows = lo <= value && value <= hi;
-                    // The gradient reaches beyond the block.
+                    // The gradient depends on samples outside the block.
                     if (use.style == RayStyle::Composite && !use.gradient) shows = opaque.any(lo, hi);
-                    // Projections count what is out of focus.
+                    // Projections take context samples into account.
                     if (use.style == RayStyle::Composite || use.style == RayStyle::Iso)
                         shows = shows && (hidden.empty() || hidden[i] == 0 || !hidesContext(use, scene.selection));
                     if (shows) out.distance[i] = 0;

@@ -17,7 +17,7 @@ namespace {
 void setCamera(const Program& program, const Scene& scene, double aspect) {
     const Ray middle = cameraRay(scene.camera, aspect, {0, 0});
     const Ray right = cameraRay(scene.camera, aspect, {1, 0}), up = cameraRay(scene.camera, aspect, {0, 1});
-    // Directions scaled to reach the same plane are linear in the picture.
+    // Ray directions scaled to reach the same plane are linear in the picture.
     const auto onPlane = [&](glm::dvec3 d) { return d / glm::dot(d, middle.direction) - middle.direction; };
     program.set("rayOrigin", glm::vec3(middle.origin));
     program.set("rayOriginX", glm::vec3(right.origin - middle.origin));
@@ -47,7 +47,7 @@ void setLayers(const Program& program, const RayPlan& plan, const Scene& scene, 
             const double top = double(transferOf(scene, info, field).function.gradientTop);
             maps.emplace_back(map, volume.density, 1);
             colors.emplace_back(linearFromSrgb(glm::dvec3(kNoValueColor)));
-            // Nothing is below a threshold under the range.
+            // A threshold below the range excludes nothing.
             more.emplace_back(std::abs(map.x) / top, std::max(toTexel(field, volume.threshold) * map.x + map.y, 0.0));
         }
         colorMaps.emplace_back(use.color >= 0 ? transferMap(plan.fields[std::size_t(use.color)], scene, info)
@@ -141,14 +141,15 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     setFields(program, plan, grid);
     setLayers(program, plan, scene, info, frame);
     setBrushUniforms(program, plan, scene.selection);
-    // A data set of one layer has no thickness: enough of it to meet a slice.
+    // A data set of a single slice has no thickness; give it enough for rays to intersect a slice.
     program.set("halfSize", glm::vec3(glm::max(frame.halfSize, glm::dvec3(1e-5))));
     program.set("worldCell", glm::vec3(worldCell(grid.lattice, frame)));
     program.set("stepVoxels", float(render.stepVoxels * stepFactor));
     program.set("cellsPerWorld", glm::vec3(cellsPerWorld));
     program.set("cellsOffset", glm::vec3((-frame.offset / frame.scale - grid.lattice.origin) / grid.lattice.spacing));
     const volume::GradientStencil stencil = volume::gradientStencil(grid.lattice.kind, render.gradient);
-    const double cell = grid.lattice.kind == volume::LatticeKind::BCC ? 1 / volume::kBccSpacing : 1; // worldCell's
+    const double cell =
+        grid.lattice.kind == volume::LatticeKind::BCC ? 1 / volume::kBccSpacing : 1; // as in worldCell()
     program.set("gradientReach", float(stencil.reach));
     program.set("gradientScale", float(cell / (stencil.reach * stencil.squares)));
     program.set("gradientDirections", stencil.count);

@@ -19,7 +19,7 @@ inline Tile intersection(const Tile& a, const Tile& b) {
     return {glm::max(a.begin, b.begin), glm::min(a.end, b.end)};
 }
 
-/// The smallest tile that has both.
+/// The smallest tile that contains both.
 inline Tile united(const Tile& a, const Tile& b) {
     if (a.empty()) return b;
     if (b.empty()) return a;
