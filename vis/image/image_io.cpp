@@ -16,11 +16,11 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr std::size_t kMaxPixels = std::size_t(1) << 28;     // 1 GiB of RGBA; more is a damaged header
+constexpr std::size_t kMaxPixels = std::size_t(1) << 28;     // 1 GiB of RGBA; a larger size indicates a damaged header
 constexpr png_alloc_size_t kMaxChunk = std::size_t(1) << 28; // bytes of an inflated text chunk
 
-/// What libpng's call-backs share with the caller. libpng reports errors by longjmp, so everything that owns memory
-/// lives here or above, never in a frame that is jumped over.
+/// State shared with libpng's callbacks. libpng reports errors by longjmp, so all objects that own memory live here or
+/// in callers, never in a stack frame that the jump skips.
 struct Stream {
     std::vector<std::uint8_t> bytes;
     std::size_t at = 0;
@@ -74,8 +74,8 @@ bool encode(Stream& stream, const Image& image, std::vector<png_text>& texts, st
     return true;
 }
 
-/// Everything after the header of a PNG. A function of its own, never inlined: the frame of `setjmp` holds no C++
-/// objects that a jump could leave half made (and gcc would warn of).
+/// Reads everything after the header of a PNG. A separate function that is never inlined: the frame of `setjmp` must
+/// hold no C++ objects that a jump could leave half constructed (gcc would warn).
 [[gnu::noinline]] void readPicture(png_structp png, png_infop info, Image& image, std::vector<png_bytep>& rows,
                                    std::map<std::string, std::string>* texts) {
     png_read_info(png, info);
@@ -118,7 +118,7 @@ bool decode(Stream& stream, Image& image, std::vector<png_bytep>& rows, std::map
         return false;
     }
     png_set_read_fn(png, &stream, onRead);
-    // A flipped bit in a text chunk would be a damaged session: refuse it like one in the picture.
+    // A corrupt text chunk would be a damaged session, so refuse it like a corrupt picture.
     png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     png_set_chunk_malloc_max(png, kMaxChunk);
     readPicture(png, info, image, rows, texts);
@@ -145,7 +145,7 @@ std::vector<std::uint8_t> encodePng(const Image& image, const std::map<std::stri
     for (const auto& [key, text] : texts) {
         png_text chunk{};
         chunk.compression = PNG_ITXT_COMPRESSION_zTXt;
-        chunk.key = const_cast<char*>(key.c_str()); // libpng only reads them
+        chunk.key = const_cast<char*>(key.c_str()); // libpng does not modify them
         chunk.text = const_cast<char*>(text.c_str());
         chunk.itxt_length = text.size();
         chunk.lang = chunk.lang_key = empty.data();

@@ -18,7 +18,7 @@ struct Image {
 /// Key of the text chunk that carries a session in an exported PNG.
 inline constexpr const char* kSessionTextKey = "tessera-session";
 
-/// A PNG's bytes, with compressed international text chunks (iTXt, UTF-8). Throws Error naming `name`.
+/// Encodes a PNG with compressed international text chunks (iTXt, UTF-8). Throws Error naming `name`.
 std::vector<std::uint8_t> encodePng(const Image& image, const std::map<std::string, std::string>& texts = {},
                                     const std::string& name = {});
 
@@ -26,14 +26,14 @@ std::vector<std::uint8_t> encodePng(const Image& image, const std::map<std::stri
 /// Throws Error when the file cannot be written.
 void writePng(const std::string& path, const Image& image, const std::map<std::string, std::string>& texts = {});
 
-/// Decodes a PNG of any kind as RGBA, and its text chunks. Throws Error naming `name` when it is not a PNG or damaged.
+/// Decodes any PNG as RGBA, and its text chunks. Throws Error naming `name` when the data is no PNG or damaged.
 Image decodePng(std::span<const std::uint8_t> bytes, const std::string& name,
                 std::map<std::string, std::string>* texts = nullptr);
 
-/// The bytes of a file. Throws Error when it cannot be opened.
+/// Reads a file. Throws Error when it cannot be opened.
 std::vector<std::uint8_t> readBytes(const std::string& path);
 
-/// Reads a PNG of any kind as RGBA, and its text chunks. Throws Error when it is not a PNG or damaged.
+/// Reads any PNG as RGBA, and its text chunks. Throws Error when the file is no PNG or damaged.
 Image readPng(const std::string& path, std::map<std::string, std::string>* texts = nullptr);
 
 } // namespace tessera::vis

@@ -40,7 +40,7 @@ std::array<double, kWindow> gaussian() {
     return weights;
 }
 
-/// Weighted means over every whole window of a picture.
+/// Gaussian-weighted means over all windows that lie inside the picture.
 std::vector<double> smoothed(const std::vector<double>& in, glm::ivec2 size) {
     static const std::array<double, kWindow> weights = gaussian();
     const int width = size.x - kWindow + 1, height = size.y - kWindow + 1;

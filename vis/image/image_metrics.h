@@ -2,14 +2,14 @@
 
 #include "vis/image/image_io.h"
 
-/// How far one picture is from another.
+/// Image difference metrics.
 namespace tessera::vis {
 
-/// Over the red, green and blue of all pixels, 8-bit sRGB as it is seen; 0 to 255.
+/// Over the red, green and blue components of all pixels, in 8-bit sRGB; 0 to 255.
 struct ImageDifference {
     double maximum = 0, rmse = 0;
     double psnr = 0; ///< dB, 20 log10(255 / rmse); infinite for equal pictures
-    double ssim = 1; ///< of the luma, mean over all places
+    double ssim = 1; ///< of luma, mean over all windows
 };
 
 /// Maximum, root mean square, PSNR and structural similarity (Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli:
@@ -18,7 +18,7 @@ struct ImageDifference {
 /// all). Luma is 0.299 R + 0.587 G + 0.114 B. Throws Error for pictures of different or no size.
 ImageDifference difference(const Image& picture, const Image& reference);
 
-/// Largest difference of the three colours at each pixel, 0 to 255, rows as in the pictures. Throws as above.
+/// Largest difference of the three components per pixel, 0 to 255, rows as in the pictures. Throws as above.
 std::vector<std::uint8_t> differenceMap(const Image& picture, const Image& reference);
 
 } // namespace tessera::vis

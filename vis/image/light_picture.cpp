@@ -17,10 +17,10 @@ namespace tessera::vis {
 namespace {
 
 constexpr std::size_t kMostPixels = std::size_t(1) << 25;
-constexpr float kBrightest = 65504; ///< a sun stays a number that half-floats hold
+constexpr float kBrightest = 65504; ///< limit for the sun, so that values fit into half floats
 constexpr int kPictureEdge = 2 * kSurroundingsEdge;
 
-/// The bytes of a file one after the other; reading beyond their end throws.
+/// Sequential reader of a file's bytes; throws beyond their end.
 class Bytes {
 public:
     Bytes(std::span<const std::uint8_t> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
@@ -31,7 +31,7 @@ public:
         if (at_ == bytes_.size()) fail("the file ends too early");
         return bytes_[at_++];
     }
-    /// The rest of a line, without its end.
+    /// Reads the rest of a line, without its end.
     std::string_view line() {
         const auto begin = bytes_.begin() + std::ptrdiff_t(at_), end = std::find(begin, bytes_.end(), '\n');
         if (end == bytes_.end()) fail("the file ends too early");
@@ -39,7 +39,7 @@ public:
         return {reinterpret_cast<const char*>(&*begin), std::size_t(end - begin)};
     }
     std::size_t left() const { return bytes_.size() - at_; }
-    /// The next four bytes, which stay.
+    /// The next four bytes, not consumed.
     std::span<const std::uint8_t> peek() const { return bytes_.subspan(at_, std::min<std::size_t>(left(), 4)); }
 
 private:
@@ -48,7 +48,7 @@ private:
     std::size_t at_ = 0;
 };
 
-/// "-Y 512 +X 1024": 1024 wide, 512 high.
+/// Parses "-Y 512 +X 1024": 1024 wide, 512 high.
 glm::ivec2 sizeOf(std::string_view line, const Bytes& in) {
     const auto number = [&](std::string_view before) {
         if (!line.starts_with(before)) in.fail("rows must run from left to right and top to bottom");
@@ -67,7 +67,7 @@ glm::ivec2 sizeOf(std::string_view line, const Bytes& in) {
 
 using Rgbe = std::array<std::uint8_t, 4>;
 
-/// A row whose components come one after the other, in runs (the first four bytes are read).
+/// Reads a run-length coded row, component by component, after its first four bytes.
 void readRuns(Bytes& in, std::vector<Rgbe>& row) {
     for (std::size_t part = 0; part < 4; ++part)
         for (std::size_t x = 0; x < row.size();) {
@@ -81,7 +81,8 @@ void readRuns(Bytes& in, std::vector<Rgbe>& row) {
         }
 }
 
-/// A row of whole pixels; (1, 1, 1, n) repeats the last one n times, another one right behind it 256 n times, ...
+/// Reads a row of whole pixels; (1, 1, 1, n) repeats the last pixel n times, directly followed by another one 256 n
+/// times, ...
 void readPixels(Bytes& in, std::vector<Rgbe>& row) {
     int shift = 0;
     for (std::size_t x = 0; x < row.size();) {
@@ -117,7 +118,7 @@ LightPicture decodeRadiance(std::span<const std::uint8_t> bytes, const std::stri
     LightPicture picture;
     picture.size = sizeOf(in.line(), in);
     const auto width = std::size_t(picture.size.x), height = std::size_t(picture.size.y);
-    // A row takes at least a byte per 127 pixels: a header alone makes no gigabyte.
+    // A row takes at least a byte per 127 pixels, so a header alone cannot request a gigabyte.
     if (in.left() / height < width / 128) in.fail("the file ends too early");
     picture.rgb.resize(width * height);
     std::vector<Rgbe> row(width);
@@ -141,18 +142,18 @@ LightPicture decodeRadiance(std::span<const std::uint8_t> bytes, const std::stri
     return picture;
 }
 
-/// Place in a picture, 0..1 from its upper left corner.
+/// Position in an equirectangular picture, 0..1 from the upper left corner.
 glm::dvec2 allAround(glm::dvec3 d) {
     return {0.5 + std::atan2(d.x, -d.z) / glm::two_pi<double>(),
             std::acos(glm::clamp(d.y, -1.0, 1.0)) / glm::pi<double>()};
 }
 
-/// The same in a cross of squares, `upright` of 3 x 4 and else of 4 x 3 of them.
+/// The same in a cross of 4 x 3 squares, or 3 x 4 if `upright`.
 glm::dvec2 onCross(glm::dvec3 d, bool upright) {
     const glm::dvec3 a = glm::abs(d);
-    glm::dvec2 square(1, 1), at; // which one; -1..1 in it, y down
+    glm::dvec2 square(1, 1), at; // index of the square; position in it, -1..1, y down
     if (a.z >= a.x && a.z >= a.y) {
-        at = glm::dvec2(d.x, -d.y) / a.z; // the middle
+        at = glm::dvec2(d.x, -d.y) / a.z; // centre
         if (d.z > 0) {
             square = upright ? glm::dvec2(1, 3) : glm::dvec2(3, 1);
             at = upright ? -glm::dvec2(-at.x, at.y) : glm::dvec2(-at.x, at.y);
@@ -200,7 +201,7 @@ CubeMap surroundingsOf(const LightPicture& picture, const std::string& name) {
     CubeMap map;
     map.edge = kPictureEdge;
     map.texels.resize(6 * std::size_t(map.edge) * std::size_t(map.edge));
-    // Every pixel is met about once.
+    // Chosen so that every pixel is sampled about once.
     const int around = shaped(3, 4) ? size.y : size.x;
     const int parts = std::clamp((around + 4 * map.edge - 1) / (4 * map.edge) + 1, 2, 64);
     parallelFor(map.texels.size(), [&](std::size_t i) {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-/// Pictures of surroundings that light a scene (Environment::Picture).
+/// Environment pictures that light a scene (Environment::Picture).
 namespace tessera::vis {
 
 /// Linear light, rows top down.
@@ -23,14 +23,15 @@ struct LightPicture {
 /// pixels.
 LightPicture decodeLightPicture(std::span<const std::uint8_t> bytes, const std::string& name);
 
-/// The picture on the faces of a cube, each texel the mean of what falls into it. Its shape says how it is laid out:
-///   2:1   all around; the middle is what lies behind the data for a viewer at the front (-z), left of it is -x
-///   4:3   a cross: left, middle, right and back in a row, above and below the middle the top and the bottom
-///   3:4   the same upright: the back below the bottom, upside down
-/// Throws Error naming `name` for other shapes.
+/// Resamples a picture to the faces of a cube; each texel is the mean of the pixels in it. The aspect ratio tells the
+/// projection:
+///   2:1   equirectangular; the centre is what lies behind the data for a viewer at the front (-z), left of it is -x
+///   4:3   a cross: left, centre, right and back in a row, top and bottom above and below the centre
+///   3:4   an upright cross: the back is below the bottom, upside down
+/// Throws Error naming `name` for other aspect ratios.
 CubeMap surroundingsOf(const LightPicture& picture, const std::string& name);
 
-/// Both, of a file. Throws Error.
+/// Decodes and resamples a file. Throws Error.
 CubeMap readSurroundings(const std::string& path);
 
 } // namespace tessera::vis

@@ -12,9 +12,9 @@ namespace tessera::vis {
 namespace {
 
 constexpr int kNodes = 2048;
-constexpr double kThickestMatter = 0.999; ///< thicker matter ends a ray at once
+constexpr double kThickestMatter = 0.999; ///< opacity; a denser medium ends a ray at once anyway
 
-/// Whether a layer is one that longer steps are known of, or nothing that rays sample.
+/// Whether a bound on longer steps is known for a layer, or it is not sampled by rays.
 bool adapts(const Layer& layer, const Scene& scene, const volume::DatasetInfo& info) {
     if (!layer.visible) return true;
     if (const Look* look = lookOf(layer.technique); look && look->any()) return false;

@@ -8,61 +8,61 @@
 #include <span>
 #include <vector>
 
-/// Longer steps where volumes are smooth under their transfer functions: one sample, in the middle, stands for several.
+/// Adaptive sampling: in regions that are smooth under the transfer functions, one sample represents several.
 ///
-/// Values within a block of samples lie between bounds, and so do extinction t and emission t * colour per world unit.
-/// One step of length l in place of shorter ones changes the transparency of what it passes, and the light from it, by
-/// less than l S, S the greatest difference between those bounds of any component; of a shaded layer light may change
-/// by as much as t, fading out where values change by less than kFlatGradient per cell. Of several layers S is the sum,
-/// and that the part of one now lies before that of the next changes them by less than l^2 times the sum over pairs of
-/// the product of their greatest t. A block's step is the longest for which both together are no more than
-/// RenderParams::adaptiveStep. What the steps of a ray change adds up, each weighted by the transparency before it.
+/// The values in a block lie within known bounds, and therefore so do extinction t and emission t * colour per world
+/// unit. Replacing shorter steps by one of length l changes the transmittance of its segment, and the light from it, by
+/// less than l S, where S is the largest range of these bounds over all components; in a shaded layer light may change
+/// by t, with less weight where values change by less than kFlatGradient per cell. For several layers S is the sum; and
+/// since layers are composited one after the other within the segment, the result changes by another l^2 times the sum
+/// over pairs of the product of their largest t. A block's step is the longest for which both together are at most
+/// RenderParams::adaptiveStep. Along a ray the changes add up, each weighted by the transmittance before it.
 ///
-/// Blocks are kStepBlock texels of full resolution a side; bounds are those of all samples that interpolation within
-/// reads. Where a channel has absent samples the least t is 0. Sample k stands for itself and for those behind it that
-/// lie in its block, before the next slice or surface, and within the block's step. Blocks that an iso-surface may pass
-/// keep their steps. The shader, to which looking up a block costs time, has longer steps only in scenes where about
-/// 0.6 of the samples or less are left.
+/// Blocks have kStepBlock full-resolution texels a side; bounds cover all samples that interpolation inside reads. If a
+/// channel has absent samples, the smallest t is 0. Sample k represents itself and the following samples inside its
+/// block, in front of the next slice or surface, and within the block's step. Blocks that an iso-surface may cross keep
+/// normal steps. Since looking up a block takes time, the shader uses longer steps only if at most about 0.6 of the
+/// samples remain.
 namespace tessera::vis {
 
 struct Scene;
 
 inline constexpr int kStepBlock = 4;
 
-/// Bounds of matter, per world unit.
+/// Bounds on the optical properties in a block, per world unit.
 struct BlockMatter {
-    double spread = 0;   ///< greatest difference of extinction, or of emission in a component
-    double greatest = 0; ///< extinction
+    double spread = 0;   ///< largest range of extinction, or of emission in a component
+    double greatest = 0; ///< largest extinction
 };
 
-/// What a composite layer's curve makes of values between two bounds.
+/// Bounds for the values in an interval, under a composite layer's transfer function.
 class CurveMatter {
 public:
     CurveMatter(const TransferFunction& function, Range range, double density, bool shaded);
-    /// Of places of the transfer function (0..1 and beyond) between two, in any order. `absent`: samples may be too.
+    /// For an interval of positions in the transfer function (0..1 and beyond), in any order. `absent`: samples may be
+    /// absent.
     BlockMatter between(double a, double b, bool absent) const;
 
 private:
-    using Bounds = std::array<float, 8>; ///< emission and extinction: the least, the greatest
+    using Bounds = std::array<float, 8>; ///< emission and extinction: minimum, maximum
     static Bounds both(const Bounds& a, const Bounds& b);
-    std::vector<std::vector<Bounds>> levels_; ///< entry i of level l: of nodes i .. i + 2^l - 1
+    std::vector<std::vector<Bounds>> levels_; ///< sparse table: entry i of level l covers nodes i .. i + 2^l - 1
     bool shaded_;
 };
 
-/// The longest step, in world units, through a block with this matter of each layer.
+/// The longest step in world units through a block with these bounds per layer.
 double longestStep(std::span<const BlockMatter> layers, double accepted);
 
-/// A step as one number: 0 where it is no longer than `unit`, else eighths of octaves over it, rounded down, at most
+/// Code of a step length: 0 if not longer than `unit`, else eighths of octaves above it, rounded down, at most
 /// kMostSteps.
 inline constexpr int kMostSteps = 127;
 int stepCode(double step, double unit);
 double stepOfCode(int code, double unit);
-/// Shorter than any step that is worth it.
+/// A unit shorter than any step worth representing.
 double stepUnit(glm::dvec3 worldCell);
 
-/// Whether a scene has longer steps at all: composite layers by a curve of values (after interpolation or before it)
-/// and of their own colours, and iso-surfaces, without looks, lenses, holes cut by clips, light inside the volume and
-/// brushes that act on them.
+/// Whether a scene can have adaptive steps: only composite layers with 1D transfer functions (post- or pre-classified)
+/// coloured by themselves, and iso-surfaces; no looks, lenses, clip holes, light volume or brushes that affect them.
 bool stepsAdapt(const Scene& scene, const volume::DatasetInfo& info);
 
 } // namespace tessera::vis

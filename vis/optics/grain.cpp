@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kTexels = std::size_t(kGrainEdge) * kGrainEdge;
 
-/// White noise that is the same everywhere.
+/// White noise, identical on all machines.
 std::vector<float> whiteNoise(std::uint32_t seed) {
     std::vector<float> out(kTexels);
     for (std::size_t i = 0; i < kTexels; ++i) {
@@ -25,7 +25,7 @@ std::vector<float> whiteNoise(std::uint32_t seed) {
     return out;
 }
 
-/// Blurred along a direction of whole texels by a binomial-like kernel of `radius` steps, periodic.
+/// Blurs periodically along a direction of whole texels, with a binomial-like kernel of `radius` steps.
 std::vector<float> blurred(const std::vector<float>& in, glm::ivec2 along, int radius) {
     std::vector<float> out(kTexels);
     const auto wrap = [](int i) { return std::size_t(i & (kGrainEdge - 1)); };
@@ -41,7 +41,7 @@ std::vector<float> blurred(const std::vector<float>& in, glm::ivec2 along, int r
     return out;
 }
 
-/// Each value becomes its rank, 0..1.
+/// Replaces each value by its rank, 0..1.
 std::vector<float> equalized(const std::vector<float>& in) {
     std::vector<std::uint32_t> order(kTexels);
     std::iota(order.begin(), order.end(), 0u);
@@ -53,13 +53,13 @@ std::vector<float> equalized(const std::vector<float>& in) {
 }
 
 GrainTile makeTile() {
-    // The tooth: grains of about three texels, with a little of the next larger ones between them.
+    // Paper grains of about three texels, mixed with some of twice the size.
     const std::vector<float> noise = whiteNoise(1);
     const std::vector<float> fine = blurred(blurred(noise, {1, 0}, 1), {0, 1}, 1);
     const std::vector<float> wide = blurred(blurred(whiteNoise(2), {1, 0}, 4), {0, 1}, 4);
     std::vector<float> tooth(kTexels);
     for (std::size_t i = 0; i < kTexels; ++i) tooth[i] = fine[i] + 0.25f * wide[i];
-    // Strokes: long along the diagonal, some texels wide across.
+    // Strokes: long along the diagonal, a few texels wide.
     std::vector<float> strokes = blurred(blurred(blurred(whiteNoise(3), {1, 1}, 36), {1, -1}, 2), {1, 0}, 1);
     const std::vector<float> even = equalized(tooth), long_ = equalized(strokes);
     GrainTile tile;
@@ -94,7 +94,7 @@ glm::dvec2 grainAt(const GrainTile& tile, glm::dvec3 place, glm::dvec3 normal, d
         const glm::dvec3 texel = place * std::exp2(-whole - scale);
         for (int axis = 0; axis < 3; ++axis) {
             const double weight = planes[axis] * (scale == 0 ? 1 - part : part);
-            // No plane passes through another's origin.
+            // Offsets, so that no plane passes through the origin of another.
             const glm::dvec2 on = glm::dvec2(texel[(axis + 1) % 3], texel[(axis + 2) % 3]) + 17.3 * (axis + 1);
             sum += weight * (tile.at({cosine * on.x - sine * on.y, sine * on.x + cosine * on.y}) - 0.5);
             squares += weight * weight;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kPi = glm::pi<double>();
 
-/// Weight of light at cosine c to the mirrored direction.
+/// Specular weight of light at cosine c to the mirrored direction.
 double lobe(const Lighting& surface, double c) {
     if (c <= 0) return 0;
     if (surface.model == LightModel::Phong) return std::pow(c, double(surface.shininess) / 4);
@@ -45,7 +45,7 @@ CubeMap makeMap(int edge) {
     return map;
 }
 
-/// 1 inside a rectangle of light seen around `middle`, with a soft border.
+/// A rectangular light around `middle`: 1 inside, with a soft border.
 double panel(glm::dvec3 direction, glm::dvec3 middle, glm::dvec2 half) {
     const glm::dvec3 to = glm::normalize(middle);
     const glm::dvec3 side = glm::normalize(glm::cross(glm::dvec3(0, 1, 0.001), to)), up = glm::cross(to, side);
@@ -75,7 +75,7 @@ double CubeMap::solidAngle(std::size_t index) const {
 }
 
 glm::dvec3 CubeMap::at(glm::dvec3 d) const {
-    // Face and coordinates on it, as GL has them.
+    // Face and coordinates on it, in GL's convention.
     const auto onFace = [](glm::dvec3 w, double& u, double& v) {
         const glm::dvec3 a = glm::abs(w);
         if (a.x >= a.y && a.x >= a.z) {
@@ -175,7 +175,7 @@ LightMaps environmentMaps(const Lighting& lighting, const CubeMap* picture) {
     });
     parallelFor(maps.specular.texels.size(), [&](std::size_t i) {
         const glm::dvec3 mirrored = maps.specular.texelDirection(i);
-        // The lobe may be narrower than a texel of the surroundings: then they are taken straight.
+        // If the lobe is narrower than a texel of the environment, sample the environment directly.
         glm::dvec3 sum = around(mirrored);
         double weights = lobe(lighting, 1) * 1e-3;
         sum *= weights;

@@ -18,13 +18,13 @@ LightGrid lightGrid(const WorldFrame& frame, const Shadows& shadows) {
 
 namespace {
 
-/// The way of a far light through a grid, slice by slice away from it.
+/// Slice-by-slice propagation of a directional light through a grid.
 struct Sweep {
-    int axis = 2, u = 0, v = 1; ///< across the slices, and the two axes within
+    int axis = 2, u = 0, v = 1; ///< axis across the slices, and the two within them
     int first = 0, last = 0, step = 1;
-    double length = 0;     ///< world units between slices along the light
-    int du = 0, dv = 0;    ///< lower of the two upstream neighbours on each axis
-    double wu = 0, wv = 0; ///< weight of the upper one
+    double length = 0;     ///< world distance between slices along the light
+    int du = 0, dv = 0;    ///< offset of the lower of the two upstream neighbours per axis
+    double wu = 0, wv = 0; ///< interpolation weight of the upper one
 
     Sweep(const LightGrid& grid, glm::dvec3 towards) {
         const glm::dvec3 e = towards / grid.cell();
@@ -43,8 +43,8 @@ struct Sweep {
         wv = perSlice[v] - dv;
     }
 
-    /// Calls visit(cell index, upstream) for every cell, those nearer to the light first; upstream(of) reads `of(cell
-    /// index)` one slice towards the light, `outside` beyond the grid, moved by (a, b) cells within the slice.
+    /// Calls visit(cell index, upstream) for every cell, starting at the light; upstream(of) interpolates `of(cell
+    /// index)` in the previous slice, shifted by (a, b) cells within it; `outside` applies beyond the grid.
     template <class Visit> void run(const LightGrid& grid, std::stop_token stop, Visit visit) const {
         for (int s = first;; s += step) {
             if (stop.stop_requested()) return;
@@ -84,7 +84,7 @@ template <class Number> struct Spreader {
     const Matter<Number>& matter;
     std::stop_token stop;
 
-    /// Optical depth towards a far light; it fades with distance over `reach` (infinite: not).
+    /// Optical depth towards a directional light, attenuated with distance over `reach` (infinite: not attenuated).
     std::vector<Number> depthTo(glm::dvec3 towards, double reach) const {
         const Sweep sweep(grid, towards);
         std::vector<Number> depth(grid.count());
@@ -97,7 +97,7 @@ template <class Number> struct Spreader {
         return depth;
     }
 
-    /// Optical depth towards a point.
+    /// Optical depth towards a point light.
     std::vector<Number> depthToPoint(glm::dvec3 light) const {
         std::vector<Number> depth(grid.count());
         const glm::dvec3 cell = grid.cell();
@@ -107,7 +107,7 @@ template <class Number> struct Spreader {
                 for (int x = 0; x < grid.size.x; ++x) {
                     const glm::ivec3 at(x, y, int(z));
                     const glm::dvec3 from = grid.center(at), way = light - from;
-                    // Only as far as the box goes.
+                    // March only to the boundary of the box.
                     double reach = 1;
                     for (int i = 0; i < 3; ++i)
                         if (way[i] != 0)
@@ -138,7 +138,7 @@ template <class Number> struct Spreader {
         return sum;
     }
 
-    /// The second light of translucency, colour 1, and the direct one: what the former has more.
+    /// The excess of the forward-scattered light, colour 1, over the direct light.
     std::vector<Vec3> scatteredFrom(glm::dvec3 towards, const std::vector<Number>& depth, double translucency,
                                     double scatter) const {
         const Sweep sweep(grid, towards);
@@ -160,7 +160,7 @@ template <class Number> struct Spreader {
     }
 };
 
-/// The corners of the eight cells around a place, and their weights.
+/// The eight cells around a position, and their trilinear weights.
 template <class Value, class Number>
 Value trilinear(const LightGrid& grid, const std::vector<Value>& of, glm::dvec3 world) {
     const glm::dvec3 p =

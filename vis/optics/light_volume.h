@@ -7,12 +7,12 @@
 #include <stop_token>
 #include <vector>
 
-/// Light inside the volume: how much of each light, and of the light from everywhere, reaches a place through what lies
-/// in between, on a coarse grid over the box. Made when the picture's matter or its lights change, not per frame. A
-/// template on the number type: float for the picture, double for the reference.
+/// Light volume for shadows, ambient occlusion and translucency: the transmitted fraction of each light and of ambient
+/// light, on a coarse grid over the box. Computed when the extinction of the scene or its lights change, not per frame.
+/// Templated on the number type: float for the renderer, double for the reference.
 namespace tessera::vis {
 
-/// Cells over the world box: as many along the longest edge as wanted, about cubes.
+/// A grid over the world box: `resolution` cells along the longest edge, of about cubic cells.
 struct LightGrid {
     glm::ivec3 size{1};
     glm::dvec3 halfSize{0.5};
@@ -27,43 +27,44 @@ struct LightGrid {
 };
 LightGrid lightGrid(const WorldFrame& frame, const Shadows& shadows);
 
-/// Matter of a cell, made of kMatterSamples^3 points (the middles of its parts): a = extinction per world unit, rgb =
-/// extinction times colour (linear).
+/// Optical properties of a cell, from kMatterSamples^3 points (the centres of its subcells): a = extinction per world
+/// unit, rgb = extinction times colour (linear).
 ///   Composite layers: the mean over the points of -ln(1 - min(opacity, kThickest)) density / kReferenceLength,
-///     opacity of the transfer function times the DOI's factor; absent and clipped points have none.
+///     opacity of the transfer function times the factor of the degree of interest; absent and clipped points have
+///       none.
 ///   Iso layers: -ln(1 - min(opacity, kThickest)) max(0, 1 - d / h) / h with h the longest edge of a cell and d = |m -
 ///     value| / g the distance to the surface, from the mean m of the points and the gradient g of their trilinear
-///     fit; none where a point is absent or the centre clipped. Along the normal it adds up to the opacity.
+///     fit; none if a point is absent or the centre clipped. Integrated along the normal it gives the opacity.
 inline constexpr int kMatterSamples = 2;
 inline constexpr double kThickest = 0.999;
 template <class Number> using Matter = std::vector<glm::vec<4, Number>>;
 
-inline constexpr int kShadowLights = 3; ///< lights, from the first, that cast shadows
+inline constexpr int kShadowLights = 3; ///< number of lights, from the first, that cast shadows
 
 template <class Number> struct LightVolume {
     using Vec3 = glm::vec<3, Number>;
     using Vec4 = glm::vec<4, Number>;
     LightGrid grid;
-    std::vector<Vec4> visible;   ///< share of the first three lights, and of light from everywhere, that comes through
-    std::vector<Vec3> scattered; ///< light that came through matter, coloured and blurred; empty: none
+    std::vector<Vec4> visible;   ///< transmitted fractions of the first three lights and of ambient light
+    std::vector<Vec3> scattered; ///< forward-scattered light, coloured and blurred; empty: none
 
-    /// Trilinear between cell centres, constant beyond the outermost.
+    /// Trilinear between cell centres, clamped at the border.
     Vec4 visibleAt(glm::dvec3 world) const;
     Vec3 scatteredAt(glm::dvec3 world) const;
 };
 
-/// Spreads light through matter.
+/// Propagates light through the volume.
 ///
-/// A far light goes from slice to slice along the axis it is most aligned with: the optical depth of a cell is that of
-/// the place one slice towards the light (bilinear, none outside) plus the extinction on the way (mean of both ends);
-/// visible = exp(-depth). A point light is marched to from each cell in steps of half a cell.
-/// Light from everywhere: 14 far lights (6 faces, 8 corners) whose depth fades with exp(-distance / reach); visible =
-/// min(1, 2 mean exp(-depth)), so that a flat surface, which half of them reach, is not darkened.
-/// Translucency t (far lights only; after Kniss, Premoze, Hansen, Ebert, Interactive translucent volume rendering and
-/// procedural modeling, 2002): a second light goes the same way with extinction a - t rgb per channel (what matter
-/// scatters forward keeps its colour) and in each slice a share scatter / 2 of it is the mean of the four neighbours
-/// one cell aside; scattered = the sum over lights of colour times what it has more than the direct light. Stops early,
-/// with an undefined result, when the token asks.
+/// Directional lights: slice by slice along the axis closest to the light direction. The optical depth of a cell is
+/// that of the point one slice towards the light (bilinear, 0 outside) plus the extinction of the segment (mean of both
+/// ends); visible = exp(-depth). Point lights: marched from each cell in steps of half a cell.
+/// Ambient light: 14 directional lights (6 faces, 8 corners) whose depth is attenuated by exp(-distance / reach);
+/// visible = min(1, 2 mean exp(-depth)), so that a flat surface, which half of them reach, is not darkened.
+/// Translucency t (directional lights only; after Kniss, Premoze, Hansen, Ebert, Interactive translucent volume
+/// rendering and procedural modeling, 2002): a second light is propagated with extinction a - t rgb per channel
+/// (forward-scattered light keeps the colour of the medium), and in each slice a fraction scatter / 2 of it is replaced
+/// by the mean of the four neighbours one cell aside; scattered = the sum over lights of colour times its excess over
+/// the direct light. Stops early, with an undefined result, when the token asks.
 template <class Number>
 LightVolume<Number> spreadLight(const LightGrid& grid, const Matter<Number>& matter,
                                 std::span<const PlacedLight> lights, const Shadows& shadows, std::stop_token stop = {});

@@ -11,9 +11,9 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr int kMostParts = 512; ///< along an edge
+constexpr int kMostParts = 512; ///< subdivisions along an edge
 
-/// Adds an amount to the eight cells around a place in cells (centres at integers), as far as they are in the grid.
+/// Adds an amount to the eight cells around a position in cells (centres at integers), as far as they are in the grid.
 template <class Number> void deposit(Matter<Number>& matter, const LightGrid& grid, glm::dvec3 p, glm::dvec4 amount) {
     const glm::ivec3 lo(glm::floor(p));
     const glm::dvec3 w = p - glm::dvec3(lo);
@@ -78,7 +78,7 @@ Matter<Number> meshMatter(const LightGrid& grid, const MeshCasters& casters, std
             const int n = std::clamp(int(std::ceil(2 * longest)), 1, kMostParts);
             for (int j = 0; j < n; ++j)
                 for (int i = 0; i < 2 * (n - j) - 1; ++i) {
-                    // Row j has n - j parts that stand and n - j - 1 that hang between them.
+                    // Row j has n - j upright triangles and n - j - 1 inverted ones between them.
                     const double third = i % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
                     const glm::dvec3 world = p[0] + along * ((i / 2 + third) / n) + across * ((j + third) / n);
                     if (!kept(casters.clips, world)) continue;

@@ -8,33 +8,33 @@
 #include <stop_token>
 #include <vector>
 
-/// Surfaces of polygons as matter of a light volume: they cast shadows on the volumes around them, and on each other.
+/// Meshes as extinction of a light volume: they cast shadows on volumes and on each other.
 namespace tessera::vis {
 
-/// What of a scene's geometry stands in the way of light: everything drawn that has triangles (lines cast no shadow).
-/// Brushes and looks leave shadows as they are.
+/// The geometry of a scene that casts shadows: everything drawn that has triangles; lines cast none. Brushes and looks
+/// do not affect shadows.
 struct MeshCasters {
     struct Caster {
         std::shared_ptr<const Geometry> geometry;
-        TransferFunction function; ///< colours the scalars
+        TransferFunction function; ///< colours of the scalars
         Range range;
-        glm::dvec3 color{1}; ///< linear; where there are no scalars
+        glm::dvec3 color{1}; ///< linear; for meshes without scalars
         bool scalars = false;
         double opacity = 1;
-        int lens = -1; ///< that it is drawn in
+        int lens = -1; ///< index of the lens that it is drawn in
     };
     std::vector<Caster> casters;
     std::vector<PlacedClip> clips;
     std::vector<PlacedLens> lenses;
     WorldFrame frame;
 };
-/// None where the scene's shadows leave meshes out.
+/// Empty if the scene's shadows exclude meshes.
 MeshCasters meshCasters(const Scene& scene, const volume::DatasetInfo& info);
 
-/// Their matter: triangles are cut into equal parts with edges of at most half a cell; each adds -ln(1 - min(opacity,
-/// kThickest)) times its area over a cell's volume to the cells around its middle, by trilinear weights, so that along
-/// the normal of a flat surface it adds up to the opacity. A part whose middle is clipped casts none; lenses act as on
-/// the surface. Stops early, with an undefined result, when the token asks.
+/// The extinction of the meshes. Triangles are subdivided into equal parts with edges of at most half a cell; each part
+/// adds -ln(1 - min(opacity, kThickest)) times its area over a cell's volume to the cells around its centroid, with
+/// trilinear weights, so that integrated along the normal of a flat surface it gives the opacity. Parts with a clipped
+/// centroid are left out; lenses act as on the surface. Stops early, with an undefined result, when the token asks.
 template <class Number>
 Matter<Number> meshMatter(const LightGrid& grid, const MeshCasters& casters, std::stop_token stop = {});
 

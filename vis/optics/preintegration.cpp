@@ -11,10 +11,11 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr double kMostOpaque = 1 - 1e-12; ///< opacity 1 would have infinite extinction
-constexpr double kSame = 1e-7;            ///< places nearer than this are one: their difference has lost its digits
+constexpr double kMostOpaque = 1 - 1e-12; ///< opacity 1 would mean infinite extinction
+constexpr double kSame =
+    1e-7; ///< closer positions are treated as equal, since their difference has no significant digits
 
-/// Where a place lies among the nodes.
+/// A position between two nodes.
 struct NodePlace {
     std::size_t below;
     double along;
@@ -26,16 +27,16 @@ NodePlace nodePlace(const IntegralFunctions& functions, double x) {
     return {std::size_t(below), at - below};
 }
 
-/// Integral from 0 to a place.
+/// Integral from 0 to a position.
 glm::dvec4 integralAt(const IntegralFunctions& functions, NodePlace at) {
     const glm::dvec4 a = functions.density[at.below], b = functions.density[at.below + 1];
     const double node = 1 / double(functions.density.size() - 1);
     return functions.integral[at.below] + node * at.along * (a + 0.5 * at.along * (b - a));
 }
 
-/// From mean t * colour and mean t.
+/// Colour and opacity from the means of t * colour and t.
 glm::dvec4 fromDensity(glm::dvec4 mean) {
-    // Next to no extinction: its digits are noise.
+    // Rounding dominates if there is next to no extinction.
     if (!(mean.a > 1e-11)) return glm::dvec4(0);
     return {glm::clamp(glm::dvec3(mean) / mean.a, 0.0, 1.0), -std::expm1(-mean.a)};
 }

@@ -28,9 +28,9 @@ ProxySurfaces proxySurfaces(const Scene& scene, const volume::Lattice& lattice, 
     out.shells = scene.render.proxy == Proxy::Shells && perspective;
     out.normal = middle.direction;
     out.spacing = double(scene.render.stepVoxels) * stepFactor / glm::length(middle.direction / cell);
-    double phase = 0.5; // of the first surface, in spacings beyond the nearest corner
+    double phase = 0.5; // offset of the first surface behind the nearest corner, in spacings
     double nearest = std::numeric_limits<double>::infinity(), furthest = -nearest;
-    const glm::dvec3 edges = lattice.spacing * frame.scale; // of a sublattice cell, with sign
+    const glm::dvec3 edges = lattice.spacing * frame.scale; // edges of a sublattice cell, with sign
     if (scene.render.proxy == Proxy::Stacks) {
         int axis = 0;
         for (int i = 1; i < 3; ++i)
@@ -38,7 +38,7 @@ ProxySurfaces proxySurfaces(const Scene& scene, const volume::Lattice& lattice, 
         out.normal = glm::dvec3(0);
         out.normal[axis] = middle.direction[axis] < 0 ? -1 : 1;
         out.spacing = std::abs(edges[axis]) / (lattice.kind == volume::LatticeKind::BCC ? 2 : 1);
-        const double through = out.normal[axis] * frame.toWorld(lattice.origin)[axis]; // a plane of samples
+        const double through = out.normal[axis] * frame.toWorld(lattice.origin)[axis]; // offset of a lattice plane
         const double nearFace = -frame.halfSize[axis];
         phase = (through - nearFace) / out.spacing;
         phase -= std::floor(phase + 1e-6);
@@ -54,7 +54,7 @@ ProxySurfaces proxySurfaces(const Scene& scene, const volume::Lattice& lattice, 
         if (!out.shells) nearest = std::min(nearest, along);
         furthest = std::max(furthest, along);
     }
-    // Planes behind the eye show nothing.
+    // Planes behind the eye are not visible.
     if (!out.shells && perspective && scene.render.proxy != Proxy::Stacks)
         nearest = std::max(nearest, glm::dot(out.normal, middle.origin));
     out.first = nearest + phase * out.spacing;

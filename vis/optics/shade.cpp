@@ -11,7 +11,7 @@ namespace tessera::vis {
 
 namespace {
 
-/// What reaches a place.
+/// Light that reaches a position.
 struct Reaching {
     glm::dvec3 lights{1};
     double everywhere = 1;

@@ -12,7 +12,7 @@ namespace tessera::vis {
 
 namespace {
 
-/// Cosine between the normal and a direction, and how much the side it is on is seen.
+/// Cosine between the normal and a direction, and the visibility of that side.
 struct Incidence {
     double cosine = 0, share = 0;
 };
@@ -21,7 +21,7 @@ Incidence incidence(const Facing& at, glm::dvec3 direction) {
     return {std::abs(cosine), cosine > 0 ? at.front : 1 - at.front};
 }
 
-/// Factor for light that bounces between microfacets: without it rough metal is too dark.
+/// Compensation for multiple scattering between microfacets, without which rough metal is too dark.
 glm::dvec3 lost(glm::dvec3 straight, const Lighting& surface) {
     return 1.0 + straight * (1 / (1 - 0.5 * std::pow(double(surface.roughness), 3)) - 1);
 }
@@ -81,7 +81,7 @@ glm::dvec3 physicalLight(const Facing& at, glm::dvec3 albedo, const Reflected& e
     const double nv = std::max(std::abs(glm::dot(at.normal, at.toViewer)), 1e-3);
     const double alpha = double(surface.roughness) * surface.roughness, a2 = alpha * alpha;
     const double spread = nh * nh * (a2 - 1) + 1;
-    const double distribution = a2 / (spread * spread); // times 1 / pi
+    const double distribution = a2 / (spread * spread); // without the factor 1 / pi
     const double visibility = 0.5 / (nl * std::sqrt(nv * nv * (1 - a2) + a2) + nv * std::sqrt(nl * nl * (1 - a2) + a2));
     const glm::dvec3 straight = glm::mix(glm::dvec3(surface.reflectance), albedo, double(surface.metalness));
     const double edge = std::pow(1 - std::clamp(glm::dot(at.toViewer, half), 0.0, 1.0), 5);

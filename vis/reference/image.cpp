@@ -20,7 +20,7 @@ Difference compare(const Image& a, const Image& b, double threshold) {
         for (int c = 0; c < 4; ++c) {
             const double apart = std::abs(a.pixels[i][c] - b.pixels[i][c]);
             own += apart * apart;
-            // NaN is as far apart as can be.
+            // NaN counts as an infinite difference.
             most = std::isnan(apart) ? std::numeric_limits<double>::infinity() : std::max(most, apart);
         }
         squares += own;
@@ -46,7 +46,7 @@ Image outOfFocus(const Image& image, double radius) {
         return std::size_t(std::clamp(y, 0, image.size.y - 1)) * std::size_t(image.size.x) +
                std::size_t(std::clamp(x, 0, image.size.x - 1));
     };
-    // Linear between the centres of pixels.
+    // Linear between pixel centres.
     const auto colorAt = [&](glm::dvec2 at) {
         const glm::dvec2 low = glm::floor(at - 0.5), f = at - 0.5 - low;
         const int x = int(low.x), y = int(low.y);

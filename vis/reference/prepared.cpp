@@ -102,7 +102,7 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
         std::make_shared<const LightVolume<double>>(spreadLight<double>(grid, all, lights, scene.lighting.shadows));
 }
 
-/// Steps of all blocks.
+/// Computes the step codes of all blocks.
 void Prepared::findSteps() {
     std::vector<std::optional<CurveMatter>> curves;
     for (const DrawnLayer& layer : layers) {
@@ -152,7 +152,7 @@ glm::dvec4 matterAt(const Prepared& scene, const LightGrid& grid, glm::dvec3 cen
         double mean = 0;
         int present = 0;
         glm::dvec3 slope(0);
-        int part = 0; // of the first point; surfaces lie within one
+        int part = 0; // of the first point; a surface lies within one part
         const auto* volume = std::get_if<VolumeLayer>(layer.technique);
         const auto* iso = std::get_if<IsoLayer>(layer.technique);
         if (!iso && (!volume || volume->style != RayStyle::Composite)) continue;

@@ -47,7 +47,7 @@ std::optional<Projected::Shown> Projected::shown(const Prepared& scene, const Dr
     const auto opacity = [&](glm::dvec4 color) { return std::min(1.0, double(volume.density) * color.a); };
     if (volume.style == RayStyle::XRay) return Shown{colorOfSum(layer, layer.classifyPlace(absorbed_)), absorbed_};
     if (volume.style == RayStyle::Average) {
-        // The mean belongs to no place: brushes act on it through its weights alone.
+        // The mean has no position: brushes affect it only through its weights.
         const glm::dvec4 color = layer.classifyPlace(std::clamp(weighted_ / factors_, 0.0, 1.0));
         return Shown{colorOfSum(layer, color), std::min(opacity(color) * factors_ / count_, 1.0)};
     }

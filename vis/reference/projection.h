@@ -6,14 +6,14 @@
 
 namespace tessera::vis::reference {
 
-/// What a layer that looks at the whole ray has seen of it; the styles are those of vis/optics/ray_setup.h.
+/// Accumulates a projection layer along a ray; the ray styles are defined in vis/optics/ray_setup.h.
 class Projected {
 public:
-    /// A sample at a world place, `step` long; absent ones end the rise to a local maximum.
+    /// Adds a sample at a world position with a step length; an absent one ends the rise to a local maximum.
     void add(const Prepared& scene, const DrawnLayer& layer, std::optional<Reading> found, glm::dvec3 place,
              double step);
 
-    /// What it shows in the end; nullopt where it has seen nothing.
+    /// The result; nullopt if no sample was present.
     struct Shown {
         glm::dvec3 color{0}; ///< linear light
         double opacity = 0, interest = 1;
@@ -27,9 +27,9 @@ private:
     glm::dvec3 bestWorld_{0};
     Interest bestInterest_ = {};
     LensAction bestLens_ = {};
-    bool found_ = false; ///< a local maximum
+    bool found_ = false; ///< a local maximum was found
     double factors_ = 0, weighted_ = 0, absorbed_ = 0;
-    double tint_ = 0, tintWeight_ = 0; ///< of sums: what they are coloured by, times its weight; that weight
+    double tint_ = 0, tintWeight_ = 0; ///< of sums: weighted sum of the colour channel, and its weight
     int count_ = 0;
 };
 

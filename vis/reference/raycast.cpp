@@ -12,12 +12,12 @@ namespace tessera::vis::reference {
 
 namespace {
 
-constexpr double kFaceTolerance = 1e-5; ///< world units by which a slice on a face of the box may miss it
+constexpr double kFaceTolerance = 1e-5; ///< tolerance in world units for a slice on a face of the box
 
 template <class Number> using Vec3 = glm::vec<3, Number>;
 template <class Number> using Vec4 = glm::vec<4, Number>;
 
-/// One ray from front to back.
+/// Casts one ray, front to back.
 template <class Number> struct Caster {
     const Prepared& scene;
     Ray ray;
@@ -26,11 +26,11 @@ template <class Number> struct Caster {
     std::vector<RaySegment> holes = {}; ///< in samples
     Vec4<Number> out{0};
     Number step = 0;
-    double interest = 0; ///< of `out`, times its opacity
+    double interest = 0; ///< of `out`, weighted by opacity
 
     Vec3<Number> at(Number t) const { return Vec3<Number>(ray.origin) + t * Vec3<Number>(ray.direction); }
     bool opaque() const { return out.a >= Number(kOpaque); }
-    /// Place on the ray in samples: sample k lies at k.
+    /// Position in samples of distance t: sample k lies at k.
     double inSamples(double t) const { return (t - samples.enter) / samples.step - samples.phase; }
     bool shows(double k) const {
         return std::none_of(holes.begin(), holes.end(),
@@ -44,14 +44,14 @@ template <class Number> struct Caster {
         interest += double(weight) * doi;
     }
 
-    /// A surface on the ray.
+    /// A surface intersected by the ray.
     struct Event {
         Number t;
         glm::dvec3 color;
         double opacity, interest;
     };
 
-    /// Adds the slices met in (from, to].
+    /// Adds the slices intersected in (from, to].
     void findSlices(std::vector<Event>& events, Number from, Number to) const {
         for (const DrawnLayer& layer : scene.layers) {
             if (!std::holds_alternative<SliceLayer>(*layer.technique)) continue;
@@ -72,23 +72,23 @@ template <class Number> struct Caster {
         }
     }
 
-    /// Nearest first, equal ones in the order found.
+    /// Composites the events, nearest first, equal ones in the order found.
     void drawEvents(std::vector<Event>& events) {
         std::stable_sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.t < b.t; });
         for (const Event& event : events) blend(event.color, event.opacity, event.interest);
         events.clear();
     }
 
-    /// The gradient in world axes as shading uses it.
+    /// The gradient in world axes for shading.
     glm::dvec3 worldGradient(const DrawnLayer& layer, glm::dvec3 place, int part) const {
         if (layer.samples->categorical()) return glm::dvec3(0);
-        const glm::dvec3 edges = scene.lattice.spacing * scene.frame.scale; // of a sublattice cell, with sign
+        const glm::dvec3 edges = scene.lattice.spacing * scene.frame.scale; // edges of a sublattice cell, with sign
         const glm::dvec3 gradient = scene.gradient(*layer.samples, place, part) / edges;
         const int bits = scene.scene.render.normalBits;
         return bits > 0 ? quantizedDirection(gradient, bits) * glm::length(gradient) : gradient;
     }
 
-    /// How much of a sample is surface: 1 on iso-surfaces.
+    /// Weight of the surface in a sample: 1 on iso-surfaces.
     double surfaceWeight(const DrawnLayer& layer, glm::dvec3 place) const {
         if (std::holds_alternative<IsoLayer>(*layer.technique)) return 1;
         if (layer.samples->categorical()) return 0;
@@ -130,7 +130,7 @@ template <class Number> struct Caster {
         return sample;
     }
 
-    /// Colour and opacity of a sample, shaded and drawn in its look.
+    /// Colour and opacity of a sample, after shading and looks.
     struct Drawn {
         glm::dvec3 color{0};
         double opacity = 0;
@@ -149,7 +149,7 @@ template <class Number> struct Caster {
         return {lookColor(look, albedo, color, sample, scene.look.ground), lookOpacity(look, opacity, sample)};
     }
 
-    /// Adds the crossing of an iso-surface between the last sample and the one at t, where both belong to one part.
+    /// Adds the intersection with an iso-surface between the last sample and the one at t, if both belong to one part.
     void findIso(std::vector<Event>& events, const DrawnLayer& layer, std::optional<Reading> before,
                  std::optional<Reading> now, Number t) const {
         const auto& iso = std::get<IsoLayer>(*layer.technique);
@@ -157,7 +157,7 @@ template <class Number> struct Caster {
         if (!before || !now || before->part != now->part || above == (now->value >= iso.value)) return;
         Number lo = t - step, hi = t;
         for (int i = 0; i < kBisections; ++i) {
-            const Number middle = (lo + hi) / 2; // where the part does not reach counts as below the value
+            const Number middle = (lo + hi) / 2; // where the part has no samples counts as below the value
             const double value = layer.samples->continued(now->part, scene.cells(glm::dvec3(at(middle))));
             ((value >= iso.value) == above ? lo : hi) = middle;
         }
@@ -172,7 +172,7 @@ template <class Number> struct Caster {
         events.push_back({(lo + hi) / 2, at.color, at.opacity, doi.seen(layer)});
     }
 
-    /// Colour and opacity of a composite layer's sample, and the share of its length that they fill.
+    /// Classified colour and opacity of a composite layer's sample, and the present fraction of its segment.
     struct Classified {
         glm::dvec4 color{0};
         double share = 0;
@@ -202,12 +202,13 @@ template <class Number> struct Caster {
         return {scene.colorAt(layer, *value, place), 1};
     }
 
-    /// Samples from k on that one in their middle stands for; `event`: the next place of a slice, in samples.
+    /// Number of samples from k on that a single sample in their middle represents; `event`: position of the next
+    /// slice, in samples.
     int together(int k, double event) const {
         const glm::dvec3 here = scene.cells(glm::dvec3(at(Number(samples.at(k)))));
         const glm::dvec3 next = scene.cells(glm::dvec3(at(Number(samples.at(k + 1)))));
         const glm::dvec3 block = glm::floor(here / double(kStepBlock));
-        double inside = 1e6; // samples to the wall of the block
+        double inside = 1e6; // samples to the exit from the block
         for (int axis = 0; axis < 3; ++axis) {
             const double advance = next[axis] - here[axis];
             const double wall = (block[axis] + (advance > 0 ? 1 : 0)) * kStepBlock;
@@ -234,7 +235,7 @@ template <class Number> struct Caster {
         blend(at.color, correctedOpacity(at.opacity, double(step), thickness), doi.seen(layer));
     }
 
-    /// Where samples lie; false where the ray meets nothing.
+    /// Sets up the sample positions; false if the ray misses the box.
     bool begin(bool perspective, glm::ivec2 pixel, int pass) {
         const std::optional<RaySegment> met = clipToBox(ray, scene.frame.halfSize, perspective);
         if (!met) return false;
@@ -271,7 +272,7 @@ template <class Number> struct Caster {
             for (const Event& event : events) slices.push_back(inSamples(double(event.t)));
             events.clear();
         }
-        int count = 1; // samples that one stands for
+        int count = 1; // samples represented by one
         for (int k = 0; k < samples.count && !opaque(); k += count) {
             const Number t = Number(samples.at(k));
             if (count > 1)
@@ -279,7 +280,7 @@ template <class Number> struct Caster {
                     before[i] = scene.layers[i].samples->read(scene.cells(glm::dvec3(at(Number(samples.at(k - 1))))));
             count = 1;
             if (!scene.steps.empty()) {
-                double event = 1e6; // the first that is not drawn yet
+                double event = 1e6; // the first that is not composited yet
                 for (const double slice : slices)
                     if (slice > inSamples(double(last))) event = std::min(event, slice);
                 count = together(k, event);
@@ -319,7 +320,7 @@ Image renderWith(const Scene& scene, const volume::BrickSource& source, glm::ive
     parallelFor(std::size_t(size.y), [&](std::size_t y) {
         for (int x = 0; x < size.x; ++x)
             for (int pass = 0; pass < std::max(scene.render.samples, 1); ++pass) {
-                // Pixels count from below, as the shader's do.
+                // The shader counts pixel rows from the bottom.
                 const glm::ivec2 pixel(x, size.y - 1 - int(y));
                 const glm::dvec2 ndc = (glm::dvec2(pixel) + 0.5 + pixelJitter(pass)) / glm::dvec2(size) * 2.0 - 1.0;
                 Caster<Number> caster{prepared, cameraRay(scene.camera, double(size.x) / size.y, ndc), {}, {}};

@@ -11,19 +11,19 @@ namespace tessera::vis::reference {
 
 namespace {
 
-constexpr int kMargin = 4; ///< samples of each sublattice beyond the lattice: filter, gradient and BCC excess
+constexpr int kMargin = 4; ///< samples of each sublattice beyond the lattice, for filter, gradient and the shift of BCC
 
 std::size_t linearIndex(glm::ivec3 size, glm::ivec3 at) {
     return (std::size_t(at.z) * std::size_t(size.y) + std::size_t(at.y)) * std::size_t(size.x) + std::size_t(at.x);
 }
 
-/// The samples of the whole lattice, brick by brick; beyond it the nearest one of the same sublattice.
+/// All samples of a lattice, gathered brick by brick; beyond it the nearest sample of the same sublattice.
 struct Whole {
     volume::Lattice lattice;
     std::vector<float> values;
     std::vector<std::uint8_t> present; // empty: all
 
-    /// `brick`: reads one.
+    /// `brick` reads one brick.
     Whole(const volume::BrickSource& source, const std::function<volume::BrickSamples(glm::ivec3)>& brick,
           bool ignoredMask)
         : lattice(source.grid().lattice), values(lattice.count()) {
@@ -54,10 +54,10 @@ struct Whole {
 
 } // namespace
 
-/// What a reading sees: all samples held, or only those of one brick when its borders are missing.
+/// The samples visible to a reading: all, or only those of one brick to simulate missing halos.
 struct Samples::View {
     const Samples& all;
-    glm::ivec3 lo, hi; // storage indices that may be read, both included
+    glm::ivec3 lo, hi; // range of readable storage indices, inclusive
     int slices;
 
     volume::Sample operator()(glm::ivec3 at) const {

@@ -14,26 +14,26 @@
 
 namespace tessera::vis::reference {
 
-/// Deliberate errors, each one that a shader could make. Tests use them to show that the comparison would notice.
+/// Deliberate errors that a shader could make. Tests use them to prove that the comparison detects each.
 struct Flaws {
-    bool additiveBlend = false;     ///< samples are added without regard to what lies before them
-    bool unmovedSublattice = false; ///< the odd BCC sublattice is not moved by half a cell
-    bool clampedBricks = false;     ///< no borders: beyond its brick a sample repeats the last one in it
-    bool ignoredMask = false;       ///< absent samples count as present with value 0
-    bool unfiltered = false;        ///< the prefilter is left out
-    bool mixedParts = false;        ///< samples of different parts are mixed
+    bool additiveBlend = false;     ///< sums samples without attenuation by those in front
+    bool unmovedSublattice = false; ///< does not shift the odd BCC sublattice by half a cell
+    bool clampedBricks = false;     ///< no halos: beyond its brick a sample repeats the nearest one inside
+    bool ignoredMask = false;       ///< treats absent samples as present with value 0
+    bool unfiltered = false;        ///< omits the prefilter
+    bool mixedParts = false;        ///< mixes samples of different parts
 };
 
-/// What is seen at a place, and which part of the parameter it belongs to.
+/// The value at a position, and the part of the parameter that it belongs to.
 struct Reading {
     double value = 0;
     int part = 0;
 };
 
-/// All samples of one channel at one time, full resolution, ready for one filter, with a margin of samples beyond the
-/// lattice so that no reading needs a special case. Between two stored times both are held and mixed: of a place, what
-/// is present in either takes part by its weight (labels: the nearer time). Of a parameter of several parts each is
-/// held by itself, the samples of the others absent; a place shows the part that volume/reconstruct/part_choice.h says.
+/// All samples of one channel at one time at full resolution, prepared for one filter, with a margin beyond the lattice
+/// so that reading needs no special cases. Between two stored times both are held and interpolated: the present ones
+/// contribute by weight (labels: the nearer time). If a parameter has several parts, each is held separately with the
+/// samples of the others absent; volume/reconstruct/part_choice.h decides which part a position shows.
 class Samples {
 public:
     /// Throws Error when the source does.
@@ -42,20 +42,20 @@ public:
     /// The value at a continuous cell position (Lattice::toCells), and its part; nullopt where absent.
     std::optional<Reading> read(glm::dvec3 cells) const;
     std::optional<double> value(glm::dvec3 cells) const;
-    /// The part that a position belongs to, present or not.
+    /// The part that a position belongs to, whether present or absent.
     int part(glm::dvec3 cells) const;
-    /// The value by the samples of one part alone; nullopt where they carry less than half of the weight.
+    /// The value from the samples of one part only; nullopt if they have less than half of the weight.
     std::optional<double> ofPart(int part, glm::dvec3 cells) const;
-    /// The same as far as they reach; NaN beyond.
+    /// The same as far as samples of the part have any weight; NaN beyond.
     double continued(int part, glm::dvec3 cells) const;
-    /// What trilinear interpolation (on BCC the mean over both sublattices) makes of `of` the samples around a
+    /// Trilinear interpolation (on BCC the mean over both sublattices) of `of` applied to the samples around a
     /// position; nullopt where the value would be absent.
     std::optional<glm::dvec4> blended(glm::dvec3 cells, const std::function<glm::dvec4(double)>& of) const;
     bool categorical() const { return categorical_; }
-    /// Bounds of the samples that are present among the texels [begin, end), lo > hi where none is; texels hold one
-    /// sample of each sublattice and may lie up to 4 beyond the lattice.
+    /// Bounds of the present samples among the texels [begin, end), lo > hi if there are none; texels hold one sample
+    /// of each sublattice and may lie up to 4 beyond the lattice.
     Range bounds(glm::ivec3 begin, glm::ivec3 end) const;
-    /// Whether any sample is absent, of each part.
+    /// Whether any sample is absent; always true if there are several parts.
     bool someAbsent() const;
 
 private:
@@ -78,11 +78,12 @@ private:
     Filter filter_;
     Flaws flaws_;
     bool categorical_ = false;
-    std::vector<std::unique_ptr<Samples>> parts_; ///< then nothing is held here; empty: there is one part
+    std::vector<std::unique_ptr<Samples>>
+        parts_; ///< one per part, then this object holds no samples; empty: a single part
     std::unique_ptr<Samples> later_;
     double laterWeight_ = 0;
     int brickSize_ = 0;
-    glm::ivec3 first_{0}, size_{0}; ///< storage indices held
+    glm::ivec3 first_{0}, size_{0}; ///< range of storage indices held
     std::vector<double> values_;
     std::vector<std::uint8_t> present_; ///< empty: all
 };
