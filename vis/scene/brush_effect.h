@@ -5,13 +5,12 @@
 
 namespace tessera::vis {
 
-/// What brushes do to a layer: what is not brushed fades as the selection's context settings say; nothing; only what is
-/// not brushed stays; only what is brushed stays. Shaders know them as
-/// BRUSHED_FADE and so on.
+/// Effect of the brushes on a layer: fade unselected samples by the selection's context settings; none; hide selected
+/// samples; hide unselected samples. Shaders know the enumerators as BRUSHED_FADE and so on.
 enum class BrushEffect { Fade, None, ContextOnly, FocusOnly };
 inline constexpr std::string_view kBrushEffectNames[] = {"fade", "none", "context", "focus"};
 
-/// Factor on the opacity of a layer at a degree of interest; twin: focusOpacity in vis/shaders/lib/doi.glsl.
+/// Opacity factor of a layer at a degree of interest; twin: focusOpacity in vis/shaders/lib/doi.glsl.
 inline double brushedOpacity(BrushEffect effect, double contextOpacity, double interest) {
     switch (effect) {
     case BrushEffect::None:

@@ -19,12 +19,12 @@ glm::dquat orientation(const Camera& camera) {
     return length > 0 ? turn / length : glm::dquat(1, 0, 0, 0);
 }
 
-/// Half the height of the picture at the target's distance.
+/// Half the height of the picture in world units at the target's distance.
 double halfHeight(const Camera& camera) {
     return camera.distance * std::tan(glm::radians(static_cast<double>(camera.fieldOfView)) / 2);
 }
 
-/// Least and greatest distance of the world box in front of the eye.
+/// Smallest and largest distance of the world box in front of the eye.
 Range boxDepth(const Camera& camera) {
     const glm::dvec3 back = glm::conjugate(orientation(camera)) * glm::dvec3(kZ);
     const double middle = camera.distance + glm::dot(back, glm::dvec3(camera.target));
@@ -32,7 +32,7 @@ Range boxDepth(const Camera& camera) {
     return {middle - reach, middle + reach};
 }
 
-/// Point of a virtual trackball under a point of the picture: a sphere in the middle that runs out into a hyperboloid.
+/// Point of a virtual trackball under a point of the picture: a sphere in the centre, continued by a hyperboloid.
 /// (Bell's form of Chen, Mountford, Sellen: A study in interactive 3-D rotation, 1988.)
 glm::vec3 trackball(glm::vec2 ndc) {
     const float squared = glm::dot(ndc, ndc);
@@ -60,11 +60,11 @@ glm::dmat4 viewMatrix(const Camera& camera) {
 
 glm::dmat4 projectionMatrix(const Camera& camera, double aspect) {
     const Range depth = boxDepth(camera);
-    const double margin = 0.01; // room for lines and slices on the faces of the box
+    const double margin = 0.01; // for lines and slices on the faces of the box
     const double height = halfHeight(camera), width = height * aspect;
     if (camera.projection == Projection::Orthographic)
         return glm::ortho(-width, width, -height, height, depth.lo - margin, depth.hi + margin);
-    // With the eye in or behind the box the near plane comes as close as a 24-bit depth buffer bears.
+    // If the eye is in or behind the box, the near plane is as close as a 24-bit depth buffer permits.
     const double far = std::max(depth.hi, 0.0) + margin;
     const double near = std::max(depth.lo - margin, far * 1e-3);
     return glm::perspective(glm::radians(static_cast<double>(camera.fieldOfView)), aspect, near, far);
@@ -78,7 +78,7 @@ Ray cameraRay(const Camera& camera, double aspect, glm::dvec2 ndc) {
         const glm::dvec3 eye(0, 0, camera.distance);
         return {target + toWorld * eye, glm::normalize(toWorld * (onPicture - eye))};
     }
-    // However close a parallel camera is, its rays begin before the box.
+    // Rays of a parallel camera start in front of the box, however close the camera is.
     const double before = std::max<double>(camera.distance, glm::length(target) + glm::length(kBoxHalf));
     return {target + toWorld * (onPicture + glm::dvec3(0, 0, before)), toWorld * glm::dvec3(0, 0, -1)};
 }
@@ -147,7 +147,7 @@ Camera planeCamera(int right, int up, const WorldFrame& world) {
     glm::vec3 across(0), upward(0);
     across[right] = 1;
     upward[up] = 1;
-    // Rows of the rotation are the eye's axes in world space; glm matrices are made of columns.
+    // Rows of the rotation are the eye's axes in world space; glm matrices are stored by columns.
     camera.orientation =
         glm::normalize(glm::quat_cast(glm::transpose(glm::mat3(across, upward, glm::cross(across, upward)))));
     camera.fieldOfView = 35;

@@ -10,7 +10,7 @@
 #include <glm/vec3.hpp>
 
 /// World space: the data set's bounds, stretched per axis, centred at the origin and scaled so that the longest
-/// stretched edge is 1. Cameras, step lengths and opacities are in world units, so a session carries over to data of
+/// stretched edge is 1. Cameras, step lengths and opacities are in world units, so a session can be applied to data of
 /// another size.
 namespace tessera::vis {
 
@@ -19,10 +19,10 @@ inline constexpr std::string_view kProjectionNames[] = {"perspective", "orthogra
 
 struct Camera {
     Projection projection = Projection::Perspective;
-    /// Rotates world into eye axes (x right, y up, z to viewer). The default looks from above, 25 degrees, at a box
-    /// whose z runs from the left, behind, to the right, in front.
+    /// Rotation from world to eye axes (x right, y up, z towards the viewer). The default looks down by 25 degrees at a
+    /// box whose z axis runs from the back left to the front right.
     glm::quat orientation{0.8454971f, 0.1874422f, 0.488148f, 0.108219807f};
-    glm::vec3 target{0};    ///< world point in the middle of the picture
+    glm::vec3 target{0};    ///< world point at the centre of the picture
     float distance = 2.2f;  ///< world units from eye to target
     float fieldOfView = 35; ///< degrees, vertical; orthographic height = 2 distance tan(fov / 2)
 
@@ -59,36 +59,38 @@ struct WorldFrame {
 };
 WorldFrame worldFrame(const volume::Box& bounds, glm::dvec3 stretch);
 
-/// The view matrix (world to eye) and projection (eye to clip, GL convention). Near and far are fitted around the cube
-/// -1/2..1/2 that holds every world box; with the eye inside it, near is a thousandth of far.
+/// View matrix (world to eye) and projection (eye to clip, GL convention). Near and far are fitted to the cube
+/// -1/2..1/2 that contains every world box; with the eye inside it, near is a thousandth of far.
 glm::dmat4 viewMatrix(const Camera& camera);
 glm::dmat4 projectionMatrix(const Camera& camera, double aspect);
 
-/// The ray through a point of the picture, `ndc` in -1..1, y up. It begins at the eye (perspective), or on a plane
-/// before the world box however close the camera is (orthographic).
+/// The ray through a point of the picture, `ndc` in -1..1, y up. It starts at the eye (perspective), or on a plane in
+/// front of the world box (orthographic).
 struct Ray {
     glm::dvec3 origin, direction; ///< direction has length 1
 };
 Ray cameraRay(const Camera& camera, double aspect, glm::dvec2 ndc);
 
-/// Turns the camera as if the object under the mouse were dragged from one point of the picture to another (ndc, y up).
+/// Rotates the camera as if the object under the mouse were dragged between two points of the picture (ndc, y up).
 void orbit(Camera& camera, glm::vec2 from, glm::vec2 to);
-/// Moves the picture at the target's depth by a difference in ndc.
+/// Moves the picture by a difference in ndc, at the target's depth.
 void pan(Camera& camera, glm::vec2 ndcDelta, float aspect);
-/// Magnifies: factor 2 halves the distance. Stays within the distances a session may hold.
+/// Magnifies: factor 2 halves the distance. The distance stays within the range of sessions.
 void zoom(Camera& camera, float factor);
-/// Turns the picture counter-clockwise.
+/// Rotates the picture counter-clockwise.
 void roll(Camera& camera, float radians);
-/// Centres the box and moves the camera so that all of it is in the picture with a small margin, from where it looks.
+/// Centres the box and sets the distance so that it fits into the picture with a small margin; keeps the view
+/// direction.
 void fit(Camera& camera, const WorldFrame& frame, double aspect);
 
-/// The six axis views and the isometric one. Front looks against z with y up; left and right see z run across.
+/// The six axis-aligned views and the isometric one. Front looks along -z with y up; in left and right z runs
+/// horizontally.
 enum class StandardView { Front, Back, Left, Right, Top, Bottom, Isometric };
 inline constexpr std::string_view kStandardViewNames[] = {"front", "back",   "left",     "right",
                                                           "top",   "bottom", "isometric"};
 glm::quat standardOrientation(StandardView view);
-/// Looks straight at a plane, world axis `right` to the right and `up` up (0..2), so that the box fills the picture's
-/// height.
+/// Looks perpendicularly at a plane with world axis `right` to the right and `up` up (0..2); the box fills the height
+/// of the picture.
 Camera planeCamera(int right, int up, const WorldFrame& world);
 
 } // namespace tessera::vis

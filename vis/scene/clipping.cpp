@@ -9,20 +9,20 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr double kFar = 1e6; ///< farther than any ray goes
+constexpr double kFar = 1e6; ///< longer than any ray
 
 RaySegment common(RaySegment a, RaySegment b) {
     return {std::max(a.enter, b.enter), std::min(a.exit, b.exit)};
 }
 
-/// Where |offset + t slope| <= half.
+/// The interval in which |offset + t slope| <= half.
 RaySegment slab(double offset, double slope, double half) {
     if (std::abs(slope) < 1e-9) return std::abs(offset) <= half ? RaySegment{-kFar, kFar} : RaySegment{kFar, -kFar};
     const double a = (-half - offset) / slope, b = (half - offset) / slope;
     return {std::min(a, b), std::max(a, b)};
 }
 
-/// Where |offset + t slope| <= radius, for vectors.
+/// The interval in which |offset + t slope| <= radius, for vectors.
 RaySegment ball(glm::dvec3 offset, glm::dvec3 slope, double radius) {
     const double a = glm::dot(slope, slope), b = glm::dot(offset, slope),
                  c = glm::dot(offset, offset) - radius * radius;

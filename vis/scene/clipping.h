@@ -5,8 +5,8 @@
 
 #include <vector>
 
-/// Planes and bodies that cut the picture: what is drawn lies on the kept side of every one. All are convex, so a ray
-/// is inside along one interval (twin: vis/shaders/lib/clip.glsl).
+/// Clip planes and bodies; only what lies on the kept side of all is drawn. All are convex, so the inside of each is
+/// one interval of a ray (twin: vis/shaders/lib/clip.glsl).
 namespace tessera::vis {
 
 enum class ClipKind { Plane, Box, Sphere, Cylinder };
@@ -14,12 +14,12 @@ inline constexpr std::string_view kClipKindNames[] = {"plane", "box", "sphere", 
 enum class ClipKeep { Inside, Outside };
 inline constexpr std::string_view kClipKeepNames[] = {"inside", "outside"};
 
-/// `inside` of a plane is where its axis points away from.
+/// The inside of a plane is the side opposite to its axis.
 struct Clip {
     bool enabled = true;
     ClipKind kind = ClipKind::Plane;
     ClipKeep keep = ClipKeep::Inside;
-    glm::vec3 center{0.5f};  ///< 0..1 through the box of the data
+    glm::vec3 center{0.5f};  ///< 0..1 across the bounding box of the data
     glm::vec3 axis{1, 0, 0}; ///< world: normal of a plane, axis of a cylinder; zero counts as x
     glm::vec3 size{0.5f};    ///< edges of a box, world
     float radius = 0.25f;    ///< world
@@ -61,27 +61,27 @@ struct Clip {
     }
 };
 
-inline constexpr int kMaxClips = 8; ///< further ones are left out
+inline constexpr int kMaxClips = 8; ///< further ones are ignored
 
-/// A clip in world space. A plane's inside is dot(axis, p - center) <= 0; a box's half edges are in `half`; of a
-/// cylinder half.x is the radius and half.y half the length; of a sphere half.x is the radius.
+/// A clip in world space. Inside a plane is dot(axis, p - center) <= 0; `half` has a box's half edges, a cylinder's
+/// radius (x) and half length (y), or a sphere's radius (x).
 struct PlacedClip {
     ClipKind kind = ClipKind::Plane;
-    bool hole = false; ///< what is inside goes
+    bool hole = false; ///< the inside is removed
     glm::dvec3 center{0}, axis{1, 0, 0}, half{0};
 
     bool contains(glm::dvec3 p) const;
-    /// The part of a line that is inside; empty (enter >= exit) where it misses.
+    /// The interval of a line inside; empty (enter >= exit) if there is none.
     RaySegment inside(const Ray& ray) const;
 };
-/// The enabled clips, at most kMaxClips; a plane never is a hole (its axis is turned around instead).
+/// The enabled clips, at most kMaxClips; a plane is never a hole (its axis is inverted instead).
 std::vector<PlacedClip> placeClips(const std::vector<Clip>& clips, const WorldFrame& frame);
-/// Whether a world point is kept by all.
+/// Whether all clips keep a world point.
 bool kept(const std::vector<PlacedClip>& clips, glm::dvec3 p);
 
-/// Length, in samples, of [k - 1/2, k + 1/2] that lies in none of the holes (intervals in samples; two holes that
-/// overlap there are both taken off, down to 0): composite layers weigh sample k's optical depth by it. Every other
-/// style takes a sample whole unless k itself lies in a hole.
+/// The part of the segment [k - 1/2, k + 1/2], in samples, that lies in no hole (intervals in samples; where two holes
+/// overlap both are subtracted, down to 0). Composite layers weight sample k's optical depth by it; every other ray
+/// style takes a sample completely unless k itself lies in a hole.
 double coverage(const std::vector<RaySegment>& holes, double k);
 
 } // namespace tessera::vis

@@ -16,25 +16,25 @@ inline bool followsFlow(FlowKind kind) {
     return kind == FlowKind::Streamlines || kind == FlowKind::Tubes || kind == FlowKind::Pathlines;
 }
 
-/// A vector parameter as lines that follow it, or as glyphs where they begin; made outside of the renderer
+/// A vector field as lines along it, or as glyphs at the seeds. The geometry is computed outside the renderer
 /// (flow_geometry.h) and drawn as Scene::geometry.
 struct FlowLayer {
     static constexpr std::string_view kType = "flow";
     std::string vector;
-    std::string channel; ///< colours
+    std::string channel; ///< gives the colours
     FlowKind kind = FlowKind::Tubes;
     volume::SeedShape seeds = volume::SeedShape::Random;
-    glm::vec3 from{0}, to{1}; ///< corners of the seeds' box, parts of the data's
+    glm::vec3 from{0}, to{1}; ///< corners of the seeding box, in fractions of the data's box
     int count = 60;
     int random = 1;
-    std::string weight = {};                        ///< "" = none
-    bool seedBrushed = false;                       ///< as dense as the degree of interest is high
-    float length = 2;                               ///< of a line each way, parts of the data's longest edge
-    float speed = 1;                                ///< of particles: lengths of the data over its times
-    float minimumSpeed = 1e-4f;                     ///< parts of the greatest
-    float radius = 0.004f;                          ///< of a tube, parts of the longest edge as drawn
-    float size = 0.05f;                             ///< of the longest glyph, parts of the longest edge as drawn
-    bool scaled = true;                             ///< glyphs as long as the vector, else all alike
+    std::string weight = {};    ///< "" = none
+    bool seedBrushed = false;   ///< seeding density is proportional to the degree of interest
+    float length = 2;           ///< of a line in each direction, in fractions of the data's longest edge
+    float speed = 1;            ///< of particles: lengths of the data during its whole time range
+    float minimumSpeed = 1e-4f; ///< in fractions of the largest speed
+    float radius = 0.004f;      ///< of a tube, in fractions of the longest edge as drawn
+    float size = 0.05f;         ///< of the longest glyph, in fractions of the longest edge as drawn
+    bool scaled = true;         ///< glyph length proportional to the vector, else constant
     GeometryStyle style{.color = glm::vec3(0.75f)}; ///< does not change the geometry
     bool operator==(const FlowLayer&) const = default;
     static void describe(auto& self, auto&& visit) {

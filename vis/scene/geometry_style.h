@@ -6,12 +6,12 @@
 
 namespace tessera::vis {
 
-/// How triangles and lines are drawn, whatever they were made of.
+/// Appearance of triangles and lines.
 struct GeometryStyle {
-    glm::vec3 color{0.8f}; ///< sRGB; of everything, or where a scalar is NaN
+    glm::vec3 color{0.8f}; ///< sRGB; without scalars, or where a scalar is NaN
     float opacity = 1;
     float lineWidth = 2; ///< pixels
-    Look look = {};      ///< nothing changes along a surface: places are as steep as can be
+    Look look = {};      ///< a surface has no scalar field, so its steepness is maximal
     bool operator==(const GeometryStyle&) const = default;
 };
 

@@ -13,19 +13,20 @@
 
 namespace tessera::vis {
 
-/// How rays meet a layer. Everything between composites and iso-surfaces is a projection of the whole ray
-/// (vis/shaders/lib/projections.glsl, vis/reference/projection.h); shaders know them as STYLE_COMPOSITE and so on.
+/// How a layer's samples along a ray become a colour. All styles except composite and iso-surface are projections of
+/// the whole ray (vis/shaders/lib/projections.glsl, vis/reference/projection.h). Shaders know them as STYLE_COMPOSITE
+/// and so on.
 enum class RayStyle { Composite, Maximum, Minimum, Average, XRay, LocalMaximum, Iso };
 inline constexpr std::string_view kRayStyleNames[] = {"composite", "maximum",      "minimum", "average",
                                                       "xray",      "localmaximum", "iso"};
-/// Those of volume layers; the last style is that of iso-surfaces.
+/// The styles of volume layers; the last style is that of iso-surfaces.
 inline constexpr std::span<const std::string_view> kVolumeStyleNames(kRayStyleNames, std::size_t(RayStyle::Iso));
 
-/// What a volume layer shows of its channel.
+/// The quantity of a channel that a volume layer shows.
 enum class Quantity { Value, Gradient };
 inline constexpr std::string_view kQuantityNames[] = {"value", "gradient"};
 
-/// Where between samples and picture a transfer function is applied; for composite layers.
+/// Whether the transfer function is applied after interpolation, before it, or to ray segments; for composite layers.
 enum class Classification { Post, Pre, PreIntegrated };
 inline constexpr std::string_view kClassificationNames[] = {"post", "pre", "preintegrated"};
 
@@ -36,10 +37,10 @@ struct VolumeLayer {
     RayStyle style = RayStyle::Composite;
     Quantity quantity = Quantity::Value;
     Classification classification = Classification::Post; ///< of values; composite only
-    double threshold = 0;                                 ///< physical; local maximum only
-    bool shaded = true;                                   ///< Phong by the gradient; composite only
+    double threshold = 0;                                 ///< physical value; local maximum only
+    bool shaded = true;                                   ///< by the gradient; composite only
     float density = 1;                                    ///< factor on optical depth
-    std::string colorBy = {};                             ///< "" = `channel`
+    std::string colorBy = {};                             ///< colouring channel; "": `channel`
     Look look = {};                                       ///< composite only
     bool operator==(const VolumeLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -84,7 +85,7 @@ struct VolumeLayer {
 enum class SurfaceMethod { Rays, Polygons };
 inline constexpr std::string_view kSurfaceMethodNames[] = {"rays", "polygons"};
 
-/// A surface of equal value: met by the rays, intersection refined by bisection, or extracted as a mesh.
+/// An iso-surface: either intersected by rays, refined by bisection, or extracted as a mesh.
 struct IsoLayer {
     static constexpr std::string_view kType = "iso";
     std::string channel;
@@ -92,7 +93,7 @@ struct IsoLayer {
     glm::vec3 color{0.8f, 0.45f, 0.15f}; ///< sRGB
     float opacity = 1;
     SurfaceMethod method = SurfaceMethod::Rays;
-    std::string colorBy = {}; ///< "" = `color`
+    std::string colorBy = {}; ///< colouring channel; "": `color`
     Look look = {};
     bool operator==(const IsoLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -126,8 +127,8 @@ struct SliceLayer {
     static constexpr std::string_view kType = "slice";
     std::string channel;
     SliceOrientation orientation = SliceOrientation::Z;
-    bool atCursor = true;      ///< passes through the linked cursor
-    double position = 0.5;     ///< 0..1 along the normal through the box, if !atCursor
+    bool atCursor = true;      ///< passes through the linked cursor, else at `position`
+    double position = 0.5;     ///< 0..1 along the normal through the box
     glm::vec3 normal{0, 0, 1}; ///< of an oblique slice, world axes
     int contours = 0;          ///< contour lines over the colour range
     float opacity = 1;
@@ -159,10 +160,10 @@ struct SliceLayer {
 
 using Technique = std::variant<VolumeLayer, IsoLayer, SliceLayer, FlowLayer>;
 
-/// Colour of a volume (sRGB) where the parameter that it is coloured by has no value.
+/// Colour of a volume (sRGB) where its colouring parameter is absent.
 inline constexpr glm::vec3 kNoValueColor{0.5f};
 
-/// The parameter that gives a technique its colours beside the one it shows; "": none does.
+/// The parameter that colours a technique instead of the one it shows; "": none.
 inline const std::string& colorByOf(const Technique& technique) {
     static const std::string kNone;
     return std::visit(
@@ -175,7 +176,7 @@ inline const std::string& colorByOf(const Technique& technique) {
         technique);
 }
 
-/// The look of a technique that takes one, else null.
+/// The look of a technique that supports one, else null.
 inline const Look* lookOf(const Technique& technique) {
     return std::visit(
         [](const auto& own) -> const Look* {
@@ -193,9 +194,9 @@ struct Layer {
     std::string name;
     bool visible = true;
     Technique technique;
-    std::string lens = {};     ///< name of the lens that it is drawn in alone; "" = everywhere
-    std::string transfer = {}; ///< name of a transfer function of its own, "" = that of its channel
-    double timeShift = 0;      ///< seconds, from the time of the scene to the one it shows
+    std::string lens = {};     ///< name of the lens that it is drawn in; "": everywhere
+    std::string transfer = {}; ///< name of its own transfer function; "": that of its channel
+    double timeShift = 0;      ///< seconds, added to the scene's time
     BrushEffect brushes = BrushEffect::Fade;
     bool operator==(const Layer&) const = default;
     static void describe(auto& self, auto&& visit) {

@@ -13,7 +13,7 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr double kStrongest = 8; ///< factor on opacity by which a lens enhances, or its inverse to suppress
+constexpr double kStrongest = 8; ///< opacity factor by which a lens enhances; its inverse suppresses
 
 void setEffect(PlacedLens& placed, const Lens& lens) {
     const double strength = double(lens.strength);
@@ -40,7 +40,7 @@ void setEffect(PlacedLens& placed, const Lens& lens) {
     }
 }
 
-/// Rows of a matrix.
+/// A matrix from its rows.
 glm::dmat3 rows(glm::dvec3 x, glm::dvec3 y, glm::dvec3 z) {
     return glm::transpose(glm::dmat3(x, y, z));
 }
@@ -58,7 +58,7 @@ void setPlace(PlacedLens& placed, const Lens& lens, const Camera& camera) {
     placed.fromUnit = glm::dmat3(right * size.x, up * size.x, glm::dvec3(0));
     placed.toUnit = rows(right / size.x, up / size.x, glm::dvec3(0));
     if (camera.projection == Projection::Orthographic) return;
-    // Sideways of the line from the eye through its middle, measured at the middle's depth.
+    // Perpendicular to the line from the eye through its centre, measured at the centre's depth.
     const glm::dvec3 away = placed.center - cameraRay(camera, 1, {0, 0}).origin;
     const double depth = glm::dot(away, forward);
     if (!(depth > 1e-6)) return;

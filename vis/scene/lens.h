@@ -7,13 +7,14 @@
 #include <string>
 #include <vector>
 
-/// Magic lenses: regions of space inside which the picture is made in another way (C. Tominski et al.: Interactive
-/// lenses for visualization, 2017). A lens acts on the layers that belong to no lens and on those of the lenses before
-/// it in the list; layers that belong to it are drawn inside it alone. Twins: vis/shaders/lib/lens.glsl, lenses.glsl.
+/// Magic lenses: regions of space with a different rendering (C. Tominski et al.: Interactive lenses for visualization,
+/// 2017). A lens acts on layers without a lens and on those of the lenses before it in the list; layers of a lens are
+/// drawn only inside it. Twins: vis/shaders/lib/lens.glsl, lenses.glsl.
 namespace tessera::vis {
 
-/// What happens inside to the layers below: they give way (to the lens's own layers, or to nothing), stay while all
-/// else goes, become denser, fainter and greyer, larger, or show the brushes (outside all counts as focus then).
+/// Effect on the layers below: Replace hides them inside, in favour of the lens's own layers or of nothing; Only hides
+/// them outside; Enhance makes them denser, Suppress fainter and greyer, Magnify larger; Focus confines the effect of
+/// brushes to the inside (everything outside counts as focus).
 enum class LensEffect { Replace, Only, Enhance, Suppress, Magnify, Focus };
 inline constexpr std::string_view kLensEffectNames[] = {"replace", "only", "enhance", "suppress", "magnify", "focus"};
 
@@ -23,17 +24,17 @@ struct Lens {
     LensShape shape = LensShape::Sphere;
     LensEffect effect = LensEffect::Replace;
     glm::dvec3 center{0};        ///< physical
-    bool followsCursor = false;  ///< lies at the linked cursor instead
-    bool followsPointer = false; ///< 3D views move it to what lies under the mouse
-    glm::vec3 size{0.2f};        ///< half of its edges, or its radii along its own axes, world; of a disc only x counts
-    glm::vec3 rotation{0};       ///< degrees; around x, then y, then z of the world
-    float rim = 0.15f;           ///< share of its radius over which it fades out
+    bool followsCursor = false;  ///< its centre is the linked cursor
+    bool followsPointer = false; ///< 3D views move it to the position under the mouse
+    glm::vec3 size{0.2f};        ///< half edges, or radii along its own axes, world; a disc uses x only
+    glm::vec3 rotation{0};       ///< degrees; about the world's x, then y, then z axis
+    float rim = 0.15f;           ///< fraction of the radius over which it fades out
     bool inverted = false;       ///< acts outside
-    float strength = 1;          ///< 0: nothing happens
-    float magnification = 2.5f;  ///< in the middle; Magnify only
-    float detail = 1;            ///< factor on RenderParams::detail of the bricks it meets
+    float strength = 1;          ///< 0: no effect
+    float magnification = 2.5f;  ///< at the centre; Magnify only
+    float detail = 1;            ///< factor on RenderParams::detail for the bricks it intersects
     bool marks = true;
-    glm::vec3 color{0.55f, 0.85f, 1.0f}; ///< sRGB, of its outline
+    glm::vec3 color{0.55f, 0.85f, 1.0f}; ///< sRGB, outline
 
     bool operator==(const Lens&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -93,11 +94,11 @@ struct Lens {
     }
 };
 
-inline constexpr int kMaxLenses = 8; ///< further ones are left out
+inline constexpr int kMaxLenses = 8; ///< further ones are ignored
 
-/// A lens in world space. A point's place in it is u = toUnit (p - center); its radius there, 0 in the middle and 1 on
-/// the outline, is |u| (sphere), max |u_i| (box), max(|u_xy|, |u_z|) (cylinder), |u_xy| / (1 + u_z) (disc: in the
-/// picture |u_xy| at the depth of its middle).
+/// A lens in world space. A point's lens coordinates are u = toUnit (p - center); its normalised radius, 0 at the
+/// centre and 1 on the outline, is |u| (sphere), max |u_i| (box), max(|u_xy|, |u_z|) (cylinder), |u_xy| / (1 + u_z)
+/// (disc: in the picture |u_xy| at the depth of its centre).
 struct PlacedLens {
     std::string name;
     LensShape shape = LensShape::Sphere;
@@ -105,44 +106,44 @@ struct PlacedLens {
     double rim = 0;
     bool inverted = false, marks = false;
     glm::dvec3 center{0};
-    glm::dmat3 toUnit{1}, fromUnit{1}; ///< of a disc, fromUnit leaves u_z out
-    double inside = 1, outside = 1;    ///< factors on the opacity of the layers below, where the weight is 1 and 0
-    double saturation = 1;             ///< factor on their saturation at weight 1
-    double focus = 0;                  ///< share of the brushes' effect that it confines to itself
+    glm::dmat3 toUnit{1}, fromUnit{1}; ///< for a disc, fromUnit ignores u_z
+    double inside = 1, outside = 1;    ///< opacity factors on the layers below at weight 1 and 0
+    double saturation = 1;             ///< saturation factor on them at weight 1
+    double focus = 0;                  ///< how much it confines the brushes to its inside
     double magnification = 1;
     double detail = 1; ///< Lens::detail
 
     bool operator==(const PlacedLens&) const = default;
     double radius(glm::dvec3 world) const;
-    /// 1 inside, 0 outside, smoothstep over the rim; the other way round if inverted.
+    /// 1 inside, 0 outside, smoothstep over the rim; reversed if inverted.
     double weight(glm::dvec3 world) const;
-    /// Where the data that are shown at a place come from: at radius r as far from the middle as 1 / (1 + d (1 - r))
-    /// of r says, d = magnification - 1 (the graphical fisheye of M. Sarkar and M. Brown, 1992, backwards).
+    /// The position whose data are shown at `world`: at radius r, the distance from the centre is multiplied by 1 / (1
+    /// + d (1 - r)), d = magnification - 1 (inverse of the graphical fisheye of M. Sarkar and M. Brown, 1992).
     glm::dvec3 bend(glm::dvec3 world) const;
-    /// Changes opacity or saturation of the layers below.
+    /// Whether it changes opacity or saturation of the layers below.
     bool acts() const { return effect != LensEffect::Magnify && effect != LensEffect::Focus; }
 };
 
-/// The enabled lenses, at most kMaxLenses, in their order.
+/// The enabled lenses, at most kMaxLenses, in order.
 std::vector<PlacedLens> placeLenses(const std::vector<Lens>& lenses, const WorldFrame& frame, const Camera& camera,
                                     glm::dvec3 cursor);
 
-/// Position of the lens of a name, -1 if none.
+/// Index of the lens with a name, -1 if there is none.
 int findLens(const std::vector<PlacedLens>& lenses, const std::string& name);
 
-/// What lenses do to a layer at a place: one that belongs to lens `own` (-1: to none).
+/// Effect of all lenses on a layer at a position; the layer belongs to lens `own` (-1: to none).
 struct LensAction {
     double opacity = 1, saturation = 1; ///< factors
 };
 LensAction lensAction(const std::vector<PlacedLens>& lenses, int own, glm::dvec3 world);
 
-/// All magnifying lenses, the last one of the list looked through first. What lies in the box stays in it.
+/// Applies all magnifying lenses, the last of the list first. Positions inside the box stay inside.
 glm::dvec3 bend(const std::vector<PlacedLens>& lenses, glm::dvec3 world, glm::dvec3 halfSize);
 
-/// A degree of interest as the lenses that confine the brushes leave it.
+/// The degree of interest after lenses that confine the brushes.
 double confine(const std::vector<PlacedLens>& lenses, double doi, glm::dvec3 world);
 
-/// Lenses for functions of physical positions.
+/// Lens weights as functions of physical positions.
 struct LensSpace {
     std::vector<PlacedLens> lenses;
     WorldFrame frame;

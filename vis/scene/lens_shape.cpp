@@ -10,8 +10,8 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr int kParts = 64;    ///< of a circle
-constexpr int kEdgeParts = 8; ///< of an edge, so that its farther half is faint
+constexpr int kParts = 64;    ///< segments of a circle
+constexpr int kEdgeParts = 8; ///< segments of an edge, so that its farther half can be faint
 
 using Line = std::function<void(glm::dvec3 from, glm::dvec3 to, float strength)>;
 
@@ -29,7 +29,7 @@ void edge(const Line& line, glm::dvec3 a, glm::dvec3 b) {
         line(glm::mix(a, b, double(i) / kEdgeParts), glm::mix(a, b, double(i + 1) / kEdgeParts), 1);
 }
 
-/// The rim of a ball of radius 1 as it is seen from `eye`, or along a direction where that is none.
+/// The silhouette of the unit sphere as seen from `eye`, or, if `direction`, along that direction.
 void rim(const Line& line, glm::dvec3 eye, bool direction) {
     const double distance = glm::length(eye);
     if (!(distance > (direction ? 0 : 1))) return;

@@ -6,20 +6,19 @@
 #include <string>
 #include <vector>
 
-/// How surfaces and samples of the ray caster are lit: the lights and the surface model, whose formulas
-/// vis/optics/surface_light.h (double) and vis/shaders/lib/lighting.glsl (float) have.
+/// Lighting of surfaces and samples: lights and reflection models; the formulas are in vis/optics/surface_light.h
+/// (double) and vis/shaders/lib/lighting.glsl (float).
 ///
-/// All light is linear. A light of intensity 1 that falls straight on a white Lambert surface makes it 1. Colours of
-/// lights are sRGB and become linear first.
+/// All light is linear. A light of intensity 1 at normal incidence makes a white Lambertian surface 1. Colours of
+/// lights are sRGB and converted to linear light first.
 namespace tessera::vis {
 
 enum class LightKind { Viewer, World, Point };
 inline constexpr std::string_view kLightKindNames[] = {"viewer", "world", "point"};
 
-/// One light. `viewer` and `world` are infinitely far away; their direction is given from the viewer's axes, or from
-/// the data's, where azimuth 0 and elevation 0 is towards +z and elevation 90 towards +y. A point light stands at
-/// `position` (world, longest edge of the box = 1, its centre = 0) and falls off with the square of the distance
-/// from 1.
+/// One light. `viewer` and `world` lights are directional; their direction is given in the viewer's axes, or in the
+/// data's, where azimuth 0 and elevation 0 is +z and elevation 90 is +y. A point light is at `position` (world, longest
+/// edge of the box = 1, its centre = 0) and attenuated by the squared distance, from 1 at distance 1.
 struct Light {
     bool enabled = true;
     LightKind kind = LightKind::Viewer;
@@ -62,13 +61,13 @@ struct Light {
 enum class Environment { None, Sky, Studio, SoftBox, Picture };
 inline constexpr std::string_view kEnvironmentNames[] = {"none", "sky", "studio", "softBox", "picture"};
 
-/// Light from all around (vis/optics/light_maps.h).
+/// Light from the environment (vis/optics/light_maps.h).
 struct EnvironmentLight {
     Environment kind = Environment::None;
     std::string picture = {}; ///< file of Environment::Picture (vis/image/light_picture.h)
     float strength = 1, reflection = 1;
     float turn = 0;       ///< degrees
-    bool follows = false; ///< turns with the viewer
+    bool follows = false; ///< rotates with the viewer
     bool operator==(const EnvironmentLight&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.kind, FieldInfo{.key = "kind",
@@ -106,13 +105,13 @@ struct EnvironmentLight {
 
 /// Shadows and light inside the volume (vis/optics/light_volume.h); all off by default.
 struct Shadows {
-    float strength = 0;     ///< of shadows
-    float occlusion = 0;    ///< of ambient occlusion
-    float reach = 0.12f;    ///< world: how far occlusion looks
-    float translucency = 0; ///< share of light that matter passes on, coloured
-    float scatter = 0.5f;   ///< how soft that light becomes
-    bool meshes = true;     ///< surfaces of polygons cast them too
-    int resolution = 64;    ///< cells along the longest edge
+    float strength = 0;     ///< strength of shadows
+    float occlusion = 0;    ///< strength of ambient occlusion
+    float reach = 0.12f;    ///< world: range of ambient occlusion
+    float translucency = 0; ///< fraction of light scattered forward, coloured by the medium
+    float scatter = 0.5f;   ///< softness of that light
+    bool meshes = true;     ///< meshes cast shadows too
+    int resolution = 64;    ///< light grid cells along the longest edge
     bool any() const { return strength > 0 || occlusion > 0 || translucency > 0; }
     bool operator==(const Shadows&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -158,7 +157,7 @@ inline constexpr std::string_view kLightModelNames[] = {"phong", "physical"};
 struct Lighting {
     LightModel model = LightModel::Phong;
     std::vector<Light> lights = std::vector<Light>(1);
-    bool inMaps = false; ///< the lights shine through cube maps
+    bool inMaps = false; ///< the lights are added to the cube maps
     EnvironmentLight environment;
     Shadows shadows;
     float ambient = 0.25f;
@@ -216,6 +215,6 @@ struct Lighting {
     }
 };
 
-inline constexpr int kMaxLights = 16; ///< MAX_LIGHTS of the shader; further ones are left out
+inline constexpr int kMaxLights = 16; ///< MAX_LIGHTS of the shader; further ones are ignored
 
 } // namespace tessera::vis

@@ -4,12 +4,13 @@
 
 namespace tessera::vis {
 
-/// What the renderer may take of the machine.
+/// Resources that the renderer may use.
 struct RenderLimits {
-    int textureMemory = 1024;   ///< MiB; a picture that is waited for may take more
-    int brickMemory = 2048;     ///< MiB of decoded bricks in RAM
-    float keptChange = 0.0005f; ///< share of a parameter's range: textures of bricks that move less with time stay
-    float frameTime = 60;       ///< ms of the window's time that one frame may take while something moves
+    int textureMemory = 1024; ///< MiB; may be exceeded for a picture that the caller waits for
+    int brickMemory = 2048;   ///< MiB of decoded bricks in RAM
+    float keptChange =
+        0.0005f;          ///< fraction of a parameter's range: bricks that change less over time keep their textures
+    float frameTime = 60; ///< ms of the GUI thread per frame during interaction
 
     bool operator==(const RenderLimits&) const = default;
     static void describe(auto& self, auto&& visit) {

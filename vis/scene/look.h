@@ -5,11 +5,11 @@
 #include <glm/vec3.hpp>
 #include <optional>
 
-/// Looks: styles of drawing that a volume layer or an iso-surface may take, each part of its own and all of them
-/// together. What the parts compute is written down in vis/optics/look_shading.h.
+/// Looks: drawing styles of volume layers and iso-surfaces, whose elements can be combined. The formulas are in
+/// vis/optics/look_shading.h.
 namespace tessera::vis {
 
-/// Warm where light falls, cool where it does not (Gooch et al.: A non-photorealistic lighting model, 1998).
+/// Warm colours facing the light, cool colours facing away (Gooch et al.: A non-photorealistic lighting model, 1998).
 struct WarmCool {
     float amount = 1;
     glm::vec3 warmColor{0.95f, 0.78f, 0.35f}, coolColor{0.12f, 0.2f, 0.5f}; ///< sRGB
@@ -33,7 +33,7 @@ struct WarmCool {
     }
 };
 
-/// Opacity by steepness (Rheingans and Ebert: Volume illustration, 2001).
+/// Opacity by gradient magnitude (Rheingans and Ebert: Volume illustration, 2001).
 struct BoundaryEnhancement {
     float retained = 0.2f, strength = 2, exponent = 1;
     bool operator==(const BoundaryEnhancement&) const = default;
@@ -54,7 +54,7 @@ struct BoundaryEnhancement {
     }
 };
 
-/// Opacity where the surface turns away from the viewer (Rheingans and Ebert 2001).
+/// Opacity where the surface faces away from the viewer (Rheingans and Ebert 2001).
 struct SilhouetteEnhancement {
     float retained = 0.15f, strength = 3, exponent = 2.5f;
     bool operator==(const SilhouetteEnhancement&) const = default;
@@ -75,7 +75,7 @@ struct SilhouetteEnhancement {
     }
 };
 
-/// Colours pale with distance, as in air.
+/// Depth cueing: colours fade with distance.
 struct DistanceColor {
     float amount = 0.7f, exponent = 1.3f;
     bool toBackground = true;
@@ -99,7 +99,7 @@ struct DistanceColor {
     }
 };
 
-/// Light in steps, outlines of even width (Kindlmann et al.: Curvature-based transfer functions, 2003).
+/// Quantised lighting and outlines of constant width (Kindlmann et al.: Curvature-based transfer functions, 2003).
 struct Cartoon {
     float amount = 1;
     int steps = 3;
@@ -128,7 +128,7 @@ enum class Stick { Charcoal, Chalk };
 inline constexpr std::string_view kStickNames[] = {"charcoal", "chalk"};
 
 /// Strokes on paper grain (after Majumder and Gopi: Hardware accelerated real time charcoal rendering, 2002). The grain
-/// is fixed to the object; the paper is the scene's.
+/// is fixed to the object; the paper belongs to the scene.
 struct CharcoalDrawing {
     Stick stick = Stick::Charcoal;
     glm::vec3 color{0.07f, 0.067f, 0.065f}; ///< sRGB
@@ -191,8 +191,7 @@ struct CharcoalDrawing {
     }
 };
 
-/// Lines where the surface meets planes of even distance along x, y and z: a wire frame of the shape, whatever it is
-/// made of.
+/// Intersection lines of the surface with equidistant planes along x, y and z: a wire frame for any shape.
 struct WireFrame {
     float spacing = 0.08f;
     float width = 1.2f; ///< pixels
@@ -221,7 +220,7 @@ struct WireFrame {
     }
 };
 
-/// What brushes leave of a look.
+/// Where a look applies, by degree of interest.
 enum class LookPart { Everything, Context, Focus };
 inline constexpr std::string_view kLookPartNames[] = {"everything", "context", "focus"};
 
@@ -240,7 +239,7 @@ struct Look {
     static constexpr std::string_view kPresetNames[] = {"plain",  "tone",     "illustration", "boundaries",
                                                         "glass",  "distance", "cartoon",      "charcoal",
                                                         "pencil", "sanguine", "chalk",        "wire"};
-    /// One of kPresetNames; nullopt of others.
+    /// The look of a preset; nullopt for other names.
     static std::optional<Look> preset(std::string_view name);
 
     static void describe(auto& self, auto&& visit) {
@@ -265,7 +264,7 @@ constexpr FieldInfo lookField(bool applies = true) {
     return {.key = "look", .unit = "", .doc = "Style of drawing", .applies = applies};
 }
 
-/// What the picture lies on.
+/// Paper as the ground of a picture.
 struct Paper {
     glm::vec3 color{0.945f, 0.925f, 0.88f}; ///< sRGB
     float tooth = 0.5f, grain = 2;

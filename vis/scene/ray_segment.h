@@ -2,7 +2,7 @@
 
 namespace tessera::vis {
 
-/// Part of a ray, as distances from its origin.
+/// An interval of a ray, as distances from its origin.
 struct RaySegment {
     double enter = 0, exit = 0;
 };

@@ -25,7 +25,7 @@ int peelsOf(const Scene& scene) {
 }
 
 bool drawn(const Scene& scene, const GeometryLayer& layer) {
-    // Nothing is context where nothing is brushed.
+    // Without an active brush there is no context.
     return layer.geometry && layer.style.opacity > 0 &&
            (layer.brushes != BrushEffect::ContextOnly || scene.selection.active());
 }

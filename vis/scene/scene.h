@@ -22,23 +22,23 @@ namespace tessera::vis {
 enum class Filter { AverageQuasi, Average, Tetrahedral };
 inline constexpr std::string_view kFilterNames[] = {"quasi", "average", "tetrahedral"};
 
-/// What samples composite volumes; see vis/optics/proxy.h.
+/// How composite volumes are sampled; see vis/optics/proxy.h.
 enum class Proxy { Rays, Slices, Shells, Stacks };
 inline constexpr std::string_view kProxyNames[] = {"rays", "slices", "shells", "stacks"};
 
 /// Settings of the shared ray caster.
 struct RenderParams {
     Filter filter =
-        Filter::AverageQuasi; ///< reconstruction; on CC "quasi" is prefiltered trilinear, the others trilinear
-    float detail = 1;         ///< pixels; voxels of bricked data finer than this are shown at a coarser level
-    float importance = 1;     ///< levels by which bricks with nothing to show may be coarser
+        Filter::AverageQuasi; ///< reconstruction filter; on CC "quasi" is prefiltered trilinear, all others trilinear
+    float detail = 1;         ///< pixels: bricked data use a coarser level where voxels would be smaller
+    float importance = 1;     ///< number of levels by which unimportant bricks may be coarser
     RenderLimits limits;
-    float stepVoxels = 0.5f; ///< distance between samples, in cells of the finest level that the picture wants
+    float stepVoxels = 0.5f; ///< sample distance in cells of the finest level wanted
     volume::GradientSpan gradient = volume::GradientSpan::Neighbours;
-    int normalBits = 0;     ///< of either coordinate of a gradient's direction, 0: as they are
+    int normalBits = 0;     ///< quantisation of gradient directions per coordinate, 0: none
     bool jitter = false;    ///< vis/optics/jitter.h
-    int samples = 4;        ///< rays per pixel of a still
-    bool cullHidden = true; ///< bricks behind what is opaque stay coarse: vis/demand/hidden_bricks.h
+    int samples = 4;        ///< rays per pixel of a picture at rest
+    bool cullHidden = true; ///< occlusion culling: vis/demand/hidden_bricks.h
     float adaptiveStep = 0; ///< vis/optics/adaptive_step.h
 
     Proxy proxy = Proxy::Rays;
@@ -105,46 +105,45 @@ struct RenderParams {
     }
 };
 
-/// Everything that decides one rendered picture of the data (texts and axes are drawn over it by the views).
+/// Everything that determines a rendered picture of the data (views draw text and axes on top).
 struct Scene {
     Camera camera;
-    std::vector<Layer> layers;                        ///< drawn first to last; volume-like ones share one ray loop
-    std::map<std::string, TransferFunction> transfer; ///< by channel, or Layer::transfer; others use the default
+    std::vector<Layer> layers;                        ///< in drawing order; ray layers share one ray loop
+    std::map<std::string, TransferFunction> transfer; ///< by channel, or Layer::transfer; others use a default
     Selection selection;
     RenderParams render;
-    std::vector<GeometryLayer> geometry; ///< meshes and lines, made outside of the renderer
+    std::vector<GeometryLayer> geometry; ///< meshes and lines, computed outside the renderer
     Lighting lighting;
-    std::vector<Clip> clips; ///< what is drawn lies on the kept side of all
+    std::vector<Clip> clips; ///< only what all keep is drawn
     std::vector<Lens> lenses;
     Tone tone;
     glm::dvec3 stretch{1};
     glm::dvec3 cursor{0}; ///< physical
     double time = 0;
     glm::vec3 background{0.11f, 0.12f, 0.14f}; ///< sRGB
-    std::optional<Paper> paper = {};           ///< in place of the background; see paperOf()
-    bool showGround = true;                    ///< else the picture carries its opacity and lies on nothing
+    std::optional<Paper> paper = {};           ///< instead of the background; see paperOf()
+    bool showGround = true;                    ///< else the picture has an alpha channel and no background
     bool showBox = true;                       ///< wire box around the data
     glm::vec3 boxColor{0.6f};
     bool operator==(const Scene&) const = default;
 };
 
-/// The transfer function of a channel (or of a layer with one of its own) in a scene, the default one if it has none.
+/// The transfer function of a channel (or of a layer with its own), a default one if the scene has none.
 const TransferFunction& transferFor(const Scene& scene, const std::string& name);
 
-/// Surfaces of the scene's geometry, one behind the other, that are kept for each pixel: 0 where there is none, 1 where
-/// all are opaque, else kPeels.
+/// Number of depth-peeling layers of the scene's geometry: 0 without geometry, 1 if all is opaque, else kPeels.
 int peelsOf(const Scene& scene);
 
-/// Whether there is anything to see of a layer of geometry.
+/// Whether a geometry layer is visible.
 bool drawn(const Scene& scene, const GeometryLayer& layer);
 
 /// The lenses of a scene.
 std::vector<PlacedLens> placeLenses(const Scene& scene, const WorldFrame& frame);
 
-/// What the picture lies on: the scene's paper; or the paper that a visible layer's drawing wants (not in a lens
-/// alone), cream under charcoal, dark under chalk; nullopt: the background.
+/// The ground of the picture: the scene's paper, or else the paper of a visible layer's charcoal look (not drawn in a
+/// lens), cream under charcoal and dark under chalk; nullopt: the background.
 std::optional<Paper> paperOf(const Scene& scene);
-/// Its colour or the background's, sRGB.
+/// Colour of the paper or background, sRGB.
 glm::vec3 groundColor(const Scene& scene);
 
 } // namespace tessera::vis

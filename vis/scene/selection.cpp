@@ -14,7 +14,7 @@ void addOnce(std::vector<std::string>& names, const std::string& name) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
-/// Signed distance of a point to a polygon (even-odd), negative inside.
+/// Signed distance from a point to a polygon (even-odd rule), negative inside.
 double polygonDistance(std::span<const glm::dvec2> points, glm::dvec2 p) {
     double nearest = std::numeric_limits<double>::infinity();
     bool inside = false;
@@ -113,7 +113,7 @@ LassoTable lassoTable(const LassoRegion& lasso) {
     if (lasso.points.size() < 3) return table;
     std::vector<glm::dvec2> points;
     for (const glm::dvec2& point : lasso.points) points.push_back((point - table.place.center) / table.place.halfSize);
-    // A hard edge runs over one entry: it lies in the middle of that.
+    // A hard edge becomes a ramp one entry wide, centred on the outline.
     const double entry = 2 * table.place.extent / (kLassoTable - 1);
     const bool soft = lasso.soft > entry;
     for (std::size_t j = 0; j < kSide; ++j)

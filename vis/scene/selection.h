@@ -16,7 +16,7 @@ namespace tessera::vis {
 /// Values of a channel between lo and hi, with a soft edge outside. NaN never matches.
 struct BrushInterval {
     std::string channel;
-    double lo = 0, hi = 1; ///< physical values; degree of interest 1 between them
+    double lo = 0, hi = 1; ///< physical values between which the degree of interest is 1
     double soft = 0;       ///< physical width over which it falls linearly to 0 outside
 
     bool operator==(const BrushInterval&) const = default;
@@ -36,7 +36,8 @@ inline constexpr FieldInfo kBrushX{
 inline constexpr FieldInfo kBrushY{
     .key = "y", .unit = "", .doc = "Parameter along the second axis", .refersTo = "channel"};
 
-/// An interval in one channel, a rectangle in two, a box in more: all intervals must hold, so the DOI is their minimum.
+/// An interval in one channel, a rectangle in two, a box in more: the degree of interest is the minimum over the
+/// intervals.
 struct RangeRegion {
     static constexpr std::string_view kType = "range";
     std::vector<BrushInterval> intervals;
@@ -46,8 +47,8 @@ struct RangeRegion {
     }
 };
 
-/// An ellipse in two channels: with u, v the distances from the centre in radii and c the correlation, inside is
-/// (u^2 - 2 c u v + v^2) / (1 - c^2) <= 1, which the rectangle |u|, |v| <= 1 just holds.
+/// An ellipse in two channels: with u, v the distances from the centre in radii and c the correlation, the inside is
+/// (u^2 - 2 c u v + v^2) / (1 - c^2) <= 1, whose bounding rectangle is |u|, |v| <= 1.
 struct EllipseRegion {
     static constexpr std::string_view kType = "ellipse";
     std::string x, y;
@@ -68,12 +69,12 @@ struct EllipseRegion {
     }
 };
 
-/// A polygon in two channels, closed by itself; even-odd rule. The DOI is defined by lassoTable().
+/// A closed polygon in two channels; even-odd rule. The degree of interest is defined by lassoTable().
 struct LassoRegion {
     static constexpr std::string_view kType = "lasso";
     std::string x, y;
-    std::vector<glm::dvec2> points; ///< physical values; fewer than three hold nothing
-    double soft = 0;                ///< share of the half size of the polygon's box
+    std::vector<glm::dvec2> points; ///< physical values; fewer than three select nothing
+    double soft = 0;                ///< width of the soft edge, as a fraction of the half size of the polygon's box
     bool operator==(const LassoRegion&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.x, kBrushX);
@@ -83,7 +84,7 @@ struct LassoRegion {
     }
 };
 
-/// A ball in space; in data that are shown stretched its radii differ, so that it looks round.
+/// A ball in space; if the data are stretched its physical radii differ, so that it appears round.
 struct SphereRegion {
     static constexpr std::string_view kType = "sphere";
     glm::dvec3 center{0}, radius{1}; ///< physical
@@ -98,7 +99,7 @@ struct SphereRegion {
 
 struct BoxRegion {
     static constexpr std::string_view kType = "box";
-    glm::dvec3 center{0}, radius{1}; ///< physical; half of the edges
+    glm::dvec3 center{0}, radius{1}; ///< physical; half edges
     double soft = 0;
     bool operator==(const BoxRegion&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -108,10 +109,10 @@ struct BoxRegion {
     }
 };
 
-/// What lies in a lens, wherever that is now.
+/// The inside of a lens, at its current position.
 struct LensRegion {
     static constexpr std::string_view kType = "lens";
-    std::string lens; ///< name; "" = in any lens that marks
+    std::string lens; ///< name; "": any lens used as a brush
     bool operator==(const LensRegion&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.lens, FieldInfo{.key = "lens",
@@ -148,16 +149,16 @@ struct Brush {
     }
 };
 
-/// The one selection that every view shares. The degree of interest (DOI) of a sample is 1 when no brush is enabled.
-/// Else the enabled brushes meet in their order: and = min, or = max, minus = min with 1 - d; the first meets 1, or 0
-/// if it says "or".
+/// The selection shared by all views. The degree of interest (DOI) of a sample is 1 if no brush is enabled. Otherwise
+/// the enabled brushes are combined in order: and = min, or = max, minus = min with 1 - d, starting with 1, or with 0
+/// if the first brush is an "or".
 struct Selection {
     std::vector<Brush> brushes;
     float contextOpacity = 0.04f;   ///< opacity factor of samples with DOI 0
     float contextSaturation = 0.1f; ///< colour saturation of samples with DOI 0
-    float contextLightness = 1;     ///< of samples with DOI 0: 0 black, 1 as they are, 2 white
+    float contextLightness = 1;     ///< lightness of samples with DOI 0: 0 black, 1 unchanged, 2 white
     float brushColor = 0;           ///< how much samples take the colour of the brush that holds them most
-    float contextBlur = 0;          ///< share of the picture's height: radius over which DOI 0 is out of focus
+    float contextBlur = 0;          ///< blur radius at DOI 0, as a fraction of the picture's height
 
     bool operator==(const Selection&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -186,33 +187,33 @@ struct Selection {
                         .doc = "Blur radius of what is not brushed, as a share of the picture's height",
                         .range = Range{0, 0.05}});
     }
-    /// True when at least one brush is enabled.
+    /// Whether a brush is enabled.
     bool active() const;
 };
 
-/// A brush of intervals: what a drag in a plot makes.
+/// A brush from intervals, as made by dragging in a plot.
 Brush rangeBrush(std::vector<BrushInterval> intervals, std::string name = "brush");
 
-/// Channels a region looks at, each once; empty for regions in space.
+/// Channels that a region depends on, without duplicates; empty for regions in space.
 std::vector<std::string> regionChannels(const Region& region);
-/// Channels that the enabled brushes look at, each once.
+/// Channels that the enabled brushes depend on, without duplicates.
 std::vector<std::string> selectedChannels(const Selection& selection);
-/// Whether an enabled brush lies in space.
+/// Whether an enabled brush is a region in space.
 bool selectsSpace(const Selection& selection);
 /// Whether an enabled brush is a lens.
 bool selectsLens(const Selection& selection);
 
-/// 1 inside [lo, hi], 0 beyond the soft edge, linear between.
+/// 1 inside [lo, hi], linear to 0 at the end of the soft edge.
 double intervalDoi(const BrushInterval& interval, double value);
-/// Of a point at `radii` times the radius: 1 up to 1, 0 from 1 + soft on, linear between.
+/// 1 up to radius 1, linear to 0 at 1 + soft.
 double radialDoi(double radii, double soft);
-/// Distance of (u, v) from the middle of an ellipse, in radii.
+/// Normalised radius of (u, v) in an ellipse.
 double ellipseRadii(double u, double v, double correlation);
 
 inline constexpr int kLassoTable = 128; ///< entries a side
-/// The DOI of a lasso: entry (i, j) is that of the point center + halfSize * extent * (2 (i, j) / (kLassoTable - 1) -
-/// 1), linear between entries, 0 beyond them. Entries follow from the distance to the polygon, measured in half sizes
-/// of its box.
+/// The DOI of a lasso as a table: entry (i, j) is that of the point center + halfSize * extent * (2 (i, j) /
+/// (kLassoTable - 1) - 1), with bilinear interpolation, 0 outside. It follows from the signed distance to the polygon,
+/// in half sizes of its box.
 struct LassoPlace {
     glm::dvec2 center{0}, halfSize{1}; ///< of the polygon's box
     double extent = 1;                 ///< of the table, in half sizes
@@ -225,16 +226,16 @@ struct LassoTable {
 };
 LassoTable lassoTable(const LassoRegion& lasso);
 
-/// A selection made ready for many points. Brushes that are lenses hold nothing if `space` lacks the lens.
+/// A selection prepared for evaluation at many points. Lens brushes select nothing if `space` lacks the lens.
 class DoiFunction {
 public:
     explicit DoiFunction(const Selection& selection, LensSpace space = {});
-    /// The values to give, in this order.
+    /// The channels whose values are expected, in this order.
     const std::vector<std::string>& channels() const { return channels_; }
     /// Degree of interest of a point: values of channels() (NaN = absent) and its physical position. Thread-safe.
     double operator()(std::span<const double> values, glm::dvec3 position) const;
-    /// Of the brush that holds a point most (the first of equals; those that take away, or hold what lies outside, hold
-    /// nothing): its colour (sRGB) and how much it holds it. The same arguments.
+    /// The colour (sRGB) of the brush that holds a point most, the first among equals, and its degree of interest;
+    /// "minus" and inverted brushes do not count. Same arguments.
     struct Holder {
         glm::vec3 color{0};
         double interest = 0;
@@ -244,7 +245,7 @@ public:
 private:
     struct Part {
         Brush brush;
-        std::vector<int> channel; ///< positions in channels_: one per interval, or x and y
+        std::vector<int> channel; ///< indices into channels_: one per interval, or x and y
         LassoTable lasso;
     };
     double regionDoi(const Part& part, std::span<const double> values, glm::dvec3 position) const;
@@ -253,7 +254,7 @@ private:
     LensSpace space_;
 };
 
-/// Degree of interest of one point whose channels `valueOf` gives (NaN = absent).
+/// Degree of interest of one point; `valueOf` returns its channel values (NaN = absent).
 double degreeOfInterest(const Selection& selection, const std::function<double(const std::string& channel)>& valueOf,
                         glm::dvec3 position = glm::dvec3(0));
 

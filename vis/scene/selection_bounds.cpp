@@ -8,7 +8,7 @@ namespace {
 
 constexpr Range kAnything{0, 1};
 
-/// Absent values have none, so that the least is 0.
+/// Absent values do not match, so the minimum is 0.
 Range boundsOf(const BrushInterval& interval, const std::map<std::string, Range>& ranges) {
     const auto found = ranges.find(interval.channel);
     if (found == ranges.end()) return kAnything;

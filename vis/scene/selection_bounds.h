@@ -6,9 +6,9 @@
 
 namespace tessera::vis {
 
-/// Least and greatest degree of interest that points can have whose values of the channels lie in these ranges (both
-/// ends included) or are absent, wherever they are; never narrower than the truth. An empty range (lo > hi): all are
-/// absent. Channels that are not named, lassos, ellipses and regions in space tell nothing.
+/// Bounds of the degree of interest of points, anywhere in space, whose channel values lie in the given ranges
+/// (inclusive) or are absent. Conservative. An empty range (lo > hi): all values are absent. Unlisted channels, lassos,
+/// ellipses and regions in space do not narrow the bounds.
 Range interestBounds(const Selection& selection, const std::map<std::string, Range>& ranges);
 
 } // namespace tessera::vis

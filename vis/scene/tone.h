@@ -4,7 +4,7 @@
 
 #include <glm/vec3.hpp>
 
-/// From the light that the ray caster accumulates, which may exceed 1, to what a screen can show. Twin of
+/// Tone mapping: from accumulated light, which may exceed 1, to the range of a display. Twin:
 /// vis/shaders/lib/tone.glsl.
 namespace tessera::vis {
 
@@ -14,7 +14,7 @@ inline constexpr std::string_view kToneCurveNames[] = {"none", "reinhard", "film
 struct Tone {
     ToneCurve curve = ToneCurve::None;
     float exposure = 0; ///< stops
-    float white = 4;    ///< of Reinhard
+    float white = 4;    ///< white point of Reinhard's curve
     bool operator==(const Tone&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.curve, FieldInfo{.key = "curve",
@@ -35,11 +35,11 @@ struct Tone {
     }
 };
 
-/// Linear light, each channel x = light * 2^exposure >= 0:
-///   none: the light as it is, without exposure;
+/// Maps linear light; per component x = light * 2^exposure >= 0:
+///   none: the light unchanged, without exposure;
 ///   reinhard: x (1 + x / white^2) / (1 + x) (Reinhard et al., Photographic tone reproduction, 2002, equation 4);
 ///   filmic: x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14) (Narkowicz's fit of the ACES curve, 2016), at most 1.
-/// The picture's colour is divided by its opacity before and multiplied after, so that the background keeps its colour.
+/// The caller divides by the opacity before and multiplies after, so that the background keeps its colour.
 glm::dvec3 toneMap(glm::dvec3 light, const Tone& tone);
 
 } // namespace tessera::vis

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kColors = 1024;
 constexpr double kReferencePoints = 60000;
 
-/// Linear colour and opacity along a range.
+/// Linear colours and opacities sampled along a range.
 std::array<glm::vec4, kColors> tableOf(const TransferFunction& function) {
     std::array<glm::vec4, kColors> table{};
     for (std::size_t i = 0; i < kColors; ++i) {

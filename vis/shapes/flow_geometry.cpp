@@ -13,7 +13,7 @@ namespace tessera::vis {
 namespace {
 
 constexpr int kSides = 12;
-constexpr double kMostSamples = 3e7; ///< of one component: 120 MB
+constexpr double kMostSamples = 3e7; ///< samples of one component: 120 MB
 
 struct Frame {
     glm::dvec3 along, u, v; ///< right-handed, length 1
@@ -26,22 +26,22 @@ Frame frameAlong(glm::dvec3 direction) {
     return {along, u, glm::cross(along, u)};
 }
 
-/// Builds meshes from rings of vertices around axes, in stretched space.
+/// Builds meshes from rings of vertices around an axis, in stretched space.
 class Rings {
 public:
     explicit Rings(glm::dvec3 stretch) : stretch_(stretch) {}
-    /// A ring; `lean`: how much its normals point along the axis, for each unit outwards.
+    /// Adds a ring; `lean`: axial component of its normals per unit of radial component.
     void add(glm::dvec3 centre, const Frame& frame, double radius, double lean, double outwards, float scalar) {
         for (int i = 0; i < kSides; ++i) {
             const double angle = 2 * std::numbers::pi * i / kSides;
             const glm::dvec3 out = frame.u * std::cos(angle) + frame.v * std::sin(angle);
             mesh.positions.emplace_back((centre + out * radius) / stretch_);
-            // Normals turn the other way: their products with directions stay.
+            // Normals transform with the inverse transpose.
             mesh.normals.emplace_back(glm::normalize((out * outwards + frame.along * lean) * stretch_));
             mesh.scalars.push_back(scalar);
         }
     }
-    /// Triangles between the last ring and the one before it.
+    /// Adds triangles between the last two rings.
     void connect() {
         const auto first = std::uint32_t(mesh.positions.size()) - 2 * kSides;
         for (std::uint32_t i = 0; i < kSides; ++i) {
@@ -51,7 +51,7 @@ public:
             mesh.triangles.push_back({a, d, c});
         }
     }
-    /// A truncated cone between two places of an axis, its face alone.
+    /// Adds the lateral surface of a truncated cone between two positions on an axis.
     void face(glm::dvec3 from, glm::dvec3 to, const Frame& frame, double radiusFrom, double radiusTo, float scalar) {
         const double rise = glm::dot(to - from, frame.along), fall = radiusFrom - radiusTo;
         add(from, frame, radiusFrom, fall, rise, scalar);
@@ -64,14 +64,14 @@ private:
     glm::dvec3 stretch_;
 };
 
-/// The vertices of a line as drawn.
+/// The vertices of a line, in stretched space.
 struct Course {
     std::vector<glm::dvec3> places;
     std::vector<float> scalars;
 };
 
-/// Those that a course needs: between them none lies further than `apart` from the straight way, nor its scalar further
-/// than `step` from an even change. (Douglas and Peucker, Algorithms for the reduction of the number of points, 1973.)
+/// Removes vertices as long as positions stay within `apart` of the polyline and scalars within `step` of linear
+/// interpolation. (Douglas and Peucker, Algorithms for the reduction of the number of points, 1973.)
 Course simplified(const Course& course, double apart, double step) {
     const std::size_t n = course.places.size();
     if (n < 3) return course;
@@ -108,7 +108,7 @@ Course simplified(const Course& course, double apart, double step) {
     return out;
 }
 
-/// A line of a set, without vertices that fall on the one before.
+/// A line of a set, without coincident vertices.
 Course courseOf(const LineSet& lines, std::uint32_t begin, std::uint32_t end, double apart, glm::dvec3 stretch) {
     Course out;
     for (std::uint32_t i = begin; i < end; ++i) {
@@ -140,7 +140,7 @@ volume::SurfaceMesh glyphMesh(std::span<const Glyph> glyphs, glm::dvec3 stretch,
     return std::move(rings.mesh);
 }
 
-/// Values of the layer's channel at places; NaN where there is none.
+/// Values of the layer's channel at positions; NaN if absent.
 std::vector<float> valuesAt(const volume::BrickSource& source, const std::string& channel, int time, int level,
                             std::vector<glm::vec3> places, const Progress& progress) {
     volume::SurfaceMesh points;
@@ -153,7 +153,7 @@ std::vector<float> valuesAt(const volume::BrickSource& source, const std::string
 
 using Weight = std::function<double(glm::dvec3)>;
 
-/// 1 where the flow can be seen, else 0.
+/// Weight 1 where the speed is visible, else 0.
 Weight whereItFlows(const volume::VectorField& field, double slowest) {
     return [field, slowest](glm::dvec3 place) {
         const auto vector = field(place);
@@ -161,7 +161,7 @@ Weight whereItFlows(const volume::VectorField& field, double slowest) {
     };
 }
 
-/// A channel's share of its range, 0 where it is absent.
+/// Weight by a channel's value relative to its range, 0 where absent.
 Weight byChannel(const volume::BrickSource& source, int channel, int time, int level, const Progress& progress) {
     const Range range = source.info().channelRange(source.info().channel(channel));
     const auto samples =
@@ -191,7 +191,7 @@ Weight byInterest(const volume::BrickSource& source, const DoiFunction& interest
     };
 }
 
-/// What a layer is made of.
+/// The data of a flow layer.
 struct FlowData {
     int parameter = 0, level = 0;
     volume::VectorGrid grid;
@@ -238,7 +238,7 @@ std::vector<glm::dvec3> seedsOf(const volume::BrickSource& source, const FlowDat
                               });
 }
 
-/// The ways of particles through all times, coloured by what they meet when they are there.
+/// Particle paths through all times, coloured by the channel at the time of passage.
 LineSet particleWays(const volume::BrickSource& source, const FlowLayer& layer, int parameter, int time, int level,
                      std::span<const glm::dvec3> seeds, const volume::StreamlineSettings& settings,
                      const Progress& progress) {
@@ -258,7 +258,7 @@ LineSet particleWays(const volume::BrickSource& source, const FlowLayer& layer, 
         moments.insert(moments.end(), line.times.begin(), line.times.end());
         lines.ends.push_back(std::uint32_t(lines.positions.size()));
     }
-    // Vertices by the stored time before them; the values of both neighbours, blended.
+    // Group vertices by the stored time before them and interpolate between both neighbours.
     lines.scalars.resize(lines.positions.size());
     for (std::size_t before = 0; before < times.size(); ++before) {
         const double next = before + 1 < times.size() ? times[before + 1] : std::numeric_limits<double>::infinity();
@@ -286,7 +286,7 @@ LineSet particleWays(const volume::BrickSource& source, const FlowLayer& layer, 
 } // namespace
 
 volume::SurfaceMesh tubes(const LineSet& lines, double radius, glm::dvec3 stretch) {
-    constexpr double kColorSteps = 250; // that differ visibly
+    constexpr double kColorSteps = 250; // distinguishable colours over the range
     const auto [least, most] = std::minmax_element(lines.scalars.begin(), lines.scalars.end());
     const double step = lines.scalars.empty() ? 0 : double(*most - *least) / kColorSteps;
     Rings rings(stretch);
@@ -299,7 +299,7 @@ volume::SurfaceMesh tubes(const LineSet& lines, double radius, glm::dvec3 stretc
         Frame frame = frameAlong(course.places[1] - course.places[0]);
         rings.face(course.places[0], course.places[0], frame, 0, radius, course.scalars[0]);
         for (std::size_t i = 0; i < n; ++i) {
-            // The frame of the former ring, turned as little as the new direction asks for.
+            // Rotation-minimising frame: the former frame, rotated only as far as the new direction requires.
             const glm::dvec3 way = course.places[std::min(i + 1, n - 1)] - course.places[i > 0 ? i - 1 : 0];
             if (glm::length(way) > 0) frame.along = glm::normalize(way);
             const glm::dvec3 u = frame.u - frame.along * glm::dot(frame.u, frame.along);
@@ -372,7 +372,7 @@ std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, cons
     }
     const std::vector<float> scalars =
         valuesAt(source, layer.channel, time, level, {seeds.begin(), seeds.end()}, progress.part(0.4, 1));
-    double greatest = 0; // of those drawn, so that the longest is as long as wanted
+    double greatest = 0; // largest of those drawn, which gets the wanted length
     for (const glm::dvec3& seed : seeds) greatest = std::max(greatest, glm::length(*field(seed)));
     std::vector<Glyph> glyphs;
     for (std::size_t i = 0; i < seeds.size(); ++i) {

@@ -7,34 +7,34 @@
 
 #include <span>
 
-/// What a flow layer draws.
+/// Geometry of flow layers.
 namespace tessera::vis {
 
 /// An arrow or cone at a place.
 struct Glyph {
-    glm::dvec3 place{0};  ///< physical; where an arrow begins, the middle of a cone
-    glm::dvec3 vector{0}; ///< direction and length as drawn: physical times stretch
+    glm::dvec3 place{0};  ///< physical; the tail of an arrow, the centre of a cone
+    glm::dvec3 vector{0}; ///< direction and length as drawn: physical, times stretch
     float scalar = 0;
 };
 
-/// Round tubes around polylines, closed at both ends, with the vertices' scalars. They are round as drawn, with the
-/// axes stretched: `radius` is measured there. Vertices that the way and its colours can do without are left out.
+/// Tubes around polylines, with closed ends and the vertices' scalars. They are round in stretched space, where
+/// `radius` is measured. Vertices that neither shape nor colours need are omitted.
 volume::SurfaceMesh tubes(const LineSet& lines, double radius, glm::dvec3 stretch);
 
-/// Arrows with a shaft, or cones, round as drawn.
+/// Arrows with a shaft, or cones, round in stretched space.
 volume::SurfaceMesh arrows(std::span<const Glyph> glyphs, glm::dvec3 stretch);
 volume::SurfaceMesh cones(std::span<const Glyph> glyphs, glm::dvec3 stretch);
 
-/// The finest level of detail with few enough samples to follow a vector in, at some times at once.
+/// The finest level with few enough samples to keep `times` times of a vector in memory.
 int flowLevel(const volume::BrickGrid& grid, int times = 1);
 
-/// A flow layer of a data set, coloured by the values of its channel. Nothing where the data has no such vector.
-/// `interest`: of places, for layers whose beginnings follow the brushes; null: all of it. Throws Error, Cancelled.
+/// The geometry of a flow layer, coloured by its channel. Null if the data set has no such vector. `interest`: degree
+/// of interest by position, for seeding by brushes; null: 1 everywhere. Throws Error, Cancelled.
 std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, const FlowLayer& layer, int time,
                                          glm::dvec3 stretch, const Progress& progress = {},
                                          const DoiFunction* interest = nullptr);
 
-/// Where the lines or glyphs of a flow layer begin, as makeFlow() spreads them.
+/// The seeds of a flow layer, as makeFlow() distributes them.
 std::vector<glm::dvec3> flowSeeds(const volume::BrickSource& source, const FlowLayer& layer, int time,
                                   glm::dvec3 stretch, const Progress& progress = {},
                                   const DoiFunction* interest = nullptr);

@@ -17,7 +17,7 @@ glm::dmat4 planeRotation(Plane4 plane, double angle) {
     const auto [a, b] = kAxes[std::size_t(plane)];
     glm::dmat4 out(1);
     out[a][a] = out[b][b] = std::cos(angle);
-    out[a][b] = std::sin(angle); // column a: where axis a goes
+    out[a][b] = std::sin(angle); // column a: image of axis a
     out[b][a] = -std::sin(angle);
     return out;
 }
@@ -31,14 +31,14 @@ glm::dmat4 rotationOf(const Angles4& degrees) {
 
 Angles4 anglesOf(const glm::dmat4& rotation) {
     Angles4 angles{};
-    // Where w goes depends on xw, yw and zw alone: (-sin xw, -sin yw cos xw, -sin zw cos yw cos xw, cos cos cos).
+    // The image of w depends on xw, yw and zw only: (-sin xw, -sin yw cos xw, -sin zw cos yw cos xw, cos cos cos).
     const glm::dvec4 w = rotation[3];
     angles[5] = std::atan2(-w.z, w.w);
     angles[4] = std::atan2(-w.y, std::hypot(w.z, w.w));
     angles[3] = std::atan2(-w.x, std::hypot(w.y, std::hypot(w.z, w.w)));
     const glm::dmat4 last = planeRotation(Plane4::ZW, angles[5]) * planeRotation(Plane4::YW, angles[4]) *
                             planeRotation(Plane4::XW, angles[3]);
-    // What remains turns x, y, z only: z goes to (-sin xz, -sin yz cos xz, cos yz cos xz).
+    // The rest rotates x, y, z only: z is mapped to (-sin xz, -sin yz cos xz, cos yz cos xz).
     const glm::dmat4 rest = glm::transpose(last) * rotation;
     const glm::dvec4 z = rest[2];
     angles[2] = std::atan2(-z.y, z.z);
@@ -55,7 +55,7 @@ Projected4 project(const Projection4& projection, double radius, glm::dvec4 rota
     const double eye = std::max(projection.eye, 1.05), eye3 = std::max(projection.eye3, 1.05);
     const glm::dvec4 p = rotated / radius;
     const double first = eye / (eye - p.w);
-    // A ball of radius 1 seen from `eye` becomes one of radius eye / sqrt(eye^2 - 1).
+    // The image of the unit ball seen from `eye` is a ball of radius eye / sqrt(eye^2 - 1).
     const double radius3 = eye / std::sqrt(eye * eye - 1), away = eye3 * radius3;
     const glm::dvec3 q = glm::dvec3(p) * first;
     const double second = away / (away - q.z);

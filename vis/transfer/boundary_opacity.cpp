@@ -8,9 +8,9 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr double kReach = 2; ///< deviations of the blur that the emphasis covers on either side
+constexpr double kReach = 2; ///< the emphasis covers this many standard deviations of the blur on either side
 
-/// Without the points that lie between their neighbours, within what a display can show.
+/// Removes points that lie between their neighbours, within the resolution of a display.
 std::vector<glm::vec2> simplified(const std::vector<glm::vec2>& points) {
     std::vector<glm::vec2> out;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -35,7 +35,7 @@ std::vector<glm::vec2> boundaryOpacity(const volume::BoundaryCurves& curves, con
         const double value = glm::mix(curves.range.lo, curves.range.hi, (double(v) + 0.5) / bins);
         const double away = curves.thickness > 0 ? curves.distance[v] / curves.thickness : curves.distance[v];
         const double opacity =
-            std::abs(away) <= kReach ? curveAt(function.emphasis, 0.5 + 0.5 * away / kReach) : 0.0; // NaN: none
+            std::abs(away) <= kReach ? curveAt(function.emphasis, 0.5 + 0.5 * away / kReach) : 0.0; // NaN: no boundary
         const double x = (value - range.lo) / width;
         if (x >= 0 && x <= 1) points.emplace_back(x, std::clamp(opacity, 0.0, 1.0));
     }

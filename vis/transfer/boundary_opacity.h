@@ -5,9 +5,9 @@
 
 namespace tessera::vis {
 
-/// The opacity curve that shows boundaries: b(p(v)) at the middle of every value bin, with b = function.emphasis and p
-/// the distance in deviations of the blur (Kindlmann and Durkin 1998, section 6); 0 where no boundary has the value.
-/// Places are those of the function over `range`. Points that lie on a line are left out.
+/// The opacity curve that emphasises material boundaries: b(p(v)) at the centre of every value bin, with b =
+/// function.emphasis and p the signed distance to the boundary in standard deviations of the blur (Kindlmann and Durkin
+/// 1998, section 6); 0 for values without a boundary. Positions refer to `range`. Collinear points are omitted.
 std::vector<glm::vec2> boundaryOpacity(const volume::BoundaryCurves& curves, const TransferFunction& function,
                                        Range range);
 

@@ -57,12 +57,12 @@ constexpr std::uint32_t kBlueRed[] = {
     0x94b8fb, 0xa5c4fb, 0xb7cffa, 0xcadaf7, 0xdde5f4, 0xf0f0f0, 0xf3dfdd, 0xf5cfcb, 0xf6beb9, 0xf5aea7, 0xf39e96,
     0xef8e86, 0xea7e77, 0xe46f68, 0xdc605a, 0xd3524e, 0xc94442, 0xbd3838, 0xb12c2e, 0xa51e24, 0x990b19, 0x8b0012};
 
-// The usual piecewise-linear rainbow; uneven in lightness, for comparison with older pictures.
+// The usual piecewise-linear rainbow; not uniform in lightness, for comparison with older pictures.
 constexpr std::uint32_t kJet[] = {0x000080, 0x0000ff, 0x0080ff, 0x00ffff, 0x80ff80,
                                   0xffff00, 0xff8000, 0xff0000, 0x800000};
 constexpr std::uint32_t kGray[] = {0x000000, 0xffffff};
-// The eight colours of Okabe and Ito ("Color Universal Design", 2002), told apart with any colour vision, with grey in
-// place of black and as the colour of 0, which is solid or outside in most data. Not interpolated.
+// The palette of Okabe and Ito ("Color Universal Design", 2002), distinguishable with colour vision deficiencies. Grey
+// replaces black and is the colour of 0, which is solid or outside in most data. Not interpolated.
 constexpr std::uint32_t kLabels[] = {0x999999, 0x0072b2, 0xe69f00, 0xd55e00, 0x009e73, 0xcc79a7, 0x56b4e9, 0xf0e442};
 
 } // namespace tessera::vis::colormap_data

@@ -10,7 +10,7 @@ namespace tessera::vis {
 namespace {
 
 constexpr float kTailOpacity = 0.8f;
-constexpr double kLeftOut = 0.002; ///< share of the values at either end that says nothing of how long a tail is
+constexpr double kLeftOut = 0.002; ///< fraction of outliers at either end that is ignored for the length of a tail
 
 double sumOf(std::span<const std::uint64_t> count) {
     return double(std::accumulate(count.begin(), count.end(), std::uint64_t(0)));
@@ -20,7 +20,7 @@ struct Bins {
     std::size_t begin = 0, end = 0;
 };
 
-/// The shortest run of bins that holds half of all values; the first of equal ones.
+/// The shortest run of bins that holds half of all values; the first among equals.
 Bins bulkOf(std::span<const std::uint64_t> count, double half) {
     Bins best{0, count.size()};
     double inside = 0;
@@ -32,7 +32,7 @@ Bins bulkOf(std::span<const std::uint64_t> count, double half) {
     return best;
 }
 
-/// How many of the first (or, backwards, last) bins hold at most `most` values.
+/// Number of first (or, with reverse iterators, last) bins that hold at most `most` values in total.
 std::size_t binsHolding(auto first, auto last, double most) {
     std::size_t bins = 0;
     double held = 0;
@@ -82,7 +82,7 @@ std::vector<glm::vec2> signedTailOpacity(std::span<const std::uint64_t> count, d
     const std::size_t half = count.size() / 2;
     const double most = share * sumOf(count);
     double beyond = 0;
-    std::size_t clear = half; // bins on either side of 0 that stay clear
+    std::size_t clear = half; // transparent bins on either side of 0
     while (clear > 0 &&
            (beyond += double(count[half - clear]) + double(count[count.size() - 1 - (half - clear)])) <= most)
         --clear;

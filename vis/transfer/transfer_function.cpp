@@ -64,7 +64,7 @@ double clamp01(double x) {
     return x >= 0 ? std::min(x, 1.0) : 0.0; // NaN gives 0
 }
 
-/// Colour of a label: those of the map in turn, so that it does not depend on which other labels there are.
+/// Colour of a label: the map's colours in turn, so that it does not depend on the other labels.
 glm::dvec3 labelColor(const Colormap& map, bool reversed, double label) {
     const auto count = static_cast<double>(map.colors.size());
     const double turn = std::isfinite(label) ? std::fmod(std::round(label), count) : 0;
@@ -72,7 +72,7 @@ glm::dvec3 labelColor(const Colormap& map, bool reversed, double label) {
     return unpack(map.colors[reversed ? map.colors.size() - 1 - i : i]);
 }
 
-/// Colour of a list of stops at x; beyond its ends the end colours.
+/// Colour of a list of stops at x; constant beyond its ends.
 glm::dvec3 stopColor(const std::vector<ColorStop>& stops, double x) {
     const auto next = std::find_if(stops.begin(), stops.end(), [&](const ColorStop& s) { return s.position > x; });
     if (next == stops.begin()) return stops.front().color;
@@ -81,7 +81,7 @@ glm::dvec3 stopColor(const std::vector<ColorStop>& stops, double x) {
     return glm::mix(glm::dvec3(a.color), glm::dvec3(b.color), (x - a.position) / (double(b.position) - a.position));
 }
 
-/// evaluate() at x = 0..1 along the range, where `value` is.
+/// evaluate() at position x in 0..1 of the range, where the value is `value`.
 glm::dvec4 evaluateAt(const TransferFunction& function, const Colormap& map, double x, double value) {
     const double along = function.reversed ? 1 - x : x;
     const glm::dvec3 shown = !function.colors.empty()         ? stopColor(function.colors, along)
@@ -90,7 +90,7 @@ glm::dvec4 evaluateAt(const TransferFunction& function, const Colormap& map, dou
     return {shown, clamp01(curveAt(function.opacity, x))};
 }
 
-/// Place of a value in a range, 0..1. A range without width still tells below from above.
+/// Position of a value in a range, 0..1. A range without width still separates values below and above.
 double placeIn(Range range, double value) {
     const double width = range.hi - range.lo;
     return clamp01(width != 0 ? (value - range.lo) / width : value > range.lo ? 1.0 : value < range.lo ? 0.0 : 0.5);
@@ -149,11 +149,11 @@ double regionOpacity(const TransferRegion& region, glm::dvec2 place) {
     case RegionShape::Rectangle:
         return opacity * std::min(1.0, (1 - std::max(std::abs(at.x), std::abs(at.y))) / soft);
     case RegionShape::Triangle: {
-        const double half = 0.5 * (at.y + 1); // of the triangle's width at this height
+        const double half = 0.5 * (at.y + 1); // half the triangle's width at this height, as a fraction
         return half > 0 ? opacity * clamp01((1 - std::abs(at.x) / half) / soft) : 0;
     }
     case RegionShape::Gaussian: {
-        const double edge = std::exp(-4.5); // three standard deviations out
+        const double edge = std::exp(-4.5); // value at three standard deviations
         return opacity * clamp01((std::exp(-4.5 * glm::dot(at, at)) - edge) / (1 - edge));
     }
     }

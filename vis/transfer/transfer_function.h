@@ -11,7 +11,7 @@
 
 namespace tessera::vis {
 
-/// A colour at a place of a colour map of one's own.
+/// A control point of a user-defined colour map.
 struct ColorStop {
     float position = 0; ///< 0..1 along the range
     glm::vec3 color{1}; ///< sRGB
@@ -27,15 +27,15 @@ struct ColorStop {
 enum class RegionShape { Rectangle, Triangle, Gaussian };
 inline constexpr std::string_view kRegionShapeNames[] = {"rectangle", "triangle", "gaussian"};
 
-/// Part of the plane of value (x, 0..1 along the range) and gradient magnitude (y, 0..1 up to gradientTop) that has
-/// opacity: the whole box of `size` around `centre`, the triangle that stands on its tip in it (after G. Kindlmann's
-/// and J. Kniss's widgets), or a Gaussian that fades to nothing at the ellipse in it (three standard deviations).
+/// A region of a 2D transfer function over value (x, 0..1 along the range) and gradient magnitude (y, 0..1 up to
+/// gradientTop): the box of `size` around `centre`, the triangle standing on its tip inside it (after the widgets of G.
+/// Kindlmann and J. Kniss), or a Gaussian that ends at the inscribed ellipse (three standard deviations).
 struct TransferRegion {
     RegionShape shape = RegionShape::Rectangle;
     glm::vec2 centre{0.5f, 0.5f}, size{0.3f, 0.6f};
-    float soft = 0.5f;    ///< share of the half width over which the opacity fades, not for Gaussians
+    float soft = 0.5f;    ///< fraction of the half width over which the opacity fades; not for Gaussians
     float opacity = 0.5f; ///< of a layer `kReferenceLength` thick
-    bool ownColor = true; ///< else the colour map's
+    bool ownColor = true; ///< otherwise the colour map's
     glm::vec3 color{0.95f, 0.75f, 0.35f};
     bool operator==(const TransferRegion&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -59,25 +59,25 @@ struct TransferRegion {
     }
 };
 
-/// What decides the opacity of composite layers.
+/// Kind of a composite layer's opacity: 1D curve or 2D regions.
 enum class TransferKind { Curve, Regions };
 inline constexpr std::string_view kTransferKindNames[] = {"curve", "regions"};
 
-/// How values of one channel become colour and opacity; shared by every view that shows the channel.
+/// Maps values of one channel to colour and opacity; shared by all views that show the channel.
 struct TransferFunction {
     std::string colormap = "viridis";
     bool reversed = false;
     bool autoRange = true;  ///< follow the parameter's range over all times
-    bool aboutZero = false; ///< the parameter's range as far below 0 as above, so that the middle is 0
-    Range range{0, 1};      ///< physical values at the ends of the colour map, used if !autoRange
+    bool aboutZero = false; ///< make the range symmetric about 0
+    Range range{0, 1};      ///< physical values at the ends of the colour map; used if !autoRange
     /// Opacity curve: x in 0..1 along the range, y the opacity of a layer `kReferenceLength` thick. Sorted by x, at
     /// least 2.
     std::vector<glm::vec2> opacity{{0.0f, 0.0f}, {1.0f, 0.8f}};
-    std::vector<ColorStop> colors; ///< sorted by position; a colour map of one's own, used instead of `colormap`
+    std::vector<ColorStop> colors; ///< sorted by position; a user-defined colour map, used instead of `colormap`
     TransferKind kind = TransferKind::Curve;
     std::vector<TransferRegion> regions;
     float gradientTop = 0.1f; ///< gradient magnitude at the top of the plane, in ranges per cell
-    /// Emphasis b(x) of boundaries: x in 0..1 for -1..1 cells from the middle of a boundary, y the opacity. Sorted by
+    /// Emphasis b(x) of boundaries: x in 0..1 for -1..1 cells from the centre of a boundary, y the opacity. Sorted by
     /// x.
     std::vector<glm::vec2> emphasis{{0.25f, 0.0f}, {0.5f, 0.6f}, {0.75f, 0.0f}};
 
@@ -129,38 +129,37 @@ inline constexpr double kReferenceLength = 1.0 / 128;
 struct ColormapInfo {
     std::string_view name, kind; ///< kind: "sequential", "diverging", "cyclic", "categorical", "other"
 };
-/// The colour maps that can be chosen, perceptually uniform ones first.
+/// All colour maps, perceptually uniform ones first.
 std::span<const ColormapInfo> colormaps();
 
-/// Colour (sRGB, 0..1) of a map at x in 0..1, linear between its control colours (a categorical map shows its colours
-/// as equal steps); unknown names give viridis.
+/// Colour (sRGB, 0..1) of a map at x in 0..1, interpolated linearly between its control colours (categorical maps as
+/// equal steps); unknown names give viridis.
 glm::dvec3 colormapColor(std::string_view name, double x);
 
-/// Range in use: the channel's own, made even about 0 where that is asked for, or the stated one.
+/// The effective range: the channel's own, made symmetric about 0 if wanted, or the stated one.
 Range effectiveRange(const TransferFunction& function, Range channelRange);
 
-/// For values whose sign matters: diverging colours with 0 in the middle, transparent there.
+/// For signed values: diverging colours centred at 0, which is transparent.
 TransferFunction divergingFunction();
 
-/// Colour and opacity at a physical value: the one definition that legends, tables, plots and the reference use. A
-/// categorical map colours a value by its nearest integer, whatever the range: label n has colour n modulo their
+/// Colour and opacity of a physical value; the single definition used by legends, tables, plots and the reference. A
+/// categorical map colours a value by its nearest integer, regardless of the range: label n has colour n modulo their
 /// number.
 glm::dvec4 evaluate(const TransferFunction& function, Range range, double value);
 
-/// Colour and opacity of a composite layer at a place of the plane of value and gradient magnitude (in ranges per
-/// cell): evaluate() where the curve decides; else of all regions there, seen together: opacity 1 - prod(1 - a), colour
-/// their mean weighted by opacity.
+/// Colour and opacity of a composite layer for a value and gradient magnitude (in ranges per cell): evaluate() for
+/// curves; otherwise all regions together: opacity 1 - prod(1 - a), colour the mean weighted by opacity.
 glm::dvec4 evaluate(const TransferFunction& function, Range range, double value, double gradient);
 
-/// Opacity of a region alone at a place of the plane, 0..1 each.
+/// Opacity of a single region at a position, 0..1 each.
 double regionOpacity(const TransferRegion& region, glm::dvec2 place);
 
-/// Linear between the points of a curve (sorted by x); beyond its ends the end values, at a jump the later one; 0 where
-/// there is no point.
+/// Piecewise-linear curve through points sorted by x; constant beyond its ends, at a jump the later value; 0 without
+/// points.
 double curveAt(std::span<const glm::vec2> curve, double x);
 
 /// evaluate() at the centres of `size` equal parts of the range, for a colour bar. RGBA, sRGB colour, not
-/// premultiplied. Only categorical maps depend on the range.
+/// premultiplied. The range matters for categorical maps only.
 std::vector<glm::vec4> makeTable(const TransferFunction& function, int size, Range range = {0, 1});
 
 } // namespace tessera::vis
