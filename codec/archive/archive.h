@@ -18,62 +18,62 @@ namespace tessera::codec {
 
 /// Result of verifyArchive.
 struct VerifyReport {
-    std::uint64_t bricks = 0;        ///< decoded, every level of each counted once
+    std::uint64_t bricks = 0;        ///< decoded; each counts once for all its levels
     std::uint64_t samples = 0;       ///< at full resolution
     std::uint64_t bytes = 0;         ///< whose checksum was computed
     std::vector<std::string> damage; ///< one line each, the first hundred
-    std::uint64_t damaged = 0;       ///< places, each once: copies of the header, former metadata, models, masks of
-                                     ///< bricks, bricks with bytes of their own
-    std::uint64_t damagedBricks = 0; ///< that cannot be read: damaged themselves, in their mask, their model, or the
-                                     ///< brick that they repeat
-    bool damagedHeader = false; ///< one of its two copies, as a crash during a commit may leave it; part of `damaged`
+    std::uint64_t damaged = 0; ///< damaged items, each counted once: copies of the header, former metadata, models,
+                               ///< masks of bricks, bricks with bytes of their own
+    std::uint64_t damagedBricks =
+        0; ///< unreadable bricks: damaged themselves, or in their mask, their model, or the brick they repeat
+    bool damagedHeader = false; ///< one of the two copies, possibly by a crash during a commit; included in `damaged`
 };
 
-/// An open .tsr archive: a source of bricks that reads a memory map. Thread-safe. Nothing in the file is trusted:
-/// header, metadata and index are checked when it is opened, each segment of a brick before it is decoded.
+/// An open .tsr archive: a source of bricks that reads a memory-mapped file. Thread-safe. Nothing in the file is
+/// trusted: header, metadata and index are checked on opening, each segment of a brick before it is decoded.
 ///
-/// It shows the contents of the file when it was opened, even while the file grows; open it again to see more.
+/// It has the contents of the file at the time of opening, even while the file grows; reopen it to see more.
 class Archive final : public volume::BrickSource {
 public:
-    /// Throws Error with file, place and reason when it is not an archive, of another version, truncated or damaged.
+    /// Throws Error with file, position and reason when the file is not an archive, has another version, or is
+    /// truncated or damaged.
     explicit Archive(const std::string& path);
     ~Archive() override;
 
     const volume::DatasetInfo& info() const override;
     const volume::BrickGrid& grid() const override;
     volume::BrickStats stats(const volume::BrickKey& key) const override;
-    /// Empty for archives without such statistics, and for magnitudes.
+    /// Empty for archives without these statistics, and for magnitudes.
     std::optional<volume::BrickDistribution> distribution(const volume::BrickKey& key) const override;
     std::optional<volume::BrickImportance> importance(const volume::BrickKey& key) const override;
     /// On D4*: between frames of the same parity.
     std::optional<volume::BrickChange> change(const volume::BrickKey& key, int toTime) const override;
-    /// Coarse levels are clamped to the range of the brick; floats that are not finite count as absent. Where several
-    /// parts of a parameter (volume/field/parts.h) meet in a brick, each coarse sample is computed from one part.
+    /// Coarse levels are clamped to the range of the brick; floats that are not finite become absent. If several parts
+    /// of a parameter (volume/field/parts.h) meet in a brick, each coarse sample is computed from one part.
     volume::BrickSamples read(const volume::BrickKey& key) const override;
 
     const Metadata& metadata() const;
     const std::string& path() const;
-    /// Version of the format.
+    /// The format version.
     std::uint32_t version() const;
-    /// Bytes of the archive; the file can be longer, by an append that is in progress or incomplete.
+    /// Size of the archive in bytes; the file may be longer because of an append in progress or an interrupted one.
     std::uint64_t fileBytes() const;
     /// Number of commits.
     int commits() const;
     /// True when the file has been appended to, or replaced, since it was opened.
     bool outdated() const;
-    /// Bytes a level adds, of all bricks, parameters and times.
+    /// Total bytes of the segments of a level, over all bricks, parameters and times.
     std::uint64_t levelBytes(int level) const;
     std::uint64_t maskBytes() const;
     int maskCount() const;
-    /// Number of bricks that repeat an earlier time, and the bytes they would have taken.
+    /// Number of bricks stored as repeats of an earlier time, and the bytes saved.
     struct Repeats {
         std::uint64_t bricks = 0, bytes = 0;
     };
     Repeats repeats() const;
-    /// How many times before the time of the key the stored brick lies; 0 if it has bytes of its own. For stored
-    /// components only.
+    /// How many times earlier the stored brick lies; 0 if the brick has its own bytes. For stored components only.
     int repeats(const volume::BrickKey& key) const;
-    /// Bytes of all levels of a brick, whether its own or those of the brick it repeats. For stored components only.
+    /// Bytes of all levels of a brick or of the brick it repeats. For stored components only.
     std::uint64_t brickBytes(const volume::BrickKey& key) const;
 
 private:
@@ -87,12 +87,12 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Opens an archive as a source of bricks; one of D4* frames shows BCC fields (volume/sources/alternating_source.h).
+/// Opens an archive as a source of bricks; a D4* archive provides BCC fields (volume/sources/alternating_source.h).
 /// Throws Error.
 std::shared_ptr<const volume::BrickSource> openArchive(const std::string& path);
 
-/// The stored samples of one component of a parameter at a time index, in their type: bit for bit what was packed when
-/// the archive is lossless. An odd frame of D4* lies on its moved grid. Throws Error when the data is damaged.
+/// Decodes the stored samples of one component of a parameter at a time index in their type: bit for bit as packed if
+/// the archive is lossless. An odd frame of D4* lies on its shifted grid. Throws Error when the data is damaged.
 volume::Field readField(const Archive& archive, int parameter, int component, int time);
 /// The same for the slices of the brick layers [layer, end).
 volume::Field readLayers(const Archive& archive, int parameter, int component, int time, int layer, int end);

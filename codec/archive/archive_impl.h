@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-/// Implementation of Archive: archive_info.cpp has its metadata, archive_read.cpp its samples, archive_state.cpp the
-/// state from which a writer continues, archive_verify.cpp the check of all bytes.
+/// Implementation of Archive: archive_info.cpp has the metadata, archive_read.cpp decodes samples, archive_state.cpp
+/// collects the state to continue writing, archive_verify.cpp checks all bytes.
 namespace tessera::codec {
 
 struct Archive::Impl {
@@ -28,7 +28,7 @@ struct Archive::Impl {
     /// Decoders of the most recently used models, latest first; their tables take about 200 KiB each.
     mutable std::list<std::pair<std::int32_t, std::shared_ptr<const BandDecoder>>> decoders;
     mutable std::mutex decodersMutex;
-    /// Pool of bricks whose memory is reused.
+    /// Decoded bricks in the pool, whose memory is reused.
     mutable std::vector<std::unique_ptr<DecodedBrick>> idle;
     mutable std::mutex idleMutex;
 
@@ -40,13 +40,13 @@ struct Archive::Impl {
         return index
             .frames[std::size_t(time) * components + firstComponent(metadata.info, parameter) + std::size_t(component)];
     }
-    /// The frame that contains the bytes of a brick: itself, or the one it repeats.
+    /// The frame that holds the bytes of a brick: its own, or the one it repeats.
     const FrameRecord& holding(const FrameRecord& frame, std::size_t brick) const {
         const int repeats = frame.bricks[brick].notes.repeats;
         if (repeats == 0) return frame;
         return index.frames[(std::size_t(frame.time) - std::size_t(repeats)) * components + frame.component];
     }
-    /// Number of bytes that are decoded for a whole brick.
+    /// Total bytes of a brick's segments.
     std::uint64_t bytesOf(const FrameRecord& frame, std::size_t brick) const {
         const FrameRecord& held = holding(frame, brick);
         std::uint64_t sum = 0;
@@ -76,11 +76,11 @@ struct Archive::Impl {
     std::shared_ptr<const BandDecoder> decoder(std::int32_t model) const;
     void decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
                 std::span<const std::uint8_t> present, DecodedBrick& out) const;
-    /// The stored numbers of a brick decoded at full resolution; undefined for absent samples.
+    /// Converts a brick decoded at full resolution to stored numbers; undefined for absent samples.
     Bytes numbersOf(const FrameRecord& frame, volume::ScalarType type, const DecodedBrick& decoded) const;
     volume::BrickSamples readComponent(int parameter, int component, const volume::BrickKey& key) const;
-    /// The same; where several parts of the parameter (volume/field/parts.h) meet in the brick, coarser levels are
-    /// computed from level 0, part by part, since the stored ones mix parts. So are those of labels, which the
+    /// The same, but if several parts of the parameter (volume/field/parts.h) meet in the brick, coarser levels are
+    /// computed from level 0, part by part, since stored coarse samples mix parts. So are coarse labels, which the
     /// prediction between the sublattices of BCC mixes too.
     volume::BrickSamples readOfParts(int parameter, int component, const volume::BrickKey& key) const;
     volume::BrickStats statsOf(int parameter, int component, const volume::BrickKey& key) const;
@@ -90,7 +90,7 @@ struct Archive::Impl {
     bool hasNotes() const { return (header.header.features & kBrickNotes) != 0; }
 };
 
-/// A pooled brick to decode into; the destructor returns it to the pool.
+/// A brick borrowed from the pool to decode into; the destructor returns it.
 class Lent {
 public:
     explicit Lent(const auto& archive) : idle_(archive.idle), mutex_(archive.idleMutex) {

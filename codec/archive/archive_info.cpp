@@ -50,7 +50,7 @@ volume::BrickStats Archive::Impl::statsOf(int number, int component, const volum
     return stats;
 }
 
-/// The steps between two times, of D4* from one frame of a parity to the next.
+/// Number of time steps between two times; on D4* between frames of the same parity.
 std::optional<volume::BrickChange> Archive::Impl::changeOf(int number, int component, const volume::BrickKey& key,
                                                            int toTime) const {
     const int step = metadata.alternating ? 2 : 1;
@@ -68,7 +68,7 @@ std::optional<volume::BrickChange> Archive::Impl::changeOf(int number, int compo
 }
 
 Archive::Archive(const std::string& path) {
-    // The header of a growing file can name an end beyond what was mapped a moment before: try again.
+    // The header of a growing file can name an end beyond the part that was mapped: try again.
     for (int attempt = 0; !impl_; ++attempt) {
         std::error_code failed;
         const std::uint64_t before = std::filesystem::file_size(path, failed);
@@ -90,7 +90,7 @@ Archive::Archive(const std::string& path) {
     const std::uint64_t bricks = checkedBrickCount(impl.metadata.grid, path);
     impl.index = readIndex(bytes, header, {impl.components, bricks, impl.metadata.grid}, path);
     impl.metadata.info.times = impl.index.times;
-    // Metadata and index can differ in the number of times while an archive is written or has grown.
+    // The numbers of times in metadata and index can differ in a growing archive.
     const auto fit = [](std::vector<volume::Quantity>& quantities, std::size_t times) {
         for (volume::Quantity& quantity : quantities)
             quantity.values.resize(times, std::numeric_limits<double>::quiet_NaN());
@@ -145,7 +145,7 @@ bool Archive::outdated() const {
         const MappedFile now(impl_->path);
         return parseHeaders(now.bytes(), now.bytes().size(), impl_->path).header != impl_->header.header;
     } catch (const Error&) {
-        return false; // gone or in the middle of a change: what is open stays good
+        return false; // removed or being replaced: the open archive remains valid
     }
 }
 int Archive::maskCount() const {

@@ -15,7 +15,7 @@ namespace tessera::codec {
 
 namespace {
 
-/// Whether all codes of a frame represent finite values.
+/// Whether all codes of a frame decode to finite values.
 bool isAlwaysFinite(const FrameRecord& frame) {
     constexpr double kLargestCode = 4294967296.0, kLargest = 3e38;
     if (frame.numbers.kind == NumberKind::Float) return false;
@@ -26,7 +26,7 @@ bool isAlwaysFinite(const FrameRecord& frame) {
     return number < kLargest && std::abs(frame.valueOffset) + std::abs(frame.valueScale) * number < kLargest;
 }
 
-/// Makes values that are not finite absent.
+/// Marks values that are not finite as absent.
 void leaveOutInfinite(volume::BrickSamples& brick) {
     std::int32_t infinite = 0;
     for (const float value : brick.values)
@@ -39,12 +39,12 @@ void leaveOutInfinite(volume::BrickSamples& brick) {
 
 } // namespace
 
-/// Bytes of a segment; throws Error when their checksum is wrong.
+/// The bytes of a segment; throws Error when their checksum is wrong.
 std::span<const std::byte> Archive::Impl::segment(const Segment& segment) const {
     return checkedPart(file.bytes(), segment.offset, segment.length, segment.checksum, path, "a brick");
 }
 
-/// Flags of a brick at full resolution; empty where all samples are present.
+/// Presence flags of a brick at full resolution; empty if all samples are present.
 std::vector<std::uint8_t> Archive::Impl::flags(const FrameRecord& frame, std::size_t brick) const {
     if (frame.mask < 0) return {};
     const MaskBrick& record = index.masks[std::size_t(frame.mask)].bricks[brick];
@@ -86,7 +86,7 @@ Model Archive::Impl::model(std::int32_t number) const {
     return parsed;
 }
 
-/// The decoder of a model, cached.
+/// Returns the cached decoder of a model.
 std::shared_ptr<const BandDecoder> Archive::Impl::decoder(std::int32_t model) const {
     const std::lock_guard lock(decodersMutex);
     for (auto at = decoders.begin(); at != decoders.end(); ++at)
@@ -133,7 +133,7 @@ volume::BrickSamples Archive::Impl::readComponent(int number, int component, con
     out.size = decoded->size;
     out.values.resize(countOf(out.size));
     out.present = decoded->present;
-    // Clamp coarse levels to the range of the samples, row by row while these are in the cache.
+    // Clamp coarse levels to the range of the samples, row by row while they are in the cache.
     const FrameBrick& range = record.bricks[brick];
     const bool isHeld = key.level > 0 && range.min <= range.max, isFinite = isAlwaysFinite(record);
     const auto hold = [&](std::span<float> values) {
@@ -144,7 +144,7 @@ volume::BrickSamples Archive::Impl::readComponent(int number, int component, con
         toValues(record.numbers, record.valueOffset, record.valueScale, row, values);
         if (isHeld && isFinite) hold({values, row.size()});
     });
-    for (const ExactSample& exact : decoded->exact) // of full resolution
+    for (const ExactSample& exact : decoded->exact) // at full resolution
         out.values[exact.index] =
             static_cast<float>(record.valueOffset + record.valueScale * double(std::bit_cast<float>(exact.bits)));
     if (isFinite && decoded->exact.empty()) return out;
@@ -195,7 +195,7 @@ volume::Field readLayers(const Archive& archive, int parameter, int component, i
     const std::size_t firstBrick = grid.numberOf({0, 0, layer}), bricks = grid.numberOf({0, 0, end}) - firstBrick;
     volume::Field field =
         volume::makeField(volume::slicesOf(grid.lattice, first, last - first), impl.parameter(parameter).type);
-    const volume::BrickGrid own{field.lattice, grid.brickSize, grid.levels, grid.phase}; // of those layers
+    const volume::BrickGrid own{field.lattice, grid.brickSize, grid.levels, grid.phase}; // of these layers only
     if (impl.metadata.alternating && time % 2 != 0) field.lattice.origin += 0.5 * field.lattice.spacing;
     field.offset = shown.valueOffset;
     field.scale = shown.valueScale;
@@ -209,13 +209,13 @@ volume::Field readLayers(const Archive& archive, int parameter, int component, i
         const Lent decoded(impl);
         impl.decode(frame, format, brick, 0, fine, *decoded);
         const glm::ivec3 begin = own.begin(index), size = decoded->size;
-        const auto placeOf = [&](std::size_t i) { // of a sample of the brick in the lattice
+        const auto placeOf = [&](std::size_t i) { // position in the lattice of a sample of the brick
             const std::size_t nx = std::size_t(size.x), ny = std::size_t(size.y);
             return field.lattice.index(begin + glm::ivec3(int(i % nx), int(i / nx % ny), int(i / (nx * ny))));
         };
         volume::dispatch(field.type, [&]<class T>(T) {
             const auto out = field.as<T>();
-            glm::ivec3 place = begin; // of the row
+            glm::ivec3 place = begin; // first position of the row
             decoded->forRows([&](std::size_t, auto row) {
                 toSamples(frame.numbers, row, out.data() + field.lattice.index(place));
                 if (++place.y == begin.y + size.y) ++place.z, place.y = begin.y;
@@ -227,7 +227,7 @@ volume::Field readLayers(const Archive& archive, int parameter, int component, i
                     out[placeOf(i)] = static_cast<T>(bits);
             };
             for (const ExactSample& exact : decoded->exact) put(exact.index, exact.bits);
-            // Absent samples: the stored value, else one that cannot be mistaken for data.
+            // Absent samples get their stored value, or else one that cannot be mistaken for data.
             std::size_t next = 0;
             for (std::size_t i = 0; i < fine.size(); ++i)
                 if (fine[i] == 0)

@@ -9,7 +9,7 @@ namespace tessera::codec {
 
 namespace {
 
-/// Which samples of a layer of bricks are present.
+/// Presence flags of a layer of bricks.
 volume::Mask flagsOfLayer(const auto& impl, const FrameRecord& frame, int layer) {
     const volume::BrickGrid& grid = impl.metadata.grid;
     const glm::ivec3 count = grid.count(), last(count.x - 1, count.y - 1, layer);

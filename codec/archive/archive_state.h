@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-/// The state from which a writer continues an archive as if it had never stopped.
+/// The state that a writer needs to continue an archive with the same bytes as in a single run.
 namespace tessera::codec {
 
-/// A model and the frame it was made for; it is tried first for later frames with codes of the same width.
+/// A model and the frame it was made for; tried first for later frames with the same code width.
 struct KnownModel {
     std::int32_t number = -1;
     Model model;
@@ -28,11 +28,11 @@ struct KnownModel {
 
 struct ArchiveState {
     Header header;
-    std::uint64_t pageBytes = 0; ///< of the index, decoded
+    std::uint64_t pageBytes = 0; ///< of the index, decompressed
     std::size_t times = 0, components = 0, models = 0, masks = 0;
-    std::vector<KnownModel> lastModels;                        ///< by component
-    std::vector<std::pair<int, MaskHash::Value>> lastMasks;    ///< those of the last time
-    std::vector<std::pair<std::size_t, SeenFrame>> lastFrames; ///< by component, of D4* two of each
+    std::vector<KnownModel> lastModels;                        ///< per component
+    std::vector<std::pair<int, MaskHash::Value>> lastMasks;    ///< at the last time
+    std::vector<std::pair<std::size_t, SeenFrame>> lastFrames; ///< per component, on D4* two of each
 };
 
 /// `withFrames`: also read the last frames. Throws Error when a model, a mask or a brick of a last frame is damaged.

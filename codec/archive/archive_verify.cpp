@@ -6,12 +6,12 @@
 
 namespace tessera::codec {
 
-/// The work of verifyArchive, with access to the parts of an archive.
+/// State of verifyArchive, with access to the internals of an archive.
 struct Verifier {
     const Archive::Impl& impl;
     VerifyReport report;
     std::mutex mutex;
-    std::vector<std::uint8_t> badModels, badMasks, badBricks; ///< by model; by mask and brick; by frame and brick
+    std::vector<std::uint8_t> badModels, badMasks, badBricks; ///< per model; per mask and brick; per frame and brick
 
     void note(const std::string& what) {
         const std::lock_guard lock(mutex);
@@ -19,7 +19,7 @@ struct Verifier {
         if (report.damage.size() < 100) report.damage.push_back(what);
     }
 
-    /// Runs `body`; false, with a report, if it throws Error.
+    /// Runs `body`; if it throws Error, reports it and returns false.
     template <class Body> bool guarded(const std::string& what, Body&& body) {
         try {
             body();
@@ -30,7 +30,7 @@ struct Verifier {
         }
     }
 
-    /// Whether something that a brick needs besides its own bytes, and that was checked before, is damaged.
+    /// Whether data that a brick depends on besides its own bytes were found damaged.
     bool lacks(std::size_t number, std::size_t brick) const {
         const FrameRecord& record = impl.index.frames[number];
         const std::size_t repeats = std::size_t(record.bricks[brick].notes.repeats);
@@ -75,12 +75,12 @@ struct Verifier {
                                       std::to_string(at.y) + "," + std::to_string(at.z);
             const bool lacking = lacks(number, brick), repeats = record.bricks[brick].notes.repeats > 0;
             bool whole = true;
-            if (lacking && !repeats) // its own bytes may be damaged as well
+            if (lacking && !repeats) // its own bytes may be damaged too
                 whole = guarded(where, [&] {
                     for (std::size_t s = brick; s < record.segments.size(); s += impl.bricks)
                         (void)impl.segment(record.segments[s]);
                 });
-            else if (!repeats) // one that does was decoded with the one it repeats
+            else if (!repeats) // a repeat was checked with the brick it repeats
                 whole = guarded(where, [&] { bytes += this->brick(record, parameters[parameter], brick); });
             if (whole && !lacking)
                 samples += countOf(impl.metadata.grid.brickSamples(at, 0));
@@ -115,7 +115,7 @@ struct Verifier {
         }
     }
 
-    /// Checked before the bricks, so that each is reported once.
+    /// Checks the masks before the bricks, so that each damage is reported once.
     void masks() {
         for (std::size_t m = 0; m < impl.index.masks.size(); ++m) {
             FrameRecord user;
@@ -129,7 +129,7 @@ struct Verifier {
 };
 
 VerifyReport verifyArchive(const Archive& archive, const Progress& progress) {
-    // One header, metadata and index were checked when the archive was opened.
+    // The valid header, the metadata and the index were checked on opening.
     const Archive::Impl& impl = *archive.impl_;
     Verifier verifier{impl, {}, {}, {}, {}, {}};
     verifier.headers();

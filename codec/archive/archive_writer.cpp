@@ -25,7 +25,7 @@ struct CodedMaskBrick {
     std::uint32_t present = 0;
 };
 
-/// Flags of a brick as bits, lowest first, raw or through zstd; nothing when they are all equal.
+/// The presence flags of a brick as bits, LSB first, raw or compressed by zstd; empty if all are equal.
 CodedMaskBrick encodeMask(std::span<const std::uint8_t> flags, Compressor& compressor) {
     CodedMaskBrick coded;
     Bytes bits((flags.size() + 7) / 8);
@@ -42,24 +42,24 @@ CodedMaskBrick encodeMask(std::span<const std::uint8_t> flags, Compressor& compr
     return coded;
 }
 
-/// A frame on its way: what its bricks are coded with, and what is noted of them.
+/// A frame being coded: the coding parameters of its bricks, and their statistics.
 struct FrameCoding {
     const volume::BrickGrid& grid;
     FrameRecord frame;
     double maxError = 0;                ///< of its samples
-    const SeenFrame* before = nullptr;  ///< that bricks may repeat
-    std::vector<std::uint8_t> repeated; ///< flags of bricks
+    const SeenFrame* before = nullptr;  ///< earlier frame whose bricks may be repeated
+    std::vector<std::uint8_t> repeated; ///< flag per brick
     std::vector<volume::BrickImportance> importance;
     Taken taken;
     Model model;
     int step = 1;         ///< times since `before`
-    bool tallies = false; ///< are noted
-    bool keeps = false;   ///< samples and bytes for the frames to come
+    bool tallies = false; ///< store statistics of bricks
+    bool keeps = false;   ///< keep samples and sizes for later frames
     SeenFrame seen;
 
     explicit FrameCoding(const volume::BrickGrid& of) : grid(of) {}
 
-    /// The segments of a brick, which lies in `part` of the frame and is number `ownNumber` of its grid `own`.
+    /// Codes brick `brick` of `part` (a slab with grid `own`, where its index is `ownNumber`) into segments.
     std::vector<Bytes> code(std::size_t brick, const volume::Field& part, const volume::BrickGrid& own,
                             std::size_t ownNumber, const BandEncoder& encoder, Compressor& compressor,
                             BrickInput& input, SplitMemory& memory);
@@ -105,35 +105,35 @@ struct ArchiveWriter::Impl {
     Header header;                                ///< of the last commit
     Bytes block;                                  ///< the metadata of the last commit
     std::size_t times = 0, models = 0, masks = 0; ///< written so far; times: committed
-    std::uint64_t pageBytes = 0;                  ///< of all pages so far, decoded
-    IndexPage page;                               ///< what the next commit adds
+    std::uint64_t pageBytes = 0;                  ///< of all pages so far, decompressed
+    IndexPage page;                               ///< additions since the last commit
     std::map<MaskHash::Value, int> maskByHash;
-    std::map<std::size_t, KnownModel> lastModel; ///< by component
+    std::map<std::size_t, KnownModel> lastModel; ///< per component
     bool keepsFrames = true;
     Archive::Repeats repeats;
-    /// By component, and on D4* by parity. A missing entry: changes are unknown.
+    /// Per component, and on D4* per parity. Missing: changes are unknown.
     std::map<std::pair<std::size_t, int>, SeenFrame> lastFrames;
 
-    int step() const { return metadata.alternating ? 2 : 1; } ///< times from a frame to the next of its grid
+    int step() const { return metadata.alternating ? 2 : 1; } ///< time steps between frames on the same grid
 
     explicit Impl(const std::string& path) : file(path) {}
     Impl(const std::string& path, const Header& last) : file(path, last), header(last) {}
 
     int maskFor(const FrameSamples& samples, int zstdLevel);
-    /// `idle`: no token of the frame is coded with it.
+    /// `idle`: the frame codes no token with it.
     void writeModel(const Model& model, bool idle, std::size_t component, FrameRecord& frame);
     const SeenFrame* frameBefore(const FrameRecord& frame, const FrameSamples& samples) const;
     std::vector<std::uint8_t> repeated(const SeenFrame* before, const FrameSamples& samples, const FrameRecord& frame,
                                        const FrameOptions& options) const;
-    /// All that is found out about a frame before it is coded.
+    /// Determines all coding parameters of a frame.
     FrameCoding prepare(int time, std::size_t component, const FrameSamples& samples, const FrameOptions& options);
-    /// Codes every brick; true if no token was coded with the model.
+    /// Codes every brick; true if no token was coded.
     bool codeBricks(FrameCoding& coding, const FrameSamples& samples, int effort, CodedBricks& coded,
                     const Progress& progress);
     void commit(const Metadata& now, std::size_t wholeTimes, bool always);
 };
 
-/// Index of the record of a frame's mask, written when it is new; -1 where everything is present.
+/// Index of a frame's mask, which is written if it is new; -1 if all samples are present.
 int ArchiveWriter::Impl::maskFor(const FrameSamples& samples, int zstdLevel) {
     if (!samples.masked()) return -1;
     MaskHash hash;
@@ -183,7 +183,7 @@ void ArchiveWriter::Impl::writeModel(const Model& chosen, bool idle, std::size_t
     lastModel[component] = {frame.model, model, frame.wavelet, frame.numbers.kind, frame.codeBits, frame.bodyCentred};
 }
 
-/// The last frame of the component on the same grid, if it is in memory and has the same scale and offset.
+/// The previous frame of the component on the same grid, if it is in memory and has the same scale and offset.
 const SeenFrame* ArchiveWriter::Impl::frameBefore(const FrameRecord& frame, const FrameSamples& samples) const {
     const int time = int(frame.time);
     const auto found = lastFrames.find({frame.component, time % step()});
@@ -192,7 +192,7 @@ const SeenFrame* ArchiveWriter::Impl::frameBefore(const FrameRecord& frame, cons
     return before.offset == samples.offset() && before.scale == samples.scale() ? &found->second : nullptr;
 }
 
-/// Flags of the bricks that need not be stored again.
+/// Flags of the bricks that can be stored as repeats.
 std::vector<std::uint8_t> ArchiveWriter::Impl::repeated(const SeenFrame* before, const FrameSamples& samples,
                                                         const FrameRecord& frame, const FrameOptions& options) const {
     constexpr int kFurthest = 65535;
@@ -222,7 +222,7 @@ ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata, 
     : impl_(std::make_unique<Impl>(path)) {
     impl_->metadata = metadata;
     impl_->keepsFrames = keepsFrames;
-    // A volume of one brick is read as quickly as its statistics, and is so small that their bytes matter.
+    // A volume of one brick is read as quickly as its statistics would be, and they would be a large part of its size.
     if (metadata.grid.count() == glm::ivec3(1)) impl_->header.features &= ~kBrickTallies;
 }
 
@@ -271,7 +271,7 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     if (!coding.taken.serves(frame, coding.model)) coding.taken.bricks.clear();
     coding.step = step();
     coding.tallies = (header.features & kBrickTallies) != 0;
-    // For the last time only its change is needed.
+    // The last frame only needs its change, not to be kept.
     const bool isLast = std::size_t(time + step()) >= metadata.info.times.size();
     coding.keeps = keepsFrames && (coding.before || !isLast);
     coding.seen = {time, frame.keepsAbsent, coding.keeps ? *samples.whole() : volume::Field(), {}, {}};
@@ -292,7 +292,7 @@ bool ArchiveWriter::Impl::codeBricks(FrameCoding& coding, const FrameSamples& sa
     samples.forSlabs([&](const volume::Field& part, Slab slab) {
         const volume::BrickGrid own = slab.grid(grid);
         const std::size_t firstBrick = slab.bricks(grid).first, endBrick = slab.bricks(grid).second;
-        // In batches, so that a cancel is noticed and the output does not depend on the number of cores.
+        // In batches, to react to a cancel; the batch size does not affect the output.
         for (std::size_t first = firstBrick; first < endBrick; first += perBatch) {
             const std::size_t count = std::min(perBatch, endBrick - first);
             std::vector<std::vector<Bytes>> batch(count);
@@ -330,7 +330,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
     const std::size_t bricks = grid.brickCount(), levels = std::size_t(grid.levels);
     CodedBricks coded(bricks, levels, samples.store() ? &samples.store()->folder : nullptr);
     const bool allWhole = impl_->codeBricks(coding, samples, effortFor(samples, options.zstdLevel), coded, progress);
-    // Tables are not needed if there are no bands.
+    // Without bands the frame needs no tables.
     if (frame.model < 0) impl_->writeModel(coding.model, allWhole, ofTime, frame);
     GrowingFile& file = impl_->file;
     frame.offset = file.position();
@@ -353,7 +353,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
 }
 
 void ArchiveWriter::Impl::commit(const Metadata& now, std::size_t wholeTimes, bool always) {
-    constexpr std::size_t kWorthwhile = 64, kPage = 256; // times the bytes a commit costs, those of a page included
+    constexpr std::size_t kWorthwhile = 64, kPage = 256; // multiples of the bytes that a commit costs, including a page
     Bytes text = serialise(now, header.features);
     const std::uint64_t last = std::max(header.fileSize, kFirstChunk);
     if (!always && file.position() - last < kWorthwhile * (text.size() + kPage)) return;

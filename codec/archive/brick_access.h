@@ -10,7 +10,7 @@
 /// Helpers shared by the writer and the reader of an archive.
 namespace tessera::codec {
 
-/// Bytes of the samples of a whole brick.
+/// Bytes of the samples of a full-size brick.
 inline std::size_t brickBytes(const volume::BrickGrid& grid, volume::ScalarType type) {
     const std::size_t edge = std::size_t(grid.brickSize),
                       sublattices = grid.lattice.kind == volume::LatticeKind::BCC ? 2 : 1;
@@ -23,7 +23,7 @@ inline BrickFormat brickFormat(const volume::BrickGrid& grid, glm::ivec3 brick, 
             frame.numbers,     frame.keepsAbsent,           frame.codeBits, frame.bodyCentred};
 }
 
-/// Number of components of the parameters before one: the index of its first frame within a time.
+/// Number of components of all parameters before one: the index of its first frame within a time.
 inline std::size_t firstComponent(const volume::DatasetInfo& info, int parameter) {
     std::size_t first = 0;
     for (int p = 0; p < parameter; ++p) first += std::size_t(info.parameters[std::size_t(p)].components);

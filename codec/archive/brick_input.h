@@ -5,16 +5,16 @@
 #include "volume/bricks/brick_source.h"
 #include "volume/field/field.h"
 
-/// The samples of a brick before coding, and as decoded later.
+/// The samples of a brick as input of the encoder, and as they will be decoded.
 namespace tessera::codec {
 
-/// The samples of one brick as encodeBrick wants them.
+/// The samples of one brick in the layout of encodeBrick.
 struct BrickInput {
     Bytes samples;
     std::vector<std::uint8_t> present; ///< empty: all
 
     void take(const volume::BrickGrid& grid, glm::ivec3 brick, const FrameSamples& frame, bool masked);
-    /// Copies any box of the lattice.
+    /// Copies a box of the lattice.
     void take(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec3 size, const FrameSamples& frame, bool masked);
 };
 
@@ -22,28 +22,27 @@ struct BrickInput {
 void putSamples(const volume::BrickGrid& grid, glm::ivec3 brick, std::span<const std::byte> samples,
                 volume::Field& field);
 
-/// Replaces samples by their decoded values: for floats with an error bound, the values of their codes.
+/// Replaces samples by the values they decode to: for floats with an error bound, the values of their codes.
 void roundAsDecoded(const BrickFormat& format, double maxError, BrickInput& input);
 
-/// Range of the decoded samples, as physical values, and their statistics if `withTally` is set.
+/// Range of the decoded samples in physical values; also their statistics if `withTally`.
 FrameBrick tallyOf(const volume::Field& field, const BrickInput& decoded, bool withTally);
 
-/// The latest frame of a component, as decoded: the next frame may repeat its bricks, and its change is measured from
+/// The latest frame of a component as decoded: the next frame may repeat its bricks, and its change is measured against
 /// it.
 struct SeenFrame {
     int time = -1;
     bool keepsAbsent = false;
     volume::Field field;
     std::vector<FrameBrick> bricks;
-    std::vector<std::uint64_t> bytes; ///< that each brick takes, of repeats those of the first
+    std::vector<std::uint64_t> bytes; ///< per brick; for a repeat those of the brick it repeats
 };
 
-/// True if `decoded`, a brick of an earlier frame as decoded, may replace `input`: the same samples are present, and
-/// all are equal bit by bit, or, for floats, at most `maxError` apart; `absentToo`: absent samples must be equal as
-/// well.
+/// Whether `decoded`, a brick of an earlier frame, can replace `input`: the same samples are present, and all are
+/// bitwise equal or, for floats, differ by at most `maxError`. `absentToo`: absent samples must be equal as well.
 bool mayStandFor(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input, double maxError,
                  bool absentToo);
-/// Sum of squared differences of present samples, as stored; samples that are not finite are skipped.
+/// Sum of squared differences of present samples in stored units, without samples that are not finite.
 double squaredError(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input);
 
 } // namespace tessera::codec

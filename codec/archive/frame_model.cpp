@@ -18,11 +18,12 @@ namespace {
 constexpr std::size_t kTrialBricks = 6, kModelBricks = 32;
 constexpr int kMostTables = 24;
 
-/// Tokens of some bricks of a frame, spread over it; kept in `taken`, if there is one.
+/// Histogram of the tokens of some bricks, spread over the frame; the bricks are kept in `taken` if it is not null.
 Histogram sampleTokens(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
                        std::size_t most, Contexts contexts, double maxError = 0, Taken* taken = nullptr) {
     const std::size_t bricks = grid.brickCount(), count = std::min(bricks, most);
-    // For many samples a part is enough; the step visits every position of a row in turn.
+    // Large frames are subsampled. The step is coprime to the number of chunks per row, to cover all positions of a
+    // row.
     constexpr std::size_t kMany = 2 << 20;
     const int every = samples.count() / bricks * count < kMany ? 1 : 5;
     Histogram sum(grid.levels, contexts);
@@ -44,13 +45,13 @@ Histogram sampleTokens(const volume::BrickGrid& grid, const FrameSamples& sample
             countBrick(prepared, part, every);
             if (taken) taken->bricks[number] = std::move(prepared);
         }
-        const std::lock_guard lock(mutex); // in any order: counts are whole numbers
+        const std::lock_guard lock(mutex); // the order does not matter, since counts are integers
         sum.add(part);
     });
     return sum;
 }
 
-/// The same for the central parts of some bricks, which is enough to compare filters.
+/// The same for the central boxes of some bricks, which suffices to compare filters.
 Histogram sampleMiddles(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
                         std::size_t most) {
     constexpr int kMiddle = 32, kMiddleLevels = 3, kEvery = 3;
@@ -68,7 +69,7 @@ Histogram sampleMiddles(const volume::BrickGrid& grid, const FrameSamples& sampl
             const int depth = kMiddle * format.sublattices();
             const glm::ivec3 whole = format.size, size = glm::min(whole, glm::ivec3(kMiddle, kMiddle, depth));
             glm::ivec3 first = (whole - size) / 2;
-            first.z -= first.z % format.sublattices(); // an even slice first
+            first.z -= first.z % format.sublattices(); // start on an even slice
             format.size = size;
             format.levels = levels;
             input.take(grid, grid.begin(brick) + first, size, samples, frame.mask >= 0);
@@ -80,7 +81,7 @@ Histogram sampleMiddles(const volume::BrickGrid& grid, const FrameSamples& sampl
     return sum;
 }
 
-/// A shift that scales the typical detail of full resolution to some tens, where contexts distinguish sizes.
+/// The shift that scales typical details of full resolution to some tens, where contexts separate magnitudes well.
 int shiftFor(const Histogram& histogram) {
     double count = 0, octaves = 0;
     for (std::size_t c = 0; c < std::size_t(kClasses) && c < histogram.counts.size(); ++c)
@@ -92,16 +93,16 @@ int shiftFor(const Histogram& histogram) {
     return count == 0 ? 0 : std::max(0, int(std::lround(octaves / count - kWanted)));
 }
 
-/// Floats coded bit by bit gain nothing from contexts by band: their low bits are noise in all bands.
+/// Bitwise coded floats do not profit from contexts by band: their low bits are noise in all bands.
 bool prefersByBand(const FrameRecord& frame) {
     return frame.numbers.kind != NumberKind::Float;
 }
 
-/// Chooses the filter by trial on some bricks: first its prediction, then its update. Filters without update alias in
-/// coarse levels, so they are chosen only if clearly better.
+/// Selects the filter by trial on some bricks: first the prediction, then the update. Filters without update alias in
+/// coarse levels, so they must be clearly better.
 Wavelet waveletFor(const volume::BrickGrid& grid, const FrameSamples& samples, FrameRecord frame) {
     constexpr double kPredictionHandicap = 1.015;
-    if (frame.numbers.kind == NumberKind::Float) return Wavelet::W22; // only predicted anyway
+    if (frame.numbers.kind == NumberKind::Float) return Wavelet::W22; // floats are only predicted
     double best = std::numeric_limits<double>::infinity();
     Wavelet chosen = Wavelet::W22;
     const auto tryOne = [&](Wavelet wavelet) {
@@ -121,7 +122,7 @@ Wavelet waveletFor(const volume::BrickGrid& grid, const FrameSamples& samples, F
     return chosen;
 }
 
-/// Whether predicting one sublattice of BCC from the other is shorter, by trial on some bricks.
+/// Whether predicting the odd sublattice of BCC from the even one takes fewer bytes, by trial on some bricks.
 bool prefersBodyCentred(const volume::BrickGrid& grid, const FrameSamples& samples, FrameRecord frame) {
     if (grid.lattice.kind != volume::LatticeKind::BCC || frame.numbers.kind == NumberKind::Float) return false;
     const auto bits = [&](bool bodyCentred) {

@@ -8,16 +8,16 @@
 #include <optional>
 #include <vector>
 
-/// Chooses how a frame is coded, by trial on some of its bricks: filter, sublattices, tables.
+/// Selects the coding of a frame by trial on some of its bricks: filter, sublattice prediction, entropy tables.
 namespace tessera::codec {
 
-/// Bricks that were transformed while choosing the model, kept to be coded without transforming them again.
+/// Bricks that were transformed for the model selection, kept to avoid a second transform.
 struct Taken {
     Wavelet wavelet{};
     bool bodyCentred = false;
     Contexts contexts;
     double maxError = 0;
-    std::vector<std::optional<PreparedBrick>> bricks; ///< by number
+    std::vector<std::optional<PreparedBrick>> bricks; ///< by brick index
 
     bool serves(const FrameRecord& frame, const Model& model) const {
         return wavelet == frame.wavelet && bodyCentred == frame.bodyCentred && contexts == model.contexts;
@@ -27,20 +27,21 @@ struct Taken {
 /// Width of |code| over the present samples of a frame of floats, in bits.
 int codeBitsOf(const FrameSamples& samples, const NumberCoding& numbers);
 
-/// The coding of the numbers of a frame; `last` is the model of the previous frame, or none. If decimals or binary
-/// fractions need as many digits as floats have bits, the shorter of both codings is chosen by trial.
+/// Selects the number coding of a frame; `last` is the model of the previous frame, or none. If decimals or binary
+/// fractions would need as many digits as floats have bits, the shorter coding is selected by trial.
 NumberCoding chooseNumbers(const volume::BrickGrid& grid, const FrameSamples& samples, const KnownModel* last,
                            const FrameOptions& options);
 
-/// Effort of zstd for the bricks of a frame: for small frames it costs little time.
+/// The zstd level for the bricks of a frame; higher for small frames, where it costs little time.
 int effortFor(const FrameSamples& samples, int zstdLevel);
 
-/// The part of the error bound that is left for rounding samples to codes and for repeating bricks.
+/// The part of the error bound that remains for rounding samples to codes and for repeating bricks.
 double boundOf(const FrameRecord& frame, const FrameOptions& options);
 
-/// The model of a frame: `last`, the one of the component's previous frame (or none), if its tables are as good as new
-/// ones; else a new one that is not written yet (frame.model is -1). The filter is chosen again only if the tables do
-/// not fit at all. Sets wavelet, bodyCentred and model of the frame. `byBand`: the archive supports contexts by band.
+/// Selects the model of a frame: `last`, that of the component's previous frame (or none), if its tables are as good as
+/// new ones; otherwise a new one that is not written yet (frame.model is -1). The filter is selected again only if the
+/// tables do not fit at all. Sets wavelet, bodyCentred and model of the frame. `byBand`: the archive supports contexts
+/// by band.
 Model chooseModel(const volume::BrickGrid& grid, const FrameSamples& samples, const KnownModel* last, bool byBand,
                   FrameRecord& frame, const FrameOptions& options, Taken& taken);
 

@@ -9,19 +9,19 @@
 
 namespace tessera::codec {
 
-/// How one frame is coded.
+/// Coding options of one frame.
 struct FrameOptions {
-    std::optional<Wavelet> wavelet = Wavelet::W22; ///< none: the best of some, by trial
-    std::optional<bool> bodyCentred;     ///< of BCC (codec/wavelet/body_centred.h); none: the shorter by trial
-    std::optional<NumberCoding> numbers; ///< none: chosen for the bound
-    double maxError = 0;                 ///< absolute, in stored units; 0: every sample exactly
-    double spent = 0; ///< of maxError, by what was done to the samples before: codes and repeats have what is left
-    /// A brick may repeat an earlier one only if its sum of squared differences is no larger than that of its own codes
-    /// would be.
+    std::optional<Wavelet> wavelet = Wavelet::W22; ///< none: selected by trial
+    std::optional<bool> bodyCentred;               ///< of BCC (codec/wavelet/body_centred.h); none: selected by trial
+    std::optional<NumberCoding> numbers;           ///< none: selected for the error bound
+    double maxError = 0;                           ///< absolute, in stored units; 0: lossless
+    double spent =
+        0; ///< part of maxError used by previous processing of the samples; the rest is for codes and repeats
+    /// A brick may repeat an earlier one only if its sum of squared differences does not exceed that of its own codes.
     bool keepsSquares = false;
-    bool keepsAbsent = false; ///< also the stored numbers of absent samples
+    bool keepsAbsent = false; ///< also code the stored numbers of absent samples
     int zstdLevel = 3;
-    Range range{1, 0}; ///< physical, of the component, that importance refers to; lo > hi: that of the frame
+    Range range{1, 0}; ///< physical range of the component that importance refers to; lo > hi: that of the frame
     bool categorical = false;
     volume::ImportanceOptions importance;
 };

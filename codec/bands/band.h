@@ -8,26 +8,26 @@
 
 namespace tessera::codec {
 
-/// Coefficients in an array of words: `size` of them, contiguous along x.
+/// A subband of coefficients: `size` words, contiguous along x.
 template <class Word> struct Band {
     Word* values = nullptr;
-    const std::uint8_t* present = nullptr; ///< flags with the same layout; null: all present. Absent: neither coded nor
-                                           ///< read; 0 when decoded
+    const std::uint8_t* present =
+        nullptr; ///< flags with the same layout; null: all present. Absent coefficients are not coded; 0 when decoded
     glm::ivec3 size{0};
-    std::ptrdiff_t rowPitch = 0, slicePitch = 0; ///< words
-    int kind = 0; ///< 0 an undivided box, else the bits of the axes along which it holds the high half
+    std::ptrdiff_t rowPitch = 0, slicePitch = 0; ///< in words
+    int kind = 0; ///< 0 for an undivided box, else the bits of the axes along which it is the high half
 };
 
-/// The tokens of bands in coding order, with their contexts: input of both counting and coding.
+/// The tokens of bands in coding order with their contexts; input of both counting and coding.
 struct TokenRun {
     static constexpr std::uint16_t kNone = 0xffff;
 
-    /// Sixteen per chunk: kind << 13 | class << 8 | token, kNone where a lane has no coefficient. The kind is that of
-    /// the band if the contexts distinguish bands, else 0.
+    /// Sixteen per chunk: kind << 13 | class << 8 | token, kNone in lanes without a coefficient. The kind is that of
+    /// the band if contexts are by band, else 0.
     Uncleared<std::uint16_t> tokens;
-    /// Symbols that need raw bits besides their token, and their indices, in order.
+    /// Symbols that need raw bits besides their token, and the indices of their tokens, in order.
     Uncleared<std::uint32_t> large, largeAt;
-    int groups = 1, used = 0; ///< of states, and how many states are stored
+    int groups = 1, used = 0; ///< groups of coder states, and number of stored states
     bool zero = true;         ///< all coefficients are 0
 };
 

@@ -4,20 +4,20 @@
 #include "codec/bytes/decode_status.h"
 #include "codec/bytes/entropy.h"
 
-/// Bands of integer coefficients to bytes: interleaved rANS whose contexts are the magnitudes of the row and the slice
-/// before, never the left neighbour, so that sixteen lanes along x decode side by side.
+/// Coding of subbands of integer coefficients: interleaved rANS with contexts from the magnitudes in the previous row
+/// and slice, never from the left neighbour, so that sixteen lanes along x decode in parallel.
 ///
-/// Duda: Asymmetric numeral systems (2013); Giesen: Interleaved entropy coders (2014). A half octave of the neighbours'
-/// magnitude as the context is from Wu and Memon: CALIC (1997). (FORMAT.md "Bands".)
+/// Duda: Asymmetric numeral systems (2013); Giesen: Interleaved entropy coders (2014). Quantising the neighbours'
+/// magnitude to half octaves as the context is from Wu and Memon: CALIC (1997). (FORMAT.md "Bands".)
 namespace tessera::codec {
 
-/// The model as tables for encoding; shared by all bricks of a frame.
+/// A model prepared for encoding; shared by all bricks of a frame.
 class BandEncoder {
 public:
     explicit BandEncoder(Model model);
     const Model& model() const { return model_; }
-    /// Appends the coded coefficients of bands; no bytes if all are 0. Any value can be coded. Every choice of `cpu`
-    /// gives the same bytes.
+    /// Appends the coded coefficients of bands; no bytes if all are 0. Any value can be coded. The bytes do not depend
+    /// on `cpu`.
     void encode(const TokenRun& run, int level, Bytes& out, Cpu cpu = bestCpu()) const;
 
     struct Entry {
@@ -27,16 +27,16 @@ public:
 
 private:
     Model model_;
-    std::vector<Entry> entries_;        ///< [table << 8 | token]
-    std::vector<std::uint32_t> packed_; ///< the same: frequency | start << 16
+    std::vector<Entry> entries_;        ///< at [table << 8 | token]
+    std::vector<std::uint32_t> packed_; ///< the same as frequency | start << 16
 };
 
-/// The model as tables for decoding; shared by all bricks of a frame. Thread-safe.
+/// A model prepared for decoding; shared by all bricks of a frame. Thread-safe.
 class BandDecoder {
 public:
     explicit BandDecoder(Model model);
     const Model& model() const { return model_; }
-    /// Fills the bands from exactly these bytes. Values that do not fit into a Word are truncated.
+    /// Decodes the bands; `in` must end with them. Values that do not fit into a Word are truncated.
     template <class Word>
     DecodeStatus decode(std::span<const std::byte> in, std::span<const Band<Word>> bands, int level,
                         Cpu cpu = bestCpu()) const;

@@ -7,11 +7,11 @@ namespace {
 
 constexpr std::uint32_t kSlotMask = kProbabilityOne - 1;
 
-/// A reader of the compressed bytes of a run of bands.
+/// Reader of the compressed bytes of some bands.
 struct Stream {
     alignas(64) std::uint32_t states[kMostGroups][kLanes]{};
     const std::byte *next = nullptr, *end = nullptr; ///< words
-    const std::byte* raw = nullptr;                  ///< raw bits; words follow them
+    const std::byte* raw = nullptr;                  ///< raw bits, followed by the words
     std::uint64_t rawAt = 0, rawEnd = 0;             ///< in bits
     const std::uint32_t* table = nullptr;
     alignas(64) std::uint32_t tableOf[kBandKinds][kClasses]{}; ///< table number << kProbabilityBits
@@ -19,8 +19,8 @@ struct Stream {
     Contexts contexts;
 };
 
-/// Reads `bits` raw bits; the caller has checked that they are available. The coder's words follow the raw bits, so
-/// loading beyond them stays within the stream.
+/// Reads `bits` raw bits; the caller has checked that they are available. The words follow the raw bits, so a load
+/// beyond the raw bits stays within the stream.
 std::uint32_t takeRaw(Stream& in, int bits) {
     std::uint64_t word = 0;
     const std::byte* at = in.raw + (in.rawAt >> 3);
@@ -35,7 +35,7 @@ std::uint32_t takeRaw(Stream& in, int bits) {
     return static_cast<std::uint32_t>(word & ((std::uint64_t(1) << bits) - 1));
 }
 
-/// Sixteen symbols, one in each lane of `active`. False: the stream ends too early.
+/// Decodes sixteen symbols, one per lane of `active`. False: the stream ends too early.
 template <class Word>
 bool decodeChunk(Stream& in, const Neighbours& near, int kind, int x0, std::uint32_t active, Word* values,
                  std::uint16_t* sizes) {
@@ -98,12 +98,13 @@ template <class Word> bool decodeRows(Stream& in, std::span<const Band<Word>> ba
 
 #if TESSERA_X86
 
-/// Raw bits of the lanes whose token is not direct, in lanes; false when the stream ends. Octaves up to 25 raw bits.
+/// Reads the raw bits of lanes with a token that is not direct; false when the stream ends. For octaves with up to 25
+/// raw bits.
 TESSERA_AVX512 inline bool rawSymbols512(Stream& in, __mmask16 some, __m512i token, __m512i& symbol) {
     const __m512i code = _mm512_sub_epi32(token, _mm512_set1_epi32(kDirect));
     const __m512i bits =
         _mm512_maskz_add_epi32(some, _mm512_srli_epi32(code, 2), _mm512_set1_epi32(3)); // 0 in other lanes
-    // Sums of the bits of all lanes before.
+    // Prefix sums of the bits over the lanes.
     __m512i sum = bits;
     const __m512i zero = _mm512_setzero_si512();
     sum = _mm512_add_epi32(sum, _mm512_alignr_epi32(sum, zero, 15));
@@ -125,34 +126,34 @@ TESSERA_AVX512 inline bool rawSymbols512(Stream& in, __mmask16 some, __m512i tok
     return true;
 }
 
-/// A constant that stays in a register: compilers recompute constants they know.
+/// A constant in a register: compilers would rematerialise known constants.
 TESSERA_AVX512 TESSERA_INLINE __m512i kept512(int value) {
     __m512i vector = _mm512_set1_epi32(value);
     asm("" : "+v"(vector));
     return vector;
 }
 
-/// The chunks of the rows of all bands at one position, in coding order.
+/// The chunks of all bands' rows at one (y, z), in coding order.
 struct Chunks512 {
     struct alignas(64) Sixteen {
         std::uint32_t lanes[kLanes];
     };
-    std::vector<Sixteen> tables;      ///< of the context of each place: number << kProbabilityBits
+    std::vector<Sixteen> tables;      ///< per position: index of the context's table << kProbabilityBits
     std::vector<__mmask16> active;    ///< lanes that hold a coefficient
-    std::vector<std::uint8_t> tokens; ///< sixteen a chunk, 0 where there is no coefficient
-    std::vector<std::uint32_t> raw;   ///< chunks that raw bits belong to
+    std::vector<std::uint8_t> tokens; ///< sixteen per chunk, 0 where there is no coefficient
+    std::vector<std::uint32_t> raw;   ///< chunks with raw bits
     std::size_t count = 0, rawCount = 0;
 
     explicit Chunks512(std::size_t most) : tables(most), active(most), tokens(most * kLanes), raw(most + 1) {}
 };
 
-/// State of the loop over chunks, in registers.
+/// State of the loop over chunks, kept in registers.
 struct Cursor512 {
     const std::byte* next;
     unsigned group;
 };
 
-/// The tokens of all chunks. False: the stream ends too early.
+/// Decodes the tokens of all chunks. False: the stream ends too early.
 TESSERA_AVX512 bool decodeTokens512(Stream& in, Cursor512& cursor, Chunks512& chunks) {
     const std::uint32_t* const table = in.table;
     const std::byte *next = cursor.next, *const end = in.end;
@@ -165,7 +166,7 @@ TESSERA_AVX512 bool decodeTokens512(Stream& in, Cursor512& cursor, Chunks512& ch
         const __mmask16 active = chunks.active[chunk];
         const __m512i state = _mm512_load_si512(own), tables = _mm512_load_si512(chunks.tables[chunk].lanes);
         const __m512i entry = entries512(table, _mm512_or_si512(tables, _mm512_and_si512(state, slotMask)));
-        const __m512i frequency = _mm512_and_si512(_mm512_srli_epi32(entry, 8), slotMask); // as many bits
+        const __m512i frequency = _mm512_and_si512(_mm512_srli_epi32(entry, 8), slotMask); // 12 bits
         __m512i after = _mm512_add_epi32(_mm512_mullo_epi32(frequency, _mm512_srli_epi32(state, kProbabilityBits)),
                                          _mm512_srli_epi32(entry, 20));
         const __mmask16 low = _mm512_mask_cmplt_epu32_mask(active, after, lowest);
@@ -192,14 +193,14 @@ TESSERA_AVX512 bool decodeTokens512(Stream& in, Cursor512& cursor, Chunks512& ch
     return true;
 }
 
-/// Sixteen tokens to coefficients, with the raw bits that follow; false when those end.
+/// Converts sixteen tokens to coefficients, reading their raw bits; false when the stream ends.
 template <class Word>
 TESSERA_AVX512 bool rawChunk512(Stream& in, const std::uint8_t* tokens, __mmask16 inside, Word* values,
                                 std::uint16_t* sizes) {
     const __m512i token = _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(tokens)));
     __m512i symbol = token;
     const __mmask16 some = _mm512_cmpge_epu32_mask(token, _mm512_set1_epi32(kDirect));
-    // 22 octaves of up to 25 bits behind the direct tokens.
+    // 22 octaves with up to 25 raw bits follow the direct tokens.
     if (_mm512_cmpge_epu32_mask(token, _mm512_set1_epi32(kDirect + 23 * 4)) == 0) {
         if (!rawSymbols512(in, some, token, symbol)) return false;
     } else {
@@ -226,8 +227,8 @@ TESSERA_AVX512 bool rawChunk512(Stream& in, const std::uint8_t* tokens, __mmask1
     return true;
 }
 
-/// A row of direct tokens to coefficients. 32 lanes at a time: magnitudes of those behind the row, which are 0, fall on
-/// the zeros before the next row.
+/// Converts a row of direct tokens to coefficients, 32 lanes at a time. Magnitudes of lanes beyond the row are 0 and
+/// overwrite the zero padding before the next row.
 template <class Word>
 TESSERA_AVX512 inline void directRow512(const std::uint8_t* tokens, int width, int shift, Word* values,
                                         std::uint16_t* sizes) {
@@ -248,7 +249,7 @@ TESSERA_AVX512 inline void directRow512(const std::uint8_t* tokens, int width, i
     }
 }
 
-/// Appends the chunks of a row: the addresses of their contexts, and their active lanes.
+/// Appends the chunks of a row: the addresses of their contexts' tables and their active lanes.
 template <bool kByBand>
 TESSERA_AVX512 TESSERA_INLINE void appendRow512(const Stream& in, const Neighbours& near, int kind,
                                                 const std::uint8_t* present, int width, Chunks512& chunks) {
@@ -267,8 +268,8 @@ TESSERA_AVX512 TESSERA_INLINE void appendRow512(const Stream& in, const Neighbou
     chunks.count = count;
 }
 
-/// Decodes in passes: contexts of all bands' rows at one position, then their tokens, then coefficients, with those
-/// that need raw bits last, so that the token loop has no other dependencies.
+/// Decodes in passes over the rows of all bands at one (y, z): contexts, then tokens, then coefficients, with raw bits
+/// last, so that the token loop has no other dependencies.
 template <class Word, bool kByBand> TESSERA_AVX512 bool decodeRows512(Stream& in, std::span<const Band<Word>> bands) {
     std::vector<Magnitudes> magnitudes = magnitudesFor(bands);
     std::size_t most = 0;

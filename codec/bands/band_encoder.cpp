@@ -10,7 +10,7 @@ namespace {
 /// Writer of raw bits, LSB first.
 class RawBits {
 public:
-    /// Bits are put at most `count` times.
+    /// At most `count` calls of put.
     explicit RawBits(std::size_t count) : bytes_(4 * count + 8) {}
 
     void put(std::uint32_t value, int bits) {
@@ -33,12 +33,12 @@ private:
     int count_ = 0;
 };
 
-/// Result of the backward pass: states, words from the end of their buffer on, and positions of escapes.
+/// Result of the backward pass: states, words from the end of their buffer, and indices of escapes.
 struct Coded {
     alignas(64) std::uint32_t states[kMostGroups * kLanes];
     std::size_t size = 0, at = 0;
     std::unique_ptr<std::uint16_t[]> words; ///< `size` of them
-    std::vector<std::uint32_t> escaped;     ///< numbers of tokens, descending
+    std::vector<std::uint32_t> escaped;     ///< token indices, descending
 
     explicit Coded(std::size_t tokens)
         : size(tokens + kLanes), at(size), words(std::make_unique_for_overwrite<std::uint16_t[]>(size)) {
@@ -46,8 +46,8 @@ struct Coded {
     }
 };
 
-/// Codes tokens to states and words in reverse order, since decoding reverses it. `tables`: number of the table << 8
-/// for each class of each kind of bands.
+/// Codes tokens in reverse order, since rANS decodes in the opposite order. `tables`: table index << 8 per class and
+/// kind of band.
 void codeTokens(const TokenRun& run, const std::uint32_t* tables, std::span<const BandEncoder::Entry> entries,
                 Coded& out) {
     const std::size_t groups = std::size_t(run.groups);
@@ -62,7 +62,7 @@ void codeTokens(const TokenRun& run, const std::uint32_t* tables, std::span<cons
         }
         std::uint32_t& state = out.states[i / kLanes % groups * kLanes + i % kLanes];
         std::uint32_t x = state;
-        // Always written, kept only if the state is too large: branches would be mispredicted half of the time.
+        // Written always, kept only if the state is too large: a branch would be mispredicted half of the time.
         out.words[out.at - 1] = static_cast<std::uint16_t>(x);
         const bool full = x >> 20 >= entry->frequency;
         out.at -= full ? 1 : 0;
@@ -74,7 +74,7 @@ void codeTokens(const TokenRun& run, const std::uint32_t* tables, std::span<cons
 
 #if TESSERA_X86
 
-/// As codeTokens, a chunk at a time.
+/// The same, one chunk at a time.
 TESSERA_AVX512 void codeTokens512(const TokenRun& run, const std::uint32_t* tables, const std::uint32_t* packed,
                                   Coded& out) {
     const std::size_t mask = std::size_t(run.groups) - 1;
@@ -84,7 +84,7 @@ TESSERA_AVX512 void codeTokens512(const TokenRun& run, const std::uint32_t* tabl
             _mm256_loadu_si256(reinterpret_cast<const __m256i*>(run.tokens.data() + chunk * kLanes)));
         const __mmask16 active = _mm512_cmpneq_epu32_mask(both, _mm512_set1_epi32(TokenRun::kNone));
         if (active == 0) continue;
-        // A chunk is of one band.
+        // A chunk belongs to one band.
         const std::uint32_t* own =
             tables + (run.tokens[chunk * kLanes + std::size_t(__builtin_ctz(active))] >> 13) * kClasses;
         const __m512i table =
@@ -108,7 +108,7 @@ TESSERA_AVX512 void codeTokens512(const TokenRun& run, const std::uint32_t* tabl
         _mm256_mask_storeu_epi16(words, static_cast<__mmask16>((1u << count) - 1u),
                                  _mm512_cvtepi32_epi16(_mm512_maskz_compress_epi32(full, state)));
         const __m512i x = _mm512_mask_srli_epi32(state, full, state, 16);
-        // The quotient in float, wrong by at most one, then corrected.
+        // Quotient in float, off by at most one, then corrected.
         const __m512 divisor = _mm512_cvtepu32_ps(frequency);
         const __m512 guess = _mm512_rcp14_ps(divisor);
         const __m512 reciprocal = _mm512_mul_ps(guess, _mm512_sub_ps(_mm512_set1_ps(2), _mm512_mul_ps(divisor, guess)));
@@ -129,11 +129,11 @@ TESSERA_AVX512 void codeTokens512(const TokenRun& run, const std::uint32_t* tabl
 
 #endif
 
-/// The raw bits of symbols that need them, in order.
+/// The raw bits of the symbols that need them, in order.
 Bytes rawBits(const TokenRun& run, std::span<const std::uint32_t> escaped) {
     RawBits raw(run.large.size() + escaped.size());
     std::size_t left = escaped.size();
-    const auto escapeUpTo = [&](std::uint32_t at) { // of direct tokens, which are their symbols
+    const auto escapeUpTo = [&](std::uint32_t at) { // direct tokens, which equal their symbols
         for (; left > 0 && escaped[left - 1] < at; --left) raw.put(run.tokens[escaped[left - 1]] & 255u, 32);
     };
     for (std::size_t i = 0; i < run.large.size(); ++i) {
@@ -160,7 +160,7 @@ BandEncoder::BandEncoder(Model model)
         for (std::size_t t = 0; t < kTokens; ++t) {
             const std::uint32_t frequency = model_.tables[i][t];
             if (frequency == 0) continue;
-            // Rounded up: exact for the states below frequency * 2^20 that are divided by it.
+            // Reciprocal, rounded up: exact for the dividends that occur, states below frequency * 2^20.
             entries_[i << 8 | t] = {((std::uint64_t(1) << 44) + frequency - 1) / frequency, frequency, start};
             packed_[i << 8 | t] = frequency | start << 16;
             start += frequency;

@@ -9,18 +9,18 @@
 #include <glm/common.hpp>
 #include <vector>
 
-/// Shared by the band coder files: contexts, and the order of rows.
+/// Shared by the encoder and decoder of bands: contexts, and the order of rows.
 namespace tessera::codec {
 
 inline constexpr int kLanes = 16, kMostGroups = 4;
 inline constexpr std::uint32_t kLowestState = 1u << 16;
-inline constexpr std::uint32_t kLargestMagnitude = 4095; // twelve of them fit 16 bits
+inline constexpr std::uint32_t kLargestMagnitude = 4095; // twelve times this fits into 16 bits
 
-/// Magnitudes of the two latest slices of a band, with zeros around:
+/// Magnitudes of the two latest slices of a band, padded with zeros:
 ///
 ///     per slice: a row of zeros, size.y rows, a row of zeros; per row: kPad zeros, size.x rounded up to kPad
 ///
-/// Rows begin at multiples of 64 bytes.
+/// Rows are 64-byte aligned.
 struct Magnitudes {
     static constexpr int kPad = 32;
     std::size_t pitch = 0, slice = 0, first = 0;
@@ -37,7 +37,7 @@ struct Magnitudes {
     }
 };
 
-/// The context neighbours of a row.
+/// The rows that the contexts of a row depend on.
 struct Neighbours {
     const std::uint16_t *north, *before, *beforeNorth, *beforeSouth;
     Neighbours(Magnitudes& magnitudes, int z, int y)
@@ -50,7 +50,7 @@ struct Neighbours {
     }
 };
 
-/// Half octaves of sum + 1: the exponent and the first bit behind it.
+/// Half octaves of sum + 1: the exponent and the next bit.
 TESSERA_INLINE std::uint32_t classOf(std::uint32_t sum) {
     return (std::bit_cast<std::uint32_t>(static_cast<float>(static_cast<std::int32_t>(sum + 1))) >> 22) - 254u;
 }
@@ -61,10 +61,10 @@ TESSERA_INLINE std::uint16_t magnitudeOf(std::int32_t value, int shift) {
     return static_cast<std::uint16_t>(size < kLargestMagnitude ? size : kLargestMagnitude);
 }
 
-/// Number of lane chunks of the bands, the widest row, and from these the number of groups of coder states.
+/// Number of chunks of the bands, the widest row, and the resulting number of groups of coder states.
 struct Lanes {
     std::size_t chunks = 0;
-    int groups = 1, used = 0; ///< used: states that are stored
+    int groups = 1, used = 0; ///< used: number of stored states
 
     template <class AnyBand> explicit Lanes(std::span<const AnyBand> bands) {
         int widest = 0;
@@ -79,7 +79,7 @@ struct Lanes {
     }
 };
 
-/// Calls `visit(band number, z, y)` for every row, alternating between the bands.
+/// Calls `visit(band index, z, y)` for every row in coding order, alternating between the bands.
 template <class AnyBand, class Visit> TESSERA_INLINE bool forBandRows(std::span<const AnyBand> bands, Visit&& visit) {
     glm::ivec3 most(0);
     for (const AnyBand& band : bands)
@@ -92,8 +92,8 @@ template <class AnyBand, class Visit> TESSERA_INLINE bool forBandRows(std::span<
     return true;
 }
 
-/// Magnitudes for a set of bands. Before a slice is written again, its old contents must not be visible: rows are
-/// written completely, so only the first two slices see foreign values, which are zeros.
+/// Buffers for a set of bands. Slices are overwritten completely before they are read again, so only the initial
+/// content, zeros, is visible in the first two slices.
 inline std::vector<Magnitudes> magnitudesFor(auto bands) {
     std::vector<Magnitudes> all;
     all.reserve(bands.size());

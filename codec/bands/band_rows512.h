@@ -3,7 +3,7 @@
 #include "codec/bands/band_rows.h"
 #include "codec/bytes/vector_intrinsics.h"
 
-/// Contexts of many places at once.
+/// Context computation for many positions at once.
 namespace tessera::codec {
 
 #if TESSERA_X86

@@ -7,7 +7,7 @@ namespace tessera::codec {
 
 namespace {
 
-/// Tokens of one row, sixteen per chunk, to `tokens`, which is advanced.
+/// Writes the tokens of one row, sixteen per chunk, to `tokens` and advances it.
 template <class Word>
 void rowTokens(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours& near, Contexts contexts,
                std::uint16_t* size, std::uint16_t*& tokens, TokenRun& run) {
@@ -33,14 +33,14 @@ void rowTokens(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours
 
 #if TESSERA_X86
 
-/// As rowTokens, sixteen at a time. `count`: of large symbols so far; there is room for more behind them.
+/// The same, sixteen at a time. `count`: number of large symbols so far; the buffer has room for more.
 template <class Word, bool kByBand>
 TESSERA_AVX512 void rowTokens512(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours& near,
                                  Contexts contexts, std::uint16_t* sizes, std::uint16_t*& tokens, TokenRun& run,
                                  std::size_t& count) {
     const Word* values = band.values + at;
     const __m512i kind = _mm512_set1_epi32(kByBand ? band.kind << 13 : 0);
-    __m512i any = _mm512_setzero_si512(), sums = any; // of 32 places
+    __m512i any = _mm512_setzero_si512(), sums = any; // for 32 positions
     for (int x = 0; x < band.size.x; x += kLanes, tokens += kLanes) {
         const auto inside = static_cast<__mmask16>((1u << std::min(kLanes, band.size.x - x)) - 1u);
         __mmask16 active = inside;
@@ -66,7 +66,7 @@ TESSERA_AVX512 void rowTokens512(const Band<const Word>& band, std::ptrdiff_t at
 
         __m512i token = symbol;
         const __mmask16 large = _mm512_cmpge_epu32_mask(symbol, _mm512_set1_epi32(kDirect));
-        if (large != 0) { // octave o, its four parts: 32 + 4 (o - 5) + the two bits behind the first
+        if (large != 0) { // octave o has four parts: 32 + 4 (o - 5) + the two bits after the leading one
             const __m512i octave = _mm512_sub_epi32(_mm512_set1_epi32(31), _mm512_lzcnt_epi32(symbol));
             const __m512i part = _mm512_and_si512(
                 _mm512_srlv_epi32(symbol, _mm512_sub_epi32(octave, _mm512_set1_epi32(2))), _mm512_set1_epi32(3));
@@ -130,7 +130,7 @@ void countTokens(const TokenRun& run, int level, Histogram& histogram, int every
     constexpr std::size_t kMany = 1024; // chunks
     const std::size_t chunks = run.tokens.size() / kLanes, step = chunks < kMany ? 1 : std::size_t(every);
     const std::size_t first = histogram.contexts.first(level);
-    // With one kind the kind bits of tokens are ignored. (Kinds and classes are powers of two.)
+    // With one kind, the kind bits of tokens are masked out. (Kinds and classes are powers of two.)
     const std::size_t contexts = std::size_t(histogram.contexts.kindsOf(level)) * kClasses - 1;
     auto* const counts = histogram.counts.data() + first;
     for (std::size_t chunk = 0; chunk < chunks; chunk += step)

@@ -8,12 +8,12 @@
 
 namespace tessera::codec {
 
-/// Tokens of the rows of all bands, alternating between the bands. Every choice of `cpu` gives the same.
+/// Tokens of the rows of all bands in coding order. The result does not depend on `cpu`.
 template <class Word>
 TokenRun tokensOf(std::span<const Band<const Word>> bands, Contexts contexts, Cpu cpu = bestCpu());
 
-/// Adds the tokens to a histogram of the same contexts at `level`. In long runs only every `every`-th chunk is counted,
-/// with that weight.
+/// Adds the tokens to a histogram with the same contexts at `level`. Long runs are subsampled: only every `every`-th
+/// chunk counts, with that weight.
 void countTokens(const TokenRun& run, int level, Histogram& histogram, int every = 1);
 
 } // namespace tessera::codec

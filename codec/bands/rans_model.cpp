@@ -14,9 +14,9 @@ namespace {
 using Counts = std::array<std::uint32_t, kTokens>;
 using KindTables = std::array<std::uint8_t, kClasses>;
 
-constexpr std::uint32_t kByBand = 128; // beside the shift
+constexpr std::uint32_t kByBand = 128; // bit in the byte of the shift
 
-// Cost of a table in the file, in bits: its place in the map, plus this much for each token in use.
+// Cost of a table in the file in bits: its entry in the map, plus a cost per used token.
 constexpr double kTableBits = 24, kTokenBits = 8;
 
 /// n log2 n, tabulated for small n.
@@ -29,7 +29,7 @@ double nLogN(std::uint32_t n) {
     return n < kSmall.size() ? kSmall[n] : double(n) * std::log2(double(n));
 }
 
-/// Bits of the tokens of one context with their own ideal table, and of that table.
+/// Bits of the tokens of one context coded with their own optimal table, plus those of the table.
 double costOf(const Counts& counts) {
     double total = 0, own = 0, used = 0;
     for (const std::uint32_t count : counts) {
@@ -39,7 +39,7 @@ double costOf(const Counts& counts) {
     return total == 0 ? 0 : total * std::log2(total) - own + kTableBits + used * kTokenBits;
 }
 
-/// Counts scaled to a sum of kProbabilityOne, with at least 1 for every token that occurs and for the escape.
+/// Scales counts to a sum of kProbabilityOne, with at least 1 for every token that occurs and for the escape.
 Frequencies normalised(const Counts& counts) {
     Frequencies out{};
     Counts wanted = counts;
@@ -129,7 +129,7 @@ Model clustered(const Histogram& histogram, int mostTables) {
         std::uint8_t& table = model.tableOf[c];
         const auto kind = model.tableOf.begin() + std::ptrdiff_t(c);
         if (model.contexts.byBand && c % kClasses == 0 && std::count(kind, kind + kClasses, kNone) == kClasses) {
-            // A kind of bands without tokens takes the tables of the kind before.
+            // A kind of band without tokens takes the tables of the previous kind.
             if (c == 0)
                 std::fill_n(kind, kClasses, std::uint8_t(0));
             else
@@ -155,7 +155,7 @@ Histogram pooled(const Histogram& histogram) {
     return pool;
 }
 
-/// The model of a merged histogram, for contexts by band: all kinds of bands of a level use the same tables.
+/// Expands a model of a merged histogram to contexts by band: all kinds of a level use the same tables.
 Model spread(const Model& pool, Contexts contexts) {
     Model model{pool.levels, contexts, {}, pool.tables};
     for (int level = 0; level < pool.levels; ++level)
@@ -188,7 +188,7 @@ void Histogram::add(const Histogram& other) {
 Model makeModel(const Histogram& histogram, int mostTables) {
     Model model = clustered(histogram, mostTables);
     if (!histogram.contexts.byBand) return model;
-    // For few samples separate tables for bands cost more bytes than they save.
+    // For few samples, separate tables per kind cost more bytes than they save.
     constexpr double kFew = 1 << 20;
     double count = 0;
     for (const Counts& context : histogram.counts) count += std::accumulate(context.begin(), context.end(), 0.0);
@@ -220,19 +220,19 @@ Bytes serialise(const Model& model) {
     std::uint32_t last = 0;
     KindTables before{};
     for (auto at = model.tableOf.begin(); at != model.tableOf.end(); at += kClasses) {
-        if (model.contexts.byBand) { // 0: as the kind before
+        if (model.contexts.byBand) { // 0: as the previous kind
             const bool other = !std::equal(before.begin(), before.end(), at);
             out.put(other ? 1 : 0, 1);
             if (!other) continue;
             std::copy_n(at, kClasses, before.begin());
         }
-        for (auto table = at; table != at + kClasses; last = *table++) { // 0: as the class below
+        for (auto table = at; table != at + kClasses; last = *table++) { // 0: as the previous class
             out.put(*table == last ? 0 : 1, 1);
             if (*table != last) out.put(*table, 8);
         }
     }
     for (const Frequencies& table : model.tables) {
-        int used = kTokens - 1; // the escape is what the others leave
+        int used = kTokens - 1; // the escape has the remainder
         while (used > 0 && table[std::size_t(used - 1)] == 0) --used;
         out.put(static_cast<std::uint32_t>(used), 8);
         for (int t = 0; t < used; ++t) {
@@ -284,7 +284,7 @@ DecodeStatus parseModel(std::span<const std::byte> bytes, int levels, Model& mod
             table[t] = static_cast<std::uint16_t>(frequency);
         }
         if (in.failed) return DecodeStatus::Truncated;
-        if (sum == 0) return DecodeStatus::BadData; // two tokens at least: a frequency has twelve bits
+        if (sum == 0) return DecodeStatus::BadData; // at least two tokens, since a frequency has only twelve bits
         table[kEscape] = static_cast<std::uint16_t>(kProbabilityOne - sum);
     }
     return in.bytesRead() == bytes.size() ? DecodeStatus::Ok : DecodeStatus::Trailing;

@@ -17,7 +17,7 @@ namespace {
 using volume::LatticeKind;
 using volume::ScalarType;
 
-/// The streams of absent and exact samples of full resolution, from the front of `in`.
+/// Decodes the streams of absent and exact samples of full resolution at the front of `in`.
 DecodeStatus decodeExtras(const BrickFormat& format, std::span<const std::uint8_t> present,
                           std::span<const std::byte>& in, DecodedBrick& out) {
     if (format.keepsAbsent) {
@@ -39,7 +39,7 @@ DecodeStatus decodeExtras(const BrickFormat& format, std::span<const std::uint8_
     return DecodeStatus::Ok;
 }
 
-/// Undoes toDifferences: codes from differences to the previous coarse sample.
+/// Inverts toDifferences: restores codes from differences to the previous coarse sample.
 template <class Word> void fromDifferences(std::span<const Band<Word>> bands) {
     std::uint32_t code = 0;
     forCoefficients(bands, [&](Word& word) {
@@ -48,7 +48,7 @@ template <class Word> void fromDifferences(std::span<const Band<Word>> bands) {
     });
 }
 
-/// Coefficients of one level from all of `in`.
+/// Decodes the coefficients of one level; `in` must end with them.
 template <class Word>
 DecodeStatus decodeLevel(std::span<const std::byte> in, std::span<const Band<Word>> bands, int level,
                          const BandDecoder& decoder) {
@@ -115,7 +115,7 @@ DecodeStatus decodeLevels(const BrickFormat& format, std::span<const std::span<c
     return DecodeStatus::Ok;
 }
 
-/// Decodes a brick stored as one stream: coarse levels are computed from all samples.
+/// Decodes a brick stored as one stream; coarse levels are computed from all samples.
 template <class Word>
 DecodeStatus decodeWhole(const BrickFormat& format, std::span<const std::byte> in, int level,
                          std::span<const std::uint8_t> present, DecodedBrick& out) {
@@ -173,7 +173,7 @@ DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<co
     out.begin(format, level);
     out.present = maskAt(format, present, level);
     const bool narrow = out.narrow = fitsInt16(format, !present.empty());
-    // If the extra streams come first, the mode byte of a brick with one level follows them.
+    // Skip the extra streams to find the mode byte of a brick with one level.
     std::span<const std::byte> first = segments[0];
     if (format.levels == 1) {
         if (const DecodeStatus status = decodeExtras(format, present, first, out); status != DecodeStatus::Ok)

@@ -10,31 +10,31 @@
 #include <span>
 #include <vector>
 
-/// One brick of one component: samples to bytes, level by level, and back. (FORMAT.md "Bricks".)
+/// Coding of one brick of one component, level by level. (FORMAT.md "Bricks".)
 namespace tessera::codec {
 
-/// A brick as tokens: the part of coding that does not depend on a model.
+/// The tokens of a brick: the part of coding that does not depend on a model.
 struct PreparedBrick {
     std::vector<TokenRun> levels;                                 ///< the last is the coarsest
-    std::vector<std::uint32_t> exactIndex, exactBits, absentBits; ///< what is stored beside them
+    std::vector<std::uint32_t> exactIndex, exactBits, absentBits; ///< stored in addition
 };
 
-/// Working memory of the transform, reused from brick to brick.
+/// Working memory of the transform, reused between bricks.
 struct SplitMemory {
     std::vector<LevelBox<std::int16_t>> boxes16;
     std::vector<LevelBox<std::int32_t>> boxes32;
 };
 
-/// Transforms a brick. `samples` are numbers of format.type, x fastest; `present` has one flag each, or is empty: all
-/// present. Quantised numbers with an error above `maxError` are stored exactly.
+/// Transforms a brick. `samples` are numbers of format.type, x fastest; `present` has one flag per sample, or is empty:
+/// all present. Quantised numbers with an error above `maxError` are stored exactly in addition.
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
                            std::span<const std::uint8_t> present, double maxError, Contexts contexts,
                            SplitMemory& memory);
-/// Adds the tokens of a brick to the statistics of a model; for long runs only a part of them (countTokens).
+/// Adds the tokens of a brick to a histogram; long runs are subsampled (countTokens).
 void countBrick(const PreparedBrick& brick, Histogram& histogram, int every = 1);
 
-/// The coded brick: segment 0 has the coarsest level, segment i the details of level `levels - 1 - i`. `brick` must be
-/// prepared from the same samples, with the contexts of the model. Deterministic.
+/// Codes a brick: segment 0 has the coarsest level, segment i the details of level `levels - 1 - i`. `brick` must be
+/// prepared from the same samples with the contexts of the model. Deterministic.
 std::vector<Bytes> encodeBrick(const BrickFormat& format, const PreparedBrick& brick,
                                std::span<const std::byte> samples, std::span<const std::uint8_t> present,
                                Compressor& compressor, const BandEncoder& bands);
@@ -44,26 +44,26 @@ std::vector<Bytes> encodeBrick(const BrickFormat& format, std::span<const std::b
                                std::span<const std::uint8_t> present, double maxError, Compressor& compressor,
                                const BandEncoder& bands);
 
-/// A sample stored exactly, as its bits, in addition to its code.
+/// A sample stored exactly as its bits, replacing the value of its code.
 struct ExactSample {
     std::uint32_t index = 0, bits = 0;
 };
 
-/// One decoded level of a brick. Decoding into the same object again reuses its memory.
+/// One decoded level of a brick. Its memory is reused when decoding into it again.
 struct DecodedBrick {
     /// Boxes of the sublattices; all except `samples` are working memory.
     template <class Word> struct Boxes { std::array<LevelBox<Word>, 2> samples, details, spare; };
 
-    glm::ivec3 size{0}; ///< storage samples of the level
+    glm::ivec3 size{0}; ///< storage samples at the level
     int sublattices = 1;
     bool narrow = false; ///< the codes are in `boxes16`, else in `boxes32`
     Boxes<std::int16_t> boxes16;
     Boxes<std::int32_t> boxes32;
     std::vector<std::uint8_t> present; ///< flags at the level; empty: all present
-    std::vector<ExactSample> exact;    ///< full resolution only: samples that replace their codes
-    std::vector<std::uint32_t> absent; ///< full resolution only: bits of absent samples in order, if kept
+    std::vector<ExactSample> exact;    ///< full resolution only: samples that replace those of their codes
+    std::vector<std::uint32_t> absent; ///< full resolution only: bits of absent samples in storage order, if stored
 
-    /// Empty, with the shape of a level.
+    /// Resets to the shape of a level.
     void begin(const BrickFormat& format, int level);
     template <class Word> Boxes<Word>& boxes() {
         if constexpr (sizeof(Word) == 2)
@@ -71,7 +71,7 @@ struct DecodedBrick {
         else
             return boxes32;
     }
-    /// Calls `visit(number of the first sample, codes)` for each row in storage order, with a span of 16- or 32-bit
+    /// Calls `visit(index of the first sample, codes)` for each row in storage order, with a span of 16- or 32-bit
     /// codes; undefined where absent.
     template <class Visit> void forRows(Visit&& visit) const {
         const auto rows = [&](const auto& samples) {
@@ -88,7 +88,7 @@ struct DecodedBrick {
 };
 
 /// Decodes `level` from the segments up to it (levels - level segments, coarsest first). Never throws because of the
-/// contents of the bytes, never reads beyond them.
+/// contents of the bytes and never reads beyond them.
 DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
                          std::span<const std::uint8_t> present, const BandDecoder& bands, DecodedBrick& out);
 

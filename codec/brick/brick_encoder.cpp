@@ -12,15 +12,19 @@ namespace tessera::codec {
 
 namespace {
 
-// Below this many bits per sample a search for repetitions with zstd is tried on this many samples.
+// Below this many bits per sample, coding as one stream is tried.
 constexpr double kTryWhole = 3.0;
 constexpr std::size_t kGlance = 1 << 14;
-constexpr double kGlanceAsShort = 1.5, kNearlyAsShort = 1.15, kPerhapsAsShort = 1.3; // the last before LZMA
+constexpr double
+    kGlanceAsShort = 1.5,
+    kNearlyAsShort = 1.15,
+    kPerhapsAsShort =
+        1.3; // factors on the size of bands below which a fast trial counts as promising; the last one before LZMA
 constexpr double kWorthLevels = 0.9;
-constexpr double kSparse = 0.75; // bits a sample
+constexpr double kSparse = 0.75; // bits per sample
 constexpr int kLeastEffort = -4, kSomeEffort = 3;
 
-/// Codes of the samples, and what is stored beside them.
+/// Codes of the samples, and what is stored in addition.
 struct Numbers {
     std::vector<std::uint32_t> codes, exactIndex, exactBits, absentBits;
 };
@@ -77,7 +81,7 @@ template <class Word> std::vector<Band<const Word>> constBands(std::span<const B
     return out;
 }
 
-/// The tokens of a transformed brick.
+/// Converts a transformed brick to tokens.
 template <class Word>
 std::vector<TokenRun> levelTokens(const BrickFormat& format, Contexts contexts, BrickLevels<Word>& levels) {
     std::vector<TokenRun> runs;
@@ -90,8 +94,8 @@ std::vector<TokenRun> levelTokens(const BrickFormat& format, Contexts contexts, 
     return runs;
 }
 
-/// Whether most floats of a brick occur more than once, as in mirrored or repetitive fields. Examines the values in one
-/// of sixteen hash classes, which contains all values equal to each other.
+/// Whether most floats of a brick occur more than once, as in mirrored or repetitive fields. Tests the values in one of
+/// sixteen hash classes, since equal values share a class.
 bool valuesRecur(std::span<const std::byte> samples, std::span<const std::uint8_t> present) {
     constexpr std::uint32_t kHash = 0x9E3779B1;
     constexpr std::size_t kFew = 256;
@@ -107,14 +111,14 @@ bool valuesRecur(std::span<const std::byte> samples, std::span<const std::uint8_
     return count >= kFew && 2 * repeated.size() >= count;
 }
 
-/// All samples as one stream in segment 0, if that is shorter than the levels: constants, labels, repeated slices.
+/// Codes all samples as one stream in segment 0 if that is shorter than bands: for constants, labels, repeated slices.
 void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std::span<const std::uint8_t> present,
               Compressor& compressor, std::vector<Bytes>& segments) {
     std::size_t bytes = 0;
     for (const Bytes& segment : segments) bytes += segment.size();
     const std::size_t count = countOf(format.size);
     if (bytes <= segments.size()) return;
-    // Levels of many bits are worth more than a few bytes.
+    // Levels of detail are worth more than a few bytes if they are large.
     const bool dense = 8.0 * double(bytes) > kTryWhole * double(count);
     if (dense && (format.type != volume::ScalarType::F32 || !valuesRecur(samples, present))) return;
     const int effort = compressor.level();
@@ -145,7 +149,7 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
     codes.reserve(all.size());
     for (std::size_t i = 0; i < all.size(); ++i)
         if (volume::isPresent(present, i)) codes.push_back(all[i]);
-    // If a quick search for repetitions is about as short as bands, a thorough one is worth its time.
+    // If a fast compression is about as short as bands, a thorough one is worth its time.
     if (!tryEffort(codes, kSomeEffort, compressor.triesLzma() ? kPerhapsAsShort : kNearlyAsShort)) return;
     (void)tryEffort(codes, effort, 1);
     if (double(whole.size()) >= (dense ? kWorthLevels : 1.0) * double(bytes)) return;

@@ -60,7 +60,7 @@ bool fitsInt16(const BrickFormat& format, bool masked) {
 
 namespace {
 
-/// One sublattice of samples in storage order.
+/// Extracts one sublattice of samples in storage order.
 template <class Word, class Number>
 void takeSublattice(const BrickFormat& format, const Number* numbers, std::span<const std::uint8_t> present,
                     int sublattice, LevelBox<Word>& out) {
@@ -86,9 +86,9 @@ void split(const BrickFormat& format, const Number* numbers, std::span<const std
     const bool predicted = levels > 1 && format.predictsOdd(masked);
     out.resize(std::size_t((levels + 1) * step));
     for (int s = 0; s < step; ++s) {
-        // The last box, after those of the levels, holds the samples of the next transform step.
+        // The box after those of the levels holds the input of the next transform step.
         const auto box = [&](int level) -> LevelBox<Word>& { return out[std::size_t(level * step + s)]; };
-        if (predicted && s == 1) break; // came with the other one
+        if (predicted && s == 1) break; // transformed together with the other sublattice
         LevelBox<Word>& whole = levels > 1 ? box(levels) : box(0);
         whole.reset(format.sublatticeSize(s), masked);
         takeSublattice(format, numbers, present, s, whole);

@@ -12,12 +12,12 @@ namespace tessera::codec {
 /// boxes are working memory.
 template <class Word> using BrickLevels = std::vector<LevelBox<Word>>;
 
-/// True if 16-bit words are sufficient for a brick.
+/// Whether 16-bit words suffice for a brick.
 bool fitsInt16(const BrickFormat& format, bool masked);
 
-/// Transforms codes in storage order into `levels` levels. The memory of `out` is reused. For a brick that predicts its
-/// odd sublattice, that sublattice has at level 0 the differences from the prediction, not divided into bands, and
-/// nothing at the others.
+/// Transforms codes in storage order into `levels` levels. The memory of `out` is reused. If the brick predicts its odd
+/// sublattice, that sublattice has the prediction residuals at level 0, not divided into subbands, and nothing at the
+/// other levels.
 template <class Word>
 void splitBrick(const BrickFormat& format, std::span<const std::uint32_t> codes, std::span<const std::uint8_t> present,
                 int levels, BrickLevels<Word>& out);
@@ -25,7 +25,7 @@ void splitBrick(const BrickFormat& format, std::span<const std::uint32_t> codes,
 template <class Word>
 void splitIntegers(const BrickFormat& format, std::span<const std::byte> samples, int levels, BrickLevels<Word>& out);
 
-/// The samples of a level from those of the coarser one and the details in `fine`, which is overwritten.
+/// Computes the samples of a level from those of the coarser level and the details in `fine`, which is overwritten.
 template <class Word>
 void joinLevel(const BrickFormat& format, const LevelBox<Word>& coarse, LevelBox<Word>& fine, LevelBox<Word>& samples);
 
@@ -34,14 +34,14 @@ template <class Word>
 void placeFlags(const BrickFormat& format, std::span<const std::uint8_t> present, int level, int sublattice, bool split,
                 LevelBox<Word>& out);
 
-/// The boxes of a level.
+/// The boxes of one level.
 template <class Word>
 std::span<LevelBox<Word>> boxesAt(BrickLevels<Word>& levels, const BrickFormat& format, int level) {
     const std::size_t step = std::size_t(format.sublattices());
     return std::span(levels).subspan(std::size_t(level) * step, step);
 }
 
-/// The seven bands of details of each box, or the whole box if it is undivided or of the coarsest level.
+/// The seven detail subbands of each box; one band if it is undivided or of the coarsest level.
 template <class Word> std::vector<Band<Word>> bandsOf(std::span<LevelBox<Word>> boxes, bool coarsest);
 
 /// Mode byte of a segment: coded as bands, or all coefficients are 0; the other modes are those of streams and whole

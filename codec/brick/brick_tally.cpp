@@ -15,9 +15,10 @@ namespace tessera::codec {
 namespace {
 
 constexpr int kMostBins = 32;
-constexpr std::size_t kTurns = 4; ///< tables that are counted in by turns, as one would wait for the one before
+constexpr std::size_t kTurns =
+    4; ///< partial histograms, used in turn so that increments of the same bin do not wait for each other
 
-/// The present, finite numbers: the input itself, or `kept` with the others removed.
+/// Removes absent and non-finite numbers; returns the input itself if there are none, else `kept`.
 template <class T>
 std::span<const T> counting(std::span<const T> all, std::span<const std::uint8_t> present, std::vector<T>& kept) {
     const auto counts = [&](std::size_t i) {
@@ -39,13 +40,13 @@ std::span<const T> counting(std::span<const T> all, std::span<const std::uint8_t
 struct Meaning {
     double offset, scale;
 
-    /// The decoded value.
+    /// The decoded physical value.
     double valueOf(double number) const { return double(static_cast<float>(offset + scale * number)); }
-    /// Whether every number of a type is its own value.
+    /// Whether every number of a type equals its value.
     template <class T> bool isPlain() const { return offset == 0 && scale == 1 && !std::same_as<T, std::int32_t>; }
 };
 
-/// Sum of the values of numbers, exact for small integers.
+/// Sum of the values of numbers; exact for small integers.
 template <class T> double sumOf(std::span<const T> numbers, const Meaning& meaning) {
     const auto inLanes = [&](const auto& valueOf) {
         constexpr std::size_t kLanes = 8;
@@ -63,7 +64,7 @@ template <class T> double sumOf(std::span<const T> numbers, const Meaning& meani
     return static_cast<double>(sum);
 }
 
-/// Assigns stored numbers to bins.
+/// Maps stored numbers to bins.
 struct Binning {
     Meaning meaning;
     double min, extent;
@@ -80,7 +81,7 @@ using TallyCounts = std::array<std::uint32_t, kMostBins>;
 template <class T>
 TallyCounts histogramOf(std::span<const T> numbers, const volume::NumberExtent<T>& extent, const Binning& binning) {
     std::array<TallyCounts, kTurns> turns{};
-    std::vector<std::uint8_t> binOf; // of each number, where that is less work than finding that of each sample
+    std::vector<std::uint8_t> binOf; // lookup table by number, if there are fewer numbers than samples
     if constexpr (!std::same_as<T, float>) {
         const std::int64_t least = extent.least, values = std::int64_t(extent.most) - least + 1;
         if (values <= std::int64_t(numbers.size() / 2)) {
@@ -110,9 +111,9 @@ TallyCounts histogramOf(std::span<const T> numbers, const volume::NumberExtent<T
     return counts;
 }
 
-/// How often each number of 8 bits occurs.
+/// Histogram of 8-bit numbers.
 std::array<std::uint32_t, 256> occurrences(std::span<const std::uint8_t> numbers) {
-    constexpr std::size_t kTables = 8; // by turns: one that counts the same again waits for the time before
+    constexpr std::size_t kTables = 8; // used in turn: an increment of the same entry would wait for the previous one
     std::array<std::array<std::uint32_t, 256>, kTables> turns{};
     std::size_t i = 0;
     for (; i + kTables <= numbers.size(); i += kTables) {
@@ -127,7 +128,7 @@ std::array<std::uint32_t, 256> occurrences(std::span<const std::uint8_t> numbers
     return sum;
 }
 
-/// The number of samples in the low half of the bins, in as many bits as all have; then the same of each half.
+/// Writes the number of samples in the low half of the bins, in the width of the total, then recursively each half.
 void putHalves(BitWriter& out, std::span<const std::uint32_t> counts, std::uint32_t all) {
     if (counts.size() < 2 || all == 0) return;
     const auto low = counts.first(counts.size() / 2), high = counts.subspan(counts.size() / 2);
@@ -175,7 +176,7 @@ TalliedBrick tallied(volume::ScalarType type, double offset, double scale, std::
         }
         if (numbers.empty()) return brick;
 
-        std::array<std::uint32_t, 256> times{}; // of bytes: all that is asked for is in how often each occurs
+        std::array<std::uint32_t, 256> times{}; // for bytes, everything follows from the histogram of numbers
         constexpr bool kBytes = std::same_as<T, std::uint8_t>;
         volume::NumberExtent<T> extent;
         if constexpr (kBytes) {
@@ -215,7 +216,7 @@ TalliedBrick tallied(volume::ScalarType type, double offset, double scale, std::
 }
 
 bool agree(const TalliedBrick& brick, float min, float max, const BrickTally& noted) {
-    constexpr std::int64_t kRounding = 2; // of sums that are added up in another order
+    constexpr std::int64_t kRounding = 2; // tolerance for sums added in another order
     if (!(brick.min <= brick.max)) return !(min <= max);
     return brick.min == min && brick.max == max && brick.tally.samples == noted.samples &&
            brick.tally.infinite == noted.infinite && brick.tally.counts == noted.counts &&

@@ -8,49 +8,48 @@
 #include <span>
 #include <vector>
 
-/// Statistics of a brick that an archive stores: range, mean and histogram. (FORMAT.md "Statistics".)
+/// Statistics of a brick stored in an archive: range, mean and histogram. (FORMAT.md "Statistics".)
 namespace tessera::codec {
 
 /// Mean and histogram of the present, finite values of a brick at full resolution, as decoded.
 struct BrickTally {
-    std::uint32_t samples = 0;         ///< how many there are
-    std::uint32_t infinite = 0;        ///< that are present beside them
-    std::uint32_t mean = 0;            ///< where it lies between the least and the largest, in kMeanParts parts
-    std::vector<std::uint32_t> counts; ///< in equal bins from the least to the largest; empty where there is one bin
+    std::uint32_t samples = 0;         ///< number of present and finite samples
+    std::uint32_t infinite = 0;        ///< number of present samples that are not finite
+    std::uint32_t mean = 0;            ///< position between minimum and maximum, in units of 1/kMeanParts
+    std::vector<std::uint32_t> counts; ///< in equal bins from minimum to maximum; empty if there is one bin
 
     bool operator==(const BrickTally&) const = default;
 };
 
 inline constexpr std::uint32_t kMeanParts = (1u << 24) - 1;
 
-/// Number of histogram bins for a number of samples, a power of two up to 32: about an eighth of the square root of the
-/// number.
+/// Number of histogram bins for a number of samples: a power of two up to 32, about an eighth of its square root.
 int binsOf(std::uint32_t samples);
 
-/// Whether a brick with this range has a mean and a histogram; a single value, or none, needs neither.
+/// Whether a brick with this range has a mean and a histogram; a constant or empty brick needs neither.
 bool hasSpread(float min, float max);
 
 struct TalliedBrick {
-    float min = 0, max = -1; ///< physical values; min > max: no sample counts
+    float min = 0, max = -1; ///< physical values; min > max: no present, finite sample
     BrickTally tally;
 };
 
-/// Statistics of the stored numbers of a brick, whose physical values are offset + scale * number. `present`: one flag
-/// each, or empty: all present. `withTally` false: only the range.
+/// Computes the statistics of a brick from stored numbers, whose physical values are offset + scale * number.
+/// `present`: one flag each, or empty: all present. Without `withTally`: only the range.
 TalliedBrick tallied(volume::ScalarType type, double offset, double scale, std::span<const std::byte> samples,
                      std::span<const std::uint8_t> present, bool withTally);
 
-/// Whether the statistics of a brick equal the stored ones; the mean may differ in its last digits.
+/// Whether the statistics of a brick equal stored ones, up to rounding of the mean.
 bool agree(const TalliedBrick& brick, float min, float max, const BrickTally& noted);
 
-/// Writes the statistics of a brick with this range; `isFloat`: samples can be present and not finite.
+/// Writes the statistics of a brick with this range. `isFloat`: samples can be present but not finite.
 void put(BitWriter& out, float min, float max, bool isFloat, const BrickTally& tally);
-/// Reads the statistics written by put. `present`: number of present samples of the brick. False if the bits are
-/// invalid or end early.
+/// Reads the statistics written by put. `present`: number of present samples. False if the bits are invalid or end
+/// early.
 bool take(BitReader& in, float min, float max, bool isFloat, std::uint32_t present, BrickTally& tally);
 
-/// The statistics as volume::BrickSource returns them; empty if the range is not finite. `step`: distance between
-/// stored numbers, 0 for floats.
+/// Converts the statistics for volume::BrickSource; empty if the range is not finite. `step`: distance between stored
+/// numbers, 0 for floats.
 std::optional<volume::BrickDistribution> distributionOf(float min, float max, double step, const BrickTally& tally);
 
 } // namespace tessera::codec

@@ -84,7 +84,7 @@ void FrameSamples::change(const std::function<void(Field&, Slab)>& visit) {
     bool isMasked = false;
     for (int first = 0; first < stored.lattice.size.z; first += stored.slices) {
         const Slab slab{first, std::min(stored.slices, stored.lattice.size.z - first)};
-        stored.masked = wasMasked, stored.offset = offset, stored.scale = scale; // as the slab was written
+        stored.masked = wasMasked, stored.offset = offset, stored.scale = scale; // as when the slab was written
         Field part = slices(slab.first, slab.count);
         visit(part, slab);
         stored.masked = isMasked;

@@ -13,40 +13,40 @@
 
 namespace tessera::codec {
 
-/// A range of whole brick layers of a frame, with its slices.
+/// A range of brick layers of a frame, given by its slices.
 struct Slab {
     int first = 0, count = 0; ///< slices
 
-    /// Numbers [begin, end) of its bricks.
+    /// Indices [begin, end) of its bricks.
     std::pair<std::size_t, std::size_t> bricks(const volume::BrickGrid& grid) const;
     /// The brick grid of the slab alone.
     volume::BrickGrid grid(volume::BrickGrid whole) const;
 };
 
-/// The slices of one layer of bricks.
+/// The slab of one brick layer.
 Slab layerOf(const volume::BrickGrid& grid, int layer);
 
-/// Storage of frames that are larger than memory.
+/// Where frames larger than memory are stored.
 struct SlabStore {
-    int layers = 1;     ///< of bricks in memory at a time
-    std::string folder; ///< for scratch files
+    int layers = 1;     ///< brick layers in memory at a time
+    std::string folder; ///< directory for scratch files
 };
 
-/// One component at one time, to be written to an archive: a field, or, if larger than memory, samples and flags in a
-/// scratch file that is read slab by slab. A field is a single slab.
+/// One component at one time, to be written to an archive: a field in memory, or, if larger than memory, samples and
+/// flags in a scratch file that is processed slab by slab. A field is a single slab.
 class FrameSamples {
 public:
-    /// The field is referred to, not copied: it must outlive this.
+    /// Refers to the field without copying it: the field must outlive this object.
     FrameSamples(const volume::Field& field) : lent_(&field) {}
     FrameSamples(volume::Field&& field) : own_(std::move(field)) {}
-    /// Takes a frame that is in memory; puts others into a scratch file, slab by slab. Masks become zeros and ones.
-    /// Throws MachineError, Cancelled and what reading throws.
+    /// Takes a frame in memory, or writes it to a scratch file slab by slab. Mask values become 0 or 1. Throws
+    /// MachineError, Cancelled, and what reading throws.
     FrameSamples(volume::SlicedFrame frame, const volume::BrickGrid& grid, const SlabStore& store,
                  const Progress& progress);
 
-    /// Null for one in a scratch file.
+    /// The field; null for a frame in a scratch file.
     const volume::Field* whole() const { return lent_ ? lent_ : own_ ? &*own_ : nullptr; }
-    /// Null for one in memory.
+    /// Null for a frame in memory.
     const SlabStore* store() const { return stored_ ? &stored_->store : nullptr; }
 
     volume::ScalarType type() const { return whole() ? whole()->type : stored_->type; }
@@ -54,16 +54,16 @@ public:
     double offset() const { return whole() ? whole()->offset : stored_->offset; }
     double scale() const { return whole() ? whole()->scale : stored_->scale; }
     std::size_t count() const { return lattice().count(); }
-    /// False: every sample is present.
+    /// Whether any sample may be absent.
     bool masked() const { return whole() ? whole()->mask != nullptr : stored_->masked; }
 
-    /// Visits every slab in order until `visit` returns false; true if none did.
+    /// Visits the slabs in order until `visit` returns false; returns true if none did.
     bool forSlabs(const std::function<bool(const volume::Field& part, Slab slab)>& visit) const;
-    /// Changes samples, flags, offset and scale slab by slab; offset and scale must be equal in all slabs.
+    /// Modifies samples, flags, offset and scale slab by slab; offset and scale must be equal in all slabs.
     void change(const std::function<void(volume::Field& part, Slab slab)>& visit);
-    /// Any range of slices, as a field.
+    /// A range of slices as a field.
     volume::Field slices(int first, int count) const;
-    /// For a frame in a scratch file: reads samples `at` .. `at` + `n`, and their flags if `present` is not null.
+    /// For a frame in a scratch file: reads the `n` samples from `at` on, and their flags unless `present` is null.
     void read(std::size_t at, std::size_t n, std::byte* samples, std::uint8_t* present) const;
 
 private:
@@ -73,8 +73,8 @@ private:
         double offset = 0, scale = 1;
         bool masked = false;
         SlabStore store;
-        int slices = 0;           ///< of a slab
-        volume::ScratchFile file; ///< the samples, then a flag each
+        int slices = 0;           ///< slices per slab
+        volume::ScratchFile file; ///< the samples, then one flag each
 
         explicit Stored(const SlabStore& to) : store(to), file(to.folder) {}
         void put(const volume::Field& part, int first);

@@ -12,16 +12,16 @@ namespace tessera::codec {
 
 namespace {
 
-constexpr double kLargestCode = 1 << 29; // leaves two bits for the growth of sums in the wavelets
+constexpr double kLargestCode = 1 << 29; // two bits remain for the growth of sums in the wavelets
 
 std::uint32_t clampedCode(double k) {
-    if (!(std::abs(k) <= kLargestCode)) return 0; // also NaN: stored exactly beside the codes
+    if (!(std::abs(k) <= kLargestCode)) return 0; // includes NaN: stored exactly in addition
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::rint(k)));
 }
 
-/// Calls `visit` for every present sample, or every n-th of them, until it returns false.
+/// Calls `visit` for every `stride`-th present sample until it returns false.
 template <class Visit> bool all(const FrameSamples& frame, std::size_t stride, Visit&& visit) {
-    std::size_t begin = 0, next = 0; // of the slab, of the samples to visit
+    std::size_t begin = 0, next = 0; // first sample of the slab; next sample to visit
     return frame.forSlabs([&](const volume::Field& part, Slab) {
         const auto samples = part.as<float>();
         for (; next < begin + samples.size(); next += stride)
@@ -41,7 +41,7 @@ bool reproduces(const FrameSamples& samples, const NumberCoding& coding, std::si
     return within && seen > 0 && failed * 256 <= seen;
 }
 
-/// k / 2^m, with m from the lowest bit set in any finite sample, if the largest k stays below 2^29.
+/// k / 2^m, with m from the lowest bit set in any finite sample, if the largest k is below 2^29.
 std::optional<NumberCoding> binaryFractions(const FrameSamples& samples) {
     int lowest = std::numeric_limits<int>::max(), highest = std::numeric_limits<int>::min();
     const bool fits = all(samples, 1, [&](float sample) {
@@ -56,7 +56,7 @@ std::optional<NumberCoding> binaryFractions(const FrameSamples& samples) {
     return NumberCoding{NumberKind::Scaled, 0, std::ldexp(1.0, -lowest)};
 }
 
-/// Chooses k / 10^d or k / 2^m, whichever has smaller k: every float is a decimal, with enough digits.
+/// Selects k / 10^d or k / 2^m, whichever has smaller k; with enough digits every float is a decimal fraction.
 NumberCoding chooseLossless(const FrameSamples& samples) {
     const std::size_t stride = std::max<std::size_t>(1, samples.count() / 4096);
     std::optional<NumberCoding> best = binaryFractions(samples);
@@ -135,13 +135,13 @@ double valueOf(const NumberCoding& coding, std::uint32_t code) {
 }
 
 template <> float sampleOf<float>(const NumberCoding& coding, std::uint32_t code) {
-    if (coding.kind == NumberKind::Float) return floatOfCode(code); // bit for bit, NaN payloads too
+    if (coding.kind == NumberKind::Float) return floatOfCode(code); // bitwise, including NaN payloads
     return static_cast<float>(valueOf(coding, code));
 }
 
 namespace {
 
-/// Calls `visit` with the function that makes a real number of a code.
+/// Calls `visit` with the function from codes to real numbers.
 template <class Visit> void withValues(const NumberCoding& coding, Visit&& visit) {
     const double origin = coding.origin, step = coding.step;
     switch (coding.kind) {
@@ -161,7 +161,7 @@ template <class Visit> void withValues(const NumberCoding& coding, Visit&& visit
 template <class T, class Word> void toSamples(const NumberCoding& coding, std::span<const Word> codes, T* samples) {
     if constexpr (!std::same_as<T, float>) {
         for (std::size_t i = 0; i < codes.size(); ++i) samples[i] = static_cast<T>(codes[i]);
-    } else if (coding.kind == NumberKind::Float) { // bit for bit, NaNs too
+    } else if (coding.kind == NumberKind::Float) { // bitwise, including NaNs
         for (std::size_t i = 0; i < codes.size(); ++i) samples[i] = floatOfCode(static_cast<std::uint32_t>(codes[i]));
     } else {
         withValues(coding, [&](auto&& value) {

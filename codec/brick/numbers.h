@@ -6,27 +6,28 @@
 #include <span>
 #include <vector>
 
-/// Samples as 32-bit integer codes: what the wavelets transform.
+/// Quantisation: samples as 32-bit integer codes, the input of the wavelet transforms.
 namespace tessera::codec {
 
 enum class NumberKind : std::uint8_t {
     Integer,   ///< u8, i16, u16, i32: the number itself
-    Scaled,    ///< f32 that are integers in disguise: value = float(code / step), e.g. decimals with step = 10^d
+    Scaled,    ///< f32 with integer multiples of a step: value = float(code / step), e.g. decimals with step = 10^d
     Float,     ///< f32: the bits as an ordered integer (codeOfFloat)
     Quantised, ///< f32 within an error bound: value = float(origin + step * code)
 };
 
-/// How the numbers of one frame are coded. All arithmetic is in double, the result rounded once to float; codes are
-/// taken as signed.
+/// The number coding of one frame. All arithmetic is in double, with the result rounded once to float; codes are
+/// signed.
 struct NumberCoding {
     NumberKind kind = NumberKind::Integer;
     double origin = 0, step = 1;
     bool operator==(const NumberCoding&) const = default;
 };
 
-/// The coding for a frame. Integer types: Integer. f32 with `maxError` 0: Scaled if (almost) all present samples are
-/// k / 10^d or k / 2^m with |k| <= 2^29, else Float. f32 with `maxError` > 0 (absolute, in stored units): Quantised,
-/// with a step that leaves room for the rounding to float; lossless where the bound is below what a float resolves.
+/// Selects the coding of a frame. Integer types: Integer. f32 with `maxError` 0: Scaled if (almost) all present samples
+/// are k / 10^d or k / 2^m with |k| <= 2^29, else Float. f32 with `maxError` > 0 (absolute, in stored units):
+/// Quantised, with a step that leaves room for the rounding to float; lossless if the bound is below the resolution of
+/// float.
 NumberCoding chooseCoding(const FrameSamples& samples, double maxError);
 
 /// Code of one sample.
@@ -36,22 +37,22 @@ std::uint32_t codeOf(const NumberCoding& coding, std::uint16_t sample);
 std::uint32_t codeOf(const NumberCoding& coding, std::int32_t sample);
 std::uint32_t codeOf(const NumberCoding& coding, float sample);
 
-/// Sample of one code, in the type of the field; integers keep their low bits.
+/// The sample of one code, in the type of the field; integers keep their low bits.
 template <class T> T sampleOf(const NumberCoding&, std::uint32_t code) {
     return static_cast<T>(code);
 }
 template <> float sampleOf<float>(const NumberCoding& coding, std::uint32_t code);
 
-/// The same for a row of codes of 16 or 32 bits, into as many samples.
+/// Converts a row of 16- or 32-bit codes to as many samples.
 template <class T, class Word> void toSamples(const NumberCoding& coding, std::span<const Word> codes, T* samples);
 
-/// The stored value of a code as a real number: coarse levels of integer types may lie between and beyond the samples.
+/// The stored value of a code as a real number: for integer types coarse levels may lie between and beyond the samples.
 double valueOf(const NumberCoding& coding, std::uint32_t code);
 /// float(offset + scale * valueOf(code)) for a row of codes.
 template <class Word>
 void toValues(const NumberCoding& coding, double offset, double scale, std::span<const Word> codes, float* values);
 
-/// True if `sample` may be replaced by `decoded`: equal bits, or for Quantised at most `maxError` apart.
+/// Whether `sample` may be replaced by `decoded`: equal bits, or for Quantised a difference of at most `maxError`.
 bool close(const NumberCoding& coding, double maxError, float sample, float decoded);
 
 } // namespace tessera::codec

@@ -12,7 +12,7 @@ namespace {
 constexpr std::byte kWhole{5}, kPalette{6};
 constexpr std::size_t kMostColours = 256;
 
-/// The distinct codes in ascending order (signed), and the index of each; none if there are too many for one-byte
+/// The distinct codes in ascending (signed) order, and the index of each; empty if there are too many for one-byte
 /// indices.
 class Palette {
 public:
@@ -33,7 +33,7 @@ public:
         for (const std::uint32_t code : codes) places_[code - first_] = 1;
         const auto distinct = std::count(places_.begin(), places_.end(), std::uint8_t(1));
         if (distinct > std::ptrdiff_t(kMostColours)) return;
-        // With few gaps, a palette without gaps is shorter, since its steps are equal.
+        // With few gaps, the full range is shorter as a palette, since its differences are equal.
         const bool whole = distinct > 1 && range <= std::int64_t(kMostColours) && range - distinct <= kMostGaps;
         for (std::size_t i = 0; i < places_.size(); ++i) {
             if (places_[i] == 0 && !whole) continue;
@@ -69,7 +69,7 @@ private:
 
     std::vector<std::int32_t> colours_;
     std::uint32_t first_ = 0;          ///< code of the first of `places_`
-    std::vector<std::uint8_t> places_; ///< by code from the least on; empty where those lie too far apart
+    std::vector<std::uint8_t> places_; ///< by code from the smallest on; empty if the codes are too far apart
 };
 
 } // namespace

@@ -11,12 +11,12 @@ namespace tessera::codec {
 
 using Bytes = std::vector<std::byte>;
 
-/// Little-endian numbers.
+/// Little-endian.
 void appendU32(Bytes& out, std::uint32_t value);
 std::uint32_t readU32(const std::byte* at);
-/// Lengths: 7 bits a byte, lowest first, bit 7 set on all but the last; at most 5 bytes.
+/// Variable-length number: 7 bits per byte, least significant first, bit 7 set on all but the last; at most 5 bytes.
 void appendLength(Bytes& out, std::uint32_t length);
-/// Reads one from the front of `in`, which then starts behind it.
+/// Reads such a number from the front of `in` and advances it.
 DecodeStatus takeLength(std::span<const std::byte>& in, std::uint64_t& length) noexcept;
 
 } // namespace tessera::codec

@@ -2,8 +2,7 @@
 
 #include <cstdint>
 
-/// The vector instructions that the inner loops of the codec may use. Every choice gives the same numbers; tests
-/// compare them.
+/// Vector instruction sets for the inner loops of the codec. All give identical results, which tests compare.
 namespace tessera::codec {
 
 enum class Cpu : std::uint8_t { Portable, Avx2, Avx512 };
@@ -17,10 +16,10 @@ enum class Cpu : std::uint8_t { Portable, Avx2, Avx512 };
 #define TESSERA_AVX2
 #define TESSERA_AVX512
 #endif
-/// For function bodies that are compiled once for each kind of processor.
+/// For function bodies that are compiled once per instruction set.
 #define TESSERA_INLINE [[gnu::always_inline]] inline
 
-/// The best choice that this processor supports.
+/// The best instruction set that this processor supports.
 inline Cpu bestCpu() {
 #if TESSERA_X86
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&

@@ -7,11 +7,11 @@ namespace tessera::codec {
 /// Result of decoding untrusted bytes. Decoders never throw because of their contents and never read beyond them.
 enum class [[nodiscard]] DecodeStatus : std::uint8_t{
     Ok,
-    Truncated, ///< fewer bytes than announced
-    Trailing,  ///< bytes left over
-    BadMode,   ///< an unknown coding
-    BadLength, ///< a length that cannot be
-    BadData,   ///< the entropy coder refuses
+    Truncated, ///< fewer bytes than stated
+    Trailing,  ///< bytes after the end
+    BadMode,   ///< unknown coding
+    BadLength, ///< impossible length
+    BadData,   ///< rejected by the entropy decoder
 };
 
 constexpr const char* reason(DecodeStatus status) {

@@ -14,10 +14,10 @@ namespace {
 
 enum Mode : std::uint8_t { kZero = 0, kConstant = 1, kPlanes = 2, kPlanesZstd = 3, kPlanesLzma = 7 };
 
-/// Numbers of high bits of the previous byte that LZMA uses as context, in the order of trials.
+/// Numbers of literal context bits for LZMA, in the order of trials.
 constexpr int kLiteralBits[] = {3, 0, 4};
 
-/// Plane p holds byte p of every symbol.
+/// Splits symbols into byte planes: plane p holds byte p of every symbol.
 void toPlanes(std::span<const std::uint32_t> symbols, int width, std::byte* planes) {
     for (int p = 0; p < width; ++p, planes += symbols.size())
         for (std::size_t i = 0; i < symbols.size(); ++i) planes[i] = static_cast<std::byte>(symbols[i] >> (8 * p));
@@ -69,7 +69,7 @@ Bytes Compressor::compress(std::span<const std::byte> in) {
     Bytes out(ZSTD_compressBound(in.size()));
     const std::size_t size =
         ZSTD_compressCCtx(impl_->context.get(), out.data(), out.size(), in.data(), in.size(), impl_->level);
-    if (ZSTD_isError(size) != 0) throw std::bad_alloc(); // the only failure left with a buffer of this bound
+    if (ZSTD_isError(size) != 0) throw std::bad_alloc(); // the only possible failure with a buffer of this size
     out.resize(size < in.size() ? size : 0);
     return out;
 }
@@ -102,7 +102,7 @@ void encodeStream(std::span<const std::uint32_t> symbols, Compressor& compressor
     Mode mode = smaller ? kPlanesZstd : kPlanes;
     int literalBits = 0;
     for (const int tried : kLiteralBits) {
-        // If one context does not help, others will not either.
+        // If one context does not help, the others will not either.
         if (!compressor.triesLzma() || (tried != kLiteralBits[0] && mode != kPlanesLzma)) break;
         Bytes lzma = encodeLzma(planes, tried);
         if (lzma.size() + 1 >= best.size()) continue;

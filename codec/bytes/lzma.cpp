@@ -8,11 +8,11 @@ namespace tessera::codec {
 
 namespace {
 
-/// Dictionary of strings common in archives; part of the format.
+/// Preset dictionary of strings common in archives; part of the format.
 constexpr char kDictionary[] =
     "\0\0\0\0\xc2\x94\xd3\x38\x05\x80\x06\x2d" // an empty segment
     "\0\0\0\0\0\0\xf0\x3f"                     // 1.0
-    "\0\0\x80\xbf\0\0\0\0"                     // a change that is not known
+    "\0\0\x80\xbf\0\0\0\0"                     // an unknown change
     R"("labels":[{"name":"","value":1},{"name":"magnitude","ranges":[[0.0,1.0]],"type":"int32","type":"int16",)"
     R"("type":"float32","unit":"m/s","type":"uint16","kind":"bcc","kind":"d4","lossless":false,"categorical":true,)"
     R"({"data":{"bounds":{"hi":[63.0,63.0,63.0],"lo":[0.0,0.0,0.0]},"lattice":{"kind":"cc","origin":[0.0,0.0,0.0],)"
@@ -30,7 +30,7 @@ const std::uint8_t* octets(const std::byte* at) {
     return reinterpret_cast<const std::uint8_t*>(at);
 }
 
-/// Options for `size` bytes behind a dictionary.
+/// Encoder options for `size` bytes after the dictionary `before`.
 lzma_options_lzma optionsFor(int literalBits, std::size_t size, std::span<const std::byte> before) {
     lzma_options_lzma options{};
     lzma_lzma_preset(&options, 9 | LZMA_PRESET_EXTREME);
@@ -54,7 +54,7 @@ Bytes encode(std::span<const std::byte> in, int literalBits, std::span<const std
     std::size_t size = 0;
     const lzma_ret result = lzma_raw_buffer_encode(filters, nullptr, octets(in.data()), in.size(),
                                                    reinterpret_cast<std::uint8_t*>(out.data()), &size, out.size());
-    if (result != LZMA_OK) throw std::bad_alloc(); // the only failure left with a buffer of this size
+    if (result != LZMA_OK) throw std::bad_alloc(); // the only possible failure with a buffer of this size
     out.resize(size);
     return out;
 }

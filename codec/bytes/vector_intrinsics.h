@@ -2,10 +2,10 @@
 
 #include "codec/bytes/cpu.h"
 
-/// x86 vector instructions, if the processor is an x86.
+/// x86 vector intrinsics, on x86 only.
 #if TESSERA_X86
 #if defined(__GNUC__) && !defined(__clang__)
-// gcc 12 takes its own undefined vectors for a mistake.
+// gcc 12 warns of its own undefined vectors.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #endif

@@ -11,10 +11,10 @@ namespace tessera::codec {
 
 namespace {
 
-// Not text; any conversion of line ends damages it.
+// Starts with a non-text byte and contains line ends, to detect text-mode conversions.
 constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'T', 'S', 'R', 0x0d, 0x0a, 0x1a, 0x0a};
 
-/// One copy of the header at the front of `bytes`; `at` is where it lies.
+/// Parses one copy of the header at position `at`, the front of `bytes`.
 Header parseHeader(std::span<const std::byte> bytes, std::size_t at, std::uint64_t fileBytes, const std::string& file) {
     const auto place = [at](std::size_t offset) { return "byte " + std::to_string(at + offset); };
     if (bytes.size() < kMagic.size() || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0)
@@ -83,7 +83,7 @@ HeaderState parseHeaders(std::span<const std::byte> bytes, std::uint64_t fileByt
     }
     if (bytes.size() >= 2 * kHeaderBytes) try {
             second = parseHeader(bytes.subspan(kHeaderBytes), kHeaderBytes, fileBytes, file);
-        } catch (const Error&) { // the first has to do
+        } catch (const Error&) { // use the first copy
         }
     if (!first && !second) throw *problem;
     const bool damaged = !first || !second;

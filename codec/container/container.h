@@ -13,20 +13,20 @@
 ///     0        80             160                                                              fileSize
 ///     | header | header again | chunks, metadata, page | chunks, metadata, page | ... | last page | unfinished ...
 ///
-/// Bytes are only added behind fileSize; then both headers, one after the other, state the new end. So at every moment
-/// one of them describes a complete archive.
+/// Bytes are only appended beyond fileSize; then both headers, one after the other, are set to the new end. Thus one of
+/// them describes a complete archive at any time.
 namespace tessera::codec {
 
 inline constexpr std::uint32_t kFormatVersion = 3;
 inline constexpr std::size_t kHeaderBytes = 80;
-/// Where the chunks begin: behind the two headers.
+/// Position of the first chunk, after the two headers.
 inline constexpr std::uint64_t kFirstChunk = 2 * kHeaderBytes;
-/// Feature: the index has importance, change and repeats of bricks; frames can be coded body-centred, and integers in
-/// steps.
+/// Feature: the index has importance, change and repeats of bricks; frames can be body-centred and integers quantised.
 inline constexpr std::uint32_t kBrickNotes = 1;
-/// Feature: metadata and index pages are LZMA blocks (codec/bytes/lzma.h), streams can be LZMA, models can be empty.
+/// Feature: metadata and index pages are LZMA blocks (codec/bytes/lzma.h), streams can be LZMA, and models can be
+/// empty.
 inline constexpr std::uint32_t kCompact = 2;
-/// Feature: models can have contexts that distinguish bands.
+/// Feature: models can have contexts by band.
 inline constexpr std::uint32_t kBandContexts = 4;
 /// Feature: the index has mean and histogram of each brick.
 inline constexpr std::uint32_t kBrickTallies = 8,
@@ -35,7 +35,7 @@ inline constexpr std::uint32_t kBrickTallies = 8,
 /// xxh3, 64 bits, seed 0.
 std::uint64_t checksum(std::span<const std::byte> bytes);
 
-/// Bytes of the file under one checksum.
+/// A range of the file with a checksum.
 struct Block {
     std::uint64_t offset = 0, length = 0, checksum = 0;
     bool operator==(const Block&) const = default;
@@ -43,23 +43,23 @@ struct Block {
 
 struct Header {
     std::uint32_t version = kFormatVersion;
-    std::uint32_t features = kKnownFeatures; ///< bits a reader must know
-    std::uint64_t fileSize = 0;              ///< bytes behind belong to an append that was not finished
-    Block metadata, index;                   ///< index: the last page of it
+    std::uint32_t features = kKnownFeatures; ///< flags that a reader must know
+    std::uint64_t fileSize = 0;              ///< bytes beyond belong to an unfinished append
+    Block metadata, index;                   ///< index: its last page
     bool operator==(const Header&) const = default;
 };
 
 struct HeaderState {
     Header header;
-    bool damaged = false; ///< one of the two copies cannot be read
+    bool damaged = false; ///< one of the two copies is invalid
 };
 
 Bytes serialise(const Header& header);
-/// The valid header among the two copies at the start of a file of `fileBytes` bytes: of two valid ones, that of the
+/// The valid header of the two copies at the start of a file of `fileBytes` bytes; if both are valid, that of the
 /// larger complete archive. Checks magic, version, features, checksum and positions; throws Error naming `file`.
 HeaderState parseHeaders(std::span<const std::byte> bytes, std::uint64_t fileBytes, const std::string& file);
 
-/// Little-endian numbers, appended.
+/// Appends little-endian numbers.
 class ByteWriter {
 public:
     template <class T> void put(T value) {
@@ -79,7 +79,7 @@ public:
     Bytes bytes;
 };
 
-/// The same, read from the front; the caller has checked that there are enough bytes.
+/// Reads little-endian numbers; the caller has checked that there are enough bytes.
 class ByteReader {
 public:
     explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}

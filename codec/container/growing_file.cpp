@@ -49,7 +49,7 @@ GrowingFile::GrowingFile(const std::string& path, const Header& header)
         if (::ftruncate(::fileno(file_), static_cast<off_t>(header.fileSize)) != 0 ||
             std::fseek(file_, 0, SEEK_END) != 0)
             fail();
-        // A crash may have damaged one copy. Rewriting the other one with the same bytes is safe.
+        // A crash may have damaged one copy; writing both again with the same bytes is safe.
         const Bytes bytes = serialise(header);
         for (int copy = 0; copy < 2; ++copy) {
             if (::pwrite(::fileno(file_), bytes.data(), bytes.size(), copy * off_t(kHeaderBytes)) !=
@@ -81,7 +81,7 @@ void GrowingFile::fail() const {
 void GrowingFile::lock() {
     if (::flock(::fileno(file_), LOCK_EX | LOCK_NB) == 0) return;
     if (errno == EWOULDBLOCK) throw Error("another program is writing this archive", path_);
-    // A file system without locks: continue without one.
+    // the file system does not support locks
 }
 
 void GrowingFile::sync() {
@@ -93,7 +93,7 @@ void GrowingFile::append(std::span<const std::byte> bytes) {
     position_ += bytes.size();
 }
 
-/// Writes the second copy first, since readers read the first one first: at any time one of the two is complete.
+/// Writes the second copy first, since readers prefer the first: at any time one of the two is complete.
 void GrowingFile::writeHeaders(const Header& header) {
     sync();
     const Bytes bytes = serialise(header);
@@ -108,7 +108,7 @@ void GrowingFile::writeHeaders(const Header& header) {
 
 void GrowingFile::commit(const Header& header) {
     header_ = header;
-    if (kind_ == Kind::Replacing) return; // nobody reads it under its temporary name
+    if (kind_ == Kind::Replacing) return; // readers cannot see it under its temporary name
     writeHeaders(header);
     if (temporary_.empty()) return;
     if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail();
@@ -121,7 +121,7 @@ void GrowingFile::finish() {
         writeHeaders(header_);
         if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail();
         temporary_.clear();
-        kind_ = Kind::Appending; // it has its name: it stays
+        kind_ = Kind::Appending; // it has its final name and is kept
         syncFolderOf(path_);
     }
     std::FILE* const file = std::exchange(file_, nullptr);

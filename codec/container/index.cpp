@@ -19,7 +19,7 @@ std::uint16_t to16(double part) {
     return static_cast<std::uint16_t>(std::lround(std::clamp(part, 0.0, 1.0) * kMost16));
 }
 
-/// RMS / maximum, rounded up.
+/// RMS / maximum, rounded up to 16 bits.
 std::uint16_t shareOf(const volume::BrickChange& change) {
     if (!(change.max > 0)) return 0;
     if (!std::isfinite(change.max)) return std::uint16_t(kMost16);
@@ -52,8 +52,8 @@ public:
         const std::uint64_t times = in_.get<std::uint32_t>(), masks = in_.get<std::uint32_t>(),
                             frames = in_.get<std::uint32_t>(), models = in_.get<std::uint32_t>();
         const std::uint64_t bricks = shape_.bricks;
-        // No number here exceeds the capacity of the page's bytes, so nothing below overflows, and allocations are a
-        // constant factor of those bytes. Decoded pages can be larger than the file; mostPageBytes limits them.
+        // No count may exceed the capacity of the page's bytes, so nothing below overflows and allocations are
+        // proportional to those bytes. Decompressed pages can be larger than the file; mostPageBytes limits them.
         require(bricks <= room, "the index is too short", file_);
         const std::uint64_t maskBytes = kMaskRecordBytes + bricks * kMaskBrickBytes;
         const std::uint64_t frameBytes =
@@ -159,12 +159,12 @@ private:
 
     ByteReader in_;
     bool notes_, tallies_;
-    std::uint64_t end_; ///< of the part of the file where chunks may lie
+    std::uint64_t end_; ///< of the part of the file that may contain chunks
     const IndexShape& shape_;
     const std::string& file_;
 };
 
-/// Reads the pages from the last, which the header names, to the first; returned in order of the file.
+/// Reads the pages from the last, which the header names, to the first; returned in file order.
 std::vector<IndexPage> readPages(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
                                  const std::string& file, std::vector<Block>& places, std::uint64_t& pageBytes) {
     std::vector<IndexPage> pages;
@@ -173,7 +173,7 @@ std::vector<IndexPage> readPages(std::span<const std::byte> bytes, const Header&
     for (Block at = header.index;;) {
         const auto part = bytes.subspan(at.offset, at.length);
         require(checksum(part) == at.checksum, "the index is damaged (checksum)", file);
-        upTo.index = at; // what a page names lies before it
+        upTo.index = at; // a page may only refer to bytes before it
         Bytes records;
         const bool compact = (header.features & kCompact) != 0;
         require(!compact || decodePiece(part, records) == DecodeStatus::Ok, "a page of the index cannot be decoded",
@@ -194,7 +194,7 @@ std::vector<IndexPage> readPages(std::span<const std::byte> bytes, const Header&
     return pages;
 }
 
-/// Reads the tallies of a page, whose masks and those of older pages are in the index.
+/// Reads the statistics of a page; the index already has its masks and those of older pages.
 void takeTallies(const Index& index, const IndexShape& shape, IndexPage& page, const std::string& file) {
     BitReader in(page.tallies);
     for (FrameRecord& frame : page.frames)
@@ -213,7 +213,7 @@ void takeTallies(const Index& index, const IndexShape& shape, IndexPage& page, c
     require(in.atEnd(), "statistics of bricks do not fill the index", file);
 }
 
-/// Requires that a brick which repeats another has no bytes of its own, and that the other one has.
+/// Requires that a brick that repeats another has no bytes of its own, and that the other is not a repeat.
 void requireRepeats(const Index& index, const IndexShape& shape, const std::string& file) {
     for (std::size_t f = 0; f < index.frames.size(); ++f) {
         const FrameRecord& frame = index.frames[f];

@@ -8,20 +8,20 @@
 
 #include <vector>
 
-/// Index of an archive: positions and coding of bricks. (FORMAT.md "Index".)
+/// Index of an archive: positions and coding parameters of bricks. (FORMAT.md "Index".)
 namespace tessera::codec {
 
-/// A segment of a coded brick; its position follows from the lengths before it.
+/// A segment of a coded brick; its position follows from the lengths of those before it.
 struct Segment {
-    std::uint64_t offset = 0; ///< in the file; not stored
+    std::uint64_t offset = 0; ///< position in the file; not stored
     std::uint32_t length = 0;
     std::uint64_t checksum = 0;
 };
 
-/// The mask of one brick; no bytes if all or none of its samples are present.
+/// The mask of one brick; no bytes if all or no samples are present.
 struct MaskBrick {
     Segment segment;
-    std::uint32_t present = 0; ///< how many samples are
+    std::uint32_t present = 0; ///< number of present samples
 };
 
 struct MaskRecord {
@@ -31,18 +31,18 @@ struct MaskRecord {
 
 struct FrameBrick {
     float min = 0, max = -1; ///< physical values of present samples; min > max: none
-    BrickTally tally;        ///< only with kBrickTallies, and not of repeats
-    /// Properties of bricks that archives without kBrickNotes lack.
+    BrickTally tally;        ///< with kBrickTallies only, and not for repeats
+    /// Properties that archives without kBrickNotes lack.
     struct Notes {
         volume::BrickImportance importance;             ///< stored with 16 bits each
-        volume::BrickChange change{kUnknown, kUnknown}; ///< from the frame before; rms is stored as a share of max
-        int repeats = 0; ///< above 0: the samples, and the bytes, are those of the frame so many times before
+        volume::BrickChange change{kUnknown, kUnknown}; ///< since the previous frame; rms is stored relative to max
+        int repeats = 0; ///< above 0: samples and bytes are those of the frame this many times before
     } notes;
 
     static constexpr float kUnknown = -1;
 };
 
-/// The values as read back from the archive, the change rounded up.
+/// The values as read back from the archive, with the change rounded up.
 FrameBrick::Notes rounded(const FrameBrick::Notes& notes);
 
 /// One component of one parameter at one time.
@@ -52,23 +52,23 @@ struct FrameRecord {
     NumberCoding numbers;
     Wavelet wavelet = Wavelet::W22;
     bool keepsAbsent = false;
-    bool bodyCentred = false; ///< only with kBrickNotes
-    std::int32_t mask = -1;   ///< index of a MaskRecord, -1: all present
-    std::int32_t model = -1;  ///< index of a model, the tables of the coefficient coder; -1: none yet
+    bool bodyCentred = false; ///< with kBrickNotes only
+    std::int32_t mask = -1;   ///< index of a MaskRecord; -1: all present
+    std::int32_t model = -1;  ///< index of a model of the coefficient coder; -1: none yet
     int codeBits = 32;        ///< every |code| is below 2^codeBits
     double valueOffset = 0, valueScale = 1;
     std::vector<FrameBrick> bricks;
-    std::vector<Segment> segments; ///< [segment * bricks + brick], coarsest level first, as they lie in the file
+    std::vector<Segment> segments; ///< [segment * bricks + brick], coarsest level first, in file order
 };
 
-/// What one commit adds to the index.
+/// The additions of one commit to the index.
 struct IndexPage {
-    Block previousPage, previousMetadata; ///< empty on the first page; previousMetadata also where it still holds
+    Block previousPage, previousMetadata; ///< empty on the first page; previousMetadata also if it is unchanged
     std::vector<double> times;
     std::vector<Block> models;
     std::vector<MaskRecord> masks;
     std::vector<FrameRecord> frames;
-    Bytes tallies; ///< as read: of all frames, in bits
+    Bytes tallies; ///< undecoded bit stream of all frames' statistics
 };
 
 struct Index {
@@ -76,27 +76,27 @@ struct Index {
     std::vector<Block> models;
     std::vector<MaskRecord> masks;
     std::vector<FrameRecord> frames; ///< [time * components + component]
-    std::vector<Block> pages;        ///< the first first
+    std::vector<Block> pages;        ///< oldest first
     std::vector<Block> retired;      ///< metadata of former commits
-    std::uint64_t pageBytes = 0;     ///< of all pages, decoded
+    std::uint64_t pageBytes = 0;     ///< of all pages, decompressed
 };
 
-/// What the metadata says of the shape of an index.
+/// The shape of an index, from the metadata.
 struct IndexShape {
     std::uint64_t components = 0, bricks = 0;
     volume::BrickGrid grid;
 };
 
-/// Largest decoded size of all pages of a compact archive, so that a small file cannot request much memory.
+/// Limit of the decompressed size of all pages of a compact archive, so that a small file cannot request much memory.
 constexpr std::uint64_t mostPageBytes(std::uint64_t fileSize) {
     return (std::uint64_t(1) << 22) + 16 * fileSize;
 }
 
-/// The bytes of a page, as an LZMA block (codec/bytes/lzma.h) in compact archives. `features`: of the header.
+/// Serialises a page, in compact archives as an LZMA block (codec/bytes/lzma.h). `features`: of the header.
 Bytes serialise(const IndexPage& page, std::uint32_t features);
 
-/// Reads and checks the index a header names. Throws Error naming `file` when a checksum or a length is wrong, frames
-/// are missing, or chunks, pages and metadata do not fill the file up to header.fileSize exactly, in any order.
+/// Reads and checks the index that a header names. Throws Error naming `file` when a checksum or a length is wrong,
+/// frames are missing, or chunks, pages and metadata do not fill the file up to header.fileSize exactly, in any order.
 Index readIndex(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
                 const std::string& file);
 

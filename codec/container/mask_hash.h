@@ -9,7 +9,7 @@ struct XXH3_state_s;
 
 namespace tessera::codec {
 
-/// Hash of a mask, computed part by part.
+/// Hash of a mask, computed incrementally.
 class MaskHash {
 public:
     using Value = std::array<std::uint64_t, 2>;
@@ -20,10 +20,10 @@ public:
     MaskHash& operator=(const MaskHash&) = delete;
 
     void add(const volume::Mask& part);
-    /// Adds a part; a field without a mask has all samples present.
+    /// Adds the flags of a field; without a mask all samples are present.
     void add(const volume::Field& part);
     Value value() const;
-    /// Whether anything is absent.
+    /// Whether any sample is absent.
     bool gaps() const { return gaps_; }
 
 private:

@@ -49,14 +49,14 @@ json parameterJson(const volume::Parameter& parameter) {
     return out;
 }
 
-/// Numbers, null where one is not known.
+/// Numbers as JSON, null if unknown.
 json quantityJson(const volume::Quantity& quantity) {
     json values = json::array();
     for (const double value : quantity.values) values.push_back(std::isfinite(value) ? json(value) : json());
     return {{"name", quantity.name}, {"unit", quantity.unit}, {"values", std::move(values)}};
 }
 
-/// A node of the document with typed access, and its path for messages.
+/// A JSON node with typed access, and its path for messages.
 class Node {
 public:
     Node(const json& value, std::string path, const std::string& file)
@@ -106,7 +106,7 @@ private:
     const std::string& file_;
 };
 
-/// `alternating`: set if the frames form a D4* lattice; null: that is not allowed here.
+/// `alternating`: set if the frames form a D4* lattice; null: not allowed here.
 volume::Lattice readLattice(const Node& node, bool* alternating = nullptr) {
     volume::Lattice lattice;
     const std::string kind = node["kind"].text();
@@ -175,7 +175,7 @@ volume::Quantity readQuantity(const Node& node) {
     return quantity;
 }
 
-/// By parameter, null where not known.
+/// Per parameter, null if unknown.
 json resampledJson(const std::vector<std::optional<ResampleError>>& resampled) {
     json out = json::array();
     for (const std::optional<ResampleError>& error : resampled)
@@ -197,7 +197,7 @@ std::vector<std::optional<ResampleError>> readResampled(const Node& node, std::s
     return resampled;
 }
 
-/// Of all but the times, which the index has.
+/// Everything except the times, which are in the index.
 std::string toJson(const Metadata& metadata) {
     const volume::DatasetInfo& info = metadata.info;
     json parameters = json::array();
@@ -292,7 +292,7 @@ Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t features,
             throw Error("the metadata cannot be decoded", file, "metadata");
         return metadataFromJson(textOf(text), file);
     }
-    constexpr std::size_t kMost = std::size_t(1) << 26, kLeastRatio = 4096; // no text shrinks more than that
+    constexpr std::size_t kMost = std::size_t(1) << 26, kLeastRatio = 4096; // no text compresses by a higher ratio
     if (block.size() < 4) throw Error("the metadata is truncated", file, "metadata");
     const std::size_t length = readU32(block.data());
     const auto body = block.subspan(4);

@@ -6,10 +6,9 @@
 
 namespace tessera::codec {
 
-/// The options that differ from their defaults, by key; enumerators by name, nested ones as objects.
+/// Options that differ from their defaults, by key; enumerators by name, nested options as objects.
 nlohmann::json toJson(const PackOptions& options);
-/// The opposite. Takes what it knows: a missing or unknown key, a wrong type or a number out of range keeps the
-/// default.
+/// Inverse of toJson. Tolerant: a missing or unknown key, a wrong type or a number out of range keeps the default.
 PackOptions optionsFromJson(const nlohmann::json& json);
 
 } // namespace tessera::codec

@@ -9,10 +9,10 @@
 #include <optional>
 #include <string_view>
 
-/// How an archive is packed; noted in it.
+/// Packing options, recorded in the archive.
 namespace tessera::codec {
 
-/// A wavelet; Auto: chosen by trial on some bricks of each frame, among those whose coarse samples coincide with fine
+/// A wavelet. Auto: selected by trial on some bricks of each frame, among those whose coarse samples coincide with fine
 /// ones.
 enum class WaveletChoice : std::uint8_t { Auto, N1, N2, W11, W13, W15, W22, W24, W26, N4, W42, W44, W46 };
 inline constexpr std::string_view kWaveletChoiceNames[] = {"auto", "1,0", "2,0", "1,1", "1,3", "1,5", "2,2",
@@ -22,15 +22,16 @@ constexpr std::optional<Wavelet> waveletOf(WaveletChoice choice) {
     return static_cast<Wavelet>(static_cast<int>(choice) - 1);
 }
 
-/// Transform of BCC: each sublattice by itself, or one predicted from the other; Auto: the shorter one, by trial.
+/// Transform of BCC: each sublattice separately, or the odd one predicted from the even one. Auto: the shorter one, by
+/// trial.
 enum class BccTransform : std::uint8_t { Auto, Separable, BodyCentred };
 inline constexpr std::string_view kBccTransformNames[] = {"auto", "separable", "bodyCentred"};
 
-/// Where the stored samples lie.
+/// The lattice of the stored samples.
 enum class StoredLattice : std::uint8_t { CC, BCC, D4 };
 inline constexpr std::string_view kStoredLatticeNames[] = {"cc", "bcc", "d4"};
 
-/// How to pack. Described once: widgets, JSON and command-line options come from here.
+/// Packing options, described once for widgets, JSON and command line.
 struct PackOptions {
     StoredLattice lattice = StoredLattice::BCC;
     volume::ResampleOptions resample;
@@ -50,15 +51,15 @@ struct PackOptions {
     volume::ImportanceOptions importance;
 
     bool operator==(const PackOptions&) const = default;
-    /// Settings for a purpose.
+    /// Presets for common purposes.
     static constexpr std::string_view kPresetNames[] = {"none", "lossless", "visual", "small", "thesis"};
     static constexpr std::string_view kPresetDoc =
         "Preset, which other options override: lossless (every sample of the source, on CC), visual (error 0.001 of "
         "range), small (error 0.01 of range, highest effort), thesis (BCC, bricks of 16, 3 levels, wavelet (2,2) on "
         "each sublattice, soft threshold by importance)";
-    /// One of kPresetNames; nullopt of others.
+    /// The options of one of kPresetNames; nullopt for other names.
     static std::optional<PackOptions> preset(std::string_view name);
-    /// True if the lattice is part of a preset; others go with any.
+    /// Whether a preset sets the lattice; others can be combined with any.
     static bool presetHasLattice(std::string_view name);
     static void describe(auto& self, auto&& visit) {
         visit(self.lattice, FieldInfo{.key = "lattice",

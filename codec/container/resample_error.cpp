@@ -13,9 +13,9 @@ namespace {
 using volume::Field;
 using volume::Lattice;
 
-constexpr std::size_t kWhole = std::size_t(1) << 18; // samples that are looked at as one part
-constexpr int kBlocks = 32, kBlock = 8;              // of larger frames; slices of a block
-constexpr int kMargin = 4;                           // cells around a block that its filter may reach
+constexpr std::size_t kWhole = std::size_t(1) << 18; // frames up to this size are examined completely
+constexpr int kBlocks = 32, kBlock = 8;              // number of blocks of larger frames, and slices per block
+constexpr int kMargin = 4;                           // cells around a block that filters may read
 
 ResampleError compare(const Field& source, const Field& back, bool categorical) {
     ResampleError error;
@@ -83,7 +83,7 @@ ResampleError resampleError(const Lattice& source, const volume::SliceReader& re
         const int count = std::min(kBlock, slices - first);
         if (count <= 0) break;
         const Field part = readSource(first, count);
-        // Slices of BCC lie half a cell apart; a part of it begins with an even one.
+        // Slices of BCC are half a cell apart; a part of it must begin with an even slice.
         const auto sliceAt = [&](int z) {
             const double position = source.origin.z + source.spacing.z * z;
             return 2 * int(std::floor((position - stored.origin.z) / stored.spacing.z));
