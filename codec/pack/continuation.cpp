@@ -20,7 +20,7 @@ std::string sizeText(const volume::Lattice& lattice) {
            std::to_string(lattice.size.z);
 }
 
-/// The same samples in space, up to the rounding of numbers in files.
+/// Whether two lattices have the same samples in space, up to rounding in files.
 bool sameLattice(const volume::Lattice& a, const volume::Lattice& b) {
     constexpr double kRounding = 1e-5; // of a cell
     bool same = a.kind == b.kind && a.size == b.size;
@@ -83,7 +83,7 @@ void Continuation::noteResampled(const std::vector<std::optional<ResampleError>>
             noted.reset();
         else if (isNew)
             noted = error;
-        else if (noted) // else the cost at earlier times is not known
+        else if (noted) // otherwise the error at earlier times is unknown
             noted->add(*error);
     }
 }
@@ -103,7 +103,7 @@ bool sameSamples(const volume::Field& a, const volume::Field& b) {
     return true;
 }
 
-/// Requires that the label, as packing would store it, equals that of the archive at all times.
+/// Requires that the label, as it would be packed, equals that of the archive at all times.
 void requireSameLabel(const volume::Dataset& source, int label, const Archive& archive) {
     const Metadata& metadata = archive.metadata();
     const Parameter& added = source.info.parameters[std::size_t(label)];

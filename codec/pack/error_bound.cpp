@@ -30,9 +30,9 @@ template <class SquareOf> double rmsOf(const FrameSamples& samples, SquareOf&& s
     return count > 0 ? std::sqrt(squares / count) : 0;
 }
 
-/// How often each number occurs among the present samples of a frame.
+/// Histogram of the numbers of a frame's present samples.
 struct NumberCounts {
-    std::vector<std::pair<double, double>> counts; ///< number, how often; increasing
+    std::vector<std::pair<double, double>> counts; ///< number and count, ascending
     double samples = 0;
 
     double rms(std::int64_t step) const {
@@ -48,13 +48,13 @@ struct NumberCounts {
     double most() const { return counts.empty() ? 0 : counts.back().first; }
 };
 
-/// For 32-bit types with many different numbers, counts a part of them, which represents all.
+/// For 32-bit types with many different numbers, a representative part of the samples is counted.
 NumberCounts countNumbers(const FrameSamples& samples) {
-    constexpr std::size_t kMost = 1 << 20; // samples of 32 bits that are looked at
+    constexpr std::size_t kMost = 1 << 20; // 32-bit samples examined
     const std::size_t stride = samples.type() == volume::ScalarType::I32 ? samples.count() / kMost + 1 : 1;
     std::map<double, double> wide;
     std::vector<double> narrow(1 << 17, 0);
-    constexpr int kZero = 1 << 16; // place of 0 among the narrow ones
+    constexpr int kZero = 1 << 16; // index of 0 for the narrow types
     double lo = 0, hi = 0;
     samples.forSlabs([&](const volume::Field& part, Slab) {
         volume::dispatch(part.type, [&]<class T>(T) {
@@ -86,7 +86,7 @@ NumberCounts countNumbers(const FrameSamples& samples) {
     return out;
 }
 
-/// The largest step, among all small ones and some of the others (0.14 dB apart), whose RMS error is at most `wanted`.
+/// The largest step with an RMS error of at most `wanted`, among all small steps and some larger ones (0.14 dB apart).
 /// Searches up to four times that error.
 std::int64_t largestStep(volume::ScalarType type, const NumberCounts& counts, double wanted) {
     constexpr std::int64_t kMost = 1 << 29, kEvery = 64;
@@ -106,11 +106,13 @@ FrameBound integerBoundForPsnr(const FrameSamples& samples, double wanted) {
     return {double(step / 2), step};
 }
 
-/// The coarsest error bound for floats with an RMS error of at most `wanted`, by trial on the frame: where many samples
-/// are multiples of any step, as in a background, it is far larger than for uniformly distributed errors.
+/// The largest error bound for floats with an RMS error of at most `wanted`, by trial on the frame: if many samples are
+/// multiples of any step, as in a background, it is far larger than for uniformly distributed errors.
 double floatBoundForPsnr(const FrameSamples& samples, double wanted, double extent) {
     constexpr int kTrials = 40;
-    constexpr double kClose = 0.97, kLargestStep = 16; // of the wanted error: 0.26 dB; of a bound from trial to trial
+    constexpr double kClose = 0.97,
+                     kLargestStep =
+                         16; // lower end of the accepted error, as a fraction (0.26 dB); largest factor between trials
     double bound = std::sqrt(3.0) * wanted, above = std::numeric_limits<double>::infinity(), best = 0;
     for (int trial = 0; trial < kTrials && bound > 0; ++trial) {
         const NumberCoding numbers = chooseCoding(samples, bound);

@@ -6,17 +6,17 @@
 
 #include <cstdint>
 
-/// The error bounds of pack applied to a frame.
+/// Rounding of a frame according to the packing options.
 namespace tessera::codec {
 
-/// How a frame is rounded.
+/// The rounding of a frame.
 struct FrameBound {
-    double error = 0;      ///< largest of a sample, in stored numbers; 0: exact
-    std::int64_t step = 1; ///< of integers: what they become multiples of
+    double error = 0;      ///< largest absolute error of a sample in stored numbers; 0: exact
+    std::int64_t step = 1; ///< for integers: they become multiples of it
 };
 
-/// The strictest of the requested bounds. For a PSNR it is found by trial on the frame: the coarsest rounding that
-/// reaches it; for integers the largest step, odd or even, found in a few trials.
+/// The strictest of the requested bounds. A PSNR is converted by trial on the frame to the coarsest rounding that
+/// reaches it; for integers to the largest step, odd or even.
 FrameBound boundFor(const PackOptions& options, const volume::Parameter& parameter, const FrameSamples& samples);
 
 } // namespace tessera::codec

@@ -24,7 +24,7 @@ void include(Range& range, double value) {
     range.hi = std::max(range.hi, value);
 }
 
-/// Ranges of one time of a parameter: components, then magnitude.
+/// Ranges of a parameter at one time: those of the components, then of the magnitude.
 std::vector<Range> rangesOf(const std::vector<Field>& components) {
     const std::size_t n = components.size();
     std::vector<Range> ranges(n == 1 ? 1 : n + 1, kNothing);
@@ -95,7 +95,7 @@ std::vector<volume::SlicedFrame> FrameFeed::source(FeedStep& step, const volume:
         frames.push_back({lattice, read, {}});
     }
     const bool fits = options_.slices.step == 0, isRanged = !parameter.ranges.empty();
-    if (!fits && isRanged && !options_.toBcc) return frames; // nothing has to be known
+    if (!fits && isRanged && !options_.toBcc) return frames; // no preliminary pass is needed
     const int run = fits ? lattice.size.z : options_.slices.step;
     for (int first = 0; first < lattice.size.z; first += run) {
         std::vector<Field> parts;

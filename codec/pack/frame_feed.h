@@ -12,30 +12,30 @@
 
 namespace tessera::codec {
 
-/// One parameter at one time, as it is to be stored.
+/// One parameter at one time, ready to be stored.
 struct FeedStep {
     int parameter = 0;
     std::size_t time = 0;
-    std::vector<FrameSamples> frames; ///< of each component
-    ResampleError resampled;          ///< of all components, where it was measured
-    std::vector<Range> ranges;        ///< of what was read, components, then magnitude; empty where they were known
+    std::vector<FrameSamples> frames; ///< per component
+    ResampleError resampled;          ///< over all components, if measured
+    std::vector<Range> ranges;        ///< of the samples read: components, then magnitude; empty if known before
     std::uint64_t sourceSamples = 0, sourceBytes = 0;
     double loadSeconds = 0, resampleSeconds = 0;
 };
 
-/// Widens ranges by those of one more time; empty ranges begin with them.
+/// Extends ranges by those of another time; empty ranges are replaced.
 void widenRanges(std::vector<Range>& ranges, const std::vector<Range>& more);
 
 /// Options of reading and resampling.
 struct FeedOptions {
-    bool toBcc = false; ///< frames are resampled to the lattice of the grid
+    bool toBcc = false; ///< resample frames to the lattice of the grid
     volume::ResampleOptions resample;
     volume::BrickGrid grid;
-    volume::SliceMemory slices; ///< of frames larger than memory, which are never read whole; of others no step
-    int slabLayers = 0;         ///< of bricks of these in memory at a time
-    bool ahead = false;         ///< the next step is read while the last one is in use, for memory of two
-    bool rangesOnly = false;    ///< no frames are made
-    bool measures = false;      ///< what resampling costs
+    volume::SliceMemory slices; ///< slices read at a time from frames larger than memory; step 0: frames are read whole
+    int slabLayers = 0;         ///< brick layers of such frames in memory at a time
+    bool ahead = false;         ///< read the next step while the current one is processed; needs memory for both
+    bool rangesOnly = false;    ///< compute ranges only, without frames
+    bool measures = false;      ///< measure the error of resampling
 };
 
 /// Reads and resamples a data set time by time, and within each time parameter by parameter, one step ahead of the
@@ -48,16 +48,16 @@ public:
     FrameFeed(const FrameFeed&) = delete;
     FrameFeed& operator=(const FrameFeed&) = delete;
 
-    /// The next step; called times x parameters times. Throws what reading throws: Error, Cancelled.
+    /// Returns the next step; to be called times x parameters times. Throws what reading throws: Error, Cancelled.
     FeedStep next();
 
 private:
     FeedStep read(std::size_t number) const;
-    /// The components of a step as they are read: frames that fit are in memory then; of others what has to be known of
-    /// them as a whole has been looked up. Sets the ranges of the step.
+    /// Reads the components of a step: into memory if they fit; otherwise scans them for the properties of the whole
+    /// frame that later stages need. Sets the ranges of the step.
     std::vector<volume::SlicedFrame> source(FeedStep& step, const volume::Parameter& parameter) const;
 
-    volume::Dataset dataset_; ///< as it was at first, with parts where frames are resampled
+    volume::Dataset dataset_; ///< the original one, with parts if frames are resampled
     FeedOptions options_;
     std::stop_token stop_;
     std::size_t steps_, taken_ = 0;

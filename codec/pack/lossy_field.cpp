@@ -19,7 +19,7 @@ struct Part {
     glm::ivec3 size{0};
     std::vector<std::uint32_t> codes;
     std::vector<std::uint8_t> present;
-    std::vector<std::size_t> from; ///< sample of the brick
+    std::vector<std::size_t> from; ///< index in the brick of each sample
 };
 
 Part takePart(const BrickFormat& format, std::span<const std::uint32_t> codes, std::span<const std::uint8_t> present,
@@ -40,7 +40,7 @@ Part takePart(const BrickFormat& format, std::span<const std::uint32_t> codes, s
     return part;
 }
 
-/// Calls `visit(place)` for every present detail of a transformed sublattice.
+/// Calls `visit(index)` for every present detail of a transformed sublattice.
 template <class Visit> void forDetails(const Part& part, glm::ivec3 low, Visit&& visit) {
     std::size_t i = 0;
     for (int z = 0; z < part.size.z; ++z)
@@ -59,7 +59,7 @@ template <class T> T heldWithin(const NumberCoding& numbers, std::uint32_t code)
     }
 }
 
-/// Thresholds the details of one brick and updates its samples; `value` in codes.
+/// Thresholds the details of one brick and updates its samples; `value` in units of codes.
 void thresholdBrick(const BrickFormat& format, Threshold kind, double value, BrickInput& input) {
     if (format.numbers.kind == NumberKind::Float || format.levels < 2 || !(value > 0)) return;
     volume::dispatch(format.type, [&]<class T>(T) {
@@ -100,7 +100,7 @@ void thresholdBrick(const BrickFormat& format, Threshold kind, double value, Bri
     });
 }
 
-/// Largest |difference| of present samples, as stored.
+/// Largest absolute difference of present samples in stored units.
 double largestError(volume::ScalarType type, const BrickInput& before, const BrickInput& after) {
     double largest = 0;
     volume::dispatch(type, [&]<class T>(T) {
@@ -110,13 +110,14 @@ double largestError(volume::ScalarType type, const BrickInput& before, const Bri
             std::memcpy(&was, before.samples.data() + i * sizeof(T), sizeof(T));
             std::memcpy(&is, after.samples.data() + i * sizeof(T), sizeof(T));
             const double error = std::abs(double(is) - double(was));
-            if (error > 0) largest = std::max(largest, error); // of NaN and infinity the same again: no error
+            if (error > 0)
+                largest = std::max(largest, error); // differences of NaN and infinities from themselves are no error
         }
     });
     return largest;
 }
 
-/// The coding of a frame for thresholding: finer than the bound, to leave room for the details.
+/// The number coding for thresholding a frame: finer than the bound, to leave room for changes of details.
 NumberCoding codingFor(const FrameSamples& samples, double maxError) {
     if (samples.type() != volume::ScalarType::F32) return {};
     if (maxError > 0) return chooseCoding(samples, maxError / 2);
@@ -132,7 +133,7 @@ NumberCoding codingFor(const FrameSamples& samples, double maxError) {
     return chooseCoding(samples, lo < hi ? (hi - lo) / kParts / 2 : 0.0);
 }
 
-/// A threshold in codes.
+/// Converts a threshold to units of codes.
 double inCodes(const NumberCoding& numbers, double value) {
     if (numbers.kind == NumberKind::Scaled) return value * numbers.step;
     return numbers.kind == NumberKind::Quantised ? value / numbers.step : value;
@@ -149,7 +150,7 @@ int stepWithin(volume::ScalarType type, double maxError) {
         } else {
             const auto hi = std::int64_t(std::numeric_limits<T>::max()),
                        lo = -std::int64_t(std::numeric_limits<T>::lowest());
-            // The ends of the type must not be rounded to beyond them.
+            // Rounding must not leave the range of the type.
             std::int64_t step = 2 * std::int64_t(std::min(std::floor(maxError), kMost)) + 1;
             while (hi % step > step / 2 || lo % step > step / 2) step -= 2;
             return int(step);
@@ -195,7 +196,8 @@ Thresholded giveUpDetails(const volume::BrickGrid& grid, FrameSamples& samples, 
     frame.numbers = out.numbers;
     frame.wavelet = wavelet;
     const double most = kind == Threshold::Quantile ? value : inCodes(out.numbers, value);
-    const double rounding = maxError > 0 ? maxError : std::numeric_limits<double>::max(); // no number is infinitely off
+    const double rounding =
+        maxError > 0 ? maxError : std::numeric_limits<double>::max(); // no difference of finite numbers exceeds it
     std::mutex mutex;
     samples.change([&](volume::Field& part, Slab slab) {
         const volume::BrickGrid own = slab.grid(grid);

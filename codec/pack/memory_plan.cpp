@@ -26,9 +26,9 @@ bool isSpline(const volume::ResampleOptions& options) {
     return options.filter == volume::ResampleFilter::BSpline3 || options.filter == volume::ResampleFilter::BSpline5;
 }
 
-/// Working memory of resampling in addition to source and result, in bytes per source sample.
+/// Working memory of resampling besides source and result, in bytes per source sample.
 double workingBytes(const volume::ResampleOptions& options) {
-    constexpr double kLines = 1.25; // lines being filtered, and what the allocator keeps of them
+    constexpr double kLines = 1.25; // line buffers, and overhead of the allocator
     return (isSpline(options) ? kLines * double(sizeof(double)) : 0) +
            (options.sharpen > 0 ? double(sizeof(float)) + 1 : 0);
 }
@@ -45,7 +45,7 @@ public:
 
     /// For one parameter, independent of the number of layers.
     double always(const volume::Parameter& parameter) const {
-        // Bricks under way: samples, flags, codes and coefficients on every thread, and the bytes of a batch.
+        // Bricks being coded: samples, flags, codes and coefficients on every thread, and the bytes of a batch.
         constexpr double kThreads = 16, kCodes = 12;
         const std::size_t brick = brickBytes(metadata_.grid, parameter.type);
         const double samples = double(brick) / double(volume::byteSize(parameter.type));
@@ -54,11 +54,11 @@ public:
                double(batchOf(brick) * brick);
     }
     double ofLayers(const volume::Parameter& parameter, int layers) const {
-        const double bytes = double(volume::byteSize(parameter.type)) + 1; // and a flag
+        const double bytes = double(volume::byteSize(parameter.type)) + 1; // plus a flag
         const double texels =
             std::min(double(layers) * metadata_.grid.brickSize, double(metadata_.info.lattice.texels().z));
-        constexpr double kMargin = 8;   // texels, of both sides
-        constexpr double kSmoothed = 2; // what importance is read from, for each sample
+        constexpr double kMargin = 8;   // texels on both sides
+        constexpr double kSmoothed = 2; // smoothed samples for importance, bytes per sample
         const double stored = slice_ * texels * (bcc_ ? 2 : 1), around = slice_ * kMargin * (bcc_ ? 2 : 1);
         double made = stored * (bytes + 1);
         if (resampled_) {
@@ -66,7 +66,7 @@ public:
                                   2 * volume::kMostOrder;
             const double coefficients = isSpline(options_.resample) ? sizeof(double) : 0,
                          edges = options_.resample.sharpen > 0 ? 2 * (d4_ ? sizeof(float) + 1 : bytes) : 0;
-            // On D4* a sum of floats is resampled, of as many frames as the filter spans.
+            // On D4* a float blend of as many frames as the filter spans is resampled.
             const double blended = d4_ ? sizeof(float) + 1 : bytes;
             const double read = d4_ ? volume::framesSpanned(options_.resample) * bytes + blended : bytes;
             made = sourceSlice_ * std::min(slices, double(source_.lattice.size.z)) *
@@ -75,7 +75,7 @@ public:
         }
         return std::max(made, (stored + around) * (bytes + kSmoothed));
     }
-    /// For a slice while a frame is scanned for its ranges, or prefiltered.
+    /// Per slice, while a frame is scanned for its ranges or prefiltered.
     double ofSlice(const volume::Parameter& parameter) const {
         const double bytes = double(volume::byteSize(parameter.type)) + 1;
         return sourceSlice_ *
@@ -87,7 +87,7 @@ private:
     const volume::DatasetInfo& source_;
     const PackOptions& options_;
     bool bcc_, d4_, resampled_;
-    double sourceSlice_, slice_; ///< samples
+    double sourceSlice_, slice_; ///< in samples
 };
 
 void refuse(double least, double limit) {
@@ -95,8 +95,8 @@ void refuse(double least, double limit) {
                 " MB, but the limit of memory is " + std::to_string(std::lround(limit / kMega)) + " MB");
 }
 
-/// A plan with as many layers as fit (or `layers`, if not 0), and slices that need no more memory. `whole`: the memory
-/// for whole frames.
+/// A plan with as many layers as fit (or `layers`, if not 0), and slices that need no more memory than these. `whole`:
+/// the memory for whole frames.
 MemoryPlan planSlabs(const Metadata& metadata, const volume::DatasetInfo& source, const PackOptions& options,
                      int layers, double whole, double limit) {
     const SlabCosts costs(metadata, source, options);
@@ -117,7 +117,7 @@ MemoryPlan planSlabs(const Metadata& metadata, const volume::DatasetInfo& source
         ++plan.slabLayers;
     const double slice = most([&](const volume::Parameter& parameter) { return costs.ofSlice(parameter); });
     plan.slabStep = std::clamp(int(ofLayers(plan.slabLayers) / slice), 1, source.lattice.size.z);
-    if (metadata.alternating) { // a slice is made of many; those of all components are there at a time
+    if (metadata.alternating) { // a slice is blended from many, for all components at once
         const double components = most([](const volume::Parameter& parameter) { return double(parameter.components); });
         plan.slabStep = std::max(1, int(plan.slabLayers * metadata.grid.brickSize / (1 + components)));
     }
@@ -135,13 +135,13 @@ MemoryPlan planMemory(const Metadata& metadata, const volume::Dataset& dataset, 
     const double working = resampled ? workingBytes(options.resample) * samples : 0;
     double step = 0, coding = 0, all = 0, last = 0;
     for (const volume::Parameter& parameter : source.parameters) {
-        const double bytes = double(volume::byteSize(parameter.type)) + 1; // and a flag
+        const double bytes = double(volume::byteSize(parameter.type)) + 1; // plus a flag
         step = std::max(step, parameter.components * samples * bytes + stored * bytes + working);
         coding = std::max(coding, parameter.components * stored * bytes + 2 * stored * bytes);
         all += parameter.components * samples * bytes;
         last += parameter.components * stored * bytes;
     }
-    constexpr double kTimesOfD4 = 6; // that the filter in time may keep
+    constexpr double kTimesOfD4 = 6; // times kept by the temporal filter
     const bool d4 = options.lattice == StoredLattice::D4;
     const double kept = d4 ? kTimesOfD4 * all : 0;
     const double least = kOwn + kept + std::max(step, coding);

@@ -33,7 +33,7 @@ struct BoxesOfFrame {
         return format;
     }
 
-    /// The tables of the archive, or new ones if these are shorter including their own bytes.
+    /// The model of the archive, or a new one if that saves bytes including its own.
     Model modelFor(std::span<const volume::MergedBrick> boxes, const std::vector<std::uint8_t>& wanted,
                    const Model& known, std::uint64_t& bytes) const {
         constexpr int kMostTables = 24;

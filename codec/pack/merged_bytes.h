@@ -10,15 +10,15 @@
 
 namespace tessera::codec {
 
-/// Bytes of a box of bricks, over all stored components and times, without their index entries.
+/// Bytes of a box of bricks over all stored components and times, without their index entries.
 struct MergedBytes {
-    std::uint64_t apart = 0;    ///< as they lie in the archive
+    std::uint64_t apart = 0;    ///< as stored in the archive
     std::uint64_t together = 0; ///< if the box were coded as one brick
 };
 
-/// Bytes that merged bricks would take: each box is coded with the filter and tables of its frame, or with new tables
-/// if they pay; these count towards the first box. If all bricks of a box repeat an earlier time, it takes no bytes
-/// either way. Throws Error for damaged archives, Cancelled.
+/// Computes the size of merged bricks: each box is coded with the filter and model of its frame, or with a new model if
+/// that saves bytes, which then counts towards the first box. If all bricks of a box repeat an earlier time, both sizes
+/// are 0. Throws Error for damaged archives, Cancelled.
 std::vector<MergedBytes> bytesOfMerged(const Archive& archive, std::span<const volume::MergedBrick> boxes,
                                        const Progress& progress = {});
 

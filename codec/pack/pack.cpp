@@ -35,8 +35,8 @@ int defaultLevels(const volume::Lattice& lattice, int brickSize) {
     return levels;
 }
 
-/// The automatic edge of bricks. Repetition, which only integers that were not resampled have, is found only within a
-/// brick, so these get one large brick. Archives that grow keep their brick size.
+/// The automatic brick size. Repetition, which only integers that were not resampled have, is only found within a
+/// brick, so small data of that kind get one large brick. Archives that grow keep their brick size.
 int brickSizeFor(const volume::Lattice& lattice, const volume::DatasetInfo& info, const PackOptions& options,
                  const Archive* grown) {
     constexpr int kUsual = 64, kLargest = 128;
@@ -74,8 +74,8 @@ bool isExact(const PackOptions& options) {
     return options.maxError == 0 && options.absError == 0 && options.psnr == 0 && !hasThreshold(options);
 }
 
-/// Whether the error bound is relative to the range of all times, which needs a pass of its own; a single time is read
-/// once.
+/// Whether the error bound is relative to the range over all times, which requires a pass of its own; a single time is
+/// read only once.
 bool isRelative(const PackOptions& options) {
     return options.maxError > 0 || options.psnr > 0 || hasThreshold(options) || options.discard > 0;
 }
@@ -108,7 +108,7 @@ Thresholded giveUp(FrameSamples& samples, const volume::BrickGrid& grid, const F
     return giveUpDetails(grid, samples, frame.wavelet.value_or(Wavelet::W22), kind, value, strength, frame.maxError);
 }
 
-/// Makes every sample of the omitted bricks absent.
+/// Marks every sample of the omitted bricks as absent.
 void leaveOut(FrameSamples& samples, const volume::BrickGrid& grid, const std::vector<std::uint8_t>& discarded) {
     if (std::find(discarded.begin(), discarded.end(), std::uint8_t(1)) == discarded.end()) return;
     samples.change([&](Field& part, Slab slab) {
@@ -124,7 +124,7 @@ void leaveOut(FrameSamples& samples, const volume::BrickGrid& grid, const std::v
     });
 }
 
-/// Quantities at the source times of D4* frames: those of the source, preceded by those of the archive.
+/// Quantities at the source times of D4* frames: those of the archive, followed by those of the source.
 std::vector<volume::Quantity> quantitiesOf(const volume::DatasetInfo& source, const std::vector<double>& times,
                                            const Archive* grown) {
     const std::size_t old = grown ? grown->metadata().sourceTimes.size() : 0;
@@ -165,7 +165,7 @@ public:
         metadata_.lossless = isExact(options) && options.discard == 0 && before.lossless;
         metadata_.program = "tessera";
         metadata_.options = options;
-        metadata_.options.memoryMb = 0; // of this machine, not of the archive
+        metadata_.options.memoryMb = 0; // depends on the machine, not on the archive
         place_ = grown ? continuationOf(*grown, metadata_) : Continuation(info);
         ranges_.resize(info.parameters.size());
         errors_.assign(info.parameters.size(), 0);
@@ -185,7 +185,7 @@ public:
     }
 
     PackSummary run(const Progress& progress);
-    /// Estimated sizes of the archive at several bounds; sets the ranges of the source.
+    /// Estimates the sizes of the archive at several bounds; sets the ranges of the source.
     std::vector<SizeAtBound> estimate(const Progress& progress);
 
 private:
@@ -197,7 +197,7 @@ private:
     Metadata soFar(std::size_t wholeTimes) const;
 
     volume::Dataset& source_;
-    volume::Dataset dataset_; ///< what is stored, but for BCC
+    volume::Dataset dataset_; ///< the data to be stored, before resampling to BCC
     PackOptions options_;
     std::string path_;
     const Archive* grown_;
@@ -205,16 +205,16 @@ private:
     Continuation place_;
     MemoryPlan memory_;
     FeedOptions reading_;
-    std::vector<std::vector<Range>> ranges_;                    ///< gathered on the way, by parameter
+    std::vector<std::vector<Range>> ranges_;                    ///< found while packing, by parameter
     std::vector<double> errors_;                                ///< largest of a sample, by parameter, in its unit
-    std::vector<double> errorsBefore_;                          ///< that the source had already
-    std::vector<std::uint8_t> discarded_;                       ///< by brick
+    std::vector<double> errorsBefore_;                          ///< previous errors of the source
+    std::vector<std::uint8_t> discarded_;                       ///< flag per brick
     std::vector<std::optional<ResampleError>> resampledBefore_; ///< of the source, by parameter
     std::vector<ResampleError> resampled_;                      ///< measured so far, by parameter; empty: not measured
     PackSummary summary_;
 };
 
-/// Gathers what must be known of all times before the first one is coded.
+/// Computes what must be known of all times before the first one is coded.
 void Packing::gather(const Progress& progress) {
     if (isRelative(options_) && (times() > 1 || grown_)) {
         gatherAllRanges(dataset_, reading_, summary_, progress);
@@ -229,7 +229,7 @@ Metadata Packing::soFar(std::size_t wholeTimes) const {
     volume::DatasetInfo read = dataset_.info;
     settleRanges(read, ranges_);
     Metadata now = metadata_;
-    if (wholeTimes < now.info.times.size()) // of D4*: what the frames so far reach
+    if (wholeTimes < now.info.times.size()) // D4*: only the source times that the frames so far cover
         std::erase_if(now.sourceTimes, [&](double time) { return time > now.info.times[wholeTimes - 1]; });
     place_.widen(read, now.info);
     place_.noteResampled(resampledBefore_, resampled_, now);
@@ -253,7 +253,7 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
     frame.importance = options_.importance;
     if (options_.bccTransform != BccTransform::Auto)
         frame.bodyCentred = options_.bccTransform == BccTransform::BodyCentred;
-    // Bounds refer to the range of the whole archive, if it is known.
+    // Bounds are relative to the range over the whole archive, if it is known.
     const volume::Parameter& whole =
         grown_ && isRelative(options_) ? metadata_.info.parameters[std::size_t(place_.parameterOf[p])] : about;
     const std::vector<Range>& known = whole.ranges.empty() ? ranges_[p] : whole.ranges;
@@ -328,7 +328,7 @@ PackSummary Packing::run(const Progress& progress) {
         summary_.bricks = metadata_.grid.brickCount();
         const auto writer = grown_ ? std::make_unique<ArchiveWriter>(*grown_, metadata_, memory_.keepFrames)
                                    : std::make_unique<ArchiveWriter>(path_, metadata_, memory_.keepFrames);
-        reading_.measures = reading_.toBcc; // not in the passes before
+        reading_.measures = reading_.toBcc; // not in the preliminary passes
         if (reading_.measures) resampled_.resize(dataset_.info.parameters.size());
         FrameFeed feed(dataset_, reading_, progress.stop);
         const std::vector<volume::Parameter>& parameters = dataset_.info.parameters;

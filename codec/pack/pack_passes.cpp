@@ -28,7 +28,7 @@ void settleRanges(volume::DatasetInfo& info, const std::vector<std::vector<Range
         if (!ranges.empty() || gathered[p].empty()) continue; // known, or not read yet
         ranges = gathered[p];
         for (Range& range : ranges)
-            if (range.lo > range.hi) range = {0, 0}; // no sample is present anywhere
+            if (range.lo > range.hi) range = {0, 0}; // no sample is present at any time
     }
 }
 

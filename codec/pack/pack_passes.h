@@ -7,15 +7,15 @@
 /// Passes over a whole data set before it is packed.
 namespace tessera::codec {
 
-/// Sets unknown ranges of parameters to those that were gathered.
+/// Sets unknown ranges of parameters to those gathered.
 void settleRanges(volume::DatasetInfo& info, const std::vector<std::vector<Range>>& gathered);
 
-/// Computes unknown ranges of every parameter by reading everything once.
+/// Computes the unknown ranges of all parameters by reading everything once.
 void gatherAllRanges(volume::Dataset& dataset, const FeedOptions& reading, PackSummary& summary,
                      const Progress& progress);
 
-/// Flags of the bricks that are below the importance limit in every parameter at every time. Ranges must be known.
-/// Throws Error when no brick is left.
+/// Flags of the bricks below the importance limit in every parameter at every time. Ranges must be known. Throws Error
+/// when no brick remains.
 std::vector<std::uint8_t> bricksToDiscard(volume::Dataset& dataset, const FeedOptions& reading,
                                           const PackOptions& options, PackSummary& summary, const Progress& progress);
 

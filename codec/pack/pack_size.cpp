@@ -28,7 +28,7 @@ struct Scratch {
     Scratch& operator=(const Scratch&) = delete;
 };
 
-/// The bound at which the curve has `bytes`, between its points linear in the logarithm of the bound.
+/// The bound at which the curve reaches `bytes`, interpolated linearly in the logarithm of the bound.
 double boundAt(const std::vector<SizeAtBound>& curve, double bytes) {
     if (bytes >= curve.front().bytes) return 0;
     for (std::size_t i = 1; i < curve.size(); ++i) {
@@ -41,7 +41,7 @@ double boundAt(const std::vector<SizeAtBound>& curve, double bytes) {
     return kLargestBound;
 }
 
-/// The estimate for a bound.
+/// The estimated size for a bound.
 double bytesAt(const std::vector<SizeAtBound>& curve, double bound) {
     if (bound <= curve[1].bound) return bound == 0 ? curve[0].bytes : curve[1].bytes;
     for (std::size_t i = 2; i < curve.size(); ++i) {
@@ -52,7 +52,8 @@ double bytesAt(const std::vector<SizeAtBound>& curve, double bound) {
     return curve.back().bytes;
 }
 
-/// The bound to try next: between trials on either side by their sizes, else along the estimates from the one trial.
+/// The next bound to try: interpolated between trials on either side, or else along the estimates from the single
+/// trial.
 double nextBound(const std::vector<SizeAtBound>& curve, const std::optional<SizeAtBound>& above,
                  const std::optional<SizeAtBound>& below, double aim) {
     constexpr double kLeastStep = 1.15, kFinest = 1e-8;
@@ -67,7 +68,7 @@ double nextBound(const std::vector<SizeAtBound>& curve, const std::optional<Size
     return above ? std::max({guess, kLeastStep * trial.bound, kFinest}) : std::min(guess, trial.bound / kLeastStep);
 }
 
-/// Adds to each point the estimated bytes of a part of a frame, `times` times.
+/// Adds the estimated bytes of a part of a frame, times `times`, to each point.
 void addEstimates(const volume::BrickGrid& grid, const volume::Field& part, const volume::Parameter& parameter,
                   const PackOptions& options, SizeControl control, std::size_t bricks, double times,
                   std::vector<SizeAtBound>& curve) {
@@ -89,7 +90,7 @@ void addEstimates(const volume::BrickGrid& grid, const volume::Field& part, cons
     }
 }
 
-/// The same for a frame; for one in a scratch file, two brick layers represent all.
+/// The same for a whole frame; if it is in a scratch file, two brick layers represent it.
 void addEstimates(const volume::BrickGrid& grid, const FrameSamples& samples, const volume::Parameter& parameter,
                   const PackOptions& options, SizeControl control, double times, std::vector<SizeAtBound>& curve) {
     constexpr std::size_t kBricks = 8;
@@ -159,16 +160,16 @@ PackSummary packToSize(const PackOptions& asked, SizeControl control, const std:
         throw Error("choose either a size or an error bound, not both");
     if (asked.threshold.kind != ThresholdChoice::None) throw Error("a size cannot be combined with a threshold");
     constexpr int kTrials = 10, kNeighbours = 5;
-    constexpr double kFull = 0.96, kAim = 0.98; // of the size
-    constexpr double kSame = 1.01;              // ratio of bounds between which nothing is looked for: 0.09 dB
-    constexpr double kNextStep = 1.12;          // of integers: a step of 9 is 1.13 times one of 8
+    constexpr double kFull = 0.96, kAim = 0.98; // fractions of the size
+    constexpr double kSame = 1.01;              // ratio of bounds too close for another trial: 0.09 dB
+    constexpr double kNextStep = 1.12;          // for integers: a step of 9 is 1.13 times one of 8
     const double wanted = asked.sizeMb * 1e6, aim = kAim * wanted;
     const std::vector<SizeAtBound> curve = estimate(progress.part(0, 0.1));
     const Scratch trial(path + ".trial-" + std::to_string(::getpid()));
     const Scratch best(path + ".best-" + std::to_string(::getpid()));
     PackSummary found;
     double foundBound = 0;
-    std::optional<SizeAtBound> above, below; // the nearest trials that came out too large, and small enough
+    std::optional<SizeAtBound> above, below; // nearest trials that were too large and small enough
     int trials = 0;
     const auto attempt = [&](double bound) {
         PackOptions options = withBound(asked, control, bound);
@@ -194,8 +195,8 @@ PackSummary packToSize(const PackOptions& asked, SizeControl control, const std:
         if (came.bound == 0 || came.bytes >= kFull * wanted) break;
         if (above && below && below->bound <= kSame * above->bound) break;
     }
-    // Sizes of integers do not fall monotonically with the step: one or two steps finer than the last that was too
-    // large may fit.
+    // Sizes of integers are not monotonic in the step: one or two steps finer than the last one that was too large may
+    // fit.
     const bool steps = control == SizeControl::Psnr && above && double(found.archiveBytes) < kFull * wanted;
     for (int n = 1; steps && n <= kNeighbours; ++n)
         if (attempt(above->bound / std::pow(kNextStep, n)).bytes <= wanted) break;

@@ -11,31 +11,31 @@
 /// Search for the smallest error that fits a size.
 namespace tessera::codec {
 
-/// What is varied to meet a size. For floats the largest error of a sample, which can be any number; integers have only
-/// one such error for each odd step, but a PSNR for each step.
+/// The quantity varied to meet a size: for floats the largest error of a sample, which is continuous; for integers the
+/// PSNR, which differs for each step, while the largest error differs only for odd steps.
 enum class SizeControl : std::uint8_t { LargestError, Psnr };
 SizeControl sizeControlFor(const volume::DatasetInfo& info);
 
-/// The options with an error bound relative to the range of each parameter: a largest error, or the PSNR of an error
+/// The options with an error bound relative to the range of each parameter: a largest error, or the PSNR of errors
 /// uniformly distributed up to it. 0: exact.
 PackOptions withBound(PackOptions options, SizeControl control, double bound);
 
-/// Estimated size of an archive with such a bound.
+/// Estimated size of an archive with an error bound.
 struct SizeAtBound {
     double bound = 0; ///< 0: lossless
     double bytes = 0;
 };
 
-/// Estimated sizes for bounds from 0 up, each twice the one before, from the tokens of some bricks at some times, which
-/// are read as for packing. Ranges must be known.
+/// Estimates sizes for bounds from 0 up, each twice the previous one, from the tokens of some bricks at some times,
+/// which are read as for packing. Ranges must be known.
 std::vector<SizeAtBound> estimateSizes(const volume::Dataset& dataset, FeedOptions reading, const PackOptions& options,
                                        const Progress& progress);
 
 /// Packs into `path` with the smallest relative bound for which the archive is at most options.sizeMb large. Starts
-/// from the estimates and corrects them with the sizes found by packing, until at least 0.96 of the size are used, no
-/// bound is left between those tried, or the number of trials is reached. For integers, whose sizes do not fall
-/// monotonically with the step, a few steps finer than the last one that was too large are tried afterwards. `path`
-/// gets the best result. Throws Error when no bound makes the archive small enough.
+/// from the estimates and corrects them by the sizes of actual trials, until at least 0.96 of the size is used, no
+/// bound is left between those tried, or the number of trials is reached. For integers, whose sizes are not monotonic
+/// in the step, a few steps finer than the last one that was too large are tried at the end. `path` gets the best
+/// result. Throws Error when no bound makes the archive small enough.
 PackSummary packToSize(const PackOptions& options, SizeControl control, const std::string& path,
                        const std::function<std::vector<SizeAtBound>(const Progress&)>& estimate,
                        const std::function<PackSummary(const PackOptions&, const std::string&, const Progress&)>& pack,

@@ -27,7 +27,7 @@ int channelOf(const volume::DatasetInfo& info, int parameter, int component) {
     throw Error("no such component");
 }
 
-/// A level of one sublattice as a field on its own CC lattice: coarse samples of BCC coincide with fine ones of their
+/// One level of one sublattice as a field on its own CC lattice: coarse samples of BCC coincide with fine ones of their
 /// sublattice, so the two sublattices of a level do not form a BCC lattice.
 Field levelField(const volume::BrickSource& source, int channel, int time, int level, int sublattice) {
     const volume::BrickGrid& grid = source.grid();
@@ -61,7 +61,7 @@ Field levelField(const volume::BrickSource& source, int channel, int time, int l
 }
 
 /// The mean of two fields on the same grid where both are present and in the same part, else the value of the first one
-/// present.
+/// that is present.
 Field meanOf(const Field& a, const Field& b) {
     Field out = a;
     volume::Mask mask(a.count(), 1);
@@ -91,7 +91,7 @@ volume::Dataset storedDataset(std::shared_ptr<const Archive> archive) {
         const volume::BrickGrid& grid = archive->grid();
         if (slices.isAllOf(grid.lattice)) return readField(*archive, parameter, component, time);
         const auto [first, count] = slices.of(grid.lattice);
-        const int perLayer = grid.end(glm::ivec3(0)).z; // slices of a layer of bricks
+        const int perLayer = grid.end(glm::ivec3(0)).z; // slices per brick layer
         const int layer = first / perLayer, end = (first + count + perLayer - 1) / perLayer;
         const Field layers = readLayers(*archive, parameter, component, time, layer, end);
         return volume::slicesOf(layers, first - grid.begin({0, 0, layer}).z, count);
@@ -114,20 +114,21 @@ volume::Series storedSeries(std::shared_ptr<const Archive> archive, int paramete
 
 namespace {
 
-/// Sets the source times of D4* frames, and their quantities.
+/// Sets the source times of D4* frames, and the quantities at these times.
 void atSourceTimes(volume::DatasetInfo& info, const Archive& archive) {
     info.times = archive.metadata().sourceTimes;
     info.quantities = archive.metadata().sourceQuantities;
 }
 
-/// Level 0 of D4* frames at the source times.
+/// Level 0 of D4* frames, interpolated at the source times.
 volume::Dataset steadyDataset(std::shared_ptr<const Archive> archive, const Lattice& target,
                               volume::TimeFilter filter) {
     volume::Dataset dataset;
     dataset.info = archive->info();
     dataset.info.lattice = target;
     atSourceTimes(dataset.info, *archive);
-    constexpr std::size_t kFrames = 6; // cubic: four of one parity, and two of the other for a linear step
+    constexpr std::size_t kFrames =
+        6; // frames in the cache; cubic: four of one parity, and two of the other for linear interpolation
     const auto series = std::make_shared<std::map<std::pair<int, int>, volume::Series>>();
     const volume::Dataset stored = volume::withParts(storedDataset(archive));
     for (int p = 0; p < int(dataset.info.parameters.size()); ++p)
@@ -173,7 +174,7 @@ volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level, v
     dataset.read = [archive, source, stored = volume::withParts(storedDataset(archive)), target, level,
                     bcc](int parameter, int component, int wanted) {
         const volume::DatasetInfo& info = archive->info();
-        // Coarse levels of D4* show the frame nearest in time.
+        // Coarse levels of D4* show the nearest frame.
         const int time = archive->metadata().alternating
                              ? info.nearestTime(archive->metadata().sourceTimes[std::size_t(wanted)])
                              : wanted;

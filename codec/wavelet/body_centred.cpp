@@ -9,14 +9,14 @@ namespace tessera::codec {
 
 namespace {
 
-/// The four neighbours of the place i + 1/2 along an axis of n samples.
+/// The four neighbours of position i + 1/2 along an axis of n samples.
 std::array<int, 4> neighbours(int i, int n) {
     std::array<int, 4> at{};
     for (int k = 0; k < 4; ++k) at[std::size_t(k)] = std::clamp(i - 1 + k, 0, n - 1);
     return at;
 }
 
-/// Sixteenfold the cubic in the middle of four.
+/// Sixteen times the cubic interpolation at the centre of four samples.
 template <class Sum> Sum middle(Sum a, Sum b, Sum c, Sum d) {
     return 9 * (b + c) - (a + d);
 }
@@ -39,7 +39,7 @@ void forPredictions(const Box<const Word>& even, const Box<Word>& odd, Visit&& v
             const auto ys = neighbours(y, even.size.y);
             const auto rowOf = [&](int k) { return slice.data() + std::size_t(ys[std::size_t(k)]) * nx; };
             const Sum *a = rowOf(0), *b = rowOf(1), *c = rowOf(2), *d = rowOf(3);
-            // One sample before, two behind.
+            // One padding sample before, two after.
             for (std::size_t x = 0; x < nx; ++x) row[x + 1] = middle<Sum>(a[x], b[x], c[x], d[x]);
             row[0] = row[1];
             row[nx + 1] = row[nx + 2] = row[nx];
@@ -78,7 +78,7 @@ template <class Word> void addPrediction(const Box<const Word>& even, const Box<
 template <class Word> void interpolateOdd(const Box<const Word>& even, const Box<Word>& odd, int level) {
     const int bits = level + 1;
     const std::int64_t half = std::int64_t(1) << (3 * bits - 1);
-    // Two samples along an axis; behind the last one they go on as between the last two.
+    // Two adjacent samples along an axis; beyond the last one extrapolated linearly.
     struct Pair {
         int a, b;
         std::int64_t ofA, ofB;

@@ -4,7 +4,7 @@
 
 #include <array>
 
-/// The lifting steps of each wavelet.
+/// The lifting steps of the wavelets.
 namespace tessera::codec {
 
 /// target +- floor((centre * c + sum of weight[j] * (left_j +- right_j) + half) / 2^shift)
@@ -18,8 +18,8 @@ struct LiftStep {
 };
 
 struct LiftFilter {
-    LiftStep predict; ///< of an odd sample from even ones
-    LiftStep update;  ///< of an even sample from details
+    LiftStep predict; ///< odd samples from even ones
+    LiftStep update;  ///< even samples from details
     bool updates = false;
 };
 
@@ -27,14 +27,14 @@ constexpr bool isCubic(const LiftStep& step) {
     return step.pairs == 2 && step.weight[0] == 9 && step.weight[1] == -1;
 }
 
-/// Indices of the elements in a sum: pairs, where incomplete ones are replaced by the next pair inside.
+/// Sample indices of each pair in a sum; incomplete pairs are replaced by the next pair inside.
 struct Pairs {
     std::array<int, 3> left{}, right{};
     bool none = false;
 };
 
-/// Predict: pair j of odd sample i is even (i - j, i + 1 + j) of `sources` even ones; update: details (i - 1 - j, i +
-/// j) of the `sources` that were predicted from two sides.
+/// Predict: pair j of odd sample i is even (i - j, i + 1 + j) of `sources` even ones. Update: details (i - 1 - j, i +
+/// j) of the `sources` that were predicted from both sides.
 constexpr Pairs pairsAt(int i, int count, int sources, bool update) {
     Pairs pairs;
     for (int j = 0; j < count; ++j) {
@@ -62,10 +62,9 @@ constexpr int usableDetails(int pairs, int evens, int odds) {
     return pairs == 0 || evens > odds ? odds : evens - 1;
 }
 
-/// Predictions of N = 4 are the interpolating ones of Deslauriers and Dubuc (9, -1)/16, as in Calderbank et al. 1998,
-/// with the updates that give N~ moments: 1/4; (9, -1)/32; (306, -59, 9)/1024. The factorisation of the spline
-/// wavelets of that order starts with an update and halves the coarse samples along each axis, which integers cannot
-/// afford.
+/// Predictions with N = 4 are the interpolating ones of Deslauriers and Dubuc (9, -1)/16, as in Calderbank et al. 1998,
+/// with updates that preserve N~ moments: 1/4; (9, -1)/32; (306, -59, 9)/1024. The factorisation of spline wavelets of
+/// that order starts with an update and halves the coarse samples along each axis, which costs integers precision.
 constexpr LiftFilter filterOf(Wavelet wavelet) {
     const LiftStep same{1, 0, {}, false, 0}, mean{0, 1, {1}, false, 1}, cubic{0, 2, {9, -1}, false, 4};
     switch (wavelet) {
@@ -97,7 +96,7 @@ constexpr LiftFilter filterOf(Wavelet wavelet) {
     return {cubic, {0, 3, {306, -59, 9}, false, 10}, true};
 }
 
-/// Calls `visit.operator()<wavelet>()`.
+/// Calls `visit.operator()<wavelet>()` for a runtime value.
 template <class Visit> void withWavelet(Wavelet wavelet, Visit&& visit) {
     switch (wavelet) {
     case Wavelet::N1:

@@ -8,8 +8,8 @@
 
 namespace tessera::codec {
 
-/// A box with its storage and mask in the same layout. Elements that hold no sample (between rows, and where absent)
-/// are undefined.
+/// A box with its storage, and a mask in the same layout. Elements without a sample (padding and absent ones) are
+/// undefined.
 template <class Word> class LevelBox {
 public:
     LevelBox() = default;
@@ -22,7 +22,7 @@ public:
         present_.resize(masked ? words : 0);
         undivided_ = false;
     }
-    /// Resizes the box and fills it with one value, without absent samples.
+    /// Resizes the box and fills it with one value; all samples are present.
     void fill(glm::ivec3 size, Word value) {
         reset(size, false);
         std::fill_n(values_.begin(), std::ptrdiff_t(pitchFor(size.x)) * size.y * size.z, value);
@@ -31,7 +31,7 @@ public:
     Box<const Word> box() const { return {values_.data(), size_, pitchFor(size_.x)}; }
     Box<std::uint8_t> flags() { return {masked() ? present_.data() : nullptr, size_, pitchFor(size_.x)}; }
     bool masked() const { return !present_.empty(); }
-    /// Whether the box is one band instead of seven and a corner for the coarser level.
+    /// Whether the box is a single band instead of seven subbands and a low corner for the coarser level.
     bool undivided() const { return undivided_; }
     void setUndivided() { undivided_ = true; }
     glm::ivec3 size() const { return size_; }

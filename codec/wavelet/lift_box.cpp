@@ -15,13 +15,13 @@ namespace {
 
 template <class Word> struct Sources { std::array<const Word*, 3> left{}, right{}; };
 
-/// The predictions. Each step is compiled on its own: constants become shifts.
+/// The predictions as compile-time constants, so that multiplications become shifts.
 constexpr LiftStep kSame{1, 0, {}, false, 0}, kMean{0, 1, {1}, false, 1}, kCubic{0, 2, {9, -1}, false, 4};
 
 constexpr bool isUpdate(const LiftStep& step) {
     return step != kSame && step != kMean && step != kCubic;
 }
-/// True for steps whose sums fit the words where codes have kBitsOfInt16.
+/// Whether the sums of a step fit into 16-bit words for codes of kBitsOfInt16 bits.
 constexpr bool sumsFitInt16(const LiftStep& step) {
     return step.pairs < 2 || isCubic(step);
 }
@@ -47,7 +47,7 @@ template <class Sum, LiftStep kStep> TESSERA_INLINE Sum changeOf(Sum l0, Sum r0,
     }
 }
 
-/// Adds the changes to, or takes them from, whole blocks of kRowWords.
+/// Adds the lifting term to whole blocks of kRowWords, or subtracts it.
 template <class Word, class Sum, LiftStep kStep, bool kAdd>
 TESSERA_INLINE void changeBlocks(Word* __restrict target, const Sources<Word>& from, std::size_t count) {
     const Word *l0 = from.left[0], *r0 = from.right[0], *l1 = from.left[1], *r1 = from.right[1], *l2 = from.left[2],
@@ -70,7 +70,7 @@ TESSERA_INLINE void changeBlocks(Word* __restrict target, const Sources<Word>& f
         }
 }
 
-/// Rows of `count` words, `stride` apart: `targets` of them to change, `sources` to change them by.
+/// Rows of `count` words, `stride` apart: `targets` rows to change, from `sources` rows.
 template <class Word> struct RowSet {
     Word* target;
     int targets;
@@ -97,7 +97,7 @@ template <class Word, class Sum, LiftStep kStep, bool kAdd> TESSERA_INLINE void 
     }
 }
 
-/// The even and the odd samples of some rows, with room around them, so that loops run over whole blocks.
+/// The even and odd samples of some rows, padded so that loops run over whole blocks.
 template <class Word> struct Lines {
     static constexpr int kRows = 16, kRoom = 32, kWords = kRoom + 64 + kRowWords + kRoom;
     alignas(64) Word evens[kRows * kWords]{};
@@ -106,14 +106,14 @@ template <class Word> struct Lines {
     Word* odd(int row) { return odds + row * kWords + kRoom; }
 };
 
-/// Room for lines that are lifted by blocks, whole and taken apart.
+/// Buffers for rows in blocks, interleaved and deinterleaved.
 template <class Word> struct Blocks {
     Lines<Word> lines;
     alignas(64) Word whole[Lines<Word>::kRows][2 * Lines<Word>::kWords]{};
 };
 
-/// The same along `rows` rows: even and odd samples lie in lines of Lines. Words beyond both ends complete the
-/// innermost pair; the few sums whose outer pairs are incomplete are made one by one.
+/// Lifting along x of `rows` rows, deinterleaved in Lines. Words beyond both ends complete the innermost pair; the few
+/// sums with incomplete outer pairs are computed individually.
 template <class Word> struct LineSet {
     Word* target;
     int targets;
@@ -133,8 +133,7 @@ template <class Word, LiftStep kStep> TESSERA_INLINE std::int64_t changeAt(const
     return sum >> kStep.shift;
 }
 
-/// All rows are prepared before the first is changed: words written one by one are not at once ready to be read by
-/// blocks.
+/// Prepares all rows before it changes the first: vector loads that follow narrow stores to the same words would stall.
 template <class Word, class Sum, LiftStep kStep, bool kAdd> TESSERA_INLINE void changeLines(const LineSet<Word>& set) {
     constexpr int n = kStep.pairs, kRows = Lines<Word>::kRows, kWords = Lines<Word>::kWords;
     const int targets = set.targets, sources = set.sources;
@@ -151,8 +150,8 @@ template <class Word, class Sum, LiftStep kStep, bool kAdd> TESSERA_INLINE void 
         constexpr int inner = isUpdate(kStep) ? 0 : 1; // the right sample of the innermost pair of i is i + inner
         const int firstEnd = n > 1 ? std::min(targets, n - inner) : 0;
         const int lastBegin = n > 1 ? std::max(firstEnd, std::min(targets, sources - n + 1 - inner)) : targets;
-        std::array<Word, kRows> kept;              // of an update: details that take no part
-        std::array<std::array<Word, 8>, kRows> at; // targets near the ends, changed
+        std::array<Word, kRows> kept;              // for an update: the detail that it must not use
+        std::array<std::array<Word, 8>, kRows> at; // new values of the targets near the ends
         for (int row = 0; row < set.rows; ++row) {
             Word* source = set.source + row * kWords;
             const Word* target = set.target + row * kWords;
@@ -193,7 +192,7 @@ template <class Word, class Sum, LiftStep kStep> TESSERA_INLINE void linesBody(c
     add ? changeLines<Word, Sum, kStep, true>(set) : changeLines<Word, Sum, kStep, false>(set);
 }
 
-/// One step with the loops that carry it out.
+/// One lifting step as function pointers to its loops.
 template <class Word> struct Stage {
     int pairs = 0;
     void (*rows)(const RowSet<Word>&, bool add) = nullptr;
@@ -229,7 +228,7 @@ template <class Word, LiftStep kStep> Stage<Word> stageFor(bool wide, Cpu cpu) {
     }
 }
 
-/// A transform ready to run.
+/// The lifting steps of a wavelet, for one word type and instruction set.
 template <class Word> struct Plan {
     Stage<Word> predict, update;
     bool updates = false;
@@ -244,7 +243,7 @@ template <class Word> struct Plan {
             }
         });
     }
-    /// Rows of `stride` words one behind the other, a few columns at a time that stay in the cache for all steps.
+    /// Lifts across rows of `stride` words, in groups of columns that stay in the cache for all steps.
     void rows(Word* even, int evens, Word* odd, int odds, std::size_t stride, bool forward) const {
         constexpr std::size_t kColumns = 512 / sizeof(Word);
         if (odds == 0) return;
@@ -267,12 +266,12 @@ template <class Word> struct Plan {
     }
 };
 
-/// Whole blocks of kRowWords, at least `count` words.
+/// Copies whole blocks of kRowWords, at least `count` words.
 template <class Word> TESSERA_INLINE void copyBlocks(const Word* __restrict from, int count, Word* __restrict to) {
     for (int block = 0; block < count; block += kRowWords)
         for (int i = block; i < block + kRowWords; ++i) to[i] = from[i];
 }
-/// `blocks` words of a row, even and odd ones in turn, to lines and back.
+/// Deinterleaves a row of words into even and odd ones; mixRow interleaves them.
 template <class Word> TESSERA_INLINE void partRow(const Word* __restrict from, int words, Word* even, Word* odd) {
     for (int block = 0; block < words / 2; block += kRowWords / 2)
         for (int i = block; i < block + kRowWords / 2; ++i) even[i] = from[2 * i], odd[i] = from[2 * i + 1];
@@ -282,7 +281,7 @@ template <class Word> TESSERA_INLINE void mixRow(const Word* even, const Word* o
         for (int i = block; i < block + kRowWords / 2; ++i) to[2 * i] = even[i], to[2 * i + 1] = odd[i];
 }
 
-/// Where rows lie whose even ones come first.
+/// Position of row i if even rows come first.
 int placeOf(int i, int evens) {
     return i % 2 == 0 ? i / 2 : evens + i / 2;
 }

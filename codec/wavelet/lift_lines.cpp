@@ -11,7 +11,7 @@ namespace {
 
 #if TESSERA_X86
 
-/// Thirty-two words of a line.
+/// Thirty-two consecutive words of a line.
 template <class Word> struct Words32 { __m512i part[sizeof(Word) / 2]; };
 
 template <class Word> TESSERA_AVX512 TESSERA_INLINE __m512i addWords(__m512i a, __m512i b) {
@@ -48,7 +48,7 @@ template <class Word> TESSERA_AVX512 TESSERA_INLINE __m512i mixed(__m512i a, __m
         return _mm512_permutex2var_epi32(a, index, b);
 }
 
-/// The first `count` words from a place on; 0 behind them.
+/// Loads `count` words, followed by zeros.
 template <class Word> TESSERA_AVX512 TESSERA_INLINE Words32<Word> loadWords(const Word* from, int count) {
     Words32<Word> words;
     const auto inside = static_cast<__mmask32>(count < 32 ? (1u << count) - 1u : ~0u);
@@ -80,15 +80,15 @@ template <class Word> TESSERA_AVX512 TESSERA_INLINE __m512i picked(const Words32
         return _mm512_permutex2var_epi32(source.part[0], index, source.part[1]);
 }
 
-/// The sums of the words of a pair of a step.
+/// The sums of the two words of a pair.
 template <class Word>
 TESSERA_AVX512 TESSERA_INLINE __m512i tapped(const Words32<Word>& source, const Taps<Word>& taps, int pair, int part) {
     const int at = part * int(64 / sizeof(Word));
     return addWords<Word>(picked(source, taps.at[pair][0] + at), picked(source, taps.at[pair][1] + at));
 }
 
-/// What a step adds to its words, or takes from them: floor((sum of w_j (left_j + right_j) + half) / 2^shift). (As
-/// changeOf in lift_box.cpp, modulo the word.)
+/// The lifting term of each word: floor((sum of w_j (left_j + right_j) + half) / 2^shift). (As changeOf in
+/// lift_box.cpp, modulo the word.)
 template <class Word, LiftStep kStep>
 TESSERA_AVX512 TESSERA_INLINE __m512i changeOf(const Words32<Word>& source, const Taps<Word>& taps, int part) {
     const __m512i half = setWords<Word>(kStep.shift > 0 ? 1 << (kStep.shift > 0 ? kStep.shift - 1 : 0) : 0);
@@ -109,13 +109,13 @@ TESSERA_AVX512 TESSERA_INLINE __m512i changeOf(const Words32<Word>& source, cons
     }
 }
 
-/// Lines of samples to those of coefficients, or back.
+/// Transforms lines of samples to coefficients, or back.
 template <class Word, Wavelet kWavelet, bool kJoins>
 TESSERA_AVX512 void liftLines(const LineLifter<Word>& lifter, const SliceLines<Word>& lines) {
     constexpr LiftFilter kFilter = filterOf(kWavelet);
     constexpr int kParts = sizeof(Word) / 2, kLane = 64 / int(sizeof(Word));
     const int evens = lifter.evens, odds = lifter.odds, evenRows = (lines.rows + 1) / 2;
-    // Of a line in turn and of its halves, two registers at a time: which words of both go where.
+    // Permutation between an interleaved line and its halves, two registers at a time.
     alignas(64) Word order[2][kLane];
     for (int i = 0; i < kLane; ++i)
         for (int half = 0; half < 2; ++half)
@@ -169,7 +169,7 @@ TESSERA_AVX512 void liftLines(const LineLifter<Word>& lifter, const SliceLines<W
 
 #endif
 
-/// True when sums of a step along lines fit the word where codes have as few bits as they may.
+/// Whether the sums of a step fit into the word at the supported code width.
 template <class Word> constexpr bool sumsFit(const LiftStep& step) {
     return !step.antisymmetric && (sizeof(Word) == 4 || step.pairs < 2 || isCubic(step));
 }

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-/// Lifting along x of lines that fit into a few 64-byte registers: the same numbers as codec/wavelet/lift_box.cpp.
+/// Lifting along x of lines that fit into a few 64-byte registers; results are identical to codec/wavelet/lift_box.cpp.
 namespace tessera::codec {
 
 /// The lines of one slice of a box; all rows are `pitch` words apart.
@@ -13,20 +13,20 @@ template <class Word> struct SliceLines {
     const Word* from;
     Word* to;
     int rows;
-    std::size_t pitch; ///< words, all of which may be written; a multiple of 32
+    std::size_t pitch; ///< in words, all of which may be written; a multiple of 32
 };
 
-/// One wavelet for lines of one width.
+/// A wavelet for lines of one width.
 template <class Word> class LineLifter {
 public:
     static constexpr int kWords = 32; ///< half of the widest line
 
-    /// Does nothing if a line or its sums do not fit, or the processor lacks the instructions.
+    /// Has no effect if a line or its sums do not fit, or the processor lacks the instructions.
     LineLifter(Wavelet wavelet, int width, bool wide, Cpu cpu);
     bool lifts() const { return split_ != nullptr; }
-    /// Forward transform: even samples first, then details; rows of even number first, too.
+    /// Forward transform: even samples first, then details; even rows first, too.
     void split(const SliceLines<Word>& lines) const { split_(*this, lines); }
-    /// Inverse of the above.
+    /// Inverse transform.
     void join(const SliceLines<Word>& lines) const { join_(*this, lines); }
 
     /// For each word that a step changes, the positions of its inputs: [pair][left, right][word].

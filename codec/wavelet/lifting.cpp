@@ -14,7 +14,7 @@ namespace tessera::codec {
 
 namespace {
 
-/// Lines side by side: `rows` samples along the line, `lanes` lines, row by row.
+/// Parallel lines: `rows` samples along the line, `lanes` lines, row by row.
 struct Rows {
     std::uint32_t* values;
     std::uint8_t* present; ///< null: all present
@@ -35,7 +35,7 @@ std::int64_t wide(std::uint32_t x) {
     return static_cast<std::int32_t>(x);
 }
 
-/// The weighted sum of a step at one sample, by the rule for absent taps. Predict: pair j is (row - j, row + 1 + j);
+/// The weighted sum of a step at one sample, with the rules for absent taps. Predict: pair j is (row - j, row + 1 + j);
 /// update: (row - 1 - j, row + j); antisymmetric update: (row - 1 - j, row + 1 + j).
 std::uint32_t tapSum(const LiftStep& step, bool update, const Rows& target, const Rows& source, int row, int lane) {
     std::int64_t sum = 0;
@@ -48,7 +48,7 @@ std::uint32_t tapSum(const LiftStep& step, bool update, const Rows& target, cons
         const int l = update ? row - 1 - j : row - j;
         const int r = update && !step.antisymmetric ? row + j : row + 1 + j;
         bool hasLeft = source.has(l, lane), hasRight = source.has(r, lane);
-        if (update) { // only details that were predicted from all their even neighbours
+        if (update) { // only details predicted from all their even neighbours
             hasLeft = hasLeft && target.has(l, lane) && (step.antisymmetric || target.has(l + 1, lane));
             hasRight = hasRight && target.has(r, lane) && (step.antisymmetric || target.has(r + 1, lane));
         }
@@ -60,7 +60,7 @@ std::uint32_t tapSum(const LiftStep& step, bool update, const Rows& target, cons
             if (!hasLeft && !hasRight) return 0;
             left = right = source.at(hasLeft ? l : r, lane);
         } else {
-            // The pair inside stands in for this one and for all further out.
+            // An incomplete pair and all further out take the values of the pair inside.
             int rest = 0;
             for (int k = j; k < step.pairs; ++k) rest += step.weight[std::size_t(k)];
             sum += rest * (wide(left) + wide(right));
@@ -72,8 +72,7 @@ std::uint32_t tapSum(const LiftStep& step, bool update, const Rows& target, cons
     return static_cast<std::uint32_t>((sum + half) >> step.shift);
 }
 
-/// The mean of two floats; +0 where it is not finite, so that no NaN payload, whose arithmetic differs between
-/// machines, takes part.
+/// The mean of two floats; +0 where it is not finite, since arithmetic on NaN payloads differs between machines.
 std::uint32_t floatMean(std::uint32_t a, std::uint32_t b) {
     const float mean = 0.5f * floatOfCode(a) + 0.5f * floatOfCode(b);
     return std::isfinite(mean) ? codeOfFloat(mean) : 0;
@@ -91,7 +90,7 @@ void apply(const LiftStep& step, bool update, const Rows& target, const Rows& so
            Arithmetic arithmetic) {
     const int lanes = target.lanes;
     const bool masked = target.present != nullptr;
-    int begin = 0, end = 0; // rows done by the fast loops below
+    int begin = 0, end = 0; // rows already handled by the fast loops below
     if (!masked && arithmetic != Arithmetic::Float) {
         if (step.centre != 0 && step.pairs == 0) {
             end = std::min(target.rows, source.rows);
@@ -133,7 +132,7 @@ void apply(const LiftStep& step, bool update, const Rows& target, const Rows& so
     }
 }
 
-/// Where row i of a line lies when even rows come before odd ones.
+/// Position of row i of a line when even rows come before odd ones.
 int splitRow(int i, int count) {
     return i % 2 == 0 ? i / 2 : (count + 1) / 2 + i / 2;
 }
@@ -148,7 +147,7 @@ struct Lines {
     std::ptrdiff_t lanePitch;
 };
 
-/// Copies lines to `scratch` or back; `splitting`: with even rows before odd ones in the copy.
+/// Copies lines to `scratch` or back; `splitting`: the copy has even rows before odd ones.
 template <bool toScratch, class T> void copyRows(T* lines, const Lines& shape, T* scratch, bool splitting) {
     for (int i = 0; i < shape.count; ++i) {
         T* there = scratch + std::ptrdiff_t(splitting ? splitRow(i, shape.count) : i) * shape.lanes;
@@ -194,7 +193,7 @@ void liftLines(const Lines& lines, const LiftFilter& filter, Arithmetic arithmet
     if (present) copyRows<false>(lines.present, lines, present, !isForward);
 }
 
-/// The samples of a block and its line layout: `full` is what the arrays hold, `part` the corner being transformed.
+/// The samples of a block and its line layout: `full` is the size of the arrays, `part` the corner being transformed.
 struct Block {
     std::uint32_t* values;
     std::uint8_t* present;
@@ -213,7 +212,7 @@ void liftAxis(const Block& block, glm::ivec3 part, int axis, const LiftFilter& f
         const bool details = arithmetic == Arithmetic::Float && !samples;
         liftLines(lines, filter, details ? Arithmetic::Wide : arithmetic, isForward, scratch);
     };
-    // Under Float arithmetic, what an earlier axis made details of is predicted as integers.
+    // Under Float arithmetic, the details of an earlier axis are predicted as integers.
     const bool cut = arithmetic == Arithmetic::Float;
     if (axis == 0) {
         for (int z = 0; z < part.z; ++z) lift(z * slice, part.x, 1, part.y, true, row);

@@ -9,18 +9,18 @@
 namespace tessera::codec {
 
 /// Thresholding of wavelet details, as in Donoho: De-noising by soft-thresholding (1995). Unlike an error bound it
-/// guarantees nothing about a single sample: the errors of all levels add up.
+/// guarantees nothing for a single sample: the errors of all levels add up.
 enum class Threshold : std::uint8_t {
-    Hard,    ///< those of magnitude `value` or less become 0
+    Hard,    ///< details of magnitude `value` or less become 0
     Soft,    ///< the same, and all others shrink by `value`
-    Quantile ///< the `value` part (0..1) of smallest magnitude become 0
+    Quantile ///< the fraction `value` (0..1) of smallest magnitude becomes 0
 };
 inline constexpr std::string_view kThresholdNames[] = {"hard", "soft", "quantile"};
 
 enum class ThresholdChoice : std::uint8_t { None, Hard, Soft, Quantile };
 inline constexpr std::string_view kThresholdChoiceNames[] = {"none", "hard", "soft", "quantile"};
 
-/// Thresholding of an archive.
+/// Thresholding options of an archive.
 struct ThresholdOptions {
     ThresholdChoice kind = ThresholdChoice::None;
     double value = 0.005;
@@ -46,8 +46,8 @@ struct ThresholdOptions {
     }
 };
 
-/// Thresholds details in place; `value` is at least 0. A quantile removes exactly its share; of equal details the first
-/// ones.
+/// Thresholds details in place; `value` is at least 0. A quantile removes exactly its fraction; among equal details the
+/// first ones.
 void applyThreshold(std::span<std::int32_t> details, Threshold kind, double value);
 
 } // namespace tessera::codec
