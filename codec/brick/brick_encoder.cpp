@@ -12,7 +12,7 @@ namespace tessera::codec {
 
 namespace {
 
-// Below this many bits per sample, coding as one stream is tried.
+// Below kTryWhole bits per sample, coding as one stream is tried, first on kGlance samples.
 constexpr double kTryWhole = 3.0;
 constexpr std::size_t kGlance = 1 << 14;
 constexpr double

@@ -15,12 +15,12 @@ namespace tessera::codec {
 struct Metadata {
     volume::DatasetInfo info;
     volume::BrickGrid grid; ///< grid.lattice == info.lattice
-    volume::Lattice source; ///< Frames form a D4* lattice: those with odd time index are shifted by half a cell in x, y
-                            ///< and z; info.lattice is the grid of the even ones.
-    /// grid of the even ones.
+    volume::Lattice source; ///< the grid that the samples came from
+    /// Frames form a D4* lattice: those with odd time index are shifted by half a cell in x, y and z; info.lattice is
+    /// the grid of the even ones.
     bool alternating = false;
     std::vector<double> sourceTimes; ///< for D4*: the times that the samples came from
-    /// for D4*: info.quantities at the times of the source
+    /// For D4*: info.quantities at the times of the source.
     std::vector<volume::Quantity> sourceQuantities = {};
     bool lossless = true; ///< every stored sample is exact
     double maxError = 0;  ///< otherwise the error bound, relative to a parameter's range

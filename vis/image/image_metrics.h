@@ -14,7 +14,7 @@ struct ImageDifference {
 
 /// Maximum, root mean square, PSNR and structural similarity (Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli:
 /// Image quality assessment: from error visibility to structural similarity, 2004; Gaussian of 11 x 11 pixels, sigma
-/// 1.5, K1 = 0.01, K2 = 0.03, at places where the window lies inside; pictures smaller than that use one window over
+/// 1.5, K1 = 0.01, K2 = 0.03, at positions where the window lies inside; pictures smaller than that use one window over
 /// all). Luma is 0.299 R + 0.587 G + 0.114 B. Throws Error for pictures of different or no size.
 ImageDifference difference(const Image& picture, const Image& reference);
 

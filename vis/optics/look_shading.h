@@ -81,7 +81,6 @@ double charcoalInk(const CharcoalDrawing& charcoal, glm::dvec3 lit, const LookSa
 ///   5. wire: mix(colour, mix(its own, colour, ownColor), wire)
 ///   6. distance: mix(colour, background, amount depth^exponent)
 /// each by its amount and the share.
-/// each by its amount and the share.
 glm::dvec3 lookColor(const Look& look, glm::dvec3 albedo, glm::dvec3 lit, const LookSample& sample,
                      glm::dvec3 background);
 

@@ -103,7 +103,7 @@ struct EnvironmentLight {
     }
 };
 
-/// Shadows and light inside the volume (vis/optics/light_volume.h); all off by default.
+/// Shadows, ambient occlusion and translucency (vis/optics/light_volume.h); all off by default.
 struct Shadows {
     float strength = 0;     ///< strength of shadows
     float occlusion = 0;    ///< strength of ambient occlusion
