@@ -36,4 +36,22 @@ done
 "$tessera" --help | sed -n '/^Subcommands:/,$ s/^  \([a-z]\+\) .*/\1/p' > commands
 [ "$(wc -l < commands)" -gt 10 ] || fail "tessera --help names few commands"
 while read -r command; do say "^\.B $command\$" "$moved/share/man/man1/tessera.1"; done < commands
+
+# Each page refers to others, and all of them are installed; the importer's page names each suffix that it reads.
+pages=$moved/share/man
+for page in "$pages"/man*/*; do
+    name=${page##*/}
+    sed -n '/^\.SH SEE ALSO/,$ s/^\.BR \([^ ]\+\) (\([0-9]\)).*/man\2\/\1.\2/p' "$page" | tr -d '\\' > references
+    [ -s references ] || fail "$name refers to no other page"
+    while read -r other; do [ -s "$pages/$other" ] || fail "$name refers to $other, which is not installed"; done < references
+    if command -v groff > /dev/null; then
+        groff -man -ww -z "$page" 2> warnings
+        [ ! -s warnings ] || fail "$name: $(cat warnings)"
+    fi
+done
+if has_importer; then [ -s "$pages/man1/tessera-import.1" ] || fail "tessera-import has no page"; fi
+sed -n 's/^TESSERA_FORMAT("[^"]*", "\([^"]*\)".*/\1/p' "$source/volume/import/files/format_rows.inc" | tr ' ' '\n' > suffixes
+[ "$(wc -l < suffixes)" -gt 30 ] || fail "format_rows.inc names few suffixes"
+sed 's/\\&//g' "$pages/man1/tessera-import.1" | tr ' ,' '\n' > words
+while read -r suffix; do grep -qFx -e "$suffix" words || fail "tessera-import.1 does not name $suffix"; done < suffixes
 finish
