@@ -13,7 +13,7 @@ namespace tessera::app {
 
 void addBenchCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("bench", "Measure the tables of docs/benchmarks.md on this machine");
-    command->set_help_flag(); // tessera-bench knows its options
+    command->set_help_flag(); // --help is passed on to tessera-bench
     command->prefix_command();
     command->callback([command] {
         std::string program = programBeside("tessera-bench");

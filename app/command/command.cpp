@@ -22,7 +22,8 @@ std::optional<double> TimeLeft::after(double fraction) {
     const auto now = std::chrono::steady_clock::now();
     if (!begun_) begun_ = now;
     const double seconds = std::chrono::duration<double>(now - *begun_).count();
-    constexpr double kSure = 0.02, kNotYet = 1; // of the job, s
+    // No estimate before this share of the job is done, or in the first second.
+    constexpr double kSure = 0.02, kNotYet = 1;
     if (fraction < kSure || fraction >= 1 || seconds < kNotYet) return std::nullopt;
     return seconds * (1 - fraction) / fraction;
 }
@@ -74,7 +75,7 @@ int parseAndRun(CLI::App& app, int argc, const char* const* argv, const std::fun
     } catch (const Error& error) {
         std::fprintf(stderr, "%s: %s\n", name, error.what());
         return 2;
-    } catch (const std::system_error& error) { // a folder that may not be looked into, no more threads
+    } catch (const std::system_error& error) { // e.g. permission denied, or no more threads
         std::fprintf(stderr, "%s: %s\n", name, error.what());
         return 3;
     } catch (const std::bad_alloc&) {
@@ -103,7 +104,7 @@ int runCommandLine(int argc, const char* const* argv) {
     addUnpackCommand(app);
     addVerifyCommand(app);
     return parseAndRun(app, argc, argv, [&] {
-        // A mistyped command would be taken for a file, and what is said of its options instead of it.
+        // A mistyped command is parsed as a file, so that the error would be about its options instead.
         const auto isFirst = [&](const CLI::App* command) { return command->check_name(argv[1]); };
         if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(isFirst).empty()) requireFile(argv[1]);
     });

@@ -28,19 +28,20 @@ void addUnpackCommand(CLI::App& app);
 void addVerifyCommand(CLI::App& app);
 /// Without a subcommand: the workbench on FILE...
 void addWorkbench(CLI::App& app);
-/// Throws Error for a word of the command line that is no file; for one without dot and slash it speaks of commands.
+/// Throws Error for an argument that is not a file. Without a dot or slash it may be a mistyped command: the message
+/// then names the commands.
 void requireFile(const std::string& word);
 
-/// Calls `before`, parses the arguments of a program and runs its callbacks; returns the exit status. What goes wrong
-/// is said on stderr.
+/// Calls `before`, parses the arguments of a program and runs its callbacks; returns the exit status. Prints the reason
+/// of a failure to stderr.
 int parseAndRun(CLI::App& app, int argc, const char* const* argv, const std::function<void()>& before = {});
 /// Parses the arguments of tessera and runs what they ask for; returns the exit status.
 int runCommandLine(int argc, const char* const* argv);
 
-/// How long a job will still take, if it goes on as it went so far.
+/// Estimates the remaining time of a job from its progress so far.
 class TimeLeft {
 public:
-    /// Seconds, once a fraction is done that tells; begins to count when first asked.
+    /// Remaining seconds; nothing until enough is done for an estimate. The clock starts at the first call.
     std::optional<double> after(double fraction);
 
 private:
@@ -48,7 +49,7 @@ private:
 };
 
 /// Progress on the terminal: a line "title 42 %, 7 s left what" on stderr when it is a terminal, nothing otherwise.
-/// Ctrl-C requests the stop of its token. One at a time.
+/// Ctrl-C requests a stop through its token. Only one at a time.
 Progress terminalProgress(const std::string& title);
 
 } // namespace tessera::app

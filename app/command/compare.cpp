@@ -12,7 +12,7 @@ namespace tessera::app {
 
 namespace {
 
-/// "NAME: /path=value; /path=value", the name and all but one change may be left out.
+/// Parses "NAME: /path=value; /path=value". The name is optional; at least one change is required.
 CompareVariant parseVariant(const std::string& text) {
     CompareVariant variant;
     std::string rest = text;
@@ -36,7 +36,7 @@ CompareVariant parseVariant(const std::string& text) {
     return variant;
 }
 
-/// The pane that compares: the one asked for, or the first; one is opened where there is none.
+/// The compare pane: the requested one, or the first. Opens one if there is none.
 std::string comparePane(Session& session, const std::string& wanted) {
     for (const auto& [pane, view] : session.views)
         if (std::holds_alternative<CompareView>(view) && (wanted.empty() || pane == wanted)) return pane;
@@ -89,7 +89,7 @@ void addCompareCommand(CLI::App& app) {
         if (view.reference >= count)
             throw Error("there are " + std::to_string(count) + " variants, counted from 0", "--reference",
                         std::to_string(view.reference));
-        for (const CompareVariant& variant : shownVariants(view)) variantSession(session, variant); // throws early
+        for (const CompareVariant& variant : shownVariants(view)) variantSession(session, variant); // fail early
         opened.document.history.reset(session);
         PictureRequest request = pictureRequest(options->picture, session);
         request.pane = pane;

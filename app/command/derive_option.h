@@ -14,11 +14,10 @@ void addDeriveOption(CLI::App& command, std::vector<volume::DerivedParameter>& p
 /// "dT [K] = T - at(T, first)"; unit and brackets may be left out. Throws CLI::ValidationError.
 volume::DerivedParameter parseDerived(const std::string& text);
 
-/// Throws Error for the first that cannot be derived from a data set (derivedProblems).
+/// Throws Error for the first parameter that cannot be derived from a data set (derivedProblems).
 void checkDerived(const std::vector<volume::DerivedParameter>& parameters, const volume::DatasetInfo& info);
 
-/// A data set with parameters derived from its own after them, on its lattice. Throws Error (derivedProblem),
-/// Cancelled.
+/// The data set with derived parameters appended, on the same lattice. Throws Error (derivedProblem), Cancelled.
 volume::Dataset withDerived(volume::Dataset dataset, const std::vector<volume::DerivedParameter>& parameters,
                             const Progress& progress);
 

@@ -31,7 +31,7 @@ struct DiffRequest {
 struct DiffRow {
     volume::Channel channel;
     double time = 0;
-    std::size_t samples = 0, alone = 0; ///< present in both, in one of them
+    std::size_t samples = 0, alone = 0; ///< present in both data sets, in only one of them
     double least = std::numeric_limits<double>::infinity(), most = -least, sum = 0, squares = 0;
 
     void add(const volume::BrickSamples& a, const volume::BrickSamples& b, const volume::UnitConversion& convert) {
@@ -68,7 +68,7 @@ DataRef dataRef(const DiffRequest& request) {
     return data;
 }
 
-/// Parameters that both have in units that can be converted, no labels; of those asked for each must be one.
+/// Parameters of both data sets with convertible units, without labels. Throws if a requested one is not among them.
 std::vector<int> comparable(const volume::DatasetInfo& info, const DiffRequest& request) {
     std::vector<int> out;
     std::string left;
@@ -149,7 +149,7 @@ std::string csv(const std::vector<DiffRow>& rows, const volume::DatasetInfo& inf
     return text;
 }
 
-/// The differences as a data set of their own, named as in the window.
+/// The differences as a data set, with the names that the window gives them.
 volume::Dataset differences(const std::shared_ptr<const volume::BrickSource>& source,
                             const std::vector<volume::DerivedParameter>& wanted) {
     volume::Dataset made;

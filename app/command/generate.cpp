@@ -23,7 +23,7 @@ struct GenerateRequest {
     codec::PackOptions options;
 };
 
-// A number that is all of the text, or nothing.
+// The number, if it is the whole text.
 std::optional<double> wholeNumber(const std::string& text) {
     try {
         std::size_t used = 0;

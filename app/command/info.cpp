@@ -27,7 +27,7 @@ Json vectorJson(const auto& v) {
     return {v.x, v.y, v.z};
 }
 
-/// What resampling a parameter cost; null where it is not known.
+/// The resampling error of a parameter; null if not known.
 Json resampledJson(const codec::Metadata& metadata, std::size_t parameter, double extent) {
     if (parameter >= metadata.resampled.size() || !metadata.resampled[parameter]) return nullptr;
     const codec::ResampleError& error = *metadata.resampled[parameter];
@@ -144,7 +144,7 @@ void printArchive(const codec::Archive& archive) {
     if (!info.provenance.empty()) std::printf("  %s\n", info.provenance.c_str());
 }
 
-/// The session a picture of ours carries. Throws Error when it carries none.
+/// The session embedded in a PNG written by Tessera. Throws Error if there is none.
 SessionDocument sessionOfPicture(const std::string& path) {
     std::map<std::string, std::string> texts;
     (void)vis::readPng(path, &texts);
@@ -197,7 +197,7 @@ template <class Visit> void forBricks(const codec::Archive& archive, Visit&& vis
                 visit(int(channel), int(time), grid.indexOf(n));
 }
 
-/// Of a brick from the frame before, if there is one and it is known.
+/// Change of a brick since the previous frame, if there is one and its change is known.
 std::optional<volume::BrickChange> lastChange(const codec::Archive& archive, const volume::BrickKey& key) {
     const int before = key.time - (archive.metadata().alternating ? 2 : 1);
     return before < 0 ? std::nullopt : archive.change(key, before);
@@ -226,7 +226,7 @@ Json bricksJson(const codec::Archive& archive) {
             entry["detail"] = importance->detail;
         }
         if (const auto change = lastChange(archive, key)) {
-            // Infinity has no number in JSON.
+            // JSON cannot represent infinity.
             entry["change"] = std::isfinite(change->max) ? Json(change->max) : Json("appears");
             entry["changeRms"] = std::isfinite(change->rms) ? Json(change->rms) : Json("appears");
         }
@@ -235,7 +235,7 @@ Json bricksJson(const codec::Archive& archive) {
     return bricks;
 }
 
-/// A histogram as a row of bars, by the roots of its counts.
+/// A histogram as a row of bars, with heights by the square root of the counts.
 std::string barsOf(const std::vector<std::uint32_t>& counts) {
     constexpr const char* kBars[] = {" ",      "\u2581", "\u2582", "\u2583", "\u2584",
                                      "\u2585", "\u2586", "\u2587", "\u2588"};

@@ -15,7 +15,7 @@ namespace tessera::app {
 
 namespace {
 
-/// Which surface.
+/// The options of the surface.
 struct MeshOptions {
     std::string channel, colorBy;
     std::optional<double> iso, time;

@@ -25,7 +25,7 @@ struct PackRequest {
     volume::ImportOptions import;
     codec::PackOptions options;
     bool append = false, json = false, progressJson = false;
-    bool keepsLattice = false; ///< convert: that of the archive, none being stated
+    bool keepsLattice = false; ///< convert without --lattice: keep the archive's
 };
 
 /// One JSON object per line on stdout, for a window that runs this command.
@@ -52,7 +52,7 @@ codec::StoredLattice storedLattice(const std::string& path) {
                                                                    : codec::StoredLattice::CC;
 }
 
-/// The lattice an archive is to have, or has.
+/// The lattice of the archive to write, or of an existing one.
 codec::StoredLattice latticeOf(const PackRequest& request) {
     return request.append ? storedLattice(request.output) : request.options.lattice;
 }
@@ -98,14 +98,14 @@ void checkOutput(const PackRequest& request) {
         throw Error("there is no archive to append to", request.output);
 }
 
-/// Frames go back to the system as soon as they are freed, so that what the heap keeps adds nothing to what is planned;
-/// page faults make packing up to a fifth slower, so only where memory is limited.
+/// Makes the heap return frames to the system as soon as they are freed, so that its reserve does not exceed the memory
+/// plan. Only used where memory is limited: the extra page faults make packing up to a fifth slower.
 void keepNoFreedFrames() {
-    constexpr int kLeast = 4 << 20; // bytes; buffers of bricks stay with the heap
+    constexpr int kLeast = 4 << 20; // bytes; the heap keeps smaller buffers, such as bricks
     ::mallopt(M_MMAP_THRESHOLD, kLeast);
 }
 
-/// The most memory this program has had so far, files it has mapped included.
+/// Peak memory of this process, including mapped files.
 std::uint64_t peakMemory() {
     rusage usage{};
     constexpr std::uint64_t kKibi = 1024;

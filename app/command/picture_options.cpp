@@ -11,7 +11,7 @@ namespace tessera::app {
 
 namespace {
 
-/// Applies "/json/pointer=value"; the value is JSON, or text where it is none.
+/// Applies "/json/pointer=value"; a value that is not JSON is taken as text.
 void applySetting(Json& document, const std::string& setting) {
     const auto equals = setting.find('=');
     if (equals == std::string::npos || !setting.starts_with("/"))
@@ -23,7 +23,7 @@ void applySetting(Json& document, const std::string& setting) {
     }
 }
 
-/// The pane of this key, or the first view of this kind; "" where there is none.
+/// The pane with this key, or the first view of this kind; "" if there is none.
 std::string paneOf(const Session& session, const std::string& view) {
     if (session.views.contains(view)) return view;
     for (const auto& [pane, state] : session.views) {
@@ -73,7 +73,7 @@ Opened openForPicture(const PictureOptions& options, const Progress& progress) {
     if (!request.paths.empty() && request.layout.empty() && !std::filesystem::exists(request.paths[0]) &&
         request.paths[0].find('.') == std::string::npos) {
         request.layout = request.paths[0];          // the name of a layout
-        request.paths.erase(request.paths.begin()); // data, if any, follow
+        request.paths.erase(request.paths.begin()); // the remaining paths are data
     }
     Opened opened = open(request, progress);
     if (!opened.missing.empty()) {
@@ -105,7 +105,7 @@ PictureRequest pictureRequest(const PictureOptions& options, const Session& sess
         request.size.x > 16384 || request.size.y > 16384)
         throw CLI::ValidationError("--size", "needs WIDTHxHEIGHT, 16 to 16384, e.g. 1600x1000");
     request.pane = paneOf(session, options.view);
-    if (request.pane.empty()) request.pane = options.view; // named when it is drawn
+    if (request.pane.empty()) request.pane = options.view; // an unknown pane is reported when it is drawn
     return request;
 }
 

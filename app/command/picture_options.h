@@ -10,7 +10,7 @@
 
 namespace tessera::app {
 
-/// What render and replay have in common: what is opened, and how large the picture is.
+/// Options that render and replay share: the input, and the size of the picture.
 struct PictureOptions {
     std::vector<std::string> inputs;
     std::string layout, view, size = "1600x1000";

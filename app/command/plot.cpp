@@ -32,7 +32,7 @@ DataRef dataRef(const PlotRequest& request) {
     return data;
 }
 
-/// The window's plot as a picture.
+/// Draws the plot as the window does.
 void drawPicture(const PlotRequest& request, const DataRef& data, const Sources& sources) {
     SessionDocument document;
     document.session = defaultSession(sources.pictures->info(), data);

@@ -11,7 +11,7 @@ namespace tessera::app {
 
 namespace {
 
-/// "svg" or "csv" for such a file, else "".
+/// The suffix "svg" or "csv" of a path, else "".
 std::string textEnding(const std::string& path) {
     return path.ends_with(".svg") ? "svg" : path.ends_with(".csv") ? "csv" : "";
 }
@@ -37,7 +37,7 @@ void addRenderCommand(CLI::App& app) {
         ->required();
     command->callback([options] {
         const Progress progress = terminalProgress("render");
-        // The wrong size or a folder that does not exist is said before the work, not after it.
+        // Report a wrong size or a missing folder before the work starts.
         pictureRequest(options->picture, Session{});
         const std::string ending = textEnding(options->output);
         if (!ending.empty() && options->picture.view.empty())

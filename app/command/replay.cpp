@@ -22,7 +22,7 @@ struct ReplayOptions {
     double framesPerSecond = 0;
 };
 
-/// What is drawn: so many pictures, and the session of each.
+/// The pictures to draw: their number, and the session of each.
 struct Reel {
     std::size_t count = 0;
     std::string name = "frame-%04zu.png";
@@ -30,7 +30,7 @@ struct Reel {
     std::function<Session(std::size_t)> at;
 };
 
-/// The recorded steps, of which only those that show the pane are kept.
+/// The recorded steps. Pictures of those that do not show the pane are dropped.
 Reel stepsReel(const Opened& opened) {
     auto history = std::make_shared<History>(opened.document.history);
     return {.count = history->steps().size() + 1,
@@ -60,7 +60,7 @@ Reel animationReel(const Opened& opened, double wantedRate) {
         return reel;
     }
     const double rate = wantedRate > 0 ? wantedRate : double(animation.framesPerSecond);
-    // The last picture is the end, whatever the rate.
+    // The last picture is always the end of the animation.
     reel.count = std::max<std::size_t>(2, std::size_t(std::lround(animation.duration * rate)) + 1);
     reel.framesPerSecond = rate;
     reel.at = [session, count = reel.count](std::size_t i) {

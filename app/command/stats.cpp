@@ -19,7 +19,7 @@ namespace {
 
 Sources openInput(const StatsRequest& request, const Progress& progress) {
     DataRef data = dataNamed(request.inputs, request.import, progress.part(0, 0.2));
-    data.lattice = PictureLattice::Grid; // no picture is made
+    data.lattice = PictureLattice::Grid; // nothing is drawn, so no resampling for pictures
     data.derived = request.derived;
     std::vector<std::string> messages;
     Sources sources = openSources(data, messages, progress.part(0.2, 1));

@@ -173,7 +173,7 @@ std::vector<FigurePanel> meansOverTime(const Question& question, const Progress&
     return out;
 }
 
-/// What flows out less what flows in, of every surface of each region.
+/// Outflow minus inflow through every surface of each region.
 std::vector<FigurePanel> balancePanels(const StatsRequest& request, const Question& question,
                                        const Progress& progress) {
     const std::vector<double>& times = question.times;

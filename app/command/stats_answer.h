@@ -19,13 +19,13 @@ struct Answer {
     std::vector<FigurePanel> panels;
 };
 
-/// Adds what is asked for at one time: averages over planes, a balance, or statistics of regions.
+/// Adds the requested numbers at one time: averages over planes, a balance, or statistics of regions.
 void addAnswer(Answer& answer, const StatsRequest& request, const Question& question, double time,
                const Progress& progress);
 
-/// The figure of a request that is not one of planes: means over all times, a panel for each parameter and a line for
-/// each region; or balances, a panel for each region and a line for each surface over the times of the question, or a
-/// bar where it is of one time.
+/// The figure of a request without planes. Means over all times: a panel for each parameter with a line for each
+/// region. Balances: a panel for each region with a line for each surface over the requested times, or a bar if that is
+/// one time.
 std::vector<FigurePanel> figureOf(const StatsRequest& request, const Question& question, const Progress& progress);
 
 } // namespace tessera::app

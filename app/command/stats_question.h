@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-/// What `tessera stats` is asked, in words and as the data understand it.
+/// The options of `tessera stats`, as given and as resolved for a data set.
 namespace tessera::app {
 
 struct StatsOptions {
@@ -74,13 +74,13 @@ struct StatsRequest {
     volume::ImportOptions import;
 };
 
-/// Everything about the request that the data decide.
+/// The request with names resolved to indices of the data set.
 struct Question {
     std::shared_ptr<const volume::BrickSource> source;
     NumberOrigin origin;
     std::vector<int> channels;
     int label = -1, balance = -1;
-    std::vector<int> regions; ///< stated ones; empty: all
+    std::vector<int> regions; ///< requested label values; empty: all
     std::vector<glm::dvec3> line;
     std::vector<double> times;
     const volume::DatasetInfo& info() const { return source->info(); }
@@ -91,7 +91,7 @@ struct Question {
     }
 };
 
-/// What a request means for these data. Throws Error for a parameter, label, region, axis or line that is none.
+/// Resolves a request for a data set. Throws Error for an unknown parameter, label, region or axis, or an invalid line.
 Question questionOf(const StatsRequest& request, const Sources& sources);
 
 } // namespace tessera::app

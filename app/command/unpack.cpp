@@ -23,7 +23,7 @@ struct UnpackRequest {
     volume::TimeFilter timeFilter = volume::TimeFilter::Cubic;
 };
 
-/// `values`: the samples are not those of the source, nor is their scaling.
+/// `values`: the samples are computed ones, so the scaling of the source does not apply.
 volume::ExportSelection select(const UnpackRequest& request, const volume::DatasetInfo& info, bool values) {
     volume::ExportSelection selection;
     selection.values = values;
@@ -46,7 +46,7 @@ volume::ExportSelection select(const UnpackRequest& request, const volume::Datas
 volume::Dataset planeDataset(const std::shared_ptr<const codec::Archive>& archive, const std::vector<double>& plane) {
     const volume::DatasetInfo& stored = archive->info();
     if (stored.times.size() < 2) throw Error("a plane through space and time needs two times or more", archive->path());
-    // A series counts frames: t = first + frame * step.
+    // Convert times to frame numbers: t = first + frame * step.
     const double first = stored.times.front(), step = (stored.times.back() - first) / double(stored.times.size() - 1);
     const volume::Hyperplane inFrames{{plane[0], plane[1], plane[2], plane[3] * step}, plane[4] + plane[3] * first};
     const auto slice = [archive, inFrames](int parameter, int component) {
@@ -63,7 +63,7 @@ volume::Dataset planeDataset(const std::shared_ptr<const codec::Archive>& archiv
     dataset.info.timeUnit.clear();
     dataset.info.quantities.clear();
     const auto unitText = [](const std::string& unit) { return unit.empty() ? std::string("-") : unit; };
-    std::string axes, units; // no axis of time is told as a length
+    std::string axes, units; // the axes of the plane, with their units
     for (int i = 0; i < 3; ++i) {
         const int axis = shape.axes[std::size_t(i)];
         const std::string unit = axis == 3 ? stored.timeUnit : stored.lengthUnit;
@@ -71,7 +71,7 @@ volume::Dataset planeDataset(const std::shared_ptr<const codec::Archive>& archiv
                 unitText(unit) + "]";
         units += (i > 0 ? ", " : "") + unitText(unit);
         if (axis != 3) continue;
-        dataset.info.lattice.origin[i] = first + step * shape.field.lattice.origin[i]; // frames become times again
+        dataset.info.lattice.origin[i] = first + step * shape.field.lattice.origin[i]; // to times
         dataset.info.lattice.spacing[i] *= step;
     }
     if (shape.solved != 3) dataset.info.lengthUnit = units;

@@ -10,7 +10,7 @@ namespace tessera::app {
 
 namespace {
 
-/// What is wrong, for whoever wants to know what is lost.
+/// Describes the damage in one line.
 std::string verdictOf(const codec::VerifyReport& report) {
     const auto counted = [](std::uint64_t count, const char* one, const char* more) {
         return std::to_string(count) + (count == 1 ? one : more);
@@ -24,7 +24,7 @@ std::string verdictOf(const codec::VerifyReport& report) {
 void run(const std::string& path, bool json) {
     const codec::Archive archive(path);
     const codec::VerifyReport report = codec::verifyArchive(archive, terminalProgress("verify"));
-    // Archives have two headers because a crash may damage one: what is stored is whole.
+    // A crash may damage one of the two headers; the data are intact then.
     const bool whole = report.damaged == (report.damagedHeader ? 1 : 0);
     if (json) {
         std::printf("%s\n", nlohmann::json{{"file", path},

@@ -37,7 +37,7 @@ void addWorkbench(CLI::App& app) {
     addImportOptions(app, options->import);
     app.callback([options, &app] {
         if (!app.get_subcommands().empty()) return;
-        // Said here, not in a window that has nothing to show.
+        // Fail here instead of opening a window with nothing to show.
         for (const std::string& path : options->request.paths) requireFile(path);
         if (!options->request.layout.empty()) findLayout(options->request.layout);
         if (!(options->import == volume::ImportOptions{})) options->request.import = options->import;
