@@ -32,7 +32,7 @@ namespace {
 
 using volume::ScalarType;
 
-/// Skips the points and cells of a file.
+/// Makes the reader skip the points and cells of a file.
 class FieldDataReader : public vtkXMLUnstructuredGridReader {
 public:
     static FieldDataReader* New() {
@@ -85,7 +85,7 @@ void addArray(PieceRef& ref, const std::string& name, int vtkType, int component
     for (int c = 0; c < components; ++c) add(shown + "." + std::to_string(c), 1, c);
 }
 
-/// Names that VTK's programs give to the time of a file.
+/// Whether VTK files use this name for a time.
 bool isTimeName(const std::string& name) {
     return std::ranges::find(kTimeNames, name) != kTimeNames.end();
 }
@@ -221,10 +221,10 @@ std::vector<PieceRef> describeImageHeader(Source& source) {
     add(vtkDataObject::POINT_DATA_VECTOR(), false);
     if (ref.arrays.empty()) add(vtkDataObject::CELL_DATA_VECTOR(), true);
     const int named = xml->GetNumberOfPointArrays() > 0 ? xml->GetNumberOfPointArrays() : xml->GetNumberOfCellArrays();
-    if (ref.arrays.empty() && named > 0) return {}; // the header does not tell the types
+    if (ref.arrays.empty() && named > 0) return {}; // the header does not state the types
     setLattice(ref, extent, spacing, origin, !ref.arrays.empty() && ref.arrays.front().ofCells);
 
-    // With every array switched off an update reads the field data only.
+    // With all arrays disabled, an update reads only the field data.
     xml->GetPointDataArraySelection()->DisableAllArrays();
     xml->GetCellDataArraySelection()->DisableAllArrays();
     xml->Update();
@@ -258,7 +258,7 @@ std::vector<PieceRef> describeBlocks(const Source& given, const std::vector<Bloc
         if (auto* image = vtkImageData::SafeDownCast(data)) {
             setLattice(ref, image->GetExtent(), image->GetSpacing(), image->GetOrigin(),
                        !pointData && !ref.arrays.empty());
-            if (pointData) // values of cells would need a grid of their own
+            if (pointData) // cell values would need another grid
                 std::erase_if(ref.arrays, [](const ArrayRef& array) { return array.ofCells; });
         } else {
             ref.piece.mesh = true;
@@ -269,7 +269,7 @@ std::vector<PieceRef> describeBlocks(const Source& given, const std::vector<Bloc
             ref.piece.cellSize = meanCellSize(data);
         }
         describeFieldData(data->GetFieldData(), ref.piece, ref.arrays);
-        if (source.times.size() > 1) ref.piece.quantities.clear(); // they are those of one of the times
+        if (source.times.size() > 1) ref.piece.quantities.clear(); // they belong to one time only
         finish(source, ref);
         pieces.push_back(std::move(ref));
     }

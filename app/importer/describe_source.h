@@ -8,7 +8,8 @@
 
 namespace tessera::importer {
 
-/// One array as the main program sees it: a scalar or vector array of VTK, or one component of an odd one.
+/// One array as described to the main program: a scalar or vector array of VTK, or one component of an array with
+/// another number of components.
 struct ArrayRef {
     volume::Array form;
     bool ofCells = false;
@@ -20,29 +21,29 @@ struct ArrayRef {
 struct PieceRef {
     volume::Piece piece;
     std::vector<ArrayRef> arrays;
-    double scale = 1, offset = 0; ///< NIfTI's slope: physical = offset + scale * stored
+    double scale = 1, offset = 0; ///< NIfTI scaling: physical = offset + scale * stored
 };
 
-/// What the header of an image says, without reading samples; empty where the reader cannot tell.
+/// Describes an image from its header, without reading samples; empty if the header does not suffice.
 std::vector<PieceRef> describeImageHeader(Source& source);
 
-/// What the blocks say once read.
+/// Describes blocks that have been read.
 std::vector<PieceRef> describeBlocks(const Source& source, const std::vector<Block>& blocks);
 
-/// What the field data of one time say: numbers (a voltage) become quantities, and words the units, the labels and the
+/// Takes over the field data of one time: numbers (a voltage) become quantities; texts state units, labels, and the
 /// name and unit of the times.
 void describeFieldData(vtkFieldData* data, volume::Piece& piece, std::vector<ArrayRef>& arrays);
 
 /// The field data of an unstructured grid, read without its points and cells.
 vtkSmartPointer<vtkFieldData> fieldDataAlone(const std::string& path);
 
-/// The array in a block; null when it is not there.
+/// The array in a block; null if it is missing.
 vtkDataArray* findArray(vtkDataSet* data, const ArrayRef& array);
 
-/// The JSON text that answers a question for the ranges of an array (volume/import/files/stream.h).
+/// The JSON answer to a "ranges" request (volume/import/files/stream.h).
 std::string rangesJson(vtkDataSet* data, vtkDataArray* values, const ArrayRef& array);
 
-/// The JSON text of the header message of one or more pieces (volume/import/files/stream.h).
+/// The JSON of a header message (volume/import/files/stream.h).
 std::string headerJson(const std::vector<PieceRef>& pieces);
 
 } // namespace tessera::importer

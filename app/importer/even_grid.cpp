@@ -20,7 +20,7 @@ vtkSmartPointer<vtkDataSet> asEvenGrid(vtkSmartPointer<vtkDataSet> data) {
         rectilinear->GetExtent(extent);
     else
         return data;
-    // Values of cells lie on a grid of their own.
+    // Point and cell values would need different images.
     if (data->GetPointData()->GetNumberOfArrays() > 0 && data->GetCellData()->GetNumberOfArrays() > 0) return data;
     int size[3];
     vtkIdType stride[3], count = 1;

@@ -5,8 +5,8 @@
 
 namespace tessera::importer {
 
-/// A structured or rectilinear grid along the axes with even steps (to 0.1 % of a step) as an image, so that its
-/// samples stay as they are; anything else as it is.
+/// Converts an axis-aligned structured or rectilinear grid with even steps (to 0.1 % of a step) to an image, so that
+/// its samples need no resampling. Returns any other data unchanged.
 vtkSmartPointer<vtkDataSet> asEvenGrid(vtkSmartPointer<vtkDataSet> data);
 
 } // namespace tessera::importer

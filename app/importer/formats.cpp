@@ -58,7 +58,7 @@ void openFoam(Source& source) {
     }
     reader->EnableAllCellArrays();
     reader->DisableAllLagrangianArrays();
-    reader->CreateCellToPointOff(); // done here, for each block on its own
+    reader->CreateCellToPointOff(); // cell values are averaged here, for each block separately
     source.reader = reader;
     source.units = foamUnits(path);
     source.check = [](const Source& self, std::size_t time) {
@@ -66,7 +66,7 @@ void openFoam(Source& source) {
     };
 }
 
-/// The dimensions that most variables share: others lie on other grids.
+/// Reads the variables of those dimensions that most share; others are on other grids.
 void openNetCdf(Source& source) {
     checkNetCdf(source.path);
     vtkNew<vtkNetCDFCFReader> reader;
@@ -80,7 +80,7 @@ void openNetCdf(Source& source) {
     for (vtkIdType d = 0; d < dimensions->GetNumberOfValues(); ++d) {
         const std::string name = dimensions->GetValue(d);
         const auto axes = std::count(name.begin(), name.end(), ',') + 1;
-        vtkIdType count = axes >= 2 ? axes * 1000 : 0; // three axes before two
+        vtkIdType count = axes >= 2 ? axes * 1000 : 0; // prefers three axes to two
         for (vtkIdType v = 0; v < reader->GetVariableDimensions()->GetNumberOfValues(); ++v)
             count += reader->GetVariableDimensions()->GetValue(v) == name ? 1 : 0;
         if (count > most) {

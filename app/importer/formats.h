@@ -7,7 +7,7 @@
 
 namespace tessera::importer {
 
-/// What reads a row of volume/import/files/format_rows.inc: `open` reads the header of `source.path` (and
+/// The reader of a row of volume/import/files/format_rows.inc: `open` reads the header of `source.path` (and
 /// `source.files`) and fills in the rest of the source. Throws std::runtime_error with one line of reason.
 struct Reader {
     std::string_view format;

@@ -35,7 +35,7 @@ using volume::Lattice;
 using volume::MessageKind;
 using volume::ScalarType;
 
-constexpr std::size_t kMostKilobytesKept = 512 * 1024; // of read data
+constexpr std::size_t kMostKilobytesKept = 512 * 1024; // of data kept from earlier requests
 constexpr std::size_t kMostSamplings = 64;
 
 struct OpenFile {
@@ -44,13 +44,13 @@ struct OpenFile {
     std::vector<PieceRef> pieces;
 };
 
-/// A file's blocks at one time.
+/// The blocks of a file at one time.
 struct Loaded {
     std::size_t file;
     int time;
     std::vector<Block> blocks;
     std::size_t kilobytes;
-    std::map<std::size_t, vtkSmartPointer<vtkDataSet>> smoothed; ///< by block: with values of cells moved to points
+    std::map<std::size_t, vtkSmartPointer<vtkDataSet>> smoothed; ///< by block: with cell values averaged to points
 };
 
 struct State {
@@ -65,7 +65,7 @@ struct State {
 };
 
 void writeAll(const void* bytes, std::size_t size) {
-    if (size != 0 && std::fwrite(bytes, 1, size, stdout) != size) std::exit(1); // nobody listens any more
+    if (size != 0 && std::fwrite(bytes, 1, size, stdout) != size) std::exit(1); // the reader of the messages has gone
 }
 
 void sendMessage(MessageKind kind, const std::string& text) {
@@ -103,8 +103,8 @@ Loaded& load(State& state, std::size_t file, int time) {
     return state.loaded.front();
 }
 
-/// Reads what is known of a file. With `like`, the form of the file before it is taken over where the names agree, so
-/// that of a long series only the first file of meshes is read.
+/// Opens a file and describes it. With `like` the description of the previous file is reused if possible, so that only
+/// the first file of a long series of meshes is read.
 OpenFile openFile(State& state, const std::vector<std::string>& files, bool like) {
     const std::string& path = files.front();
     OpenFile file;
@@ -120,7 +120,7 @@ OpenFile openFile(State& state, const std::vector<std::string>& files, bool like
         for (PieceRef& ref : file.pieces) {
             ref.piece.times = source.times;
             ref.piece.quantities.clear();
-            std::vector<ArrayRef> none; // what the field data say of arrays is known
+            std::vector<ArrayRef> none; // arrays are described already
             if (source.format == "vtu") describeFieldData(fieldDataAlone(path), ref.piece, none);
         }
     }
@@ -138,12 +138,12 @@ OpenFile openFile(State& state, const std::vector<std::string>& files, bool like
         any = any || !ref.arrays.empty();
     }
     if (!any) throw std::runtime_error("holds no array of numbers");
-    // Readers of many open files keep their data: they are opened again when asked for.
+    // Readers keep their data in memory: with many files they are closed, and reopened on request.
     if (state.files.size() > 8) file.source.reset();
     return file;
 }
 
-/// A number that tells meshes apart: FNV-1a of the points and the number of cells.
+/// FNV-1a hash of a mesh: its points and its number of cells.
 std::uint64_t meshHash(vtkDataSet* mesh) {
     std::uint64_t hash = 1469598103934665603ull;
     const auto mix = [&](double value) {
@@ -191,7 +191,7 @@ Request parseRequest(const std::string& line) {
     return r;
 }
 
-/// Samples of an image on its own grid, as they are.
+/// Copies the samples of an image on its own grid.
 template <class T>
 void copyArray(vtkDataArray* array, int component, double scale, double offset, std::vector<T>& values) {
     const int components = array->GetNumberOfComponents();
@@ -294,7 +294,7 @@ void sendFrame(State& state, const Request& request) {
     std::fflush(stdout);
 }
 
-/// Ranges of an array's own values: of cells, or of points that a cell uses.
+/// Answers a "ranges" request: ranges of an array's values at cells, or at points that a cell uses.
 void sendRanges(State& state, const std::string& line) {
     std::istringstream in(line);
     std::string word;
@@ -323,7 +323,7 @@ int run(int argc, char** argv) {
                              "volume/import/files/stream.h\n");
         return argc < 2 ? 1 : 0;
     }
-    // Readers may print to stdout: it becomes stderr, and messages go to a copy of it.
+    // Readers may print to stdout: redirect that to stderr, and send messages to a copy of the original stdout.
     const int out = dup(STDOUT_FILENO);
     dup2(STDERR_FILENO, STDOUT_FILENO);
     stdout = fdopen(out, "wb");

@@ -51,7 +51,7 @@ int arraysIn(vtkDataObject* data) {
     return found;
 }
 
-/// What VTK's reader gives at one time: a copy, because the reader overwrites its output at the next.
+/// The output of VTK's reader at one time: a copy, because the reader reuses its output for the next.
 vtkSmartPointer<vtkDataObject> readByVtk(const Source& source, int time) {
     if (static_cast<std::size_t>(time) < source.readerTimes.size())
         source.reader->UpdateTimeStep(source.readerTimes[static_cast<std::size_t>(time)]);
@@ -76,7 +76,7 @@ int dimensionOf(vtkDataSet* data) {
     const int type = data->GetDataObjectType();
     if (type == VTK_IMAGE_DATA || type == VTK_UNIFORM_GRID || type == VTK_RECTILINEAR_GRID) return 3;
     int most = 0;
-    // Cells of different dimension are mixed in practice (patches after volume cells): the first thousand tell.
+    // Files may mix dimensions (boundary patches after volume cells): the first thousand cells are enough to tell.
     const vtkIdType count = std::min<vtkIdType>(data->GetNumberOfCells(), 1000);
     for (vtkIdType i = 0; i < count; ++i) most = std::max(most, data->GetCell(i)->GetCellDimension());
     return most;

@@ -4,7 +4,7 @@
 
 #include <vtkDataSet.h>
 
-/// Opening a file with the reader its ending asks for (app/importer/formats.h).
+/// Opens a file with the reader for its suffix (app/importer/formats.h).
 namespace tessera::importer {
 
 /// A leaf of a composite data set with the name of its block.

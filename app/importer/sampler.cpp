@@ -147,7 +147,7 @@ void sampleCells(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* cells
         }
         const double pcoords[3] = {sampling.pcoords[at * 3], sampling.pcoords[at * 3 + 1],
                                    sampling.pcoords[at * 3 + 2]};
-        // Looked for a hair beside the middle: there nonetheless.
+        // A sample at the centre was looked up slightly beside it (kAside): it still gets exactly the cell's value.
         bool inMiddle = true;
         for (int axis = 0; axis < 3; ++axis) inMiddle = inMiddle && std::abs(pcoords[axis] - middle[axis]) < kSlack;
         const double value = inMiddle ? own : own + interpolated(pcoords) - atMiddle;

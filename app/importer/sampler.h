@@ -18,18 +18,18 @@ struct Sampling {
     std::vector<float> pcoords;      ///< three per sample: parametric coordinates in the cell
 };
 
-/// Walks over the cells and finds the samples in each. A sample on the face between two cells belongs to one of them,
-/// and to one mesh only where two meshes meet: samples are looked for a hair (1e-5 of the spacing) beside their place.
+/// Walks over the cells and finds the samples in each. Each sample is looked up slightly beside its position (by 1e-5
+/// of the spacing), so that one on a face belongs to exactly one cell, and to one mesh only where two meet.
 std::shared_ptr<const Sampling> makeSampling(vtkDataSet* mesh, const volume::Lattice& lattice);
 
-/// One component at every sample: point values are interpolated in the cell, values of cells (`ofCells`) and integers
-/// are those of the cell or the nearest corner. Absent samples are 0. `out` holds lattice.count() numbers of `type`.
+/// One component at every sample: point values are interpolated in the cell; cell values (`ofCells`) and integers are
+/// those of the cell or the nearest corner. Absent samples are 0. `out` holds lattice.count() numbers of `type`.
 void sampleArray(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* array, bool ofCells, int component,
                  volume::ScalarType type, void* out);
 
-/// One component of an array of cells at every sample: the value of the cell, plus what the same values moved to its
-/// points (`smoothed`, of `mesh`) change from the middle of the cell to the sample, held within those points' values.
-/// So a sample in the middle of a cell has its value, and a linear course is kept.
+/// One component of an array of cells at every sample: the value of the cell, plus the change of the values averaged to
+/// points (`smoothed`, of `mesh`) from the centre of the cell to the sample, clamped to the range of those points. So a
+/// sample at the centre has the cell's value, and linear fields are reproduced.
 void sampleCells(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* cells, vtkDataArray* smoothed, int component,
                  float* out);
 

@@ -26,14 +26,15 @@ std::string lastPart(const std::string& path) {
     return word;
 }
 
-/// How the axes of an array are understood.
+/// The meaning of an array's axes.
 struct Form {
     Dims grid; ///< z, y, x
     std::size_t times = 1;
     bool timeAxis = false, vector = false;
 };
 
-/// With `grid` known the axes are matched with it; else guessed: a last axis of 3 is a vector where four or more are.
+/// Matches the axes with `grid` if it is known. Else guesses: with four or more axes, a last one of length 3 holds
+/// components.
 std::optional<Form> formOf(Dims dims, const Dims& grid) {
     Form form;
     const auto matches = [&](const Dims& own) {
@@ -73,7 +74,7 @@ std::vector<double> numbersOf(const StoredArray& array) {
     return out;
 }
 
-/// Places along an axis if they are in order; turned round where they fall.
+/// Coordinates along an axis if they are monotonic; reversed if they decrease.
 struct Places {
     std::vector<double> at;
     bool falling = false, even = true;
@@ -97,7 +98,7 @@ struct Grid {
     std::array<std::optional<Places>, 3> places;
 };
 
-/// Values of one time in the order of the grid: axes that fall are turned round.
+/// Values of one time in the order of the grid: axes with decreasing coordinates are reversed.
 vtkSmartPointer<vtkDataArray> inOrder(vtkDataArray* values, const Grid& grid, int components) {
     if (std::ranges::none_of(grid.places, [](const auto& places) { return places && places->falling; })) {
         values->SetNumberOfComponents(components);
@@ -152,7 +153,7 @@ vtkSmartPointer<vtkDataSet> makeGrid(const Grid& grid) {
     return uneven;
 }
 
-/// The grid that most arrays have, three axes before two, the larger before the smaller.
+/// The grid that most arrays share; prefers three axes to two, then the larger grid.
 Dims commonGrid(const std::vector<StoredArray>& arrays) {
     std::map<Dims, std::array<std::size_t, 3>> votes; // long axes, arrays, samples
     for (const StoredArray& array : arrays) {

@@ -14,13 +14,13 @@ namespace tessera::importer {
 struct StoredArray {
     std::string name, unit;        ///< the name may be a path, "fields/T"
     std::vector<std::size_t> dims; ///< slowest first
-    /// Numbers as they are stored: all, or those of one index of the first axis. One component.
+    /// Reads the stored numbers of one component: all, or those at one index of the first axis.
     std::function<vtkSmartPointer<vtkDataArray>(std::size_t first, std::size_t count)> read;
 };
 
 /// Makes a source of arrays: those of [z, y, x], [t, z, y, x] or with 3 components as a last axis share the commonest
-/// grid and become parameters; arrays of one axis named x, y, z are places, t, time or times are times. Throws where
-/// there is no grid.
+/// grid and become parameters; one-dimensional arrays named x, y, z are coordinates; t, time or times are times. Throws
+/// if there is no grid.
 void openArrays(std::vector<StoredArray> arrays, Source& source);
 
 } // namespace tessera::importer

@@ -32,7 +32,7 @@ std::string composed(const Exponents& e) {
     static constexpr std::string_view kBases[] = {"kg", "m", "s", "K", "mol", "A", "cd"};
     std::string above, below;
     int denominators = 0;
-    for (const std::size_t i : {4u, 0u, 5u, 6u, 1u, 2u, 3u}) { // mol and A first, as people write
+    for (const std::size_t i : {4u, 0u, 5u, 6u, 1u, 2u, 3u}) { // mol and A first, as is usual
         if (e[i] > 0) above += (above.empty() ? "" : " ") + power(kBases[i], e[i]);
         if (e[i] >= 0) continue;
         below += (below.empty() ? "" : " ") + power(kBases[i], -e[i]);
@@ -57,7 +57,7 @@ std::string unitOfDimensions(std::string_view brackets) {
     for (double& exponent : e) {
         char* end = nullptr;
         exponent = std::strtod(at, &end);
-        if (end == at) break; // five numbers are enough
+        if (end == at) break; // only five dimensions are mandatory
         at = end;
     }
     static const struct {

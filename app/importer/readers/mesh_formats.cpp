@@ -1,4 +1,4 @@
-// Formats of meshes and their solutions that VTK reads.
+// Mesh formats read by VTK, with their solution files.
 #include "app/importer/readers/read_files.h"
 #include "app/importer/readers/whole_file.h"
 

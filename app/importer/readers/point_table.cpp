@@ -27,7 +27,7 @@ std::string lower(std::string_view text) {
     return out;
 }
 
-/// Base of the names of three components, "" where they are none.
+/// Common name of three components, "" if they are not a vector.
 std::string vectorName(const std::string& x, const std::string& y, const std::string& z) {
     if (x.empty() || x.size() != y.size() || x.size() != z.size()) return {};
     if (const std::string all = lower(x + y + z); all == "uvw") return x;
@@ -47,7 +47,7 @@ std::string vectorName(const std::string& x, const std::string& y, const std::st
     return {};
 }
 
-/// Values along an axis, each once, in order.
+/// Distinct values along an axis, in order.
 struct Axis {
     std::vector<double> places;
     double first = 0, step = 1;
@@ -73,7 +73,7 @@ struct Axis {
     }
 };
 
-/// The rows go through the grid in order of some axes and directions and stop before its end.
+/// Whether the rows traverse the grid in some order of axes and directions, but stop before its end.
 bool stopsEarly(const std::vector<std::array<std::size_t, 3>>& nodes, const std::array<std::size_t, 3>& sizes) {
     std::array<int, 3> order{0, 1, 2};
     do {
@@ -94,7 +94,7 @@ bool stopsEarly(const std::vector<std::array<std::size_t, 3>>& nodes, const std:
     return false;
 }
 
-/// Name of the vector that begins with a column, "" where none does.
+/// Name of the vector that starts at a column, or "".
 std::string vectorAt(const std::vector<Heading>& headings, std::size_t c) {
     if (c + 2 >= headings.size() || headings[c + 1].unit != headings[c].unit ||
         headings[c + 2].unit != headings[c].unit)

@@ -19,7 +19,7 @@ namespace tessera::importer {
 
 namespace {
 
-/// Fields of a line; quotes are taken off. A blank separates by any number of blanks.
+/// Fields of a line without their quotes. If a blank is the separator, several count as one.
 std::vector<std::string> split(std::string_view line, char separator) {
     std::vector<std::string> out;
     std::string field;
@@ -62,7 +62,7 @@ char separatorOf(std::string_view line) {
 
 PointTable parseTable(std::string_view text) {
     PointTable table;
-    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3); // mark of UTF-8
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3); // byte order mark
     std::string_view comment, heading;
     std::size_t lineNumber = 0;
     char separator = ',';
@@ -74,7 +74,7 @@ PointTable parseTable(std::string_view text) {
         ++lineNumber;
         if (line.empty()) continue;
         if (line.front() == '#' || line.front() == '%') {
-            if (heading.empty()) comment = volume::trimmed(line.substr(1)); // the heading may be the last comment
+            if (heading.empty()) comment = volume::trimmed(line.substr(1)); // the last comment may be the heading
             continue;
         }
         if (heading.empty()) {
@@ -123,7 +123,7 @@ PointTable parseTable(std::string_view text) {
     return table;
 }
 
-/// The rows of each value of a column of times.
+/// The rows of each time.
 std::map<double, PointTable> byTime(const PointTable& table, std::size_t column) {
     std::map<double, PointTable> out;
     for (std::size_t row = 0; row < table.rows(); ++row) {
@@ -172,7 +172,7 @@ void openCsv(Source& source) {
                                      std::to_string(time) + " and " + std::to_string(tables->front().rows()) +
                                      " at the first");
     }
-    gridOfPoints(tables->front(), source); // states the units
+    gridOfPoints(tables->front(), source); // sets the units of `source`
     const Source stated = source;
     source.read = [tables, stated](std::size_t time) -> vtkSmartPointer<vtkDataObject> {
         Source scratch = stated;

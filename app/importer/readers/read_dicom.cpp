@@ -1,4 +1,4 @@
-// DICOM: uncompressed images, the files of a series as slices in the order of their places.
+// DICOM: uncompressed images; the files of a series are slices, ordered by position.
 #include "app/importer/readers/read_files.h"
 #include "app/importer/readers/whole_file.h"
 
@@ -24,14 +24,14 @@ namespace {
 
 constexpr std::uint32_t kPixels = 0x7fe00010, kUndefined = 0xffffffff;
 
-/// The elements of a file, little-endian, with or without types; sequences are passed over.
+/// Parses the elements of a file: little-endian, with explicit or implicit types. Skips sequences.
 class Elements {
 public:
     explicit Elements(const std::string& path) : bytes_(readWhole(path)) {
         if (bytes_.size() < 132 || bytes_.compare(128, 4, "DICM") != 0)
             throw std::runtime_error("is truncated or not a DICOM file");
         at_ = 132;
-        read(2, true); // the group that says how the rest is written
+        read(2, true); // the meta group, which states the encoding of the rest
         std::string syntax = text(0x00020010);
         syntax.erase(std::min(syntax.size(), syntax.find_first_of(std::string_view("\0 ", 2))));
         if (syntax != "1.2.840.10008.1.2" && syntax != "1.2.840.10008.1.2.1")
@@ -49,7 +49,7 @@ public:
         return word.size() < 2 ? otherwise
                                : static_cast<unsigned char>(word[0]) + 256 * static_cast<unsigned char>(word[1]);
     }
-    /// Decimal numbers with backslashes between.
+    /// Decimal numbers separated by backslashes.
     std::vector<double> decimals(std::uint32_t tag) const {
         std::string word = text(tag);
         std::vector<double> out;
@@ -72,7 +72,7 @@ private:
         at_ += count;
         return value;
     }
-    /// Elements up to a group; `depth` > 0: of an item, up to its end mark.
+    /// Reads elements up to a group; with `depth` > 0 those of an item, up to its end mark.
     void read(std::uint32_t lastGroup, bool typed, int depth = 0) {
         if (depth > 16) throw std::runtime_error("has sequences nested too deep");
         while (at_ < bytes_.size()) {
@@ -157,7 +157,7 @@ Slice describe(const Elements& file, const std::string& path) {
         slice.corner = {corner[0], corner[1], corner[2]};
         slice.place = corner[0] * normal[0] + corner[1] * normal[1] + corner[2] * normal[2];
     } else {
-        slice.place = first(0x00200013, 0) * slice.thickness; // its number
+        slice.place = first(0x00200013, 0) * slice.thickness; // the instance number
     }
     const double wanted = double(slice.rows) * slice.columns * slice.frames * slice.bits / 8;
     if (double(file.text(kPixels).size()) < wanted)

@@ -2,7 +2,7 @@
 
 #include "app/importer/readers/source.h"
 
-/// Readers of the rows of volume/import/files/format_rows.inc that have a file of their own.
+/// Readers named in volume/import/files/format_rows.inc, one file each.
 namespace tessera::importer {
 
 void openCsv(Source& source);

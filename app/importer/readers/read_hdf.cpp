@@ -14,7 +14,7 @@ namespace tessera::importer {
 
 namespace {
 
-/// An identifier of the library, given back at the end.
+/// Owns an identifier of the library and closes it.
 class Handle {
 public:
     Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -58,7 +58,7 @@ hid_t memoryType(int vtkType) {
     }
 }
 
-/// Text of the attribute `units` or `unit`, "" where there is none.
+/// The attribute `units` or `unit`, or "".
 std::string unitOf(hid_t dataset) {
     for (const char* name : {"units", "unit", "Units", "Unit", "UNITS"}) {
         if (H5Aexists(dataset, name) <= 0) continue;
@@ -151,7 +151,7 @@ void openHdf(Source& source) {
         throw std::runtime_error("is a Fluent case in HDF5, which is not read: export as CGNS or EnSight Gold from "
                                  "Fluent, or save it in the older format (.cas, .dat)");
     Visit visit{file, {}};
-#if H5_VERSION_GE(1, 12, 0) // asks what of each object is wanted
+#if H5_VERSION_GE(1, 12, 0) // takes the fields to query as a further argument
     const herr_t visited = H5Ovisit(file->id(), H5_INDEX_NAME, H5_ITER_INC, visitDataset, &visit, H5O_INFO_BASIC);
 #else
     const herr_t visited = H5Ovisit(file->id(), H5_INDEX_NAME, H5_ITER_INC, visitDataset, &visit);

@@ -1,5 +1,5 @@
-// NRRD by VTK's reader, but for samples written as text: of those that stand in the file of the header itself VTK reads
-// none, and leaves what was in memory.
+// NRRD by VTK's reader, except for samples stored as text: VTK does not read those in the same file as the header, and
+// leaves the memory uninitialised.
 #include "app/importer/readers/read_files.h"
 #include "app/importer/readers/vtk_messages.h"
 #include "app/importer/readers/whole_file.h"
@@ -19,7 +19,7 @@ namespace tessera::importer {
 
 namespace {
 
-/// The next number of a text, which is taken off it.
+/// Removes the next number from a text and returns it.
 double takeNumber(std::string_view& text) {
     const auto blank = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
     while (!text.empty() && blank(text.front())) text.remove_prefix(1);
@@ -55,7 +55,7 @@ void openNrrd(Source& source) {
     form->SetOrigin(reader->GetDataOrigin());
     std::string name = "value";
     int components = reader->GetNumberOfScalarComponents();
-    // VTK takes a first axis of up to nine samples for components; the header says more.
+    // VTK takes a first axis of up to nine samples as components; the header states which axes are spatial.
     constexpr std::size_t kHead = 1 << 20;
     const std::string head = readPart(source.path, 0, kHead);
     if (const auto scalar = volume::parseNrrd(head, {}, volume::NrrdEncoding::Text)) {

@@ -101,7 +101,7 @@ StoredArray arrayOf(std::shared_ptr<const std::string> bytes, const NpyForm& for
         char* to = static_cast<char*>(out->GetVoidPointer(0));
         if (!form.fortran) {
             std::memcpy(to, bytes->data() + form.begin + first * inner * form.bytes, inner * count * form.bytes);
-        } else { // the first index is the fastest in the file
+        } else { // Fortran order: the first index is the fastest
             std::vector<std::size_t> index(form.dims.size(), 0);
             index[0] = first;
             for (std::size_t n = 0; n < inner * count; ++n) {

@@ -1,5 +1,5 @@
-// TIFF: the pages of a file, or single pages of numbered files, as the slices of a volume. Own reader, because VTK's
-// keeps the library's errors to itself.
+// TIFF: the pages of a file, or single pages of numbered files, as the slices of a volume. Not read by VTK, whose
+// reader does not report the library's errors.
 #include "app/importer/readers/read_files.h"
 
 #include <algorithm>
@@ -66,7 +66,7 @@ int vtkTypeOf(const Page& page) {
                              " bits, which are not read: write them with 8, 16 or 32");
 }
 
-/// The samples of a page: pixels from the top, the samples of a pixel together.
+/// The samples of a page: top row first, the samples of a pixel interleaved.
 void readPage(TIFF* file, const Page& page, char* to) {
     libraryError.clear();
     const auto fail = [] {
@@ -94,7 +94,7 @@ void readPage(TIFF* file, const Page& page, char* to) {
     }
 }
 
-/// "slices=30" of ImageJ's description; "" where it is not there.
+/// The value of a key in ImageJ's description ("slices=30"), or "".
 std::string described(const std::string& text, const std::string& key) {
     const std::size_t at = ("\n" + text).find("\n" + key + "=");
     if (at == std::string::npos) return {};

@@ -11,28 +11,28 @@
 #include <vtkDataObject.h>
 #include <vtkSmartPointer.h>
 
-/// What a reader gives: an opened file.
+/// The result of a reader: an opened file.
 namespace tessera::importer {
 
-/// An opened file: its header has been read, its samples not.
+/// An opened file, of which only the header has been read.
 struct Source {
     std::string path, format;
     std::vector<std::string> files;       ///< slices of one volume, `path` first; else empty
-    vtkSmartPointer<vtkAlgorithm> reader; ///< of VTK; null where `read` takes its place
+    vtkSmartPointer<vtkAlgorithm> reader; ///< VTK's reader; null if `read` is set instead
     std::function<vtkSmartPointer<vtkDataObject>(std::size_t time)> read;
-    /// Throws where the bytes of a time do not hold what their headers announce; called before they are read.
+    /// Throws if the files of a time are shorter than their headers state; called before they are read.
     std::function<void(const Source& self, std::size_t time)> check;
     std::vector<double> times;                ///< empty: not stated
-    std::vector<double> readerTimes;          ///< the same as the reader has them (float32 made double)
+    std::vector<double> readerTimes;          ///< the same, as VTK's reader has them (float32 converted to double)
     std::map<std::string, std::string> units; ///< stated by the file, by array
     std::string lengthUnit, timeUnit;         ///< stated by the file
-    std::string note;                         ///< for the user: how the samples came about
+    std::string note;                         ///< for the user: how the samples were obtained
 };
 
-/// Names that VTK's programs give to the time of a file.
+/// Names of time values in VTK files.
 inline constexpr std::array<std::string_view, 3> kTimeNames = {"TimeValue", "TIME", "Time"};
 
-/// What was meant by a time: 0.1 for the double of the float32 nearest to 0.1.
+/// Undoes float32 rounding of a time: 0.1 for the double of the float32 nearest to 0.1.
 double meantTime(double time);
 
 /// Time stated in the field data (TimeValue), appended to `times`.

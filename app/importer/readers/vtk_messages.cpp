@@ -11,7 +11,7 @@ namespace tessera::importer {
 
 namespace {
 
-std::string reported; // the first error VTK told since throwReported
+std::string reported; // the first error since throwReported
 
 /// Sends all messages to stderr and keeps the first error.
 class MessageWindow : public vtkOutputWindow {
@@ -29,7 +29,7 @@ public:
     }
 
 private:
-    /// Some readers only warn of what they could not read, and fill it with zeros.
+    /// Some readers only warn about what they could not read, and fill it with zeros: take that as an error.
     static bool meansMissing(const std::string& text) {
         static constexpr const char* kWords[] = {"rror",   "EOF",      "nd of file", "runcated",
                                                  "ailed",  "ould not", "annot",      "nable to",
@@ -40,7 +40,7 @@ private:
     /// "ERROR: In file.cxx, line 12\nvtkReader (0x..): reason\n\n" -> "reason".
     static std::string firstReason(const std::string& text) {
         std::size_t begin = text.find("): ");
-        if (begin == std::string::npos) begin = text.find('\n'); // a warning of no object
+        if (begin == std::string::npos) begin = text.find('\n'); // a warning without an object
         begin = begin == std::string::npos ? 0 : begin + (text[begin] == '\n' ? 1 : 3);
         std::string line = text.substr(begin, 300);
         for (char& c : line)

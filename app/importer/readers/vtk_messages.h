@@ -1,12 +1,12 @@
 #pragma once
 
-/// What VTK's readers report: they write messages and go on.
+/// Errors of VTK's readers, which print a message and continue.
 namespace tessera::importer {
 
-/// Catches VTK's messages from now on: errors are kept for throwReported, all go to stderr.
+/// Redirects VTK's messages to stderr from now on, and keeps errors for throwReported.
 void catchMessages();
 
-/// Throws what VTK's readers reported since the last call, if anything.
+/// Throws the first error that VTK's readers reported since the last call, if any.
 void throwReported();
 
 } // namespace tessera::importer

@@ -1,4 +1,4 @@
-// Checks of cases: folders of OpenFOAM and EnSight, where each array is a file of its own.
+// Checks for truncated OpenFOAM and EnSight cases, in which each array is a separate file.
 #include "app/importer/readers/whole_file.h"
 
 #include <algorithm>
@@ -24,8 +24,8 @@ std::string nameIn(const fs::path& folder, const fs::path& file) {
     return file.lexically_relative(folder).string();
 }
 
-/// Text of OpenFOAM: every bracket closes, comments and words in quotes aside. Binary lists are passed over by their
-/// last line only.
+/// OpenFOAM text: every bracket must close, ignoring comments and quoted words. Of binary lists only the last line is
+/// checked.
 void checkFoamFile(const std::string& path) {
     if (path.ends_with(".gz")) {
         checkDeflated(path, 0, 0);
@@ -34,9 +34,9 @@ void checkFoamFile(const std::string& path) {
     const std::string text = readWhole(path);
     if (text.find("FoamFile") == std::string::npos) {
         if (text.empty() || text.compare(0, 4, "/*--") == 0) throw std::runtime_error("ends within its header");
-        return; // something else that lies there
+        return; // not an OpenFOAM file
     }
-    std::string code; // without comments
+    std::string code; // the text without comments
     static const std::regex kBinary("format\\s+binary");
     const bool binary = std::regex_search(text.substr(0, 2000), kBinary);
     if (binary) {
@@ -69,7 +69,7 @@ void checkFoamFile(const std::string& path) {
         throw std::runtime_error("ends too early: truncated");
 }
 
-/// Fields stand behind their boundary: a file cut before it would still close all brackets.
+/// A field must state its boundary: a file truncated before it would still close all brackets.
 void checkFoamField(const std::string& path) {
     checkFoamFile(path);
     if (path.ends_with(".gz")) return;
@@ -88,14 +88,14 @@ bool isTime(const std::string& name) {
     return !name.empty() && end == name.c_str() + name.size();
 }
 
-/// The parts of an EnSight geometry: how many points, and of which cells how many.
+/// A part of an EnSight geometry: its number of points, and of cells by type.
 struct GoldPart {
     std::size_t points = 0;
     std::vector<std::pair<std::string, std::size_t>> cells;
     bool block = false;
 };
 
-/// Reads EnSight Gold files in any of their three forms.
+/// Reads EnSight Gold files: ASCII, C binary and Fortran binary.
 class GoldFile {
 public:
     explicit GoldFile(const std::string& path, bool isGeometry, bool binary, bool fortran)
@@ -210,7 +210,7 @@ bool readCells(GoldFile& file, const std::string& type, bool ids, GoldPart& part
     return true;
 }
 
-/// The parts by number; empty for geometry that is left to VTK's reader (structured blocks).
+/// The parts by number; empty for structured blocks, which are not checked here.
 std::map<int, GoldPart> readGeometry(GoldFile& file) {
     file.line();
     file.line();
@@ -253,7 +253,8 @@ void checkVariable(GoldFile& file, const std::map<int, GoldPart>& parts, std::si
     file.line();
     while (!file.atEnd()) {
         if (std::string line = file.line(); !line.starts_with("part")) {
-            if (line.starts_with("BEGIN TIME STEP") || line.starts_with("END TIME STEP")) return; // several in one file
+            if (line.starts_with("BEGIN TIME STEP") || line.starts_with("END TIME STEP"))
+                return; // several steps in one file: not checked
             throw std::runtime_error("has \"" + line.substr(0, 40) + "\" for a part");
         }
         const auto part = parts.find(file.integers(1)[0]);
@@ -262,8 +263,7 @@ void checkVariable(GoldFile& file, const std::map<int, GoldPart>& parts, std::si
         std::size_t cellsLeft = part->second.cells.size();
         for (bool any = false; any || !file.atEnd(); any = false) {
             const std::string kind = file.line();
-            if (kind.find(' ') != std::string::npos || kind.starts_with("block"))
-                return; // partial values: VTK's reader
+            if (kind.find(' ') != std::string::npos || kind.starts_with("block")) return; // partial values: not checked
             std::size_t count = 0;
             if (kind == "coordinates") {
                 count = part->second.points;
@@ -283,7 +283,7 @@ void checkVariable(GoldFile& file, const std::map<int, GoldPart>& parts, std::si
     }
 }
 
-/// Files of a name with asterisks for the number of the step.
+/// Files that match a name with asterisks for the number of the step.
 std::vector<fs::path> filesOf(const fs::path& folder, const std::string& pattern) {
     std::vector<fs::path> files;
     if (pattern.find('*') == std::string::npos) {
@@ -340,7 +340,7 @@ void checkFoam(const std::string& path, double time) {
 void checkEnSight(const std::string& path, std::size_t step, std::size_t steps) {
     const std::string text = readWhole(path);
     checkLastLine(text);
-    if (text.find("gold") == std::string::npos) return; // EnSight 6: what VTK's reader says
+    if (text.find("gold") == std::string::npos) return; // EnSight 6: left to VTK's reader
     const fs::path folder = fs::path(path).parent_path().empty() ? "." : fs::path(path).parent_path();
     std::istringstream lines(text);
     std::map<int, GoldPart> parts;

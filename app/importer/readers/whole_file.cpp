@@ -89,7 +89,7 @@ void checkDeflated(const std::string& path, std::size_t begin, double wanted) {
     std::vector<char> bytes(1 << 16), out(1 << 18);
     double got = 0;
     int status = Z_OK;
-    bool ended = false; // gzip files may be several streams one after the other
+    bool ended = false; // a gzip file may consist of several streams
     while (status == Z_OK || status == Z_BUF_ERROR || status == Z_STREAM_END) {
         if (stream.avail_in == 0) {
             in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));

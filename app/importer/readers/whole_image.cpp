@@ -1,4 +1,4 @@
-// Checks of files of images: as many bytes as the header asks for.
+// Checks for truncated image files: the size must be at least what the header states.
 #include "app/importer/readers/whole_file.h"
 
 #include <algorithm>
@@ -43,7 +43,7 @@ std::size_t countWords(const std::string& text) {
     return count;
 }
 
-/// "Key = value" or "key: value" lines until `last` was read; `end` is the place behind that line.
+/// Reads "key = value" or "key: value" lines up to the key `last`; sets `end` to the position after that line.
 std::map<std::string, std::string> readFields(const std::string& text, const std::string& separator,
                                               const std::string& last, std::size_t& end) {
     std::map<std::string, std::string> fields;
@@ -82,10 +82,10 @@ double product(const std::string& sizes) {
     return all;
 }
 
-/// Where the samples of a NRRD file are.
+/// The location and encoding of the samples of a NRRD file.
 struct NrrdPlace {
-    std::string type, encoding; ///< as its header says them
-    std::string file, name;     ///< what holds the samples, and how the header calls it: "" = the file itself
+    std::string type, encoding; ///< as in the header
+    std::string file, name;     ///< path of the samples, and its name in the header; "" = the file itself
     std::size_t begin = 0;
     double samples = 0;
     bool severalFiles = false;
@@ -149,7 +149,7 @@ void checkMetaImage(const std::string& path) {
 
 void checkNifti(const std::string& path) {
     if (path.ends_with(".gz")) {
-        checkDeflated(path, 0, 0); // VTK's reader compares the size of what is inside
+        checkDeflated(path, 0, 0); // the inflated size is checked by VTK's reader
         return;
     }
     std::string head = readPart(path, 0, 540);
@@ -197,7 +197,7 @@ void checkNrrd(const std::string& path) {
     if (word.ends_with(" int") && word != "int") word.resize(word.size() - 4);
     const auto type = kBytes.find(word);
     const double wanted = place.samples * (type == kBytes.end() ? 1 : type->second);
-    if (place.severalFiles) return; // VTK says what is missing
+    if (place.severalFiles) return; // VTK reports missing files
     if (place.encoding == "raw")
         wantBytes(fileBytes(place.file, place.name) - double(place.begin), wanted, place.name);
     else if (place.encoding == "gzip" || place.encoding == "gz")

@@ -1,4 +1,4 @@
-// NetCDF's classic library reads zeros behind the end of a file without a word.
+// NetCDF's classic library silently reads zeros beyond the end of a file, so truncated ones are found here.
 #include "app/importer/readers/whole_file.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ public:
         at_ = 4;
     }
     bool isClassic() const { return bytes_.starts_with("CDF") && (version_ == 1 || version_ == 2 || version_ == 5); }
-    /// Bytes the file must have, not counting what pads its last value.
+    /// Minimum size of the file in bytes, without the padding of its last value.
     double bytesNeeded() {
         const double records = count();
         const bool streaming = records >= (version_ == 5 ? 1.8e19 : 4294967295.0);
@@ -37,7 +37,7 @@ public:
             for (std::size_t& axis : axes) axis = size();
             skipAttributes();
             const double one = bytesOf(number(4));
-            count(); // the size of the variable, which overflows in large files
+            count(); // stored size of the variable: not used, since it overflows in large files
             const double begin = version_ == 1 ? number(4) : number(8);
             double bytes = one;
             bool growing = false;

@@ -1,5 +1,5 @@
-// Tecplot ASCII: zones of points in order, structured or of finite elements, values of points or cells. Own reader,
-// because VTK's takes what a truncated file lacks as 0 and knows no times.
+// Tecplot ASCII: zones of points in order, structured or of finite elements, values of points or cells. Not read by
+// VTK, whose reader fills truncated files with 0 and ignores times.
 #include "app/importer/readers/read_files.h"
 #include "app/importer/readers/whole_file.h"
 #include "app/importer/tecplot/tecplot_zones.h"
@@ -42,7 +42,7 @@ struct Zone {
     }
 };
 
-/// A file as words: names with their values, texts in quotes, numbers.
+/// Splits a file into words: names with their values, quoted texts, numbers.
 class Words {
 public:
     explicit Words(std::string text) : text_(std::move(text)) {}
@@ -55,7 +55,7 @@ public:
         skip();
         return at_ < text_.size() ? text_[at_] : '\0';
     }
-    /// The next word without reading on.
+    /// The next word, without consuming it.
     std::string ahead() {
         const std::size_t at = at_;
         const std::string word = next();
@@ -103,7 +103,7 @@ public:
 
 private:
     static double parse(std::string word) {
-        std::replace(word.begin(), word.end(), 'D', 'E'); // of Fortran
+        std::replace(word.begin(), word.end(), 'D', 'E'); // Fortran's exponent
         char* end = nullptr;
         const double value = std::strtod(word.c_str(), &end);
         if (word.empty() || end != word.c_str() + word.size())
@@ -185,7 +185,7 @@ Zone readZone(Words& words, std::size_t variables) {
     Zone zone;
     while (!words.atEnd() && words.peek() != '"' && !isNumber(words.ahead())) {
         const std::string key = upper(words.next());
-        if (key == "AUXDATA") words.next(); // its own name
+        if (key == "AUXDATA") words.next(); // the name of the auxiliary value
         if (words.peek() != '=') throw std::runtime_error("has \"" + key.substr(0, 40) + "\" in a zone");
         words.next();
         const std::string value = words.next();

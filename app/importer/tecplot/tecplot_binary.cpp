@@ -1,6 +1,6 @@
-// Binary Tecplot (.plt): a header with the names of variables and zones, then the numbers of each zone. After Tecplot's
-// Data Format Guide, "Binary Data File Format"; what its versions differ in after the comments of the TecIO library.
-// The layout of the whole file is walked through when it is opened, so that one that is cut is known at once.
+// Binary Tecplot (.plt): a header with the names of variables and zones, then the numbers of each zone. Follows
+// Tecplot's Data Format Guide, "Binary Data File Format"; differences between versions follow the comments of the TecIO
+// library. Opening walks through the layout of the whole file, so that a truncated one is refused at once.
 #include "app/importer/readers/whole_file.h"
 #include "app/importer/tecplot/tecplot_bytes.h"
 #include "app/importer/tecplot/tecplot_zones.h"
@@ -17,7 +17,7 @@ namespace tessera::importer {
 namespace {
 
 constexpr float kZoneMarker = 299, kNewZoneMarker = 298, kEndOfHeader = 357;
-constexpr std::size_t kAtOnce = 1 << 20; // values read in one piece
+constexpr std::size_t kAtOnce = 1 << 20; // values read at once
 
 /// Formats of numbers in a file: 1 float, 2 double, 3 long, 4 short, 5 byte.
 struct Format {
@@ -35,12 +35,12 @@ constexpr Format kFormats[] = {{0, VTK_VOID, nullptr},
                                {2, VTK_SHORT, asDouble<std::int16_t>},
                                {1, VTK_UNSIGNED_CHAR, asDouble<std::uint8_t>}};
 
-/// Where the numbers of a variable lie.
+/// Where the numbers of a variable are in the file.
 struct Stored {
     std::uint64_t begin = 0;
     std::size_t step = 0; ///< bytes from one to the next
     int format = 0;
-    int from = -1; ///< zone whose numbers they are, -1 its own
+    int from = -1; ///< zone that stores them, -1: this one
     bool passive = false;
 };
 
@@ -48,13 +48,13 @@ struct BinaryZone {
     TecplotZone zone;
     double time = 0;
     std::int32_t strand = -1;
-    bool inPoints = false;          ///< variables take turns
+    bool inPoints = false;          ///< variables interleaved, point by point
     bool faceNeighbours = false;    ///< one for each face of each cell
-    std::size_t neighbours = 0;     ///< stated one by one
+    std::size_t neighbours = 0;     ///< listed individually
     std::int32_t neighbourMode = 0; ///< local one to one, one to many, global one to one, one to many
     std::vector<Stored> stored;     ///< by variable
     std::uint64_t corners = 0;
-    int cornersFrom = -1; ///< zone whose cells they are, -1 its own
+    int cornersFrom = -1; ///< zone that stores them, -1: this one
 };
 
 struct Layout {
@@ -65,7 +65,7 @@ struct Layout {
     std::vector<BinaryZone> zones;
 };
 
-/// What a zone is called in messages.
+/// The name of a zone in messages.
 std::string called(const Layout& layout, std::size_t zone) {
     const std::string& name = layout.zones[zone].zone.name;
     return "zone " + std::to_string(zone + 1) + (name.empty() ? "" : " \"" + name.substr(0, 40) + "\"");
@@ -82,7 +82,7 @@ void setCellType(TecplotZone& zone, std::int32_t type) {
     zone.cellType = kTypes[type];
 }
 
-/// "Common.Time" of files that are older than times of zones.
+/// The auxiliary value "Common.Time" of files older than zone times.
 void readZoneAuxiliary(Bytes& bytes, int version, BinaryZone& zone) {
     while (bytes.flag()) {
         const std::string name = bytes.text();
@@ -120,7 +120,7 @@ void readZoneHeader(Bytes& bytes, Layout& layout) {
     zone.neighbours = bytes.count("neighbours");
     if (zone.neighbours != 0) {
         zone.neighbourMode = bytes.integer();
-        if (version >= 108 && !ordered) bytes.integer(); // whether they are all
+        if (version >= 108 && !ordered) bytes.integer(); // whether all neighbours are listed
     }
     if (ordered) {
         for (std::size_t& n : zone.zone.size) n = bytes.count("points");
@@ -200,7 +200,7 @@ void readHeader(Bytes& bytes, Layout& layout) {
     }
 }
 
-/// Values of cells of an ordered zone lie in rows and planes as long as those of points; the last plane is left out.
+/// Cell values of an ordered zone are stored in rows and planes as long as those of points; the last plane is omitted.
 std::size_t valuesInFile(const TecplotZone& zone, bool ofCells) {
     if (!ofCells) return zone.points;
     if (zone.cellType != VTK_EMPTY_CELL) return zone.cells;
@@ -227,7 +227,7 @@ void readVariables(Bytes& bytes, Layout& layout, std::size_t z) {
     zone.cornersFrom = bytes.integer();
     const auto isStored = [](const Stored& stored) { return !stored.passive && stored.from < 0; };
     const auto count = std::count_if(zone.stored.begin(), zone.stored.end(), isStored);
-    if (layout.version >= 108) bytes.skip(std::uint64_t(count) * 16); // least and most
+    if (layout.version >= 108) bytes.skip(std::uint64_t(count) * 16); // minimum and maximum
     const std::uint64_t begin = bytes.at();
     std::size_t record = 0;
     for (std::size_t v = 0; v < zone.stored.size(); ++v) {
@@ -269,7 +269,7 @@ void readCells(Bytes& bytes, const Layout& layout, std::size_t z, BinaryZone& zo
     }
 }
 
-/// The zone that stores what this one shares, found by `from`; throws where none does.
+/// The zone that stores the data this one shares, following `from`. Throws if there is none.
 std::size_t ownerOf(const Layout& layout, std::size_t zone, auto&& from) {
     std::size_t owner = zone;
     for (std::size_t steps = 0; from(layout.zones[owner]) >= 0; ++steps) {
@@ -316,7 +316,7 @@ std::vector<vtkIdType> readCorners(const Layout& layout, std::size_t z) {
     return corners;
 }
 
-/// Finds who stores what a zone shares, and fills in what reads it.
+/// Resolves shared data of a zone, and sets the functions that read its numbers.
 TecplotZone finished(const std::shared_ptr<const Layout>& layout, std::size_t z) {
     const BinaryZone& from = layout->zones[z];
     TecplotZone zone = from.zone;
@@ -359,7 +359,7 @@ void openBinaryTecplot(Source& source) {
     }
     if (bytes.left() != 0)
         throw std::runtime_error("has " + std::to_string(bytes.left()) + " bytes more than its zones announce");
-    // Static zones are there at all times, unless none of them is of a strand: then their times count if they have any.
+    // Zones without a strand are static, unless no zone has one: then their times, if any, are used.
     const auto ofStrand = [](const BinaryZone& zone) { return zone.strand != -1; };
     const bool strands = std::any_of(read.zones.begin(), read.zones.end(), ofStrand);
     const bool times =

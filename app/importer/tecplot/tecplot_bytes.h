@@ -11,10 +11,10 @@
 #include <stdexcept>
 #include <string>
 
-/// The words that binary Tecplot files are made of.
+/// The basic values in binary Tecplot files.
 namespace tessera::importer {
 
-/// A number of the file's byte order.
+/// Reads a number in the file's byte order.
 template <class T> T numberAt(const char* bytes, bool swap) {
     char raw[sizeof(T)];
     std::memcpy(raw, bytes, sizeof raw);
@@ -22,7 +22,7 @@ template <class T> T numberAt(const char* bytes, bool swap) {
     return std::bit_cast<T>(raw);
 }
 
-/// Goes through a file from its beginning; `place` is what a file that ends too early is said to end within.
+/// Reads a file from its beginning. `place` names the section for the error message of a truncated file.
 class Bytes {
 public:
     explicit Bytes(const std::string& path) : in_(path, std::ios::binary), size_(bytesIn(path)) {}
@@ -50,13 +50,13 @@ public:
         if (value < 0) throw std::runtime_error("has a bad number of " + std::string(what) + " in " + place);
         return static_cast<std::size_t>(value);
     }
-    /// Whether a list follows, or a choice of two.
+    /// A flag, stored as an integer.
     bool flag() {
         const std::int32_t value = integer();
         if (value != 0 && value != 1) throw std::runtime_error("is damaged in " + place);
         return value == 1;
     }
-    /// A word whose characters are integers, the last of them 0: bytes of UTF-8, or of Latin-1 in old files.
+    /// A text stored as one integer per byte, ended by 0: UTF-8, or Latin-1 in old files.
     std::string text() {
         std::string out;
         bool eight = false;

@@ -24,13 +24,13 @@ namespace {
 
 constexpr double kMostPoints = 1e12; // in a zone
 
-/// A zone and the type that each variable gets, so that it is the same at all times.
+/// A zone with the type of each of its variables, which must be equal at all times.
 struct Part {
     const TecplotZone& zone;
     const std::vector<int>& types;
     const std::vector<Heading>& headings;
 
-    /// Those with values, in order.
+    /// Indices of the variables with values, in order.
     std::vector<std::size_t> variables(bool ofCells) const {
         std::vector<std::size_t> out;
         for (std::size_t v = 0; v < headings.size(); ++v)
@@ -51,7 +51,8 @@ struct Part {
         }
         return out;
     }
-    /// Throws where there are no places; they also tell that the zone's numbers of points and cells are true.
+    /// Throws if the zone has no coordinates. Reading them also proves that its numbers of points and cells are
+    /// correct.
     void needPlaces() const {
         bool found[3] = {};
         for (const std::size_t v : variables(false))
@@ -61,8 +62,7 @@ struct Part {
     bool isRow() const { return zone.cellType == VTK_EMPTY_CELL && zone.size[1] == 1 && zone.size[2] == 1; }
 };
 
-/// Adds the arrays one after the other, so that the numbers of one are in memory twice, not those of all. Without
-/// `read` only their units are noted.
+/// Adds the arrays one at a time, so that only one of them is in memory twice. Without `read` only notes their units.
 void addArrays(const Part& part, bool ofCells, bool read, vtkDataSetAttributes* to, Source& source) {
     const std::vector<std::size_t> variables = part.variables(ofCells);
     const std::vector<Heading> names = part.table(variables, false).headings;
@@ -91,9 +91,9 @@ vtkSmartPointer<vtkPoints> pointsOf(const Part& part) {
     return points;
 }
 
-/// Tecplot writes wedges, pyramids and tetrahedra as bricks with corners that coincide.
+/// Tecplot stores wedges, pyramids and tetrahedra as hexahedra with coinciding corners.
 void insertBrick(vtkUnstructuredGrid& mesh, const vtkIdType* corners) {
-    for (int turn = 0; turn < 8; ++turn) { // about the axis, the latter half upside down
+    for (int turn = 0; turn < 8; ++turn) { // the eight rotations of a hexahedron; the last four are upside down
         vtkIdType low[4], high[4];
         for (int n = 0; n < 4; ++n) {
             low[n] = corners[(n + turn) % 4 + (turn < 4 ? 0 : 4)];
@@ -151,7 +151,7 @@ vtkSmartPointer<vtkDataSet> dataOf(const Part& part, Source& source) {
     return grid;
 }
 
-/// Units without reading more than zones of points, which tell how they become a grid.
+/// Notes the units. Reads only zones of points, whose coordinates decide how they become a grid.
 void noteUnits(const Part& part, Source& source) {
     for (const Heading& heading : part.headings)
         if (axisOf(heading.name) >= 0 && !heading.unit.empty()) source.lengthUnit = heading.unit;
@@ -178,7 +178,7 @@ struct Frames {
     Part part(const Block& block) const { return {zones[block.zone], block.types, headings}; }
 };
 
-/// What two names begin with, up to the word that differs: "air" of "air t=0.5" and "air t=4".
+/// The common beginning of two names, in whole words: "air" of "air t=0.5" and "air t=4".
 std::string common(const std::string& a, const std::string& b) {
     static constexpr std::string_view kBetween = " _-,;:(";
     const std::size_t same =
@@ -193,19 +193,20 @@ std::string common(const std::string& a, const std::string& b) {
     return out;
 }
 
-/// A name that changes over time, or a variable without values at some time, is that of one block all the same.
+/// Gives each block one name and one set of variables, even if its name changes over time or a variable has no values
+/// at some time.
 void sameOverTime(Frames& frames) {
     std::vector<Frames::Block>& first = frames.blocks.front();
     const auto strandOf = [&](const Frames::Block& block) { return frames.zones[block.zone].strand; };
     std::set<int> strands;
-    bool known = true; // each block by its strand, or by being there at all times
+    bool known = true; // blocks are identified by strand, or are static
     for (const Frames::Block& block : first)
         known = known && (strandOf(block) ? strands.insert(*strandOf(block)).second
                                           : !frames.zones[block.zone].time.has_value());
     std::vector<std::string> names;
     for (const Frames::Block& block : first) names.push_back(block.name);
     for (const std::vector<Frames::Block>& blocks : frames.blocks) {
-        if (blocks.size() != first.size()) return; // said where that time is read
+        if (blocks.size() != first.size()) return; // reported when that time is read
         known = known && std::ranges::equal(blocks, first, {}, strandOf, strandOf);
         for (std::size_t b = 0; b < first.size(); ++b) names[b] = common(names[b], blocks[b].name);
     }

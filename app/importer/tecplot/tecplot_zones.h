@@ -13,14 +13,14 @@
 #include <vtkCellType.h>
 #include <vtkType.h>
 
-/// What the ASCII and the binary files of Tecplot share: zones, which become the blocks of a source.
+/// Zones of ASCII and binary Tecplot files, which become the blocks of a source.
 namespace tessera::importer {
 
-/// A zone as its header tells it, and what reads its numbers. Points and cells of an ordered zone go I fastest.
+/// The header of a zone, and the functions that read its numbers. In an ordered zone, I runs fastest.
 struct TecplotZone {
     std::string name;
-    std::optional<double> time;               ///< none: there at all times
-    std::optional<int> strand;                ///< the same for zones that are one over time; none: not stated
+    std::optional<double> time;               ///< none: static, present at all times
+    std::optional<int> strand;                ///< equal for the zones of one block over time; none: not stated
     std::array<std::size_t, 3> size{1, 1, 1}; ///< points along I, J, K of an ordered zone
     std::size_t points = 0, cells = 0;
     int cellType = VTK_EMPTY_CELL; ///< of finite elements; empty: ordered
@@ -30,17 +30,17 @@ struct TecplotZone {
     std::function<std::vector<vtkIdType>()> corners;                 ///< from 0, cornersOf(cellType) for each cell
 };
 
-/// How many corners the elements of a zone have, by VTK's type of cell.
+/// Number of corners of a VTK cell type.
 std::size_t cornersOf(int cellType);
 
-/// Sets the numbers of points and cells of an ordered zone from its size. Throws where there are too many to count.
+/// Sets the numbers of points and cells of an ordered zone from its size. Throws if the numbers overflow.
 void countOrdered(TecplotZone& zone);
 
-/// Sets the times and units of `source`, and what reads a time: the zones of that time and those without a time, by
-/// strand where they have one. Throws where there is no zone, or a time is no number.
+/// Sets the times and units of `source`, and its function that reads a time: the zones of that time and the static
+/// ones, identified by strand if they have one. Throws if there is no zone, or a time is not a number.
 void giveZones(std::vector<Heading> headings, std::vector<TecplotZone> zones, Source& source);
 
-/// Reads the layout of a file that begins with "#!TDV"; its numbers are read when a time is.
+/// Reads the layout of a file that begins with "#!TDV"; its numbers are read later, per time.
 void openBinaryTecplot(Source& source);
 
 } // namespace tessera::importer
