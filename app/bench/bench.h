@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-/// The tables that `tessera bench` prints. Each is measured when asked for, in one run, so that its ratios mean
-/// something even on a busy machine: every row that is compared runs right after the one it is compared with.
+/// The tables that `tessera bench` prints. Rows that are compared are measured right after each other, so that ratios
+/// are valid even on a busy machine.
 namespace tessera::app {
 
 struct BenchTable {
@@ -18,11 +18,12 @@ std::string decimals(double value, int digits);
 
 /// Reconstruction error of CC and BCC, with each filter, at equal and at 70.7 % of the samples, and of D4* at 50 %.
 BenchTable benchLattice();
-/// Archives on BCC with each grid taken apart by itself, as one array, and one grid predicted from the other.
+/// Archives on BCC with three transforms: each sublattice separately, both as one array, and one predicted from the
+/// other.
 BenchTable benchBccTransforms();
-/// Archives on BCC and D4*, and those on CC that come as near to the samples of the source.
+/// Archives on BCC and D4*, beside CC archives with the same error against the samples of the source.
 BenchTable benchLatticeBytes();
-/// Archives of the same signal on CC and BCC, with as many samples as show it with the same error.
+/// Archives of one signal on CC and BCC, with the numbers of samples that give equal error.
 BenchTable benchSignalBytes();
 /// Seconds to resample a volume to BCC with each filter, and a series to D4*.
 BenchTable benchResample();
@@ -30,11 +31,11 @@ BenchTable benchResample();
 BenchTable benchCodec();
 /// Archives beside zstd and whatever else is installed (lz4, xz, blosc, HDF5, OpenJPEG, zfp), in one process.
 BenchTable benchPeers();
-/// What coarse levels and single bricks cost beside whole frames, and frames on two threads beside one.
+/// Time to decode coarse levels and single bricks beside whole frames, and frames on two threads beside one.
 BenchTable benchLevels();
 /// Tables 6.1 and 6.2, 6.4, 6.5 of the thesis, its numbers beside ours for the volumes at hand.
 BenchTable benchThesisSizes();
-/// Bricks by importance, merged in each way, and what coding merged ones as one would take.
+/// Bricks by importance, merged in each way, and their size if merged bricks were coded as one.
 BenchTable benchBricks();
 BenchTable benchThesisCoding();
 BenchTable benchThesisFrames();

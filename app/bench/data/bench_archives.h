@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-/// What the benchmarks of archives share.
+/// Helpers of the archive benchmarks.
 namespace tessera::app {
 
-/// A name for a file, which disappears with the object.
+/// A temporary file, removed by the destructor.
 struct BenchFile {
     std::string path;
     explicit BenchFile(const std::string& ending = ".tsr");
@@ -18,10 +18,10 @@ struct BenchFile {
     BenchFile& operator=(const BenchFile&) = delete;
 };
 
-/// The data sets of $TESSERA_DATA/volumes by the name of their files; empty, and said on stderr, where there are none.
+/// The data sets in $TESSERA_DATA/volumes by file name. If there are none, prints so to stderr and returns nothing.
 std::vector<std::pair<std::string, volume::Dataset>> volumeFiles();
 
-/// Of those the ones of 8 and 16 bits.
+/// Those data sets with 8-bit or 16-bit samples.
 std::vector<std::pair<std::string, volume::Dataset>> thesisVolumes();
 
 } // namespace tessera::app

@@ -38,7 +38,7 @@ BenchTable benchBricks() {
             options.brickSize = brickSize;
             options.levels = 3;
             codec::pack(data, options, file.path);
-            return codec::Archive(file.path); // a mapped file lives on without its name
+            return codec::Archive(file.path); // the mapping stays valid after the file is removed
         };
         const codec::Archive small = packed(16);
         const glm::ivec3 count = small.grid().count();

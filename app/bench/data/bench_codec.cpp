@@ -13,7 +13,7 @@ namespace tessera::app {
 
 namespace {
 
-/// CPU seconds of the process that `body` takes: on a busy machine what wall time hides.
+/// CPU seconds that `body` takes, which hardly depend on other load of the machine.
 template <class Body> double cpuSeconds(Body&& body) {
     const std::clock_t start = std::clock();
     body();

@@ -27,7 +27,7 @@ double cpuSeconds() {
     return double(std::clock()) / CLOCKS_PER_SEC;
 }
 
-/// The least of some runs.
+/// The fastest of several runs.
 template <class Body> double best(double (*clock)(), Body&& body) {
     double least = 1e300;
     for (int run = 0; run < 9; ++run) {

@@ -23,7 +23,7 @@ struct ThesisData {
     const char* name;
     glm::ivec4 size;  ///< x, y, z, times
     const char* bcc;  ///< its size on BCC or D4*
-    const char* file; ///< how the names of its files begin; "": not at hand, a made volume as large stands in
+    const char* file; ///< prefix of its file names; "": not available, replaced by a synthetic volume of the same size
     double resample, wavelet;
 };
 constexpr ThesisData kThesisData[] = {{"nucleon", {41, 41, 41, 1}, "29x29x58", "nucleon", 0.62, 0.02},

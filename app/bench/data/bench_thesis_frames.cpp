@@ -53,14 +53,14 @@ volume::Dataset movingSeries(volume::ScalarType type) {
     return series;
 }
 
-/// Reads every brick of a time, as they become textures, on all cores.
+/// Reads every brick of a time on all cores, as for upload to textures.
 void readTime(const volume::BrickSource& source, int time) {
     const volume::BrickGrid& grid = source.grid();
     parallelFor(grid.brickCount(), [&](std::size_t n) { (void)source.read({0, time, 0, grid.indexOf(n)}); });
 }
 
-/// Milliseconds a time takes, the median; every time is read in turn by a source that has just been opened, so that
-/// none keeps a frame from before. The first turn brings the files into the machine's cache.
+/// Median milliseconds to read one time. Each round opens the source anew, so that no frame is cached by it; the first
+/// round only fills the system's file cache.
 double medianMilliseconds(const std::function<std::shared_ptr<const volume::BrickSource>()>& open) {
     std::vector<double> times;
     for (int turn = 0; turn < 4; ++turn) {

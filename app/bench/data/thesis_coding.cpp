@@ -11,7 +11,7 @@ namespace tessera::app {
 
 namespace {
 
-/// A part of the decomposed field.
+/// A subband of the transformed field.
 struct Part {
     glm::ivec3 begin{0}, end{0};
     glm::ivec3 size() const { return end - begin; }

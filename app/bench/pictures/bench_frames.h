@@ -11,9 +11,9 @@ namespace tessera::app {
 
 inline constexpr int kBenchPicture = 512; ///< pixels along an edge of the timed pictures
 inline constexpr int kBenchCompared = 48; ///< of the pictures compared with the reference
-inline constexpr int kBenchFrames = 3;    ///< timed pictures, of which the median counts
+inline constexpr int kBenchFrames = 3;    ///< timed pictures; the median is reported
 
-/// Processor time of all threads so far: what else the machine does hardly counts.
+/// Processor time of all threads so far, which hardly depends on other load of the machine.
 double cpuMilliseconds();
 
 /// One layer of parameter "v" (range 0..255) seen as a whole, a sample per voxel.

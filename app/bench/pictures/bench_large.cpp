@@ -7,12 +7,12 @@
 #include <fstream>
 #include <unistd.h>
 
-/// A full model of 250x250x1000 samples from the archive to the hand.
+/// A full model of 250x250x1000 samples: from opening the archive to interaction.
 namespace tessera::app {
 
 namespace {
 
-/// Megabytes of memory that the process has now.
+/// Resident memory of the process in MB.
 double residentMegabytes() {
     std::ifstream file("/proc/self/statm");
     double all = 0, resident = 0;

@@ -8,13 +8,13 @@
 #include <map>
 #include <thread>
 
-/// How fast linked views follow the hand, and how fast a scatterplot matrix of many samples appears.
+/// Latency of linked views while something is dragged, and of a scatterplot matrix of many samples.
 namespace tessera::app {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr int kSteps = 9; // of a drag, of which the median counts
+constexpr int kSteps = 9; // steps of a drag; the median is reported
 
 double milliseconds(Clock::time_point since) {
     return std::chrono::duration<double, std::milli>(Clock::now() - since).count();
@@ -83,7 +83,7 @@ private:
     std::vector<std::vector<float>> bricks_; ///< by channel and kind
 };
 
-/// Milliseconds until a query is answered, first at any level, then in full.
+/// Milliseconds until the first answer to a query at any level, and until the exact one.
 std::pair<double, double> answered(AsyncStatistics& answers, ViewContext& context, const BrushedQuery& query,
                                    bool whole) {
     const Clock::time_point begin = Clock::now();

@@ -66,7 +66,7 @@ std::vector<Mode> modes() {
     return out;
 }
 
-/// The reference holds all samples in double precision, for every mode anew: larger volumes go without.
+/// The reference converts all samples to double for each mode: larger volumes are not compared.
 constexpr std::size_t kMostCompared = std::size_t(1) << 25;
 
 /// Mean number of times that the rays of a timed picture reconstruct a value.

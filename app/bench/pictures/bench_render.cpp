@@ -43,7 +43,7 @@ std::vector<Style> styles() {
             {"mip", maximum, {{0, 1}, {1, 1}}}};
 }
 
-/// The picture that ever smaller steps lead to: what the errors of both programs are measured against.
+/// The converged picture with very small steps, against which the errors of both programs are measured.
 vis::reference::Image converged(vis::Scene scene, const volume::BrickSource& source) {
     if (auto* layer = std::get_if<vis::VolumeLayer>(&scene.layers.front().technique))
         layer->classification = vis::Classification::Post;
@@ -57,7 +57,7 @@ vis::reference::Image opaque(vis::reference::Image image) {
     return image;
 }
 
-/// Of how many times longer than ours the peers took: logarithms, and how many.
+/// Geometric mean of the peers' time divided by ours: sum of logarithms, and count.
 struct Mean {
     double sum = 0;
     int count = 0;

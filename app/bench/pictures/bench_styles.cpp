@@ -23,7 +23,8 @@ BenchTable benchStyles() {
     for (const std::string_view name : vis::Look::kPresetNames) {
         vis::VolumeLayer layer{.channel = "T"};
         scene.layers = {{"T", true, layer}};
-        const double plain = timeFrames(renderer, scene); // right before: ratios hold on a busy machine
+        const double plain =
+            timeFrames(renderer, scene); // measured right before, so that ratios are valid on a busy machine
         layer.look = *vis::Look::preset(name);
         scene.layers = {{"T", true, layer}};
         const double drawn = timeFrames(renderer, scene);

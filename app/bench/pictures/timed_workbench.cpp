@@ -12,8 +12,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr glm::ivec2 kWindow{1500, 950};
-constexpr int kTimedSteps = 9;    // of a drag, of which the median counts
-constexpr int kMostFrames = 60;   // until every view has followed
+constexpr int kTimedSteps = 9;    // steps of a drag; the median is reported
+constexpr int kMostFrames = 60;   // limit until every view has followed
 constexpr int kMostAtRest = 5000; // until every view is refined
 
 double millisecondsSince(Clock::time_point begin) {
@@ -74,11 +74,12 @@ double TimedWorkbench::untilRest() {
 
 Followed TimedWorkbench::drag(const std::function<void(Session&, double)>& edit) {
     Followed out;
-    untilRest();                        // as one begins to drag
-    const auto held = [](ImGuiIO& io) { // on the status bar, where it does nothing but make every view draw at speed
-        io.MousePos = {40, float(kWindow.y) - 6};
-        io.MouseDown[0] = true;
-    };
+    untilRest(); // the state in which a drag begins
+    const auto held =
+        [](ImGuiIO& io) { // over the status bar, where a held button only makes views draw at reduced quality
+            io.MousePos = {40, float(kWindow.y) - 6};
+            io.MouseDown[0] = true;
+        };
     for (int step = 0; step <= kTimedSteps; ++step) {
         const Clock::time_point begin = Clock::now();
         edit(session(), double(step) / kTimedSteps);

@@ -10,13 +10,13 @@
 #include <string>
 #include <vector>
 
-/// A workbench without a window whose frames are timed: what the benchmarks of interaction share.
+/// A workbench without a window whose frames are timed, for benchmarks of interaction.
 namespace tessera::app {
 
 double median(std::vector<double> values); ///< 0 of none
 
-/// What one kind of drag costs: by pane, the time its drawing takes and the time until it shows the new state,
-/// milliseconds of every step.
+/// Latency of one kind of drag in milliseconds per step: for each pane, the time to draw it and the time until it shows
+/// the new state.
 struct Followed {
     std::map<std::string, std::vector<double>> drawing, shown;
     std::vector<double> all; ///< until every pane has followed
@@ -29,9 +29,9 @@ public:
     TimedWorkbench();
     Workbench& workbench() { return workbench_; }
     Session& session() { return workbench_.session(); }
-    /// Draws frames until no pane is behind; milliseconds until each first was not.
+    /// Draws frames until no pane is behind. Returns the milliseconds until each pane caught up.
     std::map<std::string, double> untilShown();
-    /// Draws frames until everything is refined; milliseconds.
+    /// Draws frames until everything is refined. Returns milliseconds.
     double untilRest();
     /// Edits the session as a drag does, by a share that runs from 0 to 1, with the mouse held down, and waits after
     /// each step until every pane shows it. The first step warms up.

@@ -48,7 +48,8 @@ const char* styleName(vis::RayStyle style) {
     }
 }
 
-/// The job in the words of tests/bench/vtk_peer.cpp. Colours go over as linear light, so that VTK composites as we do.
+/// The job in the words of tests/bench/vtk_peer.cpp. Colours are passed as linear light, so that VTK composites in
+/// linear light too.
 std::string jobText(glm::ivec3 size, const vis::Scene& scene, PeerSizes sizes) {
     std::ostringstream out;
     out.precision(9);

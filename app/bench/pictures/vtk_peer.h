@@ -6,11 +6,11 @@
 #include <optional>
 #include <span>
 
-/// VTK's volume mappers as a peer of the benchmarks: the program tessera-vtk-peer beside this one, run as a child on
-/// the same samples, camera, transfer function, step and light. It needs an X display; without one it runs under xvfb.
+/// Benchmarks VTK's volume mappers: runs the program tessera-vtk-peer beside this one with the same samples, camera,
+/// transfer function, step and light. It needs an X display; without one it runs under Xvfb.
 namespace tessera::app {
 
-/// True when the program is there and a display, or xvfb-run, can be had.
+/// True if the program exists, and a display or xvfb-run is available.
 bool vtkPeerAtHand();
 
 struct PeerResult {
