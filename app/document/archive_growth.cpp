@@ -13,8 +13,8 @@ namespace tessera::app {
 
 namespace {
 
-/// What an archive that has grown has of what it was: everything, but where frames of D4* are shown as BCC the last
-/// times were made without the frames that have come.
+/// The samples of a grown archive that are unchanged: all of them, except where D4* frames are shown as BCC: the last
+/// times change, since they are interpolated with the frames after them.
 vis::SameSamples sameSamples(const volume::BrickSource& was, const volume::BrickSource& is) {
     const std::vector<volume::Channel> before = was.info().channels(), now = is.info().channels();
     if (now.size() < before.size() || !std::equal(before.begin(), before.end(), now.begin())) return {};
@@ -24,7 +24,7 @@ vis::SameSamples sameSamples(const volume::BrickSource& was, const volume::Brick
     return {int(before.size()), stored ? times : std::max(times - kMadeOfOthers, 0)};
 }
 
-/// True if a data set is another one gone on: the same bricks, all its parameters and times, and maybe more of them.
+/// True if a data set continues another one: the same bricks, with all its parameters and times, and possibly more.
 bool goesOn(const volume::BrickSource& was, const volume::BrickSource& is) {
     const volume::DatasetInfo &before = was.info(), &now = is.info();
     if (was.grid() != is.grid() || now.times.size() < before.times.size() ||
@@ -37,7 +37,7 @@ bool goesOn(const volume::BrickSource& was, const volume::BrickSource& is) {
     return std::equal(before.parameters.begin(), before.parameters.end(), now.parameters.begin(), same);
 }
 
-/// Data with those beside them, if any.
+/// The data with those of the second data set, if any.
 struct Both {
     std::shared_ptr<const volume::BrickSource> own, other;
     explicit Both(const std::shared_ptr<const volume::BrickSource>& source)
@@ -47,7 +47,7 @@ struct Both {
     std::shared_ptr<const volume::BrickSource> joined() const { return other ? volume::withOther(own, other) : own; }
 };
 
-/// The other data of a session on their own.
+/// The second data set of a session as a DataRef of its own.
 DataRef otherData(const DataRef& data) {
     DataRef other;
     if (data.other) {
@@ -57,15 +57,15 @@ DataRef otherData(const DataRef& data) {
     return other;
 }
 
-/// Path of the archive that the data are; "" = they are none.
+/// Path of the archive that holds the data; "" if they are not an archive.
 std::string archivePath(const DataRef& data) {
     return isArchive(data) ? data.files[0].absolutePath : "";
 }
 
-/// What is shown, with all that its archives hold by now, without derived parameters. What is no archive is not read
-/// again. Throws Error.
+/// The data shown, with archives read again and without derived parameters. Other files are not read again. Throws
+/// Error.
 Sources readAgain(const DataRef& data, const Sources& shown) {
-    std::vector<std::string> known; // was said when they were opened
+    std::vector<std::string> known; // messages already shown at opening
     Both pictures(volume::underived(shown.pictures)), numbers(volume::underived(shown.numbers));
     NumberOrigin origin = shown.origin;
     const auto open = [&](const DataRef& archive, NumberOrigin& of) {
@@ -86,7 +86,7 @@ Sources readAgain(const DataRef& data, const Sources& shown) {
     return {joined, one ? joined : numbers.joined(), origin};
 }
 
-/// What an archive has got that has gone on; "" = nothing.
+/// Describes what a grown archive has gained; "" = nothing.
 std::string grownText(const std::string& path, const volume::BrickSource& was, const volume::BrickSource& is) {
     const std::string name = std::filesystem::path(path).filename().string();
     const std::size_t times = is.info().times.size();
@@ -114,12 +114,12 @@ std::optional<Grown> readGrown(const DataRef& data, const Sources& shown,
                                const std::vector<volume::DerivedParameter>& derived, const Progress& progress) {
     const auto before = volume::underived(shown.pictures);
     const Both was(before);
-    if (data.other.has_value() != (was.other != nullptr)) return {}; // about to be shown otherwise
+    if (data.other.has_value() != (was.other != nullptr)) return {}; // the second data set is being changed
     Sources now;
     try {
         now = readAgain(data, shown);
     } catch (const Error&) {
-        return {}; // being replaced: what is shown stays good
+        return {}; // being replaced: the data shown stay valid
     }
     const Both is(now.pictures);
     if (!goesOn(*was.own, *is.own) || (was.other && !goesOn(*was.other, *is.other))) return {};

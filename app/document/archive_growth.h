@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-/// Archives that grow while they are shown: the first and the one beside it.
+/// Archives that grow while they are shown: that of the data set and that of the second one.
 namespace tessera::app {
 
 /// Watches the archives that a session names.
@@ -20,10 +20,10 @@ class ArchiveGrowth {
 public:
     explicit ArchiveGrowth(std::chrono::milliseconds interval) : interval_(interval) {}
 
-    /// True once after each change of an archive among these data; null: there are none to watch. `wake` is called from
+    /// Returns true once after each change of an archive of these data; null: nothing to watch. `wake` is called from
     /// another thread after a change.
     bool changed(const DataRef* data, const std::function<void()>& wake);
-    /// Counts what there is as changed.
+    /// Reports a change at the next call.
     void lookAgain() { watches_ = {}; }
 
 private:
@@ -31,16 +31,16 @@ private:
     std::array<std::unique_ptr<GrowthWatch>, 2> watches_;
 };
 
-/// Data with what their archives have got.
+/// The data after their archives have grown.
 struct Grown {
     Sources sources;
-    vis::SameSamples same;             ///< what they have of what was shown
+    vis::SameSamples same;             ///< which samples are the same as before
     std::vector<std::string> news;     ///< a line for each archive that has grown
     std::vector<std::string> problems; ///< parameters that cannot be derived
 };
 
-/// Reads what the archives among the data have become since they were shown. Nothing where they have not grown, are
-/// just being replaced, or no longer hold what was shown. Throws Cancelled.
+/// Reads the archives again. Returns nothing if they have not grown, are being replaced, or no longer contain the data
+/// shown. Throws Cancelled.
 std::optional<Grown> readGrown(const DataRef& data, const Sources& shown,
                                const std::vector<volume::DerivedParameter>& derived, const Progress& progress);
 

@@ -9,21 +9,21 @@
 
 namespace tessera::app {
 
-/// Keeps what has been edited, in the background, for the case that the program ends by itself. Must outlive the jobs.
+/// Writes an autosave of an edited document in the background, in case the program crashes. Must outlive the jobs.
 class Autosaver {
 public:
     /// `folder`: of the state of the program, "" = none.
     Autosaver(std::string folder, std::chrono::milliseconds interval);
 
-    /// Sessions that runs left behind which did not end by themselves, newest first.
+    /// Sessions left behind by crashed runs, newest first.
     std::vector<Recovery> abandoned() const { return autosave_.abandoned(); }
     /// Once per frame: writes the document where it has been edited and the interval is over. `now` in seconds.
     void update(const Document& document, double now, Jobs& jobs, Messages& messages);
-    /// The document as it is needs not be kept: it is saved, or as opened.
+    /// The current document needs no autosave: it is saved or unmodified.
     void clear(const Document& document);
-    /// Does not wait for the interval next time.
+    /// Saves at the next update without waiting for the interval.
     void hurry() { last_ = -1e9; }
-    /// Seconds until update() may have something to write; infinity = nothing has been edited.
+    /// Seconds until update() may write; infinity if nothing has been edited.
     double secondsToNext(const Document& document, double now) const;
 
 private:
@@ -32,7 +32,7 @@ private:
     std::string folder_;
     std::chrono::duration<double> interval_;
     Autosave autosave_;
-    std::size_t kept_ = 0; ///< Document::edits() that need not be kept any more
+    std::size_t kept_ = 0; ///< Document::edits() at the last autosave or save
     double last_ = 0;      ///< s
 };
 

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kLatticeChoice = "lattice"; ///< by this name it is remembered
+constexpr const char* kLatticeChoice = "lattice"; ///< key of the remembered choice
 
 } // namespace
 
@@ -69,7 +69,7 @@ void DataFollower::take(Sources sources, std::optional<vis::SameSamples> grown) 
     shown_(grown);
 }
 
-/// Shows what a job has made. False, and nothing changes, where other data are shown by now.
+/// Shows the result of a job. Returns false and changes nothing if other data are shown by now.
 bool DataFollower::moveTo(RemadeData made) {
     if (!document_.moveTo(made)) return false;
     derived_.settle(made.data.derived);
@@ -115,7 +115,7 @@ void DataFollower::compareWith(const std::vector<std::string>& paths) {
                 });
 }
 
-/// A new parameter: how the one shown first differs in the other data.
+/// Adds a parameter: the difference of the one shown first to the other data.
 void DataFollower::addDifference() {
     Session& session = document_.session();
     const volume::DatasetInfo& info = document_.info();
@@ -160,14 +160,14 @@ void DataFollower::followLattice() {
     if (step != Tracked<PictureLattice>::Step::Make) return;
     rememberChoice(options_.stateFolder, kLatticeChoice, std::string(kPictureLatticeNames[std::size_t(wanted)]));
     if (isArchive(data) || data.packed) {
-        lattice_.shown = wanted; // of data that lie on a lattice of their own
+        lattice_.shown = wanted; // an archive has a fixed lattice
         return;
     }
     jobs_.start("lattice", "Resampling for pictures",
                 [this, wanted, from = document_.sources(), derived = derived_.shown](const Progress&) -> Jobs::Finish {
                     const Sources made = drawnOn(wanted, from, derived);
                     return [this, made, wanted, from] {
-                        // Gone on, or other data, meanwhile: made of those.
+                        // The data have grown or changed meanwhile: start again.
                         if (document_.sources().pictures != from.pictures) return lattice_.giveUp();
                         take(made);
                         lattice_.shown = wanted;
@@ -215,7 +215,7 @@ void DataFollower::followLabels(bool typing) {
     show(data, "Naming regions");
 }
 
-/// Makes the source again when the parameters derived from it have been edited; what is shown stays until then.
+/// Rebuilds the source after derived parameters have been edited; the former data are shown until then.
 void DataFollower::followDerived() {
     const auto& wanted = document_.session().data.derived;
     const auto step = derived_.next(wanted);
@@ -228,7 +228,7 @@ void DataFollower::followDerived() {
                     auto messages = std::make_shared<std::vector<std::string>>();
                     const Sources made = deriveBoth(below, wanted, *messages, progress);
                     return [this, messages, made, wanted, from] {
-                        // Gone on, or other data, meanwhile: derived from those.
+                        // The data have grown or changed meanwhile: start again.
                         if (document_.sources().pictures != from) return derived_.giveUp();
                         take(made);
                         derived_.shown = wanted;
@@ -238,7 +238,7 @@ void DataFollower::followDerived() {
                 });
 }
 
-/// Takes over what has become whole in archives that grow while they are shown; the view of the data stays as it is.
+/// Takes over new times of archives that grow while they are shown; views keep their state.
 void DataFollower::followGrowth() {
     const DataRef& data = document_.session().data;
     if (!growth_.changed(options_.headless || data.timeAxis ? nullptr : &data, jobs_.wake)) return;
@@ -248,10 +248,10 @@ void DataFollower::followGrowth() {
             const auto grown = std::make_shared<std::optional<Grown>>(readGrown(data, from, derived, progress));
             if (!*grown) return {};
             return [this, grown, from] {
-                // Other data, or derived anew from what was there: look again.
+                // The data have changed meanwhile: look again.
                 if (document_.sources().pictures != from.pictures) return growth_.lookAgain();
                 Grown& now = **grown;
-                take(std::move(now.sources), now.same); // views keep what they have: a drag goes on
+                take(std::move(now.sources), now.same); // views keep their caches, so that a drag continues
                 fitSession(document_.session(), document_.info(), now.problems);
                 for (const std::string& text : now.news) messages_.add(text);
                 for (const std::string& text : now.problems) messages_.add(text, true);

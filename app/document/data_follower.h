@@ -14,8 +14,8 @@
 
 namespace tessera::app {
 
-/// The data under a session that stays: opened, packed, resampled or derived anew, in the background, where the part of
-/// the session that describes them has been edited or an archive has grown. What is shown stays until then.
+/// Keeps the data up to date with the session: reopens, packs, resamples or derives them in the background when the
+/// session's description of them has been edited or an archive has grown. The former data are shown until then.
 class DataFollower {
 public:
     struct Options {
@@ -24,29 +24,28 @@ public:
         std::string program;     ///< is run as a child to pack
         std::chrono::milliseconds growthInterval = std::chrono::seconds(1);
     };
-    /// `shown` is called when the document has other sources; with what they have of the former ones where those have
-    /// only grown.
+    /// `shown` is called when the document has new sources, with the unchanged samples if the data have only grown.
     DataFollower(Document& document, Jobs& jobs, Messages& messages, Options options,
                  std::function<void(std::optional<vis::SameSamples> grown)> shown);
 
-    /// The document has just been installed: it is as it wants to be, and shown.
+    /// Call after a document was installed: its data are up to date.
     void reset();
-    /// Once per frame: starts what has to be made anew. Not while something is typed or dragged that changes on.
+    /// Call once per frame: starts jobs for what has been edited, but not during an edit.
     void follow(bool typing, bool dragging);
 
-    /// Opens data in place of those shown, for the session as it is then.
+    /// Opens data in place of those shown, keeping the session.
     void show(const DataRef& data, const std::string& title);
-    /// Another data set beside the one shown, and how the parameter shown first differs; no paths: takes it away.
+    /// Adds a second data set and the difference of the parameter shown first; without paths removes it.
     void compareWith(const std::vector<std::string>& paths);
     /// Packs the files shown into an archive and shows that.
     void pack(const std::string& path);
     /// Adds the quantities of a table to the data shown.
     void addTable(const std::string& path);
-    /// Data opened anew are drawn on the lattice chosen last.
+    /// Data opened from now on are drawn on the lattice chosen last.
     OpenRequest withChoices(OpenRequest request) const;
 
 private:
-    /// What the times of the data depend on.
+    /// The parts of the session that the times of the data depend on.
     struct CountedBy {
         std::string axis;
         std::optional<volume::TimeAxis> along;
@@ -72,7 +71,7 @@ private:
     Tracked<std::vector<volume::DerivedParameter>> derived_;
     Tracked<PictureLattice> lattice_;
     Tracked<CountedBy> counted_;
-    Tracked<std::vector<std::string>> labels_; ///< names that regions have been given
+    Tracked<std::vector<std::string>> labels_; ///< names given to regions
     ArchiveGrowth growth_;
 };
 

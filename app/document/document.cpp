@@ -30,7 +30,7 @@ std::string Document::windowTitle() const {
 bool Document::dirty() const {
     Session now = session_;
     now.animation.playing = saved_.animation.playing;
-    now.dock = saved_.dock; // looking around is nothing to be asked about
+    now.dock = saved_.dock; // rearranging panes is not worth a question
     now.camera = saved_.camera;
     now.time = saved_.time;
     return !(now == saved_);
@@ -41,7 +41,7 @@ void Document::install(Opened opened) {
     const bool first = !loaded();
     sources_ = opened.sources();
     session_ = std::move(opened.document.session);
-    // A data file says nothing about the looks of the window: they stay. A session does.
+    // A data file does not state the window's appearance, so keep the current one; a session does.
     if (!first && opened.document.raw.is_null()) session_.appearance = appearance;
     history_ = std::move(opened.document.history);
     unknown_ = std::move(opened.document.unknown);
@@ -55,7 +55,7 @@ bool Document::moveTo(RemadeData& made) {
     if (sources_.pictures != made.from) return false;
     DataRef data = made.data;
     const DataRef& now = session_.data;
-    data.derived = now.derived; // others by now: they are made next
+    data.derived = now.derived; // changed meanwhile: computed next
     data.lattice = now.lattice;
     data.axis = now.axis;
     data.import.overTime = now.import.overTime;
@@ -66,7 +66,7 @@ bool Document::moveTo(RemadeData& made) {
     data.axis = recorded.axis;
     data.import.overTime = recorded.import.overTime;
     if (data.files == recorded.files) data.import.labels = recorded.import.labels;
-    data.derived = recorded.derived; // an edit that goes on is still to become a step
+    data.derived = recorded.derived; // an edit in progress has yet to become a step
     history_.setData(data);
     sources_ = made.sources;
     playback_ = {};

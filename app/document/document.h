@@ -8,7 +8,7 @@
 
 namespace tessera::app {
 
-/// Data made to be shown in place of `from`: the same otherwise.
+/// Data that replace `from` in the document.
 struct RemadeData {
     std::shared_ptr<const volume::BrickSource> from; ///< of pictures
     Sources sources;
@@ -27,7 +27,7 @@ public:
     /// Null pointers until something is installed.
     const Sources& sources() const { return sources_; }
     bool loaded() const { return sources_.pictures != nullptr; }
-    /// Of the data shown, which there must be.
+    /// Description of the data shown. Requires installed data.
     const volume::DatasetInfo& info() const { return sources_.pictures->info(); }
     /// Where Save writes; "" = not known.
     const std::string& path() const { return path_; }
@@ -35,41 +35,41 @@ public:
     SessionDocument snapshot() const;
     /// "fuel cell * - Tessera"; the star: there is something to save.
     std::string windowTitle() const;
-    /// True where saving would lose what one may want to keep: more than looking around and playing.
+    /// True if there are unsaved changes, other than camera, time, arrangement of panes and playing.
     bool dirty() const;
     bool asSaved() const { return session_ == saved_; }
-    /// Counts what has changed the session: a number that is another one has something new to keep.
+    /// A counter that increases with every change of the session, for autosave.
     std::size_t edits() const { return edits_; }
 
-    /// Takes over what open() returned, as saved.
+    /// Installs the result of open(), as an unmodified document.
     void install(Opened opened);
-    /// Shows the data from these from now on.
+    /// Replaces the sources of the data.
     void setSources(Sources sources) { sources_ = std::move(sources); }
-    /// Puts the session as it is now on data remade: what was edited meanwhile stays, and can be undone. False, and
-    /// nothing changes, where other data are shown by now. Adds to made.messages what does not fit.
+    /// Installs remade data under the current session, keeping later edits and the history. Returns false and changes
+    /// nothing if other data are shown by now. Adds messages about what does not fit to made.messages.
     bool moveTo(RemadeData& made);
     /// Writes the session file. Throws Error.
     void save(const std::string& path);
-    /// Counts as never saved.
+    /// Marks the document as never saved.
     void setUnsaved();
 
-    /// Notices edits; true where one is finished, which makes a step. `editing`: one goes on.
+    /// Records edits; returns true if one was finished and became a step. `editing`: an edit is in progress.
     bool observe(bool editing, double seconds);
     void undo() { replace(history_.undo()); }
     void redo() { replace(history_.redo()); }
-    /// As after so many steps of the history.
+    /// Goes to the state after this number of steps of the history.
     void goToStep(std::size_t position) { replace(history_.seek(position)); }
     /// Another session on the same data.
     void replace(Session session);
-    /// The same as a step of this name.
+    /// Replaces the session as a step of this name.
     void replace(Session session, const std::string& name);
-    /// Goes on by so many stored times; does not play any more.
+    /// Moves by this number of stored times, and stops playing.
     void stepTime(int count);
-    /// Plays on by so many seconds.
+    /// Advances playing by this number of seconds.
     void play(double seconds);
 
 private:
-    Session session_, saved_; ///< as it is, and as last saved or opened
+    Session session_, saved_; ///< current, and as last saved or opened
     History history_;
     std::vector<JsonIssue> unknown_;
     std::string path_;

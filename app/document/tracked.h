@@ -10,15 +10,15 @@ template <class T> struct Tracked {
 
     /// Shown as it is.
     void settle(const T& now) { shown = making = now; }
-    /// What was being made has come to nothing: it may be tried again.
+    /// The job failed or was cancelled: it may be tried again.
     void giveUp() { making = shown; }
 
     enum class Step {
-        None,   ///< shown, being made, or tried before
+        None,   ///< already shown, being made, or tried before
         Cancel, ///< what was being made is no longer wanted
         Make,   ///< make it now
     };
-    /// What to do about `wanted`. `later`: it is still being edited, do not begin yet.
+    /// What to do for the state `wanted`. `later`: it is still being edited, so do not start yet.
     Step next(const T& wanted, bool later = false) {
         if (wanted == shown) return std::exchange(making, shown) == shown ? Step::None : Step::Cancel;
         if (wanted == making || later) return Step::None;

@@ -28,14 +28,14 @@ bool isDifference(const Json& patch) {
            });
 }
 
-/// What is no edit: what an animation changes by itself, and which tabs are in front.
+/// Takes over changes that are not edits: those made by an animation, and which tabs are in front.
 void followUnrecorded(Session& base, const Session& now) {
     followTabs(base.dock.root, now.dock.root);
     if (now.animation.playing || base.animation.playing) {
         base.time = now.time;
         for (const Track& track : base.animation.tracks) setNumbersAt(base, track.path, numbersAt(now, track.path));
     }
-    // Looking at another place of the keyframes is no edit either.
+    // Moving the position in the keyframes is not an edit either.
     if (now.animation.position != base.animation.position) {
         base.animation.position = now.animation.position;
         applyTracks(base, base.animation.position);
@@ -58,22 +58,22 @@ void History::reset(const Session& session) {
 bool History::observe(const Session& session, bool editing, double seconds, double mergeSeconds) {
     followUnrecorded(base_, session);
     pending_ = !(session == base_);
-    if (!pending_ && !editing) nextName_.clear(); // what was named changed nothing
+    if (!pending_ && !editing) nextName_.clear(); // the named edit was empty
     if (!pending_ || editing) return false;
     pending_ = false;
     const std::string name = std::exchange(nextName_, {});
-    // The document follows what is no edit only here, where it is needed.
+    // The document is updated with changes that are not edits only here, when it is needed.
     if (base_.animation.tracks.empty()) {
         document_["time"] = app::toJson(base_.time);
         document_["animation"] = app::toJson(base_.animation);
         document_["data"] = app::toJson(base_.data);
         document_["dock"] = app::toJson(base_.dock);
     } else {
-        document_ = app::toJson(base_); // any parameter may have moved
+        document_ = app::toJson(base_); // any setting may have changed
     }
     Json now = app::toJson(session);
     Json forward = Json::diff(document_, now);
-    if (forward.empty()) { // differs only in what JSON does not tell apart
+    if (forward.empty()) { // differs only in ways that JSON does not show
         base_ = session;
         return false;
     }
@@ -93,7 +93,7 @@ bool History::observe(const Session& session, bool editing, double seconds, doub
     }
     document_ = std::move(now);
     base_ = session;
-    lastCommit_ = name.empty() ? seconds : -1e9; // what follows a named step is another
+    lastCommit_ = name.empty() ? seconds : -1e9; // never merge with a named step
     trim();
     return true;
 }

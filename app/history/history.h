@@ -20,8 +20,8 @@ public:
     /// Starts over with this session as the base.
     void reset(const Session& session);
 
-    /// Call once per frame with the current session. While `editing` (mouse held, text being typed) changes are only
-    /// watched; afterwards they become one step. Edits of the same member within `mergeSeconds` become one step
+    /// Call once per frame with the current session. While `editing` (mouse held, text being typed) no step is
+    /// recorded; afterwards all changes become one step. Edits of the same member within `mergeSeconds` become one step
     /// (turning the wheel). Playing (time during an animation) and the choice of tabs are not edits. Returns true when
     /// a step was added.
     bool observe(const Session& session, bool editing, double seconds, double mergeSeconds = 0.6);

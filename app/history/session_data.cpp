@@ -10,7 +10,7 @@
 #include <vector>
 #include <xxhash.h>
 
-/// The files that a session shows: what is noted of them, and how they are found again.
+/// The data files of a session: what is recorded about them, and how they are found again.
 namespace tessera::app {
 
 namespace fs = std::filesystem;
@@ -68,7 +68,7 @@ Hashes splitHashes(const std::string& joined) {
     return hashes;
 }
 
-/// A line for each file that is read with another and is not as it was.
+/// A line for each companion file that has changed.
 void compareOthers(const OtherFiles& wanted, const OtherFiles& now, const std::string& path,
                    std::vector<std::string>& warnings) {
     if (wanted.empty()) return;       // saved by an older version, or there are none
@@ -125,7 +125,7 @@ DataFile describeFile(const std::string& path) {
 
 namespace {
 
-/// The parts of a data set, or of the other one beside it, that name files.
+/// The members of a data set, or of the second one, that name files.
 struct Named {
     std::vector<DataFile>& files;
     volume::ImportOptions& import;
@@ -137,7 +137,7 @@ Named named(DataRef& data, bool other) {
     return {data.files, data.import, data.table};
 }
 
-/// What is known of the table over time; of one that was stated since it was noted, its path.
+/// The recorded table over time; only the path if another one has been stated since.
 DataFile tableOf(const Named& of) {
     if (of.table && of.table->absolutePath == of.import.overTime) return *of.table;
     DataFile file;

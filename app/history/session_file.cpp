@@ -130,7 +130,7 @@ void migrate(Json& document, const std::string& file) {
 
 namespace {
 
-/// The picture of the surroundings, relative to the folder of a document, gets its absolute path.
+/// Makes the path of the environment picture, relative to the document's folder, absolute.
 void findPicture(Json& document, const std::string& file) {
     const Json::json_pointer place("/lighting/environment/picture");
     if (!document.contains(place) || !document[place].is_string()) return;

@@ -19,8 +19,8 @@ struct SessionDocument {
     Json raw;                          ///< as read, migrated: tells which keys a layout leaves out
 };
 
-/// Reads session text. Throws Error with `file` and the JSON path or line; nothing is half taken over. The picture of
-/// the surroundings, relative to the file's folder, becomes absolute.
+/// Reads session text. Throws Error with `file` and the JSON path or line. The path of the environment picture,
+/// relative to the file's folder, becomes absolute.
 SessionDocument parseSession(std::string_view text, const std::string& file);
 
 /// Reads a session file. Throws Error.
@@ -41,7 +41,7 @@ void migrate(Json& document, const std::string& file);
 /// A path from the root, without "." and "..".
 std::filesystem::path absolutePath(const std::string& path);
 
-/// Path, size and hashes of a data file or folder and of what is read with it. Absolute paths; no hash if unreadable.
+/// Path, size and hashes of a data file or folder and its companion files. Absolute paths; no hash if unreadable.
 DataFile describeFile(const std::string& path);
 
 /// A data file that is not where the session says.
@@ -49,21 +49,21 @@ struct MissingData {
     std::size_t index = 0; ///< into DataRef::files
     DataFile wanted;
     bool other = false; ///< into those of DataRef::other instead
-    bool table = false; ///< none of the files, but the table over time
+    bool table = false; ///< the missing file is the table over time
 };
 struct ResolvedData {
     DataRef data; ///< `path` and `absolutePath` both absolute where found
     std::vector<MissingData> missing;
     std::vector<std::string> warnings; ///< e.g. a file that has changed since
 };
-/// Finds data files and tables over time, those of DataRef::other too: relative to the session's folder, then at the
-/// absolute path, then by name in the folder.
+/// Finds data files and tables over time, including those of DataRef::other: relative to the session's folder, then at
+/// the absolute path, then by name in the folder.
 ResolvedData resolveData(const DataRef& data, const std::string& folder);
 
 /// Sets the new path of a missing file.
 void locate(DataRef& data, const MissingData& missing, const std::string& path);
 
-/// Notes size and hash of the tables over time, where that has not been done.
+/// Records size and hash of the tables over time if missing.
 void noteTables(DataRef& data);
 
 /// A whole file as text. Throws Error.

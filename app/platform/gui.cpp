@@ -72,7 +72,7 @@ Gui::Gui() {
     context_ = ImGui::CreateContext();
     ImGui::SetCurrentContext(context_);
     ImGuiIO& io = ImGui::GetIO();
-    io.IniFilename = nullptr; // the session keeps the arrangement
+    io.IniFilename = nullptr; // the session stores the arrangement
     io.LogFilename = nullptr;
     io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
     io.ConfigWindowsMoveFromTitleBarOnly = true;
@@ -88,7 +88,7 @@ Gui::~Gui() {
 }
 
 void Gui::uploadFonts() {
-#if IMGUI_VERSION_NUM < 19200 // from then on the back end sees by itself that there are others
+#if IMGUI_VERSION_NUM < 19200 // newer back ends update the texture themselves
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
 #endif

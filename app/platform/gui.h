@@ -14,8 +14,8 @@ namespace tessera::app {
 
 class Workbench;
 
-/// An ImGui context with the OpenGL back end, for the GL context that is current. While it lives it can be made the
-/// current ImGui context; the former one comes back when it goes.
+/// An ImGui context with the OpenGL back end, for the GL context that is current. Restores the previously current ImGui
+/// context when destroyed.
 class Gui {
 public:
     Gui();
@@ -23,9 +23,9 @@ public:
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
 
-    /// Draws what ImGui::Render left into the bound framebuffer.
+    /// Draws ImGui's draw data into the bound framebuffer.
     static void draw(glm::ivec2 framebuffer, Theme theme);
-    /// Uploads a font atlas that was built again.
+    /// Uploads the font atlas after a rebuild.
     static void uploadFonts();
 
 private:
@@ -43,7 +43,7 @@ public:
     OffscreenFrames(const OffscreenFrames&) = delete;
     OffscreenFrames& operator=(const OffscreenFrames&) = delete;
 
-    /// Draws one frame; `input` may set mouse and keys before it begins, else the mouse is nowhere and nothing pressed.
+    /// Draws one frame; `input` may set mouse and keys; without it the mouse is outside and nothing is pressed.
     void draw(Workbench& workbench, float scale, const std::function<void(ImGuiIO&)>& input = {});
     vis::Image read() const;
     /// Waits until GL has drawn everything so far.

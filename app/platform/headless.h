@@ -9,7 +9,7 @@ namespace tessera::app {
 vis::Image renderPicture(const SessionDocument& document, const Sources& sources,
                          std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request);
 
-/// Looks at a workbench that has drawn its picture.
+/// Called with the workbench after it has drawn its picture.
 using Inspect = std::function<void(const Workbench&)>;
 
 /// A GL context without a window together with a renderer: makes any number of pictures of one data set.

@@ -9,9 +9,9 @@
 namespace tessera::app {
 
 /// Mouse and key events in the order they came. ImGui 1.86 only sees states, once per frame: a key tapped or a button
-/// clicked during one slow frame would be lost, a drag would begin where the mouse is later. So each frame takes as
-/// many events as one set of states can tell, and the rest waits for the next. Letters that are typed into a field are
-/// no states: any number of them fits a frame.
+/// clicked during one slow frame would be lost, a drag would begin where the mouse is later. So each frame takes only
+/// as many events as one set of states can represent; the rest wait for the next frame. Letters typed into a field are
+/// not states: a frame takes any number of them.
 class InputQueue {
 public:
     struct Event {
@@ -22,7 +22,7 @@ public:
         ImVec2 at{0, 0};
     };
 
-    /// Queues an event. A button is pressed where the last move went, not where the mouse is by now.
+    /// Queues an event. A button press is placed at the last queued move, not at the current mouse position.
     void add(Event event) {
         if (event.kind == Event::Move) last_ = event.at;
         if (event.kind == Event::Button) event.at = last_;
@@ -32,7 +32,7 @@ public:
             events_.push_back(event);
     }
 
-    /// Takes what belongs to this frame; `key(event)` is called for each key event and letter. Afterwards `mouse` and
+    /// Takes the events of this frame; `key(event)` is called for each key event and letter. Afterwards `mouse` and
     /// `buttons` hold the states of this frame. `typing`: a text field has the keyboard.
     template <class Function> void take(Function&& key, bool typing = false) {
         bool moved = false, clicked = false, pressed = false;
@@ -44,14 +44,14 @@ public:
                 moved = true;
                 mouse = event.at;
             } else if (event.kind == Event::Button) {
-                if (clicked || moved) break; // a drag is seen at its end before it is let go
+                if (clicked || moved) break; // show a drag at its end before its release
                 clicked = true;
                 mouse = event.at;
                 if (event.code >= 0 && event.code < 5) buttons[static_cast<std::size_t>(event.code)] = event.down;
             } else if (event.kind == Event::Letter) {
                 key(event);
             } else {
-                // The key of a letter says nothing that the letter does not.
+                // The key event of a letter adds nothing to the letter.
                 constexpr int kControlAltSuper = 2 | 4 | 8; // as GLFW has them
                 if (typing && event.code >= 32 && event.code <= 96 && (event.mods & kControlAltSuper) == 0) {
                     key(event);
@@ -59,7 +59,7 @@ public:
                     continue;
                 }
                 const std::size_t code = event.code < 0 ? 0 : static_cast<std::size_t>(event.code) % changed.size();
-                // A key is pressed with the modifiers held at that moment: their release waits too.
+                // Keep the modifiers of a key press: their release waits for the next frame too.
                 if (changed[code] || pressed) break;
                 changed[code] = true;
                 const bool modifier = event.code >= kFirstModifier && event.code < kFirstModifier + 8;

@@ -37,7 +37,7 @@ struct Glfw {
     Glfw& operator=(const Glfw&) = delete;
 };
 
-/// What a driver that refuses 4.5 lacks, by a look at the best that it has.
+/// Describes what a driver without GL 4.5 lacks, from the best context it offers.
 std::string whyNot() {
     glfwDefaultWindowHints();
     glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
@@ -68,7 +68,7 @@ struct Window {
             glfwGetMonitorWorkarea(monitor, &x, &y, &w, &h);
             if (w > 0 && h > 0) size = glm::min(size, glm::ivec2(w, h));
         }
-        // EGL first: there shaders compile in a second context while this one draws.
+        // EGL first: with it, shaders compile in a second context while this one draws.
         for (const int api : {GLFW_EGL_CONTEXT_API, GLFW_NATIVE_CONTEXT_API}) {
             glfwWindowHint(GLFW_CONTEXT_CREATION_API, api);
             handle = glfwCreateWindow(size.x, size.y, "Tessera", nullptr, nullptr);
@@ -141,7 +141,7 @@ struct Window {
 };
 
 struct GlfwBackEnd {
-    // The window's own callbacks stay: they go through the queue.
+    // Keep the window's own callbacks, which feed the queue.
     explicit GlfwBackEnd(GLFWwindow* window) { ImGui_ImplGlfw_InitForOpenGL(window, false); }
     ~GlfwBackEnd() { ImGui_ImplGlfw_Shutdown(); }
     GlfwBackEnd(const GlfwBackEnd&) = delete;
@@ -193,7 +193,7 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
             window.freshFrames = 3;
         }
         if (window.minimised()) continue;
-        // Counted from the frame that takes the last event: what a click opens is drawn in the next ones.
+        // Counted from the frame that takes the last event: what a click opens appears in the frames after it.
         window.freshFrames = window.input.empty() ? std::max(0, window.freshFrames - 1) : 3;
 
         float contentScale = 1, unused = 1;
@@ -201,7 +201,7 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
         int width = 0, height = 0, pixelsX = 0, pixelsY = 0;
         glfwGetWindowSize(window.handle, &width, &height);
         glfwGetFramebufferSize(window.handle, &pixelsX, &pixelsY);
-        // Where the window is measured in points (Wayland, macOS) the framebuffer is denser already.
+        // If window coordinates are points (Wayland, macOS), the framebuffer already has more pixels.
         if (width > 0 && pixelsX > width) contentScale = std::max(1.0f, contentScale * float(width) / float(pixelsX));
         if (workbench.prepare(contentScale)) Gui::uploadFonts();
         window.input.take(
@@ -217,7 +217,8 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
         ImGui_ImplGlfw_NewFrame();
         ImGuiIO& io = ImGui::GetIO();
         feedMouse(io, window.input.mouse, window.input.buttons);
-        // The back end asks GLFW for the modifiers of now; these belong to the keys of this frame.
+        // The back end reads the current modifiers from GLFW; replace them by those that belong to the keys of this
+        // frame.
         feedModifiers(io, window.input.held(InputQueue::kControl), window.input.held(InputQueue::kShift),
                       window.input.held(InputQueue::kAlt), window.input.held(InputQueue::kSuper));
         ImGui::NewFrame();
