@@ -12,7 +12,7 @@ namespace tessera::app {
 
 namespace {
 
-constexpr double kQuickSamples = 4e6; ///< read at once
+constexpr double kQuickSamples = 4e6; ///< samples read without a coarser level
 
 /// Calls use(level index, value) for the present samples of every brick that `wanted` accepts.
 template <class Wanted, class Use>
@@ -92,7 +92,7 @@ std::optional<double> backgroundShare(const volume::BrickSource& source, int cha
     for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
         below += histogram[bin];
         if (static_cast<double>(below) < 0.99 * static_cast<double>(total)) continue;
-        // Noise is weaker at the coarse level looked at here than in the volume.
+        // Noise is weaker at this coarse level than at full resolution.
         const double edge = static_cast<double>(bin + 1) / 255, share = edge < 0.01 ? edge : 1.3 * edge + 0.02;
         return total > 0 && share < 0.5 ? std::optional(share) : std::nullopt;
     }
@@ -102,10 +102,11 @@ std::optional<double> backgroundShare(const volume::BrickSource& source, int cha
 namespace {
 
 constexpr int kViewBins = 256;
-/// Of all places, how much should be seen at first: less is lost in the box, more hides what lies behind.
+/// Share of the grid's samples (absent ones included) that should be visible at first: fewer are hard to find in the
+/// box, more hide what is behind them.
 constexpr double kLeastSeen = 0.02, kMostSeen = 0.2;
 
-/// How often values occur at a coarse level, over `range`, and how many places there are.
+/// Histogram of a coarse level over `range`, and its number of samples including absent ones.
 struct Occurrence {
     std::vector<std::uint64_t> count = std::vector<std::uint64_t>(kViewBins, 0);
     std::uint64_t places = 0;
@@ -124,13 +125,13 @@ Occurrence occurrenceOf(const volume::BrickSource& source, int channel, int time
     return out;
 }
 
-/// What values reach on both sides of 0, neither by a small remainder alone, and no temperature: its 0 has no meaning.
+/// Whether values are substantially on both sides of 0, and 0 is meaningful, which it is not for temperatures.
 bool signMatters(Range range, const std::string& unit) {
     const double least = std::min(-range.lo, range.hi);
     return least > 0.1 * std::max(-range.lo, range.hi) && unit != "degC" && unit != "\u00b0C" && unit != "C";
 }
 
-/// The opacity with which a computed field is first shown; without a value to go by what it was.
+/// The initial opacity curve of a computed field; unchanged if there are no values.
 void showTails(vis::TransferFunction& function, const volume::BrickSource& source, int channel, int time) {
     const volume::DatasetInfo& info = source.info();
     const volume::Channel what = info.channels()[static_cast<std::size_t>(channel)];

@@ -16,14 +16,15 @@ GrowthWatch::GrowthWatch(std::string path, std::function<void()> wake, std::chro
     : path_(std::move(path)), wake_(std::move(wake)),
       thread_([this, interval, seen = state()](const std::stop_token& stop) { watch(stop, interval, seen); }) {}
 
-/// The header that holds; none where the file is gone or no archive. A commit writes two copies one after the other:
-/// which of them a reader sees makes no difference, so it counts once.
+/// The valid header; none if the file is gone or not an archive. A commit writes two copies of the header one after the
+/// other; both count as one change.
 GrowthWatch::State GrowthWatch::state() const {
     std::array<char, codec::kFirstChunk> bytes{};
     std::ifstream file(path_, std::ios::binary);
     file.read(bytes.data(), std::streamsize(bytes.size()));
     std::error_code gone;
-    const std::uintmax_t size = std::filesystem::file_size(path_, gone); // after the header, as the file grows first
+    const std::uintmax_t size = std::filesystem::file_size(
+        path_, gone); // read after the header, since the file grows before the header is written
     if (gone) return {};
     try {
         return codec::parseHeaders(std::as_bytes(std::span(bytes).first(std::size_t(file.gcount()))), size, path_)
@@ -39,7 +40,7 @@ void GrowthWatch::watch(const std::stop_token& stop, std::chrono::milliseconds i
     std::unique_lock lock(mutex);
     while (!ended.wait_for(lock, stop, interval, [&] { return stop.stop_requested(); })) {
         const State now = state();
-        if (!now || now == seen) continue; // nothing whole is new, or it is gone: what is open stays good
+        if (!now || now == seen) continue; // no complete commit, or the file is gone: what is open stays valid
         seen = now;
         changed_ = true;
         if (wake_) wake_();

@@ -14,7 +14,7 @@ std::string mergeTriple(glm::ivec3 v, const char* between) {
     return std::to_string(v.x) + between + std::to_string(v.y) + between + std::to_string(v.z);
 }
 
-/// How many merged bricks there are of each size, in bricks.
+/// Number of merged bricks by size in bricks.
 std::map<std::string, int> mergeSizes(const MergeLayout& layout) {
     std::map<std::string, int> sizes;
     for (const volume::MergedBrick& box : layout.boxes) ++sizes[mergeTriple(box.end - box.begin, "x")];

@@ -12,10 +12,10 @@ namespace tessera::app {
 
 namespace {
 
-constexpr std::size_t kMostBounds = 3; ///< told one by one
+constexpr std::size_t kMostBounds = 3; ///< listed individually
 constexpr std::string_view kOriginal = " as computed";
 
-/// Rounded up to two digits: what is "at most" must not be more.
+/// Rounded up to two digits, since it is stated as an upper bound.
 double twoDigitsUp(double value) {
     if (!(value > 0)) return 0;
     const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);

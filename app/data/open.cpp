@@ -139,9 +139,8 @@ DataRef dataNamed(const std::vector<std::string>& inputs, const volume::ImportOp
 
 namespace {
 
-/// Where time takes the place of an axis the cross-hair lies at the time that was shown, and the other way round; where
-/// it was along that axis is known from TimeAxis::place. `session` still refers to the data before, described by
-/// `from`.
+/// When time replaces an axis, moves the cross-hair to the time shown, and vice versa; its former position along that
+/// axis is TimeAxis::place. `session` still refers to the former data, described by `from`.
 void carryTime(Session& session, const volume::DatasetInfo& from, const volume::DatasetInfo& to,
                const std::optional<volume::TimeAxis>& wanted) {
     const std::optional<volume::TimeAxis>& shown = session.data.timeAxis;
@@ -173,7 +172,7 @@ Opened openWith(Opened opened, const DataRef& data, const Progress& progress) {
 void moveTo(Session& session, History& history, const volume::DatasetInfo* from, const volume::DatasetInfo& to,
             const DataRef& data, std::vector<std::string>& messages) {
     if (from) carryTime(session, *from, to, data.timeAxis);
-    if (from && from->timeName != to.timeName) // the same state, counted otherwise
+    if (from && from->timeName != to.timeName) // the same state on another time axis
         if (const auto same = volume::findQuantity(*from, to.timeName)) {
             const double time = volume::valueAt(from->times, from->quantities[std::size_t(*same)].values, session.time);
             if (std::isfinite(time)) session.time = time;
@@ -185,7 +184,7 @@ void moveTo(Session& session, History& history, const volume::DatasetInfo* from,
 
 namespace {
 
-/// Least and largest present sample of a channel at one time; nothing where there is none.
+/// Minimum and maximum of the present samples of a channel at one time; nothing if there are none.
 std::optional<Range> rangeAt(const volume::BrickSource& source, int channel, int time) {
     const glm::ivec3 count = source.grid().count();
     std::optional<Range> range;
@@ -200,7 +199,7 @@ std::optional<Range> rangeAt(const volume::BrickSource& source, int channel, int
     return range;
 }
 
-/// Sizes and settings of a model say nothing of other data, where they could only fail.
+/// Sizes and settings of a model do not apply to other data.
 void dropForeignVariants(Session& session, const DataRef& made, std::vector<std::string>& messages) {
     if (made.model.empty() || (session.data.files.empty() && session.data.model == made.model)) return;
     for (auto& [pane, view] : session.views) {
@@ -231,7 +230,7 @@ Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& in
     Json result = toJson(defaultSession(info, data));
     for (const auto& [key, value] : layout.raw.items()) {
         if (key == "data" || key == "schema" || key == "app" || key == "history") continue;
-        // What only means something for the data the layout was made with.
+        // Remove what only applies to the data the layout was made with.
         if (!own && (key == "title" || key == "time" || key == "cursor" || key == "stretch")) continue;
         if (key == "transfer") {
             for (const auto& [channel, function] : value.items())
@@ -258,7 +257,7 @@ void fitSurfaces(Session& session, const volume::BrickSource& source, bool own, 
         std::optional<Range> range;
         try {
             range = rangeAt(source, *channel, info.nearestTime(session.time));
-        } catch (const Error&) { // a damaged brick: what the rest says is shown all the same
+        } catch (const Error&) { // a damaged brick: use what could be read
             continue;
         }
         if (!range || !(range->hi > range->lo)) {
@@ -297,7 +296,7 @@ Opened open(const OpenRequest& request, const Progress& progress) {
             SessionDocument document =
                 kind == Kind::Session ? loadSession(path) : parseSession(sessionTextOfPicture(path), path);
             const std::string folder = fs::absolute(path).parent_path().string();
-            // What the program saved says so; anything else is a layout, which may leave things out.
+            // Saved sessions are marked as such; other documents are layouts, which may be incomplete.
             const bool complete = document.raw.contains("app") && (hasData(document.session.data) || request.data);
             if (request.layout.empty() && complete) {
                 opened = openDocument(std::move(document), folder, request, progress);

@@ -48,14 +48,14 @@ volume::MemorySourceOptions onGrid(int brickSize = volume::MemorySourceOptions{}
     return {.lattice = volume::LatticeKind::CC, .brickSize = brickSize, .budget = kFramesLoaded};
 }
 
-/// Unpacked data as they are drawn.
+/// Unpacked data on the lattice of pictures.
 std::shared_ptr<const volume::BrickSource> drawnOn(const std::shared_ptr<const volume::BrickSource>& numbers,
                                                    volume::LatticeKind lattice) {
     return volume::onLattice(numbers,
                              {.lattice = lattice, .brickSize = numbers->grid().brickSize, .budget = kFramesMade});
 }
 
-/// The same where it can be: an archive keeps the lattice it has.
+/// The same for data files; archives keep their own lattice.
 std::shared_ptr<const volume::BrickSource> drawnAlike(const std::shared_ptr<const volume::BrickSource>& numbers,
                                                       volume::LatticeKind lattice) {
     try {
@@ -65,13 +65,13 @@ std::shared_ptr<const volume::BrickSource> drawnAlike(const std::shared_ptr<cons
     }
 }
 
-/// Shows a data set as an archive packed so would hold it, through a file that nobody else sees.
+/// Packs a data set with these options into a temporary archive, to show the effect of packing.
 Sources openPacked(volume::Dataset dataset, const DataRef& data, const Progress& progress) {
     std::string name = (fs::temp_directory_path() / "tessera-packed-XXXXXX.tsr").string();
     const int file = ::mkstemps(name.data(), 4);
     if (file < 0) throw MachineError("cannot create a temporary file to pack into", name);
     ::close(file);
-    // Mapped files live on without a name.
+    // The mapping stays valid after the file is removed.
     struct Remove {
         const std::string& path;
         ~Remove() {
@@ -91,17 +91,17 @@ Sources openPacked(volume::Dataset dataset, const DataRef& data, const Progress&
     const auto beside = volume::onLattice(
         original,
         {.lattice = packed->info().lattice.kind, .brickSize = packed->grid().brickSize, .budget = kFramesMade});
-    // Numbers are compared point by point of the file's grid, as unpacking gives them.
+    // Numbers refer to points of the file's grid, as after unpacking.
     auto unpacked = volume::makeMemorySource(codec::gridDataset(archive, 0), onGrid());
     return {volume::withOriginals(packed, beside), volume::withOriginals(std::move(unpacked), original), origin};
 }
 
-/// What the user states of the times of an archive or a model; files were opened with it.
+/// Applies the user's options about times to an archive or a model; files were opened with them.
 void stateTimes(volume::DatasetInfo& info, const DataRef& data) {
     if (data.files.empty() || isArchive(data)) volume::stateQuantities(info, data.import);
 }
 
-/// The times counted as the user wants them.
+/// Applies the chosen time axis.
 volume::OtherAxis axisOf(const volume::DatasetInfo& given, const DataRef& data, std::vector<std::string>& messages) {
     volume::OtherAxis axis{given, {}};
     stateTimes(axis.info, data);
@@ -121,7 +121,7 @@ Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
     const std::string& path = data.files[0].absolutePath;
     auto source = codec::openArchive(path);
     const auto* archive = dynamic_cast<const codec::Archive*>(source.get());
-    // Frames of D4* are shown as others: the file itself says how it was packed.
+    // D4* frames are shown on another lattice, so the file is asked how it was packed.
     NumberOrigin origin = storedOrigin(archive ? archive->metadata() : codec::Archive(path).metadata());
     volume::OtherAxis axis = axisOf(source->info(), data, messages);
     if (axis.info.times != source->info().times || axis.info.timeName != source->info().timeName ||
@@ -166,8 +166,8 @@ Sources openWhole(const DataRef& data, std::vector<std::string>& messages, const
     return {drawnOn(numbers, latticeOf(data.lattice)), numbers, std::move(origin)};
 }
 
-/// With the parameters of other data beside them. Pictures show samples of both that were made alike, or those of the
-/// other data as computed.
+/// Adds the parameters of the second data set. Pictures use the second data on the lattice of pictures if its grid is
+/// that of the first, else as computed.
 Sources withOther(const Sources& whole, const Sources& other) {
     NumberOrigin origin = whole.origin;
     origin.other =
@@ -179,7 +179,7 @@ Sources withOther(const Sources& whole, const Sources& other) {
     return {volume::withOther(whole.pictures, alike ? other.pictures : other.numbers), numbers, std::move(origin)};
 }
 
-/// What DataRef::other names, on the lattice that is drawn.
+/// Opens DataRef::other on the lattice of pictures.
 Sources openOther(const DataRef& data, std::vector<std::string>& messages, const Progress& progress) {
     DataRef wanted;
     wanted.files = data.other->files;

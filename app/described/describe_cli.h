@@ -75,7 +75,7 @@ struct MemberToOption {
                    help)
                 ->expected(GlmLength<T>::value);
         }
-        // Maps and variants have no form on a command line: `--set /pointer=value` of a session does that.
+        // Maps and variants have no option; `--set /pointer=value` sets those of a session.
     }
 };
 

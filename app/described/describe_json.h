@@ -23,12 +23,12 @@ namespace tessera::app {
 
 using Json = nlohmann::json;
 
-/// Something in a document that was not taken over.
+/// A part of a document that was ignored.
 struct JsonIssue {
     std::string path;   ///< JSON pointer
     std::string reason; ///< one line
     bool unknownKey = false;
-    Json value; ///< of an unknown key: what stands there
+    Json value; ///< the value of an unknown key
 };
 
 namespace detail {
@@ -49,7 +49,7 @@ template <class T, glm::qualifier Q> struct IsQuat<glm::qua<T, Q>> : std::true_t
 Json numberToJson(float value);
 Json numberToJson(double value);
 Json numberToJson(int value);
-/// Reads a number; pushes an issue and returns nothing when it is none, out of range or not exact for its type.
+/// Reads a number. If it is not a number, out of range or not exact for its type, pushes an issue and returns nothing.
 std::optional<double> numberFromJson(const Json& json, const FieldInfo& info, bool integer,
                                      std::vector<JsonIssue>& issues, const std::string& path);
 std::optional<std::size_t> nameFromJson(const Json& json, std::span<const std::string_view> names,
@@ -243,7 +243,7 @@ void valueFromJson(T& value, const Json& json, const FieldInfo& info, std::vecto
             typename T::value_type inner = value ? *value : typename T::value_type{};
             const std::size_t before = issues.size();
             valueFromJson(inner, json, info, issues, path);
-            // What is no such value at all leaves the member alone; what is one with a fault inside is taken.
+            // An issue with the value itself leaves the member unchanged; issues inside of it do not.
             for (std::size_t i = before; i < issues.size(); ++i)
                 if (issues[i].path == path) return;
             value = std::move(inner);
@@ -261,8 +261,8 @@ template <class T> Json toJson(const T& value) {
     return detail::valueToJson(value, FieldInfo{.key = "", .unit = "", .doc = ""});
 }
 
-/// Takes over what a document says: a missing key leaves the member alone. Unknown keys, wrong types, unknown names and
-/// numbers out of range are pushed to `issues` with their place and leave the member alone too.
+/// Reads a value from a document. A missing key leaves the member unchanged. Unknown keys, wrong types, unknown names
+/// and numbers out of range leave it unchanged too, and are pushed to `issues` with their path.
 template <class T>
 void fromJson(T& value, const Json& json, std::vector<JsonIssue>& issues, const std::string& path = {}) {
     detail::valueFromJson(value, json, FieldInfo{.key = "", .unit = "", .doc = ""}, issues, path);

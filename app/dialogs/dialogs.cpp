@@ -47,7 +47,7 @@ int dialogButtons(std::initializer_list<const char*> names) {
         if (last) ImGui::PopStyleColor(2);
         ++index;
     }
-    // Not with the Enter that has just answered the dialog before.
+    // Ignore the Enter that has just closed the previous dialog.
     if (chosen < 0 && pressed({.key = key::kEnter}) && !ImGui::IsAnyItemActive() && !ImGui::IsWindowAppearing())
         chosen = static_cast<int>(names.size()) - 1;
     return chosen;

@@ -16,17 +16,17 @@
 /// closed by Esc, and returns what the user has decided in the frame that happens.
 namespace tessera::app {
 
-/// Asks where files are that a session shows and that are not where they were.
+/// Asks for the new paths of missing files of a session.
 class MissingFilesDialog {
 public:
-    /// What open() returned without a source; replaces what was asked for before.
+    /// Shows the missing files in the result of open(), replacing former ones.
     void show(Opened opened) { opened_ = std::move(opened); }
     bool shown() const { return opened_.has_value(); }
     /// Asks for the file at `index` of the missing ones: title of the question, folder to look in first.
     using Ask = std::function<void(std::size_t index, const std::string& title, const std::string& folder)>;
     /// Returns the session once all files are found.
     std::optional<Opened> draw(const Ask& ask);
-    /// States where a missing file is.
+    /// Sets the new path of a missing file.
     void found(std::size_t index, const std::string& path);
 
 private:
@@ -35,7 +35,7 @@ private:
     std::optional<Opened> opened_;
 };
 
-/// Offers sessions that were open when the program did not end by itself.
+/// Offers to recover sessions of crashed runs.
 class RecoveryDialog {
 public:
     void show(std::vector<Recovery> recoveries) { recoveries_ = std::move(recoveries); }
@@ -46,7 +46,7 @@ private:
     std::vector<Recovery> recoveries_; ///< newest first
 };
 
-/// Asks what is to be saved as a picture, and how large.
+/// Asks which pane to save as a picture, and its size.
 class PictureDialog {
 public:
     /// `pane`: proposed, "" = the whole window.
@@ -59,13 +59,13 @@ private:
     bool shown_ = false;
 };
 
-/// Asks whether to save what has changed before it is given up.
+/// Asks whether to save changes before they are lost.
 class LeaveDialog {
 public:
     enum class Answer { None, Discard, Save };
-    /// `go` gives it up.
+    /// `go` is the action that discards the session.
     void show(std::function<void()> go) { go_ = std::move(go); }
-    /// `saved`: it has a file. Discard and Save end the question; take() what was to be done then.
+    /// `saved`: the session has a file. After Discard and Save, take() returns the pending action.
     Answer draw(bool saved);
     std::function<void()> take() { return std::exchange(go_, nullptr); }
 
@@ -73,7 +73,7 @@ private:
     std::function<void()> go_;
 };
 
-/// The lists of keys, and what the program is.
+/// The lists of keys, and the About dialog.
 class HelpDialogs {
 public:
     void showShortcuts() { shortcuts_ = true; }

@@ -13,7 +13,7 @@ constexpr const char* kData = "data"; ///< the purpose of a question whose files
 FileQuestions::FileQuestions(Jobs& jobs) : form_(jobs) {
     dialog_.preview = [this](const std::string& path) {
         FilePreview preview = form_.previewOf(path);
-        // Other questions are for files that are no data (colours), or whose form a session states.
+        // Other purposes are files that are not data (colour maps), or data whose layout a session states.
         preview.failed = preview.failed && dialog_.purpose() == kData;
         return preview;
     };

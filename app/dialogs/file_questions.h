@@ -8,13 +8,13 @@
 
 namespace tessera::app {
 
-/// The file dialog with what happens to the answer; one question at a time.
+/// The file dialog with a callback for its answer; one question at a time.
 class FileQuestions {
 public:
     /// Previews are read by the jobs.
     explicit FileQuestions(Jobs& jobs);
 
-    /// Asks for data or a session; what is stated about data files comes with the answer.
+    /// Asks for data or a session; the answer includes the import options.
     void
     askData(std::function<void(const std::vector<std::string>& paths, const volume::ImportOptions& stated)> answer);
     /// Asks for files to open. `folder`: to look in first, "" = the last one.
@@ -25,8 +25,7 @@ public:
                  std::function<void(const std::string& path)> answer);
 
     bool shown() const { return dialog_.shown(); }
-    /// Draws it if it is shown; the answer is given in the frame the user decides. A question that is left is
-    /// forgotten.
+    /// Draws it if it is shown; the answer is given in the frame the user decides. A cancelled question is dropped.
     void draw();
 
 private:

@@ -46,13 +46,13 @@ std::string describe(const volume::ImportPreview& preview) {
     return text.str();
 }
 
-/// Files that do not say themselves what is in them.
+/// Whether a file does not describe its own contents.
 bool isHeaderless(const std::string& path) {
     const std::string ending = fs::path(path).extension().string();
     return ending == ".raw" || ending == ".bin" || ending == ".dat";
 }
 
-/// What to do about a file whose form is stated nowhere; "" for others.
+/// Advice for a file whose layout is not stated anywhere; "" for others.
 std::string formMissing(const std::string& path, const volume::ImportOptions& import) {
     std::error_code unknown;
     if (fs::path(path).extension() != ".raw" || !import.raw.empty() || volume::hasSidecar(path) ||
@@ -101,7 +101,7 @@ std::string dataSummary(const std::string& path, const volume::ImportOptions& st
     return describe(preview);
 }
 
-/// What is in a file that can be opened. Throws Error.
+/// Describes a file for the preview. Throws Error if it cannot be opened.
 std::string summary(const std::string& path, const volume::ImportOptions& stated, const Progress& progress) {
     std::string name = fs::path(path).filename().string();
     std::transform(name.begin(), name.end(), name.begin(),
@@ -141,7 +141,7 @@ FilePreview ImportForm::previewOf(const std::string& path) {
                 preview = {reasonHere(error), true};
             }
             return [this, path, stated, preview] {
-                if (stated == stated_) previews_[path] = preview; // else it is made again
+                if (stated == stated_) previews_[path] = preview; // otherwise outdated: read again
             };
         },
         true);
@@ -150,7 +150,7 @@ FilePreview ImportForm::previewOf(const std::string& path) {
 
 void ImportForm::filesChosen(const std::vector<std::string>& paths) {
     sidecar_ = std::any_of(paths.begin(), paths.end(), volume::hasSidecar);
-    // A layout is of the files it was stated for; further ones chosen with them are of the same.
+    // A layout applies to the files it was stated for, and to further ones selected with them.
     if (sidecar_)
         stated_.raw.clear();
     else if (paths.size() <= 1)
@@ -164,7 +164,7 @@ void ImportForm::draw() {
     ImGui::TextDisabled("Raw layout");
     ImGui::SameLine(em * 7);
     ImGui::SetNextItemWidth(em * 22);
-    // At each letter: the preview is how the user sees whether it is right, and Open waits for that.
+    // At each letter, since the preview shows whether it is right, and Open waits for the preview.
     ImGui::BeginDisabled(sidecar_);
     bool changed = ImGui::InputTextWithHint("##raw",
                                             sidecar_ ? "stated by the sidecar of the file"
@@ -188,7 +188,7 @@ void ImportForm::draw() {
     if (changed) readFields();
 }
 
-/// What is typed counts from now on.
+/// Takes over the typed text.
 void ImportForm::readFields() {
     std::istringstream words(absent_);
     stated_.absent.clear();

@@ -10,16 +10,16 @@
 
 namespace tessera::app {
 
-/// What the dialog for opening shows of files before they are opened, and what can be stated about them there.
+/// The form of the open dialog: a preview of the files, and options that state what they do not contain.
 class ImportForm {
 public:
     explicit ImportForm(Jobs& jobs) : jobs_(jobs) {}
 
-    /// What has been stated.
+    /// The options entered so far.
     const volume::ImportOptions& stated() const { return stated_; }
-    /// Read in the background; an empty text until it is known. One that failed says why.
+    /// The preview, read in the background: empty until then. If it failed, its text is the reason.
     FilePreview previewOf(const std::string& path);
-    /// Other files are chosen: a raw layout was stated for the former ones.
+    /// Call when other files are selected: discards the raw layout of the former ones.
     void filesChosen(const std::vector<std::string>& paths);
     /// The fields, under the list of files.
     void draw();
@@ -30,7 +30,7 @@ private:
     Jobs& jobs_;
     volume::ImportOptions stated_;
     std::string absent_, units_, names_; ///< as typed
-    bool sidecar_ = false;               ///< of the files chosen: it wins over a layout typed before
+    bool sidecar_ = false;               ///< the files have one, which takes precedence over a typed layout
     std::map<std::string, FilePreview> previews_;
 };
 

@@ -22,7 +22,7 @@ Session variantSession(const Session& session, const CompareVariant& variant) {
 
 namespace {
 
-/// Of several values those that are other than before: "charcoal contrast 0.6, part context".
+/// Of several values only those that have changed: "charcoal contrast 0.6, part context".
 std::string differingText(const Json& now, const Json& before) {
     std::string text;
     for (const auto& [key, value] : now.items()) {
@@ -41,7 +41,7 @@ std::string changesText(const Session& session, const CompareVariant& variant) {
     std::string text;
     for (const auto& [path, value] : variant.changes) {
         std::string title = pathTitle(session, path);
-        // The last word says enough, but for what belongs to a layer.
+        // The last key is enough, except for settings of a layer.
         if (!path.starts_with("/layers/"))
             if (const auto colon = title.rfind(": "); colon != std::string::npos) title = title.substr(colon + 2);
         const Json parsed = Json::parse(value, nullptr, false);

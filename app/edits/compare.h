@@ -12,7 +12,7 @@ namespace tessera::app {
 /// The session with a variant's changes. Throws Error naming the place where a change does not fit.
 Session variantSession(const Session& session, const CompareVariant& variant);
 
-/// "filter average, step 0.25": what a variant changes, for its caption; "as it is" where that is nothing.
+/// Describes the changes of a variant, for its caption: "filter average, step 0.25"; "as it is" without changes.
 std::string changesText(const Session& session, const CompareVariant& variant);
 /// Its own name, else what it changes.
 std::string variantName(const Session& session, const CompareVariant& variant);
@@ -21,11 +21,11 @@ std::string variantName(const Session& session, const CompareVariant& variant);
 /// so that there is something to see.
 std::vector<CompareVariant> shownVariants(const CompareView& view);
 
-/// Changes of a variant that its parameter at `path` now has other numbers or texts than the session's: set, or taken
-/// out where both agree.
+/// Updates the changes of a variant for an edited parameter at `path`: sets those that differ from the session, removes
+/// those that agree.
 void recordChange(CompareVariant& variant, const Session& session, const Session& changed, const std::string& path);
 
-/// Columns and rows for `count` pictures in an area so that each is as large as can be at about 4:3.
+/// Columns and rows for `count` pictures in an area that make each as large as possible at about 4:3.
 struct GridShape {
     int columns = 1, rows = 1;
 };

@@ -19,7 +19,7 @@ std::string shownChannel(const Session& session, const volume::DatasetInfo& info
     return channels.empty() ? std::string() : channels.front().name;
 }
 
-/// Where the opacity of a parameter comes to a tenth of its greatest, from the lower end.
+/// The lowest value at which the opacity of a parameter reaches a tenth of its maximum.
 double hullValue(const Session& session, const volume::DatasetInfo& info, const std::string& name) {
     const auto channel = info.findChannel(name);
     if (!channel) return 0;

@@ -79,7 +79,7 @@ void unstateLabelName(Session& session, const volume::Parameter& parameter, int 
         text = rule.labels.empty() ? std::string() : volume::toText(rule);
     }
     std::erase(rules, std::string());
-    // The data's own name is known when they are open again.
+    // The data's own name is known again after reopening.
     for (vis::Brush& brush : session.selection.brushes)
         if (holdsRegion(brush, parameter.name, value)) brush.name = parameter.name + " " + std::to_string(value);
 }

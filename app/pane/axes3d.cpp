@@ -43,7 +43,7 @@ SpaceFrame spaceFrame(ImVec2 min, ImVec2 max, const vis::Camera& camera, const v
 }
 
 std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eye) {
-    // A face is seen if the eye lies beyond it; `eye` is a world position or, far away, a direction.
+    // A face is visible if the eye is beyond it; `eye` is a world position, or a direction in parallel projection.
     const auto seen = [&](int axis, bool high) {
         const double half = frame.world.halfSize[axis];
         return high ? eye[axis] > half + 1e-6 : eye[axis] < -half - 1e-6;
@@ -116,7 +116,7 @@ void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& ca
         const auto& [name, unit] = labels[static_cast<std::size_t>(edge.axis)];
         const Range range{edge.from[edge.axis] * unit.perUnit, edge.to[edge.axis] * unit.perUnit};
         TickLabels ticks;
-        // As many as stand clear of each other along this edge's direction on screen.
+        // As many as fit along this edge on screen without overlap.
         const float dx = std::abs(edge.b.x - edge.a.x) / pixels, dy = std::abs(edge.b.y - edge.a.y) / pixels;
         for (int most : {8, 6, 5, 4, 3, 2, 1}) {
             ticks = tickLabels(range, most);

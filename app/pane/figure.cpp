@@ -12,7 +12,7 @@ namespace tessera::app {
 
 namespace {
 
-// In points: a panel with room for its numbers and titles.
+// Size of a panel in points, with margins for numbers and titles.
 constexpr double kLeft = 62, kBottom = 42, kTop = 22, kRight = 12;
 constexpr double kWidth = kLeft + kFigurePlot.x + kRight, kHeight = kTop + kFigurePlot.y + kBottom;
 
@@ -114,7 +114,7 @@ private:
         text(x0_, y1_ - (panel_.note.empty() ? 7 : 13), panel_.title, "start");
         if (!panel_.note.empty()) text(x0_, y1_ - 4, panel_.note, "start");
     }
-    /// Dark on any colour: with a light edge.
+    /// Dark text with a light outline, legible on any colour.
     void haloed(const std::vector<glm::dvec2>& points) {
         std::string path;
         for (const glm::dvec2& point : points)
@@ -159,7 +159,7 @@ private:
         out_ += "<circle cx=\"" + twoDecimals(px(at.x)) + "\" cy=\"" + twoDecimals(py(at.y)) + "\" r=\"" +
                 twoDecimals(radius) + "\" fill=\"" + fill + "\" stroke=\"" + stroke + "\" stroke-width=\"1.2\"/>\n";
     }
-    /// As one picture of a pixel per cell, stretched without blur.
+    /// Embeds a picture with one pixel per cell, scaled without smoothing.
     void image() {
         const FigureImage& image = panel_.image;
         if (image.width <= 0 || image.height <= 0) return;
@@ -187,7 +187,7 @@ private:
 } // namespace
 
 double figureTextWidth(const std::string& text) {
-    double width = 0; // in heights of the letters: Helvetica's digits are wider than its points and minus signs
+    double width = 0; // in em: Helvetica's digits are wider than its points and minus signs
     for (const char c : text) width += c == '.' ? 0.28 : c == '-' ? 0.34 : 0.56;
     return width * kFigureText;
 }
@@ -232,7 +232,7 @@ void exportMenu(ViewContext& context, const std::string& title, std::function<st
                 std::function<std::string(const Progress&)> csv) {
     std::string name = title; // as a file
     std::replace(name.begin(), name.end(), '/', '_');
-    const auto described = [&]() -> ViewExport { // a table and a picture say where their numbers come from
+    const auto described = [&]() -> ViewExport { // tables and pictures state the origin of their numbers
         if (!context.numbers) return {name, svg, csv};
         const std::string origin = originText(context.origin, context.numbers->info());
         ViewExport made{name, {}, {}};

@@ -16,7 +16,7 @@ float barHeight() {
     return std::round(em() * 0.65f);
 }
 
-/// An arrow head in the end colour: data goes on beyond the bar.
+/// An arrow head in the end colour: the data extend beyond the bar.
 void drawArrow(ImDrawList& draw, ImVec2 at, float size, float direction, ImU32 color) {
     draw.AddTriangleFilled({at.x, at.y}, {at.x, at.y + size}, {at.x + direction * size * 0.6f, at.y + size / 2}, color);
 }

@@ -113,7 +113,7 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
     const Range range = bottom ? frame.x : frame.y;
     const TickLabels ticks = fittingTicks(side, range, bottom ? frame.width() : frame.height());
     const PlotColors colors = plotColors();
-    // What fits: the note must not be lost, or the numbers would be wrong; then the title, then the unit.
+    // If not all fits: the note comes first, since the numbers are wrong without it; then the title, then the unit.
     const std::string note = ticks.note.empty() ? "" : "  " + ticks.note;
     const float length = bottom || !options.inlineTitle ? hi - lo : 1e6f;
     std::string label;
@@ -167,13 +167,13 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
 
 namespace {
 
-/// Text centred at a point, each of its places moved by `turn`, which gets the way from a middle on whole pixels.
+/// Text centred at a point. `turn` maps each offset from the centre, which is on whole pixels.
 template <class Turn> void addMoved(ImDrawList& draw, ImVec2 center, ImU32 color, const char* text, const Turn& turn) {
     const ImVec2 size = ImGui::CalcTextSize(text);
     const ImVec2 origin{std::round(center.x - size.x / 2), std::round(center.y - size.y / 2)};
     const ImVec2 middle{origin.x + std::floor(size.x / 2), origin.y + std::floor(size.y / 2)};
     const int first = draw.VtxBuffer.Size;
-    // Not AddText: it drops glyphs outside of the clip rectangle before they are turned.
+    // Not AddText: it drops glyphs outside of the clip rectangle before they are rotated.
     ImGui::GetFont()->RenderText(&draw, ImGui::GetFontSize(), origin, color, ImVec4(-1e6f, -1e6f, 1e6f, 1e6f), text,
                                  text + std::strlen(text));
     for (int i = first; i < draw.VtxBuffer.Size; ++i) {
@@ -222,7 +222,7 @@ void drawBars(ImDrawList& draw, const PlotFrame& frame, std::span<const float> h
         if (heights[i] <= 0) continue;
         const float left = std::round(frame.min.x + step * static_cast<float>(i));
         const float right = std::round(frame.min.x + step * static_cast<float>(i + 1));
-        // A bar that exists is seen, however small.
+        // Bars above 0 are at least visible.
         const float top = std::min(frame.max.y - 1, frame.max.y - std::min(1.0f, heights[i]) * frame.height());
         draw.AddRectFilled({left, top}, {std::max(right, left + 1), frame.max.y}, color);
     }
@@ -252,7 +252,7 @@ int densityImage(std::span<const std::uint64_t> counts, std::span<const double> 
     rgba.assign(n * n * 4, 0);
     const double most = *std::max_element(sums.begin(), sums.end());
     if (most <= 0) return static_cast<int>(n);
-    // Context grey-blue, focus in a strong colour: told apart by lightness as well as by hue.
+    // Context is grey-blue and focus a strong colour, so that they differ in lightness as well as hue.
     const std::array<double, 3> context = dark ? std::array{138.0, 156.0, 180.0} : std::array{92.0, 106.0, 128.0};
     const std::array<double, 3> hot{double(focusColor >> IM_COL32_R_SHIFT & 255),
                                     double(focusColor >> IM_COL32_G_SHIFT & 255),

@@ -26,7 +26,7 @@ struct PlotFrame {
     bool contains(ImVec2 at) const;
     float width() const { return max.x - min.x; }
     float height() const { return max.y - min.y; }
-    /// Values per pixel, for read-outs with as many digits as the mouse can tell apart.
+    /// Values per pixel, for read-outs with as many digits as the mouse can resolve.
     double perPixelX() const { return (x.hi - x.lo) / std::max(1.0f, width()); }
     double perPixelY() const { return (y.hi - y.lo) / std::max(1.0f, height()); }
 };

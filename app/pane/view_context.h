@@ -52,7 +52,7 @@ struct ViewContext {
     const History* history = nullptr; ///< of the session; null in tests
     /// Asks for the session as it was after so many steps of its history, after this frame; null in tests.
     std::function<void(std::size_t position)> goToStep = {};
-    const Messages* log = nullptr; ///< what the program had to say; null in tests
+    const Messages* log = nullptr; ///< the program's messages; null in tests
     /// Asks the workbench to run a command of its table, by name, after this frame; null in tests.
     std::function<void(const std::string& command)> runCommand = {};
     /// Asks where to save, then writes what `make` returns, in the background; null in tests.
@@ -70,7 +70,7 @@ struct ViewContext {
     bool compiling = false;   ///< set by a view whose picture waits for a program of the renderer
     bool interacting = false; ///< some edit is in progress (mouse held on a control): draw at reduced size
 
-    /// Takes note of how far a view's picture is.
+    /// Updates the flags from the state of a view's picture.
     void follow(const vis::FrameStatus& status) {
         busy = busy || !status.complete;
         behind = behind || !status.current;

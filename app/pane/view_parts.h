@@ -44,9 +44,9 @@ float buttonWidth(const char* text);
 /// Wrapped help on hover of the last item.
 void tooltip(const char* text);
 
-/// Text on the origin of the numbers of these channels (none: all): originText of the view's numbers.
+/// originText of the view's numbers for these channels (none: all).
 std::string originText(const ViewContext& context, const std::vector<int>& channels = {});
-/// The same as faint text: on in the line where it fits, cut where it does not; whole on hover.
+/// The same as faint text: on the same line if it fits, truncated otherwise; complete on hover.
 void drawOrigin(const ViewContext& context, const std::vector<int>& channels = {});
 
 /// The head row of a table whose columns are set up; names from column `right` on stand over right-aligned numbers.

@@ -134,8 +134,8 @@ private:
             running.reset();
             failure = why;
         }
-        /// Whether `query` has failed. A job that ended without a word was cancelled; what failed is forgotten when
-        /// another query comes.
+        /// Whether `query` has failed. A job that ended without a result was cancelled; a failure is forgotten at the
+        /// next other query.
         bool hasFailed(const Query& query, bool jobRuns) {
             if (running && !jobRuns) fail(*running, "cancelled");
             if (failed && !(*failed == query)) {

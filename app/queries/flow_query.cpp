@@ -8,10 +8,10 @@ namespace tessera::app {
 
 namespace {
 
-/// Of a layer of the session at its time.
+/// The query of a layer of the session at its time.
 FlowQuery flowQuery(const Session& session, const vis::FlowLayer& layer, const volume::DatasetInfo& info) {
     FlowQuery query{layer, volume::timesAround(info.times, session.time), session.stretch};
-    // Pathlines go through all times; which one is shown decides where their particles are born.
+    // Pathlines cover all times; the time shown only decides which particles start.
     if (layer.kind == vis::FlowKind::Pathlines) query.time = {query.time.nearest(), query.time.nearest(), 0};
     query.layer.style = {}; // does not change the geometry
     if (layer.seedBrushed && session.selection.active()) {

@@ -26,7 +26,7 @@ FocusShare focusShare(const StatisticsResult& result, const volume::DatasetInfo&
         const int channel = result.query.channels[i];
         if (!brushed.empty() && !brushed.contains(channel)) continue;
         if (brushed.empty() && volume::parameterOf(info, channel).categorical) continue;
-        // Of what is brushed that which exists at the fewest points, else what exists at the most.
+        // The brushed parameter that exists at the fewest points; without brushes the one that exists at the most.
         const bool better =
             !where || (brushed.empty() ? own.all.samples > where->all.samples : own.all.samples < where->all.samples);
         if (!better) continue;

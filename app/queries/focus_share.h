@@ -9,7 +9,7 @@ namespace tessera::app {
 
 /// Number of samples in focus, and of how many: samples weighted by their degree of interest.
 struct FocusShare {
-    double focus = 0, all = 0; ///< in focus; of the whole grid, whatever exists there
+    double focus = 0, all = 0; ///< in focus; in the whole grid, including absent samples
     std::string channel;       ///< exists at a part of the grid only: what is brushed, else what exists at most points
     double focusThere = 0, there = 0; ///< in focus where it exists; where it exists
     double ofAll() const { return all > 0 ? focus / all : 0; }

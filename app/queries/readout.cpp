@@ -24,7 +24,7 @@ std::string labelName(const volume::Parameter& parameter, double value) {
     return formatNumber(value);
 }
 
-/// The region of the point as the label of a parameter's parts says it, else the first label; "" where none does.
+/// The region of the point by the label of a parameter's parts, else by the first label; "" if there is none.
 std::string regionText(const volume::DatasetInfo& info, const Readout& readout, int parameter) {
     const volume::Parameter& own = info.parameters[static_cast<std::size_t>(parameter)];
     if (own.categorical) return {};
@@ -81,7 +81,7 @@ void updateReadout(ViewContext& context, const std::string& pane, Readout& reado
 
 namespace {
 
-/// Texts one after the other; lines break between them, never within a number.
+/// Texts in sequence; lines break between them, never within a number.
 void drawFlowing(const std::vector<std::string>& texts) {
     float room = 0;
     for (const std::string& text : texts) {

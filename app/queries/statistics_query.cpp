@@ -49,13 +49,13 @@ int coarseLevel(const volume::BrickGrid& grid, std::size_t channels) {
     return grid.levelWithin(kSamples / static_cast<double>(std::max<std::size_t>(1, channels)));
 }
 
-/// Before coarse levels comes what the source knows without reading a sample; grid().levels stands for that.
+/// The first level is what the source knows without reading samples; it is numbered grid().levels.
 int firstLevel(const volume::BrickGrid& grid, const BrushedQuery& query) {
     const int level = coarseLevel(grid, query.channels.size());
     return level > 0 && query.pairs.empty() && !query.selection.active() ? grid.levels : level;
 }
 
-/// The statistics at a level, or at a coarse one that `level` becomes where nothing is known without reading.
+/// The statistics at `level`. If that needs samples to be read after all, uses a coarse level and sets `level` to it.
 StatisticsResult readResult(const std::shared_ptr<const volume::BrickSource>& source, const BrushedQuery& query,
                             int& level, const Progress& progress) {
     StatisticsResult result{query, {}, query.selection.active()};
@@ -118,7 +118,7 @@ BrushedQuery brushedQuery(const Session& session, const volume::DatasetInfo& inf
     }
     const bool marked = std::any_of(session.lenses.begin(), session.lenses.end(),
                                     [](const vis::Lens& lens) { return lens.enabled && lens.marks; });
-    // Brushes have the word: what they select is the same in plots, tables and volumes.
+    // Enabled brushes take precedence, so that the selection is the same in plots, tables and volumes.
     if (marked && query.selection.brushes.empty())
         query.selection.brushes.push_back({.name = "", .color = {}, .region = vis::LensRegion{}});
     if (vis::selectsLens(query.selection)) query.lenses = lensSpace(session, info);
@@ -148,7 +148,7 @@ std::shared_ptr<const StatisticsResult> AsyncStatistics::get(ViewContext& contex
          .lowPriority = true,
          .duringEdits = true,
          .firstLevel = first,
-         // What is known of all samples is better than any part of them.
+         // Statistics of all samples are better than any coarse level.
          .nextLevel = [levels](int level) { return level == levels ? 0 : std::max(0, level - 2); }},
         query,
         [coarse = coarse_](const std::shared_ptr<const volume::BrickSource>& source, const BrushedQuery& asked,

@@ -12,7 +12,7 @@ namespace tessera::app {
 namespace {
 
 constexpr std::size_t kMovingTriangles = 400'000; ///< more are slow on software GL
-constexpr double kCoarseSamples = 5e5;            ///< extracted within a few milliseconds
+constexpr double kCoarseSamples = 5e5;            ///< of the first level: extracted within a few milliseconds
 
 /// Nothing where the data has no such parameter.
 std::optional<SurfaceQuery> surfaceQuery(const vis::IsoLayer& layer, const volume::DatasetInfo& info,

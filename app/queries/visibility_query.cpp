@@ -7,8 +7,8 @@ namespace tessera::app {
 
 namespace {
 
-constexpr double kMostSamples = 5e5; ///< of the level that is looked through
-constexpr double kAspect = 1.5;      ///< of the picture that is judged; views have many
+constexpr double kMostSamples = 5e5; ///< of the level used
+constexpr double kAspect = 1.5;      ///< of the assumed picture; several views may show the layer
 
 } // namespace
 
