@@ -69,8 +69,8 @@ public:
 private:
     bool known(const std::string& name) const { return info_.findChannel(name).has_value(); }
 
-    /// A name that is missing is replaced by the same stand-in everywhere, different ones by different channels. True
-    /// where it was.
+    /// Replaces a missing name, the same one always by the same channel, different ones by different channels. Returns
+    /// true if it was missing.
     bool replace(std::string& name) {
         if (name.empty() || known(name)) return false;
         auto found = standIn_.find(name);
@@ -83,7 +83,7 @@ private:
         return true;
     }
 
-    /// Every member that names a parameter, by what its description says it refers to.
+    /// Visits every member whose description says that it names a parameter.
     template <class Technique> void fit(vis::Layer& layer, Technique& technique) {
         bool replaced = false;
         Technique::describe(technique, [&]<class Member>(Member& member, const FieldInfo& field) {
@@ -140,7 +140,7 @@ private:
     std::vector<std::string>& messages_;
     std::vector<volume::Channel> channels_;
     std::string fallback_;
-    std::vector<std::string> free_;              ///< channels that stand in
+    std::vector<std::string> free_;              ///< channels not yet used as replacements
     std::map<std::string, std::string> standIn_; ///< by the name that is missing
 };
 

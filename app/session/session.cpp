@@ -168,13 +168,13 @@ Session defaultSession(const volume::DatasetInfo& info, const DataRef& data) {
         if (session.transfer.contains(each.name)) continue;
         const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(each.parameter)];
         vis::TransferFunction function;
-        // What is low in a scan is mostly air or noise; in a simulation it is a result.
+        // Low values of a scan are mostly air or noise; those of a simulation are results.
         if (parameter.type != volume::ScalarType::F32 && !parameter.categorical)
             function.opacity = {{0.0f, 0.0f}, {0.15f, 0.0f}, {1.0f, 0.8f}};
         const Range range = info.channelRange(each);
         if (!parameter.categorical && each.component < parameter.components && range.lo < 0 && range.hi > 0 &&
             parameter.components > 1) {
-            // A signed component of a vector: white in the middle belongs to zero.
+            // A signed component of a vector: the white middle of the colour map is zero.
             const double most = std::max(-range.lo, range.hi);
             function.colormap = "blue-orange";
             function.autoRange = false;

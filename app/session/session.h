@@ -66,12 +66,12 @@ struct DataRef {
     std::map<std::string, double> settings; ///< of the model: e.g. nx, ny, nz, times
     PictureLattice lattice = PictureLattice::BodyCentred;
     std::vector<volume::DerivedParameter> derived; ///< computed from the others
-    volume::ImportOptions import;                  ///< what was stated about files that do not say it themselves
+    volume::ImportOptions import;                  ///< options for what the files do not state themselves
     std::optional<codec::PackOptions> packed;      ///< unpacked data are shown as an archive packed so holds them
-    bool originals = false;                        ///< packed data lie beside the data as computed
-    std::string axis;                              ///< quantity that takes the place of the times, "" = none
-    std::optional<volume::TimeAxis> timeAxis;      ///< a plane at all times is shown in place of the data
-    std::optional<OtherData> other = {};           ///< its parameters stand beside these as "T (other)"
+    bool originals = false;                        ///< packed data are shown beside those as computed
+    std::string axis;                              ///< quantity that replaces the times, "" = none
+    std::optional<volume::TimeAxis> timeAxis;      ///< shows a plane at all times instead of the data
+    std::optional<OtherData> other = {};           ///< its parameters are added as "T (other)"
     std::optional<DataFile> table = {};            ///< import.overTime when saved: found again as the files are
     bool operator==(const DataRef&) const = default;
     static void describe(auto& self, auto&& visit) {

@@ -3,7 +3,7 @@
 #include "app/described/describe_json.h"
 #include "app/session/session.h"
 
-/// A session as JSON. Its conversions are the largest templates of the program: session_json.cpp alone holds them.
+/// A session as JSON. The templates are large: only session_json.cpp instantiates them.
 namespace tessera::app {
 
 extern template Json toJson(const Session& session);

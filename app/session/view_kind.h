@@ -17,8 +17,8 @@ struct ViewTraits {
     std::string_view help;  ///< one line: what it shows
     bool svg = false;       ///< can be exported as vector graphics
     bool csv = false;       ///< can be exported as a table
-    bool inSpace = false;   ///< a picture in space: a new view does not open over it unasked
-    bool camera = false;    ///< shows the scene from the session's camera, so that commands of the camera act on it
+    bool inSpace = false;   ///< a picture in space: new views do not open as tabs over it
+    bool camera = false;    ///< uses the session's camera, so that camera commands act on it
     bool padded = true;     ///< has a margin inside its pane
     bool plays = false;     ///< moves the session's time itself while the session plays
 };

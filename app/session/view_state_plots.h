@@ -136,10 +136,11 @@ DrawView<ProfileView> drawProfileView;
 /// Quantities over time, statistics of parameters and formulas of both, against time or each other.
 struct CurvesView {
     static constexpr std::string_view kType = "curves";
-    std::string x;              ///< formula, "time"; "" = what the curves want
-    std::vector<std::string> y; ///< formulas; empty: the polarisation curve, else every quantity, else a mean
-    std::string region;         ///< statistics are of this region of a label, by name or value; "" = everywhere
-    bool brushed = false;       ///< and of what the brushes select
+    std::string x; ///< formula, or "time"; "" = chosen to fit the curves
+    std::vector<std::string>
+        y; ///< formulas; empty: the polarisation curve if the data have one, else every quantity, else a mean
+    std::string region;   ///< statistics are of this region of a label, by name or value; "" = everywhere
+    bool brushed = false; ///< and of what the brushes select
     bool operator==(const CurvesView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(

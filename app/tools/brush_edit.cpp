@@ -90,7 +90,7 @@ void dragBrush(BrushDrag& drag, vis::Selection& selection, const PlotFrame& fram
         spanRegion(region, drag.start, now, frame, drag.plot, static_cast<double>(pen.softness));
 }
 
-/// Which edges of its box a point of an ellipse means: none well inside.
+/// The edges of its box that a point of an ellipse grabs; none well inside.
 int ellipseEdges(const BrushRect& rect, ImVec2 at) {
     const float u = (at.x - rect.min.x) / std::max(1.0f, rect.max.x - rect.min.x) * 2 - 1;
     const float v = 1 - (at.y - rect.min.y) / std::max(1.0f, rect.max.y - rect.min.y) * 2;
@@ -105,7 +105,7 @@ int ellipseEdges(const BrushRect& rect, ImVec2 at) {
 
 int rangeEdges(const BrushRect& rect, ImVec2 at, float near) {
     int edges = 0;
-    // Of two edges close together the nearer one is meant; small brushes keep a middle to move them by.
+    // Of two close edges the nearer one; small brushes keep a middle part for moving them.
     const float nearX = std::min(near, std::max(1.5f, (rect.max.x - rect.min.x) / 4));
     const float nearY = std::min(near, std::max(1.5f, (rect.max.y - rect.min.y) / 4));
     if (!rect.bandX) edges |= at.x < rect.min.x + nearX ? kLeftEdge : at.x > rect.max.x - nearX ? kRightEdge : 0;
@@ -164,7 +164,7 @@ bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& fr
                 selection.brushes.clear();
         }
     }
-    // Esc comes first: steering by keys, ImGui lets go of the item before anyone else hears of it.
+    // Esc first: with keyboard navigation ImGui deactivates the item before it can be seen below.
     if (drag.active && keyPressed(key::kEscape)) {
         selection = drag.original;
         drag = {};
@@ -173,7 +173,7 @@ bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& fr
     } else if (drag.active && drag.plot == plot && ImGui::IsItemActive()) {
         // The same channels may be plotted twice; the drag belongs to the plot it began in.
         if (drag.brush >= static_cast<int>(selection.brushes.size()) && !drag.made) {
-            drag = {}; // somebody else (undo) took the brush away
+            drag = {}; // the brush was removed meanwhile, e.g. by undo
         } else {
             if (drag.brush < 0 && ImGui::IsMouseDragging(ImGuiMouseButton_Left, reach()))
                 beginBrush(drag, selection, pen, io.KeyShift, io.KeyCtrl);
@@ -200,7 +200,7 @@ void drawBrushes(ImDrawList& draw, const vis::Selection& selection, const PlotFr
         if (std::holds_alternative<vis::RangeRegion>(brush.region)) {
             BrushRect outer = brushRect(brush.region, frame, plot, 1);
             for (BrushRect* rect : {&inner, &outer}) {
-                // A band has no ends: its lines along the plot's border would look like a range.
+                // An unbounded axis has no edges: lines along the plot's border would look like a range.
                 if (rect->bandX) rect->min.x -= 4, rect->max.x += 4;
                 if (rect->bandY) rect->min.y -= 4, rect->max.y += 4;
             }
@@ -216,7 +216,7 @@ void drawBrushes(ImDrawList& draw, const vis::Selection& selection, const PlotFr
             draw.AddPolyline(outline.data(), static_cast<int>(outline.size()), line, ImDrawFlags_Closed, thick);
         }
         if (taken) {
-            // Struck through: what is inside is taken away. Not colour alone.
+            // A subtracting brush is struck through, since colour alone may not be seen.
             draw.AddLine(inner.min, inner.max, line);
             draw.AddLine({inner.min.x, inner.max.y}, {inner.max.x, inner.min.y}, line);
         }

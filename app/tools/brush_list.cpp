@@ -56,7 +56,7 @@ std::string regionText(const volume::DatasetInfo& info, const vis::Region& regio
     return text + " " + prettyUnit(unit.name);
 }
 
-/// How a brush meets the ones before it, as a letter-wide choice.
+/// A narrow choice of how a brush combines with those before it.
 void chooseCombine(vis::Brush& brush) {
     static constexpr const char* kWords[] = {"and", "or", "minus"};
     ImGui::SetNextItemWidth(em() * 4.2f);
@@ -71,7 +71,7 @@ void chooseCombine(vis::Brush& brush) {
             "How it combines with the brushes above: and = inside both, or = inside either, minus = outside this one");
 }
 
-/// Numbers that make no sense are turned into the nearest that do.
+/// Clamps invalid numbers to the nearest valid ones.
 void mend(vis::Region& region) {
     if (auto* range = std::get_if<vis::RangeRegion>(&region))
         for (vis::BrushInterval& interval : range->intervals) {
@@ -136,7 +136,7 @@ void addAtCursor(ViewContext& context, bool box) {
     vis::Brush brush = spaceBrush(context.session, context.source->info(), box);
     brush.name = newBrushName(selection, brush.name);
     brush.color = newBrushColor(selection);
-    // Two places are seldom one within the other: together they are what either holds.
+    // Two brushes in space rarely overlap, so combine them with "or".
     const bool beside = std::any_of(selection.brushes.begin(), selection.brushes.end(), [](const vis::Brush& other) {
         return other.enabled && (std::holds_alternative<vis::SphereRegion>(other.region) ||
                                  std::holds_alternative<vis::BoxRegion>(other.region));
@@ -222,7 +222,7 @@ std::string combinationText(const vis::Selection& selection) {
         either = either || brush.combine == vis::BrushCombine::Or;
         static constexpr const char* kWords[] = {" and ", " or ", " without "};
         if (count > 1 && text.find(' ') != std::string::npos) text = "(" + text + ")";
-        // The first one meets everything.
+        // The first brush combines with all samples, so that "minus" inverts it.
         const bool taken = brush.inverted != (count == 0 && brush.combine == vis::BrushCombine::Minus);
         const std::string own = (taken ? "not " : "") + std::to_string(i + 1);
         text = count > 0 ? text + kWords[static_cast<std::size_t>(brush.combine)] + own : own;

@@ -119,7 +119,7 @@ bool handleMouse(ViewContext& context, CameraHand& hand, vis::ViewTarget* target
         const bool held = ImGui::IsMouseDown(ImGuiMouseButton_Left) || ImGui::IsMouseDown(ImGuiMouseButton_Middle) ||
                           ImGui::IsMouseDown(ImGuiMouseButton_Right);
         const auto clicked = [&](ImGuiMouseButton button) {
-            // The furthest it was from where it went down: a drag that comes back is none.
+            // The largest distance from the press: a drag that returns to its start is not a click.
             return ImGui::IsMouseReleased(button) &&
                    io.MouseDragMaxDistanceSqr[button] < io.MouseDragThreshold * io.MouseDragThreshold;
         };
@@ -133,7 +133,7 @@ bool handleMouse(ViewContext& context, CameraHand& hand, vis::ViewTarget* target
             }
             hand.drag = CameraDrag::None;
         } else {
-            // Also while the hand rests with the button down: the next move must answer at once.
+            // Also while the mouse rests with the button held: the next move must have no delay.
             moving = moving || io.MouseDelta.x != 0 || io.MouseDelta.y != 0;
         }
     }

@@ -14,7 +14,7 @@ enum class CameraDrag { None, Orbit, Pan, Zoom, Roll };
 struct CameraHand {
     CameraDrag drag = CameraDrag::None;
     ImVec2 last{0, 0};    ///< mouse of the former frame
-    bool blocked = false; ///< something else under the mouse takes it: no drag begins
+    bool blocked = false; ///< another object under the mouse takes it: no drag begins
     bool dragging() const { return drag != CameraDrag::None; }
 };
 

@@ -151,7 +151,7 @@ void addProfile(std::vector<HandledObject>& objects, const Session& session, con
     object.color = plotColors().text;
     const std::vector<glm::dvec3> corners = profileCorners(*profile, session, info.bounds);
     for (const glm::dvec3& corner : corners) object.handles.push_back({.at = corner});
-    // A line along an axis becomes one of its own once an end is dragged.
+    // The default line along an axis becomes a line of the view when an end is dragged.
     object.move = [pane, corners](Session& edited, std::size_t handle, glm::dvec3 place) {
         auto& own = std::get<ProfileView>(edited.views.at(pane));
         if (own.points.size() < 2) own.points = corners;

@@ -125,7 +125,7 @@ bool followPointer(Session& session, const SpaceFrame& frame, bool hovered) {
     if (!hovered) return false;
     bool moved = false;
     if (pressed({.key = 'F'}) && !typing()) {
-        // Those that follow are pinned where they are; else the one under the mouse is taken up, or the last one.
+        // Pins the lenses that follow; if there are none, the one under the mouse or the last one starts to follow.
         bool any = false;
         for (vis::Lens& lens : session.lenses) any = any || lens.followsPointer;
         for (vis::Lens& lens : session.lenses) lens.followsPointer = false;
@@ -181,7 +181,7 @@ bool editLenses(LensDrag& drag, Session& session, const SpaceFrame& frame, bool 
         drag.lens = -1;
         return false;
     }
-    // Its own handles keep a lens at hand: they lie on or outside of its outline.
+    // The handles of a lens are on or outside of its outline: over them it stays the one under the mouse.
     const auto former = placed(frame, session, drag.lens);
     LensGrip grip = former ? gripUnder(lensHandles(frame, *former), mouse) : LensGrip::None;
     if (grip == LensGrip::None) {

@@ -44,7 +44,7 @@ void findHandle(HandleDrag& drag, const std::vector<HandledObject>& objects, con
         }
 }
 
-/// What both kinds of pictures share; `dragged` says where the held dot goes.
+/// Mouse handling common to 3D pictures and slices; `dragged` gives the new position of the held dot.
 bool editWith(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, bool hovered, const PixelOf& pixel,
               const std::function<glm::dvec3(glm::dvec3 from, ImVec2 mouse)>& dragged) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;

@@ -28,7 +28,7 @@ void runShortcuts(const std::vector<Command>& commands) {
                 continue;
             if (plain && ImGui::IsAnyItemActive()) continue;
             if (!pressed(shortcut, command.repeats) || !command.available()) continue;
-            const std::function<void()> run = command.run; // the table may be rebuilt by what it runs
+            const std::function<void()> run = command.run; // a copy: running it may rebuild the table
             run();
             return;
         }

@@ -127,7 +127,7 @@ public:
     }
 };
 
-/// Applies what a tab asked for, after everything is drawn.
+/// Applies a tab's request, after everything is drawn.
 void apply(DockTree& tree, const TabEvent& event, const DockLayout& layout, const DockRect& whole,
            const DockPanes& panes, DockHand& hand) {
     switch (event.kind) {
@@ -190,7 +190,8 @@ void drawSplitters(DockLayout& layout, DockTree& tree, DockHand& hand, const Doc
             moved = true;
         } else if (ImGui::IsItemActive() && hand.splitter == splitter.node->id && room > 0 &&
                    ImGui::IsMouseDragging(ImGuiMouseButton_Left, 1)) {
-            // The effective ratio is stored, so that a pane dragged into its limit does not stay there for ever.
+            // Store the effective ratio: one beyond the limit would keep a pane at its smallest size even when the
+            // window grows.
             splitter.node->ratio = std::clamp((at - hand.grabOffset - begin) / room, 0.02f, 0.98f);
             splitter.node->ratio = layout.firstPart(*splitter.node, room) / room;
             moved = true;
@@ -220,7 +221,7 @@ void drawFloating(Drawing& drawing, const DockRect& whole) {
         ImGui::PopStyleVar(padded ? 1 : 2);
         const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
         if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-            // The hand moves or resizes it: keep where it is as shares of the window.
+            // The user moves or resizes it: store its place as shares of the window.
             const FloatingPane placed{pane, (at.x - whole.lo.x) / w, (at.y - whole.lo.y) / h, size.x / w, size.y / h};
             const bool moved = std::abs(placed.x - floating.x) * w > 0.6f ||
                                std::abs(placed.y - floating.y) * h > 0.6f ||

@@ -16,10 +16,10 @@ struct DockPanes {
     std::function<bool(const std::string& pane)> padded;  ///< false: the content fills the pane to its edge
     std::function<void(const std::string& pane)> close;   ///< removes the view
     std::function<void(const std::string& pane)> tabMenu; ///< further items of a tab's context menu; may be empty
-    std::string none = {};                                ///< said where no pane is open
+    std::string none = {};                                ///< text shown if no pane is open
 };
 
-/// State of a drag in the dock; may be lost at any time.
+/// State of a drag in the dock. Not part of the session.
 struct DockHand {
     std::string dragged; ///< pane whose tab is held, "" = none
     bool moving = false; ///< the tab has been pulled far enough to count as dragged

@@ -27,7 +27,7 @@ struct DockLayout {
     std::vector<DockNode*> stacks;
     std::vector<DockSplitter> splitters;
 
-    /// Size of the first part of a split in pixels: the ratio, kept from squeezing either part.
+    /// Size of the first part of a split in pixels: by its ratio, but neither part smaller than its minimum.
     float firstPart(const DockNode& node, float room) const;
     void place(DockNode& node, DockRect rect);
 };

@@ -122,7 +122,7 @@ void FileDialog::answerWith(std::optional<Answer>& answer) {
         result.paths = {path};
     } else {
         if (chosen_.empty() && !name_.empty()) {
-            const fs::path typed = fs::path(folder_) / name_; // which is name_ alone if that begins at the root
+            const fs::path typed = fs::path(folder_) / name_; // which is name_ alone if it is absolute
             std::error_code problem;
             if (fs::is_directory(typed, problem)) {
                 name_.clear();
@@ -137,7 +137,7 @@ void FileDialog::answerWith(std::optional<Answer>& answer) {
         noticeChoice();
         result.paths = filesNamed();
         if (result.paths.empty()) return;
-        // Several files may belong together in a way that none of them shows alone.
+        // Preview several files together: one alone may not show what they are.
         if (preview && result.paths.size() == 1) {
             const FilePreview seen = preview(result.paths.front());
             deciding_ = seen.text.empty() && !seen.failed;
@@ -216,12 +216,12 @@ void FileDialog::drawPreview(float height) {
     ImGui::EndChild();
 }
 
-/// The field of the name with the buttons, and under it what is wrong with the name.
+/// The field of the name with the buttons, and below it the problem with the name.
 void FileDialog::drawName(std::optional<Answer>& answer, bool& open) {
     const float em = ImGui::GetFontSize();
     ImGui::SetNextItemWidth(-em * 13);
     if (ImGui::IsWindowAppearing() || std::exchange(focusName_, false)) ImGui::SetKeyboardFocusHere();
-    // ImGui would go on with the cursor and the selection that the field had when it was last shown.
+    // Else ImGui would keep the cursor and the selection from when the field was last shown.
     const auto selectStem = [](ImGuiInputTextCallbackData* data) {
         FileDialog& dialog = *static_cast<FileDialog*>(data->UserData);
         if (!std::exchange(dialog.selectStem_, false)) return 0;
@@ -243,7 +243,7 @@ void FileDialog::drawName(std::optional<Answer>& answer, bool& open) {
     if (mode_ == FileMode::Open && preview)
         if (const std::vector<std::string> paths = filesNamed(); paths.size() == 1)
             refused = preview(paths.front()).failed;
-    if (!refused && problem_ == kRefused) problem_.clear(); // what was stated meanwhile has helped
+    if (!refused && problem_ == kRefused) problem_.clear(); // the options entered meanwhile have fixed it
     ImGui::SameLine();
     const char* verb = confirm_ ? "Replace" : mode_ == FileMode::Save ? "Save" : "Open";
     ImGui::BeginDisabled(refused);
@@ -251,7 +251,7 @@ void FileDialog::drawName(std::optional<Answer>& answer, bool& open) {
     ImGui::EndDisabled();
     if (button || enterKey || deciding_) {
         answerWith(answer);
-        focusName_ = shown_ && !confirm_; // Enter that is held does not replace a file
+        focusName_ = shown_ && !confirm_; // a held Enter must not confirm replacing a file
     }
     ImGui::SameLine();
     if (ImGui::Button("Cancel", {-FLT_MIN, 0}) || pressed({.key = key::kEscape})) open = false;
@@ -279,7 +279,7 @@ std::optional<FileDialog::Answer> FileDialog::draw() {
         shown_ = false;
         return {};
     }
-    // The path as buttons.
+    // The folders of the path as buttons.
     std::string into;
     fs::path walked;
     int part = 0;

@@ -32,13 +32,12 @@ public:
     bool shown() const { return shown_; }
     const std::string& folder() const { return folder_; }
     const std::string& purpose() const { return purpose_; }
-    /// Why there was no last answer, for example a file name that does not exist; "" if there is no problem. Shown
-    /// below the name.
+    /// Why the last answer was refused, e.g. a file name that does not exist; "" if it was not. Shown below the name.
     const std::string& problem() const { return problem_; }
 
-    /// Asked every frame for the file that would be opened. One that failed is not opened.
+    /// Called every frame for the file that would be opened. A file whose preview failed is not opened.
     std::function<FilePreview(const std::string& path)> preview;
-    /// Told when other files than before would be opened, before their preview is asked for; none when it is shown.
+    /// Called when the files that would be opened have changed, before `preview`; with none when the dialog is shown.
     std::function<void(const std::vector<std::string>& paths)> filesChosen;
     /// Further widgets under the list when opening (import options).
     std::function<void()> options;
@@ -67,7 +66,7 @@ private:
     std::string title_, purpose_, folder_, name_, suffix_, filter_, problem_;
     std::vector<Entry> entries_;
     std::vector<std::string> chosen_;
-    std::vector<std::string> noticed_; ///< paths that filesChosen was last told
+    std::vector<std::string> noticed_; ///< paths last passed to filesChosen
 };
 
 /// "12.3 MB".

@@ -100,7 +100,7 @@ std::vector<std::string> Jobs::collect() {
     std::vector<std::string> messages;
     for (const auto& job : finished) {
         job->thread.join();
-        if (job->stop.stop_requested()) continue; // cancelled: as if it had never run
+        if (job->stop.stop_requested()) continue; // cancelled: drop its result
         if (!job->failure.empty()) {
             messages.push_back(job->title.empty() ? job->failure : job->title + ": " + job->failure);
         } else if (job->finish) {

@@ -36,7 +36,7 @@ bool keyPressed(int code, bool repeat = false);
 /// True while text is being typed somewhere: single keys are letters then.
 bool typing();
 
-/// Makes a new context take keys as `feedKey` gives them, all that is fed in the next frame.
+/// Sets up a new context for `feedKey`, so that the next frame takes all keys fed to it.
 void setUpKeys(ImGuiIO& io);
 
 /// A key goes down or up in the next frame. Codes that ImGui has no key for do nothing.
@@ -45,7 +45,7 @@ void feedKey(ImGuiIO& io, int code, bool down);
 /// The modifiers of the next frame, whichever keys are down.
 void feedModifiers(ImGuiIO& io, bool ctrl, bool shift, bool alt, bool super = false);
 
-/// The mouse of the next frame in place of what a back end has told so far; `buttons`: at most five, left first.
+/// The mouse of the next frame, replacing what the back end has reported; `buttons`: at most five, left first.
 void feedMouse(ImGuiIO& io, ImVec2 at, std::span<const bool> buttons);
 
 } // namespace tessera::app

@@ -21,7 +21,7 @@ std::string localClock() {
     return text;
 }
 
-/// The text of a toast `width` wide, and its cross. True when it is to go.
+/// Draws a toast `width` wide with its cross. True if it is to be removed.
 bool drawToast(const Messages::Message& message, float width, bool icons) {
     const float em = ImGui::GetFontSize();
     if (message.failure && icons) {

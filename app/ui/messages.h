@@ -7,10 +7,10 @@
 
 namespace tessera::app {
 
-/// What the program had to say, oldest first: all of it in the pane Messages, the newest over the views for a while.
+/// Messages of the program, oldest first: all of them in the pane Messages, the newest for a while over the views.
 class Messages {
 public:
-    static constexpr std::size_t kKept = 500; ///< older ones are forgotten
+    static constexpr std::size_t kKept = 500; ///< older ones are dropped
     static constexpr std::size_t kToasts = 3; ///< over the views at a time
 
     struct Message {
@@ -28,9 +28,9 @@ public:
 
     void add(const std::string& text, bool failure = false);
     const std::deque<Message>& list() const { return messages_; }
-    /// Those over the views at this time, newest first. What is too old or too much for that is `gone` from now on.
+    /// The messages over the views at this time, newest first. Sets `gone` for those that are too old or too many.
     std::vector<Message*> toasts();
-    /// Seconds until one of those over the views goes; infinity where none is there.
+    /// Seconds until one of them disappears; infinity if there are none.
     double secondsToChange() const;
 
 private:

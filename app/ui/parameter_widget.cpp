@@ -52,7 +52,7 @@ bool drawParameter(Session& session, const std::string& path, const WidgetContex
 
 bool chooseParameter(const char* id, const Session& session, std::string& search, std::string& path) {
     ImGui::PushID(id);
-    // Menus take the width of what is in them, so it is said here.
+    // Menus fit their contents, so the width is set here.
     const float width = ImGui::GetFontSize() * 22;
     ImGui::SetNextItemWidth(width);
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();

@@ -106,7 +106,7 @@ ImGuiStyle styleSizes(bool dark, float scale) {
     return style;
 }
 
-/// The colours that the others are made of.
+/// The base colours of the theme.
 struct Shades {
     explicit Shades(bool isDark) : dark(isDark) {}
     bool dark;

@@ -29,7 +29,7 @@ std::string tidyExponent(std::string text) {
     return text.substr(0, e) + "e" + std::to_string(power);
 }
 
-/// -0 and -0.00 read as a mistake.
+/// Turns -0 and -0.00 into 0.
 std::string withoutNegativeZero(std::string text) {
     if (text.starts_with('-') && text.find_first_of("123456789") == std::string::npos) text.erase(0, 1);
     return text;

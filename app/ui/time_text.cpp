@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::string_view kTime = "time";
 
-/// The coarsest power of ten, at most 1, that all times are multiples of ("operating point 11", not "11.0"); else what
-/// tells neighbours apart. 0 for one time.
+/// The largest power of ten, at most 1, of which all times are multiples ("operating point 11", not "11.0"); else a
+/// resolution that distinguishes neighbours. 0 for a single time.
 double resolutionOf(const std::vector<double>& times) {
     if (times.size() < 2) return 0;
     double step = 1;
@@ -59,7 +59,7 @@ std::string groupedNumber(double value) {
     if (!(magnitude >= 1e4 && magnitude < 1e9)) {
         char text[32];
         std::snprintf(text, sizeof text, "%.5g", value);
-        return formatNumber(std::strtod(text, nullptr)); // without zeros at the end
+        return formatNumber(std::strtod(text, nullptr)); // without trailing zeros
     }
     return (value < 0 ? "-" : "") + formatCount(std::round(magnitude));
 }

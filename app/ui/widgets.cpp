@@ -15,7 +15,7 @@ namespace tessera::app {
 
 namespace {
 
-/// A printf format with as many digits as a slider over this range can tell apart, and the unit.
+/// A printf format with the digits that a slider over this range can resolve, and the unit.
 std::string numberFormat(std::optional<Range> range, bool logScale, bool integer, std::string_view unit) {
     std::string format = "%.4g";
     if (integer) {
@@ -66,7 +66,7 @@ void drawLabel(const WidgetContext& context, std::string_view label, std::string
     const float start = ImGui::GetCursorPosX();
     const float column = std::floor(width * context.labelShare);
     const ImVec2 corner = ImGui::GetCursorScreenPos();
-    // A label that is a little too long is written smaller, rather than cut.
+    // A label that is slightly too long is drawn smaller instead of truncated.
     const float room = column - ImGui::GetStyle().ItemInnerSpacing.x;
     const char *begin = label.data(), *end = begin + label.size();
     const float scale = std::clamp(room / std::max(1.0f, ImGui::CalcTextSize(begin, end).x), 0.75f, 1.0f);

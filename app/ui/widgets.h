@@ -19,8 +19,9 @@ struct WidgetContext {
     const volume::DatasetInfo* info = nullptr; ///< parameters to choose from; may be null
     float labelShare = 0.4f;                   ///< of the width
     std::string path = {};                     ///< of what is drawn, a JSON pointer into the session; "" = not in it
-    const std::function<void(const std::string& path)>* menu = nullptr; ///< of a right click on a label with a path
-    const std::function<void()>* browse = nullptr;                      ///< asks for a file for a text that names one
+    const std::function<void(const std::string& path)>* menu =
+        nullptr;                                   ///< called for a right click on a label with a path
+    const std::function<void()>* browse = nullptr; ///< asks for a file for a text that names one
 
     WidgetContext at(std::string place) const {
         WidgetContext out = *this;
@@ -56,7 +57,7 @@ bool chooseVector(const char* id, const volume::DatasetInfo* info, std::string& 
 bool chooseColormap(const char* id, std::string& value, bool reversed = false);
 bool beginSection(const char* id, std::string_view label, std::string_view help);
 void endSection();
-/// A small button that adds to a list or takes from it.
+/// A small button that adds to a list or removes from it.
 bool drawListButton(const char* label);
 /// The text with line ends for a width in pixels, at spaces alone: ImGui would also break "a..b" between the dots. A
 /// word wider than a line stays whole.

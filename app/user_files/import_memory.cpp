@@ -72,7 +72,7 @@ std::string parameterOfParts(const std::string& rule) {
 std::string parameterOfLabels(const std::string& rule) {
     return volume::parseLabelRule(rule).parameter;
 }
-/// A rule as recallRules wants it.
+/// The form of a rule for recallRules.
 struct NamedLabels {
     std::string parameter, label;
 };
@@ -80,7 +80,7 @@ NamedLabels parseLabels(const std::string& rule) {
     return {parameterOfLabels(rule), {}};
 }
 
-/// Adds what is remembered to the rules stated: of parameters that those do not name, where it fits the data.
+/// Adds remembered rules for parameters without a stated one, if they fit the data.
 template <class Parse>
 void recallRules(std::vector<std::string>& stated, const std::vector<std::string>& known,
                  const std::set<std::string>& names, const Parse& parse) {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-/// What the user once stated about foreign files, kept in $XDG_CONFIG_HOME/tessera/units.json (else ~/.config): files
-/// rarely say their units, and nobody wants to state them twice.
+/// Import options that the user stated before, stored in $XDG_CONFIG_HOME/tessera/units.json (else ~/.config), since
+/// files rarely state their units.
 namespace tessera::app {
 
 struct ImportMemory {
@@ -29,18 +29,17 @@ ImportMemory loadImportMemory(const std::string& path = importMemoryPath());
 /// Writes the file (atomically, folders made). Throws MachineError.
 void saveImportMemory(const ImportMemory& memory, const std::string& path = importMemoryPath());
 
-/// Options with what is remembered for parameters and rules the user does not state now. `info` is the preview of the
-/// files with the stated options: its name chooses rules and names, and only what fits its parameters is taken.
+/// The options with remembered ones added where the user states none now. `info` is the preview of the files with the
+/// stated options: its name chooses rules and names, and only what fits its parameters is taken.
 volume::ImportOptions withMemory(volume::ImportOptions options, const ImportMemory& memory,
                                  const volume::DatasetInfo& info);
 
-/// Looks at the files and adds what is remembered for them; the one call before previewFiles or openFiles. Of what an
-/// archive says only the names of label values are added to.
+/// Adds remembered options for these files; call before previewFiles or openFiles. For an archive only names of label
+/// values are added.
 volume::ImportOptions recallOptions(const std::vector<std::string>& paths, const volume::ImportOptions& stated,
                                     const Progress& progress = {});
 
-/// Adds what was stated to the file, if anything was. A file that cannot be read or written is left: opening data does
-/// not fail for it.
+/// Saves the stated options, if any. Ignores a file that cannot be read or written, so that opening data does not fail.
 void rememberStated(const volume::ImportOptions& stated, const std::string& dataName,
                     const std::string& path = importMemoryPath());
 

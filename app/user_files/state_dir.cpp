@@ -138,7 +138,7 @@ std::vector<Recovery> Autosave::abandoned() const {
         const std::string name = entry.path().filename().string();
         if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix) || entry.path() == path_) continue;
         const int lock = lockFile(lockPath(entry.path().string()));
-        if (lock < 0) continue; // its run is alive
+        if (lock < 0) continue; // its run is still active
         ::close(lock);
         struct stat status {};
         if (::stat(entry.path().c_str(), &status) == 0) found.emplace_back(status.st_mtime, entry.path().string());

@@ -4,7 +4,7 @@
 #include <vector>
 
 /// What the program remembers between runs, in $XDG_STATE_HOME/tessera: recent files, choices for data opened later,
-/// and the autosaved session of a run that did not end by itself.
+/// and the autosaved session of a run that crashed.
 namespace tessera::app {
 
 /// The folder, made if need be; "" when there is none (nothing is remembered then).
@@ -24,8 +24,8 @@ struct Recovery {
     std::string when; ///< local date and time of the last autosave
 };
 
-/// Keeps the autosave of this run. The lock file beside it is held open: when the process dies in whatever way the lock
-/// goes with it, and the next run finds a session nobody holds.
+/// Keeps the autosave of this run. It holds a lock on a file beside it, which the system releases when the process ends
+/// in any way: an autosave without a lock was left by a crashed run.
 class Autosave {
 public:
     explicit Autosave(std::string folder);

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <imgui.h>
 
-/// The menu Edit, and parameters made by a command.
+/// The menu Edit, and commands that add derived parameters.
 namespace tessera::app {
 
 namespace {
@@ -20,7 +20,7 @@ int stackOf(const DockNode& node, const std::string& pane) {
     return 0;
 }
 
-/// A view of the data in space to the right of the first volume view, or none any more.
+/// Opens a view of the data in space to the right of the first volume view, or closes it.
 void showSpaceBeside(Session& session, bool wanted) {
     const auto inSpace = [](const auto& view) {
         const auto* volume = std::get_if<VolumeView>(&view.second);
@@ -69,7 +69,7 @@ std::vector<Command> brushCommands(Workbench& workbench) {
              .help = "Remove all brushes, so that everything is in focus",
              .shortcut = {.key = key::kEscape},
              .run = [brushes] { brushes().clear(); },
-             // While something is dragged Esc takes back that alone.
+             // During a drag, Esc only cancels the drag.
              .enabled = [brushes] { return !brushes().empty() && !ImGui::IsAnyItemActive(); }},
             {.menu = "Edit",
              .name = "Invert brushes",
@@ -127,7 +127,7 @@ std::vector<Command> latticeCommands(Workbench& workbench) {
     return commands;
 }
 
-/// The plane through the cross-hair at all times in place of the data in space, or these again.
+/// Switches between the plane through the cross-hair at all times and the data in space.
 void toggleTimeAlong(Workbench& workbench, volume::SpaceAxis axis) {
     DataRef data = workbench.session().data;
     const bool shown = data.timeAxis && data.timeAxis->axis == axis;
@@ -163,7 +163,7 @@ std::vector<Command> timeAlongCommands(Workbench& workbench) {
     return commands;
 }
 
-/// Of the parameter shown first, as new parameters; the list of derived ones offers further times.
+/// Adds differences of the parameter shown first to other times; the list of derived parameters offers further ones.
 std::vector<Command> differenceCommands(Workbench& workbench) {
     const auto command = [&workbench](const char* name, const char* help, volume::OtherTime which) -> Command {
         return {

@@ -13,8 +13,8 @@ bool hasCamera(const Session& session, const std::string& pane) {
     return found != session.views.end() && traitsOf(found->second).camera;
 }
 
-/// The stack a new view opens in: that of the pane the hand is on, unless it is too narrow to read; then the largest
-/// that hides no picture in space. 0: none.
+/// The stack in which a new view opens: that of the active pane, unless it is too narrow; then the largest that shows
+/// no picture in space. 0: none.
 int stackFor(const Session& session, const std::string& beside, const std::map<int, DockRect>& rects, float scale) {
     int chosen = 0;
     float largest = 0;
@@ -102,7 +102,7 @@ void PaneHost::drawPane(const ViewContext& frame, const std::string& pane, int r
     if (cameraPane_ == pane) context.cameraKey = std::exchange(cameraKey_, 0);
     if (frame.headless) context.offerExport = [&](ViewExport made) { exports_[pane] = std::move(made); };
     ImGui::PushID(pane.c_str());
-    // By its index: drawing may take the view out of the session.
+    // By the index taken before, since drawing may remove the view from the session.
     forEachViewKind([&, at = std::size_t(0), index = found->second.index()]<class Kind>(const Kind&) mutable {
         if (at++ == index) Kind::draw(context, pane, std::get<typename Kind::State>(found->second));
     });

@@ -12,41 +12,41 @@
 
 namespace tessera::app {
 
-/// The panes of the window: the dock they stand in, what their views keep between frames, and which one the hand is on.
+/// The panes of the window: their dock, the caches of their views, and the active pane.
 class PaneHost {
 public:
     using Caches = std::map<std::string, std::unique_ptr<ViewCache>>;
 
-    /// Where panes are drawn in the window, and what is said where there is none.
+    /// The area of the window for panes, and the text shown if there are none.
     struct Area {
         ImVec2 origin, size; ///< pixels
         std::string only;    ///< this pane alone, without its strip of tabs; "" = the session's dock
         std::string none;
     };
-    /// Draws every pane that is on top; views edit frame.session. `frame` has what all views share.
+    /// Draws every visible pane; views edit frame.session. `frame` is the context that all views share.
     void draw(const ViewContext& frame, const Area& area);
 
     Caches& caches() { return caches_; }
-    /// What the view of a pane keeps between frames; null before it was drawn.
+    /// The cache of a pane's view; null before it was drawn.
     const ViewCache* cache(const std::string& pane) const;
-    /// What the view of a pane can be exported as, headless; null where it offers nothing.
+    /// The exports that the view of a pane offers, headless; null if there are none.
     const ViewExport* exported(const std::string& pane) const;
-    /// Forgets what views have made of data that are no longer shown.
+    /// Drops the caches of views, after other data were installed.
     void forget() { caches_.clear(); }
 
-    /// Opens a view as a tab beside the pane the hand is on, or where there is room for it.
+    /// Opens a view as a tab in the stack of the active pane, or where there is room for it.
     void open(Session& session, const ViewState& view, float scale);
     /// The pane that commands are for: the one that fills the window, else the one under the mouse, else the one
     /// clicked last; "" = none.
     std::string current(const Session& session) const;
-    /// The view that the camera's commands are for: the one used last if it is on screen, else the first that is.
+    /// The target of camera commands: the view used last if it is on screen, else the first one that is.
     std::string space(const Session& session) const;
-    /// The view that the camera's commands are for answers to a key as if pressed over its picture, in the next frame.
+    /// Sends a key to the target of camera commands in the next frame, as if pressed over its picture.
     void pressCameraKey(const Session& session, int key);
-    /// True where a view on screen plays the session by itself.
+    /// True if a view on screen advances the session's time itself.
     bool plays(const Session& session) const;
 
-    /// Of the last frame: a view needs another one soon; one waits for a program of the renderer.
+    /// State of the last frame: a view needs another frame soon; a view waits for a shader program.
     bool busy() const { return busy_; }
     bool compiling() const { return compiling_; }
     /// Failures of views since the last call.
@@ -62,10 +62,10 @@ private:
     std::map<std::string, ViewExport> exports_; ///< by pane, headless
     DockHand hand_;
     std::string focused_, hovered_;
-    std::string lastSpace_;              ///< the view of the scene that the hand was on last
+    std::string lastSpace_;              ///< the view of the scene used last
     std::set<std::string> drawn_, last_; ///< panes of the frame being drawn, and of the last
-    std::string cameraPane_;             ///< the one that cameraKey_ is for
-    int cameraKey_ = 0;                  ///< of a camera command, 0 = none
+    std::string cameraPane_;             ///< the target of cameraKey_
+    int cameraKey_ = 0;                  ///< key of a camera command, 0 = none
     bool busy_ = true, compiling_ = false;
     std::vector<std::string> messages_;
 };

@@ -35,7 +35,7 @@ void drawJob(Jobs& jobs, const Jobs::Status& job, const std::string& text, float
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("Cancel; what is shown does not change");
 }
 
-/// At the right, the newest last, as many as have room.
+/// The jobs at the right, the newest last, as many as fit.
 void drawJobs(Jobs& jobs, float scale, bool icons) {
     const float whole = ImGui::GetMainViewport()->Size.x, bar = 120 * scale, cross = ImGui::GetFontSize() * 1.4f;
     float x = whole - 10 * scale;

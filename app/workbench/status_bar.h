@@ -11,7 +11,8 @@ namespace tessera::app {
 
 /// What is shown: "channel   128 × 64 × 64 CC   6 parameters, 11 times"; "No data".
 std::string dataText(const Sources& sources);
-/// How much of it the GPU holds: "   textures 12.5 of 512 MiB, 96 bricks, 4 to come"; "" = nothing yet.
+/// Texture memory used, and bricks loaded and waiting: "   textures 12.5 of 512 MiB, 96 bricks, 4 to come"; "" if
+/// nothing is loaded.
 std::string residencyText(const vis::ResidencyInfo& use);
 
 /// Draws a text at the left, and the jobs at the right, each with a button that cancels it. `height` in pixels, `scale`

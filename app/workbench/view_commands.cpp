@@ -8,7 +8,7 @@
 #include <cmath>
 #include <imgui.h>
 
-/// The menus View and Layout: which views are open, where, and how they look.
+/// The menus View and Layout: opening and arranging views, and their appearance.
 namespace tessera::app {
 
 namespace {
@@ -101,7 +101,7 @@ void addCameraCommands(std::vector<Command>& commands, Workbench& workbench) {
              .keyInView = true});
 }
 
-/// Every view open, arranged as at first.
+/// Opens every view in the default arrangement.
 void resetArrangement(Workbench& workbench) {
     Session& session = workbench.session();
     const Session fresh = defaultSession(workbench.document().info(), session.data);

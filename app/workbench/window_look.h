@@ -4,7 +4,7 @@
 
 namespace tessera::app {
 
-/// Fonts and style of the window, for the display it is on and the looks that the session wants.
+/// Fonts and style of the window, for the scale of the display and the appearance settings of the session.
 class WindowLook {
 public:
     /// Before ImGui::NewFrame. True when the font atlas changed and must be uploaded.

@@ -26,7 +26,7 @@ Workbench::Workbench(WorkbenchOptions options)
             {options_.headless, options_.stateFolder, options_.program, options_.growthInterval},
             [this](std::optional<vis::SameSamples> grown) {
                 renderer_->setSource(source(), grown.value_or(vis::SameSamples{}));
-                if (!grown) panes_.forget(); // of data that have grown views keep what they have made
+                if (!grown) panes_.forget(); // views keep their caches if the data have only grown
             }),
       files_(jobs_) {
     if (!options_.headless) {
@@ -48,7 +48,7 @@ double Workbench::now() const {
 }
 
 void Workbench::open(OpenRequest request) {
-    // Nothing is asked, and so perhaps given up, for what cannot be opened anyway.
+    // Refuse what cannot be opened before asking whether to discard the session.
     for (const std::string& path : request.paths) {
         const bool pattern = path.find_first_of("*?[") != std::string::npos;
         std::error_code unknown;
@@ -111,8 +111,8 @@ void Workbench::recover(const Recovery& recovery) {
         request.paths = {recovery.path};
         auto opened = std::make_shared<Opened>(app::open(request, progress));
         return [this, opened, recovery] {
-            opened->sessionPath.clear(); // the kept file is no place to save to
-            // Kept until its data are found.
+            opened->sessionPath.clear(); // the autosave is not a file to save to
+            // Keep the autosave until its data are found.
             if (!opened->missing.empty()) return missing_.show(std::move(*opened));
             install(std::move(*opened));
             document_.setUnsaved();
@@ -195,7 +195,7 @@ void Workbench::frame() {
 }
 
 void Workbench::pressKeys() {
-    // Also not in the frame whose Esc has just closed a menu: it would clear the brushes as well.
+    // Ignore keys also in the frame whose Esc has just closed a menu: it would clear the brushes as well.
     const bool popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId);
     if (!options_.headless && !files_.shown() && !popup && !popupShown_) runShortcuts(commands_);
     popupShown_ = popup;

@@ -17,27 +17,27 @@
 #include <string>
 #include <vector>
 
-/// The workbench: one document, and what surrounds its views. Knows nothing of windows: the platform makes an ImGui
-/// context and a GL context current, calls prepare(), starts ImGui's frame, calls frame(), and draws.
+/// The workbench: one document with its views, menus, messages and dialogs. Independent of windows: the platform makes
+/// an ImGui context and a GL context current, calls prepare(), starts ImGui's frame, calls frame(), and draws.
 namespace tessera::app {
 
 struct WorkbenchOptions {
     std::shared_ptr<vis::Renderer> renderer = {}; ///< null: one of its own
     vis::RendererOptions render = {};             ///< for one of its own
-    bool headless = false;        ///< pictures: no messages, dialogs or remembered files; every frame is finished
-    std::string onlyPane = {};    ///< shows this pane alone, without its strip
-    bool controls = false;        ///< with its rows of tools, headless too
-    std::string stateFolder = {}; ///< recent files and autosave; "" remembers nothing
+    bool headless = false; ///< for pictures: no messages, dialogs or remembered files; every frame is drawn to the end
+    std::string onlyPane = {};              ///< shows this pane alone, without its strip
+    bool controls = false;                  ///< with its rows of tools, headless too
+    std::string stateFolder = {};           ///< recent files and autosave; "" remembers nothing
     std::string program = "/proc/self/exe"; ///< is run as a child to pack
-    /// How often an archive that is shown is looked at for new times.
+    /// Interval of checks for new times in the archives shown.
     std::chrono::milliseconds growthInterval = std::chrono::seconds(1);
-    /// How often what has been edited is kept for the case that the program ends by itself.
+    /// Interval of autosaves.
     std::chrono::milliseconds autosaveInterval = std::chrono::seconds(10);
     /// Called after each pane is drawn, for measurements: `behind` while it still shows an older state of the session.
     std::function<void(const std::string& pane, bool behind)> paneDrawn = {};
 };
 
-/// Makes a picture of a session; the platform knows how.
+/// Renders a picture of a session; implemented by the platform.
 using TakePicture = std::function<vis::Image(const SessionDocument&, const Sources&, std::shared_ptr<vis::Renderer>,
                                              const PictureRequest&)>;
 
@@ -64,14 +64,14 @@ public:
     /// Opens in the background, after asking whether to save what has changed; what is shown stays until the new data
     /// are ready.
     void open(OpenRequest request);
-    /// Opens the session that a text is, as open() does. Throws Error where it is none.
+    /// Opens a session from its text, as open() does. Throws Error if it is not one.
     void openText(const std::string& text);
     /// Takes over what open() of app/data returned, at once.
     void install(Opened opened);
     /// Saves where the session was saved before, else asks where.
     void save() { saveThen({}); }
     void saveAs();
-    /// Asks to end, and to save first if there is something to save.
+    /// Quits, after asking whether to save changes.
     void requestQuit();
     void message(const std::string& text, bool failure = false) { messages_.add(text, failure); }
 
@@ -91,7 +91,7 @@ public:
     Session& session() { return document_.session(); }
     const History& history() const { return document_.history(); }
     std::shared_ptr<const volume::BrickSource> source() const { return document_.sources().pictures; }
-    /// What numbers are read from.
+    /// The source of numbers.
     std::shared_ptr<const volume::BrickSource> numbers() const { return document_.sources().numbers; }
     const NumberOrigin& origin() const { return document_.sources().origin; }
     std::shared_ptr<vis::Renderer> renderer() const { return renderer_; }
@@ -107,7 +107,7 @@ private:
         std::string path;
     };
 
-    /// Does what gives the session up: at once, or after asking whether to save what has changed.
+    /// Runs an action that discards the session: at once, or after asking whether to save changes.
     void leave(std::function<void()> go);
     void start(const OpenRequest& request);
     /// Opens a session with the data it names, or asks for those that are missing.
@@ -145,7 +145,7 @@ private:
     HelpDialogs help_;
     std::vector<Command> commands_;
     CommandPalette palette_;
-    std::function<void()> chosen_; ///< picked this frame, run before the next one
+    std::function<void()> chosen_; ///< command chosen in this frame, run before the next one
 
     std::optional<PictureJob> picture_;
     bool quit_ = false, busy_ = true;

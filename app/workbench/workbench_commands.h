@@ -4,14 +4,14 @@
 
 #include <vector>
 
-/// The commands of the workbench, a list for each menu: what the program can do, by which name and key. Each refers to
-/// the workbench it was made for.
+/// The commands of the workbench, one list for each menu, with their names and keys. They refer to the workbench they
+/// were made for.
 namespace tessera::app {
 
 class Workbench;
 
 std::vector<Command> fileCommands(Workbench& workbench);
-/// Those that calculate with times as well, which are in no menu.
+/// Commands that compare times; they are in no menu.
 std::vector<Command> editCommands(Workbench& workbench);
 std::vector<Command> viewCommands(Workbench& workbench);
 std::vector<Command> layoutCommands(Workbench& workbench);

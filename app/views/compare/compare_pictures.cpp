@@ -14,7 +14,7 @@ namespace tessera::app {
 
 namespace {
 
-/// Files named without their place lie beside those of the session.
+/// Files named without a folder are in the folder of the session's data.
 DataRef located(DataRef data, const DataRef& session) {
     std::string folder;
     if (!session.files.empty()) folder = std::filesystem::path(session.files[0].absolutePath).parent_path().string();
@@ -26,8 +26,8 @@ DataRef located(DataRef data, const DataRef& session) {
     return data;
 }
 
-/// Why the data of a variant cannot be had, "" if they can: files have the samples they have, an archive has them as
-/// they were packed.
+/// Why a variant cannot have these data, "" if it can: only built-in models have a choice of size, and archives keep
+/// the lattice and options they were packed with.
 std::string whyNot(const DataRef& wanted, const DataRef& session) {
     if (wanted.files.empty() || wanted.files != session.files) return {};
     if (wanted.settings != session.settings) return "only built-in models can have another size";
@@ -122,7 +122,7 @@ void ComparePictures::drawCell(ViewContext& context, const std::string& pane, st
     const double share = double(scene.render.limits.frameTime) / double(std::max<std::size_t>(cells_.size(), 1));
     request.budgetMs = first ? share : double(scene.render.limits.frameTime);
     if (!first && !request.wait && cell.sizeShown == size && refined_ != index && !cell.status.complete) {
-        cell.drawn = context.busy = true; // as it is until its turn comes
+        cell.drawn = context.busy = true; // shown as it is until its turn
         return;
     }
     cell.sceneShown = scene;
@@ -226,12 +226,12 @@ void ComparePictures::draw(ViewContext& context, const std::string& pane, const 
             }
         }
         drawCell(context, pane, i, size, moving);
-        // What could not be opened is not tried again while the variant asks for it.
+        // Data that could not be opened are not tried again while the variant is unchanged.
         if (cell.data && cell.data->data == cell.session.data) cell.data->used = true;
     }
     std::erase_if(data_, [](const auto& data) { return !data->used; });
-    // One picture after the other is refined with the frame's whole time: sharing it would cost each its beginning anew
-    // in every frame.
+    // Refine one picture at a time with the whole time of the frame: sharing it would repeat each picture's setup in
+    // every frame.
     for (std::size_t i = 0; i < cells_.size() && cells_[refined_ % cells_.size()]->final(); ++i)
         refined_ = (refined_ + 1) % cells_.size();
     for (std::size_t i = 0; i < cells_.size(); ++i) {

@@ -15,7 +15,7 @@
 /// drawn by the window's renderer; other data, opened in the background, by renderers of their own.
 namespace tessera::app {
 
-/// Data of variants that are not those of the session.
+/// Data of a variant that differ from those of the session.
 struct CompareData {
     struct Opened {
         std::shared_ptr<const volume::BrickSource> source;
@@ -27,7 +27,7 @@ struct CompareData {
     std::shared_ptr<const volume::BrickSource> source; ///< null while it opens
     std::unique_ptr<vis::Renderer> renderer;
     std::string failure;
-    std::vector<std::string> messages; ///< of opening it, not yet passed on
+    std::vector<std::string> messages; ///< from opening it, not yet shown
     bool used = false;
 };
 
@@ -55,7 +55,7 @@ struct CompareCell {
     vis::Scene sceneShown;
     glm::ivec2 sizeShown{0};
 
-    // What was read back of a finished picture, and what came of it.
+    // Pixels of the finished picture, and the measures computed from them.
     vis::Scene imageOf;
     std::shared_ptr<const volume::BrickSource> imageSource;
     std::shared_ptr<const vis::Image> image;
@@ -63,7 +63,7 @@ struct CompareCell {
     Measuring measuring{{.answers = 1}};
     std::shared_ptr<const Measuring::Answer> measured; ///< of its picture and the reference's
 
-    // Samples of the first layer beside those of the reference: of what, and what came of it.
+    // Comparison of the first layer's samples with the reference's: its inputs and result.
     AsyncQuery<CompareQuery, std::optional<volume::SourceDifference>> counting{{.answers = 1}};
     CompareQuery samplesOf;
     std::optional<volume::SourceDifference> samples;
@@ -78,7 +78,7 @@ struct CompareCell {
     }
     bool isMeasured() const { return measured && measured->query.image == image; }
     bool showsDifference() const { return shownOf && shownOf->query.image == image; }
-    /// Nothing is left to draw.
+    /// True if nothing is left to draw.
     bool final() const { return !failure.empty() || (drawn && status.complete); }
     bool finished() const { return drawn && status.complete && image; }
 };
@@ -90,14 +90,14 @@ public:
               std::size_t reference, glm::ivec2 size, bool moving);
     std::vector<std::shared_ptr<CompareCell>>& cells() { return cells_; }
     const std::vector<std::shared_ptr<CompareCell>>& cells() const { return cells_; }
-    /// How many there are besides the window's.
+    /// Number of renderers besides the window's.
     int renderers() const;
     /// Fills the pictures of the differences, brightest at `top` of 255, or at the largest where `top` is 0; returns
     /// the one used.
     double showDifferences(double top, std::size_t reference);
     /// Finds how the values of the first layers differ from the reference's; returns the largest difference of all.
     double findValues(ViewContext& context, const std::string& pane, std::size_t reference);
-    /// The table, as far as it is known.
+    /// The rows of the table, as far as they are known.
     std::vector<CompareRow> rows(const ViewContext& context, std::size_t reference) const;
 
 private:
@@ -106,7 +106,7 @@ private:
     void measure(ViewContext& context, const std::string& pane, std::size_t index, std::size_t reference);
     void measureSamples(ViewContext& context, const std::string& pane, std::size_t index, std::size_t reference);
 
-    std::size_t refined_ = 0;                      ///< the cell that has the frame's time
+    std::size_t refined_ = 0;                      ///< index of the cell being refined
     std::list<std::shared_ptr<CompareData>> data_; ///< before the cells: their targets go first
     std::vector<std::shared_ptr<CompareCell>> cells_;
 };

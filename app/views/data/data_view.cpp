@@ -60,7 +60,7 @@ std::string sizeText(const volume::DatasetInfo& info) {
     return text;
 }
 
-/// What pictures are drawn from, where that is a choice.
+/// Chooses the lattice of pictures, if there is a choice.
 void chooseLattice(DataRef& data) {
     static constexpr const char* kShown[] = {"the grid of the file", "body-centred, 70.7 % of the samples"};
     ImGui::TableNextRow();
@@ -266,7 +266,7 @@ void drawDataView(ViewContext& context, const std::string& pane, DataView&) {
     if (!query.channels.empty()) result = cache.answers.get(context, "summary " + pane, query);
     ImGui::BeginChild("data");
     if (ImGui::CollapsingHeader("Data set", ImGuiTreeNodeFlags_DefaultOpen)) drawSummary(context);
-    // Above what is computed from them, which comes and goes while a formula is edited.
+    // Above the derived parameters, whose height changes while a formula is edited.
     if (ImGui::CollapsingHeader("Derived parameters", ImGuiTreeNodeFlags_DefaultOpen))
         drawDerivedList(context, cache.derived);
     if (ImGui::CollapsingHeader("Selection", ImGuiTreeNodeFlags_DefaultOpen)) drawSelection(context, result.get());

@@ -52,7 +52,8 @@ std::string differenceName(const volume::DatasetInfo& info, const volume::Differ
     return recipe.channel + " minus " + volume::timeText(recipe.reference(), info);
 }
 
-/// A difference that has the name and the unit it was given keeps to what is chosen: a name must be true.
+/// Renames a difference that still has its generated name and unit when its parameters change, so that the name stays
+/// correct.
 void followRecipe(volume::DerivedParameter& own, const volume::DerivedParameter& before,
                   const volume::DatasetInfo& info) {
     const auto *is = std::get_if<volume::DifferenceRecipe>(&own.recipe),
@@ -81,7 +82,7 @@ void drawOne(ViewContext& context, DerivedDraft& draft, std::size_t index, int& 
     const volume::DerivedParameter before = own;
     draft.edited |= std::visit([&](auto& recipe) { return drawDescribed(recipe, widgets); }, own.recipe);
     followRecipe(own, before, info);
-    // Not while typing: it would lie over what is wrong with the formula.
+    // Not while typing: it would cover the error message of the formula.
     if (std::holds_alternative<volume::ExpressionRecipe>(own.recipe) && ImGui::IsItemHovered() &&
         !ImGui::IsItemActive())
         tooltip("Parameters by name (special names in `back quotes`), x y z t, + - * / ^, comparisons, a ? b : c, abs "

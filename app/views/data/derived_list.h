@@ -6,8 +6,8 @@
 /// The panel of parameters computed from others.
 namespace tessera::app {
 
-/// What the panel edits; taken over into the session when no field is held any more, so that half a formula is never
-/// computed.
+/// The edited parameters; copied to the session when no field is active any more, so that an incomplete formula is
+/// never computed.
 struct DerivedDraft {
     std::vector<volume::DerivedParameter> parameters;
     std::vector<std::string> problems; ///< of each, for `checked`

@@ -100,7 +100,7 @@ void drawNothingCommon(ImDrawList& draw, const PlotFrame& frame) {
         plotColors().frame, text);
 }
 
-/// What a bin says of the parameter that colours it: its mean, or the region where all samples are of one.
+/// Text for a bin's colour: the mean of the parameter, or the region if all samples are in one.
 std::string thirdText(const volume::DatasetInfo& info, const std::string& colorBy, double mean) {
     const auto channel = info.findChannel(colorBy);
     if (!channel || !volume::parameterOf(info, *channel).categorical)
@@ -184,7 +184,7 @@ void drawOutliers(ImDrawList& draw, const PlotFrame& frame, const volume::JointH
 }
 
 ImU32 meanColor(const vis::TransferFunction& function, Range range, double mean) {
-    // The mean of two labels is none of them.
+    // The mean of two labels has no meaning.
     constexpr double kOneLabel = 0.01;
     if (function.colormap == "labels" && std::abs(mean - std::round(mean)) > kOneLabel) return toColor({0.5, 0.5, 0.5});
     const glm::dvec4 color = vis::evaluate(function, range, mean);

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-/// What stands in the cells of a scatterplot matrix, besides the density pictures.
+/// The contents of the cells of a scatterplot matrix, except for the density pictures.
 namespace tessera::app {
 
 /// Position of a pair among the joint histograms, -1 for a histogram.
@@ -18,8 +18,8 @@ void drawHistogram(ImDrawList& draw, const PlotFrame& frame, const volume::Histo
 void drawCorrelation(ImDrawList& draw, const PlotFrame& frame, const volume::JointHistogram& joint, bool brushed,
                      ImU32 focusShade);
 
-/// Parameters that never exist at the same point, like oxygen and hydrogen: said, so that the plot does not look
-/// broken.
+/// Text for parameters that are never present at the same point, such as oxygen and hydrogen, so that the empty plot
+/// does not look broken.
 void drawNothingCommon(ImDrawList& draw, const PlotFrame& frame);
 
 /// A dot on every bin that holds few samples and has empty ones around it: one pixel there would not be seen.

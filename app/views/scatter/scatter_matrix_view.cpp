@@ -187,7 +187,7 @@ bool drawPlot(ViewContext& context, ScatterCache& cache, ScatterMatrixView& view
     const int joint = result ? jointIndex(result->statistics, column, row) : -1;
     if (joint >= 0 && texture) {
         if (result->statistics.joint[static_cast<std::size_t>(joint)].samples == 0) drawNothingCommon(draw, frame);
-        // At the range it was counted over: while the plot is zoomed the next one is still being counted.
+        // Draw it over the range it was counted for: after a zoom the next one is still being counted.
         const volume::JointHistogram& counted = result->statistics.joint[static_cast<std::size_t>(joint)];
         const ImVec2 low = frame.pixel(counted.xRange.lo, counted.yRange.lo),
                      high = frame.pixel(counted.xRange.hi, counted.yRange.hi);
@@ -274,7 +274,7 @@ void drawCells(ViewContext& context, ScatterCache& cache, ScatterMatrixView& vie
         }
 }
 
-/// The parameters compared, and the ranges they are shown over; not yet where.
+/// The parameters compared and their ranges, without positions.
 ScatterLayout matrixOf(const volume::DatasetInfo& info, const ScatterMatrixView& view) {
     ScatterLayout matrix;
     matrix.channels = chosenChannels(info, view.channels, kMostPlots);
@@ -308,7 +308,7 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
         matrix.ranges.front() = own.range;
         bins = own.count;
     }
-    // Esc clears, wherever in the view the mouse is; during a drag it belongs to the drag.
+    // Esc clears the brushes, wherever in the view the mouse is; during a drag it cancels the drag.
     if (!cache.drag.active && ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows) && keyPressed(key::kEscape))
         context.session.selection.brushes.clear();
     updateReadout(context, pane, cache.readout);

@@ -100,7 +100,7 @@ std::string matrixSvg(const volume::DatasetInfo& info, const StatisticsResult& r
     return figureSvg(panels, 3);
 }
 
-/// What is seldom changed: the colours, the axes that are derived, exports.
+/// The menu of rarely changed settings: colours, derived axes, exports.
 void drawMore(ViewContext& context, ScatterMatrixView& view, const std::vector<int>& shown,
               const std::shared_ptr<const StatisticsResult>& result) {
     const volume::DatasetInfo& info = context.numbers->info();
@@ -133,8 +133,8 @@ void drawMore(ViewContext& context, ScatterMatrixView& view, const std::vector<i
         [info, result](const Progress&) { return matrixCsv(info, *result); });
 }
 
-/// The end of the line: what is in focus, and the button that clears the brushes. Without brushes its place stays, or
-/// the plots would move under the mouse while the first one is drawn.
+/// The end of the line: the share in focus, and the button that clears the brushes. Their space is reserved even
+/// without brushes: else the plots would move under the mouse while the first brush is drawn.
 void drawShare(Session& session, const ViewContext& context, const StatisticsResult* result) {
     const bool brushes = !session.selection.brushes.empty();
     const float button = ImGui::GetFrameHeight(), gap = em() * 0.3f;
@@ -154,7 +154,7 @@ void drawShare(Session& session, const ViewContext& context, const StatisticsRes
     }
     const float textRoom = room - (brushes ? button + gap : 0);
     while (!texts.empty() && ImGui::CalcTextSize(texts.front().c_str()).x > textRoom &&
-           (texts.size() > 1 || !brushes)) // the share itself is never left out
+           (texts.size() > 1 || !brushes)) // the share itself is always shown
         texts.erase(texts.begin());
     if (!texts.empty()) {
         ImGui::SetCursorPosX(place.x + room - std::min(textRoom, ImGui::CalcTextSize(texts.front().c_str()).x));

@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
-/// The faces of the shadow-projection cube as they lie on screen.
+/// Draws the faces of the shadow cube.
 namespace tessera::app {
 
-/// All that one frame of the shadow cube looks at.
+/// The inputs of one frame of the shadow cube.
 struct CubeFrame {
     const volume::DatasetInfo& info;
     ImVec2 min, size;

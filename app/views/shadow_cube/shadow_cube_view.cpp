@@ -47,7 +47,7 @@ std::string kindName(WallKind kind) {
     return kNames[static_cast<std::size_t>(kind)];
 }
 
-/// What the face under the mouse reads, with its unit, beside the mouse.
+/// Draws the value of the face under the mouse, with its unit, beside the mouse.
 void drawReading(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache, const ShadowCubeView& view,
                  const FaceHit& hit, ImVec2 mouse) {
     const Wall& wall = wallOf(view, hit.face);
@@ -115,7 +115,7 @@ void dragBrush(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& ca
             prism(face, cache.start, end, frame.info.bounds);
 }
 
-/// What a button that goes down begins.
+/// Begins a drag when a button is pressed.
 CubeDrag beginDrag(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache, const ShadowCubeView& view) {
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) return CubeDrag::Zoom;
@@ -211,7 +211,7 @@ void drawToolbar(ViewContext& context, const volume::DatasetInfo& info, ShadowCu
     }
 }
 
-/// Draws the faces that are seen; returns the channels with a legend.
+/// Draws the visible faces; returns the channels that need a legend.
 std::set<int> drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache,
                         const ShadowCubeView& view, bool moving) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
@@ -307,7 +307,7 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     }
     std::vector<LegendEntry> legends;
     for (const int channel : walls) legends.push_back(legendOf(session, info, channel));
-    // At the top, where no face has its title.
+    // At the top, where faces have no titles.
     drawLegends(draw, legends, frame.min, frame.max(), LegendCorner::Top);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     if (const auto hit = hovered ? frame.hit(mouse) : std::nullopt; hit && frame.onData(*hit))

@@ -65,7 +65,7 @@ const Wall& wallOf(const ShadowCubeView& view, std::size_t face) {
 bool facesViewer(const CubeFace& face, glm::dvec3 half, const vis::Camera& camera) {
     const vis::Ray middle = vis::cameraRay(camera, 1, {0, 0});
     const double outward = face.upper ? 1 : -1;
-    // Seen from within: the way from the eye to the face runs outwards.
+    // Visible from inside: the direction from the eye to the face points outwards.
     if (camera.projection == vis::Projection::Orthographic) return middle.direction[face.axis] * outward > 0;
     return (outward * half[face.axis] - middle.origin[face.axis]) * outward > 0;
 }
@@ -164,7 +164,7 @@ vis::BoxRegion prism(const CubeFace& face, glm::dvec3 from, glm::dvec3 to, const
     vis::BoxRegion region;
     region.center = (a + b) / 2.0;
     region.radius = glm::max(glm::abs(b - a) / 2.0, 1e-9 * bounds.size());
-    // Through and through: samples on the box's own faces belong to it.
+    // Slightly beyond the data, so that samples on the faces of their box are inside.
     region.radius[face.axis] *= 1.001;
     return region;
 }

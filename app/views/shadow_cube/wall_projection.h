@@ -6,10 +6,10 @@
 #include <array>
 #include <optional>
 
-/// Faces of the shadow cube: what they show as a scene of the renderer, and what a place of them reads as a number.
+/// Faces of the shadow cube: their projections as scenes of the renderer, and as numbers at a position.
 namespace tessera::app {
 
-/// A face: the axis it stands on and its end, and the axes that run to the right and up on it.
+/// A face: the axis it is perpendicular to, at which end, and the axes that run to the right and up on it.
 struct CubeFace {
     int axis = 0;
     bool upper = false;
@@ -23,9 +23,9 @@ inline constexpr std::array<CubeFace, 6> kCubeFaces = {
     {{0, false}, {0, true}, {1, false}, {1, true}, {2, false}, {2, true}}};
 const Wall& wallOf(const ShadowCubeView& view, std::size_t face);
 
-/// Whether the inner side of a face is turned to the viewer: then it lies behind what is in the cube.
+/// Whether the inner side of a face is turned to the viewer, so that it is behind the contents of the cube.
 bool facesViewer(const CubeFace& face, glm::dvec3 half, const vis::Camera& camera);
-/// The inner sides at a ray's end: the visible face that it meets, and where.
+/// The visible face that a ray meets, and where.
 struct FaceHit {
     std::size_t face = 0;
     double s = 0, t = 0; ///< world
@@ -38,13 +38,13 @@ std::optional<FaceHit> hitFace(const vis::Ray& ray, glm::dvec3 half, const vis::
 vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, WallKind kind, const CubeFace& face,
                      const vis::WorldFrame& world, glm::vec3 shadow);
 
-/// What a face reads behind a physical position: the value at the cursor's plane, the mean or maximum along the box,
-/// the absorbed share (0..1) by the transfer function, or the greatest degree of interest. The means are of linear
-/// interpolation, the trapezoidal sum over the grid on CC. Nothing where nothing is present. Throws Error.
+/// The value that a face shows at a physical position: the value at the cursor's plane, the mean or maximum along the
+/// box, the absorbed share (0..1) by the transfer function, or the greatest degree of interest. Means are integrals of
+/// the linear interpolation: on CC the trapezoidal sum over the grid. Nothing if all samples are absent. Throws Error.
 std::optional<double> readWall(const volume::BrickSource& source, const Session& session, int channel, WallKind kind,
                                const CubeFace& face, glm::dvec3 position, int time);
 
-/// A box that reaches through the data behind the rectangle between two physical positions of a face.
+/// The box through the data behind a rectangle of a face, given by two physical positions.
 vis::BoxRegion prism(const CubeFace& face, glm::dvec3 from, glm::dvec3 to, const volume::Box& bounds);
 
 } // namespace tessera::app

@@ -17,7 +17,7 @@ constexpr double kLeastLength = 2; ///< of a line that is labelled, in widths of
 constexpr double kRepeat = 40;     ///< length of line for each further label
 constexpr double kBend = 0.16;     ///< how far a line may leave the middle of its text
 constexpr double kRoom = 0.3;      ///< on either side of a text
-constexpr int kTries = 24;         ///< best places that are looked at for what is in the way
+constexpr int kTries = 24;         ///< number of best places that are tested for collisions
 
 double wedge(glm::dvec2 a, glm::dvec2 b) {
     return a.x * b.y - a.y * b.x;
@@ -77,7 +77,7 @@ bool meets(const LineLabel& label, glm::dvec2 from, glm::dvec2 to) {
     return first <= last;
 }
 
-/// Two boxes are apart where an edge of either has all of the other beyond it.
+/// Separating axis test: two boxes are disjoint if an edge of either has all of the other beyond it.
 bool overlap(const LineLabel& a, const LineLabel& b) {
     const auto parted = [](const LineLabel& one, const LineLabel& other) {
         glm::dvec2 least(HUGE_VAL), most(-HUGE_VAL);

@@ -8,7 +8,7 @@ namespace tessera::app {
 namespace {
 
 constexpr ImU32 kInk = IM_COL32(12, 12, 12, 245), kHalo = IM_COL32(255, 255, 255, 110),
-                kTextHalo = IM_COL32(255, 255, 255, 150); // laid over itself from all sides
+                kTextHalo = IM_COL32(255, 255, 255, 150); // drawn several times around the text
 
 void layOut(ContourCache& cache, const Contours& contours, double step, const PlotFrame& frame, glm::dvec2 perUnit) {
     std::vector<PageLine> lines;

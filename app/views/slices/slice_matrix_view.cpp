@@ -27,7 +27,7 @@ SliceAxes axesOf(volume::SpaceAxis axis, const vis::WorldFrame& world) {
     return out;
 }
 
-/// Where plane `index` of `count` lies: in the middle of its share of the box.
+/// Position of plane `index` of `count`: the middle of its share of the box.
 double planePosition(const volume::Box& bounds, int axis, int index, int count) {
     return bounds.lo[axis] + bounds.size()[axis] * (index + 0.5) / count;
 }

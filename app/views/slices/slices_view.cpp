@@ -21,7 +21,7 @@ namespace {
 struct SlicesCache : ViewCache {
     std::array<vis::ViewTargetPtr, 3> targets;
     int dragging = -1;
-    int lens = -1; ///< that is dragged, in place of the cursor
+    int lens = -1; ///< being dragged instead of the cursor
     std::array<HandleDrag, 3> handles;
     std::array<ContourCache, 3> contours;
     Readout readout;
@@ -68,7 +68,7 @@ void addInnerSlices(vis::Scene& scene, const Session& session, const vis::SliceL
         }
 }
 
-/// The lines that a view draws itself, not the picture: those of another parameter and those with values.
+/// The contour lines that the view draws instead of the renderer: those of another parameter and those with labels.
 struct DrawnContours {
     std::optional<int> channel; ///< nothing: none
     ContourLevels levels;
@@ -200,7 +200,7 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const std::string& pane
     draw.PopClipRect();
 }
 
-/// What the lines are of, and whether their values are written.
+/// Chooses the parameter of the lines, and whether they are labelled.
 void chooseContours(const volume::DatasetInfo& info, SlicesView& view) {
     continueLine(em() * 8);
     ImGui::SetNextItemWidth(em() * 8);
@@ -287,7 +287,7 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     LegendEntry legend = legendOf(context.session, info, *channel);
     updateReadout(context, pane, cache.readout);
     if (const auto value = cache.readout.value(name)) legend.marker = *value;
-    // Where the table does not fit below the legend, the values come first and in running lines.
+    // If the table does not fit below the legend, the values come first, as running text.
     const std::string note = contourNote(info, view, lines);
     const float legends = legendBarHeight() + (note.empty() ? 0 : ImGui::GetTextLineHeightWithSpacing());
     const bool compact = view.showReadout && legends + readoutHeight(cache.readout) > ImGui::GetContentRegionAvail().y;

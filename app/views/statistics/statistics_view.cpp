@@ -79,8 +79,8 @@ std::string statisticsCsv(const std::shared_ptr<const volume::BrickSource>& sour
     return csv;
 }
 
-/// Begins a table whose heads stay, with the first `frozen` columns: stretched where every text has room, else as wide
-/// as its texts, to be scrolled: half a number is a wrong one.
+/// Begins a table whose heads stay, with the first `frozen` columns: stretched to the width if all texts fit, else as
+/// wide as its texts with a scroll bar: a truncated number would be wrong.
 bool beginTable(const char* id, const std::vector<std::string>& heads,
                 const std::vector<std::vector<std::string>>& rows, int frozen, ImVec2 size) {
     std::vector<float> widths;
@@ -88,14 +88,14 @@ bool beginTable(const char* id, const std::vector<std::string>& heads,
     for (std::size_t c = 0; c < heads.size(); ++c) {
         float width = ImGui::CalcTextSize(heads[c].c_str()).x;
         for (const std::vector<std::string>& row : rows) width = std::max(width, ImGui::CalcTextSize(row[c].c_str()).x);
-        widths.push_back(width + em()); // a mark of the region's colour, or air
+        widths.push_back(width + em()); // space for the mark in the region's colour
         wanted += widths.back() + 2 * ImGui::GetStyle().CellPadding.x + 1;
     }
     const bool room = wanted <= ImGui::GetContentRegionAvail().x;
     const ImGuiTableFlags flags =
         ImGuiTableFlags_RowBg | ImGuiTableFlags_PadOuterX | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerV |
         (room ? ImGuiTableFlags_SizingStretchProp : ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX);
-    // A table keeps the widths it had: the other way is another table.
+    // ImGui stores the widths per table, so each layout has an id of its own.
     const std::string name = id + std::string(room ? "" : " scrolled");
     if (!ImGui::BeginTable(name.c_str(), static_cast<int>(heads.size()), flags, size)) return false;
     ImGui::TableSetupScrollFreeze(frozen, 1);

@@ -12,7 +12,7 @@ std::shared_ptr<const volume::Samples4> AsyncSamples::get(ViewContext& context, 
          .title = "Samples of the tesseract",
          .quiet = true,
          .duringEdits = true,
-         // Other values of the same samples come soon enough; nothing at all is worth a first picture.
+         // Show the coarsest level first only if there is no picture yet.
          .firstLevel = last_ ? 0 : 1},
         query,
         [](const std::shared_ptr<const volume::BrickSource>& source, const TesseractQuery& asked, int level,

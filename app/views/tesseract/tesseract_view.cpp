@@ -230,7 +230,7 @@ bool updateCloud(ViewContext& context, const std::string& pane, TesseractCache& 
     const auto samples = cache.answers.get(context, "tesseract " + pane, {query, now});
     if (!samples) return false;
     const bool fits = samples->channels == static_cast<int>(query.channels.size());
-    if (!fits) return cache.style.has_value(); // of other parameters: what is drawn stays until the new ones come
+    if (!fits) return cache.style.has_value(); // samples of other parameters: keep drawing the former cloud
     if (samples != cache.samples || !cache.style || *cache.style != style) {
         cache.points = vis::makeCloud(*samples, style);
         cache.cloud.upload(cache.points);
@@ -376,7 +376,7 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
         cache.texture = cache.cloud.draw(cloud);
         cache.drawn = cloud;
     }
-    if (quick && cloud.share < 1) context.busy = true; // the whole of it once it rests
+    if (quick && cloud.share < 1) context.busy = true; // draw all points once it is at rest
 
     draw.PushClipRect(min, max, true);
     draw.AddRectFilled(min, max, palette().plot);

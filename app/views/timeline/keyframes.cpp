@@ -97,7 +97,7 @@ void drawTrack(ViewContext& context, std::size_t index, const Row& row) {
         ImGui::PopID();
     }
     if (movedTo) {
-        // One key never passes another: the mouse would hold the wrong one.
+        // A key cannot pass another one: the mouse would then hold the wrong one.
         const double gap = session.animation.duration * 1e-3;
         const double lo = moved > 0 ? keys[moved - 1].at + gap : 0,
                      hi = moved + 1 < keys.size() ? keys[moved + 1].at - gap : session.animation.duration;

@@ -10,7 +10,7 @@ namespace tessera::app {
 void advance(Playback& playback, Animation& animation, double& time, const std::vector<double>& times, double seconds) {
     const int count = static_cast<int>(times.size());
     if (!animation.playing || count < 2) return;
-    // A long pause (a hidden window, a debugger) must not make it jump.
+    // A long pause (a hidden window, a debugger) must not skip times.
     playback.steps += std::min(seconds, 0.5) * static_cast<double>(animation.speed);
     int index = 0;
     for (int i = 1; i < count; ++i)

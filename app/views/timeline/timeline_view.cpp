@@ -73,7 +73,7 @@ std::string placeText(const std::vector<double>& times, double time) {
     return "between " + std::to_string(pair.earlier + 1) + " and " + std::to_string(pair.later + 1) + count;
 }
 
-/// The axis that times are counted by: what the data state, or a quantity over time.
+/// Chooses the time axis: that of the data, or a quantity over time.
 void chooseAxis(ViewContext& context, const volume::DatasetInfo& info) {
     std::string& axis = context.session.data.axis;
     if (info.quantities.empty() && axis.empty()) return;

@@ -90,7 +90,7 @@ void drawRegionPage(ViewContext& context, RegionPage& page, vis::TransferFunctio
             page.picture.upload({result->histogram.valueBins, result->histogram.gradientBins},
                                 derivativeImage(result->histogram, page.dark));
         }
-        // Where its samples lie, though the plane may have changed since they were counted.
+        // Drawn over the ranges it was counted for, which may have changed since.
         const ImVec2 a = frame.pixel(result->histogram.range.lo, result->histogram.gradientTop),
                      b = frame.pixel(result->histogram.range.hi, 0);
         draw.AddImage(textureId(page.picture.name()), a, b);

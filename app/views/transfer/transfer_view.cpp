@@ -74,7 +74,7 @@ void drawStrip(ViewContext& context, TransferCache& cache, vis::TransferFunction
         const glm::dvec4 c = vis::evaluate(function, {0, 1}, x);
         return toColor({c.r, c.g, c.b});
     };
-    // Values beyond the range get the colour of its end: shown, but fainter in height.
+    // Values beyond the range get the colour of its end, drawn lower.
     const float inset = (max.y - min.y) * 0.3f;
     if (lo > min.x) draw.AddRectFilled({min.x, min.y + inset}, {lo, max.y - inset}, end(0));
     if (hi < max.x) draw.AddRectFilled({hi, min.y + inset}, {max.x, max.y - inset}, end(1));
@@ -113,7 +113,7 @@ void drawPlot(ViewContext& context, TransferCache& cache, const TransferView& vi
     const volume::Channel channel = info.channel(index);
     vis::TransferFunction& function = transferOf(context.session, functionName(context.session, view, channel.name));
     const Range data = info.channelRange(channel), range = vis::effectiveRange(function, data);
-    // An axis that grew with the range it shows would carry the end away from the mouse that holds it.
+    // Keep the axis while an end is dragged: else it would grow with the range and move the end away from the mouse.
     if (cache.rangeEnd == 0)
         cache.bins = histogramBins(info, index,
                                    paddedRange({std::min(data.lo, range.lo), std::max(data.hi, range.hi)}, 0.03), 192);
@@ -225,12 +225,12 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
         drawPlot(context, cache, view, info, now, pane);
         return;
     }
-    if (cache.shown != name) { // what was held or made belongs to the other function
+    if (cache.shown != name) { // drop the state of the other function
         cache.shown = name;
         cache.regions.drag = {};
         cache.boundaries.from.reset();
     }
-    if (cache.source != context.numbers) { // gone on: what was made stays until something is changed
+    if (cache.source != context.numbers) { // other data: keep the curve until something is changed
         cache.source = context.numbers;
         cache.boundaries.from.reset();
     }

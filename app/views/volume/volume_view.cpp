@@ -54,7 +54,7 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis:
         camera.projection = parallel ? vis::Projection::Orthographic : vis::Projection::Perspective;
     ImGui::Separator();
     const bool along = timeAxisOf(context.session, context.source->info()) != nullptr;
-    if (along || !context.session.data.timeAxis) { // places in the plane at all times are no places in space
+    if (along || !context.session.data.timeAxis) { // positions in a plane over time are not positions in space
         drawBrushMenu(context);
         ImGui::Separator();
         drawLensMenu(context);
@@ -109,7 +109,7 @@ public:
         request.wait = context_.headless;
         if (!cache_.target) cache_.target = context_.renderer.makeTarget();
         vis::Scene scene = cache_.scene.get(context_, pane, request.moving);
-        // In motion a third of the frame is left to what else is drawn.
+        // In motion a third of the frame time is left to other views.
         if (request.moving) request.budgetMs = double(scene.render.limits.frameTime) * 2 / 3;
         scene.showBox = view_.showBox;
         const vis::FrameStatus status = context_.renderer.render(*cache_.target, scene, request);
@@ -157,7 +157,7 @@ private:
         return moving;
     }
 
-    /// What lies in space besides the scene.
+    /// Draws lines and handles in space, besides the scene.
     void drawObjects(const SpaceFrame& space) {
         if (view_.showCursor) drawCursor3d(*list_, space, session_.cursor);
         drawSpaceBrushes(*list_, space, session_.selection);
@@ -194,7 +194,7 @@ private:
             taken_.push_back(drawScaleBar(*list_, {left, max().y - em() * 0.5f}, bar));
     }
 
-    /// Says how the data are stretched, and in a picture for a report the state shown.
+    /// Writes the stretch of the data, and in exported pictures the time shown.
     void drawTexts() {
         if (const std::string text = stretchText(session_.stretch); !text.empty()) {
             const ImVec2 at{max().x - em() * 0.5f, picture_.min.y + em() * 0.4f},
