@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kNoMean = std::numeric_limits<double>::quiet_NaN();
 
-/// An empty histogram of a query.
+/// An empty histogram for a query.
 DerivativeHistogram emptyHistogram(const BrickSource& source, const DerivativeQuery& query) {
     DerivativeHistogram out;
     out.valueBins = query.valueBins;
@@ -49,14 +49,15 @@ void add(DerivativeHistogram& to, const Derivatives& at) {
     ++to.samples;
 }
 
-/// A brick with samples around it, and the part of each of them; no parts: all are of one.
+/// A brick with a border, and the parts of its samples; no parts: all in one.
 struct Surrounded {
     BrickSamples samples;
     int halo = 1; ///< of each sublattice
     std::vector<std::uint8_t> parts;
 };
 
-/// The samples of one brick that have all their neighbours; those of other parts are continued from its own.
+/// Counts the samples of one brick that have all neighbours; neighbours in other parts are extrapolated from its own
+/// part.
 void addBrick(DerivativeHistogram& to, const BrickGrid& grid, const BrickKey& key, const Surrounded& brick) {
     const LatticeKind kind = grid.lattice.kind;
     const glm::ivec3 slices(1, 1, kind == LatticeKind::BCC ? 2 : 1);
@@ -86,7 +87,7 @@ void addBrick(DerivativeHistogram& to, const BrickGrid& grid, const BrickKey& ke
             }
 }
 
-/// The brick with what its derivatives need around it.
+/// The brick with the border that its derivatives need.
 Surrounded surrounded(const BrickGrid& grid, BrickKey key, const ReadSamples& read,
                       const std::optional<PartLabel>& label) {
     if (!label) return {gather(grid, key, 1, read), 1, {}};
@@ -108,7 +109,7 @@ DerivativeHistogram derivativeHistogram(const BrickSource& source, const Derivat
     std::vector<DerivativeHistogram> slabs(static_cast<std::size_t>(bricks.z), out);
     std::atomic<int> done = 0;
     parallelFor(slabs.size(), [&](std::size_t z) {
-        // A slab looks at the bricks of its neighbours too: each is decoded once per slab.
+        // A slab reads bricks of neighbouring slabs too: the cache decodes each once per slab.
         std::map<std::array<int, 4>, BrickSamples> read;
         const auto once = [&](const BrickKey& key) {
             const auto [entry, added] = read.try_emplace({key.index.x, key.index.y, key.index.z, key.channel});
@@ -125,7 +126,7 @@ DerivativeHistogram derivativeHistogram(const BrickSource& source, const Derivat
         }
         progress.advance(double(++done) / double(slabs.size()), "derivatives");
     });
-    for (const DerivativeHistogram& slab : slabs) { // in order, so that sums come out the same every time
+    for (const DerivativeHistogram& slab : slabs) { // in order, so that sums are reproducible
         for (std::size_t i = 0; i < out.count.size(); ++i) {
             out.count[i] += slab.count[i];
             out.second[i] += slab.second[i];

@@ -21,7 +21,7 @@ public:
         for (int j = 0; j + 1 < plane_.size.y; ++j)
             for (int i = 0; i + 1 < plane_.size.x; ++i) cross(i, j);
         std::vector<ContourLine> out;
-        // Lines with ends first: what is left then are rings.
+        // Open lines first: the remaining ones are closed.
         for (const bool ring : {false, true})
             for (std::size_t edge = 0; edge < next_.size(); ++edge)
                 if (next_[edge][0] >= 0 && (ring || next_[edge][1] < 0)) out.push_back(follow(int(edge)));
@@ -44,7 +44,7 @@ private:
     void link(int a, int b) {
         for (const auto& [from, to] : {std::array{a, b}, std::array{b, a}}) {
             auto& ends = next_[std::size_t(from)];
-            assert(ends[1] < 0); // an edge lies between two cells, each has one line over it
+            assert(ends[1] < 0); // an edge is between two cells, each with one line across it
             ends[ends[0] < 0 ? 0 : 1] = to;
         }
     }
@@ -52,7 +52,8 @@ private:
     /// The lines through one cell.
     void cross(int i, int j) {
         if (!whole(i, j)) return;
-        const bool corner[] = {above(i, j), above(i + 1, j), above(i + 1, j + 1), above(i, j + 1)}; // all around
+        const bool corner[] = {above(i, j), above(i + 1, j), above(i + 1, j + 1),
+                               above(i, j + 1)}; // in order around the cell
         const int edge[] = {int(node(i, j)) * 2, int(node(i + 1, j)) * 2 + 1, int(node(i, j + 1)) * 2,
                             int(node(i, j)) * 2 + 1}; // between a corner and the next
         std::array<int, 4> met{};
@@ -62,7 +63,7 @@ private:
         if (count == 2) link(edge[met[0]], edge[met[1]]);
         if (count < 4) return;
         const double mean = (value(i, j) + value(i + 1, j) + value(i, j + 1) + value(i + 1, j + 1)) / 4;
-        // Each line cuts one corner off: those on the other side of the level than the middle.
+        // Each line cuts off one corner that is on the other side of the level than the centre.
         const int first = (mean >= level_) == corner[0] ? 1 : 0;
         for (const int cut : {first, first + 2}) link(edge[(cut + 3) % 4], edge[cut % 4]);
     }

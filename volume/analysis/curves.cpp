@@ -44,12 +44,12 @@ Terms termsOf(const DatasetInfo& info) {
                 {Term::What::Statistic, static_cast<int>(c), static_cast<Kind>(kind)});
     add("time", {});
     if (info.timeName != "time") add(info.timeName, {});
-    for (std::size_t q = 0; q < info.quantities.size(); ++q) // of equal names the later counts
+    for (std::size_t q = 0; q < info.quantities.size(); ++q) // of equal names the last one is used
         add(info.quantities[q].name, {Term::What::Quantity, static_cast<int>(q), {}});
     return out;
 }
 
-/// Of a parameter's values times volumes: mol/m3 in a cell measured in mm are 1e-9 mol.
+/// Factor for values times volumes in the unit of lengths: mol/m3 times mm3 are 1e-9 mol.
 ComposedUnit integralUnit(const DatasetInfo& info, int channel) {
     const std::array<UnitPower, 2> factors{{{info.channel(channel).unit, 1}, {info.lengthUnit, 3}}};
     return composedUnit(factors);
@@ -71,7 +71,7 @@ std::string withoutBlanks(const std::string& text) {
     return out;
 }
 
-/// A formula, what it names, and its unit: of a name alone, or of two with "*" or "/" between.
+/// A formula with its inputs and its unit, which is known for a single name, or two joined by "*" or "/".
 struct Formula {
     std::string text, unit;
     Expression expression;
@@ -94,7 +94,7 @@ struct Formula {
             }
     }
 
-    /// The unit of a product where the numbers stay as they are; V times A is W.
+    /// The unit of a product if no conversion factor is needed; V times A is W.
     static std::string product(const std::string& a, const std::string& b, int power) {
         if (power > 0)
             for (const auto& [volts, current] : {std::pair(&a, &b), std::pair(&b, &a)})
@@ -211,7 +211,7 @@ CellQuantities cellQuantities(const DatasetInfo& info) {
         return text;
     };
     std::vector<Quantity> known = info.quantities;
-    known.push_back({info.timeName, info.timeUnit, info.times}); // a series by voltage
+    known.push_back({info.timeName, info.timeUnit, info.times}); // e.g. the voltage of a series of operating points
     CellQuantities cell;
     // A stated unit takes precedence over a name.
     for (const bool byUnit : {true, false})

@@ -41,7 +41,7 @@ template <class Value> std::vector<double> everySample(const Lattice& lattice, c
     return values;
 }
 
-/// The samples of a signal, filtered where the filter wants it.
+/// The samples of a signal, prefiltered if the filter requires it.
 SampledPart samplesOf(const std::function<double(glm::dvec3)>& signal, LatticeKind kind, double spacing,
                       LatticeFilter filter, const Box& box) {
     SampledPart part;
@@ -142,7 +142,8 @@ LatticeError latticeError4(const std::function<double(glm::dvec4)>& signal, Latt
     if (prefilter) series = prefiltered(series);
     series = remembering(series, 4);
 
-    constexpr std::size_t kTimes = 64; // points share times, so that frames are blended once
+    constexpr std::size_t kTimes =
+        64; // number of distinct times: points share them, so that frames are blended once per time
     std::mt19937_64 random(seed);
     const auto uniform = [&] { return 0.25 + 0.5 * double(random() >> 11) * 0x1p-53; };
     std::vector<double> times(kTimes);

@@ -11,7 +11,7 @@ namespace tessera::volume {
 
 namespace {
 
-/// A histogram of fractional samples.
+/// A histogram with fractional counts.
 class NotedBins {
 public:
     NotedBins(Range range, int bins)
@@ -19,7 +19,7 @@ public:
 
     /// Adds the samples of a brick: in each of its bins spread over the values that can occur there.
     void add(const BrickDistribution& brick) {
-        constexpr double kFewValues = 64; // in a bin; more are as good as a continuum
+        constexpr double kFewValues = 64; // in a bin; more values are treated as continuous
         const double lo = brick.range.lo, extent = brick.range.hi - lo, bins = double(brick.counts.size());
         if (extent <= 0) return put(lo, double(brick.samples));
         const double steps = brick.step > 0 ? std::round(extent / brick.step) : 0;
@@ -60,7 +60,7 @@ private:
         if (!(value >= range_.lo && value <= range_.hi)) return;
         mass_[std::min(std::size_t(placeOf(value)), mass_.size() - 1)] += mass;
     }
-    /// Evenly over values from one to another; what lies outside the range is in no bin.
+    /// Adds a uniform distribution over an interval of values; values outside of the range are not counted.
     void spread(double from, double to, double mass) {
         const double a = placeOf(from), b = placeOf(to), bins = double(mass_.size());
         if (range_.hi <= range_.lo || b <= a) return put(0.5 * (from + to), mass);
@@ -86,7 +86,7 @@ struct NotedSums {
         sum += n * (brick.mean - shift);
         min = std::min(min, brick.range.lo);
         max = std::max(max, brick.range.hi);
-        // About the brick's own mean: samples lie evenly in its bins.
+        // About the brick's mean, assuming a uniform distribution within each of its bins.
         const double width = (brick.range.hi - brick.range.lo) / double(brick.counts.size());
         double moment = 0, second = 0;
         for (std::size_t b = 0; b < brick.counts.size(); ++b) {

@@ -8,7 +8,7 @@ namespace tessera::volume {
 
 namespace {
 
-/// Of one brick: region r of R regions, then everything as region R.
+/// Sums over one brick, for each of R regions, then for all samples as region R.
 struct BrickRegions {
     std::vector<double> samples, volume;
     std::vector<Sums> sums; ///< [region * channels + channel]

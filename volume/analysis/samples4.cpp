@@ -25,7 +25,7 @@ double samplesAt(const BrickGrid& grid, int level) {
 }
 
 int chooseLevel(const BrickGrid& grid, double times, double budget) {
-    constexpr double kMost = 8; // samples read for one that is kept
+    constexpr double kMost = 8; // most samples read per sample kept
     return grid.levelWithin(kMost * budget / times);
 }
 
@@ -70,7 +70,7 @@ Samples4 gatherSamples(const BrickSource& source, const SamplesQuery& query, boo
                                                               : std::numeric_limits<float>::quiet_NaN());
             }
         }
-    // By hash: neighbours in the data lie far apart in the list.
+    // Sorted by hash, so that neighbours in the data are far apart in the list.
     std::vector<std::uint32_t> index(order.size());
     std::iota(index.begin(), index.end(), 0u);
     std::sort(index.begin(), index.end(),

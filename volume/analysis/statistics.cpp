@@ -19,7 +19,7 @@ namespace tessera::volume {
 
 namespace {
 
-constexpr std::size_t kTogether = 8192; ///< samples of seven channels fit the second cache
+constexpr std::size_t kTogether = 8192; ///< samples at a time: those of seven channels fit the L2 cache
 
 class Accumulator {
 public:
@@ -171,7 +171,7 @@ private:
         return sums;
     }
 
-    /// Adds a stretch of a brick to every pair while its columns are in the processor's cache.
+    /// Adds a run of samples to every pair while its values are in the processor's cache.
     void addPairs(const std::vector<Column>& columns, const std::vector<std::uint64_t>& packed, const Stretch& all,
                   const std::vector<float>& inside, BinSet& bins, BrickSums& sums) const {
         const Stretch focus{all.begin, all.end, inside.data()};
@@ -192,7 +192,7 @@ private:
         }
     }
 
-    /// Adds the value of a third channel to the bins of a pair, as integers: they add up the same in any order.
+    /// Adds the value of a third channel to the bins of a pair, as integers, whose sum does not depend on the order.
     void addThird(Bins& bins, const Column& x, const Column& y, const Column& third, const Stretch& stretch) const {
         const Range& range = ranges_[std::size_t(query_.meanOf)];
         const double scale = range.hi > range.lo ? 65535 / (range.hi - range.lo) : 0;
@@ -243,7 +243,8 @@ private:
             channel.histogram.range = ranges_[c];
             unpack(bins.channels[c], 1, channel.histogram.count, channel.histogram.focus);
             channel.all = all.summary(shifts_[c]);
-            channel.all.samples = std::round(channel.all.samples); // whole: d + (1 - d) each
+            channel.all.samples =
+                std::round(channel.all.samples); // an integer, since each sample contributes d + (1 - d)
             channel.inside = inside.summary(shifts_[c]);
             channel.outside = outside.summary(shifts_[c]);
             out.channels.push_back(std::move(channel));

@@ -21,7 +21,7 @@ struct Helpers : tbb::task_scheduler_observer {
 void workInBackground() {
     constexpr int kNiceness = 10;
     const auto thread = id_t(gettid());
-    if (getpriority(PRIO_PROCESS, thread) >= kNiceness) return; // as it began: not to be raised
+    if (getpriority(PRIO_PROCESS, thread) >= kNiceness) return; // already low; never raise a priority
     // If the system refuses, priorities stay as they are.
     [[maybe_unused]] const int refused = setpriority(PRIO_PROCESS, thread, kNiceness);
 }

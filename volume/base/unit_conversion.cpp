@@ -76,7 +76,7 @@ constexpr std::pair<std::string_view, double> kPrefixes[] = {
     {"n", 1e-9}, {"u", 1e-6}, {"\u00b5", 1e-6}, {"\u03bc", 1e-6}, {"m", 1e-3}, {"c", 1e-2},
     {"d", 1e-1}, {"h", 1e2},  {"k", 1e3},       {"M", 1e6},       {"G", 1e9}};
 
-/// Scales whose zero lies elsewhere: kelvin = factor * value + offset.
+/// Temperature scales with another zero: kelvin = factor * value + offset.
 struct Scale {
     std::string_view name;
     UnitConversion toKelvin;
@@ -101,7 +101,7 @@ std::optional<UnitConversion> toKelvin(const std::string& unit) {
     return found == std::end(kScales) ? std::nullopt : std::optional(found->toKelvin);
 }
 
-/// A unit as a factor and powers of base units and of names that are not known.
+/// A unit as a factor times powers of base units and of unknown names.
 struct Read {
     double factor = 1;
     BasePowers powers{};

@@ -23,7 +23,7 @@ void multiply(Powers& into, const std::string& name, int power) {
     into.emplace_back(name, power);
 }
 
-/// Reads one unit; `at` runs over the text.
+/// Parses one unit; `at` is the position in the text.
 class UnitReader {
 public:
     explicit UnitReader(std::string_view text) : text_(text) {}

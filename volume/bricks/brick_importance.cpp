@@ -21,7 +21,8 @@ constexpr int kTones = 256;
 struct Sums {
     double weight = 0, value = 0, square = 0, details = 0, axes = 0;
     int samples = 0;
-    std::array<std::array<double, kTones>, 2> tones{}; ///< by turns, as one would wait for the one before
+    std::array<std::array<double, kTones>, 2>
+        tones{}; ///< two, used alternately: the additions do not wait for each other
 
     static std::size_t toneOf(float value01) { return std::size_t(std::min(int(value01 * kTones), kTones - 1)); }
     void add(float sample01, double w) {
@@ -32,7 +33,7 @@ struct Sums {
         tones[0][toneOf(sample01)] += w;
         ++samples;
     }
-    /// The same of `count` values of one weight.
+    /// The same for `count` values with equal weight.
     void add(const float* values, int count, double w) {
         constexpr int kTurns = 4; // as one sum would wait for the one before
         std::array<double, kTurns> first{}, second{};
@@ -107,7 +108,7 @@ void addRow(const Smoothed& from, int begin, int end, int y, int z, bool border,
     sums.add(row[count - 1], borderWeight);
 }
 
-/// Adds what a sublattice has of the brick whose samples are [begin, end) of the halved one.
+/// Adds the samples of a sublattice in the brick that covers [begin, end) of the halved one.
 void addBrick(const Smoothed& from, glm::ivec3 begin, glm::ivec3 end, double borderWeight, Sums& sums) {
     const std::size_t steps[] = {1, std::size_t(from.size.x), std::size_t(from.size.x) * std::size_t(from.size.y)};
     for (int z = begin.z; z < end.z; ++z)
@@ -137,7 +138,7 @@ void addBrick(const Smoothed& from, glm::ivec3 begin, glm::ivec3 end, double bor
         }
 }
 
-/// Of labels: the entropy of their numbers.
+/// For labels: the entropy of their values.
 BrickImportance importanceOfLabels(const BrickGrid& grid, const Field& field, glm::ivec3 brick) {
     const glm::ivec3 begin = grid.begin(brick), end = grid.end(brick);
     std::map<double, std::size_t> counts;
@@ -162,7 +163,7 @@ BrickImportance importanceOfLabels(const BrickGrid& grid, const Field& field, gl
     return {std::min(entropy, 1.0f), std::min(entropy, 1.0f)};
 }
 
-/// Range of present, finite samples, and whether there are others.
+/// Range of the present, finite samples, and whether all samples are such.
 struct Extent {
     Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     bool gaps = false;
@@ -257,7 +258,7 @@ struct OwnImportance {
             bricks[number] = sums.result();
         });
     }
-    /// The same of labels, whose parts have no margins.
+    /// The same for labels, which need no margins.
     void takeLabels(const Field& part, int layer, int end) const {
         BrickGrid own = grid;
         own.lattice = part.lattice;
@@ -269,8 +270,8 @@ struct OwnImportance {
     static constexpr int kMargin = 4; ///< reach of the details of smoothed samples
 };
 
-/// Of all bricks of a frame. `forParts(margin, visit)` calls visit(part, first texel, layer, end) for parts of the
-/// frame that together hold all layers of bricks, with `margin` texels more on both sides.
+/// Importance of all bricks of a frame. `forParts(margin, visit)` calls visit(part, first texel, layer, end) for parts
+/// of the frame that together hold all layers of bricks, with `margin` texels more on both sides.
 std::vector<BrickImportance> importanceOfParts(const BrickGrid& grid, Range range, bool categorical,
                                                const ImportanceOptions& options, const auto& forParts) {
     const glm::ivec3 count = grid.count();

@@ -120,7 +120,7 @@ private:
     struct Box {
         glm::ivec3 begin, end;
         Spread spread;
-        bool whole; ///< not part of another yet
+        bool whole; ///< not yet merged into another box
     };
     struct Pair {
         double width;

@@ -127,7 +127,7 @@ BrickSamples gather(const BrickGrid& grid, const BrickKey& key, int halo,
     BrickSamples out;
     out.size = {own.x + 2 * halo, own.y + 2 * halo, perTexel * ((own.z + perTexel - 1) / perTexel + 2 * halo)};
 
-    // For each axis: where each output sample comes from, as brick offset (-1, 0, 1, ...) and sample within that brick.
+    // For each axis, the origin of each output sample: brick offset (-1, 0, 1, ...) and sample within that brick.
     struct Origin {
         int brick, sample;
     };

@@ -9,7 +9,7 @@ namespace tessera::volume {
 namespace {
 
 /// The block of fine samples behind one level sample: mean of the present ones, or for labels the most frequent (the
-/// smallest of equals). Present when at least half of the block is.
+/// smallest of equals). Present if at least half of the block is.
 struct LevelBlock {
     bool categorical;
     double sum = 0;
@@ -51,7 +51,7 @@ struct LevelBlock {
 /// Means of step^3 samples of a sublattice, or of as many as there are, into the samples of `out`.
 void meansOf(const BrickSamples& fine, int step, int slices, BrickSamples& out) {
     const auto width = std::size_t(out.size.x), fineWidth = std::size_t(fine.size.x);
-    const std::size_t whole = fineWidth / std::size_t(step); // of all means, those of whole steps
+    const std::size_t whole = fineWidth / std::size_t(step); // number of means over complete steps
     std::vector<double> sums(width);
     float* to = out.values.data();
     for (int z = 0; z < out.size.z; ++z) {

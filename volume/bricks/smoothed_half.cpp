@@ -16,7 +16,7 @@ constexpr int kBinomial[] = {1, 4, 6, 4, 1}; // of 16 along each axis
 constexpr int kTapReach = 2;
 constexpr float kAllWeights = 16 * 16 * 16;
 
-/// Row `y` of slice `k` of a field as parts of a range, and whether each is there.
+/// Row `y` of slice `k` of a field, scaled to a range, with presence flags.
 struct PartRows {
     const Field& field;
     double lo, scale; ///< part = (value - lo) * scale
@@ -42,13 +42,13 @@ struct PartRows {
     }
 };
 
-/// Five numbers in a row, fiveWeighted. Of bytes the sums of two axes fit 16 bits: 256 * 255.
+/// Applies fiveWeighted along a row. For bytes the sums over two axes fit 16 bits: 256 * 255.
 template <class Sum> Sum fiveWeighted(Sum a, Sum b, Sum c, Sum d, Sum e) {
     return static_cast<Sum>((a + e) + Sum(kBinomial[1]) * (b + d) + Sum(kBinomial[2]) * c);
 }
 
 /// Slices of the sublattice halved along x and y, then along z, where `finish` makes values of sums with the weights of
-/// all three axes. `read(slice, y, room)` gives a row, in the room given or where it lies.
+/// all three axes. `read(slice, y, room)` gives a row, in the given buffer, or in place.
 template <class Number, class Sum, class Read, class Finish>
 std::vector<float> halved(glm::ivec3 size, const Read& read, const Finish& finish) {
     const glm::ivec3 half = (size + 1) / 2;

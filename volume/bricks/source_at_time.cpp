@@ -38,7 +38,7 @@ public:
         if (label_[std::size_t(key.channel)]) return near;
         const bool later = time_.nearest() == time_.later;
         const BrickSamples far = source_->read(at(key, later ? time_.earlier : time_.later));
-        const double weight = later ? 1 - time_.weight : time_.weight; // of the farther one
+        const double weight = later ? 1 - time_.weight : time_.weight; // weight of the farther time
         std::vector<std::uint8_t> nearParts, farParts;
         if (const auto& [channel, parts] = parts_[std::size_t(key.channel)]; channel) {
             BrickKey label = key;

@@ -15,11 +15,11 @@ namespace tessera::volume {
 
 namespace {
 
-constexpr double kRangeSamples = 3e6; // looked at to find a range, over all times
+constexpr double kRangeSamples = 3e6; // samples read to find a range, over all times
 
 class DerivedSource final : public BrickSource {
 public:
-    /// `known`: its ranges; empty: compute them.
+    /// `known`: the ranges; empty: compute them.
     DerivedSource(std::shared_ptr<const BrickSource> source, DerivedParameter derived, const Progress& progress,
                   std::vector<Range> known = {})
         : below_(std::move(source)), bricks_(below_, derived.recipe), derived_(std::move(derived)),

@@ -40,7 +40,7 @@ void setAbsent(BrickSamples& samples, std::size_t i) {
     samples.present[i] = 0;
     samples.values[i] = 0;
 }
-/// Results that are not numbers are absent.
+/// Makes results that are not finite absent.
 void set(BrickSamples& samples, std::size_t i, double value) {
     const auto narrow = float(value);
     if (std::isfinite(narrow))
@@ -51,7 +51,7 @@ void set(BrickSamples& samples, std::size_t i, double value) {
 
 constexpr int kTimeName = -4; // FormulaNames::channel
 
-/// The values of a channel at the time that a formula or a difference means.
+/// The time that a formula or a difference refers to.
 class InputTime {
 public:
     InputTime(std::shared_ptr<const BrickSource> source, int channel, const TimeReference& reference)
@@ -73,13 +73,13 @@ public:
         key.time = between_ ? 0 : times(key.time)->earlier;
         return (between_ ? between_ : source_)->read(key);
     }
-    /// Whether it is unchanged in a brick between both times, as far as known without reading.
+    /// Whether the channel is known, without reading, to be unchanged in a brick between both times.
     bool stays(BrickKey key, int toTime) const {
         const std::optional<TimePair> from = times(key.time), to = times(toTime);
         if (from == to) return true;
         if (!from || !to) return false;
         key.channel = channel_;
-        key.time = from->earlier; // all but fixed ones are stored times
+        key.time = from->earlier; // only fixed times can be between stored ones
         const std::optional<BrickChange> change = source_->change(key, to->earlier);
         return change && change->max == 0;
     }
@@ -115,7 +115,7 @@ struct DerivedBricks::Impl {
         }
     }
 
-    /// A channel of the source below, at a brick.
+    /// The key of a channel of the source at a brick.
     BrickSamples input(int channel, BrickKey key) const {
         key.channel = channel;
         return inputs_.read(key);
@@ -318,7 +318,7 @@ struct DerivedBricks::Impl {
         return out;
     }
 
-    /// Whether a channel is unchanged in a brick between both times, as far as known without reading.
+    /// Whether a channel is known, without reading, to be unchanged in a brick between both times.
     bool stays(int channel, BrickKey key, int toTime) const {
         key.channel = channel;
         const std::optional<BrickChange> change = source_->change(key, toTime);

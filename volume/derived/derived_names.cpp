@@ -97,7 +97,7 @@ struct Problem {
 
 namespace {
 
-/// Names of what a recipe is made of.
+/// Names of the parameters that a recipe uses.
 struct Inputs {
     const DatasetInfo& info;
     std::vector<std::string> operator()(const ExpressionRecipe& recipe) const {
@@ -119,12 +119,12 @@ struct Inputs {
     std::vector<std::string> operator()(const TimeRecipe&) const { return {}; }
 };
 
-/// Regions that are one part in both.
+/// Regions that belong to one part in both labels.
 Parts refined(const Parts& a, const Parts& b) {
     if (a.count() == 1 || a.label.empty()) return b;
     if (b.count() == 1 || b.label != a.label) return a;
     std::map<std::pair<std::size_t, std::size_t>, std::vector<int>> groups;
-    groups[{0, 0}] = {}; // values in none
+    groups[{0, 0}] = {}; // values without a region
     std::set<int> values;
     for (const Parts* parts : {&a, &b})
         for (const std::vector<int>& region : parts->regions) values.insert(region.begin(), region.end());
@@ -134,7 +134,7 @@ Parts refined(const Parts& a, const Parts& b) {
     return out;
 }
 
-/// Of a label itself: each value is a part.
+/// For a label itself: each value is a part.
 Parts partsOfLabel(const Parameter& label) {
     constexpr double kMost = 64;
     if (label.ranges.empty() || label.ranges[0].hi - label.ranges[0].lo >= kMost) return {};

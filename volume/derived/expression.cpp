@@ -28,7 +28,7 @@ std::string variable(std::size_t input) {
     throw Error(reason, {}, "position " + std::to_string(position + 1));
 }
 
-/// The error that muParser reports, without its replacements for our names.
+/// muParser's error message, with the original names.
 std::string reasonOf(const mu::Parser::exception_type& error) {
     switch (error.GetCode()) {
     case mu::ecUNEXPECTED_OPERATOR:
@@ -77,7 +77,7 @@ struct Translator {
         copy(variable(index), from);
     }
     std::size_t skipBlanks(std::size_t at) const { return std::min(text.find_first_not_of(" \t\n", at), text.size()); }
-    /// The longest name that stands at a place and ends there.
+    /// The longest known name that starts at a position.
     std::optional<int> nameAt(std::size_t at) const {
         std::optional<int> best;
         for (std::size_t i = 0; i < names.size(); ++i) {
@@ -89,7 +89,7 @@ struct Translator {
         }
         return best;
     }
-    /// A name between back quotes, and where it ends.
+    /// A name in back quotes, and its end.
     std::pair<int, std::size_t> quoted(std::size_t at) const {
         const std::size_t end = text.find('`', at + 1);
         if (end == std::string::npos) fail("the closing back quote is missing", at);
@@ -98,13 +98,13 @@ struct Translator {
         if (found == names.rend()) fail("no parameter is named \"" + name + "\"", at);
         return {int(names.rend() - found) - 1, end + 1};
     }
-    /// Whether values at another time begin here: "at" and a parenthesis.
+    /// Whether "at(" starts here, a value at another time.
     bool otherTimeAt(std::size_t at) const {
         if (!otherTimes || text.compare(at, 2, "at") != 0) return false;
         const std::size_t next = skipBlanks(at + 2);
         return next < text.size() && text[next] == '(';
     }
-    /// "first", "0.3", ... and where it ends.
+    /// A time such as "first" or "0.3", and its end.
     std::pair<TimeReference, std::size_t> timeAt(std::size_t at) const {
         std::size_t end = at;
         while (end < text.size() && isWord(text[end])) ++end;
@@ -238,7 +238,7 @@ void Expression::evaluate(std::span<const std::vector<double>> inputs, std::span
     if (out.empty()) return;
     try {
         mu::Parser parser;
-        // Point by point: muParser's own loop would start threads inside of ours.
+        // Evaluate point by point: muParser's bulk mode would start threads within our own.
         std::vector<double> now(variables_.size());
         for (std::size_t i = 0; i < now.size(); ++i) parser.DefineVar(variables_[i], &now[i]);
         parser.SetExpr(translated_);

@@ -34,7 +34,7 @@ double lengthScale(const std::string& from, const std::string& to) {
     if (metres(from) == 0 || metres(to) == 0)
         throw Error("lengths in " + (from.empty() ? "no unit" : from) + " and in " + (to.empty() ? "no unit" : to) +
                     " cannot be compared");
-    // Of two inverse powers of ten one is exact: divide or multiply by that one.
+    // Of a power of ten and its inverse only one is exact: divide or multiply by that one.
     const double ratio = metres(from) / metres(to);
     return ratio >= 1 ? std::round(ratio) : 1 / std::round(1 / ratio);
 }
@@ -43,7 +43,7 @@ bool near(glm::dvec3 a, glm::dvec3 b, glm::dvec3 scale) {
     return glm::all(glm::lessThanEqual(glm::abs(a - b), 1e-6 * glm::abs(scale)));
 }
 
-/// Whether brick for brick the samples of two grids lie at the same places.
+/// Whether two grids have the same bricks with samples at the same positions.
 bool sameSamples(const BrickGrid& a, const BrickGrid& b, double scale) {
     return a.lattice.kind == b.lattice.kind && a.lattice.size == b.lattice.size && a.brickSize == b.brickSize &&
            a.levels == b.levels && a.phase == b.phase &&
@@ -51,7 +51,7 @@ bool sameSamples(const BrickGrid& a, const BrickGrid& b, double scale) {
            near(a.lattice.origin, b.lattice.origin * scale, a.lattice.spacing);
 }
 
-/// Whether two data sets have samples at the same places, however these are cut into bricks.
+/// Whether two data sets have samples at the same positions, in any bricks.
 bool samePlaces(const BrickSource& source, const BrickSource& other) {
     BrickGrid a = other.grid();
     a.brickSize = source.grid().brickSize, a.levels = source.grid().levels, a.phase = source.grid().phase;
@@ -142,7 +142,7 @@ public:
         BrickKey to = key;
         to.time = toTime;
         if (noted(key) && noted(to)) return other_->change(inOther(key), inOther(to).time);
-        // One time beside many.
+        // A single time is compared with every time.
         return times_[std::size_t(key.time)] && other_->info().times.size() == 1 ? std::optional(BrickChange{})
                                                                                  : std::nullopt;
     }
@@ -247,7 +247,7 @@ private:
     SampledOnto onto_;
     SourceAtTime of_, minus_;
     int ofChannel_, minusChannel_;
-    UnitConversion toUnit_; ///< of what is taken away
+    UnitConversion toUnit_; ///< of the subtracted values
     DatasetInfo info_;
 };
 

@@ -13,7 +13,7 @@ std::size_t indexIn(glm::ivec3 size, glm::ivec3 at) {
     return (std::size_t(at.z) * std::size_t(size.y) + std::size_t(at.y)) * std::size_t(size.x) + std::size_t(at.x);
 }
 
-/// The parts of the samples of a brick with a border.
+/// The parts that the samples of a brick with a border belong to.
 std::vector<std::uint8_t> partsAround(const BrickGrid& grid, BrickKey key, int reach, const ReadSamples& read,
                                       const PartLabel& label) {
     key.channel = label.channel;
@@ -65,7 +65,7 @@ namespace {
 /// The interior of a brick with a border of `reach` samples, `own` of them, smoothed by weights along each axis.
 BrickSamples smoothedWithin(const BrickSamples& wide, glm::ivec3 own, int reach, int slices,
                             const std::vector<double>& weights) {
-    // Value times weight, and weight, smoothed along one axis after the other; each pass drops its border.
+    // Smooth weighted values and weights along one axis after the other; each pass consumes its border.
     glm::ivec3 size = wide.size;
     std::vector<double> sum(wide.values.size()), coverage(wide.values.size());
     for (std::size_t i = 0; i < sum.size(); ++i) {

@@ -77,7 +77,7 @@ Field loadAs(const Dataset& dataset, int parameter, int component, int time, con
 
 namespace {
 
-/// `own` if it holds whole numbers from lo to hi, else the smallest type that does; floats if none does.
+/// `own` if it can represent integers from lo to hi, else the smallest type that can, else floats.
 ScalarType typeFor(ScalarType own, Range range) {
     for (const ScalarType type : {own, ScalarType::U8, ScalarType::I16, ScalarType::U16, ScalarType::I32}) {
         const bool holds = dispatch(type, [range]<class T>(T) {
@@ -89,7 +89,7 @@ ScalarType typeFor(ScalarType own, Range range) {
     return ScalarType::F32;
 }
 
-/// The type for the values of an integer parameter; none where its numbers are the values already.
+/// The type for the values of an integer parameter; none if the stored numbers are the values.
 std::optional<ScalarType> typeOfValues(const Dataset& dataset, int parameter, const std::vector<int>& times) {
     const Parameter& what = dataset.info.parameters[std::size_t(parameter)];
     if (what.type == ScalarType::F32 || what.categorical) return std::nullopt;

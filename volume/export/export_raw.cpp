@@ -11,11 +11,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// How absent samples of one component are marked by their stored numbers, which .raw keeps bit for bit.
+/// The stored number that marks absent samples of one component, since .raw keeps stored numbers bit for bit.
 struct Marker {
-    bool works = true;           ///< false: a present sample has the number, or there are several numbers
-    std::optional<double> value; ///< none: nothing is absent, or NaN says it
-    bool converted = false;      ///< some frame is not stored as it is written
+    bool works = true;           ///< false: a present sample has this number, or absent ones have several
+    std::optional<double> value; ///< none: nothing is absent, or NaN marks it
+    bool converted = false;      ///< some frame is converted when written
 };
 
 Marker markerOf(const Dataset& dataset, int parameter, int component, const std::vector<int>& times,
@@ -103,7 +103,7 @@ OrderedJson componentsOf(const DatasetInfo& info, const std::vector<int>& parame
     return components;
 }
 
-/// Writes every frame; gives their bytes.
+/// Writes every frame; returns the bytes written.
 std::uint64_t writeFrames(const Dataset& dataset, const std::vector<int>& parameters, const std::vector<Form>& forms,
                           const std::vector<int>& times, AtomicFile& file, const Progress& progress) {
     double written = 0, done = 0;
@@ -113,8 +113,9 @@ std::uint64_t writeFrames(const Dataset& dataset, const std::vector<int>& parame
             progress.advance(done++ / double(times.size() * parameters.size()), what.name);
             Field field;
             for (int c = 0; c < what.components; ++c) {
-                field = forms[i].converted ? loadAs(dataset, parameters[i], c, t, forms[i].storage)
-                                           : dataset.read(parameters[i], c, t); // absent samples as they are
+                field = forms[i].converted
+                            ? loadAs(dataset, parameters[i], c, t, forms[i].storage)
+                            : dataset.read(parameters[i], c, t); // keeps the stored numbers of absent samples
                 writeField(file, field);
                 written += double(field.samples.size());
             }

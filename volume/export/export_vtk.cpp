@@ -52,7 +52,7 @@ std::string_view vtkName(ScalarType type) {
     return kNames[std::size_t(type)];
 }
 
-/// The samples of a parameter in a file, or its presence flags.
+/// An array of the file: the samples of a parameter, or its presence flags.
 struct Block {
     int parameter;
     Storage storage;
@@ -111,7 +111,7 @@ std::string fieldData(const DatasetInfo& info, const std::vector<int>& parameter
            words("time_unit", info.timeUnit);
 }
 
-/// All before the samples.
+/// The header of the file, up to the samples.
 std::string headOf(const DatasetInfo& info, const std::vector<int>& parameters, const std::vector<Block>& blocks,
                    int time) {
     const Lattice& lattice = info.lattice;
@@ -136,7 +136,7 @@ std::string headOf(const DatasetInfo& info, const std::vector<int>& parameters, 
     return head + "</PointData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_";
 }
 
-/// The samples of a vector, components side by side.
+/// The samples of a vector, components interleaved.
 std::vector<std::byte> tuplesOf(const Dataset& dataset, const Block& block, int time) {
     const int components = dataset.info.parameters[std::size_t(block.parameter)].components;
     const std::size_t bytes = byteSize(block.storage.type), stride = bytes * std::size_t(components);

@@ -14,7 +14,7 @@ double extentOf(const Parameter& parameter) {
 
 namespace {
 
-/// Components, and for vectors the magnitude behind them.
+/// The components; for vectors followed by the magnitude.
 int channelCount(const Parameter& parameter) {
     return parameter.components == 1 ? 1 : parameter.components + 1;
 }

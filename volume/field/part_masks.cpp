@@ -54,7 +54,7 @@ Field withoutParts(Field field) {
 }
 
 Dataset withParts(const Dataset& dataset) {
-    std::vector<int> labels; // of each parameter that of its parts, or -1
+    std::vector<int> labels; // by parameter: the label of its parts, or -1
     std::vector<Parts> parts;
     for (const Parameter& parameter : dataset.info.parameters) {
         labels.push_back(labelOf(dataset.info, parameter));

@@ -34,7 +34,7 @@ struct Part {
     double volume = 0, amount = 0;
 };
 
-/// A brick with a sample of each channel around it.
+/// A brick of each channel with a border of one sample.
 class Around {
 public:
     Around(const BrickSource& source, const BalanceQuery& query, glm::ivec3 index) {
@@ -47,7 +47,7 @@ public:
         if (query.label >= 0) label_.push_back(of(query.label));
     }
     glm::ivec3 size() const { return value_.front().size(); }
-    /// The label of a sample, 0 without one; nothing where it is absent or beyond the lattice.
+    /// The label of a sample, 0 if the data have no label; nothing if it is absent or outside of the lattice.
     std::optional<int> region(glm::ivec3 in, int axis = 0, int steps = 0) const {
         if (label_.empty()) return 0;
         const auto label = label_.front().at(in, axis, steps);
@@ -108,7 +108,7 @@ Crossing RegionBalance::total() const {
 std::vector<RegionBalance> computeBalance(const BrickSource& source, const BalanceQuery& query,
                                           const Progress& progress) {
     const std::vector<int> regions = query.label >= 0 ? query.regions : std::vector<int>{0};
-    // Bricks are read again for their neighbours; the cache does not own the source.
+    // Caches bricks, which are read again as neighbours; does not own the source.
     const BrickCache cache(std::shared_ptr<const BrickSource>(std::shared_ptr<void>(), &source), kCacheBytes);
     const BrickGrid grid = source.grid();
     const SampleCells cells(grid, source.info().bounds, 0);

@@ -22,8 +22,7 @@ struct Step {
     double error;          ///< cells
 };
 
-/// One step of Dormand and Prince from a place and a time with the slope `k1`; empty where the field is missing on the
-/// way.
+/// One step of Dormand and Prince from a place and a time with the slope `k1`; empty if the field is absent on the way.
 std::optional<Step> tryStep(const ChangingField& field, glm::dvec3 from, double time, glm::dvec3 k1, double h,
                             glm::dvec3 cell) {
     const auto k2 = field(from + h * (k1 / 5.0), time + h / 5);

@@ -26,7 +26,7 @@ struct Share {
     double volume; ///< of its cell in the slab, by its thickness
 };
 
-/// The planes, and where the cells of samples meet them.
+/// The planes, and their intersections with the cells of samples.
 class Planes {
 public:
     Planes(const SectionQuery& query, const SampleCells& cells, const BrickGrid& grid)

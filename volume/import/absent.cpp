@@ -79,7 +79,7 @@ bool markNaN(const Field& field, Mask& mask) {
     const auto stored = field.as<float>();
     bool any = false;
     for (std::size_t i = 0; i < stored.size(); ++i)
-        if (!std::isfinite(stored[i])) { // infinities would spoil every sample resampled from them
+        if (!std::isfinite(stored[i])) { // an infinity would spread to every sample resampled from it
             mask[i] = 0;
             any = true;
         }

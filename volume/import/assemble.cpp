@@ -53,7 +53,7 @@ Field inType(Field field, ScalarType type) {
     return out;
 }
 
-/// Fills samples that `into` lacks with those of `from`.
+/// Copies samples of `from` that are absent in `into`.
 void fillFrom(Field& into, const Field& from) {
     if (!into.mask) return;
     const std::size_t bytes = byteSize(into.type);
@@ -67,15 +67,15 @@ void fillFrom(Field& into, const Field& from) {
     into.mask = std::make_shared<const Mask>(std::move(mask));
 }
 
-/// Everything read() needs, shared by its copies.
+/// The state of read(), shared by its copies.
 struct Assembly {
     std::vector<OpenedFile> files;
     std::vector<FileGroup> groups;
     Lattice lattice;
     std::vector<double> times;
     std::vector<Parameter> parameters;
-    std::vector<std::vector<Contribution>> feeds; ///< per parameter; empty = the made label
-    std::vector<std::uint8_t> label;              ///< samples of the made label
+    std::vector<std::vector<Contribution>> feeds; ///< per parameter; empty = the generated label
+    std::vector<std::uint8_t> label;              ///< samples of the generated label
     std::shared_ptr<const Mask> labelMask;
 
     const Piece* pieceAt(const Contribution& from, double time, int& local) const {
@@ -103,7 +103,7 @@ struct Assembly {
                });
     }
 
-    /// Slices of a frame; of what cannot be read in parts all.
+    /// Slices of a frame; all of them if the source cannot read a part.
     Field read(int parameter, int component, int timeIndex, SliceRange slices) const {
         const Lattice part = slicesOf(lattice, slices);
         const auto p = static_cast<std::size_t>(parameter);
@@ -129,7 +129,7 @@ struct Assembly {
         return merged.samples.empty() ? allAbsent(part, parameters[p].type) : merged;
     }
 
-    /// Of a parameter's own values at all times; empty where they are not known.
+    /// Range of a parameter's own values over all times; empty if not known.
     std::vector<Range> ranges(int parameter, const Progress& progress) const {
         std::vector<Range> all;
         double done = 0;
@@ -151,8 +151,8 @@ struct Assembly {
         return all;
     }
 
-    /// Labels each sample with the set of blocks that cover it. A block that covers every sample tells nothing and is
-    /// left out.
+    /// Labels each sample with the set of blocks that cover it. A block that covers every sample adds no information
+    /// and is left out.
     void makeLabel(Parameter& parameter, const Progress& progress) {
         struct Block {
             std::string name;
@@ -200,7 +200,7 @@ struct Assembly {
     }
 };
 
-/// A mesh, or one of several grids of a file that lie beside each other: arrays of equal name are one parameter.
+/// Whether a block is a mesh, or one of several adjacent grids of a file, whose arrays of equal name are one parameter.
 bool isBlock(const OpenedFile& file, const Piece& piece) {
     return piece.mesh || (file.pieces.size() > 1 && std::ranges::none_of(file.pieces, [&](const Piece& other) {
                               return &other != &piece && other.lattice == piece.lattice;
@@ -217,7 +217,7 @@ std::string dataName(const std::vector<OpenedFile>& files) {
     return name.empty() ? "data" : name;
 }
 
-/// The times of all groups together. A single time beside a series holds at all times.
+/// The times of all groups together. A group with a single time is valid at all times of the others.
 std::vector<double> timesOf(const std::vector<FileGroup>& groups) {
     std::set<double> series;
     for (const FileGroup& group : groups)
@@ -228,7 +228,7 @@ std::vector<double> timesOf(const std::vector<FileGroup>& groups) {
     return {0};
 }
 
-/// What was found while the parameters were gathered.
+/// Counters of gatherParameters.
 struct Gathered {
     bool anyLabel = false, scattered = false;
     std::size_t blocks = 0;
@@ -238,7 +238,7 @@ struct Gathered {
 class Parameters {
 public:
     Parameters(Assembly& all, DatasetInfo& info) : all_(all), info_(info) {
-        // Files on one grid do not hide each other: arrays of equal name are told apart by the file's name.
+        // Files on one grid all stay visible: arrays of equal name get the file's name added.
         for (const FileGroup& group : all.groups)
             for (const Piece& piece : group.files.front()->pieces)
                 if (!isBlock(*group.files.front(), piece))
@@ -281,7 +281,7 @@ private:
     std::map<std::string, int> onGrids_;
 };
 
-/// What every block says of the data set, and its arrays as parameters.
+/// Merges the metadata of all blocks, and gathers their arrays as parameters.
 Gathered gather(Assembly& all, bool numbers, DatasetInfo& info, std::vector<std::string>& notes) {
     Gathered found;
     Parameters parameters(all, info);
@@ -306,7 +306,7 @@ Gathered gather(Assembly& all, bool numbers, DatasetInfo& info, std::vector<std:
     return found;
 }
 
-/// Cells of the meshes; none where there is no mesh.
+/// Number of cells of the meshes; none without a mesh.
 std::optional<double> cellsOf(const std::vector<FileGroup>& groups) {
     std::optional<double> cells;
     for (const FileGroup& group : groups)
@@ -333,7 +333,7 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
     const std::string& format = all->groups.front().files.front()->pieces.front().format;
     const FileFormat* row = formatNamed(format);
     info.lengthUnit = row != nullptr ? row->lengthUnit : format == "raw" ? "" : "m";
-    info.timeUnit = ""; // few files say it
+    info.timeUnit = ""; // few files state it
     const bool numbers = std::ranges::any_of(
         all->groups, [](const FileGroup& group) { return group.timesAreNumbers && group.times.size() > 1; });
     if (numbers) info.timeName = "step";

@@ -106,7 +106,7 @@ Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize,
     }
     const Lattice grid = gridForMesh(box, all / perLength, cellData, gridSize);
     bounds = box;
-    for (int axis = 0; axis < 3; ++axis) // without extent there is one layer of samples, or as many as were asked for
+    for (int axis = 0; axis < 3; ++axis) // an axis without extent gets one layer of samples, or the requested number
         if (!(box.size()[axis] > 0)) bounds.hi[axis] = grid.position(grid.size - 1)[axis];
     std::string note =
         anyMesh ? "mesh of " + std::to_string(static_cast<long long>(cells)) + " cells" : "several different grids";

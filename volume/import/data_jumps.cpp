@@ -35,7 +35,7 @@ template <class Visit> void forLines(glm::ivec3 size, int axis, const Visit& vis
 
 /// Separations between neighbouring samples of a frame.
 struct Cuts {
-    std::vector<std::uint8_t> after; ///< of each sample, bit `axis`: apart from the next one along that axis
+    std::vector<std::uint8_t> after; ///< by sample, bit `axis`: separated from the next one along that axis
     std::vector<IndexPair> acrossGaps;
 };
 
@@ -81,7 +81,7 @@ private:
         }
     }
 
-    /// Next to a jump half its size is enough: in a region one sample thick neither side can be extrapolated.
+    /// Beside a larger jump, half its size is enough: in a region one sample thick neither side can be extrapolated.
     void besideJumps() {
         std::vector<float> beside = jump_;
         for (int axis = 0; axis < 3; ++axis)
@@ -108,11 +108,11 @@ private:
     std::vector<double> values_;
     const std::vector<bool>& present_;
     Cuts& cuts_;
-    std::vector<float> jump_; ///< the largest that a sample is at an end of
+    std::vector<float> jump_; ///< by sample: the largest jump to a neighbour
     double range_ = 0;
 };
 
-/// Sets of samples; the least index of a set stands for it.
+/// Disjoint sets of samples; the smallest index represents a set.
 class Sets {
 public:
     explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t(0)); }
@@ -130,7 +130,7 @@ private:
     std::vector<std::size_t> parent_;
 };
 
-/// Calls `visit(a, b, whether they lie apart)` for all neighbours that are present.
+/// Calls `visit(a, b, separated)` for all pairs of present neighbours.
 template <class Visit>
 void forNeighbours(glm::ivec3 size, const std::vector<bool>& present, const Cuts& cuts, const Visit& visit) {
     for (int axis = 0; axis < 3; ++axis)
@@ -142,7 +142,7 @@ void forNeighbours(glm::ivec3 size, const std::vector<bool>& present, const Cuts
         });
 }
 
-/// Small sets join the one that they touch most, the smallest first.
+/// Merges small sets into the one they share most borders with, the smallest first.
 void joinSmallSets(glm::ivec3 size, const std::vector<bool>& present, const Cuts& cuts, Sets& sets) {
     std::vector<std::uint32_t> counts(present.size());
     for (std::size_t i = 0; i < present.size(); ++i)
@@ -220,7 +220,7 @@ std::vector<std::uint8_t> regionsOfJumps(std::span<const Field> components) {
 
 namespace {
 
-/// Frames of the labels behind those of the files.
+/// Serves frames of the generated labels, which come after the parameters of the files.
 class JumpLabels {
 public:
     JumpLabels(const Dataset& dataset, std::vector<int> of) : read_(dataset.read), of_(std::move(of)) {
@@ -281,7 +281,7 @@ Dataset withJumps(Dataset data, const std::vector<PartsRule>& rules, std::vector
     if (of.empty()) return data;
     const auto labels = std::make_shared<JumpLabels>(data, of);
     const std::size_t own = data.info.parameters.size(), times = data.info.times.size();
-    std::vector<std::size_t> kept; // of the labels, those that tell parts apart
+    std::vector<std::size_t> kept; // labels that separate anything
     for (std::size_t n = 0; n < of.size(); ++n) {
         Parameter& parameter = data.info.parameters[std::size_t(of[n])];
         const std::string name = parameter.name, label = jumpsLabel(name);

@@ -23,7 +23,7 @@ bool sameForm(const OpenedFile& a, const OpenedFile& b) {
                       });
 }
 
-/// The times of a group and the frame of each, by what the lists, the files or their names say.
+/// The times of a group and the frame of each, from lists, the files or their names.
 void setTimes(FileGroup& group) {
     std::map<double, FileGroup::Frame> byTime;
     const auto add = [&](double time, std::size_t file, int local) {
@@ -103,7 +103,7 @@ void addQuantities(DatasetInfo& info, const FileGroup& group) {
             for (const Piece& piece : file.pieces) {
                 for (const Quantity& quantity : piece.quantities)
                     if (local < quantity.values.size()) note(quantity.name, quantity.unit, t, quantity.values[local]);
-                // A list, or numbers of names, that says another time than the file itself.
+                // A time from a list or a file name that differs from the one in the file.
                 if (!group.times.empty() && local < piece.times.size() && piece.times[local] != group.times[f])
                     note("time in the files", piece.timeUnit, t, piece.times[local]);
             }

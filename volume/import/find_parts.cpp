@@ -30,7 +30,7 @@ struct Border {
 };
 using Borders = std::map<std::pair<int, int>, Border>; ///< by label values, the lesser first
 
-/// One component at one time beside the label; absent samples have no region.
+/// One component at one time with the label; absent samples have no region.
 struct Samples {
     std::vector<double> values;
     std::vector<int> regions;
@@ -48,7 +48,7 @@ Samples samplesOf(const Field& field, const Field& label) {
 /// Looks along one line of samples.
 void alongLine(const Samples& samples, std::size_t first, std::size_t step, int count, Borders& borders) {
     const auto at = [&](int i) { return first + std::size_t(i) * step; };
-    // The difference to the next sample inside a region; nothing where that is another.
+    // The difference to the next sample, or nothing if that is in another region.
     const auto slope = [&](int i, int side, int region) -> std::optional<double> {
         const int next = i + side;
         if (next < 0 || next >= count || samples.regions[at(next)] != region) return std::nullopt;
@@ -104,7 +104,7 @@ bool jumpsAt(const Border& about, double range) {
     return double(jumps) >= kShareOfBorder * double(border.jump.size());
 }
 
-/// Joins regions where nothing jumps, then makes as few parts as possible without two that jump.
+/// Joins regions without a jump between them, then forms as few parts as possible such that no part contains a jump.
 class Grouping {
 public:
     explicit Grouping(const std::set<int>& regions) {
@@ -137,7 +137,7 @@ public:
     }
 
 private:
-    std::map<int, int> group_; ///< the least region it is joined with
+    std::map<int, int> group_; ///< the smallest label value among the joined regions
 };
 
 } // namespace
@@ -153,7 +153,7 @@ Parts foundParts(const Dataset& dataset, int parameter, int label, const Progres
     for (const int time : times) {
         const Field labels = dataset.read(label, 0, time);
         std::vector<Borders> borders;
-        double range = 0; // of the component that has most
+        double range = 0; // the largest of all components
         for (int c = 0; c < components; ++c) {
             progress.advance(done++ / double(times.size() * std::size_t(components)), "parts");
             const Samples samples = samplesOf(dataset.read(parameter, c, time), labels);
@@ -178,7 +178,7 @@ Parts foundParts(const Dataset& dataset, int parameter, int label, const Progres
     Grouping grouping(regions);
     for (const auto& pair : meets) {
         if (jumps.contains(pair)) continue;
-        // What is joined already by way of others stays apart from what it jumps to.
+        // Regions already joined through others must not be joined across a jump.
         Grouping trial = grouping;
         trial.join(pair.first, pair.second);
         if (std::none_of(jumps.begin(), jumps.end(),

@@ -28,7 +28,7 @@ public:
     }
 
     std::string header(std::size_t file, const Progress& progress) {
-        // While no frame is asked for, a frame can have no length that fits.
+        // No frame is expected, so no frame length is valid.
         const std::vector<std::byte> text = answer(file, MessageKind::Header, Lattice{}, ScalarType::U8, [&] {
             progress.advance(double(file) / double(paths_.size()), fs::path(paths_[file]).filename().string());
         });
@@ -163,7 +163,7 @@ std::vector<std::vector<Piece>> openForeign(const std::vector<SeriesFile>& entri
             for (const Array& array : piece.arrays) types.push_back(array.type);
             piece.ranges = [importer, f, p, kept](int array, int time) {
                 const Kept from = kept[std::size_t(array)];
-                if (from.flags >= 0) return std::vector<Range>{}; // of what is present: not known
+                if (from.flags >= 0) return std::vector<Range>{}; // ranges of present samples are not known
                 return importer->ranges(f, p, from.index, time);
             };
             piece.read = [importer, f, p, kept, types](int array, int component, int time, const Lattice& target,

@@ -60,7 +60,7 @@ void nameParameters(DatasetInfo& info, const ImportOptions& options) {
     stateQuantities(info, options);
 }
 
-/// Only the parameters asked for, and the labels that say their parts; the rest stays loadable for rules until here.
+/// Keeps only the requested parameters and the labels of their parts. Until here all of them are needed by rules.
 Dataset withParameters(Dataset dataset, const std::vector<std::string>& wanted) {
     if (wanted.empty()) return dataset;
     std::vector<int> kept;
@@ -122,8 +122,8 @@ Dataset withLabels(Dataset dataset) {
     return dataset;
 }
 
-/// Arrays named like labels, or stated to be some, are taken as such if they are whole numbers with few distinct
-/// values. Integer arrays at once; floating point ones only where samples may be read.
+/// Treats arrays as labels if they are named like labels or stated to be labels, and hold integers with few distinct
+/// values. Floating-point arrays are only checked if samples may be read.
 void markLabels(Dataset& dataset, const std::set<std::string>& stated, bool readSamples) {
     for (std::size_t p = 0; p < dataset.info.parameters.size(); ++p) {
         Parameter& parameter = dataset.info.parameters[p];
@@ -192,8 +192,8 @@ std::string blockName(const SeriesFile& entry) {
     return std::string_view("_-.").find(pattern[number - 1]) == std::string_view::npos || name.empty() ? stem : name;
 }
 
-/// Parameters of meshes get the ranges of the mesh's own values: between points and in the middle of cells samples do
-/// not reach them. Not where rules take some of them as absent: those are known of samples only.
+/// Parameters of meshes get the ranges of the mesh's own values, since samples between points do not reach the
+/// extremes. Not if rules make some values absent, which only apply to samples.
 void stateRanges(DatasetInfo& info, const Assembled& assembled, const std::vector<AbsentRule>& rules,
                  const ImportOptions& options, const Progress& progress) {
     const auto wanted = [&](const std::string& name) {
@@ -210,7 +210,7 @@ void stateRanges(DatasetInfo& info, const Assembled& assembled, const std::vecto
     }
 }
 
-/// The blocks of every file: our own readers first, all others through one tessera-import.
+/// The blocks of every file: raw and NRRD files read here, all others through one tessera-import.
 std::vector<OpenedFile> openEach(const std::vector<SeriesFile>& entries, const std::string& rawOption,
                                  const Progress& progress) {
     std::vector<OpenedFile> files(entries.size());
@@ -269,7 +269,7 @@ Opened open(const std::vector<std::string>& paths, const ImportOptions& options,
     Dataset& dataset = opened.dataset;
     dataset = std::move(assembled.dataset);
     opened.notes = std::move(assembled.notes);
-    // Previews may read a little, if that is fast.
+    // Previews may read samples only if that is fast.
     constexpr double kQuickBytes = 64e6;
     const double times = double(dataset.info.times.size());
     if (!assembled.mesh && bytesOf(dataset.info) / times * std::min(3.0, times) <= kQuickBytes) readSamples = true;
@@ -320,7 +320,7 @@ void scanRanges(Dataset& dataset, const Progress& progress) {
         total += double(parameter.components) * double(info.times.size());
     for (std::size_t p = 0; p < info.parameters.size(); ++p) {
         Parameter& parameter = info.parameters[p];
-        if (!parameter.ranges.empty()) continue; // of a mesh: its own
+        if (!parameter.ranges.empty()) continue; // ranges of the mesh's own values
         const auto components = static_cast<std::size_t>(parameter.components);
         constexpr double kInfinity = std::numeric_limits<double>::infinity();
         std::vector<Range> ranges(components > 1 ? components + 1 : 1, Range{kInfinity, -kInfinity});

@@ -31,7 +31,7 @@ std::string lower(std::string_view text) {
     return out;
 }
 
-/// Cells of a line; a cell between quotes may hold the separator, and a quote as two.
+/// Cells of a line; a quoted cell may contain the separator, and quotes doubled.
 std::vector<std::string> cellsOf(std::string_view line, char separator) {
     std::vector<std::string> cells(1);
     bool quoted = false;
@@ -80,7 +80,7 @@ std::optional<double> secondsIn(const std::string& unit) {
     return found == std::end(kUnits) ? std::nullopt : std::optional(found->second);
 }
 
-/// The time of the data that a row is meant for: in other units it may be a rounding apart.
+/// The time of the data that matches a row, up to rounding by unit conversion.
 double withNear(double time, const std::vector<double>& times) {
     const auto after = std::ranges::lower_bound(times, time);
     for (const auto at : {after, after == times.begin() ? after : std::prev(after)})

@@ -38,7 +38,7 @@ bool contradicted(std::string_view unit, const Field& field) {
         least = std::min(least, field.value(i));
         most = std::max(most, field.value(i));
     }
-    if (least > most) return true; // nothing is there
+    if (least > most) return true; // no values
     if (unit == "K") return least < 100;
     if (unit == "Pa") return std::max(std::abs(least), std::abs(most)) < 1000;
     return unit == "kg/m3" && least < 0;

@@ -22,7 +22,7 @@ void compareRow(const float* values, int count, float limit, std::uint64_t* bits
         const int n = std::min(64, count - begin);
         std::uint64_t word = 0;
         if (n == 64) {
-            // Bytes first: compilers make vector code of this loop and of the packing below.
+            // Bytes first, since compilers vectorise this loop and the packing below.
             for (int byte = 0; byte < 8; ++byte) {
                 std::uint64_t part = 0;
                 for (int i = 0; i < 8; ++i) part |= std::uint64_t(values[begin + byte * 8 + i] >= limit) << i;

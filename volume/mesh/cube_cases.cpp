@@ -25,8 +25,8 @@ int facesOf(int edge) {
     return faces;
 }
 
-/// Triangles that fill the part first .. last of a loop, without a new line on a face of the cell: a neighbour could
-/// draw the same line there, and its edge would belong to four triangles.
+/// Triangles that fill the part first .. last of a loop, without a new edge on a face of the cell: the neighbouring
+/// cell could create the same edge, which would then belong to four triangles.
 bool fill(const Loop& loop, std::size_t first, std::size_t last, CubeCase& out) {
     if (last - first < 2) return true;
     const auto allowed = [&](std::size_t a, std::size_t b) {
@@ -43,8 +43,8 @@ bool fill(const Loop& loop, std::size_t first, std::size_t last, CubeCase& out) 
 }
 
 CubeCase makeCase(int inside, int joined) {
-    // Where the outline goes from each crossed edge. On each face, seen from outside, it goes from where the walk
-    // around the face enters the inside to where it leaves it again: the inside lies to its right.
+    // Links each crossed edge to the next one of the outline. On each face, seen from outside, the outline runs from
+    // where the walk around the face enters the inside to where it leaves it: the inside is to its right.
     std::array<int, 12> next;
     next.fill(-1);
     for (int face = 0; face < 6; ++face) {

@@ -13,7 +13,7 @@ namespace tessera::volume {
 
 namespace {
 
-/// Appends the slabs' triangles in order, and their own vertices behind the shared ones.
+/// Appends the slabs' triangles in order, and the vertices of each slab after the shared ones.
 void join(SurfaceMesh& mesh, const std::vector<CellTriangles>& slabs) {
     std::vector<std::size_t> first(slabs.size()), firstOwn(slabs.size());
     std::size_t triangles = 0, vertices = mesh.positions.size();
@@ -64,7 +64,7 @@ SurfaceMesh extractPart(const SampleGrid& grid, float value, const Progress& pro
     return mesh;
 }
 
-/// The surfaces of each part by itself: what jumps between two of them is no crossing.
+/// Surfaces of each part separately: a jump between two parts is not a crossing.
 SurfaceMesh extract(const SampleGrid& grid, float value, const Progress& progress) {
     if (grid.parts.empty()) return extractPart(grid, value, progress);
     const std::size_t parts = 1 + std::size_t(*std::ranges::max_element(grid.parts));

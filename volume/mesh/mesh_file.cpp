@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the formats below are little-endian");
 
-/// Collects small pieces into large writes.
+/// Buffers small writes.
 class Writer {
 public:
     Writer(const std::string& path, const Progress& progress) : file_(path), progress_(progress) {}
@@ -32,7 +32,7 @@ public:
         char digits[32];
         buffer_.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
     }
-    /// Calls `one(i)` for each of `count`, writing on the way.
+    /// Calls `one(i)` for each of `count` items, flushing when the buffer is full.
     void each(std::size_t count, const std::function<void(std::size_t)>& one) {
         for (std::size_t i = 0; i < count; ++i) {
             one(i);
@@ -56,7 +56,7 @@ private:
     std::string buffer_;
 };
 
-/// A name that formats with words take: letters, digits and _.
+/// A name that is valid in text formats: letters, digits and _.
 std::string word(const std::string& name) {
     std::string out;
     for (const char c : name) {

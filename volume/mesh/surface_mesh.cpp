@@ -45,7 +45,7 @@ private:
         if (n == 4) kept.emplace_back(corners[0], corners[2], corners[3]);
     }
 
-    /// The vertex where an edge meets the plane; a < b, so that both triangles at the edge get the same one.
+    /// The vertex where an edge meets the plane; a < b, so that both triangles at the edge share it.
     std::uint32_t between(std::uint32_t a, std::uint32_t b) {
         const auto [entry, fresh] = made_.try_emplace(std::uint64_t(a) << 32 | b, std::uint32_t(0));
         if (!fresh) return entry->second;

@@ -52,7 +52,7 @@ private:
     mutable std::vector<Held> held_;
 };
 
-/// One channel, with the label of its parts where it has some.
+/// One channel, with the label of its parts if it has any.
 class ChannelProbe {
 public:
     ChannelProbe(const BrickSource& source, int channel, int time)
@@ -68,7 +68,7 @@ public:
         const Sample near = samples_(place);
         ProbeValue value;
         if (near.present) value.nearest = near.value;
-        // Half-way between two gases a point belongs to that of the nearest sample, never to both.
+        // A point between two parts belongs to that of the nearest sample, never to both.
         if (near.present) value.interpolated = parameter().categorical ? value.nearest : between(position, place);
         return value;
     }
@@ -128,7 +128,7 @@ std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::
 
 namespace {
 
-/// One channel between two times; where its part changes it is that of the nearer one.
+/// One channel between two times. If the part of the point changes, uses the nearer time.
 std::vector<ProbeValue> mixed(const BrickSource& source, int channel, std::span<const glm::dvec3> positions,
                               const TimePair& time) {
     const ChannelProbe earlier(source, channel, time.earlier), later(source, channel, time.later);

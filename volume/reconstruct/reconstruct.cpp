@@ -10,7 +10,7 @@ namespace tessera::volume {
 
 namespace {
 
-/// Where the neighbours of a sample lie, as distances in memory: of even and of odd slices.
+/// Offsets in memory of a sample's neighbours, for even and for odd slices.
 template <std::size_t kCount> using Steps = std::array<std::array<std::ptrdiff_t, kCount>, 2>;
 
 Steps<6> ccSteps(glm::ivec3 size, int slices) {
@@ -31,7 +31,7 @@ Steps<8> bccSteps(glm::ivec3 size) {
     return steps;
 }
 
-/// From every sample a twelfth of the sum of its differences to the neighbours that are present.
+/// Prefilter: subtracts from every sample a twelfth of the sum of differences to its present neighbours.
 template <std::size_t kCount>
 void subtractDifferences(const BrickSamples& gathered, int slices, const Steps<kCount>& steps, BrickSamples& out) {
     const std::ptrdiff_t row = gathered.size.x, slice = row * gathered.size.y;

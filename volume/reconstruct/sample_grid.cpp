@@ -12,7 +12,7 @@ namespace tessera::volume {
 
 namespace {
 
-/// The means of the pairs of samples of a coarse BCC level; of labels the even ones.
+/// Means of the sample pairs of a coarse BCC level; for labels the even samples.
 SampleGrid pairMeans(const BrickGrid& bricks, int level, const SampleGrid& fine, bool isLabel) {
     const glm::ivec3 stored = bricks.levelSamples(level);
     SampleGrid out;
@@ -36,7 +36,7 @@ SampleGrid pairMeans(const BrickGrid& bricks, int level, const SampleGrid& fine,
     return out;
 }
 
-/// The samples of a level as they are stored.
+/// The stored samples of a level.
 SampleGrid readStored(const BrickSource& source, int channel, int time, int level, const Progress& progress) {
     const BrickGrid& bricks = source.grid();
     const bool bcc = bricks.lattice.kind == LatticeKind::BCC;

@@ -36,8 +36,8 @@ std::uint8_t numberAt(const Field& field, std::size_t i) {
     return field.mask ? (*field.mask)[i] : std::uint8_t(1);
 }
 
-/// Where frames differ in what is present, or of which part: the linear blend of those that have the sample, of the
-/// part that it has in the nearest of these (of two the later).
+/// Where frames differ in presence or parts: the linear blend of the frames that have the sample, in the part that it
+/// has in the nearest of them (of two the later one).
 void blendPartly(std::span<const WeightedFrame> frames, Field& sum) {
     auto mask = std::make_shared<Mask>(sum.count(), std::uint8_t(1));
     const auto to = sum.as<float>();

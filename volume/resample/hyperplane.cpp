@@ -17,14 +17,14 @@ struct Box4 {
     glm::dvec4 lo, hi;
 };
 
-/// From the first to the last sample of the lattice, both grids of D4* taken together.
+/// Extent from the first to the last sample of the lattice, over both grids of D4*.
 Box4 boxOf(const Lattice4& lattice) {
     glm::dvec4 span(lattice.size - 1);
     if (lattice.kind == LatticeKind4::D4) span = {glm::dvec3(span) + 0.5, span.w * 0.5};
     return {lattice.origin, lattice.origin + lattice.spacing * span};
 }
 
-/// Weight of a frame at a time: linear between frames of its parity, whose first and last go on beyond the ends.
+/// Weight of a frame at a time: linear between frames of the same parity, constant beyond the first and the last.
 double frameWeight(const Lattice4& lattice, int frame, double time) {
     const int parities = lattice.kind == LatticeKind4::D4 && lattice.size.w > 1 ? 2 : 1, parity = frame % parities;
     const int count = parities == 1 ? lattice.size.w : lattice.framesOf(parity);
@@ -40,7 +40,7 @@ std::uint8_t numberOf(const Field& field, glm::ivec3 at) {
     return (*field.mask)[field.lattice.index(clampToLattice(field.lattice.kind, field.lattice.size, at))];
 }
 
-/// A slice on its way: its grid, and the sums of the frames so far.
+/// A slice in progress: its grid, and the sums of the frames so far.
 class Slicing {
 public:
     Slicing(const Series& series, const Hyperplane& plane)
@@ -124,7 +124,7 @@ private:
                point[out_.solved] <= box_.hi[out_.solved] + margin_ && frameWeight(lattice_, frame, point.w) > 0;
     }
 
-    /// Of labels the frame nearest in time counts.
+    /// For labels only the frame nearest in time is used.
     void addLabel(std::size_t index, const Field& samples, glm::dvec3 cells, double weight) {
         const Sample label = nearest(kCells, FieldSamples{samples}, cells);
         if (float(weight) <= best_[index]) return;
@@ -145,7 +145,7 @@ private:
             const Sample sample = values(at);
             return Sample{sample.value, sample.present && numberOf(samples, at) == part_[index]};
         };
-        // Samples of other parts are there, but of the own one's value.
+        // Samples of other parts are replaced by the value of the own part.
         const Blend own = linear(kCells, ownPart, cells);
         if (own.coverage <= 0) return;
         const double there = linear(kCells, values, cells).coverage;
@@ -173,7 +173,7 @@ HyperplaneSlice sliceBy(const Series& series, const Hyperplane& plane, const Pro
     for (int frame = 0; frame < series.lattice.size.w; ++frame) {
         progress.advance(double(frame) / series.lattice.size.w, "slice");
         const std::vector<std::uint8_t> slices = slicing.slicesTouchedBy(frame);
-        // Frames that no sample needs are not read.
+        // Skip frames that no sample needs.
         if (std::none_of(slices.begin(), slices.end(), [](std::uint8_t s) { return s != 0; })) continue;
         slicing.add(frame, *series.frame(frame), slices);
     }

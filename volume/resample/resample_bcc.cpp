@@ -33,7 +33,7 @@ template <class T> void fromNearest(const Field& source, Field& out, Mask* mask,
     });
 }
 
-/// Precision of prefiltered values of a stored type.
+/// Type for prefiltered values of a stored type.
 template <class T> using Filtered = std::conditional_t<std::is_same_v<T, std::int32_t>, double, float>;
 
 glm::ivec3 storageIndex(const Lattice& lattice, std::size_t index) {
@@ -41,8 +41,8 @@ glm::ivec3 storageIndex(const Lattice& lattice, std::size_t index) {
     return {int(index % nx), int(index / nx % ny), int(index / (nx * ny))};
 }
 
-/// A BCC source's stored values, prefiltered (volume/reconstruct/reconstruct.h); 0 where absent. Beyond the border of
-/// its part the part is continued.
+/// A BCC source's stored values, prefiltered (volume/reconstruct/reconstruct.h); 0 where absent. Beyond the border of a
+/// part, its values are extrapolated.
 template <class T> std::vector<Filtered<T>> prefilteredValues(const Field& source) {
     const Lattice& lattice = source.lattice;
     const auto stored = source.as<T>();
@@ -90,7 +90,7 @@ std::array<std::vector<PairTap>, 2> pairTaps(const Lattice& source, const Lattic
     const double last = (axis == 2 ? (source.size.z - 1) * 0.5 : source.size[axis] - 0.5);
     std::array<std::vector<PairTap>, 2> taps;
     for (int s = 0; s < 2; ++s) {
-        const int own = source.size.z > 1 ? s : 0; // a single slice stands for both
+        const int own = source.size.z > 1 ? s : 0; // a single slice is used for both sublattices
         const int count = source.sublatticeSize(own)[axis];
         for (int i = 0; i < target.sublatticeSize(targetSublattice)[axis]; ++i) {
             const double cells =

@@ -25,7 +25,7 @@ Tap within(Tap tap, int first) {
     return tap;
 }
 
-/// Target slices under way: those of `field`, the first of which is number `first` of the whole.
+/// Target slices in progress: `field` holds those from number `first` of the whole.
 struct TargetPart {
     Field& field;
     Mask* mask;
@@ -97,7 +97,7 @@ std::pair<int, int> CcTaps::slicesFor(int first, int count, bool masked) const {
     int lo = source.size.z, hi = 0;
     for (int k = first; k < first + count; ++k) {
         const Tap& tap = kernel[std::size_t(k % sublattices)].z[std::size_t(k / sublattices)];
-        const int reach = masked ? OwnWindow::kReach : 0; // how a part goes on beyond its border
+        const int reach = masked ? OwnWindow::kReach : 0; // slices needed to extrapolate a part beyond its border
         lo = std::min({lo, tap.first, tap.cell[0] - reach, tap.nearest});
         hi = std::max({hi, tap.first + tap.count, tap.cell[0] + 2 + reach, tap.nearest + 1});
     }

@@ -21,7 +21,8 @@ template <class Visit> void forRuns(int slices, int step, const Progress& progre
     }
 }
 
-/// Slices with a mask if the frame has one anywhere: what is summed in which order must not depend on where it is cut.
+/// Slices have a mask if any slice of the frame has one: the order of summation must not depend on how the frame is
+/// divided.
 Field maskedAlike(Field part, bool masked) {
     if (masked && !part.mask) part.mask = std::make_shared<const Mask>(part.count(), std::uint8_t(1));
     return part;
@@ -30,7 +31,7 @@ Field maskedAlike(Field part, bool masked) {
 /// Slices of a frame out of a part of it that begins at slice `begin`.
 Field cut(const Field& part, int begin, const Lattice& frame, int first, int count) {
     Field out = slicesOf(part, first - begin, count);
-    out.lattice = slicesOf(frame, first, count); // not rounded twice
+    out.lattice = slicesOf(frame, first, count); // from the whole frame, to avoid rounding twice
     return out;
 }
 
@@ -112,7 +113,7 @@ StoredExtent extentOf(const Lattice& lattice, const SliceReader& read, int step,
 SlicedFrame sharpened(const SlicedFrame& source, double amount, int step, const Progress& progress) {
     SlicedFrame out = source;
     out.read = [source, amount](int first, int count) {
-        constexpr int kReach = 2; // one slice would do, but of BCC the first must be even
+        constexpr int kReach = 2; // one slice suffices, but in BCC the first one must be even
         const int begin = std::max(first - kReach, 0), end = std::min(first + count + kReach, source.lattice.size.z);
         return cut(sharpened(source.read(begin, end - begin), amount, source.extent), begin, source.lattice, first,
                    count);
@@ -145,7 +146,7 @@ SlicedFrame resampled(const SlicedFrame& source, const Lattice& target, const Re
             std::make_shared<const SlicedCoefficients>(source, source.read(0, 1).type, degree, memory, progress);
     SlicedFrame out{target, {}, source.extent};
     out.read = [source, target, taps, coefficients, stop = progress.stop](int first, int count) {
-        // Beyond what is wanted, as far as gaps reach.
+        // More slices than requested, by the reach of gaps.
         const int reach = source.extent.masked && target.kind == LatticeKind::BCC ? kGapSlices : 0;
         const int begin = std::max(first - reach, 0), end = std::min(first + count + reach, target.size.z);
         const auto [from, to] = taps->slicesFor(begin, end - begin, source.extent.masked);

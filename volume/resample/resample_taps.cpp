@@ -70,7 +70,7 @@ double kernel(double x, const ResampleOptions& options) {
     }
 }
 
-/// Adds the weight of a sample that may lie beyond a face: there the data continue by point reflection.
+/// Adds the weight of a sample. Beyond a face, the data are continued by point reflection.
 void addReflected(Tap& tap, int index, double weight, int count) {
     const int last = count - 1;
     while (index < 0 || index > last) {

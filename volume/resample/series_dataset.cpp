@@ -15,7 +15,7 @@ namespace tessera::volume {
 namespace {
 
 Lattice4 frameLattice(const DatasetInfo& info, LatticeKind4 kind) {
-    // Frames of D4* lie half a cell apart, so its cells are two frames long.
+    // D4* frames are half a cell apart, so its cells are two frames long.
     const double cell = kind == LatticeKind4::D4 ? 2 : 1;
     return {kind, glm::ivec4(info.lattice.size, int(info.times.size())), glm::dvec4(info.lattice.spacing, cell),
             glm::dvec4(info.lattice.origin, 0)};
@@ -77,7 +77,7 @@ D4Frames framesFrom(const Dataset& source, const Lattice4& lattice, int first, c
             d4Slices(source, frameLattice(source.info, LatticeKind4::CC), lattice, first, options, memory);
         return out;
     }
-    // One series per component, each with the frames its filter spans and one to move on.
+    // One series per component, each with the frames that its filter spans and the next one.
     const auto series = std::make_shared<std::map<std::pair<int, int>, Series>>();
     const Dataset parted = withParts(source);
     for (int p = 0; p < int(source.info.parameters.size()); ++p)
@@ -105,7 +105,7 @@ D4Frames continueD4(Dataset source, const std::vector<double>& known, const std:
     for (const double time : given)
         if (time > known.back()) times.push_back(time);
     if (times.size() == known.size()) throw Error("the data have no times after the last one", source.info.name);
-    // Where each time of the whole series is in the source; -1: it is not.
+    // Index in the source of each time of the whole series, or -1.
     std::vector<int> place;
     for (const double time : times) {
         const auto at = std::lower_bound(given.begin(), given.end(), time);

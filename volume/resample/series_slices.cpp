@@ -13,7 +13,7 @@ namespace tessera::volume {
 
 namespace {
 
-/// One data set on its way to D4*.
+/// A data set being resampled to D4*.
 class SlicedD4 {
 public:
     SlicedD4(const Dataset& series, const Lattice4& cc, const Lattice4& d4, int first, const ResampleOptions& options,

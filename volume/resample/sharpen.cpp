@@ -22,7 +22,8 @@ Field sharpened(const Field& source, double amount, const StoredExtent& extent) 
                     double difference = 0, count = 0;
                     forOppositePairs(lattice, {i, j, k}, [&](std::size_t a, std::size_t b) {
                         count += 2;
-                        if (number(a) != own || number(b) != own) return; // goes on as across: no difference
+                        if (number(a) != own || number(b) != own)
+                            return; // extrapolated linearly: second difference is 0
                         difference += double(stored[a]) - double(stored[index]);
                         difference += double(stored[b]) - double(stored[index]);
                     });

@@ -15,12 +15,12 @@ void filterOdd(std::span<double> c, double pole) {
     const std::size_t last = c.size() - 1;
     const double gain = (1 - pole) * (1 - 1 / pole);
     for (double& value : c) value *= gain;
-    // The causal filter starts at sum over k of pole^k c(-k) with c(-k) = -c(k), until the power is nothing.
+    // The causal filter starts at sum over k of pole^k c(-k) with c(-k) = -c(k), until the power is negligible.
     double sum = 0, power = pole, sign = -1;
     std::size_t at = 1;
     for (int k = 1; k < 64 && std::abs(power) > 1e-17; ++k, power *= pole) {
         sum += sign * power * c[at];
-        // Walk along the odd periodic continuation: forwards negative, backwards from the last sample positive.
+        // Follow the odd periodic continuation: negative forwards, positive backwards from the last sample.
         if (sign < 0) {
             if (at == last) {
                 sign = 1;

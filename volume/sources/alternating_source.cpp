@@ -14,7 +14,7 @@ namespace tessera::volume {
 
 namespace {
 
-constexpr std::size_t kFrameBudget = std::size_t(64) << 20; ///< bytes of bricks of frames
+constexpr std::size_t kFrameBudget = std::size_t(64) << 20; ///< bytes of cached bricks of frames
 
 struct WeightedTime {
     int time = 0;
@@ -22,7 +22,7 @@ struct WeightedTime {
 };
 
 BrickStats unionOf(const BrickStats& a, const BrickStats& b) {
-    if (a.presentFraction == 0 || b.presentFraction == 0) { // the range of nothing says nothing
+    if (a.presentFraction == 0 || b.presentFraction == 0) { // a brick without samples has no range
         BrickStats one = a.presentFraction == 0 ? b : a;
         one.presentFraction *= 0.5f;
         return one;
@@ -46,7 +46,7 @@ void blendValues(const std::vector<std::shared_ptr<const BrickSamples>>& bricks,
     }
 }
 
-/// One brick from that of several frames, all of the same size; `range` holds what overshoots.
+/// One brick from that of several frames, all of the same size; the result is clamped to `range`.
 BrickSamples blendBricks(const std::vector<std::shared_ptr<const BrickSamples>>& bricks,
                          const std::vector<WeightedTime>& times, const BrickStats& range) {
     BrickSamples out = *bricks.front();
@@ -112,7 +112,7 @@ public:
         return frames_->importance(key);
     }
 
-    /// Between its frames a grid moves no further than they do, one after the other.
+    /// The change between two frames of a parity is at most the sum of the changes of the frames between them.
     std::optional<BrickChange> change(const BrickKey& key, int toTime) const override {
         (void)channelOf(key);
         if (toTime == key.time) return BrickChange{};
@@ -158,7 +158,7 @@ private:
         return stats(componentKey(key, magnitude, component));
     }
 
-    /// Frames that make the grid of a parity at the time of a key.
+    /// Frames that are blended to the grid of a parity at the time of a key.
     std::vector<WeightedTime> timesOf(const BrickKey& key, int parity) const {
         if (key.time % 2 == parity) return {{key.time}};
         const int count = (int(info_.times.size()) + 1 - parity) / 2;
@@ -202,7 +202,7 @@ private:
         return std::make_shared<const BrickSamples>(std::move(blended));
     }
 
-    /// Makes absent what is of another part than the label says at the time of a key.
+    /// Makes samples absent whose part differs from the label at the time of a key.
     void keepParts(BrickKey key, int parity, const std::vector<WeightedTime>& times,
                    std::vector<std::shared_ptr<const BrickSamples>>& bricks) const {
         const Parameter& parameter = info_.parameters[std::size_t(channels_[std::size_t(key.channel)].parameter)];
@@ -225,7 +225,7 @@ private:
         }
     }
 
-    std::shared_ptr<const BrickCache> frames_; ///< every frame is wanted for that before and behind it too
+    std::shared_ptr<const BrickCache> frames_; ///< each frame is also used for the ones before and after it
     DatasetInfo info_;
     BrickGrid grid_;
     std::vector<Channel> channels_;

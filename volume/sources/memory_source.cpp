@@ -240,7 +240,7 @@ private:
     }
 
     Dataset dataset_;
-    std::shared_ptr<const MemorySource> loads_; ///< has the frames as they are loaded; null: this one loads them
+    std::shared_ptr<const MemorySource> loads_; ///< the source that loads the frames; null: this one does
     DatasetInfo info_;
     BrickGrid grid_;
     std::vector<Channel> channels_;

@@ -6,7 +6,7 @@ namespace tessera::volume {
 
 namespace {
 
-/// Every 2^level-th sample of each sublattice of a brick at full resolution.
+/// A level by subsampling: every 2^level-th sample of each sublattice of a brick at full resolution.
 BrickSamples thinned(const BrickSamples& fine, glm::ivec3 size, int level, LatticeKind kind) {
     BrickSamples out{.size = size, .values = {}, .present = {}};
     const auto count = std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char *kClock = "time", *kSecondClock = "time along";
 
-/// The grid of the picture: two axes of the source, times along the third.
+/// The resulting grid: two axes of the source, with time along the third.
 Lattice gridWithTime(const DatasetInfo& from, int axis) {
     const double finer = from.lattice.kind == LatticeKind::BCC ? 1 / kBccSpacing : 1;
     Lattice grid;
@@ -29,7 +29,7 @@ Lattice gridWithTime(const DatasetInfo& from, int axis) {
     return grid;
 }
 
-/// One channel of the source, in the plane at every step of time.
+/// One channel of the source in the plane, at every time step.
 Field planeOverTime(const BrickSource& source, int channel, const Lattice& grid, int axis, double place) {
     const DatasetInfo& info = source.info();
     const int right = axis == 0 ? 1 : 0, up = axis == 2 ? 1 : 2, steps = grid.size[axis];

@@ -13,7 +13,7 @@ namespace tessera::volume {
 
 namespace {
 
-// Distances to the surfaces of bodies, below 0 inside.
+// Signed distances to surfaces, negative inside.
 
 double box(glm::dvec3 p, glm::dvec3 half, double round) {
     const glm::dvec3 out = glm::abs(p) - half + round;
@@ -30,7 +30,7 @@ double tube(glm::dvec3 p, double inner, double outer, double low, double high) {
 constexpr double kBore = 0.24, kLiner = 0.3, kTop = 0.6, kFoot = -0.62;
 
 double castMetal(glm::dvec3 p) {
-    const glm::dvec3 bore(std::abs(p.x) - 0.4, p.y, p.z); // both at once
+    const glm::dvec3 bore(std::abs(p.x) - 0.4, p.y, p.z); // mirrored: both bores at once
     double metal = box(p, {0.84, kTop, 0.56}, 0.1);
     metal = std::min(metal, box(p - glm::dvec3(0, kFoot + 0.06, 0), {0.94, 0.08, 0.72}, 0.04));
     metal = std::max(metal, -tube(bore, 0.36, 0.42, -0.38, 0.4)); // the water jacket

@@ -26,10 +26,10 @@ struct Frame {
     std::array<std::array<std::vector<float>, 6>, 2> gas;
 };
 
-/// A data set's worth of frames and what is needed to put them on the grid asked for.
+/// The solved frames, and what is needed to interpolate them on the requested grid.
 struct Solution {
-    CellGrid grid;  ///< what was solved
-    CellGrid shown; ///< what was asked for
+    CellGrid grid;  ///< solved
+    CellGrid shown; ///< requested
     Lattice lattice;
     std::array<int, 2> yBegin{}, rows{}; ///< of the gas spaces, solved grid
     std::vector<Frame> frames;
@@ -73,7 +73,7 @@ std::shared_ptr<const Mask> makeMask(const CellGrid& g, bool fuel, bool air) {
     return mask;
 }
 
-/// Position of a shown sample between two solved ones, along one axis.
+/// Position of a sample of the requested grid between two solved ones, along one axis.
 struct Between {
     int lo = 0, hi = 0;
     double weight = 0; ///< of `hi`
@@ -89,13 +89,14 @@ std::vector<Between> between(int shown, int solved) {
     return result;
 }
 
-/// Up to four solved cells of a cross-section that a shown one is made of; offsets from the first of the plane.
+/// Up to four solved cells of a cross-section from which a requested one is interpolated; offsets from the first cell
+/// of the plane.
 struct Stencil {
     std::array<std::size_t, 4> cell{};
     std::array<double, 4> weight{}; ///< sum 1; all 0 for a sample outside
 };
 
-/// Bilinear weights among the cells that are `inside`; where none of the four is, the nearest of the space's channel.
+/// Bilinear weights of the cells that are `inside`; if none of the four is, the nearest cell of the channel.
 template <class Inside> std::vector<Stencil> crossSection(const Solution& s, int yBegin, int rows, Inside&& inside) {
     const auto xs = between(s.shown.nx, s.grid.nx), ys = between(s.shown.ny, s.grid.ny);
     std::vector<Stencil> stencils;
@@ -111,7 +112,7 @@ template <class Inside> std::vector<Stencil> crossSection(const Solution& s, int
                 const int cx = corner & 1 ? bx.hi : bx.lo, cy = corner & 2 ? by.hi : by.lo;
                 if (!inside(s.grid.region(cx, cy))) continue;
                 stencil.cell[corner] = cell(cx, cy);
-                // Never quite 0: a sample on the border still finds its own space.
+                // Never exactly 0, so that a sample on the border still finds a cell of its own space.
                 stencil.weight[corner] = ((corner & 1 ? bx.weight : 1 - bx.weight) + 1e-30) *
                                          ((corner & 2 ? by.weight : 1 - by.weight) + 1e-30);
                 sum += stencil.weight[corner];
@@ -127,7 +128,7 @@ template <class Inside> std::vector<Stencil> crossSection(const Solution& s, int
     return stencils;
 }
 
-/// Puts values of some rows of the solved grid on the shown one, linearly among the cells that are `inside`.
+/// Interpolates values of some rows of the solved grid linearly on the requested one, from the cells that are `inside`.
 template <class Inside>
 void spread(const Solution& s, std::span<const float> values, int yBegin, int rows, Inside&& inside,
             std::span<float> out) {
@@ -145,7 +146,7 @@ void spread(const Solution& s, std::span<const float> values, int yBegin, int ro
                 above += stencil.weight[corner] * double(hi[stencil.cell[corner]]);
                 weights += stencil.weight[corner];
             }
-            // Samples outside keep what the other space wrote.
+            // Samples outside keep the values of the other gas space.
             if (weights > 0) out[z * stencils.size() + q] = float(below + (above - below) * zs[z].weight);
         }
     });
@@ -213,7 +214,7 @@ struct Widen {
     void operator()(double value) { range = {std::min(range.lo, value), std::max(range.hi, value)}; }
 };
 
-/// Throws if the equations have no solution: mostly a cell that is fed less than it consumes.
+/// Throws if the equations have no solution, usually because a cell is fed less than it consumes.
 void checkRanges(const std::vector<Parameter>& parameters) {
     const auto within = [&](std::size_t index, double lo, double hi) {
         const Range range = parameters[index].ranges[0];
@@ -265,7 +266,8 @@ FuelCellSettings fuelCellSettings(const std::map<std::string, double>& given) {
 
 Dataset makeFuelCell(const std::map<std::string, double>& given, const Progress& progress) {
     const FuelCellSettings shown = fuelCellSettings(given);
-    // Larger axes are refined from this: memory and time of the planes' factors grow with the fourth power of a side.
+    // Larger axes are interpolated from this: memory and time of the factorisation grow with the fourth power of a
+    // side.
     FuelCellSettings solved = shown;
     solved.nx = std::min(shown.nx, 44), solved.ny = std::min(shown.ny, 65), solved.nz = std::min(shown.nz, 256);
 

@@ -9,9 +9,9 @@ namespace tessera::volume::cell {
 
 namespace {
 
-/// Velocity profile of a duct, of fully developed laminar flow: -laplace(profile) = 1, 0 on its walls (and on the
-/// gas-diffusion layer, where the gas is slower by four orders of magnitude); velocity = profile / viscosity * pressure
-/// gradient.
+/// Velocity profile of a duct, of fully developed laminar flow: -laplace(profile) = 1, 0 on its walls (and at the
+/// gas-diffusion layer, where velocities are four orders of magnitude smaller); velocity = profile / viscosity *
+/// pressure gradient.
 std::vector<double> ductProfile(const GasSpace& space, const CellGrid& g) {
     StencilSystem duct(g.nx, space.rows, 1);
     for (int row = 0; row < space.rows; ++row)
@@ -240,7 +240,7 @@ void FuelCellSolver::solveSpecies(int which, bool water, double rate, const std:
             if (z + 1 < g.nz) link(a.up, a.down, section, space.fluxZ[p], toZ[s]);
             if (z == (space.air ? 0 : g.nz - 1)) a.rhs[p] += space.inlet[s] * inletValue;
             if (z == (space.air ? g.nz - 1 : 0)) {
-                // If more is consumed than fed, exhaust flows back; it brings water, but no reactant.
+                // If more is consumed than fed, exhaust flows back in; it contains water, but no reactant.
                 a.diag[p] += std::max(space.outlet[s], 0.0);
                 if (water) a.rhs[p] += std::max(-space.outlet[s], 0.0) * inletValue;
             }
@@ -257,7 +257,7 @@ void FuelCellSolver::solveSpecies(int which, bool water, double rate, const std:
             used[column] = wall.constant[column] - wall.factor[column] * c[a.index(x, space.wallRow(), z)];
         }
     if (!water && space.air)
-        for (std::size_t p = 0; p < c.size(); ++p) c[p] = std::max(c[p], 0.2 * start[p]); // a tangent can go too far
+        for (std::size_t p = 0; p < c.size(); ++p) c[p] = std::max(c[p], 0.2 * start[p]); // a Newton step can overshoot
 }
 
 } // namespace tessera::volume::cell

@@ -10,7 +10,8 @@ namespace tessera::volume::cell {
 
 namespace {
 
-// Cuts n cells into layers of these thicknesses, rounded to whole cells, each at least one. First cells, then n.
+// Divides n cells into layers of these thicknesses, each at least one cell. Returns the first cell of each layer, then
+// n.
 template <std::size_t N> std::array<int, N + 1> cut(int n, const std::array<double, N>& thickness) {
     const double total = std::accumulate(thickness.begin(), thickness.end(), 0.0);
     std::array<int, N + 1> begin{};

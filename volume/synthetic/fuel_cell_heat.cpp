@@ -99,7 +99,7 @@ void FuelCellSolver::solveHeat(double voltage, double rate, const std::vector<do
             const double heat = current_[std::size_t(x + g.nx * z)] * (kThermalVoltage - voltage) * g.dx * g.dz;
             for (int y = g.rows[2]; y < g.rows[3]; ++y) a.rhs[a.index(x, y, z)] += heat / meaRows;
         }
-    // The largest factors; the flow changes them little, so that only another time step calls for new ones.
+    // The largest factorisation. The flow changes it little, so it is only computed again for another time step.
     if (refresh || heatPreconditioner_.empty()) heatPreconditioner_ = PlanePreconditioner(a);
     solve(a, heatPreconditioner_, temperature_, 3e-8);
 }

@@ -15,7 +15,7 @@ constexpr double kPi = std::numbers::pi;
 
 Field sampleField(const Lattice& lattice, ScalarType type, const MarschnerLobb& signal, double phase) {
     Field field = makeField(lattice, type);
-    double steps = 0; // of an integer type
+    double steps = 0; // largest integer code; 0 for floats
     if (type != ScalarType::F32) {
         steps = type == ScalarType::U8 ? 255 : 65535;
         field.scale = 1 / steps;
@@ -67,7 +67,7 @@ Dataset makeMarschnerLobb(const std::map<std::string, double>& given) {
     info.name = "marschner-lobb";
     info.lattice = lattice;
     info.bounds = {glm::dvec3(-1), glm::dvec3(1)};
-    info.lengthUnit.clear(); // a formula has no metres
+    info.lengthUnit.clear(); // the signal has no length unit
     info.timeUnit.clear();
     Parameter rho;
     rho.name = "rho";

@@ -18,7 +18,7 @@ struct Model {
     Dataset (*make)(const Settings& settings, const Progress& progress);
 };
 
-/// Those that take no time to make say that they are done.
+/// Models that take no time to compute report that they are done.
 template <Dataset (*make)(const Settings&)> Dataset atOnce(const Settings& settings, const Progress& progress) {
     progress.advance(1);
     return make(settings);

@@ -26,7 +26,7 @@ bool samePlane(const StencilSystem& s, std::size_t a, std::size_t b) {
     return true;
 }
 
-// Eliminates a banded matrix in place, columns of 2 band + 1 entries, the diagonal in the middle.
+// Factorises a banded matrix in place; columns of 2 band + 1 entries with the diagonal in the middle.
 void factorBand(std::vector<float>& columns, int n, int band) {
     const std::size_t stride = std::size_t(2 * band + 1);
     for (int k = 0; k < n; ++k) {
@@ -45,7 +45,7 @@ void factorBand(std::vector<float>& columns, int n, int band) {
 }
 
 double dot(std::span<const double> a, std::span<const double> b) {
-    // Four running sums in fixed places: quicker than one, and the same on any machine.
+    // Four partial sums in fixed order: faster than one, and the same result on any machine.
     double sum[4] = {0, 0, 0, 0};
     const std::size_t n = a.size();
     std::size_t i = 0;
@@ -81,7 +81,7 @@ PlanePreconditioner::PlanePreconditioner(const StencilSystem& s) {
     transposed_ = s.ny < s.nx;
     const std::size_t nz = std::size_t(s.nz), plane = s.plane(), stride = std::size_t(2 * band_ + 1);
 
-    std::vector<std::size_t> planes; // the planes that get a factor of their own
+    std::vector<std::size_t> planes; // the planes with a factor of their own
     factorOf_.resize(nz);
     for (std::size_t z = 0; z < nz; ++z) {
         if (planes.empty() || !samePlane(s, planes.back(), z)) planes.push_back(z);
@@ -101,7 +101,7 @@ PlanePreconditioner::PlanePreconditioner(const StencilSystem& s) {
                 const std::size_t row = std::size_t(transposed_ ? y + s.ny * x : x + s.nx * y);
                 const std::size_t stepX = std::size_t(transposed_ ? s.ny : 1),
                                   stepY = std::size_t(transposed_ ? 1 : s.nx);
-                // Rows are scaled by their diagonal, so that single precision is enough for any unit.
+                // Scale rows by their diagonal, so that single precision suffices in any unit.
                 const double scale = 1 / s.diag[p];
                 at(row, row) = 1.0f;
                 if (x > 0) at(row, row - stepX) = float(-s.west[p] * scale);

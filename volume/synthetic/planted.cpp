@@ -18,7 +18,7 @@ bool inside(const Box& box, glm::dvec3 at) {
 
 namespace {
 
-/// The value of a parameter at a place and time in which it was `value` without the events.
+/// The value of a parameter with the events at a position and time; `value` is that without them.
 double changed(const std::string& name, glm::dvec3 at, double time, double value) {
     if (name == "O2") {
         if (inside(kFlooded, at)) return value * kFloodedOxygen;

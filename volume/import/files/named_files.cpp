@@ -32,7 +32,7 @@ bool isHeader(const std::string& kind) {
     return std::find(kHeaders.begin(), kHeaders.end(), kind) != kHeaders.end();
 }
 
-/// The beginning of a file, where headers name others.
+/// The beginning of a file, which contains the header.
 std::string headOf(const fs::path& path) {
     constexpr std::size_t kMost = 1 << 20;
     std::string text(kMost, '\0');
@@ -42,8 +42,8 @@ std::string headOf(const fs::path& path) {
     return text;
 }
 
-/// Every piece of a text that may be the name of a file: words, what stands in quotation marks, what follows the colon
-/// or equals sign of a line.
+/// Everything in a text that may be a file name: words, quoted texts, and what follows a colon or equals sign in a
+/// line.
 std::set<std::string> possibleNames(const std::string& text) {
     constexpr std::size_t kLongest = 1024;
     std::set<std::string> names;
@@ -74,7 +74,7 @@ std::set<std::string> possibleNames(const std::string& text) {
     return names;
 }
 
-/// Files beside a header that fit a name of it, in which stars stand for anything.
+/// Files in the folder of a header that match a name in it, which may contain asterisks.
 std::vector<fs::path> fitting(const fs::path& header, const std::string& name) {
     const fs::path path = fs::path(name).is_absolute() ? fs::path(name) : header.parent_path() / name;
     if (name.find('*') == std::string::npos) return {path};
@@ -134,7 +134,7 @@ std::vector<std::string> filesNamedBy(const std::string& path) {
         try {
             named = namedDirectly(next);
         } catch (const Error&) {
-            continue; // opening it says why
+            continue; // opening it reports the reason
         }
         for (const fs::path& file : named) {
             std::error_code problem;

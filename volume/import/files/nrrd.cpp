@@ -62,7 +62,7 @@ struct Header {
     std::string encoding, kinds, content;
     bool skips = false;  ///< lines or bytes before the samples
     std::size_t end = 0; ///< of the header, where it ends
-    bool hasEnd = false; ///< else the file does before it
+    bool hasEnd = false; ///< false: the file ends before the header does
 };
 
 /// A key with a value of its own, "key:=value".

@@ -190,7 +190,7 @@ RawForm parseSidecar(std::string_view text, const std::string& file) {
     standard.type = reader.type("dtype");
     standard.missing = reader.missing("missing_value");
     form.lattice.spacing = reader.triple("spacing", glm::dvec3(1));
-    // "origin" is a position where it is three numbers, else words on where the data came from.
+    // "origin" is a position if it is three numbers, else a text on the source of the data.
     if (const json* origin = reader.find("origin")) {
         if (origin->is_string())
             form.provenance = origin->get<std::string>();
@@ -352,7 +352,7 @@ std::string rawOptionOfName(const std::string& path) {
     const std::string stated = "dims=" + dims + ",type=" + type;
     for (const std::string& option : {stated + components + times, stated}) try {
             if (parseRawOption(option).bytes() == bytes) return option;
-        } catch (const Error&) { // a name of other numbers
+        } catch (const Error&) { // other numbers in the name
         }
     return {};
 }

@@ -78,7 +78,7 @@ std::optional<std::string> attribute(std::string_view tag, std::string_view name
     return std::nullopt;
 }
 
-/// Attributes of a tag that are numbers and not those of every .pvd.
+/// Numeric attributes of a tag, except the standard ones of .pvd.
 std::vector<std::pair<std::string, double>> furtherNumbers(std::string_view tag) {
     std::vector<std::pair<std::string, double>> numbers;
     for (std::size_t at = 0; (at = tag.find('=', at)) != std::string_view::npos;) {
@@ -88,7 +88,7 @@ std::vector<std::pair<std::string, double>> furtherNumbers(std::string_view tag)
         const std::string name(tag.substr(begin, end - begin));
         const std::size_t quote = tag.find_first_of("\"'", at);
         if (quote == std::string_view::npos) break;
-        at = tag.find(tag[quote], quote + 1); // an equals sign within a value is no attribute
+        at = tag.find(tag[quote], quote + 1); // skip the value, which may contain an equals sign
         if (at == std::string_view::npos) break;
         static constexpr std::array<std::string_view, 5> kKnown = {"timestep", "group", "part", "file", "name"};
         if (name.empty() || std::ranges::find(kKnown, name) != kKnown.end()) continue;
@@ -120,7 +120,7 @@ std::vector<std::string> expandFolder(const std::string& folder) {
         if (!entry.is_regular_file()) continue;
         byEnding[ending(name)].push_back(entry.path().string());
         const FileFormat* format =
-            ending(name) == ".txt" ? nullptr : formatOfFile(entry.path().string()); // words, mostly
+            ending(name) == ".txt" ? nullptr : formatOfFile(entry.path().string()); // usually plain text
         if (format != nullptr && format->advice.empty()) byFormat[format].push_back(entry.path().string());
     }
     for (const char* list : {".foam", ".pvd", ".series"})
@@ -137,7 +137,7 @@ std::vector<std::string> expandFolder(const std::string& folder) {
     return best;
 }
 
-/// Files whose only page is a slice become one entry for each volume: TIFF by numbers in names, DICOM by folder.
+/// Files with a single page are slices; they become one entry per volume: TIFF by numbers in names, DICOM by folder.
 std::vector<SeriesFile> withSlices(std::vector<SeriesFile> files) {
     std::vector<SeriesFile> out;
     for (SeriesFile& entry : files) {
@@ -250,7 +250,7 @@ std::vector<SeriesFile> parseSeries(const std::string& text, const std::string& 
 std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths) {
     std::vector<SeriesFile> files;
     std::vector<std::string> pending(paths.rbegin(), paths.rend());
-    std::set<std::string> seen; // what is named twice counts once
+    std::set<std::string> seen; // ignore duplicate paths
     int rounds = 0;
     while (!pending.empty()) {
         const std::string path = pending.back();
