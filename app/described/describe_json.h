@@ -169,6 +169,32 @@ template <class T> Json valueToJson(const T& value, const FieldInfo& info) {
     }
 }
 
+/// Reads a range, vector or quaternion: an array of its numbers, all of them or none.
+template <class T>
+void numbersFromJson(T& value, const Json& json, const FieldInfo& info, std::vector<JsonIssue>& issues,
+                     const std::string& path) {
+    constexpr std::size_t count = std::is_same_v<T, Range> ? 2 : IsQuat<T>::value ? 4 : GlmLength<T>::value;
+    if (!json.is_array() || json.size() != count)
+        return wrongType(json, "an array of " + std::to_string(count) + " numbers", issues, path);
+    double parts[count];
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto part = numberFromJson(json[i], info, false, issues, joinPointer(path, std::to_string(i)));
+        if (!part) return;
+        parts[i] = *part;
+    }
+    if constexpr (std::is_same_v<T, Range>) {
+        value = {parts[0], parts[1]};
+    } else if constexpr (IsQuat<T>::value) {
+        using V = typename T::value_type;
+        value =
+            T(static_cast<V>(parts[0]), static_cast<V>(parts[1]), static_cast<V>(parts[2]), static_cast<V>(parts[3]));
+    } else {
+        using V = typename T::value_type;
+        for (std::size_t i = 0; i < count; ++i)
+            value[static_cast<typename T::length_type>(i)] = static_cast<V>(parts[i]);
+    }
+}
+
 template <class T>
 void valueFromJson(T& value, const Json& json, const FieldInfo& info, std::vector<JsonIssue>& issues,
                    const std::string& path) {
@@ -204,26 +230,7 @@ void valueFromJson(T& value, const Json& json, const FieldInfo& info, std::vecto
             value = static_cast<T>(*number);
         }
     } else if constexpr (std::is_same_v<T, Range> || GlmLength<T>::value > 0 || IsQuat<T>::value) {
-        constexpr std::size_t count = std::is_same_v<T, Range> ? 2 : IsQuat<T>::value ? 4 : GlmLength<T>::value;
-        if (!json.is_array() || json.size() != count)
-            return wrongType(json, "an array of " + std::to_string(count) + " numbers", issues, path);
-        double parts[count];
-        for (std::size_t i = 0; i < count; ++i) {
-            const auto part = numberFromJson(json[i], info, false, issues, joinPointer(path, std::to_string(i)));
-            if (!part) return;
-            parts[i] = *part;
-        }
-        if constexpr (std::is_same_v<T, Range>) {
-            value = {parts[0], parts[1]};
-        } else if constexpr (IsQuat<T>::value) {
-            using V = typename T::value_type;
-            value = T(static_cast<V>(parts[0]), static_cast<V>(parts[1]), static_cast<V>(parts[2]),
-                      static_cast<V>(parts[3]));
-        } else {
-            using V = typename T::value_type;
-            for (std::size_t i = 0; i < count; ++i)
-                value[static_cast<typename T::length_type>(i)] = static_cast<V>(parts[i]);
-        }
+        numbersFromJson(value, json, info, issues, path);
     } else if constexpr (IsVector<T>::value) {
         if (!json.is_array()) return wrongType(json, "an array", issues, path);
         T result(json.size());

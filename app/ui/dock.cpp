@@ -245,6 +245,47 @@ void drawFloating(Drawing& drawing, const DockRect& whole) {
     }
 }
 
+/// Begins the window behind all panes, which holds the tabs.
+void beginDockWindow(const DockRect& whole) {
+    ImGui::SetNextWindowPos(whole.lo);
+    ImGui::SetNextWindowSize({whole.hi.x - whole.lo.x, whole.hi.y - whole.lo.y});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, palette().panel);
+    ImGui::Begin("###dock", nullptr,
+                 kPaneFlags | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
+                     ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::PopStyleColor();
+    ImGui::PopStyleVar(3);
+    ImGui::BringWindowToDisplayBack(ImGui::GetCurrentWindow());
+}
+
+/// Moves the tab that the mouse drags, if any, and shows where it would go; nullopt: nowhere.
+std::optional<DockDrop> dragTab(Drawing& drawing, const DockLayout& layout, const DockRect& whole) {
+    DockHand& hand = drawing.hand;
+    const float scale = drawing.scale;
+    if (hand.dragged.empty()) return std::nullopt;
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const float distance = std::hypot(mouse.x - hand.grabbed.x, mouse.y - hand.grabbed.y);
+    if (distance > kDragDistance * scale) hand.moving = true;
+    if (pressed({.key = key::kEscape})) hand.dragged.clear();
+    if (!hand.moving || hand.dragged.empty()) return std::nullopt;
+    const std::optional<DockDrop> drop = dropAt(layout, drawing.tree.root, whole, mouse, drawing.strip);
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    if (drop) {
+        list.AddRectFilled(drop->preview.lo, drop->preview.hi, palette().accentSoft, 4 * scale);
+        list.AddRect(drop->preview.lo, drop->preview.hi, palette().accent, 4 * scale, 0, 1.5f * scale);
+    }
+    const std::string title = drawing.panes.title(hand.dragged);
+    const ImVec2 text = ImGui::CalcTextSize(title.c_str());
+    const ImVec2 at{mouse.x + 12 * scale, mouse.y + 12 * scale};
+    list.AddRectFilled({at.x - 6 * scale, at.y - 3 * scale}, {at.x + text.x + 6 * scale, at.y + text.y + 3 * scale},
+                       ImGui::GetColorU32(ImGuiCol_PopupBg), 4 * scale);
+    list.AddText(at, palette().text, title.c_str());
+    return drop;
+}
+
 } // namespace
 
 void drawDock(DockTree& tree, DockHand& hand, const DockPanes& panes, ImVec2 origin, ImVec2 size, float scale,
@@ -258,19 +299,7 @@ void drawDock(DockTree& tree, DockHand& hand, const DockPanes& panes, ImVec2 ori
     }
     DockLayout layout = layoutDock(tree, whole, scale);
 
-    ImGui::SetNextWindowPos(whole.lo);
-    ImGui::SetNextWindowSize(size);
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, palette().panel);
-    ImGui::Begin("###dock", nullptr,
-                 kPaneFlags | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
-                     ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
-    ImGui::PopStyleColor();
-    ImGui::PopStyleVar(3);
-    ImGui::BringWindowToDisplayBack(ImGui::GetCurrentWindow());
-
+    beginDockWindow(whole);
     const bool maximised = !tree.maximised.empty();
     struct Pane {
         std::string key;
@@ -301,29 +330,7 @@ void drawDock(DockTree& tree, DockHand& hand, const DockPanes& panes, ImVec2 ori
     for (const Pane& pane : shown) drawing.window(pane.key, pane.lo, pane.hi, kPaneFlags);
     if (!maximised) drawFloating(drawing, whole);
 
-    // A tab being dragged.
-    std::optional<DockDrop> drop;
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    if (!hand.dragged.empty() && !maximised) {
-        const float distance = std::hypot(mouse.x - hand.grabbed.x, mouse.y - hand.grabbed.y);
-        if (distance > kDragDistance * scale) hand.moving = true;
-        if (pressed({.key = key::kEscape})) hand.dragged.clear();
-        if (hand.moving && !hand.dragged.empty()) {
-            drop = dropAt(layout, tree.root, whole, mouse, drawing.strip);
-            ImDrawList& list = *ImGui::GetForegroundDrawList();
-            if (drop) {
-                list.AddRectFilled(drop->preview.lo, drop->preview.hi, palette().accentSoft, 4 * scale);
-                list.AddRect(drop->preview.lo, drop->preview.hi, palette().accent, 4 * scale, 0, 1.5f * scale);
-            }
-            const std::string title = panes.title(hand.dragged);
-            const ImVec2 text = ImGui::CalcTextSize(title.c_str());
-            const ImVec2 at{mouse.x + 12 * scale, mouse.y + 12 * scale};
-            list.AddRectFilled({at.x - 6 * scale, at.y - 3 * scale},
-                               {at.x + text.x + 6 * scale, at.y + text.y + 3 * scale},
-                               ImGui::GetColorU32(ImGuiCol_PopupBg), 4 * scale);
-            list.AddText(at, palette().text, title.c_str());
-        }
-    }
+    const std::optional<DockDrop> drop = maximised ? std::nullopt : dragTab(drawing, layout, whole);
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
         if (!hand.dragged.empty() && hand.moving && drop) {
             drawing.event = {};
