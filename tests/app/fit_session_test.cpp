@@ -1,0 +1,140 @@
+#include "app/history/session_file.h"
+#include "app/session/session.h"
+#include "cell_info.h"
+
+#include <algorithm>
+#include <functional>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <type_traits>
+
+namespace tessera::app {
+namespace {
+
+TEST(SessionTest, TheLatticeWasOnceABool) {
+    const SessionDocument old = parseSession(
+        R"({"schema": 2, "data": {"model": "fuel-cell", "bcc": false},
+            "views": {"compare": {"type": "compare", "variants": [{"name": "a", "changes": {"/data/bcc": "true"}},
+                                                                  {"name": "b", "changes": {"/data/bcc": "false"}}]}}})",
+        "old");
+    EXPECT_TRUE(old.messages.empty()) << old.messages.front();
+    EXPECT_EQ(old.session.data.lattice, PictureLattice::Grid);
+    const auto& variants = std::get<CompareView>(old.session.views.at("compare")).variants;
+    ASSERT_EQ(variants.size(), 2u);
+    EXPECT_EQ(variants[0].changes, (std::map<std::string, std::string>{{"/data/lattice", "bodyCentred"}}));
+    EXPECT_EQ(variants[1].changes, (std::map<std::string, std::string>{{"/data/lattice", "grid"}}));
+    Json step = Json::parse(R"({"schema": 2, "history": [{"op": "replace", "value": "true",
+        "path": "/views/compare/variants/0/changes/~1data~1bcc"}]})");
+    migrate(step, "x");
+    EXPECT_EQ(step["history"][0]["path"], "/views/compare/variants/0/changes/~1data~1lattice");
+    EXPECT_EQ(step["history"][0]["value"], "bodyCentred");
+    EXPECT_EQ(parseSession(R"({"schema": 2, "data": {"bcc": true}})", "x").session.data.lattice,
+              PictureLattice::BodyCentred);
+}
+
+TEST(SessionTest, FitReplacesWhatIsNotThere) {
+    Session session = defaultSession(cellInfo(), {});
+    session.layers = {{"a", true, vis::VolumeLayer{.channel = "salt"}},
+                      {"b", true, vis::IsoLayer{.channel = "sugar", .value = 1e9}},
+                      {"c", true, vis::IsoLayer{.channel = "T", .value = 2}}};
+    session.selection.brushes = {vis::rangeBrush({{.channel = "salt"}}, "x"), vis::rangeBrush({{.channel = "T"}}, "y")};
+    session.cursor = {50, 1, 1};
+    session.time = 77;
+    std::vector<std::string> messages;
+    fitSession(session, cellInfo(), messages);
+    EXPECT_EQ(std::get<vis::VolumeLayer>(session.layers[0].technique).channel, "O2");
+    EXPECT_EQ(std::get<vis::IsoLayer>(session.layers[1].technique).channel, "H2");
+    EXPECT_EQ(std::get<vis::IsoLayer>(session.layers[1].technique).value, 3);
+    EXPECT_EQ(std::get<vis::IsoLayer>(session.layers[2].technique).value, 2);
+    ASSERT_EQ(session.selection.brushes.size(), 1u);
+    EXPECT_EQ(session.selection.brushes[0].name, "y");
+    EXPECT_EQ(session.cursor, glm::dvec3(0.5, 1, 1));
+    EXPECT_EQ(session.time, 2);
+    EXPECT_EQ(messages.size(), 3u);
+}
+
+TEST(SessionTest, FitGivesFlowAVectorOfTheData) {
+    volume::DatasetInfo info = cellInfo();
+    Session session = defaultSession(info, {});
+    session.layers = {{"flow", true, vis::FlowLayer{.vector = "wind", .channel = "T", .weight = "salt"}}};
+    std::vector<std::string> messages;
+    info.parameters.push_back({});
+    info.parameters.back().name = "V";
+    info.parameters.back().components = 3;
+    fitSession(session, info, messages);
+    const auto& flow = std::get<vis::FlowLayer>(session.layers[0].technique);
+    EXPECT_EQ(flow.vector, firstVector(info));
+    EXPECT_NE(flow.vector, "");
+    EXPECT_EQ(flow.channel, "T");
+    EXPECT_EQ(flow.weight, "");
+}
+
+/// Calls `visit(name)` for every member of a view that names parameters, in the order of their descriptions.
+template <class Owner> void eachName(Owner& owner, const std::function<void(std::string&)>& visit) {
+    Owner::describe(owner, [&]<class Member>(Member& member, const FieldInfo& field) {
+        const bool names = field.refersTo == "channel" || field.refersTo == "optionalChannel";
+        if constexpr (Described<Member>) {
+            eachName(member, visit);
+        } else if constexpr (std::is_same_v<Member, std::string>) {
+            if (names) visit(member);
+        } else if constexpr (std::is_same_v<Member, std::vector<std::string>>) {
+            if (!names) return;
+            if (member.empty()) member.assign(2, "");
+            for (std::string& name : member) visit(name);
+        }
+    });
+}
+
+TEST(SessionTest, FitLeavesNoViewANameThatIsNotThere) {
+    int kinds = 0, members = 0;
+    const auto tryKind = [&]<class View>(std::type_identity<View>) {
+        Session session = defaultSession(cellInfo(), {});
+        View view;
+        eachName(view, [&](std::string& name) { name = "salt", ++members; });
+        session.views = {{"view", view}};
+        std::vector<std::string> messages;
+        fitSession(session, cellInfo(), messages);
+        eachName(std::get<View>(session.views.at("view")), [&](std::string& name) {
+            EXPECT_TRUE(name.empty() || cellInfo().findChannel(name)) << View::kType << " keeps " << name;
+        });
+        ++kinds;
+    };
+    [&]<class... View>(std::type_identity<std::variant<View...>>) {
+        (tryKind(std::type_identity<View>{}), ...);
+    }(std::type_identity<ViewState>{});
+    EXPECT_GT(kinds, 10);
+    EXPECT_GT(members, 15);
+}
+
+TEST(SessionTest, FitGivesTheFacesOfTheCubeOneStandInForOneName) {
+    Session session = defaultSession(cellInfo(), {});
+    ShadowCubeView cube;
+    cube.left.channel = cube.back.channel = "salt";
+    cube.top.channel = "T";
+    StatisticsView statistics;
+    statistics.balance = "salt";
+    session.views = {{"cube", cube}, {"statistics", statistics}};
+    std::vector<std::string> messages;
+    fitSession(session, cellInfo(), messages);
+    const auto& now = std::get<ShadowCubeView>(session.views.at("cube"));
+    EXPECT_EQ(now.left.channel, "O2");
+    EXPECT_EQ(now.back.channel, "O2");
+    EXPECT_EQ(now.top.channel, "T");
+    EXPECT_EQ(std::get<StatisticsView>(session.views.at("statistics")).balance, "") << "another balance is no stand-in";
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_EQ(messages[0], "parameter salt is not in the data; showing O2 instead");
+}
+
+TEST(SessionTest, DefaultStretchesThinCells) {
+    const Session session = defaultSession(cellInfo(), {});
+    EXPECT_GT(session.stretch.x, 5);
+    EXPECT_EQ(session.stretch.z, 1);
+    Session copy = session;
+    std::vector<std::string> messages;
+    fitSession(copy, cellInfo(), messages);
+    EXPECT_TRUE(messages.empty());
+    EXPECT_TRUE(copy == session);
+}
+
+} // namespace
+} // namespace tessera::app

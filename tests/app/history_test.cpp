@@ -1,0 +1,134 @@
+#include "app/history/history.h"
+#include "cell_info.h"
+#include "randomise.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <random>
+
+namespace tessera::app {
+namespace {
+
+TEST(HistoryTest, UndoAllAndRedoAllOfRandomEdits) {
+    std::mt19937 random(5);
+    Session session = defaultSession(cellInfo(), {});
+    session.animation.playing = false; // what plays is no edit
+    session.animation.position = 0;
+    History history;
+    history.reset(session);
+    std::vector<Session> states{session};
+    for (int i = 0; i < 60; ++i) {
+        Session next = i % 7 == 0 ? randomValue<Session>(random) : session;
+        next.schema = kSessionSchema;
+        next.animation.playing = false;
+        next.animation.position = 0;
+        if (i % 7 != 0) {
+            next.camera.distance = 1 + float(i) / 10;
+            if (i % 3 == 0) next.layers.push_back(randomValue<vis::Layer>(random));
+            if (i % 5 == 0 && !next.layers.empty()) next.layers.erase(next.layers.begin());
+        }
+        if (next == session) continue;
+        ASSERT_TRUE(history.observe(next, false, i * 10.0)) << i;
+        session = next;
+        states.push_back(session);
+    }
+    ASSERT_EQ(history.steps().size() + 1, states.size());
+    for (std::size_t i = states.size(); i-- > 1;) ASSERT_TRUE(history.undo() == states[i - 1]) << i;
+    EXPECT_FALSE(history.canUndo());
+    for (std::size_t i = 1; i < states.size(); ++i) ASSERT_TRUE(history.redo() == states[i]) << i;
+    EXPECT_FALSE(history.canRedo());
+    EXPECT_TRUE(history.seek(3) == states[3]);
+    const History again = History::fromJson(history.toJson(), states[3]);
+    EXPECT_TRUE(again == history);
+    EXPECT_THROW(History::fromJson(history.toJson(), states[4]), Error);
+    // Forty copies of the document into itself would be a million million of them.
+    Json bomb = history.toJson();
+    bomb["steps"][0]["forward"] = Json::parse(R"([{"op":"copy","from":"","path":"/more"}])");
+    EXPECT_THAT([&] { History::fromJson(bomb, states[3]); },
+                testing::ThrowsMessage<Error>(testing::HasSubstr("not a JSON patch")));
+}
+
+TEST(HistoryTest, ADragIsOneStepAndAWheelTurnIsOneStep) {
+    Session session;
+    History history;
+    history.reset(session);
+    for (int i = 0; i < 20; ++i) {
+        session.camera.distance += 0.1f;
+        EXPECT_FALSE(history.observe(session, true, i * 0.02));
+    }
+    EXPECT_TRUE(history.observe(session, false, 0.4));
+    EXPECT_EQ(history.steps().size(), 1u);
+    for (int i = 0; i < 5; ++i) {
+        session.time += 1;
+        history.observe(session, false, 10 + i * 0.1);
+    }
+    EXPECT_EQ(history.steps().size(), 2u);
+    EXPECT_EQ(history.steps()[1].name, "time");
+    EXPECT_EQ(history.undo().time, 0);
+}
+
+TEST(HistoryTest, PlayingIsNoEdit) {
+    Session session;
+    History history;
+    history.reset(session);
+    session.animation.playing = true;
+    for (int i = 0; i < 5; ++i) {
+        session.time += 1;
+        EXPECT_FALSE(history.observe(session, false, i));
+    }
+    session.animation.playing = false;
+    EXPECT_FALSE(history.observe(session, false, 9));
+    session.camera.distance = 7;
+    EXPECT_TRUE(history.observe(session, false, 20));
+    EXPECT_EQ(history.steps().size(), 1u);
+    EXPECT_EQ(history.undo().time, 5);
+}
+
+TEST(HistoryTest, WhichTabsAreInFrontIsNoEdit) {
+    Session session;
+    session.dock.root.id = 1;
+    session.dock.root.tabs = {"a", "b", "c"};
+    History history;
+    history.reset(session);
+    session.dock.root.active = 1;
+    EXPECT_FALSE(history.observe(session, false, 1));
+    EXPECT_FALSE(history.pending());
+    // A pane that comes is one; what is undone and done again lets the tabs be.
+    session.dock.root.tabs.push_back("d");
+    session.dock.root.active = 3;
+    EXPECT_TRUE(history.observe(session, false, 2));
+    session.camera.distance = 7;
+    EXPECT_TRUE(history.observe(session, false, 3));
+    session.dock.root.active = 2;
+    EXPECT_FALSE(history.observe(session, false, 4));
+    EXPECT_EQ(history.steps().size(), 2u);
+    EXPECT_TRUE(History::fromJson(history.toJson(), session).steps().size() == 2) << "as saved";
+    EXPECT_EQ(history.undo().dock.root.active, 2);
+    EXPECT_EQ(history.undo().dock.root.tabs.size(), 3u);
+    EXPECT_EQ(history.redo().dock.root.tabs.size(), 4u);
+    EXPECT_EQ(history.redo().camera.distance, 7);
+}
+
+TEST(HistoryTest, AStepMayHaveAName) {
+    Session session;
+    History history;
+    history.reset(session);
+    for (const char* name : {"Layout: Lens", "Layout: Flow"}) {
+        history.nameNext(name);
+        session.camera.distance += 1;
+        session.time += 1;
+        EXPECT_TRUE(history.observe(session, false, 1));
+    }
+    history.nameNext("Layout: Flow");
+    EXPECT_FALSE(history.observe(session, false, 1)) << "it is shown already";
+    session.camera.distance += 1;
+    session.time += 1;
+    EXPECT_TRUE(history.observe(session, false, 1));
+    ASSERT_EQ(history.steps().size(), 3u) << "none joins the one before";
+    EXPECT_EQ(history.steps()[0].name, "Layout: Lens");
+    EXPECT_EQ(history.steps()[1].name, "Layout: Flow");
+    EXPECT_EQ(history.steps()[2].name, "several changes");
+}
+
+} // namespace
+} // namespace tessera::app
