@@ -1,5 +1,7 @@
 #include "app/data/first_view.h"
 
+#include "app/data/boundary_value.h"
+#include "app/data/coarse_samples.h"
 #include "vis/transfer/tail_opacity.h"
 #include "volume/base/error.h"
 #include "volume/reconstruct/probe.h"
@@ -11,28 +13,6 @@
 namespace tessera::app {
 
 namespace {
-
-constexpr double kQuickSamples = 4e6; ///< samples read without a coarser level
-
-/// Calls use(level index, value) for the present samples of every brick that `wanted` accepts.
-template <class Wanted, class Use>
-void forSamples(const volume::BrickSource& source, int channel, int time, int level, Wanted wanted, Use use) {
-    const volume::BrickGrid& grid = source.grid();
-    const glm::ivec3 count = grid.count();
-    for (int z = 0; z < count.z; ++z)
-        for (int y = 0; y < count.y; ++y)
-            for (int x = 0; x < count.x; ++x) {
-                const glm::ivec3 index(x, y, z);
-                if (!wanted(index, count)) continue;
-                const glm::ivec3 begin = grid.levelBegin(index, level);
-                const volume::BrickSamples samples = source.read({channel, time, level, index});
-                std::size_t at = 0;
-                for (int k = 0; k < samples.size.z; ++k)
-                    for (int j = 0; j < samples.size.y; ++j)
-                        for (int i = 0; i < samples.size.x; ++i, ++at)
-                            if (samples.isPresent(at)) use(begin + glm::ivec3(i, j, k), samples.values[at]);
-            }
-}
 
 /// The present sample nearest to the mean position of all present ones.
 std::optional<glm::dvec3> middleOfSamples(const volume::BrickSource& source, int channel, int time) {
@@ -63,45 +43,9 @@ std::optional<glm::dvec3> middleOfSamples(const volume::BrickSource& source, int
     return glm::clamp(best, source.info().bounds.lo, source.info().bounds.hi);
 }
 
-} // namespace
-
-std::optional<double> backgroundShare(const volume::BrickSource& source, int channel, int time) {
-    const volume::DatasetInfo& info = source.info();
-    const volume::Channel what = info.channel(channel);
-    const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(what.parameter)];
-    const Range range = info.channelRange(what);
-    const bool integer = parameter.type != volume::ScalarType::F32 && !parameter.categorical;
-    if (!integer || !(range.hi > range.lo)) return std::nullopt;
-    const volume::BrickGrid& grid = source.grid();
-    const int level = grid.levelWithin(kQuickSamples);
-    const glm::ivec3 last = grid.levelSamples(level) - 1;
-    std::vector<std::uint64_t> histogram(256, 0);
-    std::uint64_t total = 0;
-    forSamples(
-        source, channel, time, level,
-        [](glm::ivec3 index, glm::ivec3 count) {
-            return glm::any(glm::equal(index, glm::ivec3(0))) || glm::any(glm::equal(index, count - 1));
-        },
-        [&](glm::ivec3 at, float value) {
-            if (!glm::any(glm::equal(at, glm::ivec3(0))) && !glm::any(glm::equal(at, last))) return;
-            const double share = (value - range.lo) / (range.hi - range.lo);
-            ++histogram[static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * 255)];
-            ++total;
-        });
-    std::uint64_t below = 0;
-    for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
-        below += histogram[bin];
-        if (static_cast<double>(below) < 0.99 * static_cast<double>(total)) continue;
-        // Noise is weaker at this coarse level than at full resolution.
-        const double edge = static_cast<double>(bin + 1) / 255, share = edge < 0.01 ? edge : 1.3 * edge + 0.02;
-        return total > 0 && share < 0.5 ? std::optional(share) : std::nullopt;
-    }
-    return std::nullopt;
-}
-
-namespace {
-
 constexpr int kViewBins = 256;
+/// Where the opacity of scans begins, between their background (0) and their strongest boundary (1).
+constexpr double kBelowBoundary = 0.4;
 /// Share of the grid's samples (absent ones included) that should be visible at first: fewer are hard to find in the
 /// box, more hide what is behind them.
 constexpr double kLeastSeen = 0.02, kMostSeen = 0.2;
@@ -164,7 +108,10 @@ void aimAtSamples(Session& session, const volume::BrickSource& source, int chann
     if (parameter.type == volume::ScalarType::F32) {
         showTails(transfer->second, source, channel, time);
     } else if (const auto share = backgroundShare(source, channel, time)) {
-        const float x = static_cast<float>(*share);
+        const Range range = info.channelRange(what);
+        const auto boundary = boundaryValue(source, channel, time);
+        const double middle = boundary ? (*boundary - range.lo) / (range.hi - range.lo) : *share;
+        const float x = static_cast<float>(*share + kBelowBoundary * std::max(middle - *share, 0.0));
         transfer->second.opacity = {{0.0f, 0.0f}, {x, 0.0f}, {1.0f, 0.8f}};
     }
 }
@@ -173,7 +120,10 @@ void aimAtSamples(Session& session, const volume::BrickSource& source, int chann
 
 void aimFirstView(Session& session, const volume::BrickSource& source, double aspect) {
     const volume::DatasetInfo& info = source.info();
-    vis::fit(session.camera, vis::worldFrame(info.bounds, session.stretch), aspect);
+    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    if (session.camera.orientation == vis::Camera{}.orientation)
+        session.camera.orientation = vis::firstOrientation(world);
+    vis::fit(session.camera, world, aspect);
     if (session.layers.empty()) return;
     const std::string name = std::visit([](const auto& own) { return own.channel; }, session.layers.front().technique);
     const auto channel = info.findChannel(name);

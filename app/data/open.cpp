@@ -1,5 +1,6 @@
 #include "app/data/open.h"
 
+#include "app/data/boundary_value.h"
 #include "app/data/first_view.h"
 #include "app/user_files/import_memory.h"
 
@@ -247,28 +248,32 @@ Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& in
     return session;
 }
 
-void fitSurfaces(Session& session, const volume::BrickSource& source, bool own, std::vector<std::string>& messages) {
+void fitSurfaces(Session& session, const volume::BrickSource& source, const Session& layout,
+                 std::vector<std::string>& messages) {
     const volume::DatasetInfo& info = source.info();
+    const bool own = sameData(layout.data, session.data);
+    const int time = info.nearestTime(session.time);
     std::set<std::string> without;
-    for (vis::Layer& layer : session.layers) {
+    for (std::size_t i = 0; i < session.layers.size(); ++i) {
+        vis::Layer& layer = session.layers[i];
         auto* iso = std::get_if<vis::IsoLayer>(&layer.technique);
         const auto channel = iso ? info.findChannel(iso->channel) : std::nullopt;
         if (!channel) continue;
-        std::optional<Range> range;
         try {
-            range = rangeAt(source, *channel, info.nearestTime(session.time));
+            const std::optional<Range> range = rangeAt(source, *channel, time);
+            if (!range || !(range->hi > range->lo)) {
+                if (layer.visible && without.insert(iso->channel).second)
+                    messages.push_back(iso->channel + (range ? " has one value everywhere" : " has no value anywhere") +
+                                       " at this time, so its surface is empty: choose another time or parameter");
+                continue;
+            }
+            const auto* made =
+                i < layout.layers.size() ? std::get_if<vis::IsoLayer>(&layout.layers[i].technique) : nullptr;
+            const double share = (double(iso->value) - range->lo) / (range->hi - range->lo), margin = own ? 0 : 0.1;
+            if (made && made->channel == iso->channel && share > margin && share < 1 - margin) continue;
+            iso->value = surfaceValue(source, *channel, time).value_or(0.5 * (range->lo + range->hi));
         } catch (const Error&) { // a damaged brick: use what could be read
-            continue;
         }
-        if (!range || !(range->hi > range->lo)) {
-            if (layer.visible && without.insert(iso->channel).second)
-                messages.push_back(iso->channel + (range ? " has one value everywhere" : " has no value anywhere") +
-                                   " at this time, so its surface is empty: choose another time or parameter");
-            continue;
-        }
-        const double share = (double(iso->value) - range->lo) / (range->hi - range->lo);
-        const double margin = own ? 0 : 0.1;
-        if (!(share > margin && share < 1 - margin)) iso->value = 0.5 * (range->lo + range->hi);
     }
 }
 
@@ -278,9 +283,9 @@ Session changeLayout(const SessionDocument& layout, const volume::BrickSource& s
     next.appearance = shown.appearance;
     next.time = shown.time;
     next.cursor = shown.cursor;
-    const bool own = sameData(layout.session.data, shown.data);
-    if (!own) vis::fit(next.camera, vis::worldFrame(source.info().bounds, next.stretch), kFirstAspect);
-    fitSurfaces(next, source, own, messages);
+    if (!sameData(layout.session.data, shown.data))
+        vis::fit(next.camera, vis::worldFrame(source.info().bounds, next.stretch), kFirstAspect);
+    fitSurfaces(next, source, layout.session, messages);
     return next;
 }
 
@@ -347,7 +352,7 @@ Opened open(const OpenRequest& request, const Progress& progress) {
         opened.document.session = applyLayout(*layout, info, data, opened.messages);
         const bool own = sameData(layout->session.data, data);
         if (!own) aimFirstView(opened.document.session, *opened.source, kFirstAspect);
-        fitSurfaces(opened.document.session, *opened.source, own, opened.messages);
+        fitSurfaces(opened.document.session, *opened.source, layout->session, opened.messages);
     } else {
         opened.document.session = defaultSession(info, data);
         fitSession(opened.document.session, info, opened.messages);

@@ -68,11 +68,12 @@ std::string findLayout(const std::string& nameOrPath);
 Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& info, const DataRef& data,
                     std::vector<std::string>& messages);
 
-/// Moves surfaces whose value does not exist at the session's time (or, with `own` false, is near the ends of the
-/// existing range) to the middle of the range at that time: parameters can be far from their overall range then. One
-/// message for each parameter that has no surface at all. Reads statistics of the bricks of one time; if one is
-/// damaged, the rest is unchanged.
-void fitSurfaces(Session& session, const volume::BrickSource& source, bool own, std::vector<std::string>& messages);
+/// Moves surfaces of a session made from a layout to where these data have one: those of a parameter that the layout
+/// did not name, and those whose value does not exist at the session's time (or, with data other than the layout's, is
+/// near the ends of the existing range), to surfaceValue(). One message for each parameter that has no surface at all.
+/// Reads statistics and coarse bricks of one time; surfaces with a damaged brick are unchanged.
+void fitSurfaces(Session& session, const volume::BrickSource& source, const Session& layout,
+                 std::vector<std::string>& messages);
 
 /// A layout chosen for data that are already shown: theme, time and cross-hair stay as in `shown`, and where the layout
 /// was made with other data the camera sees all of these. Throws Error.

@@ -8,7 +8,7 @@
 namespace tessera::app {
 
 void resetCamera(vis::Camera& camera, const vis::WorldFrame& world, double aspect) {
-    camera.orientation = vis::Camera{}.orientation;
+    camera.orientation = vis::firstOrientation(world);
     vis::fit(camera, world, aspect);
 }
 

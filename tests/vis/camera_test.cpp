@@ -174,6 +174,26 @@ TEST(Camera, DefaultShowsALongBoxAcross) {
     EXPECT_GT(up.z, 0.3f); // seen from above
 }
 
+TEST(Camera, AFlatBoxIsFirstSeenTowardsItsLargeFaces) {
+    const auto seen = [](glm::dvec3 halfSize) { // cosines between the three axes and the direction to the eye
+        WorldFrame frame;
+        frame.halfSize = halfSize;
+        return glm::dvec3(glm::conjugate(firstOrientation(frame)) * glm::vec3(0, 0, 1));
+    };
+    for (const glm::dvec3 size :
+         {glm::dvec3(1), glm::dvec3(1, 0.7, 0.8), glm::dvec3(0.1, 1, 1), glm::dvec3(0.1, 0.1, 1)}) {
+        WorldFrame frame;
+        frame.halfSize = size;
+        EXPECT_EQ(firstOrientation(frame), Camera{}.orientation);
+    }
+    const glm::dvec3 cube = seen(glm::dvec3(1)), thinZ = seen({1, 1, 0.2}), thinY = seen({1, 0.2, 1});
+    EXPECT_GT(std::abs(thinZ.z), 0.75);
+    EXPECT_GT(std::abs(thinZ.z), std::abs(cube.z) + 0.2);
+    EXPECT_GT(thinY.y, 0.7);
+    EXPECT_GT(thinY.y, cube.y + 0.2);
+    for (const glm::dvec3 each : {cube, thinZ, thinY}) EXPECT_GT(each.y, 0.4) << "from above";
+}
+
 TEST(Camera, StandardViewsLookAlongTheirAxes) {
     const auto toViewer = [](StandardView view) {
         return glm::conjugate(standardOrientation(view)) * glm::vec3(0, 0, 1);

@@ -106,6 +106,18 @@ void roll(Camera& camera, float radians) {
     camera.orientation = glm::normalize(glm::angleAxis(radians, kZ) * camera.orientation);
 }
 
+glm::quat firstOrientation(const WorldFrame& frame) {
+    constexpr double kFlat = 0.6;
+    const glm::dvec3 edge = frame.halfSize;
+    const auto turned = [](float pitch, float yaw) {
+        return glm::angleAxis(glm::radians(pitch), glm::vec3(1, 0, 0)) *
+               glm::angleAxis(glm::radians(yaw), glm::vec3(0, 1, 0));
+    };
+    if (edge.y < kFlat * std::min(edge.x, edge.z)) return turned(45, 60);
+    if (edge.z < kFlat * std::min(edge.x, edge.y)) return turned(25, 30);
+    return Camera{}.orientation;
+}
+
 void fit(Camera& camera, const WorldFrame& frame, double aspect) {
     const glm::dquat toEye = orientation(camera);
     const double tangent = std::tan(glm::radians(static_cast<double>(camera.fieldOfView)) / 2);

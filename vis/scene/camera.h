@@ -83,6 +83,10 @@ void roll(Camera& camera, float radians);
 /// direction.
 void fit(Camera& camera, const WorldFrame& frame, double aspect);
 
+/// The direction data are first seen from: slanted, with y up and the eye between the axes x and z, nearer to x;
+/// towards the large faces of a flat box (one edge below 0.6 of both others).
+glm::quat firstOrientation(const WorldFrame& frame);
+
 /// The six axis-aligned views and the isometric one. Front looks along -z with y up; in left and right z runs
 /// horizontally.
 enum class StandardView { Front, Back, Left, Right, Top, Bottom, Isometric };

@@ -1,0 +1,136 @@
+#include "app/data/boundary_value.h"
+
+#include "app/data/coarse_samples.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numeric>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr int kValueBins = 256;
+constexpr auto kEveryBrick = [](glm::ivec3, glm::ivec3) { return true; };
+
+std::size_t binOf(double value, Range range) {
+    const double share = (value - range.lo) / (range.hi - range.lo);
+    return static_cast<std::size_t>(std::clamp(share * kValueBins, 0.0, kValueBins - 1.0));
+}
+
+double middleOfBin(std::size_t bin, Range range) {
+    return range.lo + (static_cast<double>(bin) + 0.5) / kValueBins * (range.hi - range.lo);
+}
+
+/// Adds |grad f|^3 of the samples of a brick, but for those on its faces, to the bins of their values. `step`: distance
+/// of the neighbours in the array; `cell`: half their distance in space, in any unit.
+void addGradients(const volume::BrickSamples& samples, glm::ivec3 step, glm::dvec3 cell, Range range,
+                  std::array<double, kValueBins>& sums) {
+    const glm::ivec3 size = samples.size;
+    const std::array<std::size_t, 3> stride{1, std::size_t(size.x), std::size_t(size.x) * std::size_t(size.y)};
+    for (int k = step.z; k < size.z - step.z; ++k)
+        for (int j = step.y; j < size.y - step.y; ++j)
+            for (int i = step.x; i < size.x - step.x; ++i) {
+                const std::size_t at = std::size_t(i) + std::size_t(j) * stride[1] + std::size_t(k) * stride[2];
+                if (!samples.isPresent(at)) continue;
+                glm::dvec3 gradient(0);
+                bool whole = true;
+                for (int axis = 0; axis < 3; ++axis) {
+                    const std::size_t away = std::size_t(step[axis]) * stride[std::size_t(axis)];
+                    whole = whole && samples.isPresent(at - away) && samples.isPresent(at + away);
+                    gradient[axis] =
+                        (double(samples.values[at + away]) - double(samples.values[at - away])) / (2 * cell[axis]);
+                }
+                if (whole) sums[binOf(samples.values[at], range)] += std::pow(glm::length(gradient), 3);
+            }
+}
+
+} // namespace
+
+std::optional<double> backgroundShare(const volume::BrickSource& source, int channel, int time) {
+    const volume::DatasetInfo& info = source.info();
+    const volume::Channel what = info.channel(channel);
+    const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(what.parameter)];
+    const Range range = info.channelRange(what);
+    const bool integer = parameter.type != volume::ScalarType::F32 && !parameter.categorical;
+    if (!integer || !(range.hi > range.lo)) return std::nullopt;
+    const volume::BrickGrid& grid = source.grid();
+    const int level = grid.levelWithin(kQuickSamples);
+    const glm::ivec3 last = grid.levelSamples(level) - 1;
+    std::vector<std::uint64_t> histogram(256, 0);
+    std::uint64_t total = 0;
+    forSamples(
+        source, channel, time, level,
+        [](glm::ivec3 index, glm::ivec3 count) {
+            return glm::any(glm::equal(index, glm::ivec3(0))) || glm::any(glm::equal(index, count - 1));
+        },
+        [&](glm::ivec3 at, float value) {
+            if (!glm::any(glm::equal(at, glm::ivec3(0))) && !glm::any(glm::equal(at, last))) return;
+            const double share = (value - range.lo) / (range.hi - range.lo);
+            ++histogram[static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * 255)];
+            ++total;
+        });
+    std::uint64_t below = 0;
+    for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
+        below += histogram[bin];
+        if (static_cast<double>(below) < 0.99 * static_cast<double>(total)) continue;
+        // Noise is weaker at this coarse level than at full resolution.
+        const double edge = static_cast<double>(bin + 1) / 255, share = edge < 0.01 ? edge : 1.3 * edge + 0.02;
+        return total > 0 && share < 0.5 ? std::optional(share) : std::nullopt;
+    }
+    return std::nullopt;
+}
+
+std::optional<double> boundaryValue(const volume::BrickSource& source, int channel, int time) {
+    const Range range = source.info().channelRange(source.info().channel(channel));
+    if (!(range.hi > range.lo)) return std::nullopt;
+    const volume::BrickGrid& grid = source.grid();
+    const int level = grid.levelWithin(kQuickSamples);
+    // Storage of BCC holds the two sublattices in alternating planes.
+    const glm::ivec3 step(1, 1, grid.lattice.kind == volume::LatticeKind::BCC ? 2 : 1);
+    const glm::dvec3 spacing = grid.lattice.spacing;
+    const glm::dvec3 cell = spacing / std::max(std::min({spacing.x, spacing.y, spacing.z}), 1e-300);
+    std::array<double, kValueBins> sums{};
+    forBricks(source, channel, time, level, kEveryBrick,
+              [&](glm::ivec3, const volume::BrickSamples& samples) { addGradients(samples, step, cell, range, sums); });
+    const double background = backgroundShare(source, channel, time).value_or(0);
+    std::size_t best = 0;
+    double most = 0;
+    constexpr int kSmooth = 4; // bins on either side: scans do not have every value
+    for (int bin = static_cast<int>(std::ceil(background * kValueBins)); bin < kValueBins; ++bin) {
+        double sum = 0;
+        for (int near = std::max(bin - kSmooth, 0); near <= std::min(bin + kSmooth, kValueBins - 1); ++near)
+            sum += (kSmooth + 1 - std::abs(near - bin)) * sums[std::size_t(near)];
+        if (sum > most) most = sum, best = std::size_t(bin);
+    }
+    return most > 0 ? std::optional(middleOfBin(best, range)) : std::nullopt;
+}
+
+std::optional<double> middleValue(const volume::BrickSource& source, int channel, int time) {
+    const Range range = source.info().channelRange(source.info().channel(channel));
+    if (!(range.hi > range.lo)) return std::nullopt;
+    std::array<double, kValueBins> count{};
+    forSamples(source, channel, time, source.grid().levelWithin(kQuickSamples), kEveryBrick,
+               [&](glm::ivec3, float value) { ++count[binOf(value, range)]; });
+    const double all = std::accumulate(count.begin(), count.end(), 0.0);
+    const auto quantile = [&](double share) {
+        double below = 0;
+        std::size_t bin = 0;
+        while (bin + 1 < count.size() && (below += count[bin]) < share * all) ++bin;
+        return bin;
+    };
+    const std::size_t lo = quantile(0.02), hi = quantile(0.98);
+    if (all == 0 || lo == hi) return std::nullopt;
+    return 0.5 * (middleOfBin(lo, range) + middleOfBin(hi, range));
+}
+
+std::optional<double> surfaceValue(const volume::BrickSource& source, int channel, int time) {
+    const volume::Channel what = source.info().channel(channel);
+    const volume::Parameter& parameter = source.info().parameters[static_cast<std::size_t>(what.parameter)];
+    const bool scan = parameter.type != volume::ScalarType::F32 && !parameter.categorical;
+    return scan ? boundaryValue(source, channel, time) : middleValue(source, channel, time);
+}
+
+} // namespace tessera::app

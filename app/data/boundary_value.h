@@ -1,0 +1,28 @@
+#pragma once
+
+#include "volume/bricks/brick_source.h"
+
+#include <optional>
+
+/// Values that matter in a scan, or any field, for a first picture of it.
+namespace tessera::app {
+
+/// Upper end of the background of a scan, as a share 0..1 of the channel's range: just above nearly all samples on the
+/// outer faces of the box. Only for measured integers (scanners have air and noise around the object, simulations do
+/// not), and only if it leaves more than half of the range. Reads the outer bricks of one time; throws Error.
+std::optional<double> backgroundShare(const volume::BrickSource& source, int channel, int time);
+
+/// The value whose iso-surface follows the strongest boundary between materials, for a first picture: the peak over v
+/// of the sum of |grad f|^3 of all samples of value v, which by the coarea formula is the integral of |grad f|^2 over
+/// the surface f = v. Values that the background has do not count. From a coarse level of one
+/// time, by differences inside bricks. nullopt: no gradient at all. Throws Error when a brick is damaged.
+std::optional<double> boundaryValue(const volume::BrickSource& source, int channel, int time);
+
+/// A value for a surface in a field without such boundaries: the middle between the 2 % and 98 % quantiles; nullopt:
+/// these are equal, or there is no sample. Throws Error when a brick is damaged.
+std::optional<double> middleValue(const volume::BrickSource& source, int channel, int time);
+
+/// The first of these for measured integers (scans), else the second.
+std::optional<double> surfaceValue(const volume::BrickSource& source, int channel, int time);
+
+} // namespace tessera::app
