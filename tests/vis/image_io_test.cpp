@@ -38,6 +38,39 @@ void spill(const std::string& path, const std::vector<char>& bytes) {
     std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
+/// The chunk of this type as it stands in the file, read without libpng; empty where there is none.
+std::vector<unsigned char> chunkOf(const std::vector<char>& png, const std::string& type) {
+    const auto byte = [&](std::size_t i) { return std::size_t(static_cast<unsigned char>(png.at(i))); };
+    for (std::size_t at = 8; at + 12 <= png.size();) {
+        const std::size_t length = byte(at) << 24 | byte(at + 1) << 16 | byte(at + 2) << 8 | byte(at + 3);
+        if (std::string(png.data() + at + 4, 4) == type)
+            return {png.begin() + std::ptrdiff_t(at + 8), png.begin() + std::ptrdiff_t(at + 8 + length)};
+        at += 12 + length;
+    }
+    return {};
+}
+
+// 300 / 0.0254 = 11811.02 pixels per metre = 0x2e23, 200 dpi are 7874 = 0x1ec2; the last byte is the unit, metre.
+TEST_F(ImageIo, StatesTheResolutionOnPaper) {
+    Image image = randomImage({7, 5}, true, 1);
+    writePng(path("a.png"), image, {{"Title", "x"}});
+    EXPECT_TRUE(chunkOf(slurp(path("a.png")), "pHYs").empty());
+    EXPECT_EQ(readPng(path("a.png")).dpi, 0);
+    image.dpi = 300;
+    writePng(path("a.png"), image, {{"Title", "x"}});
+    EXPECT_EQ(chunkOf(slurp(path("a.png")), "pHYs"),
+              (std::vector<unsigned char>{0, 0, 0x2e, 0x23, 0, 0, 0x2e, 0x23, 1}));
+    std::map<std::string, std::string> texts;
+    const Image back = readPng(path("a.png"), &texts);
+    EXPECT_NEAR(back.dpi, 300, 0.013) << "half a pixel per metre";
+    EXPECT_EQ(back.rgba, image.rgba);
+    EXPECT_EQ(texts["Title"], "x");
+    image.dpi = 200;
+    writePng(path("a.png"), image);
+    EXPECT_EQ(chunkOf(slurp(path("a.png")), "pHYs"),
+              (std::vector<unsigned char>{0, 0, 0x1e, 0xc2, 0, 0, 0x1e, 0xc2, 1}));
+}
+
 TEST_F(ImageIo, GivesBackPixelsAndTexts) {
     const std::map<std::string, std::string> texts{
         {kSessionTextKey, "{\"name\": \"Zelle \xc3\xa4 \xe2\x82\x82\", \"pad\": \"" + std::string(100000, 'x') + "\"}"},

@@ -16,7 +16,8 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr std::size_t kMaxPixels = std::size_t(1) << 28;     // 1 GiB of RGBA; a larger size indicates a damaged header
+constexpr std::size_t kMaxPixels = std::size_t(1) << 28; // 1 GiB of RGBA; a larger size indicates a damaged header
+constexpr double kMetresPerInch = 0.0254;
 constexpr png_alloc_size_t kMaxChunk = std::size_t(1) << 28; // bytes of an inflated text chunk
 
 /// State shared with libpng's callbacks. libpng reports errors by longjmp, so all objects that own memory live here or
@@ -65,6 +66,10 @@ bool encode(Stream& stream, const Image& image, std::vector<png_text>& texts, st
                  opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
                  PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+    if (image.dpi > 0) {
+        const auto perMetre = static_cast<png_uint_32>(image.dpi / kMetresPerInch + 0.5);
+        png_set_pHYs(png, info, perMetre, perMetre, PNG_RESOLUTION_METER);
+    }
     if (!texts.empty()) png_set_text(png, info, texts.data(), static_cast<int>(texts.size()));
     png_write_info(png, info);
     if (opaque) png_set_filler(png, 0, PNG_FILLER_AFTER);
@@ -89,6 +94,8 @@ bool encode(Stream& stream, const Image& image, std::vector<png_text>& texts, st
     png_read_update_info(png, info);
     if (png_get_rowbytes(png, info) != std::size_t(width) * 4) png_error(png, "unknown kind of pixels");
     image.size = {static_cast<int>(width), static_cast<int>(height)};
+    // 0 where the chunk is absent, has another unit, or pixels that are not square.
+    image.dpi = double(png_get_pixels_per_meter(png, info)) * kMetresPerInch;
     image.rgba.resize(std::size_t(width) * height * 4);
     rows.resize(height);
     for (std::size_t y = 0; y < height; ++y) rows[y] = image.rgba.data() + y * std::size_t(width) * 4;

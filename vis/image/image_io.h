@@ -13,6 +13,7 @@ namespace tessera::vis {
 struct Image {
     glm::ivec2 size{0};
     std::vector<std::uint8_t> rgba;
+    double dpi = 0; ///< pixels per inch on paper, in a PNG whole pixels per metre; 0: not stated
 };
 
 /// Key of the text chunk that carries a session in an exported PNG.
