@@ -1,9 +1,11 @@
 #include "app/command/picture_options.h"
 
 #include "app/data/import_options.h"
+#include "app/described/describe_cli.h"
 #include "app/history/parameter_path.h"
 #include "volume/base/error.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -34,6 +36,69 @@ std::string paneOf(const Session& session, const std::string& view) {
     return {};
 }
 
+/// Leaves a part of the decoration out, by its key.
+void leaveOut(Decoration& decoration, const std::string& part) {
+    std::string known;
+    bool found = false;
+    Decoration::describe(decoration, [&](bool& shown, const FieldInfo& info) {
+        known += (known.empty() ? "" : ", ") + std::string(info.key);
+        if (info.key != part) return;
+        shown = false;
+        found = true;
+    });
+    if (!found) throw CLI::ValidationError("--without", "has no part \"" + part + "\"; there are " + known);
+}
+
+/// The form that the options state together.
+PictureForm formOf(const PictureOptions& options) {
+    PictureForm form = options.form;
+    const bool paper =
+        std::ranges::any_of(options.onPaper, [](const CLI::Option* option) { return option->count() > 0; });
+    if (paper) form.size.measure = PictureMeasure::Millimetres;
+    if (!options.size.empty()) {
+        if (paper) throw CLI::ValidationError("--size", "is in pixels: give it or a size on paper, not both");
+        form.size.measure = PictureMeasure::Pixels;
+        int& width = form.size.width;
+        int& height = form.size.height;
+        int end = 0;
+        if (std::sscanf(options.size.c_str(), "%dx%d%n", &width, &height, &end) != 2 ||
+            end != static_cast<int>(options.size.size()) || width < 16 || height < 16 || width > 16384 ||
+            height > 16384)
+            throw CLI::ValidationError("--size", "needs WIDTHxHEIGHT, 16 to 16384, e.g. 1600x1000");
+    }
+    for (const std::string& part : options.without) leaveOut(form.decoration, part);
+    if (options.undecorated) form.decoration = *Decoration::preset("none");
+    return form;
+}
+
+/// Size, ground and decoration of a picture.
+void addFormOptions(CLI::App& command, PictureOptions& options) {
+    PictureForm& form = options.form;
+    detail::addPresets(command, form.size, "--preset");
+    command.add_option("--size", options.size, "Size of the picture in pixels")
+        ->type_name("WxH")
+        ->default_str(std::to_string(form.size.width) + "x" + std::to_string(form.size.height));
+    PictureSize::describe(form.size, [&](auto& value, const FieldInfo& info) {
+        // --size states these.
+        if (info.key == "measure" || info.key == "width" || info.key == "height") return;
+        detail::MemberToOption{command, ""}(value, info);
+        if (info.key != "scale") options.onPaper.push_back(command.get_option(detail::optionName("--", info.key)));
+    });
+    PictureForm::describe(form, [&](auto& value, const FieldInfo& info) {
+        if (info.key == "ground") detail::MemberToOption{command, ""}(value, info);
+    });
+    std::string parts;
+    Decoration::describe(form.decoration, [&](const bool&, const FieldInfo& info) {
+        parts += (parts.empty() ? "" : "|") + std::string(info.key);
+    });
+    command.add_option("--without", options.without, "Parts of the decoration to leave out: " + parts)
+        ->type_name("PART,...")
+        ->delimiter(',')
+        ->expected(1)
+        ->take_all();
+    command.add_flag("--no-decoration", options.undecorated, "Draw the data alone, without any decoration");
+}
+
 } // namespace
 
 void addLayoutOption(CLI::App& command, std::string& layout) {
@@ -50,12 +115,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options) {
     addLayoutOption(command, options.layout);
     command.add_option("--view", options.view,
                        "Draw this view only, e.g. volume or histogram (default: the whole window)");
-    command.add_option("--size", options.size, "Size of the picture in pixels")
-        ->type_name("WxH")
-        ->capture_default_str();
-    command.add_option("--scale", options.scale, "Size of text and lines")
-        ->check(CLI::Range(0.25, 8.0))
-        ->capture_default_str();
+    addFormOptions(command, options);
     command
         .add_option("--set", options.settings,
                     "Change a setting of the session, e.g. /camera/distance=1.5; may be repeated")
@@ -97,13 +157,7 @@ Opened openForPicture(const PictureOptions& options, const Progress& progress) {
 }
 
 PictureRequest pictureRequest(const PictureOptions& options, const Session& session) {
-    PictureRequest request;
-    request.scale = options.scale;
-    int end = 0;
-    if (std::sscanf(options.size.c_str(), "%dx%d%n", &request.size.x, &request.size.y, &end) != 2 ||
-        end != static_cast<int>(options.size.size()) || request.size.x < 16 || request.size.y < 16 ||
-        request.size.x > 16384 || request.size.y > 16384)
-        throw CLI::ValidationError("--size", "needs WIDTHxHEIGHT, 16 to 16384, e.g. 1600x1000");
+    PictureRequest request = pictureRequest(formOf(options), "");
     request.pane = paneOf(session, options.view);
     if (request.pane.empty()) request.pane = options.view; // an unknown pane is reported when it is drawn
     return request;

@@ -13,8 +13,11 @@ namespace tessera::app {
 /// Options that render and replay share: the input, and the size of the picture.
 struct PictureOptions {
     std::vector<std::string> inputs;
-    std::string layout, view, size = "1600x1000";
-    float scale = 1;
+    std::string layout, view, size; ///< size: "" = as the form says
+    PictureForm form{.size = {.width = 1600, .height = 1000}};
+    std::vector<CLI::Option*> onPaper; ///< options of which any makes a picture for paper
+    std::vector<std::string> without;  ///< parts of the decoration
+    bool undecorated = false;
     std::vector<std::string> settings; ///< "/json/pointer=value"
     volume::ImportOptions import;
 };
@@ -28,7 +31,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options);
 /// Opens what the options name, with the settings applied. Throws Error, also for data that cannot be found.
 Opened openForPicture(const PictureOptions& options, const Progress& progress);
 
-/// Pane, size and scale. `view` may be the key of a pane or the kind of one. Throws Error.
+/// Pane and form. `view` may be the key of a pane or the kind of one. Throws Error.
 PictureRequest pictureRequest(const PictureOptions& options, const Session& session);
 
 } // namespace tessera::app

@@ -2,6 +2,7 @@
 
 #include "app/ui/file_dialog.h"
 #include "app/ui/widgets.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -120,40 +121,73 @@ std::optional<Recovery> RecoveryDialog::draw() {
 }
 
 void PictureDialog::show(const std::string& pane) {
-    picture_.pane = pane;
+    pane_ = pane;
     shown_ = true;
 }
 
-std::optional<PictureRequest> PictureDialog::draw(const Session& session) {
-    if (!shown_ || !beginDialog("Save picture", shown_, ImGui::GetFontSize() * 30)) return {};
+namespace {
+
+constexpr const char* kFormChoice = "picture";
+
+/// What was chosen last, as far as it can still be read.
+PictureForm rememberedForm(const std::string& stateFolder) {
+    PictureForm form;
+    const Json known = Json::parse(rememberedChoice(stateFolder, kFormChoice), nullptr, false);
+    std::vector<JsonIssue> ignored;
+    if (known.is_object()) fromJson(form, known, ignored);
+    return form;
+}
+
+} // namespace
+
+std::optional<PictureRequest> PictureDialog::drawForm() {
     const WidgetContext widgets{nullptr, 0.3f};
-    drawLabel(widgets, "What", "The window, or one view");
+    PictureForm& form = *form_;
+    ImGui::PushID("size");
+    drawPresets(widgets, form.size);
+    drawDescribed(form.size, widgets);
+    ImGui::PopID();
+    std::optional<PictureRequest> request;
+    std::string problem;
+    try {
+        request = pictureRequest(form, pane_);
+    } catch (const Error& error) {
+        problem = error.what();
+    }
+    drawLabel(widgets, "", "");
+    if (request)
+        ImGui::TextDisabled("%d x %d pixels", request->size.x, request->size.y);
+    else
+        ImGui::TextWrapped("%s", problem.c_str());
+    PictureForm::describe(form, [&](auto& member, const FieldInfo& field) {
+        std::optional<Range> scale;
+        std::string unit;
+        bool changed = false;
+        if (field.key != "size") detail::MemberToWidget{widgets, changed, scale, unit}(member, field);
+    });
+    return request;
+}
+
+std::optional<PictureRequest> PictureDialog::draw(const Session& session, const std::string& stateFolder) {
+    if (!shown_ || !beginDialog("Save picture", shown_, ImGui::GetFontSize() * 30)) return {};
+    if (!form_) form_ = rememberedForm(stateFolder);
+    drawLabel(WidgetContext{nullptr, 0.3f}, "What", "The window, or one view");
     const char* const whole = "The whole window";
-    if (ImGui::BeginCombo("##what", picture_.pane.empty() ? whole : paneTitle(session, picture_.pane).c_str())) {
-        if (ImGui::Selectable(whole, picture_.pane.empty())) picture_.pane.clear();
+    if (ImGui::BeginCombo("##what", pane_.empty() ? whole : paneTitle(session, pane_).c_str())) {
+        if (ImGui::Selectable(whole, pane_.empty())) pane_.clear();
         for (const std::string& pane : paneKeys(session))
-            if (ImGui::Selectable(paneTitle(session, pane).c_str(), pane == picture_.pane)) picture_.pane = pane;
+            if (ImGui::Selectable(paneTitle(session, pane).c_str(), pane == pane_)) pane_ = pane;
         ImGui::EndCombo();
     }
-    drawLabel(widgets, "Size", "Size of the picture in pixels");
-    ImGui::InputInt2("##size", &picture_.size.x);
-    picture_.size = glm::clamp(picture_.size, glm::ivec2(64), glm::ivec2(8192));
-    drawLabel(widgets, "", "");
-    for (const auto& [name, size] : {std::pair{"1920x1080", glm::ivec2(1920, 1080)},
-                                     {"3840x2160", glm::ivec2(3840, 2160)},
-                                     {"1200x1200", glm::ivec2(1200, 1200)}}) {
-        if (ImGui::SmallButton(name)) picture_.size = size;
-        ImGui::SameLine();
-    }
-    ImGui::NewLine();
-    drawLabel(widgets, "Text size", "Scale of text and lines, e.g. 2 for a picture of twice the size");
-    ImGui::SliderFloat("##scale", &picture_.scale, 0.5f, 4.0f, "%.2f", ImGuiSliderFlags_AlwaysClamp);
+    const std::optional<PictureRequest> request = drawForm();
     ImGui::Spacing();
     ImGui::TextDisabled("The picture contains the session: open it in Tessera to continue from it.");
     const int button = dialogButtons({"Cancel", "Save..."});
-    if (button >= 0) shown_ = false;
+    const bool save = button == 1 && request;
+    if (button == 0 || save) shown_ = false;
+    if (save) rememberChoice(stateFolder, kFormChoice, toJson(*form_).dump());
     endDialog(shown_);
-    return button == 1 ? std::optional(picture_) : std::nullopt;
+    return save ? request : std::nullopt;
 }
 
 LeaveDialog::Answer LeaveDialog::draw(bool saved) {

@@ -46,16 +46,19 @@ private:
     std::vector<Recovery> recoveries_; ///< newest first
 };
 
-/// Asks which pane to save as a picture, and its size.
+/// Asks what is to be saved as a picture, and in what form; the form chosen last is remembered.
 class PictureDialog {
 public:
     /// `pane`: proposed, "" = the whole window.
     void show(const std::string& pane);
-    /// Returns the picture wanted.
-    std::optional<PictureRequest> draw(const Session& session);
+    /// Returns the picture wanted. `stateFolder` keeps the form.
+    std::optional<PictureRequest> draw(const Session& session, const std::string& stateFolder);
 
 private:
-    PictureRequest picture_;
+    std::optional<PictureRequest> drawForm();
+
+    std::string pane_;
+    std::optional<PictureForm> form_; ///< nothing until it is first shown
     bool shown_ = false;
 };
 

@@ -2,6 +2,7 @@
 
 #include "app/data/number_origin.h"
 #include "app/history/history.h"
+#include "app/session/picture_form.h"
 #include "app/session/session.h"
 #include "app/ui/jobs.h"
 #include "app/ui/messages.h"
@@ -49,6 +50,8 @@ struct ViewContext {
     bool headless = false;      ///< finish everything before the frame ends: no budget, no progressive states
     int renderers = 1;          ///< that share the session's limits of memory
     bool figure = false;        ///< a picture of this view alone: without the controls, which nobody can press there
+    Decoration decoration = {}; ///< what may be drawn over the data, beside the session's own choice
+    bool whiteGround = false;   ///< a picture on white
     const History* history = nullptr; ///< of the session; null in tests
     /// Asks for the session as it was after so many steps of its history, after this frame; null in tests.
     std::function<void(std::size_t position)> goToStep = {};

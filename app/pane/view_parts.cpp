@@ -202,11 +202,21 @@ LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, in
     return entry;
 }
 
-std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info) {
+namespace {
+
+/// True if a layer is drawn wholly in the colour of a stick instead of its own.
+bool isDrawing(const vis::Technique& technique) {
+    const vis::Look* look = vis::lookOf(technique);
+    return look && look->charcoal && look->part == vis::LookPart::Everything;
+}
+
+} // namespace
+
+std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info, bool drawings) {
     std::vector<LegendEntry> entries;
     std::set<std::string> seen;
     for (const vis::Layer& layer : session.layers) {
-        if (!layer.visible) continue;
+        if (!layer.visible || (!drawings && isDrawing(layer.technique))) continue;
         const std::string& name =
             std::visit([](const auto& technique) -> const std::string& { return technique.channel; }, layer.technique);
         const auto channel = info.findChannel(name);
@@ -240,6 +250,8 @@ std::vector<LegendEntry> sceneLegends(const Session& session, const volume::Data
 
 vis::Scene sceneWithLimits(const ViewContext& context) {
     vis::Scene scene = sceneOf(context.session);
+    scene.showBox = scene.showBox && context.decoration.box;
+    if (context.whiteGround) scene.background = glm::vec3(1);
     for (int* limit : {&scene.render.limits.textureMemory, &scene.render.limits.brickMemory})
         *limit = std::max(1, *limit / std::max(1, context.renderers));
     return scene;

@@ -77,8 +77,9 @@ vis::TransferFunction& transferOf(Session& session, const std::string& channel);
 LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, int channel,
                      const std::string& function = {});
 
-/// Legends of the visible layers, each channel once; of a layer that is coloured by another parameter both.
-std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info);
+/// Legends of the visible layers, each channel once; of a layer that is coloured by another parameter both. Layers
+/// drawn in charcoal or chalk, whose colours the picture does not show, have legends only with `drawings`.
+std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info, bool drawings = false);
 
 /// The scene of the session, with its share of the limits of memory.
 vis::Scene sceneWithLimits(const ViewContext& context);

@@ -17,16 +17,28 @@ vis::Image renderAndInspect(const SessionDocument& document, const Sources& sour
         throw Error("no view named " + request.pane + "; there are " + known);
     }
     const Gui gui;
-    Workbench workbench(
-        {.renderer = std::move(renderer), .headless = true, .onlyPane = request.pane, .controls = request.controls});
+    const bool white = request.ground == PictureGround::White;
+    Workbench workbench({.renderer = std::move(renderer),
+                         .headless = true,
+                         .onlyPane = request.pane,
+                         .controls = request.controls,
+                         .decoration = request.decoration,
+                         .whiteGround = white});
     Opened opened;
     opened.document = document;
-    opened.document.session.animation.playing = false;
+    Session& drawn = opened.document.session;
+    drawn.animation.playing = false;
+    if (request.dpi > 0) drawn.appearance.scale = 1; // the size of text is that on paper
+    if (white) {
+        drawn.appearance.theme = Theme::Light;
+        drawn.paper = vis::Paper{.color = glm::vec3(1), .tooth = 0};
+    }
     opened.source = sources.pictures;
     opened.numbers = sources.numbers;
     opened.origin = sources.origin;
     workbench.install(std::move(opened));
     vis::Image image = drawUntilDone(workbench, request.size, request.scale);
+    image.dpi = request.dpi;
     if (inspect) inspect(workbench);
     return image;
 }

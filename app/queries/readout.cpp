@@ -132,7 +132,7 @@ void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
                 values.push_back(channel.name + " " + valueText(info, channel, value) + " " + prettyUnit(channel.unit));
         }
         drawFlowing(values);
-        if (ImGui::SmallButton("Copy as CSV")) ImGui::SetClipboardText(copy().c_str());
+        if (!context.figure && ImGui::SmallButton("Copy as CSV")) ImGui::SetClipboardText(copy().c_str());
         return;
     }
     ImGui::PushTextWrapPos(0);
@@ -171,7 +171,7 @@ void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
         textRight(rows[i][3], true);
     }
     ImGui::EndTable();
-    if (ImGui::SmallButton("Copy as CSV")) ImGui::SetClipboardText(copy().c_str());
+    if (!context.figure && ImGui::SmallButton("Copy as CSV")) ImGui::SetClipboardText(copy().c_str());
 }
 
 std::vector<std::string> readoutHeads(const volume::DatasetInfo& info) {

@@ -15,12 +15,18 @@ struct VolumeView {
     static constexpr std::string_view kType = "volume";
     bool showBox = true, showAxes = true, showLegend = true, showCursor = true, showGizmo = true, showScaleBar = true,
          showLenses = true;
+    bool drawingLegend = false;
     bool inSpace = false; ///< where time runs along an axis: the data that are cut
     bool operator==(const VolumeView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.showBox, FieldInfo{.key = "box", .unit = "", .doc = "Draw the box around the data"});
         visit(self.showAxes, FieldInfo{.key = "axes", .unit = "", .doc = "Draw axes with ticks and units"});
         visit(self.showLegend, FieldInfo{.key = "legend", .unit = "", .doc = "Draw colour legends"});
+        visit(self.drawingLegend,
+              FieldInfo{.key = "drawingLegend",
+                        .unit = "",
+                        .doc = "Legends of layers drawn in charcoal or chalk too, although their colours are not shown",
+                        .applies = self.showLegend});
         visit(self.showCursor, FieldInfo{.key = "cursor", .unit = "", .doc = "Draw the linked cross-hair"});
         visit(self.showGizmo,
               FieldInfo{.key = "gizmo", .unit = "", .doc = "Draw the axis triad; a click on an axis looks along it"});

@@ -12,7 +12,8 @@ constexpr const char* kTextFonts[] = {"/usr/share/fonts/truetype/roboto/unhinted
 constexpr const char* kBoldFonts[] = {"/usr/share/fonts/truetype/roboto/unhinted/RobotoTTF/Roboto-Medium.ttf",
                                       "/usr/share/fonts/truetype/roboto/hinted/Roboto-Medium.ttf"};
 constexpr const char* kIconFonts[] = {"/usr/share/fonts/truetype/font-awesome/fontawesome-webfont.ttf"};
-constexpr float kTextSize = 15;
+constexpr float kTextSize = 15;               // from the highest ascender to the lowest descender
+constexpr double kRobotoLine = 2400.0 / 2048; // the same in ems
 
 const char* installed(std::span<const char* const> paths) {
     for (const char* path : paths) {
@@ -33,6 +34,10 @@ ImU32 pack(const ImVec4& color) {
 }
 
 } // namespace
+
+float scaleForText(double emPixels) {
+    return static_cast<float>(emPixels * kRobotoLine / double(kTextSize));
+}
 
 Fonts loadFonts(float scale) {
     ImFontAtlas& atlas = *ImGui::GetIO().Fonts;

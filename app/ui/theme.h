@@ -13,6 +13,11 @@ struct Fonts {
     ImFont* icons = nullptr; ///< == text, null where the icon font is not installed
 };
 
+/// The pixels per design pixel that fonts are made for.
+inline constexpr float kLeastScale = 0.4f, kLargestScale = 6;
+/// The pixels per design pixel at which an em of text, its size in print, has so many pixels.
+float scaleForText(double emPixels);
+
 /// Builds the font atlas for a number of pixels per design pixel: Roboto with the letters and signs of units, Font
 /// Awesome merged in; ImGui's own font where they are not installed. The back end must upload the atlas again.
 Fonts loadFonts(float scale);

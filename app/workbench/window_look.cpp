@@ -5,7 +5,7 @@
 namespace tessera::app {
 
 bool WindowLook::prepare(float contentScale, const Appearance& appearance) {
-    const float scale = std::clamp(contentScale * appearance.scale, 0.4f, 6.0f);
+    const float scale = std::clamp(contentScale * appearance.scale, kLeastScale, kLargestScale);
     const bool rebuilt = scale != scale_;
     if (rebuilt) {
         scale_ = scale;

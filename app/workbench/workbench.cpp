@@ -47,6 +47,12 @@ double Workbench::now() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
+bool Workbench::prepare(float contentScale) {
+    const bool rebuilt = look_.prepare(contentScale, session().appearance);
+    if (options_.whiteGround) ImGui::GetStyle().Colors[ImGuiCol_WindowBg] = {1, 1, 1, 1};
+    return rebuilt;
+}
+
 void Workbench::open(OpenRequest request) {
     // Refuse what cannot be opened before asking whether to discard the session.
     for (const std::string& path : request.paths) {
@@ -213,6 +219,8 @@ ViewContext Workbench::viewContext() {
             .scale = look_.scale(),
             .headless = options_.headless,
             .figure = options_.headless && !options_.onlyPane.empty() && !options_.controls,
+            .decoration = options_.decoration,
+            .whiteGround = options_.whiteGround,
             .history = &history(),
             .goToStep = [this](std::size_t to) { chosen_ = [this, to] { document_.goToStep(to); }; },
             .log = &messages_,
@@ -300,7 +308,7 @@ void Workbench::drawDialogs() {
     if (std::optional<Opened> found = missing_.draw(ask))
         openWhole(std::make_shared<Opened>(std::move(*found)), "Opening the session");
     if (const auto recovery = recovery_.draw()) recover(*recovery);
-    if (const auto request = pictures_.draw(session()))
+    if (const auto request = pictures_.draw(session(), options_.stateFolder))
         files_.askSave("Save picture", (request->pane.empty() ? "tessera" : request->pane) + ".png", ".png",
                        [this, request](const std::string& path) {
                            picture_ = PictureJob{*request, path};

@@ -27,6 +27,8 @@ struct WorkbenchOptions {
     bool headless = false; ///< for pictures: no messages, dialogs or remembered files; every frame is drawn to the end
     std::string onlyPane = {};              ///< shows this pane alone, without its strip
     bool controls = false;                  ///< with its rows of tools, headless too
+    Decoration decoration = {};             ///< what may be drawn over the data
+    bool whiteGround = false;               ///< in place of the theme's
     std::string stateFolder = {};           ///< recent files and autosave; "" remembers nothing
     std::string program = "/proc/self/exe"; ///< is run as a child to pack
     /// Interval of checks for new times in the archives shown.
@@ -50,7 +52,7 @@ public:
 
     /// Fonts and style for a display; call before ImGui::NewFrame. True when the font atlas changed and must be
     /// uploaded.
-    bool prepare(float contentScale) { return look_.prepare(contentScale, session().appearance); }
+    bool prepare(float contentScale);
     /// Draws one frame, between ImGui::NewFrame and ImGui::Render.
     void frame();
     /// After the frame is on screen: work that needs the GL context to itself (pictures).

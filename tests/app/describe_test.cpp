@@ -1,3 +1,4 @@
+#include "app/session/picture_form.h"
 #include "app/session/session.h"
 #include "randomise.h"
 #include "volume/base/error.h"
@@ -117,11 +118,12 @@ struct Lister {
     }
 };
 
-/// Every described struct that a file may hold: those of a session, of archives and of built-in models.
+/// Every described struct that a file may hold: those of a session, of pictures, of archives and of built-in models.
 std::vector<DescribedStruct> everyStruct() {
     std::map<std::string, DescribedStruct> found;
     const Lister list{found};
     list.add<Session>();
+    list.add<PictureForm>();
     list.add<volume::MergeOptions>();
     list.add<volume::FuelCellSettings>();
     list.add<volume::MarschnerLobbSettings>();

@@ -50,13 +50,13 @@ void drawFace(ImDrawList& draw, const CubeFrame& frame, const CubeFace& face, st
     draw.AddQuad(*a, *b, *c, *d, plotColors().frame);
 }
 
-void drawMarks(ImDrawList& draw, const CubeFrame& frame, const Session& session, std::size_t index,
-               const std::string& title) {
+void drawMarks(ImDrawList& draw, const CubeFrame& frame, const Session& session, const Decoration& shown,
+               std::size_t index, const std::string& title) {
     const CubeFace& face = kCubeFaces[index];
     const PlotColors colors = plotColors();
     for (const vis::Brush& brush : session.selection.brushes) {
         const auto* box = std::get_if<vis::BoxRegion>(&brush.region);
-        if (!brush.enabled || !box) continue;
+        if (!shown.outlines || !brush.enabled || !box) continue;
         const glm::dvec3 lo = glm::max(box->center - box->radius, frame.info.bounds.lo),
                          hi = glm::min(box->center + box->radius, frame.info.bounds.hi);
         outlineOnFace(draw, frame, face, lo, hi, brushColor(brush), brushColor(brush, 0.12f));
@@ -66,11 +66,12 @@ void drawMarks(ImDrawList& draw, const CubeFrame& frame, const Session& session,
     const glm::dvec3 box = frame.world.halfSize;
     const auto line = [&](glm::dvec3 from, glm::dvec3 to, ImU32 color) {
         const auto a = frame.pixel(from), b = frame.pixel(to);
-        if (a && b) draw.AddLine(*a, *b, color, 1.2f);
+        if (a && b && shown.cursor) draw.AddLine(*a, *b, color, 1.2f);
     };
     line(face.at(-box[face.right()], t, frame.half), face.at(box[face.right()], t, frame.half), colors.cursor);
     line(face.at(s, -box[face.up()], frame.half), face.at(s, box[face.up()], frame.half), colors.cursor);
     line(cursor, face.at(s, t, frame.half), (colors.cursor & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 110));
+    if (!shown.title) return;
     // The title stands in the margin at the outer edge that is furthest from the middle of the picture.
     const ImVec2 middle{frame.min.x + frame.size.x / 2, frame.min.y + frame.size.y / 2};
     float furthest = -1;

@@ -36,8 +36,8 @@ struct CubeFrame {
 /// The face itself, and its projection (a GL texture) in patches, so that perspective is seen.
 void drawFace(ImDrawList& draw, const CubeFrame& frame, const CubeFace& face, std::uint32_t texture);
 
-/// Cursor, brushes in space and title of a face, by its index in kCubeFaces.
-void drawMarks(ImDrawList& draw, const CubeFrame& frame, const Session& session, std::size_t index,
-               const std::string& title);
+/// Cursor, brushes in space and title of a face, by its index in kCubeFaces, as far as `shown` has them.
+void drawMarks(ImDrawList& draw, const CubeFrame& frame, const Session& session, const Decoration& shown,
+               std::size_t index, const std::string& title);
 
 } // namespace tessera::app

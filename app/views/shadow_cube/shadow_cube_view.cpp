@@ -236,7 +236,7 @@ std::set<int> drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCube
             *cache.walls[i], wallScene(scene, name, wall.kind, face, frame.world, shadow), request);
         context.follow(status);
         drawFace(draw, frame, face, status.texture);
-        drawMarks(draw, frame, context.session, i,
+        drawMarks(draw, frame, context.session, context.decoration, i,
                   wall.kind == WallKind::Shadow && context.session.selection.active()
                       ? "shadow of the selection"
                       : kindName(wall.kind) + " " + name);
@@ -299,16 +299,16 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     context.follow(status);
     addPicture(draw, status.texture, frame.min, frame.max());
     const SpaceFrame object = spaceFrame(frame.min, frame.max(), session.camera, info.bounds, session.stretch);
-    drawSpaceBrushes(draw, object, session.selection);
+    if (context.decoration.outlines) drawSpaceBrushes(draw, object, session.selection);
     const PlotColors colors = plotColors();
-    if (const auto at = object.pixel(session.cursor)) {
+    if (const auto at = object.pixel(session.cursor); at && context.decoration.cursor) {
         draw.AddCircle(*at, em() * 0.35f, colors.backdrop, 20, 3);
         draw.AddCircle(*at, em() * 0.35f, colors.cursor, 20, 1.5f);
     }
     std::vector<LegendEntry> legends;
     for (const int channel : walls) legends.push_back(legendOf(session, info, channel));
     // At the top, where faces have no titles.
-    drawLegends(draw, legends, frame.min, frame.max(), LegendCorner::Top);
+    if (context.decoration.legend) drawLegends(draw, legends, frame.min, frame.max(), LegendCorner::Top);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     if (const auto hit = hovered ? frame.hit(mouse) : std::nullopt; hit && frame.onData(*hit))
         drawReading(context, frame, cache, view, *hit, mouse);

@@ -56,7 +56,7 @@ void drawSlice(ViewContext& context, vis::ViewTargetPtr& target, const std::stri
     context.follow(status);
     const ImVec2 max{min.x + static_cast<float>(pixels.x), min.y + static_cast<float>(pixels.y)};
     addPicture(*ImGui::GetWindowDrawList(), status.texture, min, max);
-    ImGui::GetWindowDrawList()->AddRect(min, max, plotColors().frame);
+    if (context.decoration.box) ImGui::GetWindowDrawList()->AddRect(min, max, plotColors().frame);
 }
 
 /// Every slice as numbers: plane, position in it, values.
@@ -192,7 +192,7 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
         const std::string place =
             std::string(along.name) + " = " +
             formatQuantity(position * unit.perUnit, unit.name, info.bounds.size()[axes.normal] * unit.perUnit / 100);
-        draw.AddText({x, origin.y}, colors.text, fitText(place, pitch - gap).c_str());
+        if (context.decoration.title) draw.AddText({x, origin.y}, colors.text, fitText(place, pitch - gap).c_str());
         for (std::size_t row = 0; row < shown.size(); ++row) {
             const float y = std::round(origin.y + head + (cellY + gap) * static_cast<float>(row));
             const volume::Channel& channel = channels[static_cast<std::size_t>(shown[row])];
@@ -200,10 +200,12 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
                       cache.targets[row * static_cast<std::size_t>(view.planes) + static_cast<std::size_t>(plane)],
                       channel.name, axes, position, {x, y}, pixels, 40.0 / static_cast<double>(cache.targets.size()));
             if (plane > 0) continue;
-            drawLegendColumn(draw, {origin.x + title + pitch * static_cast<float>(view.planes), y},
-                             static_cast<float>(pixels.y), legendOf(context.session, info, shown[row]));
-            addTextUpwards(draw, {origin.x + em() * 0.6f, y + static_cast<float>(pixels.y) / 2}, colors.text,
-                           rowTitle(channel, static_cast<float>(pixels.y) + gap).c_str());
+            if (context.decoration.legend)
+                drawLegendColumn(draw, {origin.x + title + pitch * static_cast<float>(view.planes), y},
+                                 static_cast<float>(pixels.y), legendOf(context.session, info, shown[row]));
+            if (context.decoration.title)
+                addTextUpwards(draw, {origin.x + em() * 0.6f, y + static_cast<float>(pixels.y) / 2}, colors.text,
+                               rowTitle(channel, static_cast<float>(pixels.y) + gap).c_str());
         }
     }
     // A click moves the linked cursor there.

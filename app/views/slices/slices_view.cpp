@@ -101,8 +101,10 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const std::string& pane
     const std::string place = std::string(nameN) + " = " +
                               formatQuantity(session.cursor[plane.normal] * unitN.perUnit, unitN.name,
                                              size[plane.normal] * unitN.perUnit / 1000);
-    draw.AddText({std::round(hi.x - ImGui::CalcTextSize(place.c_str()).x), min.y}, axisColor(plane.normal),
-                 place.c_str());
+    const Decoration& shown = context.decoration;
+    if (shown.title)
+        draw.AddText({std::round(hi.x - ImGui::CalcTextSize(place.c_str()).x), min.y}, axisColor(plane.normal),
+                     place.c_str());
     if (hi.x - lo.x < em() * 2 || hi.y - lo.y < em() * 2) return;
     const double worldX = world.halfSize[plane.right], worldY = world.halfSize[plane.up];
     if (!(worldX > 0) || !(worldY > 0)) {
@@ -179,10 +181,12 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const std::string& pane
     const vis::FrameStatus status = context.renderer.render(*target, scene, request);
     context.follow(status);
     addPicture(draw, status.texture, frame.min, frame.max);
-    draw.AddRect(frame.min, frame.max, colors.frame);
-    drawAxis(draw, frame, AxisSide::Bottom, nameX, unitX.name, min.x, std::min(max.x, frame.max.x + em() * 4),
-             {.inlineTitle = true});
-    drawAxis(draw, frame, AxisSide::Left, nameY, unitY.name, min.y, max.y, {.inlineTitle = true, .room = left});
+    if (shown.box) draw.AddRect(frame.min, frame.max, colors.frame);
+    if (shown.axes) {
+        drawAxis(draw, frame, AxisSide::Bottom, nameX, unitX.name, min.x, std::min(max.x, frame.max.x + em() * 4),
+                 {.inlineTitle = true});
+        drawAxis(draw, frame, AxisSide::Left, nameY, unitY.name, min.y, max.y, {.inlineTitle = true, .room = left});
+    }
     draw.PushClipRect(frame.min, frame.max, true);
     if (lines.channel)
         drawContours(context, cache.contours[static_cast<std::size_t>(index)],
@@ -190,13 +194,17 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const std::string& pane
                      {*lines.channel, plane, session.cursor[plane.normal],
                       volume::timesAround(info.times, session.time), lines.levels.values},
                      lines.levels.step, view.contourValues, frame, perUnit);
-    drawBrushSections(draw, frame, session.selection, plane.right, plane.up, plane.normal, session.cursor[plane.normal],
-                      {unitX.perUnit, unitY.perUnit});
-    drawLensSections(draw, frame, session, info, plane.right, plane.up, plane.normal, session.cursor[plane.normal],
-                     {unitX.perUnit, unitY.perUnit});
-    drawProfileLines(draw, frame, session, plane.right, plane.up, {unitX.perUnit, unitY.perUnit});
-    drawHandles(draw, handles, frame, session, info, plane.right, plane.up, perUnit);
-    drawCrosshair(draw, frame, session.cursor[plane.right] * unitX.perUnit, session.cursor[plane.up] * unitY.perUnit);
+    if (shown.outlines) {
+        drawBrushSections(draw, frame, session.selection, plane.right, plane.up, plane.normal,
+                          session.cursor[plane.normal], perUnit);
+        drawLensSections(draw, frame, session, info, plane.right, plane.up, plane.normal, session.cursor[plane.normal],
+                         perUnit);
+        drawProfileLines(draw, frame, session, plane.right, plane.up, perUnit);
+        drawHandles(draw, handles, frame, session, info, plane.right, plane.up, perUnit);
+    }
+    if (shown.cursor)
+        drawCrosshair(draw, frame, session.cursor[plane.right] * unitX.perUnit,
+                      session.cursor[plane.up] * unitY.perUnit);
     draw.PopClipRect();
 }
 
@@ -263,7 +271,10 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
         if (ImGui::GetContentRegionAvail().x > width + em()) {
             ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
             ImGui::AlignTextToFramePadding();
-            ImGui::TextDisabled("%s", text.c_str());
+            if (context.decoration.title)
+                ImGui::TextDisabled("%s", text.c_str());
+            else
+                ImGui::Dummy({width, em()});
         } else {
             ImGui::NewLine();
         }
@@ -283,24 +294,31 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     drawPlane(context, cache, pane, view, name, lines, 2, {min.x, y + gap}, {x - gap, max.y});
 
     ImGui::SetCursorScreenPos({x + gap * 2, y + gap});
-    ImGui::BeginChild("readout", {max.x - x - gap * 2, max.y - y - gap}, false);
+    ImGui::BeginChild("readout", {max.x - x - gap * 2, max.y - y - gap}, false,
+                      context.figure ? ImGuiWindowFlags_NoScrollbar : ImGuiWindowFlags_None);
     LegendEntry legend = legendOf(context.session, info, *channel);
     updateReadout(context, pane, cache.readout);
-    if (const auto value = cache.readout.value(name)) legend.marker = *value;
-    // If the table does not fit below the legend, the values come first, as running text.
+    if (const auto value = cache.readout.value(name); value && context.decoration.cursor) legend.marker = *value;
+    // If the table does not fit below the legend, the values come first, as running text; in figures after the legend,
+    // which is whole.
     const std::string note = contourNote(info, view, lines);
     const float legends = legendBarHeight() + (note.empty() ? 0 : ImGui::GetTextLineHeightWithSpacing());
-    const bool compact = view.showReadout && legends + readoutHeight(cache.readout) > ImGui::GetContentRegionAvail().y;
-    if (compact) drawReadout(context, cache.readout, true);
+    const bool readout = view.showReadout && context.decoration.cursor;
+    const bool compact = readout && legends + readoutHeight(cache.readout) > ImGui::GetContentRegionAvail().y;
+    if (compact && !context.figure) drawReadout(context, cache.readout, true);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = std::min(ImGui::GetContentRegionAvail().x, em() * 20);
-    ImGui::Dummy({width, drawLegendBar(*ImGui::GetWindowDrawList(), at, width, legend) + em() * 0.3f});
-    if (!note.empty()) {
+    // What is left out keeps its place: the rest stays where it is.
+    const bool legendShown = context.decoration.legend;
+    ImGui::Dummy(
+        {width, (legendShown ? drawLegendBar(*ImGui::GetWindowDrawList(), at, width, legend) : legendBarHeight()) +
+                    em() * 0.3f});
+    if (!note.empty() && legendShown) {
         ImGui::PushTextWrapPos(0);
         ImGui::TextUnformatted(note.c_str());
         ImGui::PopTextWrapPos();
     }
-    if (view.showReadout && !compact) drawReadout(context, cache.readout);
+    if (readout && (!compact || context.figure)) drawReadout(context, cache.readout, compact);
     ImGui::EndChild();
 }
 

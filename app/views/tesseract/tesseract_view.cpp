@@ -289,10 +289,11 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
     const Session& session = context.session;
     const volume::DatasetInfo& info = context.source->info();
     const PlotColors colors = plotColors();
-    drawAxisNames4(draw, frame);
-    addTextWithBackdrop(draw, {frame.min.x + em() * 0.5f, frame.max.y - em() * 0.4f}, {0, 1}, colors.faint,
-                        fitText(nearText(frame), frame.max.x - frame.min.x - em()).c_str());
-    if (!view.showLegend) return;
+    if (context.decoration.axes) drawAxisNames4(draw, frame);
+    if (context.decoration.title)
+        addTextWithBackdrop(draw, {frame.min.x + em() * 0.5f, frame.max.y - em() * 0.4f}, {0, 1}, colors.faint,
+                            fitText(nearText(frame), frame.max.x - frame.min.x - em()).c_str());
+    if (!view.showLegend || !context.decoration.legend) return;
     const std::optional<int> fourth = fourthChannel(info, view);
     std::vector<LegendEntry> entries;
     LegendEntry along;
@@ -379,12 +380,12 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
     if (quick && cloud.share < 1) context.busy = true; // draw all points once it is at rest
 
     draw.PushClipRect(min, max, true);
-    draw.AddRectFilled(min, max, palette().plot);
+    draw.AddRectFilled(min, max, context.whiteGround ? IM_COL32_WHITE : palette().plot);
     addPicture(draw, cache.texture, frame.min, frame.max);
     drawLattice4(draw, frame, view.lattice);
-    if (view.showWire) drawWire(draw, frame);
+    if (view.showWire && context.decoration.box) drawWire(draw, frame);
     const bool time = !fourthChannel(info, view);
-    if (view.showNow && time && info.times.size() > 1) {
+    if (view.showNow && context.decoration.cursor && time && info.times.size() > 1) {
         const double first = info.times.front(), last = info.times.back();
         const std::string text = timeText(info, context.session.time);
         drawNowCell(draw, frame, std::clamp((context.session.time - first) / (last - first), 0.0, 1.0), text);

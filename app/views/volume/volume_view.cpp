@@ -64,6 +64,7 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis:
     ImGui::MenuItem("Box", "", &view.showBox);
     ImGui::MenuItem("Axes", "", &view.showAxes);
     ImGui::MenuItem("Legends", "", &view.showLegend);
+    ImGui::MenuItem("Legends of drawings", "", &view.drawingLegend, view.showLegend);
     ImGui::MenuItem("Cross-hair", "", &view.showCursor);
     ImGui::MenuItem("Direction gizmo", "", &view.showGizmo);
     ImGui::MenuItem("Scale bar", "", &view.showScaleBar);
@@ -97,9 +98,10 @@ class SpacePicture {
 public:
     SpacePicture(ViewContext& context, VolumeCache& cache, VolumeView& view, PictureBox picture)
         : context_(context), cache_(cache), view_(view), picture_(picture), session_(context.session),
-          info_(context.source->info()), world_(vis::worldFrame(info_.bounds, session_.stretch)), triad_(em() * 2.6f),
+          shown_(context.decoration), info_(context.source->info()),
+          world_(vis::worldFrame(info_.bounds, session_.stretch)), triad_(em() * 2.6f),
           triadAt_(picture.min.x + triad_ + em(), max().y - triad_ - em()),
-          showTriad_(view.showGizmo && picture.size.x > em() * 14 && picture.size.y > em() * 12) {}
+          hasTriad_(view.showGizmo && picture.size.x > em() * 14 && picture.size.y > em() * 12) {}
 
     void draw(const std::string& pane) {
         const bool moving = useHands();
@@ -111,7 +113,7 @@ public:
         vis::Scene scene = cache_.scene.get(context_, pane, request.moving);
         // In motion a third of the frame time is left to other views.
         if (request.moving) request.budgetMs = double(scene.render.limits.frameTime) * 2 / 3;
-        scene.showBox = view_.showBox;
+        scene.showBox = view_.showBox && shown_.box;
         const vis::FrameStatus status = context_.renderer.render(*cache_.target, scene, request);
         context_.follow(status);
 
@@ -123,16 +125,17 @@ public:
         drawObjects(space);
         const AxisLabels labels = axisLabels(session_, info_);
         drawLegend();
-        if (showTriad_) drawTriadAt(labels);
-        if (view_.showScaleBar && !timeAxisOf(session_, info_)) drawBar();
-        drawTexts();
+        if (hasTriad_ && shown_.gizmo) drawTriadAt(labels);
+        if (view_.showScaleBar && shown_.scaleBar && !timeAxisOf(session_, info_)) drawBar();
+        if (shown_.title) drawTexts();
         if (!status.complete && !context_.headless && !request.moving) drawProgress(status);
-        if (view_.showAxes) drawAxes3d(*list_, space, session_.camera, labels, taken_);
+        if (view_.showAxes && shown_.axes) drawAxes3d(*list_, space, session_.camera, labels, taken_);
         list_->PopClipRect();
     }
 
 private:
     ImVec2 max() const { return picture_.max(); }
+    bool showsLegend() const { return view_.showLegend && shown_.legend; }
 
     /// Mouse and keys over the picture; true while something moves.
     bool useHands() {
@@ -142,7 +145,7 @@ private:
         const bool hovered = ImGui::IsItemHovered();
         const ImVec2 mouse = ImGui::GetIO().MousePos;
         cache_.hand.blocked =
-            showTriad_ && hovered && std::hypot(mouse.x - triadAt_.x, mouse.y - triadAt_.y) < triad_ + em() * 0.5f;
+            hasTriad_ && hovered && std::hypot(mouse.x - triadAt_.x, mouse.y - triadAt_.y) < triad_ + em() * 0.5f;
         const SpaceFrame before = spaceFrame(picture_.min, max(), session_.camera, info_.bounds, session_.stretch);
         const bool free = hovered && !cache_.hand.dragging() && !cache_.hand.blocked, lenses = view_.showLenses;
         const bool onHandle =
@@ -159,7 +162,8 @@ private:
 
     /// Draws lines and handles in space, besides the scene.
     void drawObjects(const SpaceFrame& space) {
-        if (view_.showCursor) drawCursor3d(*list_, space, session_.cursor);
+        if (view_.showCursor && shown_.cursor) drawCursor3d(*list_, space, session_.cursor);
+        if (!shown_.outlines) return;
         drawSpaceBrushes(*list_, space, session_.selection);
         drawProfileLines(*list_, space, session_);
         if (!view_.showLenses) return;
@@ -169,8 +173,9 @@ private:
     }
 
     void drawLegend() {
-        if (!view_.showLegend) return;
-        const LegendArea area = drawLegends(*list_, sceneLegends(session_, info_), picture_.min, max());
+        if (!showsLegend()) return;
+        const LegendArea area =
+            drawLegends(*list_, sceneLegends(session_, info_, view_.drawingLegend), picture_.min, max());
         taken_.push_back({area.min, area.max});
     }
 
@@ -184,8 +189,8 @@ private:
     }
 
     void drawBar() {
-        const float left = showTriad_ ? triadAt_.x + triad_ + em() : picture_.min.x + em();
-        const float right = taken_.empty() || !view_.showLegend ? max().x : taken_.front().first.x;
+        const float left = hasTriad_ ? triadAt_.x + triad_ + em() : picture_.min.x + em();
+        const float right = taken_.empty() || !showsLegend() ? max().x : taken_.front().first.x;
         const float most = std::min(em() * 9, right - left - em());
         const ScaleBar bar =
             scaleBar(session_.camera, world_, session_.stretch, info_.lengthUnit, picture_.size.y, most);
@@ -225,11 +230,12 @@ private:
     VolumeView& view_;
     PictureBox picture_;
     Session& session_;
+    const Decoration& shown_;
     const volume::DatasetInfo& info_;
     vis::WorldFrame world_;
     float triad_;    ///< radius, pixels
     ImVec2 triadAt_; ///< its middle
-    bool showTriad_;
+    bool hasTriad_;  ///< or would have it: what is left out of a picture keeps its place
     ImDrawList* list_ = nullptr;
     std::vector<std::pair<ImVec2, ImVec2>> taken_; ///< corners of what is drawn already, which labels keep clear of
 };
@@ -262,6 +268,8 @@ void drawBeside(ViewContext& context, const std::string& pane, VolumeView& view,
                     .headless = context.headless,
                     .renderers = std::max(context.renderers, 2),
                     .figure = context.figure,
+                    .decoration = context.decoration,
+                    .whiteGround = context.whiteGround,
                     .runCommand = context.runCommand,
                     .cameraKey = context.cameraKey,
                     .interacting = context.interacting};
