@@ -21,7 +21,7 @@ void drawArrow(ImDrawList& draw, ImVec2 at, float size, float direction, ImU32 c
     draw.AddTriangleFilled({at.x, at.y}, {at.x, at.y + size}, {at.x + direction * size * 0.6f, at.y + size / 2}, color);
 }
 
-float drawSwatch(ImDrawList& draw, ImVec2 min, const LegendEntry& entry) {
+float drawSwatch(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry) {
     const PlotColors colors = plotColors();
     const float size = barHeight();
     draw.AddRectFilled({min.x, min.y + em() * 0.25f}, {min.x + size, min.y + em() * 0.25f + size},
@@ -29,7 +29,7 @@ float drawSwatch(ImDrawList& draw, ImVec2 min, const LegendEntry& entry) {
     draw.AddRect({min.x, min.y + em() * 0.25f}, {min.x + size, min.y + em() * 0.25f + size}, colors.frame);
     const double resolution = (entry.data.hi - entry.data.lo) / 1000;
     const std::string text = entry.title + " = " + formatQuantity(entry.value, entry.unit, resolution);
-    draw.AddText({min.x + size + em() * 0.5f, min.y}, colors.text, text.c_str());
+    draw.AddText({min.x + size + em() * 0.5f, min.y}, colors.text, fitText(text, width - size - em() * 0.5f).c_str());
     return em() * 1.25f;
 }
 
@@ -154,7 +154,44 @@ float heightOf(const LegendEntry& entry) {
     return entry.swatch ? em() * 1.25f : legendBarHeight();
 }
 
+/// Draws one legend; returns its height.
+float drawLegend(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry) {
+    if (!entry.names.empty()) return drawNames(draw, min, width, entry);
+    return entry.swatch ? drawSwatch(draw, min, width, entry) : drawLegendBar(draw, min, width, entry);
+}
+
+/// Visits the legends of drawLegendRows that fit, with their places; returns the height of their rows.
+template <class Visit>
+float layRows(const std::vector<LegendEntry>& entries, float width, float most, const Visit& visit) {
+    const float gap = em();
+    const auto fit =
+        std::clamp<std::size_t>(static_cast<std::size_t>(std::max(0.0f, (width + gap) / (em() * 10 + gap))), 1,
+                                std::max<std::size_t>(entries.size(), 1));
+    const float own = std::min(em() * 15, (width - gap * static_cast<float>(fit - 1)) / static_cast<float>(fit));
+    float y = 0;
+    for (std::size_t first = 0; first < entries.size(); first += fit) {
+        const std::size_t end = std::min(first + fit, entries.size());
+        float height = 0;
+        for (std::size_t i = first; i < end; ++i) height = std::max(height, heightOf(entries[i]));
+        if (y + height > most) break;
+        for (std::size_t i = first; i < end; ++i)
+            visit(entries[i], ImVec2{(own + gap) * static_cast<float>(i - first), y}, own);
+        y += height;
+    }
+    return y;
+}
+
 } // namespace
+
+float legendRowsHeight(const std::vector<LegendEntry>& entries, float width, float most) {
+    return layRows(entries, width, most, [](const LegendEntry&, ImVec2, float) {});
+}
+
+void drawLegendRows(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, float width, float most) {
+    layRows(entries, width, most, [&](const LegendEntry& entry, ImVec2 at, float own) {
+        drawLegend(draw, {min.x + at.x, min.y + at.y}, own, entry);
+    });
+}
 
 LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max,
                        LegendCorner corner) {
@@ -174,10 +211,7 @@ LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries
     const ImVec2 from{max.x - width - pad, bottom - height - pad};
     draw.AddRectFilled({from.x - pad, from.y - pad * 0.5f}, {max.x, bottom}, plotColors().backdrop, em() * 0.25f);
     float y = from.y;
-    for (const LegendEntry* entry : shown)
-        y += !entry->names.empty() ? drawNames(draw, {from.x, y}, width, *entry)
-             : entry->swatch       ? drawSwatch(draw, {from.x, y}, *entry)
-                                   : drawLegendBar(draw, {from.x, y}, width, *entry);
+    for (const LegendEntry* entry : shown) y += drawLegend(draw, {from.x, y}, width, *entry);
     return {{from.x - pad, from.y - pad * 0.5f}, {max.x, bottom}};
 }
 

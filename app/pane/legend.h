@@ -48,6 +48,11 @@ enum class LegendCorner { Bottom, Top };
 LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max,
                        LegendCorner corner = LegendCorner::Bottom);
 
+/// Legends side by side in rows, as they are placed below a picture; those that do not fit into `most` are dropped.
+/// Returns the height, 0 if there are none.
+float legendRowsHeight(const std::vector<LegendEntry>& entries, float width, float most);
+void drawLegendRows(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, float width, float most);
+
 /// One horizontal bar with ticks and title below in the given width; returns its height.
 float drawLegendBar(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry);
 float legendBarHeight();

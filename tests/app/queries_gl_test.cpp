@@ -340,7 +340,10 @@ TEST_F(AsyncQueries, CancelledDataToCompareAreNotOpenedAgain) {
     ComparePictures answers;
     std::vector<CompareVariant> variants{{"unchanged", {}}, {"other", {{"/data/model", "\"marschner-lobb\""}}}};
     session.data.model = "fuel-cell";
-    const auto get = [&](ViewContext& now) { answers.draw(now, "pane", variants, 0, {32, 24}, false); };
+    const auto get = [&](ViewContext& now) {
+        answers.prepare(now, variants);
+        answers.draw(now, "pane", 0, {32, 24}, false);
+    };
     EXPECT_EQ(cancelAll(get, ":data"), 1);
     finish(get);
     ASSERT_EQ(answers.cells().size(), 2u);
@@ -375,7 +378,8 @@ TEST_F(AsyncQueries, RenderersOfVariantsShareTheLimitsAndSpeak) {
     std::vector<std::string> said;
     const auto get = [&](ViewContext& now) {
         now.renderers = 1 + answers.renderers();
-        answers.draw(now, "pane", variants, 0, {32, 24}, false);
+        answers.prepare(now, variants);
+        answers.draw(now, "pane", 0, {32, 24}, false);
         said.insert(said.end(), now.messages.begin(), now.messages.end());
     };
     finish(get);

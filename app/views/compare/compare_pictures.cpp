@@ -111,6 +111,8 @@ void ComparePictures::drawCell(ViewContext& context, const std::string& pane, st
                     .headless = context.headless,
                     .renderers = std::max(context.renderers, 1 + renderers()),
                     .figure = context.figure,
+                    .decoration = context.decoration,
+                    .whiteGround = context.whiteGround,
                     .interacting = context.interacting};
     if (!cell.target) cell.target = own.renderer.makeTarget();
     vis::FrameRequest request;
@@ -204,9 +206,7 @@ void ComparePictures::measureSamples(ViewContext& context, const std::string& pa
     cell.samples = found ? found->result : std::nullopt;
 }
 
-void ComparePictures::draw(ViewContext& context, const std::string& pane, const std::vector<CompareVariant>& variants,
-                           std::size_t reference, glm::ivec2 size, bool moving) {
-    for (const auto& data : data_) data->used = false;
+void ComparePictures::prepare(const ViewContext& context, const std::vector<CompareVariant>& variants) {
     cells_.resize(variants.size());
     refined_ %= std::max<std::size_t>(cells_.size(), 1);
     for (std::size_t i = 0; i < variants.size(); ++i) {
@@ -225,6 +225,14 @@ void ComparePictures::draw(ViewContext& context, const std::string& pane, const 
                 cell.failure = error.what();
             }
         }
+    }
+}
+
+void ComparePictures::draw(ViewContext& context, const std::string& pane, std::size_t reference, glm::ivec2 size,
+                           bool moving) {
+    for (const auto& data : data_) data->used = false;
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        CompareCell& cell = *cells_[i];
         drawCell(context, pane, i, size, moving);
         // Data that could not be opened are not tried again while the variant is unchanged.
         if (cell.data && cell.data->data == cell.session.data) cell.data->used = true;
@@ -246,11 +254,15 @@ int ComparePictures::renderers() const {
                              [](const auto& cell) { return cell && cell->values.hasRenderer(); }));
 }
 
-double ComparePictures::showDifferences(double top, std::size_t reference) {
+double ComparePictures::differenceTop(double top) const {
     if (top <= 0)
         for (const auto& cell : cells_)
             if (cell->isMeasured()) top = std::max(top, cell->measured->result.of.maximum);
-    if (top <= 0) top = 1;
+    return top > 0 ? top : 1;
+}
+
+void ComparePictures::showDifferences(double top, std::size_t reference) {
+    top = differenceTop(top);
     static const vis::TransferFunction scale = [] {
         vis::TransferFunction made;
         made.colormap = "inferno";
@@ -276,7 +288,6 @@ double ComparePictures::showDifferences(double top, std::size_t reference) {
         cell.shownOf = cell.measured;
         cell.shownTop = top;
     }
-    return top;
 }
 
 std::vector<CompareRow> ComparePictures::rows(const ViewContext& context, std::size_t reference) const {
@@ -314,7 +325,6 @@ std::vector<CompareRow> ComparePictures::rows(const ViewContext& context, std::s
 }
 
 double ComparePictures::findValues(ViewContext& context, const std::string& pane, std::size_t reference) {
-    double top = 0;
     const CompareCell& against = *cells_[reference];
     for (std::size_t i = 0; i < cells_.size(); ++i) {
         CompareCell& cell = *cells_[i];
@@ -322,8 +332,14 @@ double ComparePictures::findValues(ViewContext& context, const std::string& pane
         if (i == reference || !cell.failure.empty() || !against.failure.empty() || !source || !wanted) continue;
         cell.values.find(context, pane + ":values" + std::to_string(i), {cell.session, source},
                          {against.session, wanted});
-        top = std::max(top, cell.values.largest());
     }
+    return largestValue(reference);
+}
+
+double ComparePictures::largestValue(std::size_t reference) const {
+    double top = 0;
+    for (std::size_t i = 0; i < cells_.size(); ++i)
+        if (i != reference && cells_[i]->failure.empty()) top = std::max(top, cells_[i]->values.largest());
     return top > 0 ? top : 1;
 }
 

@@ -85,18 +85,22 @@ struct CompareCell {
 
 class ComparePictures {
 public:
+    /// Makes the session of each variant; before `draw`.
+    void prepare(const ViewContext& context, const std::vector<CompareVariant>& variants);
     /// Draws every variant at one size; index 0 is the first. Sets context.busy while something is not final.
-    void draw(ViewContext& context, const std::string& pane, const std::vector<CompareVariant>& variants,
-              std::size_t reference, glm::ivec2 size, bool moving);
+    void draw(ViewContext& context, const std::string& pane, std::size_t reference, glm::ivec2 size, bool moving);
     std::vector<std::shared_ptr<CompareCell>>& cells() { return cells_; }
     const std::vector<std::shared_ptr<CompareCell>>& cells() const { return cells_; }
     /// Number of renderers besides the window's.
     int renderers() const;
-    /// Fills the pictures of the differences, brightest at `top` of 255, or at the largest where `top` is 0; returns
-    /// the one used.
-    double showDifferences(double top, std::size_t reference);
+    /// The difference of 255 that is brightest: `top`, or the largest where `top` is 0.
+    double differenceTop(double top) const;
+    /// Fills the pictures of the differences, brightest at differenceTop.
+    void showDifferences(double top, std::size_t reference);
     /// Finds how the values of the first layers differ from the reference's; returns the largest difference of all.
     double findValues(ViewContext& context, const std::string& pane, std::size_t reference);
+    /// The same, as far as it is found.
+    double largestValue(std::size_t reference) const;
     /// The rows of the table, as far as they are known.
     std::vector<CompareRow> rows(const ViewContext& context, std::size_t reference) const;
 

@@ -78,7 +78,9 @@ bool CompareValues::draw(ViewContext& context, const Session& session, double to
     request.size = size;
     request.moving = moving && !context.headless;
     request.wait = context.headless;
-    const vis::Scene scene = planes(session, drawnOf_->info().times.front(), top);
+    vis::Scene scene = planes(session, drawnOf_->info().times.front(), top);
+    scene.showBox = scene.showBox && context.decoration.box;
+    if (context.whiteGround) scene.background = glm::vec3(1);
     request.budgetMs = double(scene.render.limits.frameTime);
     status_ = renderer_->render(*target_, scene, request);
     for (std::string& text : renderer_->takeMessages()) context.messages.push_back(std::move(text));

@@ -7,6 +7,7 @@
 #include "app/tools/camera_hand.h"
 #include "app/ui/keys.h"
 #include "app/ui/ticks.h"
+#include "app/views/compare/compare_layout.h"
 #include "app/views/compare/compare_menu.h"
 #include "app/views/compare/compare_questions.h"
 
@@ -43,8 +44,10 @@ void drawOver(const Frame& frame, const PictureBox& box, const Session& session,
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const volume::DatasetInfo& info = frame.context.source->info();
     const SpaceFrame space = spaceFrame(box.min, box.max(), session.camera, info.bounds, session.stretch);
-    drawCursor3d(draw, space, session.cursor);
-    drawSpaceBrushes(draw, space, session.selection);
+    const Decoration& shown = frame.context.decoration;
+    if (shown.cursor) drawCursor3d(draw, space, session.cursor);
+    if (shown.outlines) drawSpaceBrushes(draw, space, session.selection);
+    if (!shown.title) return;
     const PlotColors colors = plotColors();
     const float pad = em() * 0.5f;
     const std::string text = fitText(caption, box.size.x * (left ? 1.0f : 0.5f) - 2 * pad);
@@ -93,8 +96,7 @@ std::string nameOf(const Frame& frame, std::size_t index) {
 
 void drawGrid(const Frame& frame, const std::vector<PictureBox>& boxes, bool differences) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    const double top =
-        differences ? frame.cache.pictures.showDifferences(double(frame.view.differenceTop), frame.reference) : 0;
+    if (differences) frame.cache.pictures.showDifferences(double(frame.view.differenceTop), frame.reference);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         const PictureBox& box = boxes[i];
         const CompareCell& cell = *frame.cache.pictures.cells()[i];
@@ -105,15 +107,6 @@ void drawGrid(const Frame& frame, const std::vector<PictureBox>& boxes, bool dif
         else
             drawCell(frame, i, box);
         drawOver(frame, box, frame.context.session, nameOf(frame, i), i == frame.reference);
-        if (shown && i == (frame.reference == 0 ? 1u : 0u)) {
-            LegendEntry legend;
-            legend.title = "difference (of 255)";
-            legend.function.colormap = "inferno";
-            legend.range = legend.data = {0, top};
-            drawLegends(draw, {legend}, box.min, box.max());
-        } else if (!differences && i == frame.reference) {
-            drawLegends(draw, sceneLegends(frame.context.session, frame.context.source->info()), box.min, box.max());
-        }
         draw.PopClipRect();
     }
 }
@@ -132,7 +125,6 @@ void drawValues(const Frame& frame, const std::string& pane, const std::vector<P
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     ComparePictures& pictures = frame.cache.pictures;
     const double top = pictures.findValues(frame.context, pane, frame.reference);
-    bool legend = false;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         const PictureBox& box = boxes[i];
         CompareCell& cell = *pictures.cells()[i];
@@ -150,21 +142,48 @@ void drawValues(const Frame& frame, const std::string& pane, const std::vector<P
         else
             drawCell(frame, i, box);
         drawOver(frame, box, frame.context.session, nameOf(frame, i), i == frame.reference);
-        if (shown)
+        if (shown && frame.context.decoration.title)
             for (int line = 0; const std::string& text : valuesText(cell)) note(text, line++);
-        else if (i != frame.reference && cell.failure.empty())
+        else if (!shown && i != frame.reference && cell.failure.empty())
             note(cell.values.failure().empty() ? "Computing the difference" : cell.values.failure(), 0);
-        if (shown && !legend) {
-            legend = true;
-            LegendEntry entry;
-            entry.title = cell.values.name() + " minus reference";
-            entry.unit = cell.values.unit();
-            entry.function = vis::divergingFunction();
-            entry.range = entry.data = {-top, top};
-            drawLegends(draw, {entry}, box.min, box.max());
-        }
         draw.PopClipRect();
     }
+}
+
+/// The legends of what the mode shows: of the variants, or in place of theirs those of differences, as far as they are
+/// known.
+CompareLegends legendsOf(const Frame& frame) {
+    const CompareMode mode = frame.view.mode;
+    ComparePictures& pictures = frame.cache.pictures;
+    std::vector<std::size_t> shown;
+    if (mode == CompareMode::Swipe)
+        shown = {frame.reference, frame.other};
+    else if (mode == CompareMode::Blink)
+        shown = {frame.context.headless ? frame.reference : frame.cache.blinkShown % frame.variants.size()};
+    else
+        for (std::size_t i = 0; i < frame.variants.size(); ++i) shown.push_back(i);
+    CompareLegends legends = variantLegends(frame.context, pictures.cells(), shown);
+    if (mode != CompareMode::Difference) return legends;
+    const bool values = frame.view.differenceOf == DifferenceOf::Values;
+    const double top =
+        values ? pictures.largestValue(frame.reference) : pictures.differenceTop(double(frame.view.differenceTop));
+    for (std::size_t i = 0; i < legends.size(); ++i) {
+        const CompareCell& cell = *pictures.cells()[i];
+        if (i == frame.reference || !cell.failure.empty()) continue;
+        LegendEntry entry;
+        entry.title = "difference (of 255)";
+        entry.range = {0, top};
+        entry.function.colormap = "inferno";
+        if (values) {
+            entry.title = cell.values.name().empty() ? "difference" : cell.values.name() + " minus reference";
+            entry.unit = cell.values.unit();
+            entry.function = vis::divergingFunction();
+            entry.range = {-top, top};
+        }
+        entry.data = entry.range;
+        legends[i] = {entry};
+    }
+    return legends;
 }
 
 /// Drags the line; true while the mouse is at it.
@@ -193,7 +212,6 @@ void drawSwipe(const Frame& frame, const PictureBox& box) {
     draw.PushClipRect({x, box.min.y}, box.max(), true);
     drawCell(frame, frame.other, box);
     drawOver(frame, box, frame.context.session, nameOf(frame, frame.other), false, false);
-    drawLegends(draw, sceneLegends(frame.context.session, frame.context.source->info()), box.min, box.max());
     draw.PopClipRect();
     const PlotColors colors = plotColors();
     draw.AddLine({x, box.min.y}, {x, box.max().y}, colors.backdrop, 4);
@@ -250,23 +268,18 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
     cache.hands.resize(count);
 
     const ImVec2 room = ImGui::GetContentRegionAvail(), at = ImGui::GetCursorScreenPos();
-    const float table = view.showTable ? std::min(compareTableHeight(count), room.y * 0.5f) : 0;
+    const bool bare = context.decoration == Decoration::preset("none");
+    const float table = view.showTable && !bare ? std::min(compareTableHeight(count), room.y * 0.5f) : 0;
     const float asked = context.figure ? 0 : std::min(questionsHeight(view), room.y * 0.3f);
     const ImVec2 area{std::floor(room.x), std::floor(room.y - table - asked)};
     if (area.x < 24 || area.y < 24) return;
     const bool grid = view.mode == CompareMode::Grid || view.mode == CompareMode::Difference;
-    const GridShape shape = grid ? gridFor(static_cast<int>(count), double(area.x), double(area.y)) : GridShape{};
-    const float gap = grid ? std::round(em() * 0.2f) : 0;
-    const ImVec2 size{
-        std::floor((area.x - gap * static_cast<float>(shape.columns - 1)) / static_cast<float>(shape.columns)),
-        std::floor((area.y - gap * static_cast<float>(shape.rows)) / static_cast<float>(shape.rows))};
+    cache.pictures.prepare(context, frame.variants);
+    const CompareLegends legends = context.decoration.legend ? legendsOf(frame) : CompareLegends{};
+    const CompareLayout layout = compareLayout(legends, grid ? static_cast<int>(count) : 1, at, area);
+    const std::vector<PictureBox>& boxes = layout.pictures;
+    const ImVec2 size = boxes[0].size;
     if (size.x < 8 || size.y < 8) return;
-    std::vector<PictureBox> boxes;
-    for (std::size_t i = 0; i < (grid ? count : 1); ++i) {
-        const auto column = static_cast<float>(static_cast<int>(i) % shape.columns),
-                   row = static_cast<float>(static_cast<int>(i) / shape.columns);
-        boxes.push_back({{at.x + column * (size.x + gap), at.y + row * (size.y + gap)}, size});
-    }
     bool moving = false;
     if (grid) {
         for (std::size_t i = 0; i < count; ++i) moving = picture(frame, i, boxes[i], false) || moving;
@@ -275,7 +288,7 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
         const std::size_t which = view.mode == CompareMode::Swipe ? frame.other : cache.blinkShown % count;
         moving = picture(frame, which, boxes[0], blocked);
     }
-    cache.pictures.draw(context, pane, frame.variants, frame.reference, {size.x, size.y},
+    cache.pictures.draw(context, pane, frame.reference, {size.x, size.y},
                         moving || context.interacting || context.session.animation.playing);
     if (view.mode == CompareMode::Difference && view.differenceOf == DifferenceOf::Values)
         drawValues(frame, pane, boxes, moving || context.interacting || context.session.animation.playing);
@@ -285,6 +298,9 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
         drawSwipe(frame, boxes[0]);
     else
         drawBlink(frame, boxes[0]);
+    drawCompareLegends(*ImGui::GetWindowDrawList(), layout);
+    // What was found while drawing, such as the range of other data, is in the next frame's legends.
+    if (context.decoration.legend && legendsOf(frame) != legends) context.busy = true;
     cache.rows = cache.pictures.rows(context, frame.reference);
     if (table > 0) {
         ImGui::SetCursorScreenPos({at.x, at.y + area.y});

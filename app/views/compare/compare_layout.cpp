@@ -1,0 +1,75 @@
+#include "app/views/compare/compare_layout.h"
+
+#include "app/pane/view_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+/// The height of the highest of the legends at this width, with the space above them.
+float stripHeight(const CompareLegends& legends, float width, float most) {
+    float height = 0;
+    for (const std::vector<LegendEntry>& own : legends) height = std::max(height, legendRowsHeight(own, width, most));
+    return height > 0 ? std::ceil(height + em() * 0.3f) : 0;
+}
+
+/// The room for legends below a picture of this height.
+float mostBelow(float height) {
+    return height * 0.5f;
+}
+
+} // namespace
+
+CompareLayout compareLayout(CompareLegends legends, int count, ImVec2 at, ImVec2 area) {
+    CompareLayout layout;
+    layout.legends = std::move(legends);
+    const bool same = std::ranges::all_of(layout.legends, [&](const auto& own) { return own == layout.legends[0]; });
+    if (same && !layout.legends.empty()) layout.legends.resize(1);
+    const float common = same ? stripHeight(layout.legends, area.x, mostBelow(area.y)) : 0;
+    const float gap = count > 1 ? std::round(em() * 0.2f) : 0;
+    const GridShape shape = gridFor(count, double(area.x), double(area.y - common));
+    const auto columns = static_cast<float>(shape.columns), rows = static_cast<float>(shape.rows);
+    const ImVec2 cell{std::floor((area.x - gap * (columns - 1)) / columns),
+                      std::floor((area.y - common - gap * rows) / rows)};
+    // Of one picture that shows several variants, such as swipe, the legends are beside one another.
+    const std::size_t beside = std::max<std::size_t>(layout.legends.size() / static_cast<std::size_t>(count), 1);
+    const float width = cell.x / static_cast<float>(beside);
+    const float own = same ? 0 : stripHeight(layout.legends, width - em(), mostBelow(cell.y));
+    for (int i = 0; i < count; ++i) {
+        const ImVec2 min{at.x + static_cast<float>(i % shape.columns) * (cell.x + gap),
+                         at.y + static_cast<float>(i / shape.columns) * (cell.y + gap)};
+        layout.pictures.push_back({min, {cell.x, cell.y - own}});
+        for (std::size_t k = 0; own > 0 && k < beside; ++k)
+            layout.places.push_back(
+                {{min.x + width * static_cast<float>(k), min.y + cell.y - own}, {width - em(), own}});
+    }
+    if (common > 0) layout.places.push_back({{at.x, at.y + area.y - common}, {area.x, common}});
+    return layout;
+}
+
+CompareLegends variantLegends(const ViewContext& context, const std::vector<std::shared_ptr<CompareCell>>& cells,
+                              const std::vector<std::size_t>& shown) {
+    CompareLegends legends;
+    for (const std::size_t index : shown) {
+        const CompareCell& cell = *cells[index];
+        const auto& source = cell.source(context);
+        legends.push_back(cell.failure.empty() && source ? sceneLegends(cell.session, source->info())
+                                                         : std::vector<LegendEntry>{});
+    }
+    return legends;
+}
+
+void drawCompareLegends(ImDrawList& draw, const CompareLayout& layout) {
+    for (std::size_t i = 0; i < layout.places.size() && i < layout.legends.size(); ++i) {
+        const PictureBox& place = layout.places[i];
+        draw.PushClipRect(place.min, place.max(), true);
+        drawLegendRows(draw, layout.legends[i], {place.min.x, place.min.y + em() * 0.3f}, place.size.x,
+                       place.size.y - em() * 0.3f + 1);
+        draw.PopClipRect();
+    }
+}
+
+} // namespace tessera::app
