@@ -1,0 +1,229 @@
+#include "app/views/slices/slice_plane.h"
+
+#include "app/pane/axes3d.h"
+#include "app/pane/view_parts.h"
+#include "app/tools/brush_list.h"
+#include "app/tools/lens_outline.h"
+#include "app/tools/profile_line.h"
+#include "app/ui/ticks.h"
+#include "app/views/slices/contour_lines.h"
+#include "app/views/slices/slice_figure.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+/// Moves the cursor along an axis by one sample and keeps it inside.
+void stepCursor(Session& session, const volume::DatasetInfo& info, int axis, float steps) {
+    const double cell = info.lattice.spacing[axis] * (info.lattice.kind == volume::LatticeKind::BCC ? 0.5 : 1);
+    session.cursor[axis] = std::clamp(session.cursor[axis] + cell * static_cast<double>(steps), info.bounds.lo[axis],
+                                      info.bounds.hi[axis]);
+}
+
+/// The pinned lens whose middle is at a pixel of a slice, -1 if none; later ones lie over those before them.
+int lensAt(const Session& session, const PlotFrame& frame, const SliceAxes& plane, glm::dvec2 perUnit, ImVec2 mouse) {
+    for (int i = static_cast<int>(session.lenses.size()) - 1; i >= 0; --i) {
+        const vis::Lens& lens = session.lenses[static_cast<std::size_t>(i)];
+        const ImVec2 at = frame.pixel(lens.center[plane.right] * perUnit.x, lens.center[plane.up] * perUnit.y);
+        if (lens.enabled && !lens.followsCursor && std::hypot(at.x - mouse.x, at.y - mouse.y) < em() * 0.7f) return i;
+    }
+    return -1;
+}
+
+/// Lenses with layers of their own show these layers' parameters in their section, others nothing.
+void addInnerSlices(vis::Scene& scene, const Session& session, const vis::SliceLayer& like) {
+    std::erase_if(scene.lenses, [&](const vis::Lens& lens) {
+        return lens.effect != vis::LensEffect::Replace || lens.shape == vis::LensShape::Disc ||
+               std::none_of(session.layers.begin(), session.layers.end(),
+                            [&](const vis::Layer& layer) { return layer.visible && layer.lens == lens.name; });
+    });
+    for (const vis::Lens& lens : scene.lenses)
+        for (const vis::Layer& layer : session.layers) {
+            if (!layer.visible || layer.lens != lens.name) continue;
+            vis::SliceLayer inner = like;
+            inner.channel = std::visit([](const auto& own) { return own.channel; }, layer.technique);
+            scene.layers.push_back({layer.name, true, inner, layer.lens, layer.transfer, layer.timeShift});
+        }
+}
+
+/// One slice in its pane: names and units along the picture and across it, and the room between its axes.
+struct PlaneFrame {
+    SliceAxes axes;
+    AxisLabel right, up, normal;
+    Range rangeX, rangeY; ///< of the box, in the units shown
+    float left = 0;       ///< room of the vertical axis
+    ImVec2 min, max;      ///< the pane
+    ImVec2 lo, hi;        ///< what is left for the picture
+    glm::dvec2 perUnit{1};
+    PlotFrame plot; ///< the picture; valid where placePlane() succeeded
+    glm::ivec2 pixels{0};
+};
+
+PlaneFrame planeFrame(const Session& session, const volume::DatasetInfo& info, int index, ImVec2 min, ImVec2 max) {
+    const SliceAxes& axes = kSlicePlanes[index];
+    const AxisLabels labels = axisLabels(session, info);
+    PlaneFrame frame;
+    frame.axes = axes;
+    frame.right = labels[std::size_t(axes.right)], frame.up = labels[std::size_t(axes.up)];
+    frame.normal = labels[std::size_t(axes.normal)];
+    frame.min = min, frame.max = max;
+    frame.perUnit = {frame.right.unit.perUnit, frame.up.unit.perUnit};
+    const auto range = [&](int axis, const LengthUnit& unit) {
+        return Range{info.bounds.lo[axis] * unit.perUnit, info.bounds.hi[axis] * unit.perUnit};
+    };
+    frame.rangeX = range(axes.right, frame.right.unit), frame.rangeY = range(axes.up, frame.up.unit);
+    // Slices below each other begin at the same pixel, whatever their numbers.
+    frame.left = std::max(axisRoom(AxisSide::Left, frame.rangeY, false),
+                          axisRoom(AxisSide::Left, range(2, labels[2].unit), false));
+    const float bottom = axisRoom(AxisSide::Bottom, frame.rangeX, false);
+    frame.lo = {min.x + frame.left, min.y + em() * 1.35f}, frame.hi = {max.x - em() * 0.8f, max.y - bottom};
+    return frame;
+}
+
+/// The largest picture with the proportions of the stretched box; false if there is no room for one or the box is flat.
+bool placePlane(PlaneFrame& frame, const vis::WorldFrame& world) {
+    if (frame.hi.x - frame.lo.x < em() * 2 || frame.hi.y - frame.lo.y < em() * 2) return false;
+    const double worldX = world.halfSize[frame.axes.right], worldY = world.halfSize[frame.axes.up];
+    if (!(worldX > 0) || !(worldY > 0)) {
+        const std::string text = std::string("no extent along ") + (worldX > 0 ? frame.up : frame.right).name;
+        ImGui::GetWindowDrawList()->AddText(frame.lo, plotColors().faint, text.c_str());
+        return false;
+    }
+    const double scale = std::min((frame.hi.x - frame.lo.x) / worldX, (frame.hi.y - frame.lo.y) / worldY);
+    frame.pixels = {std::max(1.0, std::floor(worldX * scale)), std::max(1.0, std::floor(worldY * scale))};
+    const ImVec2 corner{std::floor(frame.lo.x), std::floor(frame.lo.y)};
+    frame.plot = {corner,
+                  {corner.x + static_cast<float>(frame.pixels.x), corner.y + static_cast<float>(frame.pixels.y)},
+                  paddedRange(frame.rangeX),
+                  paddedRange(frame.rangeY)};
+    return true;
+}
+
+/// The head line names the slice and its place, in the colour of the axis it is perpendicular to.
+void drawPlaneTitle(const PlaneFrame& frame, const Session& session, const volume::DatasetInfo& info) {
+    const int axis = frame.axes.normal;
+    const LengthUnit& unit = frame.normal.unit;
+    const std::string place =
+        std::string(frame.normal.name) + " = " +
+        formatQuantity(session.cursor[axis] * unit.perUnit, unit.name, info.bounds.size()[axis] * unit.perUnit / 1000);
+    ImGui::GetWindowDrawList()->AddText({std::round(frame.hi.x - ImGui::CalcTextSize(place.c_str()).x), frame.min.y},
+                                        axisColor(axis), place.c_str());
+}
+
+/// What the mouse does in the picture: drags a handle, a lens or the cross-hair; the wheel steps through the slices.
+void handlePlaneMouse(ViewContext& context, SlicePlanes& planes, const PlaneFrame& frame, int index) {
+    const volume::DatasetInfo& info = context.source->info();
+    Session& session = context.session;
+    const SliceAxes& axes = frame.axes;
+    ImGui::SetCursorScreenPos(frame.plot.min);
+    ImGui::PushID(index);
+    ImGui::InvisibleButton("plane", {frame.plot.width(), frame.plot.height()});
+    if (ImGui::BeginPopupContextItem("menu")) {
+        drawBrushMenu(context);
+        ImGui::EndPopup();
+    }
+    ImGui::PopID();
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool onHandle =
+        editHandles(planes.handles[static_cast<std::size_t>(index)], session, info, frame.plot, axes.right, axes.up,
+                    frame.perUnit, ImGui::IsItemHovered() && planes.dragging < 0);
+    if (onHandle) context.interacting = true;
+    if (ImGui::IsItemActivated() && !onHandle) {
+        planes.dragging = index;
+        planes.lens = lensAt(session, frame.plot, axes, frame.perUnit, io.MousePos);
+    }
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) planes.dragging = -1;
+    if (planes.dragging == index) {
+        const bool lens = planes.lens >= 0 && planes.lens < static_cast<int>(session.lenses.size());
+        glm::dvec3& moved = lens ? session.lenses[static_cast<std::size_t>(planes.lens)].center : session.cursor;
+        const glm::dvec2 at = frame.plot.data(io.MousePos) / frame.perUnit;
+        moved[axes.right] = std::clamp(at.x, info.bounds.lo[axes.right], info.bounds.hi[axes.right]);
+        moved[axes.up] = std::clamp(at.y, info.bounds.lo[axes.up], info.bounds.hi[axes.up]);
+        context.interacting = true;
+    }
+    if (ImGui::IsItemHovered()) {
+        ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+        if (io.MouseWheel != 0) stepCursor(session, info, axes.normal, io.MouseWheel * (io.KeyShift ? 10.0f : 1.0f));
+    }
+}
+
+void drawPlanePicture(ViewContext& context, vis::ViewTargetPtr& target, const SlicesView& view,
+                      const std::string& channel, const PlaneFrame& frame, const vis::WorldFrame& world) {
+    vis::Scene scene = sceneWithLimits(context);
+    scene.paper.reset();
+    scene.camera = vis::planeCamera(frame.axes.right, frame.axes.up, world);
+    scene.showBox = false;
+    vis::SliceLayer layer;
+    layer.channel = channel;
+    layer.orientation = static_cast<vis::SliceOrientation>(frame.axes.normal);
+    if (view.contourOf.empty() && !view.contourValues) layer.contours = view.contours;
+    scene.layers = {vis::Layer{"slice", true, layer}};
+    addInnerSlices(scene, context.session, layer);
+    // Only the place along the normal matters: dragging within a slice leaves its picture as it is.
+    for (int axis : {frame.axes.right, frame.axes.up})
+        scene.cursor[axis] = context.source->info().bounds.center()[axis];
+    if (!target) target = context.renderer.makeTarget();
+    vis::FrameRequest request;
+    request.size = frame.pixels;
+    request.moving = !context.headless && (context.interacting || context.session.animation.playing);
+    // Three pictures share a frame, and in motion leave half of it to those in space.
+    request.budgetMs = scene.render.limits.frameTime / (request.moving ? 6.0 : 3.0);
+    request.wait = context.headless;
+    const vis::FrameStatus status = context.renderer.render(*target, scene, request);
+    context.follow(status);
+    addPicture(*ImGui::GetWindowDrawList(), status.texture, frame.plot.min, frame.plot.max);
+}
+
+/// Frame, axes and what lies over the picture.
+void drawOverPlane(ViewContext& context, SlicePlanes& planes, const std::string& pane, const SlicesView& view,
+                   const DrawnContours& lines, const PlaneFrame& frame, int index) {
+    const volume::DatasetInfo& info = context.source->info();
+    const Session& session = context.session;
+    const Decoration& shown = context.decoration;
+    const auto& [right, up, normal] = frame.axes;
+    const double place = session.cursor[normal];
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    if (shown.box) draw.AddRect(frame.plot.min, frame.plot.max, plotColors().frame);
+    if (shown.axes) {
+        drawAxis(draw, frame.plot, AxisSide::Bottom, frame.right.name, frame.right.unit.name, frame.min.x,
+                 std::min(frame.max.x, frame.plot.max.x + em() * 4), {.inlineTitle = true});
+        drawAxis(draw, frame.plot, AxisSide::Left, frame.up.name, frame.up.unit.name, frame.min.y, frame.max.y,
+                 {.inlineTitle = true, .room = frame.left});
+    }
+    draw.PushClipRect(frame.plot.min, frame.plot.max, true);
+    if (lines.channel)
+        drawContours(
+            context, planes.contours[static_cast<std::size_t>(index)], "contours " + pane + std::to_string(index),
+            {*lines.channel, frame.axes, place, volume::timesAround(info.times, session.time), lines.levels.values},
+            lines.levels.step, view.contourValues, frame.plot, frame.perUnit);
+    if (shown.outlines) {
+        drawBrushSections(draw, frame.plot, session.selection, right, up, normal, place, frame.perUnit);
+        drawLensSections(draw, frame.plot, session, info, right, up, normal, place, frame.perUnit);
+        drawProfileLines(draw, frame.plot, session, right, up, frame.perUnit);
+        drawHandles(draw, planes.handles[static_cast<std::size_t>(index)], frame.plot, session, info, right, up,
+                    frame.perUnit);
+    }
+    if (shown.cursor)
+        drawCrosshair(draw, frame.plot, session.cursor[right] * frame.perUnit.x, session.cursor[up] * frame.perUnit.y);
+    draw.PopClipRect();
+}
+
+} // namespace
+
+void drawSlicePlane(ViewContext& context, SlicePlanes& planes, const std::string& pane, const SlicesView& view,
+                    const std::string& channel, const DrawnContours& lines, int index, ImVec2 min, ImVec2 max) {
+    const volume::DatasetInfo& info = context.source->info();
+    const vis::WorldFrame world = vis::worldFrame(info.bounds, context.session.stretch);
+    PlaneFrame frame = planeFrame(context.session, info, index, min, max);
+    if (context.decoration.title) drawPlaneTitle(frame, context.session, info);
+    if (!placePlane(frame, world)) return;
+    handlePlaneMouse(context, planes, frame, index);
+    drawPlanePicture(context, planes.targets[static_cast<std::size_t>(index)], view, channel, frame, world);
+    drawOverPlane(context, planes, pane, view, lines, frame, index);
+}
+
+} // namespace tessera::app

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "app/pane/view_context.h"
+#include "app/tools/space_handles.h"
+#include "app/views/slices/contour_data.h"
+#include "app/views/slices/contour_lines.h"
+
+#include <array>
+#include <optional>
+#include <string>
+
+/// One of the three pictures of a slices view.
+namespace tessera::app {
+
+/// What the three pictures keep between frames.
+struct SlicePlanes {
+    std::array<vis::ViewTargetPtr, 3> targets;
+    int dragging = -1; ///< the plane whose cross-hair or lens is being dragged
+    int lens = -1;     ///< the lens that is dragged instead of the cross-hair
+    std::array<HandleDrag, 3> handles;
+    std::array<ContourCache, 3> contours;
+};
+
+/// The contour lines that the view draws instead of the renderer: those of another parameter and those with labels.
+struct DrawnContours {
+    std::optional<int> channel; ///< nothing: none
+    ContourLevels levels;
+};
+
+/// Draws plane `index` of kSlicePlanes with its axes between two corners of the pane, and lets the mouse move
+/// cross-hair, lenses and handles in it.
+void drawSlicePlane(ViewContext& context, SlicePlanes& planes, const std::string& pane, const SlicesView& view,
+                    const std::string& channel, const DrawnContours& lines, int index, ImVec2 min, ImVec2 max);
+
+} // namespace tessera::app
