@@ -204,7 +204,7 @@ LineLifter<Word>::LineLifter(Wavelet wavelet, int lineWidth, bool wide, Cpu cpu)
     const int usable = usableDetails(filter.update.pairs, evens, odds);
     if (filter.updates && (usable < 1 || (filter.update.pairs == 0 && evens > odds))) return;
     if (filter.updates) fill(filter.update, true, evens, usable, update);
-    withWavelet(wavelet, [this]<Wavelet kWavelet>() {
+    withWavelet(wavelet, [&]<Wavelet kWavelet>() {
         if constexpr (!filterOf(kWavelet).update.antisymmetric) use<kWavelet>();
     });
 }
