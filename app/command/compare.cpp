@@ -1,6 +1,8 @@
 #include "app/edits/compare.h"
 #include "app/command/command.h"
 #include "app/command/picture_options.h"
+#include "app/views/compare/compare_offers.h"
+#include "app/views/compare/compare_panes.h"
 #include "app/views/compare/compare_view.h"
 #include "volume/base/error.h"
 #include "volume/system/atomic_file.h"
@@ -36,12 +38,25 @@ CompareVariant parseVariant(const std::string& text) {
     return variant;
 }
 
-/// The compare pane: the requested one, or the first. Opens one if there is none.
+/// The pane to draw: a comparison that `wanted` names, else the first one, made to show the view `wanted`. Opens one if
+/// there is none.
 std::string comparePane(Session& session, const std::string& wanted) {
-    for (const auto& [pane, view] : session.views)
-        if (std::holds_alternative<CompareView>(view) && (wanted.empty() || pane == wanted)) return pane;
-    if (!wanted.empty()) throw Error("no comparison view of that name", {}, wanted);
-    return addView(session, CompareView{});
+    const std::string named = wanted.empty() ? std::string() : paneOf(session, wanted);
+    if (!wanted.empty() && named.empty()) throw Error("no view of that name", {}, wanted);
+    const auto isComparison = [&](const std::string& pane) {
+        return std::holds_alternative<CompareView>(session.views.at(pane));
+    };
+    if (!named.empty() && isComparison(named)) return named;
+    std::string pane;
+    for (const auto& [each, view] : session.views)
+        if (pane.empty() && isComparison(each)) pane = each;
+    if (pane.empty()) pane = addView(session, CompareView{});
+    if (named.empty()) return pane;
+    const ViewState& shown = session.views.at(named);
+    const bool scene = std::holds_alternative<VolumeView>(shown);
+    if (!scene && !canBeCompared(shown)) throw Error("this view cannot be compared", {}, wanted);
+    std::get<CompareView>(session.views.at(pane)).shows = scene ? std::string() : named;
+    return pane;
 }
 
 } // namespace
@@ -54,8 +69,8 @@ void addCompareCommand(CLI::App& app) {
         int reference = -1;
     };
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand(
-        "compare", "Draw the 3D scene of a session with several settings side by side, as one figure with a table");
+    CLI::App* command = app.add_subcommand("compare", "Draw the 3D scene, or the view named by --view, with several "
+                                                      "settings side by side, as one figure with a table");
     addPictureOptions(*command, options->picture);
     command
         ->add_option("--variant", options->variants,
@@ -85,11 +100,12 @@ void addCompareCommand(CLI::App& app) {
             for (const std::string& text : options->variants) view.variants.push_back(parseVariant(text));
         }
         if (options->reference >= 0) view.reference = options->reference;
-        const auto count = static_cast<int>(shownVariants(view).size());
+        const std::vector<CompareVariant> variants = shownVariants(view, session, opened.source->info());
+        const auto count = static_cast<int>(variants.size());
         if (view.reference >= count)
             throw Error("there are " + std::to_string(count) + " variants, counted from 0", "--reference",
                         std::to_string(view.reference));
-        for (const CompareVariant& variant : shownVariants(view)) variantSession(session, variant); // fail early
+        for (const CompareVariant& variant : variants) variantSession(session, variant); // fail early
         opened.document.history.reset(session);
         PictureRequest request = pictureRequest(options->picture, session);
         request.pane = pane;

@@ -25,17 +25,6 @@ void applySetting(Json& document, const std::string& setting) {
     }
 }
 
-/// The pane with this key, or the first view of this kind; "" if there is none.
-std::string paneOf(const Session& session, const std::string& view) {
-    if (session.views.contains(view)) return view;
-    for (const auto& [pane, state] : session.views) {
-        const auto kind =
-            std::visit([](const auto& v) { return std::string_view(std::decay_t<decltype(v)>::kType); }, state);
-        if (kind == view) return pane;
-    }
-    return {};
-}
-
 /// Leaves a part of the decoration out, by its key.
 void leaveOut(Decoration& decoration, const std::string& part) {
     std::string known;
@@ -100,6 +89,16 @@ void addFormOptions(CLI::App& command, PictureOptions& options) {
 }
 
 } // namespace
+
+std::string paneOf(const Session& session, const std::string& view) {
+    if (session.views.contains(view)) return view;
+    for (const auto& [pane, state] : session.views) {
+        const auto kind =
+            std::visit([](const auto& v) { return std::string_view(std::decay_t<decltype(v)>::kType); }, state);
+        if (kind == view) return pane;
+    }
+    return {};
+}
 
 void addLayoutOption(CLI::App& command, std::string& layout) {
     std::string names;

@@ -31,6 +31,9 @@ void addPictureOptions(CLI::App& command, PictureOptions& options);
 /// Opens what the options name, with the settings applied. Throws Error, also for data that cannot be found.
 Opened openForPicture(const PictureOptions& options, const Progress& progress);
 
+/// The pane with this key, or the first view of this kind; "" if there is none.
+std::string paneOf(const Session& session, const std::string& view);
+
 /// Pane and form. `view` may be the key of a pane or the kind of one. Throws Error.
 PictureRequest pictureRequest(const PictureOptions& options, const Session& session);
 

@@ -47,6 +47,7 @@ std::string changesText(const Session& session, const CompareVariant& variant) {
         const Json parsed = Json::parse(value, nullptr, false);
         std::string shown = parsed.is_string() ? parsed.get<std::string>() : value;
         if (path == "/data/lattice") title = "lattice", shown = shown == "bodyCentred" ? "BCC" : "CC";
+        if (parsed.is_object() && parsed.empty()) shown.clear();
         if (parsed.is_object() && !parsed.empty()) {
             const Json base = toJson(session);
             const Json::json_pointer at(path);
@@ -55,7 +56,7 @@ std::string changesText(const Session& session, const CompareVariant& variant) {
             continue;
         }
         if (parsed.is_null()) shown = "none";
-        text += (text.empty() ? "" : ", ") + title + " " + shown;
+        text += (text.empty() ? "" : ", ") + title + (shown.empty() ? "" : " " + shown);
     }
     return text.empty() ? "unchanged" : text;
 }
@@ -64,9 +65,38 @@ std::string variantName(const Session& session, const CompareVariant& variant) {
     return variant.name.empty() ? changesText(session, variant) : variant.name;
 }
 
-std::vector<CompareVariant> shownVariants(const CompareView& view) {
-    if (!view.variants.empty()) return view.variants;
-    return {{}, {.name = {}, .changes = {{"/render/filter", "average"}}}};
+namespace {
+
+constexpr const char *kPackedPath = "/data/packed", *kTimeAxisPath = "/data/timeAxis";
+
+/// The session with what it may leave out set to the defaults.
+Session withOptionalData(Session session) {
+    if (!session.data.packed) session.data.packed.emplace();
+    if (!session.data.timeAxis) session.data.timeAxis.emplace();
+    return session;
+}
+
+/// A value as it stands in CompareVariant::changes.
+std::string settingText(const Json& value) {
+    return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+} // namespace
+
+std::vector<std::string> variantPaths(const Session& session) {
+    std::vector<std::string> paths = parameterPaths(session);
+    const std::vector<DataFile>& files = session.data.files;
+    if (files.size() == 1 && files[0].absolutePath.ends_with(".tsr")) return paths;
+    const Session whole = withOptionalData(session);
+    for (const char* place : {kPackedPath, kTimeAxisPath})
+        for (const std::string& path : parameterPathsBelow(whole, place)) paths.push_back(path);
+    return paths;
+}
+
+void startChange(CompareVariant& variant, const Session& session, const std::string& path) {
+    variant.changes[path] = settingText(toJson(withOptionalData(session))[Json::json_pointer(path)]);
+    if (path.starts_with(kPackedPath) && !session.data.packed) variant.changes.try_emplace(kPackedPath, "{}");
+    if (path.starts_with(kTimeAxisPath) && !session.data.timeAxis) variant.changes.try_emplace(kTimeAxisPath, "{}");
 }
 
 void recordChange(CompareVariant& variant, const Session& session, const Session& changed, const std::string& path) {
@@ -76,7 +106,7 @@ void recordChange(CompareVariant& variant, const Session& session, const Session
     if (base.contains(at) && base[at] == now[at])
         variant.changes.erase(path);
     else
-        variant.changes[path] = now[at].is_string() ? now[at].get<std::string>() : now[at].dump();
+        variant.changes[path] = settingText(now[at]);
 }
 
 GridShape gridFor(int count, double width, double height) {

@@ -17,9 +17,13 @@ std::string changesText(const Session& session, const CompareVariant& variant);
 /// Its own name, else what it changes.
 std::string variantName(const Session& session, const CompareVariant& variant);
 
-/// The variants of a view: its own, or where it has none the session as it is twice over by the reconstruction filter,
-/// so that there is something to see.
-std::vector<CompareVariant> shownVariants(const CompareView& view);
+/// The settings that a variant can change, as JSON pointers: those of parameterPaths and, of data that are not an
+/// archive, those of packing (wavelet, threshold, lattice such as D4*, bound of the error) and of time along an axis.
+std::vector<std::string> variantPaths(const Session& session);
+
+/// Adds to a variant the change of the setting `path` to the value it has in the session, to be edited. Where the data
+/// are not packed (not along time) so far, they become so by the defaults.
+void startChange(CompareVariant& variant, const Session& session, const std::string& path);
 
 /// Updates the changes of a variant for an edited parameter at `path`: sets those that differ from the session, removes
 /// those that agree.

@@ -75,6 +75,13 @@ std::vector<std::string> parameterPaths(const Session& session) {
     return out;
 }
 
+std::vector<std::string> parameterPathsBelow(const Session& session, const std::string& place) {
+    std::vector<std::string> all;
+    detail::Paths{all, ""}.collect(session, "");
+    std::erase_if(all, [&](const std::string& path) { return !path.starts_with(place + "/"); });
+    return all;
+}
+
 void setInDocument(Json& document, const std::string& path, const std::string& text) {
     Json value = Json::parse(text, nullptr, false);
     if (value.is_discarded()) value = text;

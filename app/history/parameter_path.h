@@ -73,6 +73,9 @@ struct Session;
 /// those of the window (views, dock, appearance) and of playing.
 std::vector<std::string> parameterPaths(const Session& session);
 
+/// Those of one place of the session, such as "/data/packed".
+std::vector<std::string> parameterPathsBelow(const Session& session, const std::string& place);
+
 /// Sets "/json/pointer" of a document to a value given as JSON, or as text where it is none. Throws Error where the
 /// parent does not exist.
 void setInDocument(Json& document, const std::string& path, const std::string& text);

@@ -48,6 +48,7 @@ struct CompareQuestion {
 struct CompareView {
     static constexpr std::string_view kType = "compare";
     CompareMode mode = CompareMode::Grid;
+    std::string shows;                    ///< pane whose view is compared; "" = the 3D scene
     std::vector<CompareVariant> variants; ///< one without changes is the session as it is
     int reference = 0;                    ///< index of the variant that the others are measured against
     int other = 1;                        ///< index of the one swiped over the reference
@@ -64,6 +65,11 @@ struct CompareView {
                                    .doc = "Side by side (grid), on either side of a line (swipe), in turn in one place "
                                           "(blink), or the difference from the reference",
                                    .names = kCompareModeNames});
+        visit(self.shows, FieldInfo{.key = "shows",
+                                    .unit = "",
+                                    .doc = "Name of the view that is shown once for each variant, such as \"slices\"; "
+                                           "empty: the 3D scene",
+                                    .hidden = true});
         visit(self.variants, FieldInfo{.key = "variants",
                                        .unit = "",
                                        .doc = "Variants of the session with changed settings",

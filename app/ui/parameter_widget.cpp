@@ -50,7 +50,8 @@ bool drawParameter(Session& session, const std::string& path, const WidgetContex
     return changed;
 }
 
-bool chooseParameter(const char* id, const Session& session, std::string& search, std::string& path) {
+bool chooseParameter(const char* id, const Session& session, const std::vector<std::string>& paths, std::string& search,
+                     std::string& path) {
     ImGui::PushID(id);
     // Menus fit their contents, so the width is set here.
     const float width = ImGui::GetFontSize() * 22;
@@ -59,7 +60,7 @@ bool chooseParameter(const char* id, const Session& session, std::string& search
     ImGui::InputTextWithHint("##search", "Search a setting", &search);
     bool chosen = false;
     if (ImGui::BeginChild("list", {width, ImGui::GetFontSize() * 12}, true)) {
-        for (const std::string& each : parameterPaths(session)) {
+        for (const std::string& each : paths) {
             const std::string title = pathTitle(session, each);
             if (!matches(title + " " + each, search)) continue;
             if (ImGui::Selectable((title + "##" + each).c_str(), each == path)) {

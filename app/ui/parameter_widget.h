@@ -9,7 +9,8 @@ namespace tessera::app {
 /// is no such parameter or it is edited in a view alone.
 bool drawParameter(Session& session, const std::string& path, const WidgetContext& context);
 
-/// A list of all parameters with a field to search it; true when one was chosen.
-bool chooseParameter(const char* id, const Session& session, std::string& search, std::string& path);
+/// A list of the settings `paths` with a field to search it; true when one was chosen.
+bool chooseParameter(const char* id, const Session& session, const std::vector<std::string>& paths, std::string& search,
+                     std::string& path);
 
 } // namespace tessera::app

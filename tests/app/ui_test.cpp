@@ -1,4 +1,5 @@
 #include "app/history/history.h"
+#include "app/history/parameter_path.h"
 #include "app/platform/input_queue.h"
 #include "app/ui/commands.h"
 #include "app/ui/dock.h"
@@ -280,7 +281,7 @@ TEST_F(UiTest, AMenuHasRoomForTheListOfSettings) {
         ImGui::Begin("test");
         if (ImGui::GetFrameCount() == 2) ImGui::OpenPopup("menu");
         if (ImGui::BeginPopup("menu")) {
-            chooseParameter("settings", session, search, path);
+            chooseParameter("settings", session, parameterPaths(session), search, path);
             width = ImGui::GetWindowWidth();
             ImGui::EndPopup();
         }

@@ -9,6 +9,9 @@
 #include "app/ui/keys.h"
 #include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
+#include "app/views/compare/compare_offers.h"
+#include "app/views/compare/compare_panes.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,70 +28,73 @@ constexpr const char* kRowHelp =
     "on screen; samples and bytes are of the parameters shown. \"Differ\" counts stored samples of the first layer's "
     "parameter that are not equal to those of the reference, where both are on the same lattice.";
 
-/// The list to edit: what is shown becomes the view's own.
-std::vector<CompareVariant>& own(CompareView& view) {
-    if (view.variants.empty()) view.variants = shownVariants(view);
-    return view.variants;
-}
-
 void keepIndices(CompareView& view) {
-    const int last = std::max(0, static_cast<int>(shownVariants(view).size()) - 1);
+    const int last = std::max(0, static_cast<int>(view.variants.size()) - 1);
     view.reference = std::clamp(view.reference, 0, last);
     view.other = std::clamp(view.other, 0, last);
 }
 
-void add(CompareView& view, CompareVariant variant) {
-    if (own(view).size() >= kMostVariants) return;
-    view.variants.push_back(std::move(variant));
-    view.other = static_cast<int>(view.variants.size()) - 1;
+/// Adds to the variants shown, which become the view's own.
+void add(CompareView& view, std::vector<CompareVariant>& variants, const CompareVariant& variant) {
+    if (variants.size() >= kMostVariants) return;
+    variants.push_back(variant);
+    view.variants = variants;
+    view.other = static_cast<int>(variants.size()) - 1;
 }
 
-/// One variant per name of a choice.
-void addNames(CompareView& view, const char* path, std::span<const std::string_view> names) {
-    for (const std::string_view name : names) add(view, {.name = {}, .changes = {{path, std::string(name)}}});
-}
-
-std::string otherLattice(const DataRef& data) {
-    return std::string(kPictureLatticeNames[data.lattice == PictureLattice::Grid ? 1 : 0]);
-}
-
-void drawAddMenu(ViewContext& context, CompareView& view) {
-    if (ImGui::MenuItem("Unchanged")) add(view, {});
-    ImGui::Separator();
-    if (ImGui::MenuItem("Every filter")) addNames(view, "/render/filter", vis::kFilterNames);
-    if (ImGui::MenuItem("Every proxy geometry")) addNames(view, "/render/proxy", vis::kProxyNames);
-    const bool unpacked =
-        context.session.data.files.size() != 1 || !context.session.data.files[0].absolutePath.ends_with(".tsr");
-    if (ImGui::MenuItem("The other lattice", nullptr, false, unpacked))
-        add(view, {.name = {}, .changes = {{"/data/lattice", otherLattice(context.session.data)}}});
-    const std::vector<vis::Layer>& layers = context.session.layers;
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        if (!std::holds_alternative<vis::VolumeLayer>(layers[i].technique)) continue;
-        const std::string path = "/layers/" + std::to_string(i) + "/technique/";
+/// The offers of a group, each of which adds its variants.
+void drawOffers(CompareView& view, std::vector<CompareVariant>& variants, const CompareOffers& group) {
+    if (!ImGui::BeginMenu(group.title.c_str())) return;
+    for (std::size_t i = 0; i < group.offers.size(); ++i) {
+        const CompareOffer& offer = group.offers[i];
         ImGui::PushID(static_cast<int>(i));
-        if (ImGui::MenuItem(("Every projection of " + layers[i].name).c_str()))
-            addNames(view, (path + "style").c_str(), vis::kVolumeStyleNames);
-        if (ImGui::MenuItem(("Every classification of " + layers[i].name).c_str()))
-            addNames(view, (path + "classification").c_str(), vis::kClassificationNames);
+        if (ImGui::MenuItem(offer.title.c_str(), nullptr, false,
+                            variants.size() + offer.variants.size() <= kMostVariants))
+            for (const CompareVariant& variant : offer.variants) add(view, variants, variant);
         ImGui::PopID();
+        if (i == 0 && offer.variants.size() > 1) ImGui::Separator();
     }
-    const std::vector<double>& times = context.source->info().times;
-    if (times.size() > 1 && ImGui::MenuItem("First, middle and last time"))
-        for (const double time : {times.front(), times[times.size() / 2], times.back()})
-            add(view, {.name = {}, .changes = {{"/time", toJson(time).dump()}}});
+    ImGui::EndMenu();
+}
+
+void drawAddMenu(const ViewContext& context, CompareView& view, std::vector<CompareVariant>& variants) {
+    const std::vector<CompareOffers> groups = compareOffers(context.session, context.source->info());
+    for (const CompareOffers& group : groups)
+        if (!group.technique) drawOffers(view, variants, group);
+    if (ImGui::MenuItem("The session as it is")) add(view, variants, {});
+    ImGui::Separator();
+    for (const CompareOffers& group : groups)
+        if (group.technique) drawOffers(view, variants, group);
+}
+
+/// Chooses between the 3D scene and the views that are open.
+void chooseShownView(const ViewContext& context, CompareView& view) {
+    ImGui::SetNextItemWidth(em() * 8);
+    const std::string now = view.shows.empty() ? "3D scene" : paneTitle(context.session, view.shows);
+    if (ImGui::BeginCombo("##shows", now.c_str())) {
+        if (ImGui::Selectable("3D scene", view.shows.empty())) view.shows.clear();
+        for (const auto& [pane, state] : context.session.views)
+            if (canBeCompared(state) &&
+                ImGui::Selectable((paneTitle(context.session, pane) + "##" + pane).c_str(), pane == view.shows))
+                view.shows = pane;
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered()) tooltip("What is compared: the 3D scene, or a view that is open");
 }
 
 } // namespace
 
-void drawCompareToolbar(ViewContext& context, CompareView& view) {
+void drawCompareToolbar(ViewContext& context, CompareView& view, std::vector<CompareVariant> variants) {
     static constexpr const char* kNames[] = {"Grid", "Swipe", "Blink", "Difference"};
     static constexpr const char* kHelp[] = {
         "Side by side",
         "Two variants on either side of a line that you drag; a click in the table chooses the second one",
         "One after the other in the same place; B shows the next",
         "Difference from the reference: of the colours of each pixel, or of the values, in their unit"};
+    const CompareMode mode = modeOf(view);
     for (int i = 0; i < 4; ++i) {
-        const bool lit = static_cast<int>(view.mode) == i;
+        if (!view.shows.empty() && i != int(CompareMode::Grid) && i != int(CompareMode::Blink)) continue;
+        const bool lit = static_cast<int>(mode) == i;
         if (lit) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
         if (ImGui::Button(kNames[i])) view.mode = static_cast<CompareMode>(i);
         if (lit) ImGui::PopStyleColor();
@@ -98,22 +104,24 @@ void drawCompareToolbar(ViewContext& context, CompareView& view) {
     ImGui::SameLine(0, em() * 0.8f);
     if (iconButton(context, "add", icons::kPlus, "Add a variant")) ImGui::OpenPopup("add variant");
     if (ImGui::BeginPopup("add variant")) {
-        drawAddMenu(context, view);
+        drawAddMenu(context, view, variants);
         ImGui::EndPopup();
     }
+    ImGui::SameLine(0, em() * 0.5f);
+    chooseShownView(context, view);
     ImGui::SameLine(0, em() * 0.5f);
     ImGui::Checkbox("Table", &view.showTable);
     ImGui::SameLine(0, em() * 0.5f);
     if (ImGui::Button("Ask")) view.questions.emplace_back();
     if (ImGui::IsItemHovered())
         tooltip("Add a question about the comparison; the session keeps the answer and the time it took");
-    if (view.mode == CompareMode::Blink) {
+    if (mode == CompareMode::Blink) {
         ImGui::SameLine(0, em() * 0.8f);
         ImGui::SetNextItemWidth(em() * 6);
         ImGui::SliderFloat("##blink", &view.blinkSeconds, 0.1f, 10, "%.2g s", ImGuiSliderFlags_Logarithmic);
         if (ImGui::IsItemHovered()) tooltip("How long each variant is shown");
     }
-    if (view.mode == CompareMode::Difference) {
+    if (mode == CompareMode::Difference) {
         ImGui::SameLine(0, em() * 0.8f);
         bool values = view.differenceOf == DifferenceOf::Values;
         if (ImGui::Checkbox("Values", &values))
@@ -122,7 +130,7 @@ void drawCompareToolbar(ViewContext& context, CompareView& view) {
             tooltip("On: values of the first layer's parameter minus those of the reference, in their unit, on the "
                     "planes through the cross-hair. Off: colours of the pictures");
     }
-    if (view.mode == CompareMode::Difference && view.differenceOf == DifferenceOf::Colors) {
+    if (mode == CompareMode::Difference && view.differenceOf == DifferenceOf::Colors) {
         ImGui::SameLine(0, em() * 0.8f);
         ImGui::SetNextItemWidth(em() * 6);
         ImGui::SliderFloat("##top", &view.differenceTop, 0, 255, view.differenceTop > 0 ? "up to %.0f" : "automatic");
@@ -131,11 +139,10 @@ void drawCompareToolbar(ViewContext& context, CompareView& view) {
     ImGui::SameLine(0, em() * 0.8f);
 }
 
-void drawVariantMenu(ViewContext& context, const char* id, CompareView& view, std::size_t index,
-                     const CompareCell* cell, CompareMenuState& state) {
+void drawVariantMenu(ViewContext& context, const char* id, CompareView& view, std::vector<CompareVariant> variants,
+                     std::size_t index, const CompareCell* cell, CompareMenuState& state) {
     if (!ImGui::BeginPopup(id)) return;
     if (pressed({.key = key::kEscape})) ImGui::CloseCurrentPopup();
-    std::vector<CompareVariant> variants = shownVariants(view);
     CompareVariant edited = variants[index];
     const WidgetContext widgets{.info = context.source ? &context.source->info() : nullptr};
     ImGui::PushItemWidth(em() * 12);
@@ -145,7 +152,10 @@ void drawVariantMenu(ViewContext& context, const char* id, CompareView& view, st
     ImGui::Separator();
     ImGui::Dummy({em() * 22, 0});
     Session changed = context.session;
-    if (cell && cell->failure.empty() && cell->variant == edited) changed = cell->session;
+    try {
+        changed = variantSession(context.session, edited);
+    } catch (const Error&) { // the picture says so
+    }
     std::string dropped;
     for (const auto& [path, value] : edited.changes) {
         ImGui::PushID(path.c_str());
@@ -162,16 +172,20 @@ void drawVariantMenu(ViewContext& context, const char* id, CompareView& view, st
             const Json now = toJson(changed)[Json::json_pointer(path)];
             edited.changes[path] = now.is_string() ? now.get<std::string>() : now.dump();
         }
-    if (!dropped.empty()) edited.changes.erase(dropped);
+    if (!dropped.empty())
+        std::erase_if(edited.changes, [&](const auto& change) {
+            return change.first == dropped || change.first.starts_with(dropped + "/");
+        });
     if (ImGui::BeginMenu("Change a setting")) {
-        if (chooseParameter("settings", context.session, state.search, state.path)) {
-            const Json now = toJson(context.session)[Json::json_pointer(state.path)];
-            edited.changes[state.path] = now.is_string() ? now.get<std::string>() : now.dump();
-        }
+        if (chooseParameter("settings", context.session, variantPaths(context.session), state.search, state.path))
+            startChange(edited, context.session, state.path);
         ImGui::EndMenu();
     }
     ImGui::Separator();
-    if (!(edited == variants[index])) own(view)[index] = edited;
+    if (!(edited == variants[index])) {
+        variants[index] = edited;
+        view.variants = variants;
+    }
     if (ImGui::MenuItem("Make this the reference", nullptr, view.reference == static_cast<int>(index)))
         view.reference = static_cast<int>(index);
     if (ImGui::MenuItem("Swipe this over the reference", nullptr, view.other == static_cast<int>(index))) {
@@ -186,9 +200,10 @@ void drawVariantMenu(ViewContext& context, const char* id, CompareView& view, st
         taken.data = context.session.data; // data are opened, not set
         context.session = taken;
     }
-    if (ImGui::MenuItem("Duplicate")) add(view, edited);
+    if (ImGui::MenuItem("Duplicate")) add(view, variants, edited);
     if (ImGui::MenuItem("Remove", nullptr, false, variants.size() > 1)) {
-        own(view).erase(own(view).begin() + static_cast<std::ptrdiff_t>(index));
+        variants.erase(variants.begin() + static_cast<std::ptrdiff_t>(index));
+        view.variants = variants;
         keepIndices(view);
     }
     ImGui::EndPopup();
@@ -206,13 +221,15 @@ void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows) {
         std::any_of(rows.begin(), rows.end(), [](const CompareRow& row) { return row.storedBytes > 0; });
     const bool compared =
         std::any_of(rows.begin(), rows.end(), [](const CompareRow& row) { return row.data.has_value(); });
-    std::vector<const char*> names{"Variant", "Changes", "ms", "Samples", "Texture"};
+    const bool pictures = view.shows.empty();
+    std::vector<const char*> names{"Variant", "Changes"};
+    if (pictures) names.insert(names.end(), {"ms", "Samples", "Texture"});
     if (stored) names.push_back("File");
     if (compared) names.push_back("Differ");
+    if (pictures) names.insert(names.end(), {"Max.", "RMSE", "PSNR [dB]", "SSIM"});
     const auto [room, below] = ImGui::GetContentRegionAvail();
     const float height = std::min(compareTableHeight(rows.size()), below);
-    if (!ImGui::BeginTable("compare", static_cast<int>(names.size()) + 4, kFlags, {0, height})) return;
-    for (const char* name : {"Max.", "RMSE", "PSNR [dB]", "SSIM"}) names.push_back(name);
+    if (!ImGui::BeginTable("compare", static_cast<int>(names.size()), kFlags, {0, height})) return;
     ImGui::TableSetupScrollFreeze(1, 1);
     // Where there is room numbers take what they need and names are whole; what differs has the rest.
     std::vector<float> widths(names.size(), em() * 4.5f);
@@ -239,7 +256,7 @@ void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows) {
         ImGui::PushID(static_cast<int>(i));
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        const bool other = view.mode == CompareMode::Swipe && static_cast<int>(i) == view.other;
+        const bool other = modeOf(view) == CompareMode::Swipe && static_cast<int>(i) == view.other;
         const std::string name = fitText(row.name, ImGui::GetContentRegionAvail().x);
         if (ImGui::Selectable((name + "##row").c_str(), other, ImGuiSelectableFlags_SpanAllColumns)) {
             if (ImGui::GetIO().KeyCtrl)
@@ -255,12 +272,15 @@ void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows) {
         ImGui::TableNextColumn();
         const std::string& differs = row.failure.empty() ? row.changes : row.failure;
         ImGui::TextDisabled("%s", fitText(differs, ImGui::GetContentRegionAvail().x).c_str());
-        cell(row.milliseconds > 0 ? formatNumber(row.milliseconds, row.milliseconds < 10 ? 0.1 : 1) : "-");
-        cell(row.samples > 0 ? formatCount(row.samples) : "-");
-        cell(bytes(row.bytes));
+        if (pictures) {
+            cell(row.milliseconds > 0 ? formatNumber(row.milliseconds, row.milliseconds < 10 ? 0.1 : 1) : "-");
+            cell(row.samples > 0 ? formatCount(row.samples) : "-");
+            cell(bytes(row.bytes));
+        }
         if (stored) cell(bytes(row.storedBytes));
         if (compared) cell(row.data ? formatCount(double(row.data->differing)) : "-", row.reference);
-        if (row.reference) {
+        if (!pictures) {
+        } else if (row.reference) {
             cell("reference", true);
             for (int k = 0; k < 3; ++k) cell("");
         } else {

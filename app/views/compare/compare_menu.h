@@ -10,12 +10,13 @@ struct CompareMenuState {
     std::string search, path;
 };
 
-/// Mode, variants to add, the table's switch.
-void drawCompareToolbar(ViewContext& context, CompareView& view);
+/// Mode, variants to add, what is compared, the table's switch.
+/// `variants` are those shown; what changes them makes them the view's own.
+void drawCompareToolbar(ViewContext& context, CompareView& view, std::vector<CompareVariant> variants);
 
 /// The popup `id` of one variant: its name, what it changes, its role.
-void drawVariantMenu(ViewContext& context, const char* id, CompareView& view, std::size_t index,
-                     const CompareCell* cell, CompareMenuState& state);
+void drawVariantMenu(ViewContext& context, const char* id, CompareView& view, std::vector<CompareVariant> variants,
+                     std::size_t index, const CompareCell* cell, CompareMenuState& state);
 
 /// The table under the pictures; a click on a row makes it the one swiped or, with Ctrl, the reference.
 void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows);

@@ -54,44 +54,45 @@ std::shared_ptr<CompareData> ComparePictures::dataFor(ViewContext& context, cons
     const auto known = std::ranges::find_if(data_, [&](const auto& one) { return one->data == data; });
     const auto found = known != data_.end() ? *known : data_.emplace_back(std::make_shared<CompareData>());
     found->data = data;
-    found->used = true;
     if (found->source || !found->failure.empty()) return found;
     const auto opened = found->opening.get(
         context, std::shared_ptr<const void>(),
         {.key = pane + ":data" + toJson(data).dump(), .title = "Data to compare", .duringEdits = true}, data,
         [session = context.session.data](const auto&, const DataRef& asked, int, const Progress& progress) {
             CompareData::Opened out;
-            out.source =
-                attempt(out.failure, [&] { return openSource(located(asked, session), out.messages, progress); });
+            out.sources =
+                attempt(out.failure, [&] { return openSources(located(asked, session), out.messages, progress); });
             return out;
         },
         std::equal_to<>());
     found->failure = found->opening.failure();
     if (!opened) return found;
-    found->source = opened->source;
+    found->source = opened->sources.pictures;
+    // The variant is what an archive holds, not what it was packed from.
+    found->numbers = data.packed ? opened->sources.pictures : opened->sources.numbers;
+    if (!data.packed) found->origin = opened->sources.origin;
     found->failure = opened->failure;
     found->messages = opened->messages;
     return found;
 }
 
-void ComparePictures::drawCell(ViewContext& context, const std::string& pane, std::size_t index, glm::ivec2 size,
-                               bool moving) {
+/// Finds the data of a cell; false while they are opened, or where that failed.
+bool ComparePictures::openCell(ViewContext& context, const std::string& pane, std::size_t index) {
     CompareCell& cell = *cells_[index];
-    cell.drawn = false;
-    if (!cell.failure.empty()) return;
+    if (!cell.failure.empty()) return false;
     if (!(cell.session.data == context.session.data)) {
         cell.failure = whyNot(cell.session.data, context.session.data);
-        if (!cell.failure.empty()) return;
+        if (!cell.failure.empty()) return false;
         const auto data = dataFor(context, pane, cell.session.data);
         if (data != cell.data) cell.target.reset();
         cell.data = data;
         if (!data->failure.empty()) {
             cell.failure = data->failure;
-            return;
+            return false;
         }
         if (!data->source) {
             context.busy = true;
-            return;
+            return false;
         }
         if (!data->renderer) {
             data->renderer = std::make_unique<vis::Renderer>();
@@ -101,6 +102,14 @@ void ComparePictures::drawCell(ViewContext& context, const std::string& pane, st
         cell.data.reset();
         cell.target.reset();
     }
+    return true;
+}
+
+void ComparePictures::drawCell(ViewContext& context, const std::string& pane, std::size_t index, glm::ivec2 size,
+                               bool moving) {
+    CompareCell& cell = *cells_[index];
+    cell.drawn = false;
+    if (!openCell(context, pane, index)) return;
     ViewContext own{.session = cell.session,
                     .source = cell.data ? cell.data->source : context.source,
                     .renderer = cell.data ? *cell.data->renderer : context.renderer,
@@ -228,16 +237,24 @@ void ComparePictures::prepare(const ViewContext& context, const std::vector<Comp
     }
 }
 
+/// Drops data that no cell shows. Data that could not be opened are not tried again while the variant is unchanged.
+void ComparePictures::dropUnused() {
+    std::erase_if(data_, [&](const auto& data) {
+        return std::ranges::none_of(
+            cells_, [&](const auto& cell) { return cell->data == data && data->data == cell->session.data; });
+    });
+}
+
+void ComparePictures::open(ViewContext& context, const std::string& pane, std::size_t reference) {
+    for (std::size_t i = 0; i < cells_.size(); ++i) openCell(context, pane, i);
+    dropUnused();
+    for (std::size_t i = 0; i < cells_.size(); ++i) measureSamples(context, pane, i, reference);
+}
+
 void ComparePictures::draw(ViewContext& context, const std::string& pane, std::size_t reference, glm::ivec2 size,
                            bool moving) {
-    for (const auto& data : data_) data->used = false;
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-        CompareCell& cell = *cells_[i];
-        drawCell(context, pane, i, size, moving);
-        // Data that could not be opened are not tried again while the variant is unchanged.
-        if (cell.data && cell.data->data == cell.session.data) cell.data->used = true;
-    }
-    std::erase_if(data_, [](const auto& data) { return !data->used; });
+    for (std::size_t i = 0; i < cells_.size(); ++i) drawCell(context, pane, i, size, moving);
+    dropUnused();
     // Refine one picture at a time with the whole time of the frame: sharing it would repeat each picture's setup in
     // every frame.
     for (std::size_t i = 0; i < cells_.size() && cells_[refined_ % cells_.size()]->final(); ++i)

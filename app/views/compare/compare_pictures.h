@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/data/sources.h"
 #include "app/edits/compare.h"
 #include "app/queries/async_query.h"
 #include "app/queries/scene_query.h"
@@ -18,17 +19,19 @@ namespace tessera::app {
 /// Data of a variant that differ from those of the session.
 struct CompareData {
     struct Opened {
-        std::shared_ptr<const volume::BrickSource> source;
+        Sources sources;
         std::string failure;
         std::vector<std::string> messages;
     };
     DataRef data;
     AsyncQuery<DataRef, Opened> opening;
     std::shared_ptr<const volume::BrickSource> source; ///< null while it opens
+    /// Of numbers: the samples as computed, of packed data those that the archive holds.
+    std::shared_ptr<const volume::BrickSource> numbers;
+    NumberOrigin origin;
     std::unique_ptr<vis::Renderer> renderer;
     std::string failure;
     std::vector<std::string> messages; ///< from opening it, not yet shown
-    bool used = false;
 };
 
 /// A picture and that of the reference, of one size.
@@ -68,6 +71,8 @@ struct CompareCell {
     CompareQuery samplesOf;
     std::optional<volume::SourceDifference> samples;
 
+    std::map<std::string, std::unique_ptr<ViewCache>> caches; ///< of a view shown instead of the scene
+
     vis::PlotTexture differencePicture;
     std::shared_ptr<const Measuring::Answer> shownOf; ///< what differencePicture shows
     double shownTop = -1;
@@ -87,6 +92,8 @@ class ComparePictures {
 public:
     /// Makes the session of each variant; before `draw`.
     void prepare(const ViewContext& context, const std::vector<CompareVariant>& variants);
+    /// Opens the data of every variant and compares their samples, for views that draw the variants themselves.
+    void open(ViewContext& context, const std::string& pane, std::size_t reference);
     /// Draws every variant at one size; index 0 is the first. Sets context.busy while something is not final.
     void draw(ViewContext& context, const std::string& pane, std::size_t reference, glm::ivec2 size, bool moving);
     std::vector<std::shared_ptr<CompareCell>>& cells() { return cells_; }
@@ -106,7 +113,9 @@ public:
 
 private:
     std::shared_ptr<CompareData> dataFor(ViewContext& context, const std::string& pane, const DataRef& data);
+    bool openCell(ViewContext& context, const std::string& pane, std::size_t index);
     void drawCell(ViewContext& context, const std::string& pane, std::size_t index, glm::ivec2 size, bool moving);
+    void dropUnused();
     void measure(ViewContext& context, const std::string& pane, std::size_t index, std::size_t reference);
     void measureSamples(ViewContext& context, const std::string& pane, std::size_t index, std::size_t reference);
 

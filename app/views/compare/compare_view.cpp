@@ -9,6 +9,8 @@
 #include "app/ui/ticks.h"
 #include "app/views/compare/compare_layout.h"
 #include "app/views/compare/compare_menu.h"
+#include "app/views/compare/compare_offers.h"
+#include "app/views/compare/compare_panes.h"
 #include "app/views/compare/compare_questions.h"
 
 #include <algorithm>
@@ -74,8 +76,8 @@ bool picture(const Frame& frame, std::size_t index, const PictureBox& box, bool 
     if (index < cells.size() && cells[index] && !cells[index]->data) target = cells[index]->target.get();
     const bool moving = handleMouse(frame.context, hand, target, box, world, "variant");
     if (hand.dragging()) frame.context.interacting = true;
-    drawVariantMenu(frame.context, "variant", frame.view, index, index < cells.size() ? cells[index].get() : nullptr,
-                    cache.menu);
+    drawVariantMenu(frame.context, "variant", frame.view, frame.variants, index,
+                    index < cells.size() ? cells[index].get() : nullptr, cache.menu);
     ImGui::PopID();
     return moving;
 }
@@ -153,7 +155,7 @@ void drawValues(const Frame& frame, const std::string& pane, const std::vector<P
 /// The legends of what the mode shows: of the variants, or in place of theirs those of differences, as far as they are
 /// known.
 CompareLegends legendsOf(const Frame& frame) {
-    const CompareMode mode = frame.view.mode;
+    const CompareMode mode = modeOf(frame.view);
     ComparePictures& pictures = frame.cache.pictures;
     std::vector<std::size_t> shown;
     if (mode == CompareMode::Swipe)
@@ -162,6 +164,7 @@ CompareLegends legendsOf(const Frame& frame) {
         shown = {frame.context.headless ? frame.reference : frame.cache.blinkShown % frame.variants.size()};
     else
         for (std::size_t i = 0; i < frame.variants.size(); ++i) shown.push_back(i);
+    if (!frame.view.shows.empty()) return paneLegends(frame.context, frame.view.shows, pictures.cells(), shown);
     CompareLegends legends = variantLegends(frame.context, pictures.cells(), shown);
     if (mode != CompareMode::Difference) return legends;
     const bool values = frame.view.differenceOf == DifferenceOf::Values;
@@ -224,24 +227,82 @@ void drawSwipe(const Frame& frame, const PictureBox& box) {
                                {middle.x + side * em() * 0.12f, middle.y + side * em() * 0.22f}, colors.backdrop);
 }
 
-void drawBlink(const Frame& frame, const PictureBox& box) {
+/// The variant whose turn it is; a figure shows the reference.
+std::size_t turn(const Frame& frame) {
     CompareCache& cache = frame.cache;
-    const std::size_t count = frame.variants.size();
-    if (frame.context.headless) {
-        cache.blinkShown = frame.reference;
-    } else {
-        const double now = ImGui::GetTime();
-        const bool next = now - cache.blinkStart >= double(frame.view.blinkSeconds) ||
-                          (ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows) && pressed({.key = 'B'}));
-        if (next) {
-            cache.blinkStart = now;
-            ++cache.blinkShown;
-        }
-        frame.context.busy = true;
+    if (frame.context.headless) return cache.blinkShown = frame.reference;
+    const double now = ImGui::GetTime();
+    const bool next = now - cache.blinkStart >= double(frame.view.blinkSeconds) ||
+                      (ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows) && pressed({.key = 'B'}));
+    if (next) {
+        cache.blinkStart = now;
+        ++cache.blinkShown;
     }
-    cache.blinkShown %= count;
-    drawCell(frame, cache.blinkShown, box);
-    drawOver(frame, box, frame.context.session, nameOf(frame, cache.blinkShown), cache.blinkShown == frame.reference);
+    frame.context.busy = true;
+    return cache.blinkShown %= frame.variants.size();
+}
+
+void drawBlink(const Frame& frame, const PictureBox& box) {
+    const std::size_t shown = turn(frame);
+    drawCell(frame, shown, box);
+    drawOver(frame, box, frame.context.session, nameOf(frame, shown), shown == frame.reference);
+}
+
+/// The 3D scene of every variant, in `boxes` or, in turn or beside a line, in the only one.
+void drawScenes(const Frame& frame, const std::string& pane, const std::vector<PictureBox>& boxes) {
+    ViewContext& context = frame.context;
+    CompareCache& cache = frame.cache;
+    const CompareMode mode = modeOf(frame.view);
+    bool moving = false;
+    if (mode == CompareMode::Grid || mode == CompareMode::Difference) {
+        for (std::size_t i = 0; i < boxes.size(); ++i) moving = picture(frame, i, boxes[i], false) || moving;
+    } else {
+        const bool blocked = mode == CompareMode::Swipe && swipeLine(frame, boxes[0]);
+        const std::size_t which = mode == CompareMode::Swipe ? frame.other : cache.blinkShown % frame.variants.size();
+        moving = picture(frame, which, boxes[0], blocked);
+    }
+    moving = moving || context.interacting || context.session.animation.playing;
+    const ImVec2 size = boxes[0].size;
+    cache.pictures.draw(context, pane, frame.reference, {size.x, size.y}, moving);
+    if (mode == CompareMode::Difference && frame.view.differenceOf == DifferenceOf::Values)
+        drawValues(frame, pane, boxes, moving);
+    else if (mode == CompareMode::Grid || mode == CompareMode::Difference)
+        drawGrid(frame, boxes, mode == CompareMode::Difference);
+    else if (mode == CompareMode::Swipe)
+        drawSwipe(frame, boxes[0]);
+    else
+        drawBlink(frame, boxes[0]);
+}
+
+/// A view with its caption, a click on which opens the menu of the variant.
+void drawCaptionedPane(const Frame& frame, const std::string& pane, std::size_t index, const PictureBox& box) {
+    CompareCell& cell = *frame.cache.pictures.cells()[index];
+    const float head = ImGui::GetTextLineHeightWithSpacing();
+    ImGui::PushID(static_cast<int>(index));
+    std::string caption = nameOf(frame, index);
+    if (index == frame.reference) caption += " (reference)";
+    if (frame.context.decoration.title)
+        ImGui::GetWindowDrawList()->AddText({box.min.x + em() * 0.5f, box.min.y}, plotColors().text,
+                                            fitText(caption, box.size.x - em()).c_str());
+    if (!frame.context.figure) {
+        ImGui::SetCursorScreenPos(box.min);
+        if (ImGui::InvisibleButton("caption", {box.size.x, head})) ImGui::OpenPopup("variant");
+        if (ImGui::IsItemHovered()) tooltip("Click to change this variant");
+        drawVariantMenu(frame.context, "variant", frame.view, frame.variants, index, &cell, frame.cache.menu);
+    }
+    const PictureBox inner{{box.min.x, box.min.y + head}, {box.size.x, box.size.y - head}};
+    if (cell.failure.empty() && cell.source(frame.context))
+        drawComparedPane(frame.context, pane, frame.view.shows, index, cell, inner);
+    else
+        drawCell(frame, index, inner);
+    ImGui::PopID();
+}
+
+/// The view of another pane for every variant, in `boxes` or, in turn, in the only one.
+void drawPanes(const Frame& frame, const std::string& pane, const std::vector<PictureBox>& boxes) {
+    frame.cache.pictures.open(frame.context, pane, frame.reference);
+    if (modeOf(frame.view) == CompareMode::Blink) return drawCaptionedPane(frame, pane, turn(frame), boxes[0]);
+    for (std::size_t i = 0; i < boxes.size(); ++i) drawCaptionedPane(frame, pane, i, boxes[i]);
 }
 
 } // namespace
@@ -253,15 +314,16 @@ std::vector<CompareRow> drawnComparison(const ViewCache* cache) {
 
 void drawCompareView(ViewContext& context, const std::string& pane, CompareView& view) {
     if (!context.source) {
-        drawHint("No data", "Shows the 3D scene side by side with different settings.");
+        drawHint("No data", "Shows the 3D scene or another view side by side with different settings.");
         return;
     }
     CompareCache& cache = cacheOf<CompareCache>(context, pane);
+    const std::vector<CompareVariant> variants = shownVariants(view, context.session, context.source->info());
     if (!context.figure) {
-        drawCompareToolbar(context, view);
+        drawCompareToolbar(context, view, variants);
         exportMenu(context, "comparison", {}, [rows = cache.rows](const Progress&) { return compareCsv(rows); });
     }
-    Frame frame{context, view, cache, shownVariants(view)};
+    Frame frame{context, view, cache, variants};
     const std::size_t count = frame.variants.size();
     frame.reference = std::min(static_cast<std::size_t>(std::max(view.reference, 0)), count - 1);
     frame.other = std::min(static_cast<std::size_t>(std::max(view.other, 0)), count - 1);
@@ -273,31 +335,17 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
     const float asked = context.figure ? 0 : std::min(questionsHeight(view), room.y * 0.3f);
     const ImVec2 area{std::floor(room.x), std::floor(room.y - table - asked)};
     if (area.x < 24 || area.y < 24) return;
-    const bool grid = view.mode == CompareMode::Grid || view.mode == CompareMode::Difference;
+    const CompareMode mode = modeOf(view);
+    const bool grid = mode == CompareMode::Grid || mode == CompareMode::Difference;
     cache.pictures.prepare(context, frame.variants);
     const CompareLegends legends = context.decoration.legend ? legendsOf(frame) : CompareLegends{};
     const CompareLayout layout = compareLayout(legends, grid ? static_cast<int>(count) : 1, at, area);
-    const std::vector<PictureBox>& boxes = layout.pictures;
-    const ImVec2 size = boxes[0].size;
+    const ImVec2 size = layout.pictures[0].size;
     if (size.x < 8 || size.y < 8) return;
-    bool moving = false;
-    if (grid) {
-        for (std::size_t i = 0; i < count; ++i) moving = picture(frame, i, boxes[i], false) || moving;
-    } else {
-        const bool blocked = view.mode == CompareMode::Swipe && swipeLine(frame, boxes[0]);
-        const std::size_t which = view.mode == CompareMode::Swipe ? frame.other : cache.blinkShown % count;
-        moving = picture(frame, which, boxes[0], blocked);
-    }
-    cache.pictures.draw(context, pane, frame.reference, {size.x, size.y},
-                        moving || context.interacting || context.session.animation.playing);
-    if (view.mode == CompareMode::Difference && view.differenceOf == DifferenceOf::Values)
-        drawValues(frame, pane, boxes, moving || context.interacting || context.session.animation.playing);
-    else if (grid)
-        drawGrid(frame, boxes, view.mode == CompareMode::Difference);
-    else if (view.mode == CompareMode::Swipe)
-        drawSwipe(frame, boxes[0]);
+    if (view.shows.empty())
+        drawScenes(frame, pane, layout.pictures);
     else
-        drawBlink(frame, boxes[0]);
+        drawPanes(frame, pane, layout.pictures);
     drawCompareLegends(*ImGui::GetWindowDrawList(), layout);
     // What was found while drawing, such as the range of other data, is in the next frame's legends.
     if (context.decoration.legend && legendsOf(frame) != legends) context.busy = true;
