@@ -1,5 +1,6 @@
 #include "tests/vis/shader_probe.h"
 #include "vis/optics/look_shading.h"
+#include "vis/optics/ray_setup.h"
 #include "vis/raycast/look_uniforms.h"
 
 #include <algorithm>
@@ -90,17 +91,48 @@ TEST_F(LookLib, InkAgrees) {
     }
 }
 
-/// Tone shading equals Gooch's formula with the own colour added where light falls.
+/// Tone shading equals Gooch's ramp as a tint of the own colour.
 TEST_F(LookLib, ToneIsItsFormula) {
     const auto got = evaluate("#include \"lib/look.glsl\"\n",
                               "vec4(toned(abs(c[i].rgb), a[i].x, vec3(0.9, 0.6, 0.2), vec3(0.1, 0.2, 0.5), 0.4), 1.0)");
     for (int i = 0; i < kCases; ++i)
         for (int k = 0; k < 3; ++k) {
             const double warm[] = {0.9, 0.6, 0.2}, cool[] = {0.1, 0.2, 0.5}, l = a[i].x;
-            const double expected = (1 + l) / 2 * warm[k] + (1 - (1 + l) / 2) * cool[k] +
-                                    0.4 * std::max(l, 0.0) * std::abs(double(c[i][k]));
+            const double expected = ((1 + l) / 2 * warm[k] + (1 - (1 + l) / 2) * cool[k]) *
+                                    (0.6 + 0.4 * std::abs(double(c[i][k])));
             EXPECT_NEAR(got[i][k], expected, 2e-6) << i;
         }
+}
+
+/// Hue in degrees: the angle about the gray axis.
+double hueOf(glm::dvec3 color) {
+    return glm::degrees(std::atan2(std::sqrt(3.0) * (color.g - color.b), 2 * color.r - color.g - color.b));
+}
+
+/// In the light a material looks like itself, in the shade darker and cooler, and materials stay apart.
+TEST(Tone, KeepsTheHueAndCoolsInTheShade) {
+    vis::Look look = *vis::Look::preset("tone");
+    const auto shown = [&](glm::dvec3 albedo, double light) {
+        vis::LookSample at;
+        at.at = {{0, 0, 1}, {0, 0, 1}, 1};
+        at.toLight = glm::dvec3(std::sqrt(1 - light * light), 0, light);
+        at.weight = 1;
+        return vis::lookColor(look, albedo, albedo, at, glm::dvec3(1));
+    };
+    const glm::dvec3 skin(0.6, 0.32, 0.22), bone(0.75, 0.68, 0.55), leaf(0.12, 0.3, 0.06), steel(0.5, 0.55, 0.62);
+    for (const glm::dvec3 albedo : {skin, leaf, glm::dvec3(0.5, 0.1, 0.1), glm::dvec3(0.1, 0.15, 0.6)}) {
+        const double apart = std::abs(std::remainder(hueOf(shown(albedo, 1)) - hueOf(albedo), 360));
+        EXPECT_LT(apart, 12) << "hue in the light";
+        const double inShade = std::abs(std::remainder(hueOf(shown(albedo, -0.3)) - hueOf(albedo), 360));
+        EXPECT_LT(inShade, 40) << "hue in the shade";
+    }
+    for (const glm::dvec3 albedo : {skin, bone, leaf, steel}) {
+        const glm::dvec3 light = shown(albedo, 1), edge = shown(albedo, 0), shade = shown(albedo, -1);
+        EXPECT_GT(edge.b / edge.r, 1.15 * light.b / light.r) << "cooler";
+        EXPECT_GT(shade.b / shade.r, 1.5 * light.b / light.r);
+        EXPECT_LT(vis::luminance(edge), 0.8 * vis::luminance(light)) << "and darker";
+        EXPECT_GT(vis::luminance(shade), 0.15 * vis::luminance(light)) << "never black";
+    }
 }
 
 TEST_F(LookLib, GrainAgrees) {

@@ -110,8 +110,8 @@ glm::dvec3 lookColor(const Look& look, glm::dvec3 albedo, glm::dvec3 lit, const 
                          double(own->amount) * sample.weight * sample.share);
     }
     if (const auto& own = look.tone) {
-        const glm::dvec3 toned = glm::mix(linear(own->coolColor), linear(own->warmColor), 0.5 + 0.5 * light) +
-                                 double(own->ownColor) * std::max(light, 0.0) * albedo;
+        const glm::dvec3 toned = glm::mix(linear(own->coolColor), linear(own->warmColor), 0.5 + 0.5 * light) *
+                                 glm::mix(glm::dvec3(1), albedo, double(own->ownColor));
         color = glm::mix(color, toned, double(own->amount) * sample.weight * sample.share);
     }
     if (const auto& own = look.cartoon) {

@@ -75,7 +75,7 @@ double charcoalInk(const CharcoalDrawing& charcoal, glm::dvec3 lit, const LookSa
 
 /// The colour of a sample from its albedo and `lit`, the result of shade() for lookAlbedo(), in this order:
 ///   1. cartoon, by weight: albedo mix(shadow, 1, step of n.l)
-///   2. tone, by weight: mix(cool, warm, (1 + l) / 2) + ownColor max(l, 0) albedo; l = n.l, or its step in cartoons
+///   2. tone, by weight: mix(cool, warm, (1 + l) / 2) mix(1, albedo, ownColor); l = n.l, or its step in cartoons
 ///   3. outlines of cartoons
 ///   4. charcoal: mix(paper, stick, ink)
 ///   5. wire: mix(colour, mix(its own, colour, ownColor), wire)

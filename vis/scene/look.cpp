@@ -6,15 +6,9 @@ namespace tessera::vis {
 
 namespace {
 
-Look tone() {
-    Look look;
-    look.tone = WarmCool{.warmColor = {0.98f, 0.8f, 0.36f}, .coolColor = {0.16f, 0.33f, 0.72f}};
-    return look;
-}
-
 Look illustration() {
-    Look look = tone();
-    look.tone->amount = 0.75f, look.tone->ownColor = 0.6f;
+    Look look;
+    look.tone = WarmCool{.amount = 0.8f};
     look.boundary = BoundaryEnhancement{.retained = 0.3f, .strength = 1.5f};
     look.silhouette = SilhouetteEnhancement{.retained = 0.5f, .strength = 3};
     return look;
@@ -54,7 +48,7 @@ Look chalk() {
 
 Look made(std::string_view name) {
     Look look;
-    if (name == "tone") look = tone();
+    if (name == "tone") look.tone.emplace();
     if (name == "illustration") look = illustration();
     if (name == "boundaries") look.boundary = BoundaryEnhancement{.retained = 0.05f, .strength = 4, .exponent = 1.5f};
     if (name == "glass") {

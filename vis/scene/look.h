@@ -9,27 +9,29 @@
 /// vis/optics/look_shading.h.
 namespace tessera::vis {
 
-/// Warm colours facing the light, cool colours facing away (Gooch et al.: A non-photorealistic lighting model, 1998).
+/// Warm colours facing the light, cool colours facing away (Gooch et al.: A non-photorealistic lighting model, 1998),
+/// as a tint of the material's own colour, so that it keeps its hue.
 struct WarmCool {
     float amount = 1;
-    glm::vec3 warmColor{0.95f, 0.78f, 0.35f}, coolColor{0.12f, 0.2f, 0.5f}; ///< sRGB
-    float ownColor = 0.35f;
+    glm::vec3 warmColor{1, 0.97f, 0.9f}, coolColor{0.46f, 0.52f, 0.7f}; ///< sRGB
+    float ownColor = 0.9f;
     bool operator==(const WarmCool&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.amount,
               FieldInfo{.key = "amount", .unit = "", .doc = "Share of tone shading: 0 = plain", .range = Range{0, 1}});
         visit(self.warmColor, FieldInfo{.key = "warmColor",
                                         .unit = "",
-                                        .doc = "Colour towards the first light (sRGB)",
+                                        .doc = "Tint towards the first light (sRGB)",
                                         .range = Range{0, 1}});
         visit(self.coolColor, FieldInfo{.key = "coolColor",
                                         .unit = "",
-                                        .doc = "Colour away from the first light (sRGB)",
+                                        .doc = "Tint away from the first light (sRGB)",
                                         .range = Range{0, 1}});
         visit(self.ownColor, FieldInfo{.key = "ownColor",
                                        .unit = "",
-                                       .doc = "Share of the colour of the surface added where light falls",
-                                       .range = Range{0, 2}});
+                                       .doc = "Share of the material's own colour: 1 = tinted by the two colours, 0 = "
+                                              "these colours alone",
+                                       .range = Range{0, 1}});
     }
 };
 

@@ -57,5 +57,5 @@ float charcoalInk(vec3 lit, LookSample at, vec3 tone, vec3 line, vec4 mark) {
 }
 
 vec3 toned(vec3 albedo, float light, vec3 warm, vec3 cool, float ownColor) {
-    return mix(cool, warm, 0.5 + 0.5 * light) + ownColor * max(light, 0.0) * albedo;
+    return mix(cool, warm, 0.5 + 0.5 * light) * mix(vec3(1.0), albedo, ownColor);
 }
