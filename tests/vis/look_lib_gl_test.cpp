@@ -80,7 +80,8 @@ TEST_F(LookLib, InkAgrees) {
                 ", 0.7, 0.3, 0.93)), toned(abs(c[i].rgb), a[i].x, vec3(0.9, 0.6, 0.2), vec3(0.1, 0.2, 0.5), 0.4))");
         double least = 1, most = 0;
         for (int i = 0; i < kCases; ++i) {
-            const double ink = vis::charcoalInk(charcoal, glm::abs(glm::dvec3(c[i])), sample(i));
+            const double ink =
+                vis::charcoalInk(charcoal, glm::abs(glm::dvec3(c[i])), sample(i), stick == vis::Stick::Chalk);
             EXPECT_NEAR(got[i].x, ink, 5e-5) << i;
             least = std::min(least, ink), most = std::max(most, ink);
             EXPECT_GE(ink, 0);
@@ -98,8 +99,8 @@ TEST_F(LookLib, ToneIsItsFormula) {
     for (int i = 0; i < kCases; ++i)
         for (int k = 0; k < 3; ++k) {
             const double warm[] = {0.9, 0.6, 0.2}, cool[] = {0.1, 0.2, 0.5}, l = a[i].x;
-            const double expected = ((1 + l) / 2 * warm[k] + (1 - (1 + l) / 2) * cool[k]) *
-                                    (0.6 + 0.4 * std::abs(double(c[i][k])));
+            const double expected =
+                ((1 + l) / 2 * warm[k] + (1 - (1 + l) / 2) * cool[k]) * (0.6 + 0.4 * std::abs(double(c[i][k])));
             EXPECT_NEAR(got[i][k], expected, 2e-6) << i;
         }
 }

@@ -168,7 +168,8 @@ TEST(LooksOfABall, CartoonsHaveTheBandsAskedForAndEvenOutlines) {
     }
     Ball ball;
     IsoLayer& layer = ball.surface();
-    layer.look.cartoon = Cartoon{.shadow = 1, .outline = 5, .outlineColor = glm::vec3(0)};
+    layer.look.cartoon = Cartoon{.shadow = 1, .outline = 5};
+    ball.scene.background = glm::vec3(1);
     const std::vector<glm::vec4> picture = ball.draw(kPicture);
     // Across the middle row: dark at both rims, about five pixels wide.
     int dark = 0, light = 0;
@@ -179,6 +180,46 @@ TEST(LooksOfABall, CartoonsHaveTheBandsAskedForAndEvenOutlines) {
     EXPECT_GE(dark, 6);
     EXPECT_LE(dark, 11);
     EXPECT_GT(light, 40);
+}
+
+/// On any ground and any surface some of an outline is far from the ground, and some far from the surface.
+TEST(LooksOfABall, OutlinesShowOnAnyGround) {
+    for (const float ground : {0.0f, 0.11f, 0.5f, 1.0f})
+        for (const float surface : {0.02f, 0.5f, 1.0f}) {
+            Ball ball;
+            IsoLayer& layer = ball.surface();
+            layer.color = glm::vec3(surface);
+            layer.look.cartoon = Cartoon{.shadow = 1, .outline = 6};
+            ball.scene.background = glm::vec3(ground);
+            float fromGround = 0, fromSurface = 0;
+            const std::vector<glm::vec4> picture = ball.draw(kPicture);
+            for (int x = 0; x < kPicture.x; ++x) {
+                const glm::vec4 pixel = picture[std::size_t(kPicture.y / 2 * kPicture.x + x)];
+                const double away = std::abs(ball.place(x, kPicture.y / 2, kPicture).x);
+                if (pixel.a < 0.99f || away < 0.85) continue;
+                const auto shown = float(srgbFromLinear(double(pixel.g)));
+                fromGround = std::max(fromGround, std::abs(shown - ground));
+                fromSurface = std::max(fromSurface, std::abs(shown - surface));
+            }
+            EXPECT_GT(fromGround, 0.35f) << ground << ' ' << surface;
+            EXPECT_GT(fromSurface, 0.35f) << ground << ' ' << surface;
+        }
+}
+
+/// Each drawing leaves marks that contrast with its paper, light or dark.
+TEST(LooksOfABall, DrawingsShowOnAnyPaper) {
+    for (const std::string_view name : {"charcoal", "pencil", "chalk", "illustration"})
+        for (const float ground : {0.05f, 1.0f}) {
+            Ball ball;
+            IsoLayer& layer = ball.surface();
+            layer.look = *Look::preset(name);
+            ball.scene.paper = Paper{.color = glm::vec3(ground), .tooth = 0};
+            ball.scene.lighting.lights = {{.azimuth = -50, .elevation = 40}};
+            int marks = 0;
+            for (const glm::vec4& pixel : ball.draw(kPicture))
+                marks += pixel.a > 0.5f && std::abs(float(srgbFromLinear(double(pixel.g))) - ground) > 0.4f;
+            EXPECT_GT(marks, 150) << name << " on " << ground;
+        }
 }
 
 /// Mean change of the picture, as shown, at the same places of the ball's surface while it turns by a degree under the

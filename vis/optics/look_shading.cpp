@@ -32,6 +32,15 @@ LookView lookView(const Scene& scene, glm::dvec3 halfSize, glm::dvec3 cell, glm:
     return view;
 }
 
+glm::dvec3 inkOn(double luminance) {
+    return glm::mix(linearFromSrgb(glm::dvec3(kLightInk)), linearFromSrgb(glm::dvec3(kDarkInk)),
+                    glm::smoothstep(0.03, 0.12, luminance));
+}
+
+bool drawsLight(const CharcoalDrawing& charcoal, glm::dvec3 ground) {
+    return charcoal.color ? charcoal.stick == Stick::Chalk : luminance(ground) < 0.075;
+}
+
 double lookShare(LookPart part, double interest) {
     return part == LookPart::Everything ? 1 : part == LookPart::Context ? 1 - interest : interest;
 }
@@ -84,9 +93,9 @@ double grainSoftness(const CharcoalDrawing& charcoal) {
     return glm::mix(0.5, 0.05, double(charcoal.hardness));
 }
 
-double charcoalInk(const CharcoalDrawing& charcoal, glm::dvec3 lit, const LookSample& sample) {
+double charcoalInk(const CharcoalDrawing& charcoal, glm::dvec3 lit, const LookSample& sample, bool light) {
     const double bright = std::sqrt(std::clamp(luminance(lit), 0.0, 1.0));
-    const double drawn = charcoal.stick == Stick::Chalk ? bright : 1 - bright;
+    const double drawn = light ? bright : 1 - bright;
     const double steep = glm::mix(1.0, std::sqrt(std::clamp(sample.steepness, 0.0, 1.0)), double(charcoal.steepness));
     const double tone = std::pow(drawn, double(charcoal.contrast)) * steep;
     const double open = glm::mix(1.0, glm::smoothstep(0.1, 0.6, 1 - bright), double(charcoal.closure));
@@ -115,11 +124,23 @@ glm::dvec3 lookColor(const Look& look, glm::dvec3 albedo, glm::dvec3 lit, const 
         color = glm::mix(color, toned, double(own->amount) * sample.weight * sample.share);
     }
     if (const auto& own = look.cartoon) {
-        const double line = outline(sample.facing(), sample.curvature, double(own->outline) * sample.pixel);
-        color = glm::mix(color, linear(own->outlineColor), line * double(own->amount) * sample.weight * sample.share);
+        const double width = double(own->outline) * sample.pixel;
+        const double amount = double(own->amount) * sample.weight * sample.share;
+        const glm::dvec3 inner = own->outlineColor ? linear(*own->outlineColor) : inkOn(luminance(albedo));
+        const glm::dvec3 outer = own->outlineColor ? inner : inkOn(luminance(background));
+        color = glm::mix(color, inner, amount * outline(sample.facing(), sample.curvature, width));
+        color = glm::mix(color, outer, amount * outline(sample.facing(), sample.curvature, 0.5 * width));
     }
-    if (const auto& own = look.charcoal)
-        color = glm::mix(color, glm::mix(background, linear(own->color), charcoalInk(*own, lit, sample)), sample.share);
+    if (const auto& own = look.silhouette) {
+        const glm::dvec3 ink = own->inkColor ? linear(*own->inkColor) : inkOn(luminance(background));
+        const double turned = std::pow(1 - std::min(sample.facing(), 1.0), double(own->exponent));
+        color = glm::mix(color, ink, double(own->ink) * turned * sample.weight * sample.share);
+    }
+    if (const auto& own = look.charcoal) {
+        const glm::dvec3 stick = own->color ? linear(*own->color) : inkOn(luminance(background));
+        const double ink = charcoalInk(*own, lit, sample, drawsLight(*own, background));
+        color = glm::mix(color, glm::mix(background, stick, ink), sample.share);
+    }
     if (const auto& own = look.wire)
         color = glm::mix(color, glm::mix(linear(own->color), color, double(own->ownColor)), sample.wire * sample.share);
     if (const auto& own = look.distance)

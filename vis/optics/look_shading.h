@@ -38,6 +38,12 @@ struct LookView {
 /// `size`: of the picture in pixels; `cell`: worldCell().
 LookView lookView(const Scene& scene, glm::dvec3 halfSize, glm::dvec3 cell, glm::ivec2 size);
 
+/// The colour (linear) of ink that shows on something of that luminance (linear): mix(kLightInk, kDarkInk,
+/// smoothstep(0.03, 0.12, luminance)).
+glm::dvec3 inkOn(double luminance);
+/// Whether a stick draws what is light: chalk, or without its own colour any stick on dark ground.
+bool drawsLight(const CharcoalDrawing& charcoal, glm::dvec3 ground);
+
 /// Share of a look at degree of interest d: 1, 1 - d or d.
 double lookShare(LookPart part, double interest);
 
@@ -66,17 +72,20 @@ double lightStep(double light, int steps);
 /// The softness s in charcoalInk().
 double grainSoftness(const CharcoalDrawing& charcoal);
 
-/// Amount of ink, 0..1, of a lit sample. With e = sqrt(luminance), at most 1, and dark = 1 - e (chalk: e):
+/// Amount of ink, 0..1, of a lit sample. With e = sqrt(luminance), at most 1, and dark = 1 - e (`light`, of
+/// drawsLight(): e):
 ///   tone = dark^contrast mix(1, sqrt(min(1, steepness)), steepness of the look)
 ///   line = outlineStrength weight outline mix(1, smoothstep(0.1, 0.6, 1 - e), closure)
 ///   D = pressure (1 - (1 - tone) (1 - line)), with strokes D' = D (1 + strokes (2 stroke - 1)), at most 1
 ///   ink = mix(smoothstep(h - s, h + s, D' (1 + 2 s) - s), D, smudge), h the tooth, s = mix(0.5, 0.05, hardness)
-double charcoalInk(const CharcoalDrawing& charcoal, glm::dvec3 lit, const LookSample& sample);
+double charcoalInk(const CharcoalDrawing& charcoal, glm::dvec3 lit, const LookSample& sample, bool light);
 
 /// The colour of a sample from its albedo and `lit`, the result of shade() for lookAlbedo(), in this order:
 ///   1. cartoon, by weight: albedo mix(shadow, 1, step of n.l)
 ///   2. tone, by weight: mix(cool, warm, (1 + l) / 2) mix(1, albedo, ownColor); l = n.l, or its step in cartoons
-///   3. outlines of cartoons
+///   3. outlines of cartoons: their colour; without one, inkOn(albedo) and over it inkOn(ground) in the outer half of
+///      the width
+///      silhouettes, by ink weight (1 - |n.v|)^exponent: their colour, or inkOn(ground)
 ///   4. charcoal: mix(paper, stick, ink)
 ///   5. wire: mix(colour, mix(its own, colour, ownColor), wire)
 ///   6. distance: mix(colour, background, amount depth^exponent)

@@ -28,8 +28,11 @@ void setLookUniforms(const Program& program, const std::vector<const Look*>& loo
     program.set("lookGround", glm::vec3(view.ground));
     program.set("grainTile", unit);
     std::vector<glm::vec2> share;
-    std::vector<glm::vec4> warm, cool, distance, outline, mark, grain, wire;
-    std::vector<glm::vec3> boundary, silhouette, cartoon, stick, tone, line, wireColor;
+    const auto inkOf = [&](const std::optional<glm::vec3>& own) {
+        return own ? linear(*own) : glm::vec3(inkOn(luminance(view.ground)));
+    };
+    std::vector<glm::vec4> warm, cool, distance, cartoon, outline, rim, mark, grain, wire;
+    std::vector<glm::vec3> boundary, silhouette, stick, tone, line, wireColor;
     std::vector<float> exponent;
     for (const Look* own : looks) {
         static const Look kPlain;
@@ -41,18 +44,19 @@ void setLookUniforms(const Program& program, const std::vector<const Look*>& loo
         cool.emplace_back(linear(gooch.coolColor), gooch.ownColor);
         const BoundaryEnhancement steep = look.boundary.value_or(BoundaryEnhancement{});
         boundary.emplace_back(steep.retained, steep.strength, steep.exponent);
-        const SilhouetteEnhancement rim = look.silhouette.value_or(SilhouetteEnhancement{});
-        silhouette.emplace_back(rim.retained, rim.strength, rim.exponent);
+        const SilhouetteEnhancement turned = look.silhouette.value_or(SilhouetteEnhancement{});
+        silhouette.emplace_back(turned.retained, turned.strength, turned.exponent);
+        rim.emplace_back(inkOf(turned.inkColor), turned.ink);
         const DistanceColor far = look.distance.value_or(DistanceColor{});
         distance.emplace_back(far.toBackground ? glm::vec3(view.ground) : linear(far.color), far.amount);
         exponent.push_back(far.exponent);
         const Cartoon flat = look.cartoon.value_or(Cartoon{});
-        cartoon.emplace_back(flat.amount, flat.steps, flat.shadow);
-        outline.emplace_back(linear(flat.outlineColor), flat.outline);
+        cartoon.emplace_back(flat.amount, flat.steps, flat.shadow, flat.outlineColor ? 1 : 0);
+        outline.emplace_back(inkOf(flat.outlineColor), flat.outline);
         const CharcoalDrawing drawn = look.charcoal.value_or(CharcoalDrawing{});
         const double turn = glm::radians(double(drawn.angle));
-        stick.push_back(linear(drawn.color));
-        tone.emplace_back(drawn.contrast, drawn.steepness, drawn.stick == Stick::Chalk ? 1 : 0);
+        stick.push_back(inkOf(drawn.color));
+        tone.emplace_back(drawn.contrast, drawn.steepness, drawsLight(drawn, view.ground) ? 1 : 0);
         line.emplace_back(drawn.outline, drawn.outlineStrength, drawn.closure);
         mark.emplace_back(grainSoftness(drawn), drawn.strokes, drawn.smudge, drawn.pressure);
         const WireFrame net = look.wire.value_or(WireFrame{});
@@ -65,6 +69,9 @@ void setLookUniforms(const Program& program, const std::vector<const Look*>& loo
     program.set("lookCool", cool);
     program.set("lookBoundary", boundary);
     program.set("lookSilhouette", silhouette);
+    program.set("lookRim", rim);
+    program.set("lookDarkInk", linear(kDarkInk));
+    program.set("lookLightInk", linear(kLightInk));
     program.set("lookDistance", distance);
     program.set("lookDistanceExponent", exponent);
     program.set("lookCartoon", cartoon);

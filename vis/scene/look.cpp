@@ -10,7 +10,7 @@ Look illustration() {
     Look look;
     look.tone = WarmCool{.amount = 0.8f};
     look.boundary = BoundaryEnhancement{.retained = 0.3f, .strength = 1.5f};
-    look.silhouette = SilhouetteEnhancement{.retained = 0.5f, .strength = 3};
+    look.silhouette = SilhouetteEnhancement{.retained = 0.5f, .strength = 3, .ink = 0.7f};
     return look;
 }
 
@@ -23,7 +23,6 @@ Look charcoal() {
 Look pencil() {
     Look look = charcoal();
     CharcoalDrawing& own = *look.charcoal;
-    own.color = {0.22f, 0.22f, 0.24f};
     own.pressure = 0.85f, own.contrast = 1.8f, own.outline = 1.3f, own.closure = 0.2f;
     own.grain = 1.2f, own.hardness = 0.4f, own.strokes = 0.8f, own.smudge = 0.1f;
     return look;
@@ -32,7 +31,7 @@ Look pencil() {
 Look sanguine() {
     Look look = charcoal();
     CharcoalDrawing& own = *look.charcoal;
-    own.color = {0.55f, 0.2f, 0.12f};
+    own.color = glm::vec3(0.55f, 0.2f, 0.12f);
     own.contrast = 1.1f, own.smudge = 0.45f, own.strokes = 0.35f, own.grain = 3;
     return look;
 }
@@ -41,7 +40,6 @@ Look chalk() {
     Look look = charcoal();
     CharcoalDrawing& own = *look.charcoal;
     own.stick = Stick::Chalk;
-    own.color = {0.96f, 0.95f, 0.92f};
     own.contrast = 1.6f, own.outline = 1.6f, own.closure = 0, own.grain = 3;
     return look;
 }

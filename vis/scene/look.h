@@ -9,6 +9,9 @@
 /// vis/optics/look_shading.h.
 namespace tessera::vis {
 
+/// Ink whose colour is not set contrasts with what it lies on (sRGB).
+inline constexpr glm::vec3 kDarkInk{0.07f, 0.067f, 0.065f}, kLightInk{0.96f, 0.95f, 0.92f};
+
 /// Warm colours facing the light, cool colours facing away (Gooch et al.: A non-photorealistic lighting model, 1998),
 /// as a tint of the material's own colour, so that it keeps its hue.
 struct WarmCool {
@@ -19,10 +22,9 @@ struct WarmCool {
     static void describe(auto& self, auto&& visit) {
         visit(self.amount,
               FieldInfo{.key = "amount", .unit = "", .doc = "Share of tone shading: 0 = plain", .range = Range{0, 1}});
-        visit(self.warmColor, FieldInfo{.key = "warmColor",
-                                        .unit = "",
-                                        .doc = "Tint towards the first light (sRGB)",
-                                        .range = Range{0, 1}});
+        visit(self.warmColor,
+              FieldInfo{
+                  .key = "warmColor", .unit = "", .doc = "Tint towards the first light (sRGB)", .range = Range{0, 1}});
         visit(self.coolColor, FieldInfo{.key = "coolColor",
                                         .unit = "",
                                         .doc = "Tint away from the first light (sRGB)",
@@ -59,6 +61,8 @@ struct BoundaryEnhancement {
 /// Opacity where the surface faces away from the viewer (Rheingans and Ebert 2001).
 struct SilhouetteEnhancement {
     float retained = 0.15f, strength = 3, exponent = 2.5f;
+    float ink = 0;
+    std::optional<glm::vec3> inkColor = {};
     bool operator==(const SilhouetteEnhancement&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.retained, FieldInfo{.key = "retained",
@@ -74,6 +78,15 @@ struct SilhouetteEnhancement {
                                        .doc = "Exponent; larger = narrower silhouettes",
                                        .range = Range{0.25, 16},
                                        .logScale = true});
+        visit(self.ink,
+              FieldInfo{
+                  .key = "ink", .unit = "", .doc = "Share of ink where the surface turns away", .range = Range{0, 1}});
+        visit(self.inkColor, FieldInfo{.key = "inkColor",
+                                       .unit = "",
+                                       .doc = "Own colour of the ink (sRGB); without one it is dark on a light ground "
+                                              "and light on a dark one",
+                                       .range = Range{0, 1},
+                                       .applies = self.ink > 0});
     }
 };
 
@@ -107,7 +120,7 @@ struct Cartoon {
     int steps = 3;
     float shadow = 0.35f;
     float outline = 2; ///< pixels
-    glm::vec3 outlineColor{0.05f, 0.05f, 0.08f};
+    std::optional<glm::vec3> outlineColor = {};
     bool operator==(const Cartoon&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.amount,
@@ -120,7 +133,8 @@ struct Cartoon {
               FieldInfo{.key = "outline", .unit = "pixel", .doc = "Width of outlines", .range = Range{0, 12}});
         visit(self.outlineColor, FieldInfo{.key = "outlineColor",
                                            .unit = "",
-                                           .doc = "Colour of outlines (sRGB)",
+                                           .doc = "Own colour of outlines (sRGB); without one the inner half contrasts "
+                                                  "with the surface and the outer half with the ground",
                                            .range = Range{0, 1},
                                            .applies = self.outline > 0});
     }
@@ -133,7 +147,7 @@ inline constexpr std::string_view kStickNames[] = {"charcoal", "chalk"};
 /// is fixed to the object; the paper belongs to the scene.
 struct CharcoalDrawing {
     Stick stick = Stick::Charcoal;
-    glm::vec3 color{0.07f, 0.067f, 0.065f}; ///< sRGB
+    std::optional<glm::vec3> color = {};
     float pressure = 0.93f, contrast = 0.9f, localTone = 0.15f;
     float steepness = 0;
     float outline = 2.2f, outlineStrength = 0.9f, closure = 0.5f;
@@ -143,10 +157,14 @@ struct CharcoalDrawing {
     static void describe(auto& self, auto&& visit) {
         visit(self.stick, FieldInfo{.key = "stick",
                                     .unit = "",
-                                    .doc = "Charcoal draws what is dark, chalk what is light",
+                                    .doc = "Charcoal draws what is dark and brings light paper, chalk what is light "
+                                           "and dark paper",
                                     .names = kStickNames});
-        visit(self.color,
-              FieldInfo{.key = "color", .unit = "", .doc = "Colour of the stick (sRGB)", .range = Range{0, 1}});
+        visit(self.color, FieldInfo{.key = "color",
+                                    .unit = "",
+                                    .doc = "Own colour of the stick (sRGB); without one it is dark and draws what is "
+                                           "dark on a light ground, light and draws what is light on a dark one",
+                                    .range = Range{0, 1}});
         visit(self.pressure, FieldInfo{.key = "pressure",
                                        .unit = "",
                                        .doc = "Largest share of the paper that a stroke covers",

@@ -19,14 +19,16 @@ uniform vec3 lookBoundary[LAYERS];
 #endif
 #if (LOOKS & LOOK_SILHOUETTE)
 uniform vec3 lookSilhouette[LAYERS];
+uniform vec4 lookRim[LAYERS]; // colour of the ink, its share
 #endif
 #if (LOOKS & LOOK_DISTANCE)
 uniform vec4 lookDistance[LAYERS]; // colour, amount
 uniform float lookDistanceExponent[LAYERS];
 #endif
 #if (LOOKS & LOOK_CARTOON)
-uniform vec3 lookCartoon[LAYERS];  // amount, steps, shadow
-uniform vec4 lookOutline[LAYERS];  // colour; width in pixels
+uniform vec4 lookCartoon[LAYERS];  // amount, steps, shadow; 1 if outlines have their own colour
+uniform vec4 lookOutline[LAYERS];  // that colour, or the ink on the ground; width in pixels
+uniform vec3 lookDarkInk, lookLightInk;
 #endif
 #if (LOOKS & LOOK_CHARCOAL)
 uniform vec3 lookStick[LAYERS]; // colour
@@ -78,8 +80,17 @@ vec3 lookColor(int i, vec3 albedo, vec3 lit, LookSample at) {
 #endif
 #if (LOOKS & LOOK_CARTOON)
     if ((LAYER_LOOK(i) & LOOK_CARTOON) != 0)
-        color = mix(color, lookOutline[i].rgb, outline(at.facing, at.curvature, lookOutline[i].a * at.pixel) *
-                                                   lookCartoon[i].x * at.weight * at.share);
+    {
+        float width = lookOutline[i].a * at.pixel, amount = lookCartoon[i].x * at.weight * at.share;
+        vec3 inner = lookCartoon[i].w > 0.5 ? lookOutline[i].rgb : inkOn(albedo, lookDarkInk, lookLightInk);
+        color = mix(color, inner, amount * outline(at.facing, at.curvature, width));
+        color = mix(color, lookOutline[i].rgb, amount * outline(at.facing, at.curvature, 0.5 * width));
+    }
+#endif
+#if (LOOKS & LOOK_SILHOUETTE)
+    if ((LAYER_LOOK(i) & LOOK_SILHOUETTE) != 0)
+        color = mix(color, lookRim[i].rgb,
+                    lookRim[i].a * turnedAway(lookSilhouette[i].z, at) * at.weight * at.share);
 #endif
 #if (LOOKS & LOOK_CHARCOAL)
     if ((LAYER_LOOK(i) & LOOK_CHARCOAL) != 0) {

@@ -11,8 +11,16 @@ struct LookSample {
 float boundaryFactor(vec3 own, LookSample at) {
     return own.x + own.y * pow(clamp(at.steepness, 1e-6, 1.0), own.z);
 }
+float turnedAway(float exponent, LookSample at) {
+    return pow(max(1.0 - at.facing, 1e-6), exponent);
+}
 float silhouetteFactor(vec3 own, LookSample at) {
-    return own.x + own.y * at.weight * pow(max(1.0 - at.facing, 1e-6), own.z);
+    return own.x + own.y * at.weight * turnedAway(own.z, at);
+}
+
+// The ink that shows on a colour.
+vec3 inkOn(vec3 ground, vec3 dark, vec3 light) {
+    return mix(light, dark, smoothstep(0.03, 0.12, dot(ground, vec3(0.2126, 0.7152, 0.0722))));
 }
 
 // Coverage of a pixel by the intersection lines of a surface with planes at multiples of `spacing` along x, y and z;
@@ -41,7 +49,7 @@ float lightStep(float light, float steps) {
     return min(steps - 1.0, floor(steps * max(0.0, light))) / (steps - 1.0);
 }
 
-// `tone` = contrast, steepness, 1 for chalk; `line` = width in pixels, strength, closure; `mark` = half the softness of
+// `tone` = contrast, steepness, 1 if it draws what is light; `line` = width in pixels, strength, closure; `mark` = half the softness of
 // the grain, strokes, smudge, pressure.
 float charcoalInk(vec3 lit, LookSample at, vec3 tone, vec3 line, vec4 mark) {
     float bright = sqrt(clamp(dot(lit, vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0));
