@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 
 namespace tessera::vis {
 
@@ -43,6 +44,10 @@ bool drawsLight(const CharcoalDrawing& charcoal, glm::dvec3 ground) {
 
 double lookShare(LookPart part, double interest) {
     return part == LookPart::Everything ? 1 : part == LookPart::Context ? 1 - interest : interest;
+}
+
+double solidOpacity(const Look& look, double opacity, double share) {
+    return look.charcoal ? glm::mix(opacity, glm::smoothstep(0.03, 0.4, opacity), share) : opacity;
 }
 
 double lookOpacity(const Look& look, double opacity, const LookSample& sample) {
@@ -93,18 +98,50 @@ double grainSoftness(const CharcoalDrawing& charcoal) {
     return glm::mix(0.5, 0.05, double(charcoal.hardness));
 }
 
+glm::dvec2 bendReach(const Look& look, const LookView& view) {
+    const double outlines = view.reach * std::max(1.0, double(look.smooth));
+    return {outlines, 2 * outlines};
+}
+
+glm::dvec4 marksAt(const CharcoalDrawing& charcoal, glm::dvec3 place, glm::dvec3 normal, SurfaceBend bend,
+                   double pixel) {
+    const double size = pixel * double(charcoal.grain) / kGrainTexels;
+    const GrainTile& tile = *grainTile();
+    const glm::dvec2 grain = grainAt(tile, place, normal, size);
+    if (charcoal.mark == Mark::Dots) return {grain.x, 0.5, 0.5, grain.y};
+    const glm::dvec3 along =
+        strokeDirection(normal, bend, double(charcoal.follow), glm::radians(double(charcoal.angle)));
+    const double crossing =
+        charcoal.crossing < 1 ? strokesAt(tile, place, normal, glm::cross(normal, along), size, kCrossingShift) : 0.5;
+    return {grain.x, strokesAt(tile, place, normal, along, size, 0), crossing, grain.y};
+}
+
 double charcoalInk(const CharcoalDrawing& charcoal, glm::dvec3 lit, const LookSample& sample, bool light) {
-    const double bright = std::sqrt(std::clamp(luminance(lit), 0.0, 1.0));
-    const double drawn = light ? bright : 1 - bright;
+    const double bright = std::sqrt(std::clamp(luminance(lit), 0.0, 1.0)), bare = double(charcoal.bare);
+    const double drawn = std::max((light ? bright * bright * bright : 1 - bright) - bare, 0.0) / (1 - bare);
     const double steep = glm::mix(1.0, std::sqrt(std::clamp(sample.steepness, 0.0, 1.0)), double(charcoal.steepness));
     const double tone = std::pow(drawn, double(charcoal.contrast)) * steep;
     const double open = glm::mix(1.0, glm::smoothstep(0.1, 0.6, 1 - bright), double(charcoal.closure));
-    const double line = double(charcoal.outlineStrength) * sample.weight * open *
-                        outline(sample.facing(), sample.curvature, double(charcoal.outline) * sample.pixel);
+    const double width = double(charcoal.outline) * sample.pixel;
+    const double thin = 1 - 0.8 * glm::smoothstep(0.12, 0.45, width * sample.curvature);
+    const double line = double(charcoal.outlineStrength) * sample.weight * open * thin *
+                        outline(sample.facing(), sample.curvature, width);
     const double density = double(charcoal.pressure) * (1 - (1 - tone) * (1 - line));
-    const double stroked = std::min(1.0, density * (1 + double(charcoal.strokes) * (2 * sample.grain.y - 1)));
     const double soft = grainSoftness(charcoal);
-    const double ink = glm::smoothstep(sample.grain.x - soft, sample.grain.x + soft, stroked * (1 + 2 * soft) - soft);
+    const auto mark = [&](double amount, double threshold) {
+        return glm::smoothstep(threshold - soft, threshold + soft, amount * (1 + 2 * soft) - soft);
+    };
+    const auto layer = [&](double amount, double stroke) {
+        const double covered = std::pow(amount, 1 - 0.5 * double(charcoal.tooth));
+        const double pressed = std::pow(amount, 0.5 * double(charcoal.tooth));
+        const double stroked = amount > 0 ? pressed * glm::smoothstep(0.85 - covered, 1.15 - covered, stroke) : 0;
+        return mark(glm::mix(amount, stroked, double(charcoal.strokes)), sample.grain.x);
+    };
+    const double first = std::min(density, glm::mix(double(charcoal.crossing), density, 0.4));
+    const double second = 1 - (1 - density) / std::max(1 - first, 1e-3);
+    const double ink = charcoal.mark == Mark::Dots
+                           ? mark(density, sample.grain.w)
+                           : 1 - (1 - layer(first, sample.grain.y)) * (1 - layer(second, sample.grain.z));
     return glm::mix(ink, density, double(charcoal.smudge));
 }
 

@@ -19,7 +19,7 @@ struct LookSample {
     double pixel = 0;      ///< world edge of a pixel at that distance
     glm::dvec3 toLight{0}; ///< unit vector
     double wire = 0;       ///< wireCoverage() times weight; for wire frames only
-    glm::dvec2 grain{0.5}; ///< tooth and strokes, 0..1 (vis/optics/grain.h); for charcoal only
+    glm::dvec4 grain{0.5}; ///< marksAt(); for charcoal only
     double share = 1;      ///< fraction of the look that applies here
 
     double facing() const { return std::abs(glm::dot(at.normal, at.toViewer)); }
@@ -47,6 +47,10 @@ bool drawsLight(const CharcoalDrawing& charcoal, glm::dvec3 ground);
 /// Share of a look at degree of interest d: 1, 1 - d or d.
 double lookShare(LookPart part, double interest);
 
+/// Opacity of a volume layer kReferenceLength thick that charcoal draws: mix(a, smoothstep(0.03, 0.4, a), share). What
+/// is faint is left out and the rest is solid, else many half-transparent marks would add up to a pale haze.
+double solidOpacity(const Look& look, double opacity, double share);
+
 /// Opacity (of a layer kReferenceLength thick, or of a surface) with boundary and silhouette enhancement (Rheingans and
 /// Ebert 2001, equations 5 and 6):
 ///   a' = min(1, a mix(1, (kb + sb min(1, steepness)^eb) (ks + ss weight (1 - |n.v|)^es) mix(kw, 1, wire), share))
@@ -69,15 +73,29 @@ double outline(double facing, double curvature, double thickness);
 /// n.l quantised: min(n - 1, floor(n max(0, n.l))) / (n - 1).
 double lightStep(double light, int steps);
 
+/// World distances over which the curvature of outlines (x: view.reach max(1, smooth)) and of strokes (y: twice that,
+/// at least two cells) is measured.
+glm::dvec2 bendReach(const Look& look, const LookView& view);
+
+/// Tooth, strokes, crossing strokes and dots, 0..1, at a place of a surface (vis/optics/grain.h). `pixel`: world edge.
+glm::dvec4 marksAt(const CharcoalDrawing& charcoal, glm::dvec3 place, glm::dvec3 normal, SurfaceBend bend,
+                   double pixel);
+
 /// The softness s in charcoalInk().
 double grainSoftness(const CharcoalDrawing& charcoal);
 
 /// Amount of ink, 0..1, of a lit sample. With e = sqrt(luminance), at most 1, and dark = 1 - e (`light`, of
-/// drawsLight(): e):
-///   tone = dark^contrast mix(1, sqrt(min(1, steepness)), steepness of the look)
+/// drawsLight(): e^3):
+///   tone = (max(0, dark - bare) / (1 - bare))^contrast mix(1, sqrt(min(1, steepness)), steepness of the look)
 ///   line = outlineStrength weight outline mix(1, smoothstep(0.1, 0.6, 1 - e), closure)
-///   D = pressure (1 - (1 - tone) (1 - line)), with strokes D' = D (1 + strokes (2 stroke - 1)), at most 1
-///   ink = mix(smoothstep(h - s, h + s, D' (1 + 2 s) - s), D, smudge), h the tooth, s = mix(0.5, 0.05, hardness)
+///          (1 - 0.8 smoothstep(0.12, 0.45, T k)): less where lines would fill what is as small as they are wide
+///   D = pressure (1 - (1 - tone) (1 - line))
+///   ink = mix(marks, D, smudge)
+/// With dots, marks = m(D, t), t the dots' threshold and m(x, h) = smoothstep(h - s, h + s, x (1 + 2 s) - s), s =
+/// mix(0.5, 0.05, hardness). With strokes, marks = 1 - (1 - n(D1)) (1 - n(D2)); n(x) = m(mix(x, p, strokes), h), h the
+/// tooth, p = x^a smoothstep(0.85 - c, 1.15 - c, stroke), c = x^(1 - a), a = tooth of the look / 2: strokes cover the
+/// share c and are filled to x^a; D1 = min(D, mix(crossing, D, 0.4)) is what the first layer of strokes draws, and the
+/// crossing one the rest: 1 - D = (1 - D1) (1 - D2).
 double charcoalInk(const CharcoalDrawing& charcoal, glm::dvec3 lit, const LookSample& sample, bool light);
 
 /// The colour of a sample from its albedo and `lit`, the result of shade() for lookAlbedo(), in this order:

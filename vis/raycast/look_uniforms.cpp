@@ -17,22 +17,21 @@ std::vector<const Look*> looksOf(const RayPlan& plan, const Scene& scene) {
 }
 
 void setLookUniforms(const Program& program, const std::vector<const Look*>& looks, const Scene& scene,
-                     const WorldFrame& frame, glm::dvec3 cell, glm::ivec2 size, int unit) {
+                     const WorldFrame& frame, const volume::Lattice& lattice, glm::ivec2 size, int unit) {
     if (std::none_of(looks.begin(), looks.end(), [](const Look* look) { return look != nullptr; })) return;
-    const LookView view = lookView(scene, frame.halfSize, cell, size);
+    const LookView view = lookView(scene, frame.halfSize, worldCell(lattice, frame), size);
     const auto linear = [](glm::vec3 srgb) { return glm::vec3(linearFromSrgb(glm::dvec3(srgb))); };
     program.set("lookLight", glm::vec4(view.light.place, view.light.point ? 1 : 0));
     program.set("lookDepth", glm::vec2(view.nearest, 1 / (view.farthest - view.nearest)));
     program.set("lookPixel", glm::vec2(view.pixel));
-    program.set("lookReach", float(view.reach));
     program.set("lookGround", glm::vec3(view.ground));
     program.set("grainTile", unit);
-    std::vector<glm::vec2> share;
+    std::vector<glm::vec2> share, layers;
     const auto inkOf = [&](const std::optional<glm::vec3>& own) {
         return own ? linear(*own) : glm::vec3(inkOn(luminance(view.ground)));
     };
-    std::vector<glm::vec4> warm, cool, distance, cartoon, outline, rim, mark, grain, wire;
-    std::vector<glm::vec3> boundary, silhouette, stick, tone, line, wireColor;
+    std::vector<glm::vec4> warm, cool, distance, cartoon, outline, rim, smooth, tone, mark, grain, wire;
+    std::vector<glm::vec3> boundary, silhouette, stick, line, wireColor;
     std::vector<float> exponent;
     for (const Look* own : looks) {
         static const Look kPlain;
@@ -54,15 +53,19 @@ void setLookUniforms(const Program& program, const std::vector<const Look*>& loo
         cartoon.emplace_back(flat.amount, flat.steps, flat.shadow, flat.outlineColor ? 1 : 0);
         outline.emplace_back(inkOf(flat.outlineColor), flat.outline);
         const CharcoalDrawing drawn = look.charcoal.value_or(CharcoalDrawing{});
-        const double turn = glm::radians(double(drawn.angle));
         stick.push_back(inkOf(drawn.color));
-        tone.emplace_back(drawn.contrast, drawn.steepness, drawsLight(drawn, view.ground) ? 1 : 0);
+        tone.emplace_back(drawn.contrast, drawn.steepness, drawsLight(drawn, view.ground) ? 1 : 0, drawn.bare);
         line.emplace_back(drawn.outline, drawn.outlineStrength, drawn.closure);
         mark.emplace_back(grainSoftness(drawn), drawn.strokes, drawn.smudge, drawn.pressure);
         const WireFrame net = look.wire.value_or(WireFrame{});
         wire.emplace_back(net.spacing, net.width, net.retained, net.ownColor);
         wireColor.push_back(linear(net.color));
-        grain.emplace_back(double(drawn.grain) / kGrainTexels, std::cos(turn), std::sin(turn), drawn.localTone);
+        grain.emplace_back(double(drawn.grain) / kGrainTexels, glm::radians(double(drawn.angle)), drawn.localTone,
+                           drawn.follow);
+        layers.emplace_back(drawn.crossing, 0.5f * drawn.tooth);
+        const glm::dvec2 bend = bendReach(look, view);
+        const double wide = volume::smoothReach(lattice.kind, std::max(double(look.smooth), 1e-3));
+        smooth.emplace_back(wide, volume::smoothReach(lattice.kind, 1) / (4 * wide), bend);
     }
     program.set("lookShare", share);
     program.set("lookWarm", warm);
@@ -81,16 +84,18 @@ void setLookUniforms(const Program& program, const std::vector<const Look*>& loo
     program.set("lookLine", line);
     program.set("lookMark", mark);
     program.set("lookGrain", grain);
+    program.set("lookLayers", layers);
+    program.set("lookSmooth", smooth);
     program.set("lookWire", wire);
     program.set("lookWireColor", wireColor);
 }
 
 GLuint GrainTexture::get() {
     if (!texture_) {
-        texture_ = makeTexture2D({kGrainEdge, kGrainEdge}, GL_RG32F, GL_LINEAR, "paper grain");
+        texture_ = makeTexture2D({kGrainEdge, kGrainEdge}, GL_RGBA32F, GL_LINEAR, "paper grain");
         glTextureParameteri(texture_.name(), GL_TEXTURE_WRAP_S, GL_REPEAT);
         glTextureParameteri(texture_.name(), GL_TEXTURE_WRAP_T, GL_REPEAT);
-        glTextureSubImage2D(texture_.name(), 0, 0, 0, kGrainEdge, kGrainEdge, GL_RG, GL_FLOAT,
+        glTextureSubImage2D(texture_.name(), 0, 0, 0, kGrainEdge, kGrainEdge, GL_RGB, GL_FLOAT,
                             grainTile()->texels.data());
     }
     return texture_.name();
