@@ -79,7 +79,9 @@ struct MeshBall {
         sample.pixel = view.pixel.x;
         sample.toLight = view.light.place;
         if (layer.style.look.charcoal)
-            sample.grain = marksAt(*layer.style.look.charcoal, place, normal, SurfaceBend(0), sample.pixel);
+            sample.grain = grainAt(*grainTile(), place, normal,
+                                   sample.pixel * double(layer.style.look.charcoal->grain) / kGrainTexels,
+                                   double(layer.style.look.charcoal->angle));
         if (layer.style.look.wire)
             sample.wire = wireCoverage(place, normal, toViewer, double(layer.style.look.wire->spacing),
                                        double(layer.style.look.wire->width), sample.pixel);

@@ -19,9 +19,9 @@ enum class BrushTestKind { Always, Range, Ellipse, Lasso, Sphere, Box, Lens };
 inline constexpr std::string_view kBrushTestNames[] = {"always", "range", "ellipse", "lasso", "sphere", "box", "lens"};
 
 /// Features of looks that need shader code; sets of them are bit masks of 1 << feature.
-enum class LookFeature { Tone, Boundary, Silhouette, Distance, Cartoon, Charcoal, Wire, Smooth, Follow, Cross, Dots };
-inline constexpr std::string_view kLookFeatureNames[] = {
-    "tone", "boundary", "silhouette", "distance", "cartoon", "charcoal", "wire", "smooth", "follow", "cross", "dots"};
+enum class LookFeature { Tone, Boundary, Silhouette, Distance, Cartoon, Charcoal, Wire };
+inline constexpr std::string_view kLookFeatureNames[] = {"tone",    "boundary", "silhouette", "distance",
+                                                         "cartoon", "charcoal", "wire"};
 constexpr int bitOf(LookFeature feature) {
     return 1 << int(feature);
 }

@@ -199,26 +199,6 @@ Matter<double> Prepared::matter(const LightGrid& grid) const {
     return out;
 }
 
-SurfaceBend Prepared::surfaceBend(const Samples& of, glm::dvec3 world, int part, glm::dvec3 normal, double slope,
-                                  double reach) const {
-    const std::optional<double> centre = of.ofPart(part, cells(world));
-    if (!centre || !(slope > 0)) return SurfaceBend(0);
-    const glm::dvec3 first = acrossNormal(normal), second = glm::cross(normal, first);
-    double turned[4];
-    for (int i = 0; i < 4; ++i) {
-        const double angle = glm::radians(45.0 * i);
-        const glm::dvec3 offset = (std::cos(angle) * first + std::sin(angle) * second) * reach;
-        turned[i] = -2 * *centre;
-        for (const double side : {-1.0, 1.0}) {
-            const glm::dvec3 place = glm::clamp(world + side * offset, -frame.halfSize, frame.halfSize);
-            turned[i] += of.ofPart(part, cells(place)).value_or(*centre);
-        }
-    }
-    return SurfaceBend(0.5 * (turned[0] + turned[1] + turned[2] + turned[3]), turned[0] - turned[2],
-                       turned[1] - turned[3]) /
-           (reach * slope);
-}
-
 Interest Prepared::interest(glm::dvec3 world) const {
     if (!scene.selection.active()) return {};
     std::vector<double> values;

@@ -107,19 +107,6 @@ struct Prepared {
         return volume::gradient(seen, lattice.toCells(frame.toPhysical(world)),
                                 volume::gradientStencil(lattice.kind, scene.render.gradient));
     }
-    /// The same of the field smoothed over `width` voxels, from positions within the box. `narrow`: the unsmoothed one.
-    glm::dvec3 smoothGradient(const Samples& of, glm::dvec3 world, int part, double width, glm::dvec3 narrow) const {
-        const auto seen = [&](glm::dvec3 at) {
-            const glm::dvec3 place = frame.toWorld(lattice.origin + at * lattice.spacing);
-            return of.ofPart(part, cells(glm::clamp(place, -frame.halfSize, frame.halfSize)));
-        };
-        return volume::smoothGradient(seen, lattice.toCells(frame.toPhysical(world)),
-                                      volume::smoothReach(lattice.kind, width), narrow);
-    }
-    /// Curvature of the surface through a place, for strokes: second differences over `reach` in world units along four
-    /// directions of its tangent plane, over the length `slope` of the gradient.
-    SurfaceBend surfaceBend(const Samples& of, glm::dvec3 world, int part, glm::dvec3 normal, double slope,
-                            double reach) const;
     /// The gradient within the part that the position belongs to.
     glm::dvec3 gradient(const Samples& of, glm::dvec3 world) const {
         return gradient(of, world, of.part(cells(world)));

@@ -32,17 +32,16 @@ void showSurfaces(int k) {
         float alpha = crossed ? min(layerMap[i].w * focusOpacity(doi, LAYER_BRUSHED(i)) * lens.x, 1.0) : 0.0;
         float centre = FIELD_COVERAGE(field) == 1 ? reconstruct(field, q).x : 0.0;
         vec3 g = cellGradient(field, q, centre, crossed);
-        vec3 albedo = focusColor(colorBy(i, q, layerColor[i]), doi, lens.y, LAYER_BRUSHED(i)), c = albedo, drawn = g;
+        vec3 albedo = focusColor(colorBy(i, q, layerColor[i]), doi, lens.y, LAYER_BRUSHED(i)), c = albedo;
 #if LOOKS
         LookSample look;
         if (LAYER_LOOK(i) != 0) {
-            drawn = lookGradient(i, field, readAt(field, q), q, centre, g, crossed);
-            look = lookSample(i, field, q, g, drawn, 1.0, world, distanceAt(at), ray.direction, doi, crossed);
+            look = lookSample(i, field, q, g, 1.0, world, distanceAt(at), ray.direction, doi, crossed);
             alpha = lookOpacity(i, alpha, look);
             c = lookAlbedo(i, albedo, look);
         }
 #endif
-        c = shade(c, shadingGradient(drawn), 1.0, world, -ray.direction);
+        c = shade(c, shadingGradient(g), 1.0, world, -ray.direction);
 #if LOOKS
         if (LAYER_LOOK(i) != 0) c = lookColor(i, albedo, c, look);
 #endif
