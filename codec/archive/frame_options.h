@@ -19,7 +19,6 @@ struct FrameOptions {
         0; ///< part of maxError used by previous processing of the samples; the rest is for codes and repeats
     /// A brick may repeat an earlier one only if its sum of squared differences does not exceed that of its own codes.
     bool keepsSquares = false;
-    double mostRms = 0;       ///< largest RMS error of the present samples, in stored units; 0: any
     bool keepsAbsent = false; ///< also code the stored numbers of absent samples
     int zstdLevel = 3;
     Range range{1, 0}; ///< physical range of the component that importance refers to; lo > hi: that of the frame

@@ -1,12 +1,10 @@
 #pragma once
 
-#include "codec/bands/adaptive_bands.h"
 #include "codec/bands/band_coder.h"
 #include "codec/brick/brick_format.h"
 #include "codec/bytes/decode_status.h"
 #include "codec/bytes/entropy.h"
 #include "codec/wavelet/level_box.h"
-#include "codec/wavelet/subbands.h"
 
 #include <array>
 #include <span>
@@ -15,17 +13,8 @@
 /// Coding of one brick of one component, level by level. (FORMAT.md "Bricks".)
 namespace tessera::codec {
 
-/// How coefficients of a brick are quantised, for numbers of kind Stepped.
-struct StepChoice {
-    DetailSplit split;
-    std::uint32_t quantum = 0; ///< of coefficients whose waveforms have length 1, in 1/16 of a code
-    double mostSquare = 0;     ///< mean square error allowed, in squares of codes; 0: any
-};
-
 /// The tokens of a brick: the part of coding that does not depend on a model.
 struct PreparedBrick {
-    std::vector<Bytes> stepped;         ///< numbers of kind Stepped: the coded segments, without what is exact
-    std::vector<std::uint32_t> decoded; ///< the same: the codes that they decode to
     std::vector<TokenRun> levels;                                 ///< the last is the coarsest
     std::vector<std::uint32_t> exactIndex, exactBits, absentBits; ///< stored in addition
 };
@@ -37,10 +26,10 @@ struct SplitMemory {
 };
 
 /// Transforms a brick. `samples` are numbers of format.type, x fastest; `present` has one flag per sample, or is empty:
-/// all present. Quantised numbers with an error above `maxError` are stored exactly in addition. `steps`: for Stepped.
+/// all present. Quantised numbers with an error above `maxError` are stored exactly in addition.
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
                            std::span<const std::uint8_t> present, double maxError, Contexts contexts,
-                           SplitMemory& memory, const StepChoice& steps = {});
+                           SplitMemory& memory);
 /// Adds the tokens of a brick to a histogram; long runs are subsampled (countTokens).
 void countBrick(const PreparedBrick& brick, Histogram& histogram, int every = 1);
 
@@ -73,7 +62,6 @@ struct DecodedBrick {
     std::vector<std::uint8_t> present; ///< flags at the level; empty: all present
     std::vector<ExactSample> exact;    ///< full resolution only: samples that replace those of their codes
     std::vector<std::uint32_t> absent; ///< full resolution only: bits of absent samples in storage order, if stored
-    std::vector<Correction> corrections; ///< working memory
 
     /// Resets to the shape of a level.
     void begin(const BrickFormat& format, int level);
@@ -98,10 +86,6 @@ struct DecodedBrick {
     /// All codes in storage order.
     std::vector<std::uint32_t> codes() const;
 };
-
-/// Decodes the streams of absent and exact samples of full resolution at the front of `in`, and advances it.
-DecodeStatus decodeExtras(const BrickFormat& format, std::span<const std::uint8_t> present,
-                          std::span<const std::byte>& in, DecodedBrick& out);
 
 /// Decodes `level` from the segments up to it (levels - level segments, coarsest first). Never throws because of the
 /// contents of the bytes and never reads beyond them.

@@ -18,7 +18,7 @@ bool BrickFormat::predictsOdd(bool masked) const {
 }
 
 bool BrickFormat::canHaveExact() const {
-    return numbers.kind == NumberKind::Scaled || numbers.kind == NumberKind::Quantised || isStepped();
+    return numbers.kind == NumberKind::Scaled || numbers.kind == NumberKind::Quantised;
 }
 
 int codeBitsOf(ScalarType type) {

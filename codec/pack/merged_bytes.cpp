@@ -3,7 +3,6 @@
 #include "codec/archive/archive_impl.h"
 #include "codec/archive/brick_input.h"
 #include "codec/archive/frame_model.h"
-#include "codec/archive/frame_steps.h"
 #include "volume/base/parallel.h"
 
 #include <mutex>
@@ -34,11 +33,10 @@ struct BoxesOfFrame {
         return format;
     }
 
-    /// The model of the archive, unless quantised coefficients need none, or a new one if that saves bytes including its own.
+    /// The model of the archive, or a new one if that saves bytes including its own.
     Model modelFor(std::span<const volume::MergedBrick> boxes, const std::vector<std::uint8_t>& wanted,
                    const Model& known, std::uint64_t& bytes) const {
         constexpr int kMostTables = 24;
-        if (frame.numbers.kind == NumberKind::Stepped) return known;
         Histogram tokens(grid.levels, known.contexts);
         std::mutex mutex;
         parallelRanges(boxes.size(), [&](std::size_t first, std::size_t last) {
@@ -90,15 +88,10 @@ std::vector<MergedBytes> bytesOfMerged(const Archive& archive, std::span<const v
             Compressor compressor(effortFor(field, impl.metadata.options.zstdLevel),
                                   (impl.header.header.features & kCompact) != 0);
             BrickInput input;
-            SplitMemory memory;
             for (std::size_t b = first; b < last; ++b) {
                 if (wanted[b] == 0) continue;
                 const BrickFormat format = work.take(boxes[b], input);
-                const double maxError = format.isStepped() ? boundOf(format.numbers) : 0;
-                const PreparedBrick brick = prepareBrick(format, input.samples, input.present, maxError,
-                                                         encoder.model().contexts, memory, usualSteps());
-                for (const Bytes& segment :
-                     encodeBrick(format, brick, input.samples, input.present, compressor, encoder))
+                for (const Bytes& segment : encodeBrick(format, input.samples, input.present, 0, compressor, encoder))
                     sums[b].together += segment.size();
             }
         });

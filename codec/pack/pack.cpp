@@ -35,33 +35,21 @@ int defaultLevels(const volume::Lattice& lattice, int brickSize) {
     return levels;
 }
 
-bool hasThreshold(const PackOptions& options) {
-    return options.threshold.kind != ThresholdChoice::None && options.threshold.value > 0;
-}
-
-/// Whether the options keep all samples exactly, except in omitted bricks.
-bool isExact(const PackOptions& options) {
-    return options.maxError == 0 && options.absError == 0 && options.psnr == 0 && !hasThreshold(options);
-}
-
 /// The automatic brick size. Repetition, which only integers that were not resampled have, is only found within a
-/// brick, so small data of that kind get one large brick. So do floats within an error bound, unless they are large:
-/// every border of a brick costs bits. Archives that grow keep their brick size.
+/// brick, so small data of that kind get one large brick. Archives that grow keep their brick size.
 int brickSizeFor(const volume::Lattice& lattice, const volume::DatasetInfo& info, const PackOptions& options,
                  const Archive* grown) {
     constexpr int kUsual = 64, kLargest = 128;
-    constexpr std::size_t kSmall = 1 << 19, kSmallBounded = 1 << 24; // samples
+    constexpr std::size_t kSmall = 1 << 19; // samples
     if (options.brickSize != 0) return options.brickSize;
     if (grown) return grown->grid().brickSize;
     const glm::ivec3 size = lattice.size;
     const int longest = std::max({size.x, size.y, size.z});
     const auto isInteger = [](const volume::Parameter& parameter) { return parameter.type != ScalarType::F32; };
-    const bool integers = std::all_of(info.parameters.begin(), info.parameters.end(), isInteger);
     const bool one = lattice.kind == LatticeKind::CC && lattice == info.lattice && info.times.size() == 1 &&
-                     lattice.count() <= kSmall && longest > kUsual && longest <= kLargest && integers;
-    const bool bounded = !integers && !isExact(options) && !hasThreshold(options) && longest > kUsual &&
-                         lattice.count() <= kSmallBounded;
-    return one || bounded ? kLargest : kUsual;
+                     lattice.count() <= kSmall && longest > kUsual && longest <= kLargest &&
+                     std::all_of(info.parameters.begin(), info.parameters.end(), isInteger);
+    return one ? kLargest : kUsual;
 }
 
 volume::BrickGrid gridFor(const volume::Lattice& lattice, const volume::DatasetInfo& info, const PackOptions& options,
@@ -75,6 +63,15 @@ volume::BrickGrid gridFor(const volume::Lattice& lattice, const volume::DatasetI
     if (grid.levels < 1 || grid.levels > int(std::bit_width(unsigned(grid.brickSize))))
         throw Error(std::to_string(grid.levels) + " levels do not fit bricks of " + std::to_string(grid.brickSize));
     return grid;
+}
+
+bool hasThreshold(const PackOptions& options) {
+    return options.threshold.kind != ThresholdChoice::None && options.threshold.value > 0;
+}
+
+/// Whether the options keep all samples exactly, except in omitted bricks.
+bool isExact(const PackOptions& options) {
+    return options.maxError == 0 && options.absError == 0 && options.psnr == 0 && !hasThreshold(options);
 }
 
 /// Whether the error bound is relative to the range over all times, which requires a pass of its own; a single time is
@@ -266,8 +263,6 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
     const FrameBound bound = exact ? FrameBound() : boundFor(options_, whole, samples);
     frame.maxError = bound.error;
     frame.keepsSquares = options_.psnr > 0;
-    if (options_.psnr > 0)
-        frame.mostRms = extentOf(whole) / std::abs(samples.scale()) * std::pow(10.0, -options_.psnr / 20);
     double error = frame.maxError * std::abs(samples.scale());
     if (hasThreshold(options_) && !about.categorical) {
         const double scale = std::abs(samples.scale());
