@@ -58,8 +58,8 @@ std::string formMissing(const std::string& path, const volume::ImportOptions& im
     if (fs::path(path).extension() != ".raw" || !import.raw.empty() || volume::hasSidecar(path) ||
         fs::file_size(path, unknown) == 0)
         return {};
-    return "This file has no sidecar " + fs::path(path).filename().replace_extension(".json").string() +
-           " that states its layout.\n\nState it below in Raw layout, such as dims=64x64x64,type=u8";
+    return "No sidecar " + fs::path(path).filename().replace_extension(".json").string() +
+           " states the layout of this file.\n\nState it below in Raw layout, such as dims=64x64x64,type=u8";
 }
 
 /// The reason of a failure, with the name of its file and the fields of this dialog in place of options of the command

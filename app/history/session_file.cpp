@@ -1,6 +1,7 @@
 #include "app/history/session_file.h"
 
 #include "volume/base/error.h"
+#include "volume/system/part_file.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -40,7 +41,8 @@ std::string readText(const std::string& path) {
 }
 
 void writeTextAtomically(const std::string& path, std::string_view text) {
-    const std::string temporary = path + ".part-" + std::to_string(getpid());
+    removeLeftParts(path);
+    const std::string temporary = partFileOf(path);
     const auto fail = [&](const std::string& what) {
         const std::string reason = what + ": " + std::strerror(errno);
         std::remove(temporary.c_str());

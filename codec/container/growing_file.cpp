@@ -1,6 +1,7 @@
 #include "codec/container/growing_file.h"
 
 #include "volume/base/error.h"
+#include "volume/system/part_file.h"
 
 #include <cerrno>
 #include <cstring>
@@ -27,7 +28,8 @@ void syncFolderOf(const std::string& path) {
 
 GrowingFile::GrowingFile(const std::string& path)
     : path_(path), kind_(std::filesystem::exists(path) ? Kind::Replacing : Kind::Fresh) {
-    const std::string temporary = path + ".part-" + std::to_string(::getpid());
+    removeLeftParts(path);
+    const std::string temporary = partFileOf(path);
     file_ = std::fopen(temporary.c_str(), "wbe");
     if (!file_) fail();
     temporary_ = temporary;

@@ -1,13 +1,17 @@
 #include "codec/archive/archive.h"
 #include "codec/archive/archive_writer.h"
 #include "codec/container/container.h"
+#include "codec/container/growing_file.h"
 #include "codec/pack/pack.h"
 #include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain/decoder.h"
 
+#include <csignal>
 #include <cstring>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace tessera::codec {
 namespace {
@@ -356,6 +360,24 @@ TEST(Growing, ThePlainDecoderReadsGrownArchives) {
                             }
                         }
             }
+}
+
+TEST(Growing, WhatAKilledPackingLeftIsRemovedByTheNext) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.tsr";
+    const pid_t killed = ::fork();
+    if (killed == 0) {
+        const GrowingFile begun(path);
+        ::kill(::getpid(), SIGKILL);
+    }
+    ::waitpid(killed, nullptr, 0);
+    const std::string left = path + ".part-" + std::to_string(killed);
+    ASSERT_TRUE(std::filesystem::exists(left));
+    volume::Dataset made = makeDataset({24, 24, 24}, {{"x", ScalarType::F32, 1, Texture::Smooth, true, false}}, 1);
+    pack(made, {}, path);
+    EXPECT_FALSE(std::filesystem::exists(left));
+    EXPECT_EQ(timesOf(path), 1u);
+    EXPECT_EQ(folder.files(), 1u);
 }
 
 } // namespace

@@ -161,18 +161,26 @@ TEST_F(ImportRaw, BadInputGivesOneLine) {
     };
     EXPECT_EQ(with(R"({"dims":[2,2,2],"dtype":"uint8"})"), "");
     EXPECT_THAT(with("{"), testing::HasSubstr("is not JSON"));
-    EXPECT_THAT(with("[1]"), testing::HasSubstr("not a JSON object"));
-    EXPECT_THAT(with(R"({"dtype":"uint8"})"), testing::HasSubstr("dims: is missing"));
+    EXPECT_THAT(with("[1]"), testing::HasSubstr("a.raw: has no sidecar (a.json is a list of 1, without dims)"));
+    EXPECT_THAT(with(R"({"name":"a","license":1,"by":2,"of":3,"at":4})"),
+                testing::HasSubstr("(a.json is an object with at, by, license, name and 1 more, without dims)"));
+    EXPECT_THAT(failure((folder_ / "a.json").string()),
+                testing::EndsWith("a.json: is neither a session nor the sidecar of a raw file, which has dims, but an "
+                                  "object with at, by, license, name and 1 more"));
     EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"complex"})"), testing::HasSubstr("unknown type \"complex\""));
     EXPECT_THAT(with(R"({"dims":[2,2,2]})"), testing::HasSubstr("dtype"));
     EXPECT_THAT(with(R"({"dims":[2,2,3],"dtype":"uint8"})"),
                 testing::HasSubstr("has 8 bytes, but its layout needs 12 (2 x 2 x 3 samples, 1 component, 1 time)"));
     EXPECT_THAT(with(R"({"dims":[2,2,1],"dtype":"uint8"})"), testing::HasSubstr("has 8 bytes, but its layout needs 4"));
-    EXPECT_THAT(with(R"({"dims":[2,2,-2],"dtype":"uint8"})"), testing::HasSubstr("dims[2]"));
+    EXPECT_THAT(with(R"({"dims":[2,2,-2],"dtype":"uint8"})"), testing::HasSubstr("dims[2]: is -2, must be 1.."));
+    EXPECT_THAT(with(R"({"dims":[2,2.5,1],"dtype":"uint8"})"), testing::HasSubstr("dims[1]: is 2.5, must be a whole"));
+    EXPECT_THAT(with(R"({"dims":"2x2","dtype":"uint8"})"), testing::HasSubstr("dims: is \"2x2\", must be one to"));
     EXPECT_THAT(with(R"({"dims":[1000000,1000000,1000000],"dtype":"uint8"})"), testing::HasSubstr("10^15"));
     EXPECT_THAT(with(R"({"dims":[1e300,2,2],"dtype":"uint8"})"), testing::HasSubstr("dims"));
-    EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"uint8","spacing":[0,1,1]})"), testing::HasSubstr("spacing[0]"));
-    EXPECT_THAT(with(R"({"dims":[2,2,1],"dtype":"uint8","times":[1,1]})"), testing::HasSubstr("times[1]"));
+    EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"uint8","spacing":[0,1,1]})"),
+                testing::HasSubstr("spacing[0]: is 0.0, must"));
+    EXPECT_THAT(with(R"({"dims":[2,2,1],"dtype":"uint8","times":[1,1]})"),
+                testing::HasSubstr("times[1]: is 1.0, must be above 1.0"));
     EXPECT_THAT(with(R"({"dims":[2,2,1],"dtype":"uint8","components":[{"name":"a"},{"name":"a"}]})"),
                 testing::HasSubstr("present twice"));
     EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"uint8","components":[]})"), testing::HasSubstr("no component"));

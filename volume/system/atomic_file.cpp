@@ -1,18 +1,18 @@
 #include "volume/system/atomic_file.h"
 
 #include "volume/base/error.h"
+#include "volume/system/part_file.h"
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <unistd.h>
 
 namespace tessera {
 
 AtomicFile::AtomicFile(const std::string& path)
-    : path_(path), temporary_(path + ".part-" + std::to_string(getpid())),
-      out_(temporary_, std::ios::binary | std::ios::trunc) {
+    : path_(path), temporary_(partFileOf(path)), out_(temporary_, std::ios::binary | std::ios::trunc) {
     if (!out_) throw MachineError(std::string("cannot be written: ") + std::strerror(errno), path_);
+    removeLeftParts(path);
 }
 
 AtomicFile::~AtomicFile() {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <type_traits>
 
 namespace tessera::volume {
@@ -100,7 +101,38 @@ bool isVectorAt(const RawForm& form, std::size_t c) {
     return !first.categorical && first.presenceOf.empty();
 }
 
+/// What a JSON document is, in a few words: "an object with name, license and 3 more".
+std::string whatJsonIs(const nlohmann::json& document) {
+    if (document.is_array()) return "a list of " + std::to_string(document.size());
+    if (!document.is_object()) return std::string("a ") + document.type_name();
+    if (document.empty()) return "an empty object";
+    constexpr std::size_t kNamed = 4, kLongest = 30;
+    std::string text = "an object with ";
+    std::size_t named = 0;
+    for (const auto& [key, value] : document.items()) {
+        if (named == kNamed) return text + " and " + std::to_string(document.size() - kNamed) + " more";
+        text += (named++ > 0 ? ", " : "") + key.substr(0, kLongest);
+    }
+    return text;
+}
+
+constexpr std::uintmax_t kMostSidecar = 16 << 20; ///< bytes
+
+std::string readSidecar(const fs::path& path) {
+    std::error_code unknown;
+    const std::uintmax_t size = fs::file_size(path, unknown);
+    if (!unknown && size > kMostSidecar) throw Error("is too large for a sidecar", path.string());
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
 } // namespace
+
+std::string otherThanSidecar(std::string_view text) {
+    const auto document = nlohmann::json::parse(text, nullptr, false);
+    const bool broken = document.is_discarded();
+    return broken || (document.is_object() && document.contains("dims")) ? "" : whatJsonIs(document);
+}
 
 std::size_t RawForm::bytes() const {
     std::size_t frame = 0;
@@ -114,9 +146,10 @@ bool isRaw(const std::string& path, const std::string& rawOption) {
 }
 
 bool hasSidecar(const std::string& path) {
-    const fs::path file(path);
+    const fs::path file(path), sidecar = fs::path(file).replace_extension(".json");
     std::error_code unknown;
-    return file.extension() == ".raw" && fs::exists(fs::path(file).replace_extension(".json"), unknown);
+    if (file.extension() != ".raw" || !fs::exists(sidecar, unknown)) return false;
+    return fs::file_size(sidecar, unknown) > kMostSidecar || otherThanSidecar(readSidecar(sidecar)).empty();
 }
 
 Piece openRaw(const std::string& path, const std::string& rawOption) {
@@ -128,18 +161,21 @@ Piece openRaw(const std::string& path, const std::string& rawOption) {
         fs::path sidecar = path;
         if (sidecar.extension() != ".json") sidecar.replace_extension(".json");
         if (!fs::exists(path)) throw Error("no such file", path);
-        if (!fs::exists(sidecar)) {
+        const bool exists = fs::exists(sidecar);
+        const std::string text = exists ? readSidecar(sidecar) : "";
+        const std::string other = exists ? otherThanSidecar(text) : "";
+        if (!other.empty() && data.extension() == ".json")
+            throw Error("is neither a session nor the sidecar of a raw file, which has dims, but " + other, path);
+        if (!exists || !other.empty()) {
             std::error_code unknown;
             if (fs::file_size(path, unknown) == 0) throw Error("is empty", path);
-            throw Error("has no sidecar " + sidecar.filename().string() +
-                            "; state its layout, such as dims=64x64x64,type=u8, with --raw or in the field Raw layout "
-                            "of File > Open",
-                        path);
+            const std::string name = sidecar.filename().string();
+            throw Error(
+                (exists ? "has no sidecar (" + name + " is " + other + ", without dims)" : "has no sidecar " + name) +
+                    "; state its layout, such as dims=64x64x64,type=u8, with --raw or in the field Raw layout "
+                    "of File > Open",
+                path);
         }
-        constexpr std::uintmax_t kMostSidecar = 16 << 20;
-        if (fs::file_size(sidecar) > kMostSidecar) throw Error("is too large for a sidecar", sidecar.string());
-        std::ifstream in(sidecar, std::ios::binary);
-        const std::string text{std::istreambuf_iterator<char>(in), {}};
         form = parseSidecar(text, sidecar.string());
         if (data.extension() == ".json") {
             data = sidecar;

@@ -37,6 +37,10 @@ struct RawForm {
     std::size_t bytes() const;
 };
 
+/// What a JSON text is if not a sidecar, which has dims: "an object with name, license". "" for sidecars, and for texts
+/// that are not JSON at all, of which parseSidecar tells.
+std::string otherThanSidecar(std::string_view json);
+
 /// Reads a JSON sidecar. Required keys: dims, dtype. Throws Error (file is `file`) for anything that is missing, of the
 /// wrong type or out of range.
 RawForm parseSidecar(std::string_view json, const std::string& file);
@@ -49,7 +53,7 @@ RawForm parseRawOption(std::string_view text);
 /// 12 times.
 std::string rawOptionOfName(const std::string& path);
 
-/// True for a *.raw file beside which lies a sidecar of its name.
+/// True for a *.raw file beside which lies a sidecar of its name: a JSON file with dims.
 bool hasSidecar(const std::string& path);
 
 /// Opens a raw file named by itself or by its sidecar; `rawOption` (may be empty) takes the place of the sidecar.

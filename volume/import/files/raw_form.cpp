@@ -41,6 +41,17 @@ std::optional<RawType> parseType(std::string_view word) {
     return std::nullopt;
 }
 
+/// "is -1, ", the beginning of a complaint about a value.
+std::string isValue(const json& value) {
+    std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+    if (text.size() > 40) text = text.substr(0, 37) + "...";
+    return "is " + text + ", ";
+}
+
+std::string isNumber(double value) {
+    return std::isfinite(value) ? isValue(value) : "is not finite, ";
+}
+
 /// Throws unless the form describes a file that could exist.
 void check(const RawForm& form, const std::string& file) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -50,13 +61,16 @@ void check(const RawForm& form, const std::string& file) {
                         "dims[" + std::to_string(axis) + "]");
         const double step = form.lattice.spacing[axis];
         if (!(step > 0) || !std::isfinite(step))
-            throw Error("must be a number above 0", file, "spacing[" + std::to_string(axis) + "]");
+            throw Error(isNumber(step) + "must be a number above 0", file, "spacing[" + std::to_string(axis) + "]");
         if (!std::isfinite(form.lattice.origin[axis])) throw Error("must be finite", file, "origin");
     }
     if (form.components.empty()) throw Error("holds no component", file, "components");
     for (std::size_t i = 0; i < form.times.size(); ++i)
         if (!std::isfinite(form.times[i]) || (i > 0 && form.times[i] <= form.times[i - 1]))
-            throw Error("must increase", file, "times[" + std::to_string(i) + "]");
+            throw Error(
+                isNumber(form.times[i]) +
+                    (i > 0 ? "must be above " + json(form.times[i - 1]).dump() + " before it" : "must be finite"),
+                file, "times[" + std::to_string(i) + "]");
     const double bytes = 8.0 * form.lattice.size.x * form.lattice.size.y * form.lattice.size.z *
                          double(form.components.size()) * double(form.frames());
     if (!(bytes <= kMostRawBytes)) throw Error("needs more than 10^15 bytes", file, "dims");
@@ -75,16 +89,20 @@ struct Reader {
     [[noreturn]] void fail(const std::string& key, const std::string& reason) const {
         throw Error(reason, file, path + key);
     }
+    /// Fails with the value that was met.
+    [[noreturn]] void refuse(const json& value, const std::string& key, const std::string& reason) const {
+        fail(key, isValue(value) + reason);
+    }
     std::string text(const char* key) const {
         const json* value = find(key);
         if (value == nullptr) return {};
-        if (!value->is_string()) fail(key, "must be a text");
+        if (!value->is_string()) refuse(*value, key, "must be a text");
         return value->get<std::string>();
     }
     double number(const char* key, double standard) const {
         const json* value = find(key);
         if (value == nullptr) return standard;
-        if (!value->is_number()) fail(key, "must be a number");
+        if (!value->is_number()) refuse(*value, key, "must be a number");
         return value->get<double>();
     }
     RawType type(const char* key) const {
@@ -96,15 +114,15 @@ struct Reader {
     std::vector<double> missing(const char* key) const {
         const json* value = find(key);
         if (value == nullptr || (value->is_string() && (*value == "nan" || *value == "NaN"))) return {};
-        if (!value->is_number()) fail(key, "must be a number, \"nan\" or null");
+        if (!value->is_number()) refuse(*value, key, "must be a number, \"nan\" or null");
         return {value->get<double>()};
     }
     glm::dvec3 triple(const char* key, glm::dvec3 standard) const {
         const json* value = find(key);
         if (value == nullptr) return standard;
-        if (!value->is_array() || value->size() > 3) fail(key, "must be three numbers");
+        if (!value->is_array() || value->size() > 3) refuse(*value, key, "must be three numbers");
         for (std::size_t axis = 0; axis < value->size(); ++axis) {
-            if (!(*value)[axis].is_number()) fail(key, "must be three numbers");
+            if (!(*value)[axis].is_number()) refuse(*value, key, "must be three numbers");
             standard[static_cast<int>(axis)] = (*value)[axis].get<double>();
         }
         return standard;
@@ -142,7 +160,7 @@ RawForm::Component readComponent(const json& entry, const std::string& file, con
     if (entry.contains("missing_value")) component.missing = reader.missing("missing_value");
     component.presenceOf = reader.text("presence_of");
     if (const json* flag = reader.find("categorical")) {
-        if (!flag->is_boolean()) reader.fail("categorical", "must be true or false");
+        if (!flag->is_boolean()) reader.refuse(*flag, "categorical", "must be true or false");
         component.categorical = flag->get<bool>();
     }
     if (const json* labels = reader.find("labels")) component.labels = readLabels(*labels, reader);
@@ -159,7 +177,7 @@ Quantity readQuantity(const json& entry, std::size_t frames, const std::string& 
     if (values == nullptr || !values->is_array() || values->size() != frames)
         reader.fail("values", "must be a list of a number, or null, for each time");
     for (const json& value : *values) {
-        if (!value.is_number() && !value.is_null()) reader.fail("values", "must be numbers or null");
+        if (!value.is_number() && !value.is_null()) reader.refuse(value, "values", "must be numbers or null");
         quantity.values.push_back(value.is_null() ? std::nan("") : value.get<double>());
     }
     return quantity;
@@ -170,20 +188,22 @@ Quantity readQuantity(const json& entry, std::size_t frames, const std::string& 
 RawForm parseSidecar(std::string_view text, const std::string& file) {
     const json document = json::parse(text, nullptr, false);
     if (document.is_discarded()) throw Error("is not JSON", file);
-    if (!document.is_object()) throw Error("is not a JSON object", file);
+    const std::string what = otherThanSidecar(text);
+    if (!what.empty()) throw Error("is no sidecar of a raw file, which has dims, but " + what, file);
     const Reader reader{document, file, ""};
     RawForm form;
 
-    const json* dims = reader.find("dims");
-    if (dims == nullptr) throw Error("is missing: not a sidecar of a raw file", file, "dims");
+    const json* const dims = &document["dims"];
     if (!dims->is_array() || dims->empty() || dims->size() > 3)
-        reader.fail("dims", "must be one to three whole numbers");
+        reader.refuse(*dims, "dims", "must be one to three whole numbers");
     for (std::size_t axis = 0; axis < dims->size(); ++axis) {
         const json& n = (*dims)[axis];
-        if (!n.is_number_integer()) reader.fail("dims", "must be one to three whole numbers");
+        const std::string place = "dims[" + std::to_string(axis) + "]";
+        if (!n.is_number_integer()) reader.refuse(n, place, "must be a whole number");
         const double value = n.get<double>();
-        form.lattice.size[static_cast<int>(axis)] =
-            value >= 1 && value <= kMostSamplesPerAxis ? static_cast<int>(value) : 0;
+        if (!(value >= 1 && value <= kMostSamplesPerAxis))
+            reader.refuse(n, place, "must be 1.." + std::to_string(kMostSamplesPerAxis));
+        form.lattice.size[static_cast<int>(axis)] = static_cast<int>(value);
     }
     RawForm::Component standard;
     standard.name = "value";
@@ -228,7 +248,7 @@ RawForm parseSidecar(std::string_view text, const std::string& file) {
     if (const json* times = reader.find("times")) {
         if (!times->is_array() || times->empty() || times->size() > kMostTimes) reader.fail("times", "must be a list");
         for (const json& time : *times) {
-            if (!time.is_number()) reader.fail("times", "must be numbers");
+            if (!time.is_number()) reader.refuse(time, "times", "must be numbers");
             form.times.push_back(time.get<double>());
         }
     }
@@ -304,9 +324,15 @@ RawForm parseRawOption(std::string_view text) {
     }
     if (form.lattice.size == glm::ivec3(0)) throw Error("needs dims=XxYxZ", {}, kRawPlace);
     if (!type) throw Error("needs type=u8, i16, u16, i32, f32 or f64", {}, kRawPlace);
-    if (components < 1 || components > kMostComponents) throw Error("is out of range", {}, kRawPlace + " components");
-    if (times < 1 || times > kMostTimes) throw Error("is out of range", {}, kRawPlace + " times");
-    if (form.skip > std::size_t(kMostRawBytes)) throw Error("is out of range", {}, kRawPlace + " skip");
+    const auto inRange = [](std::size_t value, std::size_t least, std::size_t most, const char* word) {
+        if (value < least || value > most)
+            throw Error("is " + std::to_string(value) + ", must be " + std::to_string(least) + ".." +
+                            std::to_string(most),
+                        {}, kRawPlace + " " + word);
+    };
+    inRange(components, 1, kMostComponents, "components");
+    inRange(times, 1, kMostTimes, "times");
+    inRange(form.skip, 0, std::size_t(kMostRawBytes), "skip");
     for (std::size_t i = 0; i < components; ++i) {
         RawForm::Component component;
         component.name = components == 1 ? "value" : "value" + std::to_string(i);

@@ -1,0 +1,65 @@
+#include "volume/system/part_file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <fcntl.h>
+#include <filesystem>
+#include <string_view>
+#include <sys/file.h>
+#include <unistd.h>
+
+namespace tessera {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kPartMark = ".part-";
+
+/// A process with this number exists; one of another user too.
+bool processRuns(pid_t pid) {
+    return ::kill(pid, 0) == 0 || errno != ESRCH;
+}
+
+bool isLocked(const std::string& path) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) return false;
+    const bool locked = ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    ::close(file);
+    return locked;
+}
+
+} // namespace
+
+std::string partFileOf(const std::string& path) {
+    return path + std::string(kPartMark) + std::to_string(::getpid());
+}
+
+std::vector<std::string> leftParts(const std::string& path) {
+    const fs::path target(path);
+    const std::string begin = target.filename().string() + std::string(kPartMark);
+    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    std::vector<std::string> left;
+    std::error_code problem;
+    for (fs::directory_iterator at(folder, problem), end; !problem && at != end; at.increment(problem)) {
+        const std::string name = at->path().filename().string();
+        if (!name.starts_with(begin)) continue;
+        pid_t pid = 0;
+        const char* const last = name.data() + name.size();
+        const auto [read, failed] = std::from_chars(name.data() + begin.size(), last, pid);
+        std::error_code unknown;
+        if (failed != std::errc() || read != last || pid <= 0 || !at->is_regular_file(unknown)) continue;
+        if (!processRuns(pid) && !isLocked(at->path().string())) left.push_back(at->path().string());
+    }
+    std::sort(left.begin(), left.end());
+    return left;
+}
+
+void removeLeftParts(const std::string& path) {
+    std::error_code ignored;
+    for (const std::string& part : leftParts(path)) fs::remove(part, ignored);
+}
+
+} // namespace tessera
