@@ -30,18 +30,85 @@ bool isNumber(const std::string& text) {
     return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-} // namespace
-
-std::string describePatch(const Json& patch) {
-    if (patch.empty()) return "nothing";
+/// The parts of a path that all operations of a patch share.
+std::vector<std::string> commonPath(const Json& patch) {
     std::vector<std::string> common = splitPointer(patch[0].value("path", std::string()));
-    const std::string operation = patch[0].value("op", std::string());
     for (const Json& each : patch) {
         const auto parts = splitPointer(each.value("path", std::string()));
         std::size_t same = 0;
         while (same < std::min(common.size(), parts.size()) && common[same] == parts[same]) ++same;
         common.resize(same);
     }
+    return common;
+}
+
+/// The kind and the own name of a thing, without saying the kind twice: "brush hot", "lens 2".
+std::string named(const std::string& kind, const std::string& name) {
+    return name.empty() ? kind : name.starts_with(kind) ? name : kind + " " + name;
+}
+
+/// The thing that a path leads into, as users call it, and how many parts of the path it takes; 0: none with a name.
+struct NamedThing {
+    std::string name;
+    std::size_t parts = 0;
+};
+NamedThing thingAt(const Session& session, const std::vector<std::string>& path) {
+    const auto at = [&](std::size_t part, const auto& list) -> const auto* {
+        const bool there = path.size() > part && isNumber(path[part]) &&
+                           static_cast<std::size_t>(std::stoi(path[part].substr(0, 8))) < list.size();
+        return there ? &list[static_cast<std::size_t>(std::stoi(path[part].substr(0, 8)))] : nullptr;
+    };
+    const std::string first = path.empty() ? "" : path[0];
+    if (first == "layers") {
+        if (const auto* layer = at(1, session.layers)) return {layerName(*layer), 2};
+    } else if (first == "lenses") {
+        if (const auto* lens = at(1, session.lenses)) return {named("lens", lens->name), 2};
+    } else if (first == "selection" && path.size() > 1 && path[1] == "brushes") {
+        if (const auto* brush = at(2, session.selection.brushes)) return {named("brush", brush->name), 3};
+        return {"brushes", 2};
+    } else if (first == "selection") {
+        return {"selection", 1};
+    } else if (first == "views" && path.size() > 1 && session.views.contains(path[1])) {
+        return {paneTitle(session, path[1]), 2};
+    } else if (first == "transfer" && path.size() > 1) {
+        return {"transfer function of " + path[1], 2};
+    } else if (first == "data" && path.size() > 1 && path[1] == "derived") {
+        if (const auto* derived = at(2, session.data.derived)) return {"parameter " + derived->name, 3};
+        return {"derived parameters", 2};
+    }
+    static constexpr std::pair<std::string_view, std::string_view> kWords[] = {
+        {"stretch", "proportions"}, {"render", "quality"},    {"appearance", "look of the window"},
+        {"lighting", "light"},      {"clips", "clipping"},    {"tone", "tone curve"},
+        {"animation", "animation"}, {"cursor", "cross-hair"}, {"views", "views"},
+        {"layers", "layers"},       {"lenses", "lenses"},     {"paper", "paper"}};
+    for (const auto& [key, word] : kWords)
+        if (first == key) return {std::string(word), 1};
+    return {};
+}
+
+} // namespace
+
+std::string editTitle(const Json& patch, const Session& before, const Session& after) {
+    if (patch.empty()) return describePatch(patch);
+    const std::vector<std::string> path = commonPath(patch);
+    const std::string operation = patch[0].value("op", std::string());
+    const bool removed = operation == "remove";
+    const NamedThing thing = thingAt(removed ? before : after, path);
+    if (thing.parts == 0) return describePatch(patch);
+    if (patch.size() == 1 && path.size() == thing.parts && operation != "replace") {
+        if (path[0] == "views") return thing.name + (removed ? " closed" : " opened");
+        return thing.name + (removed ? " removed" : " added");
+    }
+    // Of what is inside, the first key that is no identifier of the program.
+    std::size_t part = thing.parts;
+    while (part < path.size() && (isNumber(path[part]) || path[part] == "technique")) ++part;
+    return part < path.size() ? thing.name + ": " + keyWords(path[part]) : thing.name;
+}
+
+std::string describePatch(const Json& patch) {
+    if (patch.empty()) return "nothing";
+    const std::vector<std::string> common = commonPath(patch);
+    const std::string operation = patch[0].value("op", std::string());
     if (common.empty()) return "several changes";
     if (common[0] == "dock") return "arrangement of panes";
     if (common[0] == "camera") return "camera";
@@ -65,10 +132,10 @@ std::string pathTitle(const Session& session, const std::string& path) {
     const std::string first = detail::firstKey(path, rest);
     if (first == "layers") {
         const std::size_t index = detail::indexOf(detail::firstKey(rest, rest), session.layers.size());
-        if (index < session.layers.size() && !session.layers[index].name.empty()) {
+        if (index < session.layers.size()) {
             if (rest.starts_with("/technique")) rest.remove_prefix(10);
             const Json patch = Json::array({{{"op", "replace"}, {"path", std::string(rest)}}});
-            return session.layers[index].name + ": " + describePatch(patch);
+            return layerName(session.layers[index]) + ": " + describePatch(patch);
         }
     }
     return describePatch(Json::array({{{"op", "replace"}, {"path", path}}}));

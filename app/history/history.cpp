@@ -88,7 +88,7 @@ bool History::observe(const Session& session, bool editing, double seconds, doub
     }
     steps_.resize(position_);
     if (!forward.empty()) {
-        steps_.push_back({name.empty() ? describePatch(forward) : name, forward, Json::diff(now, before)});
+        steps_.push_back({name.empty() ? editTitle(forward, base_, session) : name, forward, Json::diff(now, before)});
         ++position_;
     }
     document_ = std::move(now);

@@ -25,7 +25,7 @@ public:
             std::visit([&](auto& technique) { fit(layer, technique); }, layer.technique);
             const auto named = [&](const vis::Lens& lens) { return lens.name == layer.lens; };
             if (layer.lens.empty() || std::ranges::any_of(session_.lenses, named)) continue;
-            messages_.push_back("layer " + layer.name + " is not drawn: there is no lens " + layer.lens);
+            messages_.push_back("layer " + layerName(layer) + " is not drawn: there is no lens " + layer.lens);
             layer.visible = false;
             layer.lens.clear();
         }
@@ -89,14 +89,17 @@ private:
         Technique::describe(technique, [&]<class Member>(Member& member, const FieldInfo& field) {
             if constexpr (std::is_same_v<Member, std::string>) {
                 if (field.refersTo == "channel") {
-                    if (replace(member)) layer.name = member, replaced = true;
+                    if (replace(member)) {
+                        if (!layer.name.empty()) layer.name = member;
+                        replaced = true;
+                    }
                     if (member.empty()) member = fallback_;
                 } else if (field.refersTo == "vector") {
                     fitVector(member);
                 } else if (field.refersTo == "optionalChannel") {
                     if (!known(member)) member.clear();
                 } else if (field.refersTo == "colorChannel" && !member.empty() && !known(member)) {
-                    messages_.push_back("layer " + layer.name + " keeps its own colours: " + member +
+                    messages_.push_back("layer " + layerName(layer) + " keeps its own colours: " + member +
                                         " is not in the data");
                     member.clear();
                 }

@@ -118,6 +118,19 @@ std::string firstVector(const volume::DatasetInfo& info) {
     return {};
 }
 
+std::string layerName(const vis::Layer& layer) {
+    if (!layer.name.empty()) return layer.name;
+    if (const auto* slice = std::get_if<vis::SliceLayer>(&layer.technique)) {
+        const bool oblique = slice->orientation == vis::SliceOrientation::Oblique;
+        return slice->channel + (oblique ? " oblique slice" : " slice ") +
+               (oblique ? "" : std::string(1, "xyz"[static_cast<int>(slice->orientation)]));
+    }
+    if (const auto* surface = std::get_if<vis::IsoLayer>(&layer.technique)) return surface->channel + " surface";
+    if (const auto* flow = std::get_if<vis::FlowLayer>(&layer.technique))
+        return (flow->vector.empty() ? flow->channel : flow->vector) + " flow";
+    return std::get<vis::VolumeLayer>(layer.technique).channel + " volume";
+}
+
 std::string firstChannel(const volume::DatasetInfo& info) {
     const auto channels = info.channels();
     for (const volume::Channel& channel : channels) {

@@ -198,6 +198,9 @@ std::string firstVector(const volume::DatasetInfo& info);
 /// The channel to look at first: a scalar with a range, else anything that is not a label; "" if there is none.
 std::string firstChannel(const volume::DatasetInfo& info);
 
+/// The name of a layer: the user's, else what it shows, "T surface", "T volume", "T slice z", "U flow".
+std::string layerName(const vis::Layer& layer);
+
 /// The session's lenses in the space of its data.
 vis::LensSpace lensSpace(const Session& session, const volume::DatasetInfo& info);
 

@@ -178,6 +178,35 @@ TEST(HistoryWords, SayWhatAStepChanged) {
     EXPECT_EQ(said({"/transfer/channel/range"}), "transfer channel: range") << "names of parameters stay";
 }
 
+TEST(HistoryWords, CallThingsByTheirNames) {
+    Session before, after;
+    before.layers = {{"mine", true, vis::VolumeLayer{.channel = "T"}}, {"", true, vis::IsoLayer{.channel = "O2"}}};
+    before.lenses = {{.name = "lens"}, {.name = "inlet"}};
+    before.selection.brushes.resize(1);
+    before.selection.brushes[0].name = "hot";
+    before.views["scatterMatrix-2"] = ScatterMatrixView{};
+    after = before;
+    const auto said = [&](const char* path, const char* operation = "replace") {
+        return editTitle(Json::array({{{"op", operation}, {"path", path}}}), before, after);
+    };
+    EXPECT_EQ(said("/layers/0/technique/density"), "mine: density");
+    EXPECT_EQ(said("/layers/1/technique/value"), "O2 surface: value");
+    EXPECT_EQ(said("/layers/1/technique/color/0"), "O2 surface: colour");
+    EXPECT_EQ(said("/layers/1", "remove"), "O2 surface removed");
+    EXPECT_EQ(said("/lenses/0/center/2"), "lens: center");
+    EXPECT_EQ(said("/lenses/1", "add"), "lens inlet added");
+    EXPECT_EQ(said("/selection/brushes/0/region/intervals/1/lo"), "brush hot: region");
+    EXPECT_EQ(said("/selection/brushes/0", "add"), "brush hot added");
+    EXPECT_EQ(said("/views/scatterMatrix-2/bins"), "Scatterplots 2: bins");
+    EXPECT_EQ(said("/views/scatterMatrix-2", "remove"), "Scatterplots 2 closed");
+    EXPECT_EQ(said("/transfer/O2/colormap"), "transfer function of O2: colour map");
+    EXPECT_EQ(said("/transfer/O2/opacity/1/0"), "transfer function of O2: opacity");
+    EXPECT_EQ(said("/stretch/2"), "proportions");
+    EXPECT_EQ(said("/time"), "time");
+    after.layers.pop_back();
+    EXPECT_EQ(said("/layers/1", "remove"), "O2 surface removed") << "as it was called";
+}
+
 TEST(JsonText, ShortListsStandOnOneLine) {
     const Json json = {{"a", {1, {{"d", 2}}}}, {"b", {1, 2, 3}}, {"c", {{1, 2}, {3, 4}}}};
     EXPECT_EQ(printJson(json), R"({
