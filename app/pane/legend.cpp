@@ -29,7 +29,7 @@ float drawSwatch(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& e
     draw.AddRect({min.x, min.y + em() * 0.25f}, {min.x + size, min.y + em() * 0.25f + size}, colors.frame);
     const double resolution = (entry.data.hi - entry.data.lo) / 1000;
     const std::string text = entry.title + " = " + formatQuantity(entry.value, entry.unit, resolution);
-    draw.AddText({min.x + size + em() * 0.5f, min.y}, colors.text, fitText(text, width - size - em() * 0.5f).c_str());
+    addFittedText(draw, {min.x + size + em() * 0.5f, min.y}, colors.text, text, width - size - em() * 0.5f);
     return em() * 1.25f;
 }
 
@@ -136,15 +136,15 @@ constexpr std::size_t kMostNames = 12;
 float drawNames(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry) {
     const PlotColors colors = plotColors();
     const float line = em() * 1.2f;
-    draw.AddText(min, colors.text, fitText(entry.title, width).c_str());
+    addFittedText(draw, min, colors.text, entry.title, width);
     float y = min.y + line;
     for (std::size_t i = 0; i < entry.names.size() && i < kMostNames; ++i, y += line) {
         const glm::vec3 color = entry.names[i].color;
         draw.AddRectFilled({min.x, y + em() * 0.15f}, {min.x + em() * 0.8f, y + em() * 0.9f},
                            toColor({color.r, color.g, color.b}));
         const bool more = i + 1 == kMostNames && entry.names.size() > kMostNames;
-        draw.AddText({min.x + em() * 1.1f, y}, colors.text,
-                     fitText(more ? "..." : entry.names[i].name, width - em() * 1.1f).c_str());
+        addFittedText(draw, {min.x + em() * 1.1f, y}, colors.text, more ? "..." : entry.names[i].name,
+                      width - em() * 1.1f);
     }
     return y - min.y;
 }

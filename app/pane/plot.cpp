@@ -117,8 +117,9 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
     const std::string note = ticks.note.empty() ? "" : "  " + ticks.note;
     const float length = bottom || !options.inlineTitle ? hi - lo : 1e6f;
     std::string label;
-    for (const std::string& text : {titleWithUnit(title, unit) + note, std::string(title) + note,
-                                    ticks.note.empty() ? fitText(title, length) : ticks.note}) {
+    const std::string whole = titleWithUnit(title, unit) + note;
+    for (const std::string& text :
+         {whole, std::string(title) + note, ticks.note.empty() ? fitText(title, length) : ticks.note}) {
         label = text;
         if (ImGui::CalcTextSize(label.c_str()).x <= length) break;
     }
@@ -152,12 +153,15 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
             bottom ? ImVec2{hi - size.x, frame.max.y + tickLength() + em() * 0.1f}
                    : ImVec2{frame.min.x - (options.room > 0 ? options.room : size.x), frame.min.y - em() * 1.25f};
         draw.AddText({std::round(at.x), std::round(at.y)}, colors.faint, label.c_str());
+        tellWhole(at, {at.x + size.x, at.y + size.y}, whole, label);
         return;
     }
     const auto centred = [&](float middle) { return std::max(lo + size.x / 2, std::min(middle, hi - size.x / 2)); };
     if (bottom) {
         const float x = centred((frame.min.x + frame.max.x) / 2) - size.x / 2;
-        draw.AddText({std::round(x), frame.max.y + tickLength() + em() * 1.15f}, colors.faint, label.c_str());
+        const float y = frame.max.y + tickLength() + em() * 1.15f;
+        draw.AddText({std::round(x), y}, colors.faint, label.c_str());
+        tellWhole({x, y}, {x + size.x, y + size.y}, whole, label);
     } else {
         const float x = options.room > 0 ? frame.min.x - options.room + em() * 0.6f
                                          : frame.min.x - tickLength() - em() * 0.9f - widest;
@@ -204,16 +208,13 @@ void addTextWithBackdrop(ImDrawList& draw, ImVec2 at, ImVec2 pivot, ImU32 color,
     draw.AddText(from, color, text);
 }
 
-std::string fitText(std::string_view text, float width) {
-    std::string out(text);
-    if (ImGui::CalcTextSize(out.c_str()).x <= width) return out;
-    while (!out.empty()) {
-        // Whole UTF-8 characters only.
-        while (!out.empty() && (static_cast<unsigned char>(out.back()) & 0xc0) == 0x80) out.pop_back();
-        if (!out.empty()) out.pop_back();
-        if (ImGui::CalcTextSize((out + "...").c_str()).x <= width) return out.empty() ? out : out + "...";
-    }
-    return {};
+void addFittedWithBackdrop(ImDrawList& draw, ImVec2 at, ImVec2 pivot, ImU32 color, const std::string& text,
+                           float width) {
+    const std::string shown = fitText(text, width);
+    addTextWithBackdrop(draw, at, pivot, color, shown.c_str());
+    const ImVec2 size = ImGui::CalcTextSize(shown.c_str());
+    const ImVec2 from{at.x - size.x * pivot.x, at.y - size.y * pivot.y};
+    tellWhole(from, {from.x + size.x, from.y + size.y}, text, shown);
 }
 
 void drawBars(ImDrawList& draw, const PlotFrame& frame, std::span<const float> heights, ImU32 color) {

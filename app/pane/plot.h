@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/ui/fitted_text.h"
 #include "volume/base/describe.h"
 
 #include <algorithm>
@@ -73,9 +74,9 @@ void addTextUpwards(ImDrawList& draw, ImVec2 center, ImU32 color, const char* te
 /// Text with a translucent box behind it so that it stays legible on pictures. `pivot` 0..1 is the point of the text
 /// that lies at `at`.
 void addTextWithBackdrop(ImDrawList& draw, ImVec2 at, ImVec2 pivot, ImU32 color, const char* text);
-
-/// A line of text cut off with "..." so that it is at most `width` pixels wide.
-std::string fitText(std::string_view text, float width);
+/// The same, at most `width` pixels wide; the whole stands in a tooltip.
+void addFittedWithBackdrop(ImDrawList& draw, ImVec2 at, ImVec2 pivot, ImU32 color, const std::string& text,
+                           float width);
 
 /// Bars from the bottom of the frame; heights 0..1 of the frame, equal widths over its x range.
 void drawBars(ImDrawList& draw, const PlotFrame& frame, std::span<const float> heights, ImU32 color);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <set>
 
 namespace tessera::app {
@@ -77,8 +79,8 @@ std::string originText(const ViewContext& context, const std::vector<int>& chann
 void drawOrigin(const ViewContext& context, const std::vector<int>& channels) {
     const std::string text = originText(context, channels);
     continueLine(std::min(ImGui::CalcTextSize(text.c_str()).x, em() * 12));
-    const std::string shown = fitText(text, ImGui::GetContentRegionAvail().x);
-    ImGui::TextDisabled("%s", shown.c_str());
+    const std::string fitted = fitText(text, ImGui::GetContentRegionAvail().x);
+    ImGui::TextDisabled("%s", fitted.c_str());
     if (ImGui::IsItemHovered()) tooltip(("Numbers: " + text).c_str());
 }
 
@@ -162,6 +164,16 @@ void chooseChannels(const volume::DatasetInfo& info, std::vector<std::string>& n
         ImGui::EndCombo();
     }
     if (ImGui::IsItemHovered()) tooltip("Parameters shown");
+}
+
+std::string layerTitle(const vis::Layer& layer, const volume::DatasetInfo& info) {
+    const std::string name = layerName(layer);
+    const auto* surface = std::get_if<vis::IsoLayer>(&layer.technique);
+    const auto channel = surface && layer.name.empty() ? info.findChannel(surface->channel) : std::nullopt;
+    if (!channel) return name;
+    char rounded[32]; // four digits without zeros at the end
+    std::snprintf(rounded, sizeof rounded, "%.4g", surface->value);
+    return name + " " + formatQuantity(std::strtod(rounded, nullptr), info.channel(*channel).unit);
 }
 
 std::optional<int> resolveChannel(const volume::DatasetInfo& info, const Session& session, const std::string& wanted) {

@@ -68,6 +68,9 @@ void chooseChannels(const volume::DatasetInfo& info, std::vector<std::string>& n
 /// for data without parameters.
 std::optional<int> resolveChannel(const volume::DatasetInfo& info, const Session& session, const std::string& wanted);
 
+/// The name of a layer; of a surface that the user has not named with its value: "T surface 350 K".
+std::string layerTitle(const vis::Layer& layer, const volume::DatasetInfo& info);
+
 /// The transfer function that the channel is drawn with.
 const vis::TransferFunction& transferOf(const Session& session, const std::string& channel);
 /// The same to edit: made on first use.

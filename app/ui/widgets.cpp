@@ -1,6 +1,7 @@
 #include "app/ui/widgets.h"
 
 #include "app/described/key_words.h"
+#include "app/ui/fitted_text.h"
 #include "app/ui/theme.h"
 #include "app/ui/ticks.h"
 #include "vis/transfer/transfer_function.h"
@@ -66,19 +67,20 @@ void drawLabel(const WidgetContext& context, std::string_view label, std::string
     const float start = ImGui::GetCursorPosX();
     const float column = std::floor(width * context.labelShare);
     const ImVec2 corner = ImGui::GetCursorScreenPos();
-    // A label that is slightly too long is drawn smaller instead of truncated.
+    // A label that is slightly too long is drawn smaller instead of shortened.
     const float room = column - ImGui::GetStyle().ItemInnerSpacing.x;
     const char *begin = label.data(), *end = begin + label.size();
     const float scale = std::clamp(room / std::max(1.0f, ImGui::CalcTextSize(begin, end).x), 0.75f, 1.0f);
     const float size = std::floor(ImGui::GetFontSize() * scale);
-    ImGui::PushClipRect(corner, {corner.x + room, corner.y + 100}, true);
+    const std::string shown = fitText(label, room / scale + 0.5f);
     ImGui::GetWindowDrawList()->AddText(
         ImGui::GetFont(), size,
         {corner.x, std::round(corner.y + ImGui::GetStyle().FramePadding.y + (ImGui::GetFontSize() - size) / 2)},
-        palette().muted, begin, end);
-    ImGui::PopClipRect();
+        palette().muted, shown.c_str());
     ImGui::Dummy({std::max(1.0f, room), ImGui::GetFrameHeight()});
-    if (!help.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%.*s", int(help.size()), help.data());
+    if (const std::string told = shown == label ? std::string(help) : std::string(label) + "\n" + std::string(help);
+        !told.empty() && ImGui::IsItemHovered())
+        ImGui::SetTooltip("%s", told.c_str());
     if (context.menu && !context.path.empty() && ImGui::BeginPopupContextItem(context.path.c_str())) {
         (*context.menu)(context.path);
         ImGui::EndPopup();
@@ -124,7 +126,7 @@ bool drawChoice(const WidgetContext& context, const FieldInfo& info, int& index)
     drawLabel(context, labelOf(info.key), info.doc);
     bool changed = false;
     const auto shown = [&](int i) { return labelOf(info.names[static_cast<std::size_t>(i)]); };
-    if (ImGui::BeginCombo(idOf(info).c_str(), shown(index).c_str())) {
+    if (beginFittedCombo(idOf(info).c_str(), shown(index))) {
         for (int i = 0; i < static_cast<int>(info.names.size()); ++i) {
             if (ImGui::Selectable(shown(i).c_str(), i == index)) {
                 changed = i != index;
@@ -139,8 +141,7 @@ bool drawChoice(const WidgetContext& context, const FieldInfo& info, int& index)
 
 bool chooseChannel(const char* id, const volume::DatasetInfo* info, std::string& value, const char* emptyName) {
     bool changed = false;
-    const char* shown = value.empty() ? (emptyName ? emptyName : "-") : value.c_str();
-    if (!ImGui::BeginCombo(id, shown)) return false;
+    if (!beginFittedCombo(id, value.empty() ? (emptyName ? emptyName : "-") : value)) return false;
     if (emptyName && ImGui::Selectable(emptyName, value.empty())) {
         changed = !value.empty();
         value.clear();
@@ -166,7 +167,7 @@ bool chooseChannel(const char* id, const volume::DatasetInfo* info, std::string&
 
 bool chooseVector(const char* id, const volume::DatasetInfo* info, std::string& value) {
     bool changed = false;
-    if (!ImGui::BeginCombo(id, value.empty() ? "none" : value.c_str())) return false;
+    if (!beginFittedCombo(id, value.empty() ? "none" : value)) return false;
     if (info)
         for (const volume::Parameter& parameter : info->parameters)
             if (parameter.components == 3 && ImGui::Selectable(parameter.name.c_str(), parameter.name == value)) {

@@ -52,9 +52,8 @@ void drawOver(const Frame& frame, const PictureBox& box, const Session& session,
     if (!shown.title) return;
     const PlotColors colors = plotColors();
     const float pad = em() * 0.5f;
-    const std::string text = fitText(caption, box.size.x * (left ? 1.0f : 0.5f) - 2 * pad);
-    addTextWithBackdrop(draw, {left ? box.min.x + pad : box.max().x - pad, box.min.y + em() * 0.4f},
-                        {left ? 0.0f : 1.0f, 0}, colors.text, text.c_str());
+    addFittedWithBackdrop(draw, {left ? box.min.x + pad : box.max().x - pad, box.min.y + em() * 0.4f},
+                          {left ? 0.0f : 1.0f, 0}, colors.text, caption, box.size.x * (left ? 1.0f : 0.5f) - 2 * pad);
     if (marked)
         addTextWithBackdrop(draw, {box.min.x + pad, box.min.y + em() * 1.7f}, {0, 0}, colors.faint, "reference");
 }
@@ -88,8 +87,8 @@ void drawCell(const Frame& frame, std::size_t index, const PictureBox& box) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     if (cell.drawn) return addPicture(draw, cell.status.texture, box.min, box.max());
     const std::string text = cell.failure.empty() ? "Opening the data" : cell.failure;
-    addTextWithBackdrop(draw, {box.min.x + box.size.x / 2, box.min.y + box.size.y / 2}, {0.5f, 0.5f},
-                        plotColors().faint, fitText(text, box.size.x - em()).c_str());
+    addFittedWithBackdrop(draw, {box.min.x + box.size.x / 2, box.min.y + box.size.y / 2}, {0.5f, 0.5f},
+                          plotColors().faint, text, box.size.x - em());
 }
 
 std::string nameOf(const Frame& frame, std::size_t index) {
@@ -133,8 +132,8 @@ void drawValues(const Frame& frame, const std::string& pane, const std::vector<P
         draw.PushClipRect(box.min, box.max(), true);
         const auto note = [&](const std::string& text, int line) {
             const float y = box.min.y + em() * (1.7f + 1.3f * static_cast<float>(line));
-            addTextWithBackdrop(draw, {box.min.x + em() * 0.5f, y}, {0, 0}, plotColors().faint,
-                                fitText(text, box.size.x - em()).c_str());
+            addFittedWithBackdrop(draw, {box.min.x + em() * 0.5f, y}, {0, 0}, plotColors().faint, text,
+                                  box.size.x - em());
         };
         const glm::ivec2 size(static_cast<int>(box.size.x), static_cast<int>(box.size.y));
         const bool shown = i != frame.reference && cell.failure.empty() &&

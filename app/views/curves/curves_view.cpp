@@ -221,8 +221,8 @@ void drawPlot(ViewContext& context, const volume::Curves& curves, const std::vec
         std::string text = curveTitle(curve);
         const double value = curvePoint(curves, group[n], session.time).y;
         if (std::isfinite(value)) text += "  " + groupedNumber(value);
-        addTextWithBackdrop(draw, {frame.max.x - em() * 0.4f, top}, {1, 0}, group.size() > 1 ? inkOf(n) : colors.text,
-                            fitText(text, frame.width() - em()).c_str());
+        addFittedWithBackdrop(draw, {frame.max.x - em() * 0.4f, top}, {1, 0}, group.size() > 1 ? inkOf(n) : colors.text,
+                              text, frame.width() - em());
     }
 }
 

@@ -108,8 +108,8 @@ void drawCurve(const std::string& title, Range range, const Profile& profile, st
     drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
     std::string text = title;
     if (marked) text += "  " + formatNumber(values[*marked], (range.hi - range.lo) / 1000);
-    addTextWithBackdrop(draw, {frame.min.x + em() * 0.4f, frame.min.y + em() * 0.2f}, {0, 0}, colors.text,
-                        fitText(text, frame.width() - em()).c_str());
+    addFittedWithBackdrop(draw, {frame.min.x + em() * 0.4f, frame.min.y + em() * 0.2f}, {0, 0}, colors.text, text,
+                          frame.width() - em());
 }
 
 void updatePictures(ProfileCache& cache, const Session& session, const volume::DatasetInfo& info,
@@ -145,8 +145,8 @@ void drawPicture(const Session& session, const std::string& title, const vis::Pl
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, colors.frame);
     drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
-    addTextWithBackdrop(draw, {frame.min.x + em() * 0.4f, frame.min.y + em() * 0.2f}, {0, 0}, colors.text,
-                        fitText(title, frame.width() - em()).c_str());
+    addFittedWithBackdrop(draw, {frame.min.x + em() * 0.4f, frame.min.y + em() * 0.2f}, {0, 0}, colors.text, title,
+                          frame.width() - em());
 }
 
 /// The place nearest to the linked cursor, where that lies near the line.

@@ -167,18 +167,18 @@ void drawParameters(Session& session, const volume::DatasetInfo& info) {
         ImGui::PushID(channel.name.c_str());
         bool over = false;
         if (parameter.categorical && !parameter.labels.empty()) {
-            if (ImGui::Selectable(channel.name.c_str())) ImGui::OpenPopup("labels");
+            const std::string shown = fitText(channel.name, ImGui::GetContentRegionAvail().x);
+            if (ImGui::Selectable(shown.empty() ? "##name" : shown.c_str())) ImGui::OpenPopup("labels");
             over = ImGui::IsItemHovered();
             editLabels(session, parameter);
         } else {
-            ImGui::TextUnformatted(
-                titleWithUnit(channel.name, channel.unit + (parameter.unitGuessed ? " (guessed)" : "")).c_str());
+            fittedText(titleWithUnit(channel.name, channel.unit + (parameter.unitGuessed ? " (guessed)" : "")));
             if (parameter.unitGuessed && ImGui::IsItemHovered())
                 tooltip("The file states no unit; this is the usual one for the name. Use --unit to state another.");
         }
         ImGui::PopID();
         if (over) {
-            std::string labels = "Click to name its values";
+            std::string labels = channel.name + ": click to name its values";
             for (const volume::Label& label : parameter.labels)
                 labels += "\n" + std::to_string(label.value) + "  " + label.name;
             tooltip(labels.c_str());

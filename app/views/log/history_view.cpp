@@ -1,5 +1,6 @@
 #include "app/history/history.h"
 #include "app/pane/view_context.h"
+#include "app/ui/fitted_text.h"
 #include "app/ui/theme.h"
 
 #include <imgui.h>
@@ -18,7 +19,10 @@ void drawHistoryView(ViewContext& context, const std::string&, HistoryView&) {
         const bool undone = i >= position;
         ImGui::PushID(static_cast<int>(i));
         if (undone) ImGui::PushStyleColor(ImGuiCol_Text, palette().muted);
-        if (ImGui::Selectable(context.history->steps()[i].name.c_str(), i + 1 == position)) wanted = i + 1;
+        const std::string &name = context.history->steps()[i].name,
+                          shown = fitText(name, ImGui::GetContentRegionAvail().x);
+        if (ImGui::Selectable((shown + "###step").c_str(), i + 1 == position)) wanted = i + 1;
+        if (shown != name && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", name.c_str());
         if (undone) ImGui::PopStyleColor();
         ImGui::PopID();
     }

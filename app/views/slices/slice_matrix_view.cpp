@@ -192,7 +192,7 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
         const std::string place =
             std::string(along.name) + " = " +
             formatQuantity(position * unit.perUnit, unit.name, info.bounds.size()[axes.normal] * unit.perUnit / 100);
-        if (context.decoration.title) draw.AddText({x, origin.y}, colors.text, fitText(place, pitch - gap).c_str());
+        if (context.decoration.title) addFittedText(draw, {x, origin.y}, colors.text, place, pitch - gap);
         for (std::size_t row = 0; row < shown.size(); ++row) {
             const float y = std::round(origin.y + head + (cellY + gap) * static_cast<float>(row));
             const volume::Channel& channel = channels[static_cast<std::size_t>(shown[row])];

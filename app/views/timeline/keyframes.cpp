@@ -178,7 +178,7 @@ void drawKeyframes(ViewContext& context, float height) {
             row.y += rowHeight();
             ImGui::PushID(session.animation.tracks[i].path.c_str());
             const std::string title = trackTitle(session, session.animation.tracks[i].path);
-            draw.AddText({origin.x + em() * 0.4f, row.y - em() * 0.5f}, colors.text, fitText(title, names).c_str());
+            addFittedText(draw, {origin.x + em() * 0.4f, row.y - em() * 0.5f}, colors.text, title, names);
             drawTrack(context, i, row);
             ImGui::PopID();
         }

@@ -1,0 +1,61 @@
+#include "app/ui/fitted_text.h"
+
+namespace tessera::app {
+
+std::string fitText(std::string_view text, float width) {
+    std::string out(text);
+    if (ImGui::CalcTextSize(out.c_str()).x <= width) return out;
+    while (!out.empty()) {
+        // Whole UTF-8 characters only.
+        while (!out.empty() && (static_cast<unsigned char>(out.back()) & 0xc0) == 0x80) out.pop_back();
+        if (!out.empty()) out.pop_back();
+        if (ImGui::CalcTextSize((out + "...").c_str()).x <= width) return out.empty() ? out : out + "...";
+    }
+    return {};
+}
+
+void fittedText(std::string_view text, float width) {
+    const std::string shown = fitText(text, width > 0 ? width : ImGui::GetContentRegionAvail().x);
+    ImGui::TextUnformatted(shown.c_str());
+    if (shown != text && ImGui::IsItemHovered()) ImGui::SetTooltip("%.*s", int(text.size()), text.data());
+}
+
+bool beginFittedCombo(const char* id, std::string_view chosen) {
+    const float room = ImGui::CalcItemWidth() - ImGui::GetFrameHeight() - 2 * ImGui::GetStyle().FramePadding.x;
+    std::string shown = fitText(chosen, room);
+    if (shown.empty()) shown = chosen; // a cut letter says more than none
+    const bool open = ImGui::BeginCombo(id, shown.c_str());
+    if (!open && ImGui::CalcTextSize(chosen.data(), chosen.data() + chosen.size()).x > room && ImGui::IsItemHovered())
+        ImGui::SetTooltip("%.*s", int(chosen.size()), chosen.data());
+    return open;
+}
+
+bool fittedTreeNode(std::string_view text, const char* id, std::optional<bool> unfold) {
+    if (unfold) ImGui::SetNextItemOpen(*unfold);
+    const std::string shown = fitText(text, ImGui::GetContentRegionAvail().x - ImGui::GetTreeNodeToLabelSpacing());
+    const bool open = ImGui::TreeNodeEx((shown + "###" + id).c_str(), ImGuiTreeNodeFlags_SpanAvailWidth);
+    if (shown != text && ImGui::IsItemHovered()) ImGui::SetTooltip("%.*s", int(text.size()), text.data());
+    return open;
+}
+
+std::optional<std::size_t> newInList(const char* id, std::size_t count) {
+    int& known = *ImGui::GetStateStorage()->GetIntRef(ImGui::GetID(id), -1);
+    const bool added = known >= 0 && count == static_cast<std::size_t>(known) + 1;
+    known = static_cast<int>(count);
+    return added ? std::optional(count - 1) : std::nullopt;
+}
+
+void tellWhole(ImVec2 min, ImVec2 max, std::string_view whole, std::string_view shown) {
+    if (shown != whole && ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(min, max))
+        ImGui::SetTooltip("%.*s", int(whole.size()), whole.data());
+}
+
+float addFittedText(ImDrawList& draw, ImVec2 at, ImU32 color, std::string_view text, float width) {
+    const std::string shown = fitText(text, width);
+    const ImVec2 size = ImGui::CalcTextSize(shown.c_str());
+    draw.AddText(at, color, shown.c_str());
+    tellWhole(at, {at.x + size.x, at.y + size.y}, text, shown);
+    return size.x;
+}
+
+} // namespace tessera::app

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <imgui.h>
+#include <optional>
+#include <string>
+#include <string_view>
+
+/// Lines of text that end with "..." where they have no room, and show the whole under the mouse.
+namespace tessera::app {
+
+/// A line of text cut off with "..." so that it is at most `width` pixels wide. Where not even one letter and the dots
+/// have room, nothing.
+std::string fitText(std::string_view text, float width);
+
+/// The text as an item of a window, at most `width` pixels wide (0: up to the right end of the window). What was cut
+/// off stands in a tooltip.
+void fittedText(std::string_view text, float width = 0);
+
+/// A list of choices as wide as the next item; ImGui::EndCombo() follows where it is true.
+bool beginFittedCombo(const char* id, std::string_view chosen);
+
+/// A line that unfolds; `id` tells it apart. `unfold`: it does, or folds, now. ImGui::TreePop() follows where it is
+/// true.
+bool fittedTreeNode(std::string_view text, const char* id, std::optional<bool> unfold = {});
+
+/// For a list of lines that unfold, before they are drawn: the index of the one that is new since the last frame, so
+/// that it unfolds and the others fold; nothing if none was added.
+std::optional<std::size_t> newInList(const char* id, std::size_t count);
+
+/// Shows the whole of a text under the mouse where `shown`, drawn from `min` to `max` in the window being made, is
+/// less.
+void tellWhole(ImVec2 min, ImVec2 max, std::string_view whole, std::string_view shown);
+
+/// The same, drawn at a place of the window being made. Returns the width in pixels.
+float addFittedText(ImDrawList& draw, ImVec2 at, ImU32 color, std::string_view text, float width);
+
+} // namespace tessera::app
