@@ -1,4 +1,5 @@
 #include "app/queries/flow_query.h"
+#include "tests/app/drawn_text.h"
 #include "tests/app/views_fixture.h"
 #include "volume/base/error.h"
 
@@ -162,8 +163,20 @@ TEST_F(Views, ATesseractTurnsByHand) {
     EXPECT_FALSE(busy);
     tesseractView.tour = true;
     headless = false;
+    const auto sliders = [] {
+        std::string all;
+        for (const DrawnText& each : drawnTexts())
+            if (each.text.find("\xc2\xb0") != std::string::npos) all += each.text + "; ";
+        return all;
+    };
     frame(view);
     EXPECT_TRUE(busy) << "a tour goes on";
+    const std::string before = sliders();
+    EXPECT_FALSE(before.empty());
+    const TesseractView saved = tesseractView;
+    for (int i = 0; i < 60; ++i) frame(view);
+    EXPECT_NE(sliders(), before) << "and moves the sliders";
+    EXPECT_EQ(tesseractView.turn, saved.turn) << "the session keeps the angles it starts from";
     headless = true;
     feedKey(ImGui::GetIO(), 'R', true);
     frame(view);

@@ -39,16 +39,6 @@ std::optional<int> fourthChannel(const volume::DatasetInfo& info, const Tesserac
     return view.fourth.empty() ? std::nullopt : info.findChannel(view.fourth);
 }
 
-/// Blue to orange, legible on dark and on light ground.
-vis::TransferFunction fourthColors() {
-    vis::TransferFunction function;
-    function.colors = {{0.0f, {0.30f, 0.55f, 0.98f}},
-                       {0.35f, {0.58f, 0.50f, 0.93f}},
-                       {0.65f, {0.88f, 0.45f, 0.62f}},
-                       {1.0f, {0.98f, 0.55f, 0.16f}}};
-    return function;
-}
-
 /// Half the edges within the unit ball.
 glm::dvec4 halfOf(const TesseractView& view, const volume::Box& bounds, glm::dvec3 stretch) {
     glm::dvec4 half(0.5);
@@ -121,27 +111,34 @@ float slidersHeight(float width) {
     return static_cast<float>(rows) * ImGui::GetFrameHeightWithSpacing();
 }
 
-void drawSliders(TesseractView& view, float width) {
+/// The angles as they are: a tour moves the sliders too, and goes on from where one of them is put.
+void drawSliders(TesseractView& view, TesseractCache& cache, const glm::dmat4& rotation, float width) {
+    TesseractView shown = view;
+    if (cache.tour != 0) setAngles(shown, vis::anglesOf(rotation));
+    bool moved = false;
     const std::array<std::string, 4> axes = axisNames(view);
     static constexpr int kAxes[6][2] = {{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}};
     const int columns = width < em() * 20 ? 2 : 3;
     const float space = ImGui::GetStyle().ItemSpacing.x;
     const float each = std::floor((width - space * static_cast<float>(columns - 1)) / static_cast<float>(columns));
     for (int i = 0; i < 6; ++i) {
-        float& angle = i < 3 ? view.turn[i] : view.turn4[i - 3];
+        float& angle = i < 3 ? shown.turn[i] : shown.turn4[i - 3];
         const std::string name = axes[std::size_t(kAxes[i][0])] + axes[std::size_t(kAxes[i][1])];
         if (i % columns != 0) ImGui::SameLine();
         ImGui::SetNextItemWidth(each);
         ImGui::PushID(i);
         // A drag leaves traces of a degree, which would be written "-0".
         const char* number = std::abs(angle) < 0.5f ? "0" : "%.0f";
-        ImGui::SliderFloat("##angle", &angle, -180, 180, (name + "  " + number + "\xc2\xb0").c_str());
+        moved |= ImGui::SliderFloat("##angle", &angle, -180, 180, (name + "  " + number + "\xc2\xb0").c_str());
         ImGui::PopID();
         if (ImGui::IsItemHovered())
             tooltip(("Rotation in the plane of " + axes[std::size_t(kAxes[i][0])] + " and " +
                      axes[std::size_t(kAxes[i][1])] + "; Ctrl+click to type")
                         .c_str());
     }
+    if (!moved) return;
+    view = shown;
+    cache.tour = 0;
 }
 
 /// Mouse and keys over the picture, which is the last item. Returns true while something moves.
@@ -291,8 +288,8 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
     const PlotColors colors = plotColors();
     if (context.decoration.axes) drawAxisNames4(draw, frame);
     if (context.decoration.title)
-        addTextWithBackdrop(draw, {frame.min.x + em() * 0.5f, frame.max.y - em() * 0.4f}, {0, 1}, colors.faint,
-                            fitText(nearText(frame), frame.max.x - frame.min.x - em()).c_str());
+        addFittedWithBackdrop(draw, {frame.min.x + em() * 0.5f, frame.max.y - em() * 0.4f}, {0, 1}, colors.faint,
+                              nearText(frame), frame.max.x - frame.min.x - em());
     if (!view.showLegend || !context.decoration.legend) return;
     const std::optional<int> fourth = fourthChannel(info, view);
     std::vector<LegendEntry> entries;
@@ -393,7 +390,7 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
     drawTexts(context, view, frame, max, *channel);
     if (hovered) drawReading(context, view, cache, frame, *channel);
     draw.PopClipRect();
-    if (below > 0) drawSliders(view, room.x);
+    if (below > 0) drawSliders(view, cache, frame.rotation, room.x);
 }
 
 } // namespace tessera::app

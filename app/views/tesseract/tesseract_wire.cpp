@@ -52,6 +52,15 @@ void drawPieces(ImDrawList& draw, std::vector<Piece>& pieces) {
 
 } // namespace
 
+vis::TransferFunction fourthColors() {
+    vis::TransferFunction function;
+    function.colors = {{0.0f, {0.30f, 0.55f, 0.98f}},
+                       {0.35f, {0.58f, 0.50f, 0.93f}},
+                       {0.65f, {0.88f, 0.45f, 0.62f}},
+                       {1.0f, {0.98f, 0.55f, 0.16f}}};
+    return function;
+}
+
 ImVec2 TesseractFrame::pixel(glm::dvec2 at) const {
     const float unit = 0.5f * std::min(max.x - min.x, max.y - min.y);
     return {0.5f * (min.x + max.x) + float(at.x) * unit, 0.5f * (min.y + max.y) - float(at.y) * unit};

@@ -23,6 +23,9 @@ struct TesseractFrame {
     ImVec2 pixel(glm::dvec2 at) const;
 };
 
+/// Blue to orange, legible on dark and on light ground.
+vis::TransferFunction fourthColors();
+
 /// The 32 edges, coloured along the fourth axis, fainter and thinner with distance; nearer ones over farther ones.
 void drawWire(ImDrawList& draw, const TesseractFrame& frame);
 /// Lines of the lattice of `cells` cells along each axis.
