@@ -184,5 +184,13 @@ TEST(Differences, OfTheFuelCellAreThoseOfItsFiles) {
     expectDifference(samplesOf(*opened(two).numbers, "d", 0), samplesOf(*last, "T", 0), samplesOf(*first, "T", 0));
 }
 
+TEST(NewDerived, MakesUpNoUnitOfLength) {
+    volume::DatasetInfo info = opened(cell()).pictures->info();
+    EXPECT_EQ(newDerived(info, 2, "T").unit, "K/m");
+    info.lengthUnit.clear(); // nobody states one
+    EXPECT_EQ(newDerived(info, 2, "T").unit, "");
+    EXPECT_EQ(newDerived(info, 7, "T").unit, "");
+}
+
 } // namespace
 } // namespace tessera::app

@@ -53,6 +53,7 @@ TEST(RegionData, RowsSayOfWhatTheirSharesAre) {
     EXPECT_DOUBLE_EQ(rows[3].ofExisting, 1);
     EXPECT_DOUBLE_EQ(rows[1].ofAll, rows[1].summary.samples / double(kGrid.count()));
     EXPECT_DOUBLE_EQ(rows[1].ofExisting, rows[1].summary.samples / rows[3].summary.samples);
+    EXPECT_NE(regionCsv(rows, "", "", "").find(",volume,mean"), std::string::npos) << "no unit, and no cube of none";
     const auto csv = rowsOf(regionCsv(rows, "m", "time [s]", "0.5"));
     ASSERT_EQ(csv.size(), 9u);
     EXPECT_EQ(csv[0][0], "time [s]");

@@ -70,7 +70,8 @@ std::string profileCsv(const volume::DatasetInfo& info, const Session& session, 
     const bool timed = profile.query.over != ProfileOver::Line;
     const LineAxis along = lineAxis(session, info, profile);
     std::string csv = timed ? csvField(titleWithUnit(info.timeName, info.timeUnit)) + "," : std::string();
-    csv += along.distance ? "distance [" + info.lengthUnit + "]" : csvField(titleWithUnit(along.title, along.unit));
+    csv += along.distance ? csvField(titleWithUnit("distance", info.lengthUnit))
+                          : csvField(titleWithUnit(along.title, along.unit));
     glm::dvec3 perUnit(1); // shown in the unit of the data, times as times
     for (int axis = 0; axis < 3; ++axis) {
         const bool time = session.data.timeAxis && static_cast<int>(session.data.timeAxis->axis) == axis;

@@ -118,7 +118,8 @@ volume::DerivedParameter newDerived(const volume::DatasetInfo& info, std::size_t
                            [&](const volume::Parameter& own) { return own.name == name; });
     };
     for (int i = 2; taken(made.name); ++i) made.name = base + " " + std::to_string(i);
-    made.unit = kind == 2                ? (unit.empty() ? "1" : unit) + "/" + info.lengthUnit
+    const std::string& length = info.lengthUnit; // "": none is stated, and none of its own is made up
+    made.unit = kind == 2                ? (length.empty() ? std::string() : (unit.empty() ? "1" : unit) + "/" + length)
                 : kind == 3 || kind == 4 ? (info.timeUnit.empty() ? std::string() : "1/" + info.timeUnit)
                 : kind == 7              ? info.lengthUnit
                 : kind == 8              ? info.timeUnit

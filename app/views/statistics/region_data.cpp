@@ -92,8 +92,8 @@ std::string regionCsv(const std::vector<RegionRow>& rows, const std::string& len
     std::string csv;
     if (head)
         csv += (time.empty() ? "" : csvField(timeTitle) + ",") +
-               "parameter,unit,region,samples,share of all samples,share of the samples where it exists,volume [" +
-               lengthUnit + "3],mean,deviation,min,max\n";
+               "parameter,unit,region,samples,share of all samples,share of the samples where it exists,volume" +
+               (lengthUnit.empty() ? "" : " [" + lengthUnit + "3]") + ",mean,deviation,min,max\n";
     for (const RegionRow& row : rows) {
         if (!time.empty()) csv += time + ",";
         csv += csvField(row.parameter) + "," + csvField(row.unit) + "," + csvField(row.region);

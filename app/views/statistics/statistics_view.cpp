@@ -57,7 +57,8 @@ std::string statisticsCsv(const std::shared_ptr<const volume::BrickSource>& sour
     const volume::Statistics statistics = readStatistics(source, query, 0, progress);
     const std::vector<volume::Channel> channels = info.channels();
     const auto nameOf = [&](std::size_t i) { return channels[static_cast<std::size_t>(query.channels[i])].name; };
-    std::string csv = "parameter,unit,part,samples,volume [" + info.lengthUnit + "3],mean,deviation,min,max";
+    const std::string cubes = info.lengthUnit.empty() ? "" : " [" + info.lengthUnit + "3]";
+    std::string csv = "parameter,unit,part,samples,volume" + cubes + ",mean,deviation,min,max";
     for (std::size_t i = 0; i < shown; ++i) csv += "," + csvField("correlation with " + nameOf(i));
     csv += "\n";
     for (std::size_t i = 0; i < shown; ++i) {
