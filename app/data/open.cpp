@@ -25,7 +25,10 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kFirstLayout = "overview";
-constexpr double kFirstAspect = 0.92; ///< of the volume pane in a new window, labels taken off
+/// Width by height of the volume pane in a new window, labels taken off: with and without a timeline below it.
+double firstAspect(const volume::DatasetInfo& info) {
+    return info.times.size() > 1 ? 0.92 : 0.78;
+}
 
 bool endsWith(const std::string& path, std::string_view suffix) {
     if (path.size() < suffix.size()) return false;
@@ -284,7 +287,7 @@ Session changeLayout(const SessionDocument& layout, const volume::BrickSource& s
     next.time = shown.time;
     next.cursor = shown.cursor;
     if (!sameData(layout.session.data, shown.data))
-        vis::fit(next.camera, vis::worldFrame(source.info().bounds, next.stretch), kFirstAspect);
+        vis::fit(next.camera, vis::worldFrame(source.info().bounds, next.stretch), firstAspect(source.info()));
     fitSurfaces(next, source, layout.session, messages);
     return next;
 }
@@ -351,12 +354,12 @@ Opened open(const OpenRequest& request, const Progress& progress) {
         opened.messages.insert(opened.messages.end(), layout->messages.begin(), layout->messages.end());
         opened.document.session = applyLayout(*layout, info, data, opened.messages);
         const bool own = sameData(layout->session.data, data);
-        if (!own) aimFirstView(opened.document.session, *opened.source, kFirstAspect);
+        if (!own) aimFirstView(opened.document.session, *opened.source, firstAspect(info));
         fitSurfaces(opened.document.session, *opened.source, layout->session, opened.messages);
     } else {
         opened.document.session = defaultSession(info, data);
         fitSession(opened.document.session, info, opened.messages);
-        aimFirstView(opened.document.session, *opened.source, kFirstAspect);
+        aimFirstView(opened.document.session, *opened.source, firstAspect(info));
     }
     opened.document.history.reset(opened.document.session);
     return opened;

@@ -1,6 +1,7 @@
 #include "app/dialogs/dialogs.h"
 
 #include "app/ui/file_dialog.h"
+#include "app/ui/fitted_text.h"
 #include "app/ui/widgets.h"
 #include "volume/base/error.h"
 
@@ -21,7 +22,7 @@ bool beginDialog(const char* title, bool& open, float width) {
     ImGui::SetNextWindowSize({width, 0});
     if (!ImGui::BeginPopupModal(title, &open, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoResize))
         return false;
-    if (pressed({.key = key::kEscape})) open = false;
+    if (escapePressed() && !ImGui::IsWindowAppearing()) open = false; // not by the key that asked
     return true;
 }
 
@@ -77,9 +78,11 @@ void MissingFilesDialog::drawFile(std::size_t index, const Ask& ask) {
     const DataFile& wanted = opened_->missing[index].wanted;
     const auto& transfer = opened_->document.session.transfer;
     ImGui::PushID(static_cast<int>(index));
-    ImGui::TextUnformatted(fs::path(wanted.path).filename().c_str());
-    ImGui::TextDisabled("%s, previously at %s", wanted.bytes > 0 ? textOfBytes(wanted.bytes).c_str() : "size unknown",
-                        wanted.absolutePath.empty() ? wanted.path.c_str() : wanted.absolutePath.c_str());
+    fittedText(fs::path(wanted.path).filename().string());
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    fittedText((wanted.bytes > 0 ? textOfBytes(wanted.bytes) : "size unknown") + ", previously at " +
+               (wanted.absolutePath.empty() ? wanted.path : wanted.absolutePath));
+    ImGui::PopStyleColor();
     if (opened_->missing.size() == 1 && !transfer.empty()) {
         std::string names;
         for (const auto& [name, function] : transfer) names += (names.empty() ? "with " : ", ") + name;
@@ -205,6 +208,20 @@ LeaveDialog::Answer LeaveDialog::draw(bool saved) {
     if (button == 2) return Answer::Save;
     if (!open) go_ = nullptr;
     return Answer::None;
+}
+
+std::function<void()> QuestionDialog::draw() {
+    if (!go_) return nullptr;
+    bool open = true;
+    if (beginDialog("Sure?", open, ImGui::GetFontSize() * 24)) {
+        ImGui::TextWrapped("%s", text_.c_str());
+        const int button = dialogButtons({"Cancel", yes_.c_str()});
+        if (button >= 0) open = false;
+        endDialog(open);
+        if (button == 1) return std::exchange(go_, nullptr);
+    }
+    if (!open) go_ = nullptr;
+    return nullptr;
 }
 
 void HelpDialogs::draw(const std::vector<Command>& commands, const Fonts& fonts, const vis::ResidencyInfo& use) {

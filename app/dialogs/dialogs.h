@@ -76,6 +76,23 @@ private:
     std::function<void()> go_;
 };
 
+/// Asks before something is done that may not have been meant.
+class QuestionDialog {
+public:
+    /// `yes`: the word on the button that does it.
+    void show(std::string text, std::string yes, std::function<void()> go) {
+        text_ = std::move(text);
+        yes_ = std::move(yes);
+        go_ = std::move(go);
+    }
+    /// Returns what is to be done, when the user has agreed.
+    std::function<void()> draw();
+
+private:
+    std::string text_, yes_;
+    std::function<void()> go_;
+};
+
 /// The lists of keys, and the About dialog.
 class HelpDialogs {
 public:

@@ -24,6 +24,11 @@ public:
     void askSave(const std::string& title, const std::string& name, const std::string& ending,
                  std::function<void(const std::string& path)> answer);
 
+    /// The next question begins in this folder, that of the data that were opened; later ones where the last one ended.
+    void startIn(const std::string& folder) { dialog_.startIn(folder); }
+
+    const std::string& folder() const { return dialog_.folder(); }
+
     bool shown() const { return dialog_.shown(); }
     /// Draws it if it is shown; the answer is given in the frame the user decides. A cancelled question is dropped.
     void draw();

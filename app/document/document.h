@@ -55,6 +55,8 @@ public:
 
     /// Records edits; returns true if one was finished and became a step. `editing`: an edit is in progress.
     bool observe(bool editing, double seconds);
+    /// Takes back the edit in progress: the session is what it was, and no step is made.
+    void giveUpEdit() { session_ = history_.before(); }
     void undo() { replace(history_.undo()); }
     void redo() { replace(history_.redo()); }
     /// Goes to the state after this number of steps of the history.

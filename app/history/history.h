@@ -45,6 +45,8 @@ public:
     std::size_t position() const { return position_; }
     /// Whether an edit is in progress: the watched session differs from the base.
     bool pending() const { return pending_; }
+    /// The session before that edit.
+    const Session& before() const { return base_; }
 
     /// The list as JSON, and back. A list that does not fit the session is refused with Error.
     Json toJson() const;

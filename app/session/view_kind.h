@@ -13,19 +13,20 @@ template <class View> using DrawView = void(ViewContext& context, const std::str
 
 /// What menus, panes and documentation know of a kind of view. Its name in sessions is its struct's kType.
 struct ViewTraits {
-    std::string_view title; ///< of its panes, and of the command that opens one
-    std::string_view help;  ///< one line: what it shows
-    bool svg = false;       ///< can be exported as vector graphics
-    bool csv = false;       ///< can be exported as a table
-    bool inSpace = false;   ///< a picture in space: new views do not open as tabs over it
-    bool camera = false;    ///< uses the session's camera, so that camera commands act on it
-    bool padded = true;     ///< has a margin inside its pane
-    bool plays = false;     ///< moves the session's time itself while the session plays
+    std::string_view title;      ///< of its panes, and of the command that opens one
+    std::string_view help;       ///< one line: what it shows
+    std::string_view words = {}; ///< others by which the palette finds it
+    bool svg = false;            ///< can be exported as vector graphics
+    bool csv = false;            ///< can be exported as a table
+    bool inSpace = false;        ///< a picture in space: new views do not open as tabs over it
+    bool camera = false;         ///< uses the session's camera, so that camera commands act on it
+    bool padded = true;          ///< has a margin inside its pane
+    bool plays = false;          ///< moves the session's time itself while the session plays
 };
 
 /// A kind of view opened with other settings than the default, by a command of its own.
 template <class View> struct ViewPreset {
-    std::string_view title = {}, help = {}; ///< of the command; "" = there is none
+    std::string_view title = {}, help = {}, words = {}; ///< of the command; "" = there is none
     void (*prepare)(View& view) = nullptr;
 };
 

@@ -53,8 +53,12 @@ DrawView<LayersView> drawLayersView;
 
 struct TimelineView {
     static constexpr std::string_view kType = "timeline";
+    bool always = false; ///< also where there is one time
     bool operator==(const TimelineView&) const = default;
-    static void describe(auto&, auto&&) {}
+    static void describe(auto& self, auto&& visit) {
+        visit(self.always,
+              FieldInfo{.key = "always", .unit = "", .doc = "Show it also for data with one time, without keyframes"});
+    }
 };
 DrawView<TimelineView> drawTimelineView;
 
@@ -83,46 +87,84 @@ DrawView<LogView> drawLogView;
 /// Every kind of view, a row for each: its struct, the function that draws it, and what else is known of it. Menus,
 /// panes, documentation and tests read this table.
 inline constexpr std::tuple kViewKinds{
-    ViewKind<VolumeView, drawVolumeView>{
-        {.title = "Volume", .help = "The data in space", .inSpace = true, .camera = true, .padded = false}},
-    ViewKind<SlicesView, drawSlicesView>{
-        {.title = "Slices", .help = "Three orthogonal slices, with the values at the cross-hair", .svg = true}},
+    ViewKind<VolumeView, drawVolumeView>{{.title = "Volume",
+                                          .help = "The data in space",
+                                          .words = "3d rendering scene picture render",
+                                          .inSpace = true,
+                                          .camera = true,
+                                          .padded = false}},
+    ViewKind<SlicesView, drawSlicesView>{{.title = "Slices",
+                                          .help = "Three orthogonal slices, with the values at the cross-hair",
+                                          .words = "planes cuts sections 2d contour contours isolines",
+                                          .svg = true}},
     ViewKind<ScatterMatrixView, drawScatterMatrixView>{
         {.title = "Scatterplots",
          .help = "Scatterplots of every pair of parameters; drag to select",
+         .words = "brush selection correlation pairs",
          .svg = true,
          .csv = true}},
-    ViewKind<TransferView, drawTransferView>{
-        {.title = "Transfer function", .help = "Colours and opacity of a parameter"}},
-    ViewKind<LayersView, drawLayersView>{{.title = "Layers", .help = "What the 3D views show"}},
-    ViewKind<TimelineView, drawTimelineView>{{.title = "Timeline", .help = "Play through the times", .plays = true}},
-    ViewKind<DataView, drawDataView>{{.title = "Data", .help = "Contents of the data set and of the selection"}},
-    ViewKind<HistoryView, drawHistoryView>{{.title = "History", .help = "All edits; click to undo or redo"}},
-    ViewKind<LogView, drawLogView>{{.title = "Messages", .help = "Messages of the program"}},
+    ViewKind<TransferView, drawTransferView>{{.title = "Transfer function",
+                                              .help = "Colours and opacity of a parameter",
+                                              .words = "colormap colour color map opacity legend"}},
+    ViewKind<LayersView, drawLayersView>{
+        {.title = "Layers",
+         .help = "What the 3D views show",
+         .words = "settings lens lenses light clip clipping paper quality brushes objects flow isosurface contour"}},
+    ViewKind<TimelineView, drawTimelineView>{{.title = "Timeline",
+                                              .help = "Play through the times",
+                                              .words = "animation movie video keyframes",
+                                              .plays = true}},
+    ViewKind<DataView, drawDataView>{{.title = "Data",
+                                      .help = "Contents of the data set and of the selection",
+                                      .words = "parameters variables info derived formula unit"}},
+    ViewKind<HistoryView, drawHistoryView>{
+        {.title = "History", .help = "All edits; click to undo or redo", .words = "undo redo steps"}},
+    ViewKind<LogView, drawLogView>{
+        {.title = "Messages", .help = "Messages of the program", .words = "log errors warnings output"}},
     ViewKind<StatisticsView, drawStatisticsView>{
-        {.title = "Statistics", .help = "Statistics of every parameter inside and outside the selection", .csv = true},
+        {.title = "Statistics",
+         .help = "Statistics of every parameter inside and outside the selection",
+         .words = "mean average minimum maximum numbers table",
+         .csv = true},
         {.title = "Region table",
          .help = "Statistics of every parameter in every region, and balances of inflow and outflow",
+         .words = "labels parts flow balance",
          .prepare = [](StatisticsView& view) { view.byRegion = true; }}},
-    ViewKind<HistogramView, drawHistogramView>{
-        {.title = "Histogram", .help = "One parameter's histogram; drag to select", .svg = true, .csv = true}},
-    ViewKind<ProfileView, drawProfileView>{
-        {.title = "Line profile", .help = "Parameters along a line", .svg = true, .csv = true},
-        {.title = "Section averages",
-         .help = "Means over planes across an axis, with one curve for each region",
-         .prepare = [](ProfileView& view) { view.over = ProfileOver::Sections; }}},
+    ViewKind<HistogramView, drawHistogramView>{{.title = "Histogram",
+                                                .help = "One parameter's histogram; drag to select",
+                                                .words = "distribution frequency brush",
+                                                .svg = true,
+                                                .csv = true}},
+    ViewKind<ProfileView, drawProfileView>{{.title = "Line profile",
+                                            .help = "Parameters along a line",
+                                            .words = "plot graph chart probe cut",
+                                            .svg = true,
+                                            .csv = true},
+                                           {.title = "Section averages",
+                                            .help = "Means over planes across an axis, with one curve for each region",
+                                            .words = "mean plot sections flow",
+                                            .prepare = [](ProfileView& view) { view.over = ProfileOver::Sections; }}},
     ViewKind<CurvesView, drawCurvesView>{{.title = "Curves",
                                           .help = "Quantities and statistics over time, or against each other",
+                                          .words = "plot graph chart time series polarisation",
                                           .svg = true,
                                           .csv = true}},
-    ViewKind<SliceMatrixView, drawSliceMatrixView>{
-        {.title = "Slice matrix", .help = "Parameters on parallel planes", .svg = true, .csv = true}},
-    ViewKind<ShadowCubeView, drawShadowCubeView>{
-        {.title = "Shadow cube", .help = "Projections on the faces of a cube around the scene", .inSpace = true}},
-    ViewKind<TesseractView, drawTesseractView>{
-        {.title = "Tesseract", .help = "All times at once in four dimensions, turned in six planes", .inSpace = true}},
+    ViewKind<SliceMatrixView, drawSliceMatrixView>{{.title = "Slice matrix",
+                                                    .help = "Parameters on parallel planes",
+                                                    .words = "small multiples sections contour",
+                                                    .svg = true,
+                                                    .csv = true}},
+    ViewKind<ShadowCubeView, drawShadowCubeView>{{.title = "Shadow cube",
+                                                  .help = "Projections on the faces of a cube around the scene",
+                                                  .words = "projection walls shadows",
+                                                  .inSpace = true}},
+    ViewKind<TesseractView, drawTesseractView>{{.title = "Tesseract",
+                                                .help = "All times at once in four dimensions, turned in six planes",
+                                                .words = "4d hypercube rotation",
+                                                .inSpace = true}},
     ViewKind<CompareView, drawCompareView>{{.title = "Side by side",
                                             .help = "Compare the 3D scene with different settings",
+                                            .words = "variants differences small multiples",
                                             .csv = true,
                                             .inSpace = true,
                                             .camera = true}},

@@ -4,6 +4,7 @@
 #include "app/tools/brush_edit.h"
 #include "app/tools/lens_list.h"
 #include "app/tools/space_handles.h"
+#include "app/ui/fitted_text.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
 
@@ -88,7 +89,7 @@ void mend(vis::Region& region) {
 }
 
 /// One brush; true when it is to be removed.
-bool drawBrush(ViewContext& context, vis::Brush& brush, std::size_t index) {
+bool drawBrush(ViewContext& context, vis::Brush& brush, std::size_t index, std::optional<bool> unfold) {
     const volume::DatasetInfo& info = context.source->info();
     const WidgetContext widgets{.info = &info};
     ImGui::Checkbox("##enabled", &brush.enabled);
@@ -109,9 +110,9 @@ bool drawBrush(ViewContext& context, vis::Brush& brush, std::size_t index) {
     ImGui::SameLine(0, em() * 0.2f);
     const bool removed = iconButton(context, "delete", icons::kTrash, "Remove this brush");
     ImGui::Indent(em() * 1.6f);
-    const std::string text = std::to_string(index + 1) + "  " + (brush.inverted ? "not " : "") +
-                             regionText(info, brush.region) + "###region";
-    if (ImGui::TreeNodeEx(text.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth)) {
+    const std::string text =
+        std::to_string(index + 1) + "  " + (brush.inverted ? "not " : "") + regionText(info, brush.region);
+    if (fittedTreeNode(text, "region", unfold)) {
         if (auto* range = std::get_if<vis::RangeRegion>(&brush.region)) {
             for (std::size_t k = 0; k < range->intervals.size(); ++k) {
                 ImGui::PushID(static_cast<int>(k));
@@ -129,20 +130,6 @@ bool drawBrush(ViewContext& context, vis::Brush& brush, std::size_t index) {
     }
     ImGui::Unindent(em() * 1.6f);
     return removed;
-}
-
-void addAtCursor(ViewContext& context, bool box) {
-    vis::Selection& selection = context.session.selection;
-    vis::Brush brush = spaceBrush(context.session, context.source->info(), box);
-    brush.name = newBrushName(selection, brush.name);
-    brush.color = newBrushColor(selection);
-    // Two brushes in space rarely overlap, so combine them with "or".
-    const bool beside = std::any_of(selection.brushes.begin(), selection.brushes.end(), [](const vis::Brush& other) {
-        return other.enabled && (std::holds_alternative<vis::SphereRegion>(other.region) ||
-                                 std::holds_alternative<vis::BoxRegion>(other.region));
-    });
-    if (beside) brush.combine = vis::BrushCombine::Or;
-    selection.brushes.push_back(std::move(brush));
 }
 
 /// Centre and radius of a brush in space.
@@ -163,7 +150,7 @@ void makeOpaque(Session& session) {
         const auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique);
         if (!volume || !layer.visible || volume->style != vis::RayStyle::Composite) continue;
         if (layer.transfer.empty()) {
-            std::string name = layer.name;
+            std::string name = layerName(layer);
             while (name.empty() || session.transfer.contains(name)) name += "'";
             session.transfer[name] = transferOf(std::as_const(session), volume->channel);
             layer.transfer = name;
@@ -177,9 +164,11 @@ void makeOpaque(Session& session) {
 void drawBrushList(ViewContext& context) {
     vis::Selection& selection = context.session.selection;
     int removed = -1;
+    const auto added = newInList("brushes", selection.brushes.size());
     for (std::size_t i = 0; i < selection.brushes.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
-        if (drawBrush(context, selection.brushes[i], i)) removed = static_cast<int>(i);
+        const auto unfold = added ? std::optional(i == *added) : std::nullopt; // the newest is the one to set up
+        if (drawBrush(context, selection.brushes[i], i, unfold)) removed = static_cast<int>(i);
         ImGui::PopID();
     }
     if (removed >= 0) selection.brushes.erase(selection.brushes.begin() + removed);
@@ -196,8 +185,8 @@ void drawBrushList(ViewContext& context) {
         if (!first && ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
         return ImGui::SmallButton(text);
     };
-    if (button("Sphere at cross-hair", true)) addAtCursor(context, false);
-    if (button("Box at cross-hair")) addAtCursor(context, true);
+    if (button("Sphere at cross-hair", true)) addSpaceBrush(context.session, context.source->info(), false);
+    if (button("Box at cross-hair")) addSpaceBrush(context.session, context.source->info(), true);
     if (!context.session.lenses.empty() && button("Inside the lens")) {
         vis::Brush brush;
         brush.name = newBrushName(selection, context.session.lenses.back().name);
@@ -244,9 +233,24 @@ vis::Brush spaceBrush(const Session& session, const volume::DatasetInfo& info, b
     return brush;
 }
 
+void addSpaceBrush(Session& session, const volume::DatasetInfo& info, bool box) {
+    vis::Selection& selection = session.selection;
+    vis::Brush brush = spaceBrush(session, info, box);
+    brush.name = newBrushName(selection, brush.name);
+    brush.color = newBrushColor(selection);
+    // Two brushes in space rarely overlap, so combine them with "or".
+    const bool beside = std::any_of(selection.brushes.begin(), selection.brushes.end(), [](const vis::Brush& other) {
+        return other.enabled && (std::holds_alternative<vis::SphereRegion>(other.region) ||
+                                 std::holds_alternative<vis::BoxRegion>(other.region));
+    });
+    if (beside) brush.combine = vis::BrushCombine::Or;
+    selection.brushes.push_back(std::move(brush));
+}
+
 void drawBrushMenu(ViewContext& context) {
-    if (ImGui::MenuItem("Brush a sphere at the cross-hair")) addAtCursor(context, false);
-    if (ImGui::MenuItem("Brush a box at the cross-hair")) addAtCursor(context, true);
+    if (ImGui::MenuItem("Brush a sphere at the cross-hair"))
+        addSpaceBrush(context.session, context.source->info(), false);
+    if (ImGui::MenuItem("Brush a box at the cross-hair")) addSpaceBrush(context.session, context.source->info(), true);
     if (ImGui::MenuItem("Clear brushes", "Esc", false, !context.session.selection.brushes.empty()))
         context.session.selection.brushes.clear();
 }

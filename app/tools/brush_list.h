@@ -16,6 +16,9 @@ std::string combinationText(const vis::Selection& selection);
 /// A ball or box around the cross-hair that appears a sixth as wide as the box, whatever the stretch.
 vis::Brush spaceBrush(const Session& session, const volume::DatasetInfo& info, bool box);
 
+/// Adds one with a name and colour of its own, as "or" beside others in space.
+void addSpaceBrush(Session& session, const volume::DatasetInfo& info, bool box);
+
 /// Items of a view's menu that place a brush at the cursor and clear all brushes.
 void drawBrushMenu(ViewContext& context);
 

@@ -53,7 +53,7 @@ void addRake(std::vector<HandledObject>& objects, const Session& session, const 
     const glm::dvec3 from = physical(flow->from), to = physical(flow->to), middle = 0.5 * (from + to);
     HandledObject object;
     object.key = "rake " + std::to_string(index);
-    object.name = layer.name;
+    object.name = layerName(layer);
     object.color = plotColors().text;
     object.outlined = true;
     const auto share = [lo = info.bounds.lo, size](glm::dvec3 place) { return glm::vec3((place - lo) / size); };

@@ -1,6 +1,7 @@
 #include "app/tools/lens_list.h"
 
 #include "app/pane/view_parts.h"
+#include "app/ui/fitted_text.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
 
@@ -26,8 +27,8 @@ constexpr EffectWords kEffects[] = {
 };
 static_assert(std::size(kEffects) == std::size(vis::kLensEffectNames));
 
-constexpr glm::vec3 kColors[] = {
-    {0.55f, 0.85f, 1.0f}, {1.0f, 0.76f, 0.42f}, {0.98f, 0.6f, 0.78f}, {0.66f, 0.92f, 0.58f}};
+/// Unlike those of brushes (brush_edit.cpp), with colour blindness too.
+constexpr glm::vec3 kColors[] = {{0.8f, 0.75f, 1.0f}, {0.75f, 0.6f, 0.45f}, {0.35f, 0.65f, 0.7f}, {0.8f, 0.0f, 0.75f}};
 
 std::string freeName(const Session& session, std::string wanted, std::size_t except) {
     const std::string base = wanted;
@@ -44,7 +45,7 @@ std::string freeName(const Session& session, std::string wanted, std::size_t exc
 std::string layersOf(const Session& session, const std::string& lens) {
     std::string names;
     for (const vis::Layer& layer : session.layers)
-        if (layer.lens == lens) names += (names.empty() ? "" : ", ") + layer.name;
+        if (layer.lens == lens) names += (names.empty() ? "" : ", ") + layerName(layer);
     return names;
 }
 
@@ -128,7 +129,8 @@ int drawGrip(const ViewContext& context, const vis::Lens& lens, std::size_t inde
     return dropped;
 }
 
-RowAction drawLens(ViewContext& context, const std::string& pane, LensStatistics& statistics, std::size_t index) {
+RowAction drawLens(ViewContext& context, const std::string& pane, LensStatistics& statistics, std::size_t index,
+                   std::optional<bool> unfold) {
     Session& session = context.session;
     vis::Lens& lens = session.lenses[index];
     RowAction action = RowAction::None;
@@ -156,8 +158,8 @@ RowAction drawLens(ViewContext& context, const std::string& pane, LensStatistics
     ImGui::Indent(em() * 1.6f);
     const std::string inside = layersOf(session, lens.name);
     const std::string text = std::string(vis::kLensShapeNames[static_cast<std::size_t>(lens.shape)]) +
-                             (inside.empty() ? "" : "  with " + inside) + "###lens";
-    if (ImGui::TreeNodeEx(text.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth)) {
+                             (inside.empty() ? "" : "  with " + inside);
+    if (fittedTreeNode(text, "lens", unfold)) {
         const WidgetContext widgets{.info = &context.source->info()};
         vis::Lens edited = lens;
         drawDescribed(edited, widgets);
@@ -187,6 +189,11 @@ vis::Lens newLens(const Session& session, const volume::DatasetInfo& info, vis::
     lens.size = glm::vec3(static_cast<float>(std::clamp(0.8 * middle, 0.05, 0.3)));
     lens.color = kColors[session.lenses.size() % std::size(kColors)];
     return lens;
+}
+
+void addLens(Session& session, const volume::DatasetInfo& info, vis::LensEffect effect) {
+    session.lenses.push_back(newLens(session, info, effect));
+    if (effect == vis::LensEffect::Magnify) session.lenses.back().shape = vis::LensShape::Disc;
 }
 
 void addLensWith(Session& session, const volume::DatasetInfo& info, vis::Technique technique) {
@@ -257,11 +264,7 @@ void drawLensMenu(ViewContext& context) {
     static constexpr const char* kItems[] = {"Lens: cut away", "Lens: only this", "Lens: enhance",
                                              "Lens: suppress", "Lens: magnify",   "Lens: brushes inside"};
     for (std::size_t i = 0; i < std::size(kItems); ++i)
-        if (ImGui::MenuItem(kItems[i])) {
-            session.lenses.push_back(newLens(session, info, static_cast<vis::LensEffect>(i)));
-            if (static_cast<vis::LensEffect>(i) == vis::LensEffect::Magnify)
-                session.lenses.back().shape = vis::LensShape::Disc;
-        }
+        if (ImGui::MenuItem(kItems[i])) addLens(session, info, static_cast<vis::LensEffect>(i));
 }
 
 bool chooseLens(const char* id, const Session& session, std::string& value, const char* none) {
@@ -282,13 +285,15 @@ void drawLensList(ViewContext& context, const std::string& pane, LensStatistics&
     Session& session = context.session;
     RowAction action = RowAction::None;
     std::size_t which = 0, from = 0, to = 0;
+    const auto added = newInList("lenses", session.lenses.size());
     for (std::size_t i = 0; i < session.lenses.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
+        const auto unfold = added ? std::optional(i == *added) : std::nullopt; // the newest is the one to set up
         if (const int dropped = drawGrip(context, session.lenses[i], i); dropped >= 0) {
             from = static_cast<std::size_t>(dropped);
             to = i;
         }
-        if (const RowAction own = drawLens(context, pane, statistics, i); own != RowAction::None) {
+        if (const RowAction own = drawLens(context, pane, statistics, i, unfold); own != RowAction::None) {
             action = own;
             which = i;
         }

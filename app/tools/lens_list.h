@@ -19,6 +19,9 @@ void drawLensList(ViewContext& context, const std::string& pane, LensStatistics&
 /// A lens of an effect around the cursor, with a name and colour of its own, that fits the shown box.
 vis::Lens newLens(const Session& session, const volume::DatasetInfo& info, vis::LensEffect effect);
 
+/// Adds one of these.
+void addLens(Session& session, const volume::DatasetInfo& info, vis::LensEffect effect);
+
 /// Adds a lens at the cross-hair in which a technique replaces the other layers.
 void addLensWith(Session& session, const volume::DatasetInfo& info, vis::Technique technique);
 

@@ -15,6 +15,27 @@ char lower(char c) {
     return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
 }
 
+std::vector<std::string> wordsOf(const std::string& text) {
+    std::vector<std::string> words;
+    bool inside = false;
+    for (const char c : text) {
+        const bool letter = std::isalnum(static_cast<unsigned char>(c)) || static_cast<unsigned char>(c) >= 0x80;
+        if (letter && !inside) words.emplace_back();
+        if (letter) words.back() += lower(c);
+        inside = letter;
+    }
+    return words;
+}
+
+bool hasWord(const std::vector<std::string>& words, const std::string& beginning) {
+    return std::ranges::any_of(words, [&](const std::string& word) { return word.starts_with(beginning); });
+}
+
+/// The name of a command in the palette.
+std::string shownName(const Command& command) {
+    return command.menu.empty() ? command.title() : command.menu + ": " + command.title();
+}
+
 } // namespace
 
 void runShortcuts(const std::vector<Command>& commands) {
@@ -52,7 +73,7 @@ const Command* drawMenu(const std::vector<Command>& commands, const std::string&
     return chosen;
 }
 
-int matchScore(const std::string& typed, const std::string& name) {
+int matchScore(const std::string& typed, const std::string& name, const std::string& words) {
     if (typed.empty()) return 1;
     std::string a, b;
     for (const char c : typed)
@@ -61,6 +82,11 @@ int matchScore(const std::string& typed, const std::string& name) {
     std::string needle;
     for (const char c : typed) needle += lower(c);
     if (const auto at = b.find(needle); at != std::string::npos) return 1000 - static_cast<int>(at);
+    const std::vector<std::string> wanted = wordsOf(typed), own = wordsOf(name), others = wordsOf(words);
+    int byWords = kWholeWords;
+    for (const std::string& word : wanted)
+        byWords = byWords == 0 ? 0 : hasWord(own, word) ? byWords + 10 : hasWord(others, word) ? byWords + 1 : 0;
+    if (!wanted.empty() && byWords > 0) return byWords;
     int score = 100;
     std::size_t at = 0;
     for (const char c : a) {
@@ -70,7 +96,29 @@ int matchScore(const std::string& typed, const std::string& name) {
         score += wordStart ? 10 : -static_cast<int>(found - at);
         at = found + 1;
     }
-    return std::max(score, 1);
+    return std::clamp(score, 1, kWholeWords - 1);
+}
+
+std::vector<const Command*> matchingCommands(const std::string& typed, const std::vector<Command>& commands) {
+    struct Match {
+        const Command* command;
+        bool available;
+        int score;
+    };
+    std::vector<Match> matches;
+    int best = 0;
+    for (const Command& command : commands) {
+        const int score = matchScore(typed, shownName(command), command.words);
+        best = std::max(best, score);
+        if (score > 0) matches.push_back({&command, command.available(), score});
+    }
+    if (best >= kWholeWords) std::erase_if(matches, [](const Match& match) { return match.score < kWholeWords; });
+    std::ranges::stable_sort(matches, [](const Match& a, const Match& b) {
+        return a.available != b.available ? a.available : a.score > b.score;
+    });
+    std::vector<const Command*> found;
+    for (const Match& match : matches) found.push_back(match.command);
+    return found;
 }
 
 const Command* drawPalette(CommandPalette& palette, const std::vector<Command>& commands) {
@@ -90,19 +138,7 @@ const Command* drawPalette(CommandPalette& palette, const std::vector<Command>& 
     palette.shown = ImGui::BeginPopup("###palette", ImGuiWindowFlags_NoMove);
     if (!palette.shown) return nullptr;
 
-    struct Match {
-        const Command* command;
-        std::string text;
-        int score;
-    };
-    std::vector<Match> matches;
-    for (const Command& command : commands) {
-        const std::string text = command.menu.empty() ? command.title() : command.menu + ": " + command.title();
-        const int score = matchScore(palette.text, text);
-        if (score > 0 && command.available()) matches.push_back({&command, text, score});
-    }
-    std::stable_sort(matches.begin(), matches.end(), [](const Match& a, const Match& b) { return a.score > b.score; });
-
+    const std::vector<const Command*> matches = matchingCommands(palette.text, commands);
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-FLT_MIN);
     const bool enter = ImGui::InputTextWithHint("##search", "Search for a command", &palette.text,
@@ -114,13 +150,15 @@ const Command* drawPalette(CommandPalette& palette, const std::vector<Command>& 
     palette.chosen = count == 0 ? 0 : std::clamp(palette.chosen, 0, count - 1);
     ImGui::BeginChild("##list", {0, ImGui::GetFrameHeightWithSpacing() * std::min(12.0f, viewport.Size.y / 60)});
     for (int i = 0; i < count; ++i) {
-        const Match& match = matches[static_cast<std::size_t>(i)];
-        const std::string keys = textOf(match.command->shortcut);
-        if (ImGui::Selectable(match.text.c_str(), i == palette.chosen)) chosen = match.command;
+        const Command& match = *matches[static_cast<std::size_t>(i)];
+        const std::string keys = textOf(match.shortcut);
+        const ImGuiSelectableFlags flags =
+            match.available() ? ImGuiSelectableFlags_None : ImGuiSelectableFlags_Disabled;
+        if (ImGui::Selectable(shownName(match).c_str(), i == palette.chosen, flags)) chosen = &match;
         if (i == palette.chosen && keyPressed(key::kDown, true)) ImGui::SetScrollHereY(0.7f);
         if (i == palette.chosen && keyPressed(key::kUp, true)) ImGui::SetScrollHereY(0.3f);
-        if (ImGui::IsItemHovered() && !match.command->help.empty())
-            ImGui::SetTooltip("%s", match.command->help.c_str());
+        if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) && !match.help.empty())
+            ImGui::SetTooltip("%s%s", match.help.c_str(), match.available() ? "" : " (not possible now)");
         if (!keys.empty()) {
             ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(keys.c_str()).x -
                             ImGui::GetStyle().ItemSpacing.x);
@@ -129,8 +167,9 @@ const Command* drawPalette(CommandPalette& palette, const std::vector<Command>& 
     }
     if (count == 0) ImGui::TextDisabled("No such command");
     ImGui::EndChild();
-    if (enter && count > 0) chosen = matches[static_cast<std::size_t>(palette.chosen)].command;
-    if (chosen || pressed({.key = key::kEscape})) {
+    if (enter && count > 0 && matches[static_cast<std::size_t>(palette.chosen)]->available())
+        chosen = matches[static_cast<std::size_t>(palette.chosen)];
+    if (chosen || escapePressed()) {
         ImGui::CloseCurrentPopup();
         palette.shown = false;
     }

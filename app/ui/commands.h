@@ -10,9 +10,10 @@
 namespace tessera::app {
 
 struct Command {
-    std::string menu; ///< "File", "Edit", "View", "Layout", "Help"; "" = only in the palette
-    std::string name; ///< "Open...", with a leading "-" a separator goes before it
-    std::string help; ///< one line
+    std::string menu;       ///< "File", "Edit", "View", "Layout", "Help"; "" = only in the palette
+    std::string name;       ///< "Open...", with a leading "-" a separator goes before it
+    std::string help;       ///< one line
+    std::string words = {}; ///< others that people look for it by: "screenshot png"
     const char* icon = "";
     Shortcut shortcut = {}, alternative = {};
     std::function<void()> run = {};
@@ -41,8 +42,15 @@ struct CommandPalette {
 };
 const Command* drawPalette(CommandPalette& palette, const std::vector<Command>& commands);
 
-/// How well a name matches typed letters: higher is better, nothing when it does not (letters in order).
-int matchScore(const std::string& typed, const std::string& name);
+/// How well a name matches what was typed: higher is better, 0 when it does not. First names that hold the text as it
+/// is, then those whose words, or the further `words`, begin with all words typed, in any order (kWholeWords and
+/// above); last names that hold its letters in order.
+int matchScore(const std::string& typed, const std::string& name, const std::string& words = {});
+inline constexpr int kWholeWords = 500; ///< the least score of a match by words
+
+/// Commands that match, best first; those by letters alone only where none matches by words. What is not available now
+/// comes after what is.
+std::vector<const Command*> matchingCommands(const std::string& typed, const std::vector<Command>& commands);
 
 /// Table of shortcuts for the help window.
 void drawShortcutHelp(const std::vector<Command>& commands);

@@ -1,5 +1,6 @@
 #include "app/ui/dock.h"
 
+#include "app/ui/fitted_text.h"
 #include "app/ui/keys.h"
 #include "app/ui/theme.h"
 
@@ -70,9 +71,11 @@ public:
                                {hi.x - style.TabRounding, at.y + std::round(2 * scale)},
                                focused ? palette().accent : palette().line);
         list.PushClipRect(at, {hi.x - cross * 0.6f, hi.y}, true);
+        const std::string shown = fitText(title, width - pad - cross * 0.6f);
         list.AddText({at.x + pad, at.y + std::round((strip - ImGui::GetFontSize()) / 2)},
-                     front ? palette().text : palette().muted, title.c_str());
+                     front ? palette().text : palette().muted, shown.c_str());
         list.PopClipRect();
+        if (hovered && shown != title) ImGui::SetTooltip("%s", title.c_str());
         if (hovered || active || front) closeCross(pane, {hi.x - cross - pad * 0.3f, at.y}, cross, hovered);
         ImGui::PopID();
         return hi.x;
@@ -202,7 +205,7 @@ void drawSplitters(DockLayout& layout, DockTree& tree, DockHand& hand, const Doc
         }
         ImGui::PopID();
     }
-    if (moved) layout = layoutDock(tree, whole, layout.scale);
+    if (moved) layout = layoutDock(tree, whole, layout.scale, layout.hidden);
 }
 
 void drawFloating(Drawing& drawing, const DockRect& whole) {
@@ -297,7 +300,7 @@ void drawDock(DockTree& tree, DockHand& hand, const DockPanes& panes, ImVec2 ori
             drawing.window(tree.maximised, whole.lo, whole.hi, kPaneFlags | ImGuiWindowFlags_NoScrollbar);
         return;
     }
-    DockLayout layout = layoutDock(tree, whole, scale);
+    DockLayout layout = layoutDock(tree, whole, scale, panes.hidden);
 
     beginDockWindow(whole);
     const bool maximised = !tree.maximised.empty();
@@ -314,12 +317,13 @@ void drawDock(DockTree& tree, DockHand& hand, const DockPanes& panes, ImVec2 ori
         for (const DockNode* stack : layout.stacks) {
             const DockRect& rect = layout.rects.at(stack->id);
             float x = rect.lo.x;
-            for (std::size_t i = 0; i < stack->tabs.size(); ++i) {
-                const bool front = static_cast<int>(i) == stack->active;
-                const float left = rect.hi.x - x, tabs = static_cast<float>(stack->tabs.size() - i);
+            const ShownTabs own = shownTabs(*stack, panes.hidden);
+            for (std::size_t i = 0; i < own.panes.size(); ++i) {
+                const bool front = i == own.front;
+                const float left = rect.hi.x - x, tabs = static_cast<float>(own.panes.size() - i);
                 const float share = std::max(left / tabs, left - (tabs - 1) * 60 * scale);
-                x = drawing.tab(stack->tabs[i], {x, rect.lo.y}, front, drawing.focused(stack->tabs[i]), share);
-                if (front) shown.push_back({stack->tabs[i], {rect.lo.x, rect.lo.y + drawing.strip}, rect.hi});
+                x = drawing.tab(own.panes[i], {x, rect.lo.y}, front, drawing.focused(own.panes[i]), share);
+                if (front) shown.push_back({own.panes[i], {rect.lo.x, rect.lo.y + drawing.strip}, rect.hi});
             }
             if (stack->tabs.empty())
                 ImGui::GetWindowDrawList()->AddText({rect.lo.x + 20 * scale, rect.lo.y + 20 * scale}, palette().muted,

@@ -16,6 +16,7 @@ struct DockPanes {
     std::function<bool(const std::string& pane)> padded;  ///< false: the content fills the pane to its edge
     std::function<void(const std::string& pane)> close;   ///< removes the view
     std::function<void(const std::string& pane)> tabMenu; ///< further items of a tab's context menu; may be empty
+    HiddenPanes hidden = {};                              ///< panes that take no room
     std::string none = {};                                ///< text shown if no pane is open
 };
 

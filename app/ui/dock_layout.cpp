@@ -20,7 +20,25 @@ DockRect sideOf(const DockRect& rect, DockSide side, float share) {
     return part;
 }
 
+/// Every pane of a node is hidden, of which there is at least one.
+bool allHidden(const DockNode& node, const HiddenPanes& hidden) {
+    if (!hidden) return false;
+    if (node.kind != DockKind::Tabs)
+        return std::ranges::all_of(node.children, [&](const DockNode& child) { return allHidden(child, hidden); });
+    return !node.tabs.empty() && std::ranges::all_of(node.tabs, hidden);
+}
+
 } // namespace
+
+ShownTabs shownTabs(const DockNode& stack, const HiddenPanes& hidden) {
+    ShownTabs shown;
+    for (std::size_t i = 0; i < stack.tabs.size(); ++i) {
+        if (hidden && hidden(stack.tabs[i])) continue;
+        if (static_cast<int>(i) == stack.active) shown.front = shown.panes.size();
+        shown.panes.push_back(stack.tabs[i]);
+    }
+    return shown;
+}
 
 float DockLayout::firstPart(const DockNode& node, float room) const {
     const float least = std::min(kSmallest * scale, room / 2);
@@ -28,11 +46,15 @@ float DockLayout::firstPart(const DockNode& node, float room) const {
 }
 
 void DockLayout::place(DockNode& node, DockRect rect) {
+    if (allHidden(node, hidden)) return;
     if (node.kind == DockKind::Tabs) {
         rects[node.id] = rect;
         stacks.push_back(&node);
         return;
     }
+    for (const int other : {0, 1})
+        if (allHidden(node.children[std::size_t(other)], hidden))
+            return place(node.children[std::size_t(1 - other)], rect);
     const bool row = node.kind == DockKind::Row;
     const float gap = std::round(kGap * scale);
     const float room = std::max(0.0f, rect.length(row) - gap);
@@ -45,8 +67,8 @@ void DockLayout::place(DockNode& node, DockRect rect) {
     place(node.children[1], b);
 }
 
-DockLayout layoutDock(DockTree& tree, DockRect whole, float scale) {
-    DockLayout layout{scale, {}, {}, {}};
+DockLayout layoutDock(DockTree& tree, DockRect whole, float scale, const HiddenPanes& hidden) {
+    DockLayout layout{scale, hidden, {}, {}, {}};
     layout.place(tree.root, whole);
     return layout;
 }

@@ -2,6 +2,7 @@
 
 #include "app/session/dock_tree.h"
 
+#include <functional>
 #include <imgui.h>
 #include <map>
 #include <optional>
@@ -21,8 +22,19 @@ struct DockSplitter {
     DockRect whole, strip;
 };
 
+/// Which panes take no room although they are in the tree; empty: none.
+using HiddenPanes = std::function<bool(const std::string& pane)>;
+
+/// The tabs of a stack that are not hidden, and which of them is in front (the first one where that is hidden).
+struct ShownTabs {
+    std::vector<std::string> panes;
+    std::size_t front = 0;
+};
+ShownTabs shownTabs(const DockNode& stack, const HiddenPanes& hidden);
+
 struct DockLayout {
     float scale;                   ///< pixels per design pixel
+    HiddenPanes hidden;            ///< stacks with nothing else are left out
     std::map<int, DockRect> rects; ///< of every stack, its strip of tabs included
     std::vector<DockNode*> stacks;
     std::vector<DockSplitter> splitters;
@@ -31,7 +43,7 @@ struct DockLayout {
     float firstPart(const DockNode& node, float room) const;
     void place(DockNode& node, DockRect rect);
 };
-DockLayout layoutDock(DockTree& tree, DockRect whole, float scale);
+DockLayout layoutDock(DockTree& tree, DockRect whole, float scale, const HiddenPanes& hidden = {});
 
 /// The target of a dragged tab.
 struct DockDrop {

@@ -1,5 +1,6 @@
 #include "app/ui/file_dialog.h"
 
+#include "app/ui/fitted_text.h"
 #include "app/ui/keys.h"
 #include "app/ui/theme.h"
 #include "app/ui/widgets.h"
@@ -166,7 +167,9 @@ void FileDialog::drawList(std::optional<Answer>& answer, float height) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         const bool selected = std::find(chosen_.begin(), chosen_.end(), entry.name) != chosen_.end();
-        const std::string label = std::string(entry.folder ? icon::kFolder : icon::kFile) + "  " + entry.name;
+        const std::string whole = std::string(entry.folder ? icon::kFolder : icon::kFile) + "  " + entry.name;
+        const std::string fitted = fitText(whole, ImGui::GetContentRegionAvail().x),
+                          label = fitted + "###" + entry.name;
         if (ImGui::Selectable(label.c_str(), selected,
                               ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick |
                                   ImGuiSelectableFlags_DontClosePopups)) {
@@ -185,6 +188,7 @@ void FileDialog::drawList(std::optional<Answer>& answer, float height) {
                 decided = twice;
             }
         }
+        if (fitted != whole && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", entry.name.c_str());
         ImGui::TableNextColumn();
         if (!entry.folder) ImGui::TextDisabled("%s", textOfBytes(entry.bytes).c_str());
         ImGui::TableNextColumn();
@@ -254,7 +258,7 @@ void FileDialog::drawName(std::optional<Answer>& answer, bool& open) {
         focusName_ = shown_ && !confirm_; // a held Enter must not confirm replacing a file
     }
     ImGui::SameLine();
-    if (ImGui::Button("Cancel", {-FLT_MIN, 0}) || pressed({.key = key::kEscape})) open = false;
+    if (ImGui::Button("Cancel", {-FLT_MIN, 0}) || escapePressed()) open = false;
     const std::string told = confirm_ ? name_ + " exists. Press again to replace it." : problem_;
     ImGui::PushStyleColor(ImGuiCol_Text, confirm_ ? palette().warning : palette().failure);
     ImGui::TextUnformatted(told.c_str());

@@ -31,6 +31,8 @@ public:
 
     bool shown() const { return shown_; }
     const std::string& folder() const { return folder_; }
+    /// The folder of the next question.
+    void startIn(const std::string& folder) { folder_ = folder; }
     const std::string& purpose() const { return purpose_; }
     /// Why the last answer was refused, e.g. a file name that does not exist; "" if it was not. Shown below the name.
     const std::string& problem() const { return problem_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <utility>
 
 namespace tessera::app {
@@ -31,6 +32,10 @@ std::string textOf(const Shortcut& shortcut) {
         return text + "Up";
     case key::kDown:
         return text + "Down";
+    case key::kPageUp:
+        return text + "Page up";
+    case key::kPageDown:
+        return text + "Page down";
     case key::kHome:
         return text + "Home";
     case key::kEnd:
@@ -47,6 +52,26 @@ bool pressed(const Shortcut& shortcut, bool repeat) {
     const ImGuiIO& io = ImGui::GetIO();
     return io.KeyCtrl == shortcut.ctrl && io.KeyShift == shortcut.shift && io.KeyAlt == shortcut.alt &&
            keyPressed(shortcut.key, repeat);
+}
+
+bool escapePressed() {
+    return pressed({.key = key::kEscape}) && !mouseHeld();
+}
+
+bool mouseHeld() {
+    return ImGui::IsMouseDown(ImGuiMouseButton_Left) || ImGui::IsMouseDown(ImGuiMouseButton_Right) ||
+           ImGui::IsMouseDown(ImGuiMouseButton_Middle);
+}
+
+void hideMouseButtons() {
+    ImGuiIO& io = ImGui::GetIO();
+    for (bool* state : {io.MouseDown, io.MouseClicked, io.MouseReleased, io.MouseDoubleClicked})
+        std::fill_n(state, ImGuiMouseButton_COUNT, false);
+}
+
+void letGoOfItems() {
+    ImGui::ClearActiveID();
+    ImGui::ClearDragDrop();
 }
 
 bool typing() {

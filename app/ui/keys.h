@@ -33,6 +33,18 @@ bool pressed(const Shortcut& shortcut, bool repeat = false);
 /// True in the frame a key goes down, whatever the modifiers (again while held, if `repeat`).
 bool keyPressed(int code, bool repeat = false);
 
+/// True in the frame in which Esc closes what is open: no button of the mouse is held, whose drag it would give up.
+bool escapePressed();
+
+/// A button of the mouse is held down.
+bool mouseHeld();
+
+/// For the rest of the frame the mouse counts as resting, with no button down, pressed or let go.
+void hideMouseButtons();
+
+/// Whatever item is held is let go of as it is; what was dragged by it is dropped nowhere.
+void letGoOfItems();
+
 /// True while text is being typed somewhere: single keys are letters then.
 bool typing();
 

@@ -7,19 +7,19 @@
 
 namespace tessera::app {
 
-/// Messages of the program, oldest first: all of them in the pane Messages, the newest for a while over the views.
+/// Messages of the program, oldest first: all of them in the pane Messages, the newest for a while in the status line.
 class Messages {
 public:
     static constexpr std::size_t kKept = 500; ///< older ones are dropped
-    static constexpr std::size_t kToasts = 3; ///< over the views at a time
+    static constexpr std::size_t kNews = 3;   ///< in the status line at a time
 
     struct Message {
         std::string text;
         std::string clock; ///< local time, "14:03:59"
         bool failure = false;
         double born = 0;   ///< s, by the clock
-        bool gone = false; ///< no longer over the views
-        double toastSeconds() const { return failure ? 30 : 7; }
+        bool gone = false; ///< no longer in the status line
+        double newSeconds() const { return failure ? 30 : 7; }
     };
 
     /// `now`: seconds of a clock that only rises. `echo`: failures are written to the error stream too, for runs
@@ -28,8 +28,8 @@ public:
 
     void add(const std::string& text, bool failure = false);
     const std::deque<Message>& list() const { return messages_; }
-    /// The messages over the views at this time, newest first. Sets `gone` for those that are too old or too many.
-    std::vector<Message*> toasts();
+    /// The messages in the status line at this time, newest first. Sets `gone` for those that are too old or too many.
+    std::vector<Message*> news();
     /// Seconds until one of them disappears; infinity if there are none.
     double secondsToChange() const;
 
@@ -38,9 +38,5 @@ private:
     bool echo_;
     std::deque<Message> messages_;
 };
-
-/// Draws the toasts at the lower right of the window, the newest at the bottom; a click takes one away. `scale`: pixels
-/// per design pixel; `icons`: the font of icons is there.
-void drawToasts(Messages& messages, float scale, bool icons);
 
 } // namespace tessera::app

@@ -5,6 +5,7 @@
 #include "app/workbench/workbench_commands.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <imgui.h>
 
 /// The menu Edit, and commands that add derived parameters.
@@ -46,6 +47,7 @@ std::vector<Command> historyCommands(Workbench& workbench) {
     return {{.menu = "Edit",
              .name = "Undo",
              .help = "Undo the last edit",
+             .words = "back take back revert",
              .shortcut = {.key = 'Z', .ctrl = true},
              .run = [&workbench] { workbench.document().undo(); },
              .enabled = [&workbench] { return workbench.history().canUndo() && !workbench.history().pending(); },
@@ -53,6 +55,7 @@ std::vector<Command> historyCommands(Workbench& workbench) {
             {.menu = "Edit",
              .name = "Redo",
              .help = "Redo the last undone edit",
+             .words = "forward again repeat",
              .shortcut = {.key = 'Z', .ctrl = true, .shift = true},
              .alternative = {.key = 'Y', .ctrl = true},
              .run = [&workbench] { workbench.document().redo(); },
@@ -67,13 +70,20 @@ std::vector<Command> brushCommands(Workbench& workbench) {
     return {{.menu = "Edit",
              .name = "-Clear brushes",
              .help = "Remove all brushes, so that everything is in focus",
+             .words = "remove delete reset selection deselect",
              .shortcut = {.key = key::kEscape},
-             .run = [brushes] { brushes().clear(); },
-             // During a drag, Esc only cancels the drag.
+             .run =
+                 [&workbench, brushes] {
+                     const std::size_t count = brushes().size();
+                     if (count == 1) return brushes().clear();
+                     workbench.ask("Remove all " + std::to_string(count) + " brushes?", "Remove all",
+                                   [brushes] { brushes().clear(); });
+                 },
              .enabled = [brushes] { return !brushes().empty() && !ImGui::IsAnyItemActive(); }},
             {.menu = "Edit",
              .name = "Invert brushes",
              .help = "Invert every brush",
+             .words = "selection opposite not",
              .run =
                  [brushes] {
                      for (vis::Brush& brush : brushes()) brush.inverted = !brush.inverted;
@@ -84,27 +94,37 @@ std::vector<Command> brushCommands(Workbench& workbench) {
 std::vector<Command> timeCommands(Workbench& workbench) {
     const auto loaded = [&workbench] { return workbench.document().loaded(); };
     const auto playing = [&workbench]() -> bool& { return workbench.session().animation.playing; };
-    return {{.menu = "Edit",
-             .name = "-Previous time",
-             .help = "Go to the previous stored time",
-             .shortcut = {.key = key::kLeft},
-             .run = [&workbench] { workbench.document().stepTime(-1); },
-             .enabled = loaded,
-             .repeats = true},
-            {.menu = "Edit",
-             .name = "Next time",
-             .help = "Go to the next stored time",
-             .shortcut = {.key = key::kRight},
-             .run = [&workbench] { workbench.document().stepTime(1); },
-             .enabled = loaded,
-             .repeats = true},
-            {.menu = "Edit",
-             .name = "Play",
-             .help = "Play or pause",
-             .shortcut = {.key = key::kSpace},
-             .run = [playing] { playing() = !playing(); },
-             .enabled = [&workbench, loaded] { return loaded() && workbench.document().info().times.size() > 1; },
-             .checked = playing}};
+    const auto several = [&workbench, loaded] { return loaded() && workbench.document().info().times.size() > 1; };
+    struct Step {
+        const char *name, *help, *words;
+        int key, count;
+    };
+    static constexpr int kAll = 1 << 24; // farther than there are times
+    std::vector<Command> commands;
+    for (const Step& step :
+         {Step{"-Previous time", "Go to the previous stored time", "step back earlier frame", key::kLeft, -1},
+          {"Next time", "Go to the next stored time", "step forward later frame", key::kRight, 1},
+          {"Ten times back", "Go ten stored times back", "step earlier frames", key::kPageUp, -10},
+          {"Ten times on", "Go ten stored times on", "step later frames", key::kPageDown, 10},
+          {"First time", "Go to the first stored time", "beginning start step", key::kHome, -kAll},
+          {"Last time", "Go to the last stored time", "end step", key::kEnd, kAll}})
+        commands.push_back({.menu = "Edit",
+                            .name = step.name,
+                            .help = step.help,
+                            .words = step.words,
+                            .shortcut = {.key = step.key},
+                            .run = [&workbench, count = step.count] { workbench.document().stepTime(count); },
+                            .enabled = several,
+                            .repeats = std::abs(step.count) < kAll});
+    commands.push_back({.menu = "Edit",
+                        .name = "Play",
+                        .help = "Play or pause",
+                        .words = "animation movie start stop pause",
+                        .shortcut = {.key = key::kSpace},
+                        .run = [playing] { playing() = !playing(); },
+                        .enabled = several,
+                        .checked = playing});
+    return commands;
 }
 
 std::vector<Command> latticeCommands(Workbench& workbench) {
@@ -116,6 +136,7 @@ std::vector<Command> latticeCommands(Workbench& workbench) {
                                                      : "Draw on the body-centred lattice (70.7 % of the samples)",
              .help =
                  "Choose the lattice that pictures are drawn from; numbers always come from the samples of the file",
+             .words = "cartesian bcc cc resample",
              .run = [&workbench, lattice] { workbench.session().data.lattice = lattice; },
              .enabled =
                  [&workbench] {
@@ -155,6 +176,7 @@ std::vector<Command> timeAlongCommands(Workbench& workbench) {
                             .name = "Time along " + std::string(volume::kSpaceAxisNames[std::size_t(axis)]),
                             .help = "Show the plane through the cross-hair at all times, with time along this axis, "
                                     "beside the data in space",
+                            .words = "axis plane space-time kymograph hovmoller",
                             .run = [&workbench, axis] { toggleTimeAlong(workbench, axis); },
                             .enabled = [&workbench, shown,
                                         possible] { return workbench.document().loaded() && (shown() || possible()); },
@@ -170,6 +192,7 @@ std::vector<Command> differenceCommands(Workbench& workbench) {
             .menu = "",
             .name = name,
             .help = help,
+            .words = "difference change subtract delta derived",
             .run =
                 [&workbench, which] {
                     const volume::DatasetInfo& info = workbench.document().info();

@@ -56,6 +56,7 @@ std::vector<Command> fileCommands(Workbench& workbench) {
     return {{.menu = "File",
              .name = "Open...",
              .help = "Open a session, an archive, a PNG exported by Tessera, or data files",
+             .words = "load import read file data",
              .shortcut = {.key = 'O', .ctrl = true},
              .run =
                  [&workbench] {
@@ -70,51 +71,60 @@ std::vector<Command> fileCommands(Workbench& workbench) {
             {.menu = "File",
              .name = "-Save session",
              .help = "Save the session to its file",
+             .words = "store state project",
              .shortcut = {.key = 'S', .ctrl = true},
              .run = [&workbench] { workbench.save(); },
              .enabled = loaded},
             {.menu = "File",
              .name = "Save session as...",
              .help = "Save the session to another file",
+             .words = "store state project",
              .shortcut = {.key = 'S', .ctrl = true, .shift = true},
              .run = [&workbench] { workbench.saveAs(); },
              .enabled = loaded},
             {.menu = "File",
              .name = "Pack into an archive...",
              .help = "Pack the data files shown into one .tsr archive, and open it",
+             .words = "compress convert tsr export smaller",
              .run = [&workbench] { askPack(workbench); },
              .enabled = [&workbench] { return showsDataFiles(workbench.document()); }},
             {.menu = "File",
              .name = "Compare with another file...",
              .help = "Add the parameters of another data set, interpolated onto this grid, and their differences",
+             .words = "difference second data set",
              .run = [&workbench] { askCompared(workbench); },
              .enabled = loaded,
              .checked = [&workbench] { return workbench.session().data.other.has_value(); }},
             {.menu = "File",
              .name = "-Save picture...",
              .help = "Save the window or one view as a PNG of any size, which contains the session",
+             .words = "screenshot image png export figure print capture",
              .shortcut = {.key = key::kF12},
              .run = [&workbench] { workbench.pictureDialog().show(workbench.panes().current(workbench.session())); },
              .enabled = loaded},
             {.menu = "File",
              .name = "Export surface...",
              .help = "Save the selected iso-surface layer at full resolution as PLY, STL, OBJ or VTP",
+             .words = "mesh isosurface contour stl ply obj vtp save",
              .run = [&workbench] { askSurface(workbench); },
              .enabled = [&workbench, loaded] { return loaded() && chosenSurface(workbench.session()) >= 0; }},
             {.menu = "File",
              .name = "Copy session",
              .help = "Copy the session as text, to send it to somebody",
+             .words = "clipboard share send",
              .shortcut = {.key = 'C', .ctrl = true},
              .run = [&workbench] { copySession(workbench); },
              .enabled = loaded},
             {.menu = "File",
              .name = "Paste session",
              .help = "Open the session in the clipboard",
+             .words = "clipboard open",
              .shortcut = {.key = 'V', .ctrl = true},
              .run = [&workbench] { pasteSession(workbench); }},
             {.menu = "File",
              .name = "-Quit",
              .help = "Quit the program",
+             .words = "exit close leave",
              .shortcut = {.key = 'Q', .ctrl = true},
              .run = [&workbench] { workbench.requestQuit(); }}};
 }
@@ -123,12 +133,14 @@ std::vector<Command> helpCommands(Workbench& workbench) {
     std::vector<Command> commands = {{.menu = "Help",
                                       .name = "Shortcuts",
                                       .help = "List all keyboard shortcuts",
+                                      .words = "keys keyboard help hotkeys mouse",
                                       .shortcut = {.key = key::kF1},
                                       .alternative = {.key = 'H'},
                                       .run = [&workbench] { workbench.help().showShortcuts(); }},
                                      {.menu = "Help",
                                       .name = "Command palette",
                                       .help = "Find any command by name",
+                                      .words = "find search action",
                                       .shortcut = {.key = 'P', .ctrl = true, .shift = true},
                                       .alternative = {.key = key::kSpace, .ctrl = true},
                                       .run = [&workbench] { workbench.palette().open = true; }}};
@@ -136,6 +148,7 @@ std::vector<Command> helpCommands(Workbench& workbench) {
         commands.push_back({.menu = "Help",
                             .name = (model == volume::modelNames().front() ? "-" : "") + ("Example data: " + model),
                             .help = "Data computed by the program",
+                            .words = "sample demo test model built-in",
                             .run = [&workbench, model] {
                                 OpenRequest request;
                                 request.data.emplace();
@@ -143,9 +156,10 @@ std::vector<Command> helpCommands(Workbench& workbench) {
                                 if (model == "fuel-cell" || model == "planted") request.layout = "overview";
                                 workbench.open(std::move(request));
                             }});
-    commands.push_back({.menu = "Help", .name = "-About Tessera", .help = "Version", .run = [&workbench] {
-                            workbench.help().showAbout();
-                        }});
+    commands.push_back(
+        {.menu = "Help", .name = "-About Tessera", .help = "Version", .words = "licence license", .run = [&workbench] {
+             workbench.help().showAbout();
+         }});
     return commands;
 }
 

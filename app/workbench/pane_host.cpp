@@ -45,6 +45,12 @@ int stackFor(const Session& session, const std::string& beside, const std::map<i
 
 } // namespace
 
+bool hasNothingToShow(const ViewState& view, const Session& session, const volume::DatasetInfo& info) {
+    const auto* const timeline = std::get_if<TimelineView>(&view);
+    return timeline && !timeline->always && info.times.size() <= 1 && session.animation.tracks.empty() &&
+           !session.data.timeAxis;
+}
+
 const ViewCache* PaneHost::cache(const std::string& pane) const {
     const auto found = caches_.find(pane);
     return found == caches_.end() ? nullptr : found->second.get();
@@ -73,6 +79,11 @@ void PaneHost::draw(const ViewContext& frame, const Area& area) {
     panes.close = [&](const std::string& pane) {
         removePane(session.dock, pane);
         session.views.erase(pane);
+    };
+    panes.hidden = [&](const std::string& pane) {
+        const auto found = session.views.find(pane);
+        return found != session.views.end() && frame.source &&
+               hasNothingToShow(found->second, session, frame.source->info());
     };
     panes.none = area.none;
     if (area.only.empty()) {

@@ -12,6 +12,10 @@
 
 namespace tessera::app {
 
+/// A view with nothing to show takes no room: a timeline of one time without keyframes, unless it is to be there
+/// always. It comes back when there are times.
+bool hasNothingToShow(const ViewState& view, const Session& session, const volume::DatasetInfo& info);
+
 /// The panes of the window: their dock, the caches of their views, and the active pane.
 class PaneHost {
 public:

@@ -1,5 +1,6 @@
 #include "app/workbench/status_bar.h"
 
+#include "app/ui/fitted_text.h"
 #include "app/ui/theme.h"
 #include "app/ui/ticks.h"
 
@@ -35,20 +36,57 @@ void drawJob(Jobs& jobs, const Jobs::Status& job, const std::string& text, float
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("Cancel; what is shown does not change");
 }
 
-/// The jobs at the right, the newest last, as many as fit.
-void drawJobs(Jobs& jobs, float scale, bool icons) {
+/// The newest message, of failures with a coloured ground, and how many others are new.
+void drawNews(Messages& messages, float room, float scale, bool icons) {
+    const std::vector<Messages::Message*> news = messages.news();
+    if (news.empty()) return;
+    const bool failure = news.front()->failure;
+    const std::string more = news.size() > 1 ? "  +" + std::to_string(news.size() - 1) : "";
+    const float em = ImGui::GetFontSize(), cross = em * 1.6f;
+    const ImVec2 at = ImGui::GetCursorScreenPos(), window = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    const float begin = failure && icons ? em * 1.5f : 0;
+    const float width = std::max(1.0f, room - begin - cross - ImGui::CalcTextSize(more.c_str()).x);
+    const std::string shown = fitText(news.front()->text, width) + more;
+    const float end = begin + ImGui::CalcTextSize(shown.c_str()).x;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    if (failure) {
+        const ImU32 ground = (palette().failure & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 60);
+        list.AddRectFilled({window.x, window.y}, {at.x + end + cross, window.y + size.y}, ground);
+        if (icons) list.AddText(at, palette().failure, icon::kWarning);
+    }
+    list.AddText({at.x + begin, at.y}, palette().text, shown.c_str());
+    bool closed = ImGui::InvisibleButton("news", {end, em});
+    if (ImGui::IsItemHovered()) {
+        ImGui::BeginTooltip();
+        ImGui::PushTextWrapPos(em * 40);
+        for (const Messages::Message* each : news) ImGui::TextUnformatted(each->text.c_str());
+        ImGui::PopTextWrapPos();
+        ImGui::EndTooltip();
+    }
+    ImGui::SameLine(0, em * 0.3f);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(2 * scale, 0));
+    closed = ImGui::SmallButton(icons ? icon::kCross : "x") || closed;
+    ImGui::PopStyleVar();
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Close; the message stays in the pane Messages");
+    if (closed) news.front()->gone = true;
+}
+
+/// The jobs at the right, the newest last, as many as fit. Returns where they begin.
+float drawJobs(Jobs& jobs, float scale, bool icons) {
     const float whole = ImGui::GetMainViewport()->Size.x, bar = 120 * scale, cross = ImGui::GetFontSize() * 1.4f;
     float x = whole - 10 * scale;
     for (const Jobs::Status& job : jobs.list()) {
         if (job.quiet || job.seconds < 0.15) continue;
         const std::string text = job.title + (job.what.empty() ? "" : ": " + job.what);
-        x -= ImGui::CalcTextSize(text.c_str()).x + bar + cross + 16 * scale;
-        if (x < whole * 0.35f) break;
+        const float left = x - (ImGui::CalcTextSize(text.c_str()).x + bar + cross + 16 * scale);
+        if (left < whole * 0.35f) break;
+        x = left;
         ImGui::PushID(job.key.c_str());
         ImGui::SameLine(x);
         drawJob(jobs, job, text, bar, scale, icons);
         ImGui::PopID();
     }
+    return x;
 }
 
 } // namespace
@@ -77,7 +115,7 @@ std::string residencyText(const vis::ResidencyInfo& use) {
     return text;
 }
 
-void drawStatusBar(const std::string& text, Jobs* jobs, float height, float scale, bool icons) {
+void drawStatusBar(const std::string& text, Jobs* jobs, Messages* messages, float height, float scale, bool icons) {
     const ImGuiViewport& viewport = *ImGui::GetMainViewport();
     ImGui::SetNextWindowPos({viewport.Pos.x, viewport.Pos.y + viewport.Size.y - height});
     ImGui::SetNextWindowSize({viewport.Size.x, height});
@@ -93,10 +131,18 @@ void drawStatusBar(const std::string& text, Jobs* jobs, float height, float scal
                      ImGuiWindowFlags_NoBringToFrontOnFocus);
     ImGui::PopStyleColor();
     ImGui::PopStyleVar(4);
-    ImGui::PushStyleColor(ImGuiCol_Text, palette().muted);
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopStyleColor();
-    if (jobs) drawJobs(*jobs, scale, icons);
+    const float left = ImGui::GetCursorPosX(), top = ImGui::GetCursorPosY();
+    ImGui::Dummy({0, ImGui::GetFontSize()}); // what jobs stand beside
+    const float right = jobs ? drawJobs(*jobs, scale, icons) : viewport.Size.x;
+    ImGui::SetCursorPos({left, top});
+    const float room = std::max(1.0f, right - left - 12 * scale);
+    if (messages && !messages->news().empty()) {
+        drawNews(*messages, room, scale, icons);
+    } else {
+        ImGui::PushStyleColor(ImGuiCol_Text, palette().muted);
+        fittedText(text, room);
+        ImGui::PopStyleColor();
+    }
     ImGui::End();
 }
 

@@ -2,6 +2,7 @@
 
 #include "app/data/sources.h"
 #include "app/ui/jobs.h"
+#include "app/ui/messages.h"
 #include "vis/passes/renderer.h"
 
 #include <string>
@@ -15,8 +16,10 @@ std::string dataText(const Sources& sources);
 /// nothing is loaded.
 std::string residencyText(const vis::ResidencyInfo& use);
 
-/// Draws a text at the left, and the jobs at the right, each with a button that cancels it. `height` in pixels, `scale`
-/// in pixels per design pixel; `icons`: the font of icons is there; no `jobs`: none are shown.
-void drawStatusBar(const std::string& text, Jobs* jobs, float height, float scale, bool icons);
+/// Draws a text at the left, or the newest message in its place while it is new, and the jobs at the right, each with a
+/// button that cancels it. Messages stand here since over the views they would cover axes and legends; the mouse on one
+/// shows all new ones whole, a click takes it away. `height` in pixels, `scale` in pixels per design pixel; `icons`:
+/// the font of icons is there; no `jobs`, no `messages`: none are shown.
+void drawStatusBar(const std::string& text, Jobs* jobs, Messages* messages, float height, float scale, bool icons);
 
 } // namespace tessera::app

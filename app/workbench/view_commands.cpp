@@ -13,22 +13,37 @@ namespace tessera::app {
 
 namespace {
 
+/// Opens a view. A hidden one of the same kind is shown instead of a second one.
+void openView(Workbench& workbench, ViewState view) {
+    Session& session = workbench.session();
+    auto* const timeline = std::get_if<TimelineView>(&view);
+    if (timeline && workbench.document().loaded() && hasNothingToShow(view, session, workbench.document().info())) {
+        timeline->always = true;
+        for (auto& [pane, other] : session.views)
+            if (std::holds_alternative<TimelineView>(other)) {
+                other = view;
+                return;
+            }
+    }
+    workbench.panes().open(session, view, workbench.look().scale());
+}
+
 /// One for each kind of view, and for each preset of one.
 void addOpeningCommands(std::vector<Command>& commands, Workbench& workbench) {
-    const auto opens = [&](std::string_view title, std::string_view help, const ViewState& view) {
+    const auto opens = [&](std::string_view title, std::string_view help, std::string_view words,
+                           const ViewState& view) {
         commands.push_back({.menu = "View",
                             .name = "New: " + std::string(title),
                             .help = std::string(help),
-                            .run = [&workbench, view] {
-                                workbench.panes().open(workbench.session(), view, workbench.look().scale());
-                            }});
+                            .words = "open show add pane view window " + std::string(words),
+                            .run = [&workbench, view] { openView(workbench, view); }});
     };
     forEachViewKind([&]<class Kind>(const Kind& kind) {
         typename Kind::State view;
-        opens(kind.traits.title, kind.traits.help, view);
+        opens(kind.traits.title, kind.traits.help, kind.traits.words, view);
         if (!kind.preset.prepare) return;
         kind.preset.prepare(view);
-        opens(kind.preset.title, kind.preset.help, view);
+        opens(kind.preset.title, kind.preset.help, kind.preset.words, view);
     });
 }
 
@@ -37,6 +52,7 @@ void addPaneCommands(std::vector<Command>& commands, Workbench& workbench) {
     commands.push_back({.menu = "View",
                         .name = "-Maximise pane",
                         .help = "Make the pane under the mouse fill the window, or restore it",
+                        .words = "full screen fullscreen enlarge restore",
                         .shortcut = {.key = key::kF11},
                         .run = [&workbench, current] {
                             std::string& maximised = workbench.session().dock.maximised;
@@ -45,6 +61,7 @@ void addPaneCommands(std::vector<Command>& commands, Workbench& workbench) {
     commands.push_back({.menu = "View",
                         .name = "Duplicate pane",
                         .help = "Open a copy of the view under the mouse",
+                        .words = "copy clone second view",
                         .shortcut = {.key = 'D', .ctrl = true},
                         .run = [&workbench, current] {
                             Session& session = workbench.session();
@@ -61,33 +78,37 @@ void addLookCommands(std::vector<Command>& commands, Workbench& workbench) {
     commands.push_back({.menu = "View",
                         .name = "-Light theme",
                         .help = "Dark text on a light background, for print and bright rooms",
+                        .words = "dark mode white bright black background ground print",
                         .run = [looks] { looks().theme = looks().theme == Theme::Dark ? Theme::Light : Theme::Dark; },
                         .checked = [looks] { return looks().theme == Theme::Light; }});
     commands.push_back({.menu = "View",
                         .name = "Larger text",
                         .help = "Enlarge text and controls",
+                        .words = "font size scale bigger zoom",
                         .shortcut = {.key = '=', .ctrl = true},
                         .run = [resize] { resize(1.125f); }});
     commands.push_back({.menu = "View",
                         .name = "Smaller text",
                         .help = "Reduce text and controls",
+                        .words = "font size scale zoom",
                         .shortcut = {.key = '-', .ctrl = true},
                         .run = [resize] { resize(1 / 1.125f); }});
 }
 
 void addCameraCommands(std::vector<Command>& commands, Workbench& workbench) {
-    for (const auto& [name, key, help] :
-         {std::tuple{"-Look from the front", '1', "Shift: from the back"},
-          {"Look from the right", '3', "Shift: from the left"},
-          {"Look from the top", '7', "Shift: from below"},
-          {"Look isometric", '9', "From the corner"},
-          {"Parallel projection", '5', "Switch between perspective and parallel projection"},
-          {"Reset the camera", 'R', "Show the whole data set"}})
+    for (const auto& [name, key, help, words] :
+         {std::tuple{"-Look from the front", '1', "Shift: from the back", "camera view back behind"},
+          {"Look from the right", '3', "Shift: from the left", "camera view left side"},
+          {"Look from the top", '7', "Shift: from below", "camera view below bottom above"},
+          {"Look isometric", '9', "From the corner", "camera view corner 3d"},
+          {"Parallel projection", '5', "Switch between perspective and parallel projection", "orthographic camera"},
+          {"Reset the camera", 'R', "Show the whole data set", "fit home zoom all centre center view"}})
         commands.push_back(
             {.menu = "View",
              .name = name,
              .help =
                  std::string(help) + "; acts on the volume view used last (with the key: on the one under the mouse)",
+             .words = words,
              .shortcut = {.key = key},
              .run = [&workbench, key = key] { workbench.panes().pressCameraKey(workbench.session(), key); },
              .enabled =
@@ -136,6 +157,7 @@ std::vector<Command> layoutCommands(Workbench& workbench) {
     std::vector<Command> commands = {{.menu = "Layout",
                                       .name = "Reset arrangement",
                                       .help = "Restore the initial arrangement of views",
+                                      .words = "default panes windows restore layout",
                                       .shortcut = {.key = 'R', .ctrl = true, .shift = true},
                                       .run = [&workbench] { resetArrangement(workbench); },
                                       .enabled = loaded}};
@@ -146,6 +168,7 @@ std::vector<Command> layoutCommands(Workbench& workbench) {
         commands.push_back({.menu = "Layout",
                             .name = (name == layoutNames().front() ? "-" : "") + title,
                             .help = "Show the data in the layout " + name,
+                            .words = "demonstration arrangement preset task",
                             .run = [&workbench, name, title] { showLayout(workbench, name, title); },
                             .enabled = loaded});
     }

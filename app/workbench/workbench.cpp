@@ -35,7 +35,7 @@ Workbench::Workbench(WorkbenchOptions options)
         recovery_.show(autosaver_->abandoned());
     }
     panes_.paneDrawn = options_.paneDrawn;
-    for (const auto make : {fileCommands, editCommands, viewCommands, layoutCommands, helpCommands}) {
+    for (const auto make : {fileCommands, editCommands, viewCommands, layoutCommands, sceneCommands, helpCommands}) {
         std::vector<Command> commands = make(*this);
         std::ranges::move(commands, std::back_inserter(commands_));
     }
@@ -132,6 +132,8 @@ void Workbench::install(Opened opened) {
     const std::vector<std::string> said = std::move(opened.messages);
     document_.install(std::move(opened));
     data_.reset();
+    if (const auto& files = session().data.files; !files.empty())
+        files_.startIn(fs::absolute(files.front().absolutePath).parent_path().string());
     for (const std::string& text : said) message(text);
     if (autosaver_) autosaver_->clear(document_);
 }
@@ -164,6 +166,11 @@ bool Workbench::saveTo(const std::string& path) {
     return true;
 }
 
+void Workbench::ask(const std::string& text, const std::string& yes, std::function<void()> go) {
+    if (options_.headless) return go();
+    question_.show(text, yes, std::move(go));
+}
+
 void Workbench::exportText(const std::string& path, std::function<std::string(const Progress&)> make) {
     const std::string name = fs::path(path).filename().string();
     jobs_.start("export " + path, "Exporting " + name,
@@ -184,20 +191,25 @@ void Workbench::frame() {
     for (const std::string& text : renderer_->takeMessages()) message(text, true);
     if (const auto run = std::exchange(chosen_, nullptr)) run();
     data_.follow(ImGui::IsAnyItemActive(), ImGui::IsMouseDown(ImGuiMouseButton_Left));
-    pressKeys();
+    const bool givenUp = givenUp_.begin() && document_.loaded();
+    if (givenUp)
+        document_.giveUpEdit();
+    else
+        pressKeys();
     drawWindow();
+    if (givenUp) document_.giveUpEdit(); // views that saw the key have their own ways of taking a drag back
     for (const std::string& text : panes_.takeMessages()) message(text, true);
     busy_ = panes_.busy();
     if (!options_.headless) {
         drawDialogs();
         if (const Command* command = drawPalette(palette_, commands_)) chosen_ = command->run;
-        drawToasts(messages_, look_.scale(), look_.hasIcons());
         play();
     }
     const bool editing = ImGui::IsAnyItemActive() || ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
                          ImGui::IsMouseDown(ImGuiMouseButton_Right) || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
     document_.observe(editing, now());
     if (autosaver_) autosaver_->update(document_, now(), jobs_, messages_);
+    givenUp_.end();
 }
 
 void Workbench::pressKeys() {
@@ -266,7 +278,8 @@ void Workbench::drawWindow() {
         text += residencyText(renderer_->residency());
         if (panes_.compiling()) text += "   compiling shaders";
     }
-    drawStatusBar(text, options_.headless ? nullptr : &jobs_, bottom, look_.scale(), look_.hasIcons());
+    drawStatusBar(text, options_.headless ? nullptr : &jobs_, options_.headless ? nullptr : &messages_, bottom,
+                  look_.scale(), look_.hasIcons());
 }
 
 void Workbench::drawMenus() {
@@ -316,6 +329,7 @@ void Workbench::drawDialogs() {
     const LeaveDialog::Answer answer = leave_.draw(!document_.path().empty());
     if (answer == LeaveDialog::Answer::Save) saveThen(leave_.take());
     if (answer == LeaveDialog::Answer::Discard) leave_.take()();
+    if (const auto go = question_.draw()) go();
     help_.draw(commands_, look_.fonts(), renderer_->residency());
 }
 

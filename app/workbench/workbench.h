@@ -6,6 +6,7 @@
 #include "app/document/autosaver.h"
 #include "app/document/data_follower.h"
 #include "app/document/document.h"
+#include "app/workbench/given_up_drag.h"
 #include "app/workbench/pane_host.h"
 #include "app/workbench/window_look.h"
 #include "vis/image/image_io.h"
@@ -76,6 +77,8 @@ public:
     /// Quits, after asking whether to save changes.
     void requestQuit();
     void message(const std::string& text, bool failure = false) { messages_.add(text, failure); }
+    /// Does something after asking, at once in pictures. `yes`: the word on the button that does it.
+    void ask(const std::string& text, const std::string& yes, std::function<void()> go);
 
     Jobs& jobs() { return jobs_; }
     Messages& messages() { return messages_; }
@@ -144,9 +147,11 @@ private:
     RecoveryDialog recovery_;
     PictureDialog pictures_;
     LeaveDialog leave_;
+    QuestionDialog question_;
     HelpDialogs help_;
     std::vector<Command> commands_;
     CommandPalette palette_;
+    GivenUpDrag givenUp_;
     std::function<void()> chosen_; ///< command chosen in this frame, run before the next one
 
     std::optional<PictureJob> picture_;

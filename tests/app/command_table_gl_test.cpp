@@ -26,6 +26,7 @@ const std::set<std::string> kElsewhere = {
     "Quit",                         // WorkbenchGl.WhatIsNotSavedIsNotGivenUpUnasked
     "Undo",                         // every case here
     "Redo",                         // every case here
+    "Add flow layer",               // Palette.FindsByOtherWords
     "Shortcuts",                    // CommandTable.HelpAndPaletteOpen
     "Command palette",              // the same
     "About Tessera",
@@ -77,6 +78,34 @@ Check timeAlong(volume::SpaceAxis axis) {
     };
 }
 
+template <class Technique> void layerAdded(const Session& before, const Session& after) {
+    ASSERT_EQ(after.layers.size(), before.layers.size() + 1);
+    EXPECT_TRUE(std::holds_alternative<Technique>(after.layers.back().technique));
+    EXPECT_EQ(std::get<LayersView>(after.views.at("layers")).selected, int(before.layers.size())) << "selected";
+}
+
+Check lensAdded(vis::LensEffect effect) {
+    return [effect](const Session& before, const Session& after) {
+        ASSERT_EQ(after.lenses.size(), before.lenses.size() + 1);
+        EXPECT_EQ(after.lenses.back().effect, effect);
+        EXPECT_EQ(after.lenses.back().center, after.cursor);
+    };
+}
+
+template <class Region> void brushAdded(const Session& before, const Session& after) {
+    ASSERT_EQ(after.selection.brushes.size(), before.selection.brushes.size() + 1);
+    EXPECT_EQ(std::get<Region>(after.selection.brushes.back().region).center, after.cursor);
+}
+
+Check turned(bool VolumeView::*member) {
+    return [member](const Session& before, const Session& after) {
+        const auto of = [&](const Session& session) {
+            return std::get<VolumeView>(session.views.at("volume")).*member;
+        };
+        EXPECT_NE(of(after), of(before));
+    };
+}
+
 const std::map<std::string, Check>& checks() {
     static const std::map<std::string, Check> all = [] {
         std::map<std::string, Check> made = {
@@ -90,6 +119,28 @@ const std::map<std::string, Check>& checks() {
              }},
             {"Previous time", timeOf(0)},
             {"Next time", timeOf(2.0 / 3)},
+            {"Ten times back", timeOf(0)},
+            {"Ten times on", timeOf(2.0 / 3)},
+            {"First time", timeOf(0)},
+            {"Last time", timeOf(2.0 / 3)},
+            {"Add volume layer", layerAdded<vis::VolumeLayer>},
+            {"Add iso-surface layer", layerAdded<vis::IsoLayer>},
+            {"Add slice layer", layerAdded<vis::SliceLayer>},
+            {"Add lens: cut away", lensAdded(vis::LensEffect::Replace)},
+            {"Add lens: only this", lensAdded(vis::LensEffect::Only)},
+            {"Add lens: enhance", lensAdded(vis::LensEffect::Enhance)},
+            {"Add lens: suppress", lensAdded(vis::LensEffect::Suppress)},
+            {"Add lens: magnify", lensAdded(vis::LensEffect::Magnify)},
+            {"Add lens: brushes inside", lensAdded(vis::LensEffect::Focus)},
+            {"Brush a sphere at the cross-hair", brushAdded<vis::SphereRegion>},
+            {"Brush a box at the cross-hair", brushAdded<vis::BoxRegion>},
+            {"Show box", turned(&VolumeView::showBox)},
+            {"Show axes", turned(&VolumeView::showAxes)},
+            {"Show legends", turned(&VolumeView::showLegend)},
+            {"Show cross-hair", turned(&VolumeView::showCursor)},
+            {"Show direction gizmo", turned(&VolumeView::showGizmo)},
+            {"Show scale bar", turned(&VolumeView::showScaleBar)},
+            {"Show outlines and handles", turned(&VolumeView::showLenses)},
             {"Draw on the grid of the file",
              [](const Session&, const Session& after) { EXPECT_EQ(after.data.lattice, PictureLattice::Grid); }},
             {"Draw on the body-centred lattice (70.7 % of the samples)", // it is already

@@ -1,3 +1,4 @@
+#include "app/pane/view_parts.h"
 #include "tests/app/hands_fixture.h"
 
 #include <algorithm>
@@ -27,6 +28,15 @@ protected:
         std::string names;
         for (const vis::Lens& lens : session().lenses) names += lens.name;
         return names;
+    }
+    /// Whether a line of a list shows what is under it.
+    bool unfolded(const std::vector<std::variant<std::string, int>>& path) {
+        ImGuiWindow* const in = window("layers");
+        ImGuiID id = in->ID;
+        for (const auto& part : path)
+            id = std::holds_alternative<int>(part) ? ImHashData(&std::get<int>(part), sizeof(int), id)
+                                                   : ImHashStr(std::get<std::string>(part).c_str(), 0, id);
+        return in->StateStorage.GetInt(id) != 0;
     }
     int selected() { return view<LayersView>().selected; }
 };
@@ -74,6 +84,49 @@ TEST_F(ListHands, LayersAreSelectedHiddenCopiedAndRemoved) {
     click(item(popup(), {"Iso-surface"}).GetCenter());
     ASSERT_EQ(session().layers.size(), 1u);
     EXPECT_TRUE(std::holds_alternative<vis::IsoLayer>(session().layers[0].technique));
+}
+
+TEST_F(ListHands, ALayerIsNamedAfterWhatItShowsUntilTheUserNamesIt) {
+    showLists();
+    const auto title = [&] { return layerTitle(session().layers.back(), workbench.numbers()->info()); };
+    click(at({"##add"}));
+    ASSERT_TRUE(popup());
+    click(item(popup(), {"Iso-surface"}).GetCenter());
+    ASSERT_EQ(session().layers.size(), 5u);
+    EXPECT_EQ(selected(), 4) << "the new one is selected";
+    auto& surface = std::get<vis::IsoLayer>(session().layers.back().technique);
+    surface.channel = "T";
+    surface.value = 350;
+    EXPECT_EQ(title(), "T surface 350 K");
+    surface.value = 340;
+    EXPECT_EQ(title(), "T surface 340 K");
+    session().layers.back().technique = vis::SliceLayer{.channel = "c", .orientation = vis::SliceOrientation::X};
+    EXPECT_EQ(title(), "c slice x");
+    // Its name is a field that says so; what is typed stays.
+    click(at({4, "##name"}));
+    for (const char c : std::string("inlet")) ImGui::GetIO().AddInputCharacter(static_cast<unsigned>(c)), frame();
+    press(key::kEnter);
+    EXPECT_EQ(title(), "inlet");
+    session().layers.back().technique = vis::VolumeLayer{.channel = "T"};
+    EXPECT_EQ(title(), "inlet");
+    session().layers.back().name.clear();
+    EXPECT_EQ(title(), "T volume");
+}
+
+TEST_F(ListHands, ANewBrushOrLensIsUnfoldedAndTheOthersAreNot) {
+    showLists();
+    click(item(window("layers"), {"##add lens"}).GetCenter());
+    ASSERT_TRUE(popup());
+    click(item(popup(), {"Lens: enhance"}).GetCenter());
+    ASSERT_EQ(session().lenses.size(), 4u);
+    frame();
+    EXPECT_TRUE(unfolded({3, "###lens"}));
+    for (const int other : {0, 1, 2}) EXPECT_FALSE(unfolded({other, "###lens"}));
+    click(item(window("layers"), {"##add lens"}).GetCenter());
+    click(item(popup(), {"Lens: suppress"}).GetCenter());
+    frame();
+    EXPECT_TRUE(unfolded({4, "###lens"}));
+    EXPECT_FALSE(unfolded({3, "###lens"})) << "the newest alone";
 }
 
 TEST_F(ListHands, LensesAreOrderedByTheirGripsAndSwitches) {

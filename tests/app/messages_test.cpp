@@ -10,20 +10,20 @@ struct MessagesTest : testing::Test {
     double now = 0;
     Messages messages{[this] { return now; }};
 
-    std::vector<std::string> toasts() {
+    std::vector<std::string> news() {
         std::vector<std::string> texts;
-        for (const Messages::Message* each : messages.toasts()) texts.push_back(each->text);
+        for (const Messages::Message* each : messages.news()) texts.push_back(each->text);
         return texts;
     }
 };
 
 using Texts = std::vector<std::string>;
 
-TEST_F(MessagesTest, TheNewestThreeStandOverTheViews) {
+TEST_F(MessagesTest, TheNewestThreeStandInTheStatusLine) {
     for (const char* text : {"a", "b", "c", "d"}) messages.add(text);
-    EXPECT_EQ(toasts(), (Texts{"d", "c", "b"}));
-    messages.toasts().front()->gone = true;
-    EXPECT_EQ(toasts(), (Texts{"c", "b"})) << "what was too much does not come back";
+    EXPECT_EQ(news(), (Texts{"d", "c", "b"}));
+    messages.news().front()->gone = true;
+    EXPECT_EQ(news(), (Texts{"c", "b"})) << "what was too much does not come back";
     EXPECT_EQ(messages.list().size(), 4u);
     EXPECT_EQ(messages.list().front().clock.size(), 8u) << "hours, minutes, seconds";
 }
@@ -34,10 +34,10 @@ TEST_F(MessagesTest, FailuresStandLonger) {
     messages.add("done");
     EXPECT_DOUBLE_EQ(messages.secondsToChange(), 7);
     now = 8;
-    EXPECT_EQ(toasts(), (Texts{"failed"}));
+    EXPECT_EQ(news(), (Texts{"failed"}));
     EXPECT_DOUBLE_EQ(messages.secondsToChange(), 22);
     now = 31;
-    EXPECT_EQ(toasts(), Texts{});
+    EXPECT_EQ(news(), Texts{});
     EXPECT_EQ(messages.secondsToChange(), std::numeric_limits<double>::infinity());
 }
 

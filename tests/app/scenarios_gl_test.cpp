@@ -26,7 +26,7 @@ protected:
     fs::path folder;
 };
 
-std::size_t differing(const vis::Image& a, const vis::Image& b) {
+std::size_t countDiffering(const vis::Image& a, const vis::Image& b) {
     if (a.size != b.size) return a.rgba.size();
     std::size_t count = 0;
     for (std::size_t i = 0; i < a.rgba.size(); ++i) count += a.rgba[i] != b.rgba[i];
@@ -49,10 +49,10 @@ TEST_F(ScenariosGl, ADrawingIsTheSameAfterSavingAndOpening) {
     const Opened again = open(request);
     EXPECT_EQ(again.document.session, opened.document.session);
     PictureMaker other;
-    EXPECT_EQ(differing(first, other.render(again.document, again.sources(), picture)), 0u);
+    EXPECT_EQ(countDiffering(first, other.render(again.document, again.sources(), picture)), 0u);
     SessionDocument turned = again.document;
     vis::orbit(turned.session.camera, {0, 0}, {0.2f, 0});
-    EXPECT_GT(differing(first, maker.render(turned, again.sources(), picture)), 1000u);
+    EXPECT_GT(countDiffering(first, maker.render(turned, again.sources(), picture)), 1000u);
 }
 
 // A session in a folder with its data: moved as a whole, then with the data renamed, then changed.
@@ -86,7 +86,7 @@ TEST_F(ScenariosGl, ASessionOpensOnAnotherMachine) {
     EXPECT_EQ(moved.document.session.lenses, session.lenses);
     EXPECT_EQ(moved.document.session.camera, session.camera);
     EXPECT_EQ(moved.document.session.dock, session.dock);
-    EXPECT_EQ(differing(first, maker.render(moved.document, moved.sources(), picture)), 0u);
+    EXPECT_EQ(countDiffering(first, maker.render(moved.document, moved.sources(), picture)), 0u);
 
     // Renamed: the chooser knows what to ask for.
     const double bytes = double(fs::file_size(folder / "two/cell.tsr"));

@@ -84,7 +84,7 @@ TEST_F(UiTest, DraggingASliderIsOneUndoStep) {
     EXPECT_GT(changes, 10);
     ASSERT_EQ(commits, 1);
     ASSERT_EQ(history.steps().size(), 1u);
-    EXPECT_EQ(history.steps()[0].name, "appearance: scale");
+    EXPECT_EQ(history.steps()[0].name, "look of the window: scale");
     EXPECT_GT(session.appearance.scale, 1);
     session = history.undo();
     EXPECT_EQ(session.appearance.scale, 1);
@@ -211,6 +211,28 @@ TEST_F(DockTest, ASplitterFollowsTheMouseInTheSameFrame) {
     step();
 }
 
+TEST_F(DockTest, HiddenPanesTakeNoRoom) {
+    insertPane(tree, "c", tree.root.id, DockSide::Right);
+    const DockTree before = tree;
+    const int left = tree.root.children[0].id, right = tree.root.children[1].id;
+    const DockRect whole{{0, 0}, {800, 600}};
+    const auto hides = [](const std::string& name) { return [name](const std::string& pane) { return pane == name; }; };
+    DockLayout layout = layoutDock(tree, whole, 1, hides("c"));
+    EXPECT_EQ(layout.rects.at(left).hi.x, 800);
+    EXPECT_FALSE(layout.rects.contains(right));
+    EXPECT_TRUE(layout.splitters.empty());
+    // One of several tabs: the stack stays, and shows another where that one was in front.
+    layout = layoutDock(tree, whole, 1, hides("a"));
+    EXPECT_EQ(layout.rects.size(), 2u);
+    tree.root.children[0].active = 0;
+    const ShownTabs shown = shownTabs(tree.root.children[0], hides("a"));
+    EXPECT_EQ(shown.panes, (std::vector<std::string>{"b"}));
+    EXPECT_EQ(shown.front, 0u);
+    tree.root.children[0].active = before.root.children[0].active;
+    EXPECT_TRUE(layoutDock(tree, whole, 1, [](const std::string&) { return true; }).rects.empty());
+    EXPECT_TRUE(tree == before) << "it is only not shown";
+}
+
 TEST_F(DockTest, ASplitterUnderTheMouseIsLitAndNothingElse) {
     insertPane(tree, "c", tree.root.id, DockSide::Right);
     step(2);
@@ -269,8 +291,31 @@ TEST(CommandsTest, ThePaletteFindsByWordsAndLetters) {
     EXPECT_GT(matchScore("sp", "File: Save picture"), 0);
     EXPECT_EQ(matchScore("xyz", "File: Save picture"), 0);
     EXPECT_GT(matchScore("", "anything"), 0);
+    EXPECT_GT(matchScore("screenshot", "File: Save picture", "screenshot image"), kWholeWords);
+    EXPECT_GT(matchScore("picture save", "File: Save picture"), kWholeWords) << "in any order";
+    EXPECT_GT(matchScore("pict imag", "File: Save picture", "screenshot image"), kWholeWords);
+    EXPECT_LT(matchScore("pict dark", "File: Save picture", "screenshot image"), kWholeWords);
+    EXPECT_GT(matchScore("picture save", "Save picture"), matchScore("picture save", "New: Volume", "picture save"))
+        << "its own words before others";
+    EXPECT_EQ(matchScore("shot", "Save picture", "screenshot"), 0) << "words are found by their beginning";
     EXPECT_EQ(textOf({.key = 'P', .ctrl = true, .shift = true}), "Ctrl+Shift+P");
     EXPECT_EQ(textOf({.key = key::kF12}), "F12");
+}
+
+TEST(CommandsTest, WhatIsNotPossibleNowComesLastAndLettersOnlyWithoutWords) {
+    const auto none = [] {};
+    const std::vector<Command> commands{
+        {.menu = "Edit", .name = "Undo", .help = "", .run = none, .enabled = [] { return false; }},
+        {.menu = "View", .name = "New: History", .help = "", .words = "undo redo", .run = none},
+        {.menu = "File", .name = "Unload old", .help = "", .run = none}};
+    const auto found = [&](const char* typed) {
+        std::vector<std::string> names;
+        for (const Command* command : matchingCommands(typed, commands)) names.push_back(command->name);
+        return names;
+    };
+    EXPECT_EQ(found("undo"), (std::vector<std::string>{"New: History", "Undo"}));
+    EXPECT_EQ(found("uod"), (std::vector<std::string>{"Unload old"}));
+    EXPECT_EQ(found("").size(), 3u);
 }
 
 TEST_F(UiTest, AMenuHasRoomForTheListOfSettings) {

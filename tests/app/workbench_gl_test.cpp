@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <unistd.h>
 
 namespace tessera::app {
@@ -220,6 +221,39 @@ TEST(WorkbenchGl, WhatIsNotSavedIsNotGivenUpUnasked) {
     workbench.open(other);
     settle();
     EXPECT_EQ(workbench.session().data.settings, other.data->settings) << "nothing to save, nothing asked";
+}
+
+class WorkbenchTimeline : public DrawnWorkbench {
+protected:
+    static Opened data(double times) {
+        OpenRequest request;
+        request.data.emplace();
+        request.data->model = "marschner-lobb";
+        request.data->settings = {{"nx", 12}, {"ny", 12}, {"nz", 12}, {"times", times}};
+        return open(request);
+    }
+    bool shown() {
+        settle();
+        const ImGuiWindow* const window = ImGui::FindWindowByName("###pane.timeline");
+        return window && window->WasActive;
+    }
+};
+
+TEST_F(WorkbenchTimeline, HidesWhereThereIsOneTimeUnlessItIsAskedFor) {
+    workbench.install(data(3));
+    EXPECT_TRUE(shown());
+    workbench.install(data(1));
+    EXPECT_FALSE(shown());
+    const std::size_t views = workbench.session().views.size();
+    workbench.session().animation.tracks.push_back({.path = "/camera/distance", .keys = {{0, {1}}, {1, {2}}}});
+    EXPECT_TRUE(shown()) << "keyframes are times";
+    workbench.session().animation.tracks.clear();
+    EXPECT_FALSE(shown());
+    ASSERT_TRUE(run("New: Timeline"));
+    EXPECT_TRUE(shown());
+    EXPECT_EQ(workbench.session().views.size(), views) << "the hidden one, not a second one";
+    workbench.install(data(1));
+    EXPECT_FALSE(shown()) << "asked for in another session";
 }
 
 class WorkbenchMenus : public DrawnWorkbench {};

@@ -1,5 +1,6 @@
 #include "workbench_fixture.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <imgui_internal.h>
@@ -35,14 +36,7 @@ struct WorkbenchOpening : DrawnWorkbench {
         return files.empty() ? "" : fs::path(files.front().path).filename().string();
     }
     static bool dialogOpen() { return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId); }
-    static std::vector<ImGuiWindow*> toasts() {
-        std::vector<ImGuiWindow*> active;
-        for (int i = 0; i < 10; ++i)
-            if (ImGuiWindow* window = ImGui::FindWindowByName(("###toast" + std::to_string(i)).c_str());
-                window && window->Active)
-                active.push_back(window);
-        return active;
-    }
+    std::size_t news() { return workbench.messages().news().size(); }
     fs::path before = fs::current_path();
     fs::path folder = fs::path(testing::TempDir()) / ("workbench_opening_" + std::to_string(::getpid()));
 };
@@ -70,6 +64,24 @@ TEST_F(WorkbenchOpening, ALayoutIsOfTheFileItWasStatedFor) {
     EXPECT_EQ(workbench.session().data.import.raw, "");
 }
 
+TEST_F(WorkbenchOpening, QuestionsForFilesBeginWhereTheDataLie) {
+    fs::create_directories(folder / "run 7");
+    write("run 7/plain_5x6x7_uint8.raw", std::string(210, '\x21'));
+    OpenRequest request;
+    request.paths = {"run 7/plain_5x6x7_uint8.raw"};
+    request.import.emplace().raw = "dims=5x6x7,type=u8";
+    workbench.open(request);
+    settle();
+    ASSERT_EQ(shown(), "plain_5x6x7_uint8.raw");
+    ASSERT_TRUE(run("Save session as..."));
+    EXPECT_EQ(fs::path(workbench.files().folder()), fs::canonical(folder / "run 7"));
+    // Somebody who has gone elsewhere finds himself there again.
+    press(key::kEscape);
+    workbench.files().startIn(folder.string());
+    ASSERT_TRUE(run("Open..."));
+    EXPECT_EQ(fs::path(workbench.files().folder()), fs::canonical(folder));
+}
+
 // What cannot be opened is not opened, and nobody is asked to give up a session for it.
 TEST_F(WorkbenchOpening, AFileThatFailedItsPreviewIsNotOpened) {
     workbench.install(smallData());
@@ -92,33 +104,43 @@ TEST_F(WorkbenchOpening, AFileThatFailedItsPreviewIsNotOpened) {
     workbench.open(missing);
     settle();
     EXPECT_FALSE(dialogOpen());
-    EXPECT_EQ(toasts().size(), 1u);
+    EXPECT_EQ(news(), 1u);
     EXPECT_EQ(workbench.session().selection.brushes.back().name, "not saved");
 }
 
-TEST_F(WorkbenchOpening, MessagesCoverLittleAndAreClosedByTheirCross) {
+// Over a view they would cover its axes or its legend.
+TEST_F(WorkbenchOpening, MessagesStandInTheStatusLineAndAreClosedByTheirCross) {
     workbench.install(smallData());
     settle();
+    std::vector<const ImGuiWindow*> windows;
+    for (const ImGuiWindow* each : GImGui->Windows)
+        if (each->WasActive) windows.push_back(each);
     for (int i = 0; i < 6; ++i)
-        workbench.message("a.raw: has no layout: state dims=..,type=.. in its field, number " + std::to_string(i),
-                          true);
+        workbench.message("number " + std::to_string(i) + ": " + std::string(300, 'x') + " has no layout", true);
     for (int i = 0; i < 3; ++i) frame();
-    ASSERT_EQ(toasts().size(), 3u);
-    const ImGuiWindow& newest = *toasts().front();
-    EXPECT_GT(newest.Pos.y, toasts()[1]->Pos.y);
-    const ImVec2 cross(newest.Pos.x + newest.Size.x - ImGui::GetStyle().WindowPadding.x - 4,
-                       newest.Pos.y + ImGui::GetStyle().WindowPadding.y + ImGui::GetFontSize() / 2);
-    const auto mouse = [&](bool down) {
+    EXPECT_EQ(news(), 3u);
+    std::vector<const ImGuiWindow*> now;
+    for (const ImGuiWindow* each : GImGui->Windows)
+        if (each->WasActive) now.push_back(each);
+    EXPECT_EQ(now, windows) << "no window of their own";
+    const ImGuiWindow* const line = ImGui::FindWindowByName("###status");
+    ASSERT_TRUE(line);
+    const auto mouse = [&](ImVec2 at, bool down) {
         frame([&](ImGuiIO& io) {
-            io.MousePos = cross;
+            io.MousePos = at;
             io.MouseDown[0] = down;
         });
     };
-    mouse(false);
-    mouse(true);
-    mouse(false);
-    frame();
-    EXPECT_EQ(toasts().size(), 2u) << "older ones do not come back";
+    const ImVec2 text{line->Pos.x + 40, line->Pos.y + line->Size.y / 2};
+    mouse(text, false);
+    mouse(text, false);
+    EXPECT_TRUE(std::ranges::any_of(GImGui->Windows, [](const ImGuiWindow* each) {
+        return each->WasActive && (each->Flags & ImGuiWindowFlags_Tooltip);
+    })) << "the whole text under the mouse";
+    mouse(text, true);
+    mouse(text, false);
+    EXPECT_EQ(news(), 2u) << "older ones do not come back";
+    EXPECT_LT(line->ContentSize.x, 600 - line->WindowPadding.x) << "nothing is cut off at the right";
 }
 
 } // namespace

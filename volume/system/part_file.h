@@ -9,7 +9,8 @@ namespace tessera {
 std::string partFileOf(const std::string& path);
 
 /// The parts of `path` that lie in its folder although the processes that wrote them are gone, as after a kill: no
-/// process has the number in their name and none holds a lock on them (a writer on another machine of the network does).
+/// process has the number in their name and none holds a lock on them (a writer on another machine of the network
+/// does).
 std::vector<std::string> leftParts(const std::string& path);
 
 /// Removes these. What cannot be removed stays.

@@ -54,11 +54,10 @@ vis::Layer newLayer(const Session& session, const volume::DatasetInfo& info, std
         const std::string vector = firstVector(info);
         layer.technique = vis::FlowLayer{.vector = vector, .channel = vector.empty() ? name : "|" + vector + "|"};
     }
-    layer.name = std::string(kindName(layer.technique)) + " of " + name;
     return layer;
 }
 
-void drawList(ViewContext& context, int& selected) {
+void drawList(ViewContext& context, const volume::DatasetInfo& info, int& selected) {
     std::vector<vis::Layer>& layers = context.session.layers;
     int moveFrom = -1, moveTo = -1;
     for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -76,7 +75,7 @@ void drawList(ViewContext& context, int& selected) {
         if (ImGui::BeginDragDropSource()) {
             const int index = static_cast<int>(i);
             ImGui::SetDragDropPayload(kLayerPayload, &index, sizeof index);
-            ImGui::TextUnformatted(layer.name.c_str());
+            ImGui::TextUnformatted(layerTitle(layer, info).c_str());
             ImGui::EndDragDropSource();
         }
         if (ImGui::BeginDragDropTarget()) {
@@ -86,7 +85,7 @@ void drawList(ViewContext& context, int& selected) {
             }
             ImGui::EndDragDropTarget();
         }
-        if (ImGui::IsItemHovered()) tooltip(kindName(layer.technique));
+        const bool hovered = ImGui::IsItemHovered();
         ImGui::SetCursorPos(at);
         iconText(context, iconOf(layer.technique),
                  ImGui::GetColorU32(layer.visible ? ImGuiCol_Text : ImGuiCol_TextDisabled));
@@ -94,9 +93,11 @@ void drawList(ViewContext& context, int& selected) {
         ImGui::AlignTextToFramePadding();
         // A layer named after its parameter need not say it twice.
         std::string channel = channelOf(layer.technique);
-        if (layer.name == channel || layer.name.starts_with(channel + " ")) channel.clear();
+        const std::string whole = layerTitle(layer, info);
+        if (whole == channel || whole.starts_with(channel + " ") || layer.name.empty()) channel.clear();
         const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(channel.c_str()).x - em() * 1.5f;
-        const std::string name = fitText(layer.name.empty() ? kindName(layer.technique) : layer.name, room);
+        const std::string name = fitText(whole, room);
+        if (hovered) tooltip(((name == whole ? "" : whole + "\n") + kindName(layer.technique)).c_str());
         if (layer.visible)
             ImGui::TextUnformatted(name.c_str());
         else
@@ -130,7 +131,7 @@ void drawPlace(const WidgetContext& widgets, Session& session, vis::Layer& layer
         if (drawBool(widgets, field, own)) {
             const std::string channel = surface ? surface->colorBy : channelOf(layer.technique);
             const vis::TransferFunction now = transferOf(session, layer.transfer.empty() ? channel : layer.transfer);
-            std::string name = channel + " in " + layer.name;
+            std::string name = channel + " in " + layerName(layer);
             while (own && session.transfer.contains(name)) name += "'";
             if (own) session.transfer[name] = now;
             if (!own) session.transfer.erase(layer.transfer);
@@ -180,7 +181,7 @@ void drawListButtons(ViewContext& context, const volume::DatasetInfo& info, int&
         static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice", "Flow"};
         for (std::size_t kind = 0; kind < std::size(kNames); ++kind)
             if (ImGui::MenuItem(kNames[kind], nullptr, false, kind != 3 || !firstVector(info).empty())) {
-                layers.push_back(newLayer(context.session, info, kind));
+                addLayer(context.session, info, kind);
                 selected = static_cast<int>(layers.size()) - 1;
             }
         ImGui::EndPopup();
@@ -188,7 +189,7 @@ void drawListButtons(ViewContext& context, const volume::DatasetInfo& info, int&
     ImGui::SameLine(0, em() * 0.2f);
     if (iconButton(context, "copy", icons::kCopy, "Duplicate the layer", any)) {
         vis::Layer copy = layers[static_cast<std::size_t>(selected)];
-        copy.name += " copy";
+        if (!copy.name.empty()) copy.name += " copy";
         layers.insert(layers.begin() + selected + 1, copy);
         ++selected;
     }
@@ -202,6 +203,12 @@ void drawListButtons(ViewContext& context, const volume::DatasetInfo& info, int&
 }
 
 } // namespace
+
+void addLayer(Session& session, const volume::DatasetInfo& info, std::size_t kind) {
+    session.layers.push_back(newLayer(session, info, kind));
+    for (auto& [pane, view] : session.views)
+        if (auto* const list = std::get_if<LayersView>(&view)) list->selected = int(session.layers.size()) - 1;
+}
 
 void followChannel(std::string& name, const std::string& before, const std::string& now) {
     if (before.empty() || before == now) return;
@@ -222,7 +229,7 @@ void drawLayersView(ViewContext& context, const std::string& pane, LayersView& v
     const WidgetContext widgets{.info = &info, .menu = &menu};
     ImGui::BeginChild("layers");
     if (ImGui::CollapsingHeader("Layers", ImGuiTreeNodeFlags_DefaultOpen)) {
-        drawList(context, view.selected);
+        drawList(context, info, view.selected);
         drawListButtons(context, info, view.selected);
     }
     view.selected = std::clamp(view.selected, 0, std::max(0, static_cast<int>(session.layers.size()) - 1));
@@ -231,8 +238,8 @@ void drawLayersView(ViewContext& context, const std::string& pane, LayersView& v
         const std::string title = std::string(kindName(layer.technique)) + "###technique";
         if (ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {
             ImGui::PushID(view.selected);
-            drawLabel(widgets, "Name", "Name of the layer");
-            ImGui::InputText("##name", &layer.name);
+            drawLabel(widgets, "Name", "Name of the layer; empty: what it shows");
+            ImGui::InputTextWithHint("##name", layerTitle(layer, info).c_str(), &layer.name);
             const std::string before = channelOf(layer.technique);
             const WidgetContext own = widgets.at("/layers/" + std::to_string(view.selected) + "/technique");
             std::visit([&](auto& technique) { drawDescribed(technique, own); }, layer.technique);

@@ -216,9 +216,8 @@ bool drawPlot(ViewContext& context, ScatterCache& cache, ScatterMatrixView& view
     }
     draw.PopClipRect();
     if (histogram && frame.height() > em() * 1.6f) {
-        const std::string name = fitText(channels.x, frame.width() - em() * 0.5f);
-        addTextWithBackdrop(draw, {frame.max.x - em() * 0.3f, frame.min.y + em() * 0.15f}, {1, 0}, colors.text,
-                            name.c_str());
+        addFittedWithBackdrop(draw, {frame.max.x - em() * 0.3f, frame.min.y + em() * 0.15f}, {1, 0}, colors.text,
+                              channels.x, frame.width() - em() * 0.5f);
     }
     if (hovered && !cache.drag.active && result)
         hoverText(matrix, column, row, frame, *result, context.numbers->info(), view.colorBy);
@@ -308,9 +307,6 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
         matrix.ranges.front() = own.range;
         bins = own.count;
     }
-    // Esc clears the brushes, wherever in the view the mouse is; during a drag it cancels the drag.
-    if (!cache.drag.active && ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows) && keyPressed(key::kEscape))
-        context.session.selection.brushes.clear();
     updateReadout(context, pane, cache.readout);
     BrushedQuery query =
         brushedQuery(context.session, info, matrix.channels, matrix.ranges, bins, matrix.channels.size() > 1);

@@ -38,7 +38,7 @@ struct SpaceCache : ViewCache {
 
 void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis::WorldFrame& world, double aspect) {
     if (!ImGui::BeginPopup(id)) return;
-    if (pressed({.key = key::kEscape})) ImGui::CloseCurrentPopup();
+    if (escapePressed()) ImGui::CloseCurrentPopup();
     vis::Camera& camera = context.session.camera;
     if (ImGui::MenuItem("Reset view", "R")) resetCamera(camera, world, aspect);
     static constexpr const char* kKeys[] = {"1", "Shift+1", "Shift+3", "3", "7", "Shift+7", "9"};

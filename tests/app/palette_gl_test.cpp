@@ -1,0 +1,128 @@
+#include "tests/app/workbench_fixture.h"
+
+#include <algorithm>
+
+/// The palette finds every pane and action, by the words that people have for it.
+namespace tessera::app {
+namespace {
+
+class Palette : public DrawnWorkbench {
+protected:
+    void SetUp() override {
+        OpenRequest request;
+        request.data.emplace();
+        request.data->model = "fuel-cell";
+        request.data->settings = {{"nx", 9}, {"ny", 9}, {"nz", 21}, {"times", 3}};
+        Opened opened = open(request);
+        opened.document.session.dock.maximised = "layers"; // soon drawn
+        opened.document.history.reset(opened.document.session);
+        workbench.install(std::move(opened));
+        settle();
+    }
+    std::vector<std::string> found(const std::string& typed) const {
+        std::vector<std::string> names;
+        for (const Command* command : matchingCommands(typed, workbench.commands())) names.push_back(command->title());
+        return names;
+    }
+    bool finds(const std::string& typed, const std::string& wanted) const {
+        return std::ranges::count(found(typed), wanted) == 1;
+    }
+    void type(const std::string& text) {
+        for (const char c : text) frame([c](ImGuiIO& io) { io.AddInputCharacter(static_cast<unsigned char>(c)); });
+    }
+};
+
+TEST_F(Palette, FindsByOtherWords) {
+    for (const auto& [typed, wanted] : {std::pair{"flow", "Add flow layer"},
+                                        {"streamlines", "Add flow layer"},
+                                        {"screenshot", "Save picture..."},
+                                        {"save picture", "Save picture..."},
+                                        {"picture save", "Save picture..."},
+                                        {"png", "Save picture..."},
+                                        {"isosurface", "Add iso-surface layer"},
+                                        {"contour", "Add iso-surface layer"},
+                                        {"contour", "New: Slices"},
+                                        {"legend", "Show legends"},
+                                        {"color bar", "Show legends"},
+                                        {"undo", "Undo"},
+                                        {"undo", "New: History"},
+                                        {"dark", "Light theme"},
+                                        {"full screen", "Maximise pane"},
+                                        {"exit", "Quit"},
+                                        {"load", "Open..."},
+                                        {"mesh", "Export surface..."},
+                                        {"movie", "Play"},
+                                        {"sphere", "Brush a sphere at the cross-hair"},
+                                        {"orthographic", "Parallel projection"},
+                                        {"histogram", "New: Histogram"},
+                                        {"difference", "Compare with another file..."}})
+        EXPECT_TRUE(finds(typed, wanted)) << typed << " should find " << wanted;
+    EXPECT_EQ(found("flow").front(), "Add flow layer");
+    EXPECT_EQ(found("screenshot").front(), "Save picture...");
+    EXPECT_TRUE(finds("undo", "Undo")) << "also with nothing to undo";
+    ASSERT_FALSE(run("Undo"));
+}
+
+TEST_F(Palette, HasEveryPaneAndEveryItemOfAMenu) {
+    forEachViewKind([&]<class Kind>(const Kind& kind) {
+        const std::string title(kind.traits.title);
+        ASSERT_FALSE(found(title).empty()) << title;
+        EXPECT_TRUE(finds(title, "New: " + title));
+        EXPECT_FALSE(kind.traits.words.empty()) << title << " has no other words";
+    });
+    for (const Command& command : workbench.commands()) {
+        EXPECT_TRUE(finds(command.title(), command.title()));
+        EXPECT_FALSE(command.words.empty()) << command.title() << " has no other words";
+    }
+    // What the menu of a volume and the lists of layers, brushes and lenses offer.
+    for (const char* item : {"box",
+                             "axes",
+                             "legends",
+                             "cross-hair",
+                             "direction gizmo",
+                             "scale bar",
+                             "outlines and handles",
+                             "parallel projection",
+                             "sphere at the cross-hair",
+                             "box at the cross-hair",
+                             "clear brushes",
+                             "lens: cut away",
+                             "lens: only this",
+                             "lens: enhance",
+                             "lens: suppress",
+                             "lens: magnify",
+                             "lens: brushes inside",
+                             "volume layer",
+                             "iso-surface layer",
+                             "slice layer",
+                             "flow layer",
+                             "save picture",
+                             "front",
+                             "back",
+                             "left",
+                             "right",
+                             "top",
+                             "below",
+                             "isometric",
+                             "reset view"}) {
+        const std::vector<const Command*> match = matchingCommands(item, workbench.commands());
+        ASSERT_FALSE(match.empty()) << item;
+        const std::string name = match.front()->menu + ": " + match.front()->title();
+        EXPECT_GE(matchScore(item, name, match.front()->words), kWholeWords) << item;
+    }
+}
+
+TEST_F(Palette, WhatIsTypedIsRunByEnter) {
+    const std::size_t layers = workbench.session().layers.size();
+    workbench.palette().open = true;
+    for (int i = 0; i < 3; ++i) frame();
+    type("flow");
+    press(key::kEnter);
+    for (int i = 0; i < 3; ++i) frame();
+    ASSERT_EQ(workbench.session().layers.size(), layers + 1);
+    EXPECT_TRUE(std::holds_alternative<vis::FlowLayer>(workbench.session().layers.back().technique));
+    EXPECT_EQ(std::get<LayersView>(workbench.session().views.at("layers")).selected, int(layers));
+}
+
+} // namespace
+} // namespace tessera::app
