@@ -10,10 +10,12 @@ namespace tessera::app {
 
 namespace {
 
-/// Told apart by hue and lightness; the first is the colour of a lone brush.
-constexpr glm::vec3 kBrushColors[] = {{1.0f, 0.69f, 0.25f},  {0.36f, 0.8f, 0.98f}, {0.96f, 0.48f, 0.78f},
-                                      {0.55f, 0.87f, 0.42f}, {0.74f, 0.62f, 1.0f}, {0.95f, 0.42f, 0.36f},
-                                      {0.93f, 0.88f, 0.42f}, {0.35f, 0.86f, 0.74f}};
+/// Told apart with each of the three colour blindnesses too, on dark ground and as drawn on light ground: at least 13
+/// hundredths of OKLab between any two, where about 2 are just noticed (searched for; views_brush_test.cpp measures
+/// it). The first is the colour of a lone brush, each further one is far from those before.
+constexpr glm::vec3 kBrushColors[] = {{1.0f, 0.69f, 0.25f}, {0.7f, 0.05f, 1.0f},  {0.65f, 0.95f, 1.0f},
+                                      {0.2f, 0.55f, 0.5f},  {0.25f, 0.8f, 0.75f}, {0.95f, 0.25f, 0.0f},
+                                      {0.95f, 1.0f, 0.1f},  {0.65f, 0.55f, 0.95f}};
 
 /// A colour of the session on the theme's background: light ones vanish on white.
 ImU32 onTheme(glm::vec3 color, float alpha = 1) {

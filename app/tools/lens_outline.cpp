@@ -18,6 +18,31 @@ ImU32 colorOf(const vis::Lens& lens, float alpha) {
     return toColor({lens.color.r, lens.color.g, lens.color.b}, double(alpha));
 }
 
+/// Joined lines as dashes, so that a lens looks unlike a brush in space, whose lines are whole.
+class Dashes {
+public:
+    Dashes(ImDrawList& draw, float width) : draw_(draw), width_(width) {}
+    void line(ImVec2 from, ImVec2 to, ImU32 color) {
+        const float length = std::hypot(to.x - from.x, to.y - from.y);
+        const float dash = em() * 0.55f, period = em() * 0.9f;
+        if (!(length > 0) || length > 2e4f) return;
+        const auto at = [&](float way) {
+            return ImVec2{from.x + (to.x - from.x) * way / length, from.y + (to.y - from.y) * way / length};
+        };
+        for (float way = 0; way < length;) {
+            const float within = std::fmod(phase_ + way, period);
+            const float end = std::min(length, way + (within < dash ? dash : period) - within + 0.01f);
+            if (within < dash) draw_.AddLine(at(way), at(end), color, width_);
+            way = end;
+        }
+        phase_ = std::fmod(phase_ + length, period);
+    }
+
+private:
+    ImDrawList& draw_;
+    float width_, phase_ = 0;
+};
+
 /// Calls `each(lens, placed)` for the lenses that act.
 template <class Each> void eachLens(const Session& session, const vis::WorldFrame& world, const Each& each) {
     const auto placed = vis::placeLenses(session.lenses, world, session.camera, session.cursor);
@@ -38,6 +63,7 @@ void drawLenses(ImDrawList& draw, const SpaceFrame& frame, const Session& sessio
     eachLens(session, frame.world, [&](int index, const vis::Lens& lens, const vis::PlacedLens& placed) {
         const float width = std::max(1.0f, em() * (index == active ? 0.13f : 0.09f));
         const double depth = glm::dot(placed.center, middle.direction);
+        Dashes dashes(draw, width);
         const auto line = [&](glm::dvec3 a, glm::dvec3 b, float strength) {
             const glm::dvec3 from = placed.center + placed.fromUnit * a, to = placed.center + placed.fromUnit * b;
             const auto p = worldPixel(frame, from), q = worldPixel(frame, to);
@@ -46,7 +72,7 @@ void drawLenses(ImDrawList& draw, const SpaceFrame& frame, const Session& sessio
             const float seen = (behind > 1e-6 && placed.shape != vis::LensShape::Sphere) || strength < 1
                                    ? (behind > 1e-6 ? 0.55f : 1.0f)
                                    : 1.0f;
-            draw.AddLine(*p, *q, colorOf(lens, 0.85f * strength * seen), width);
+            dashes.line(*p, *q, colorOf(lens, 0.85f * strength * seen));
         };
         const bool perspective = session.camera.projection == vis::Projection::Perspective;
         const glm::dvec3 eye = placed.toUnit * (perspective ? middle.origin - placed.center : -middle.direction);
@@ -94,8 +120,9 @@ void drawLensSections(ImDrawList& draw, const PlotFrame& frame, const Session& s
             outline.push_back(frame.pixel(physical[right] * perUnit.x, physical[up] * perUnit.y));
         }
         if (outline.empty()) return;
-        draw.AddPolyline(outline.data(), static_cast<int>(outline.size()), colorOf(lens, 0.9f), ImDrawFlags_Closed,
-                         std::max(1.0f, em() * 0.1f));
+        Dashes dashes(draw, std::max(1.0f, em() * 0.1f));
+        for (std::size_t i = 0; i < outline.size(); ++i)
+            dashes.line(outline[i], outline[(i + 1) % outline.size()], colorOf(lens, 0.9f));
         const glm::dvec3 middle = world.toPhysical(placed.center);
         draw.AddCircleFilled(frame.pixel(middle[right] * perUnit.x, middle[up] * perUnit.y), em() * 0.28f,
                              colorOf(lens, 0.9f));

@@ -2,8 +2,83 @@
 #include "app/tools/brush_list.h"
 #include "tests/app/fed_imgui.h"
 
+#include "app/tools/lens_list.h"
+#include "volume/field/dataset.h"
+
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
 namespace tessera::app {
 namespace {
+
+/// A colour in OKLab (B. Ottosson, 2020) as somebody sees it; `blindness` in linear sRGB, identity for none.
+glm::dvec3 seen(glm::vec3 color, const glm::dmat3& blindness) {
+    glm::dvec3 linear;
+    for (int i = 0; i < 3; ++i) {
+        const auto c = double(color[i]);
+        linear[i] = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+    }
+    linear = glm::clamp(blindness * linear, 0.0, 1.0);
+    const glm::dmat3 toCones =
+        glm::transpose(glm::dmat3{0.4122214708, 0.5363325363, 0.0514459929, 0.2119034982, 0.6806995451, 0.1073969566,
+                                  0.0883024619, 0.2817188376, 0.6299787005});
+    const glm::dmat3 toLab =
+        glm::transpose(glm::dmat3{0.2104542553, 0.7936177850, -0.0040720468, 1.9779984951, -2.4285922050, 0.4505937099,
+                                  0.0259040371, 0.7827717662, -0.8086757660});
+    const glm::dvec3 cones = toCones * linear;
+    return toLab * glm::dvec3(std::cbrt(cones.x), std::cbrt(cones.y), std::cbrt(cones.z));
+}
+
+/// Nothing, and protanopia, deuteranopia and tritanopia after Machado, Oliveira and Fernandes (2009), severity 1.
+const std::array<glm::dmat3, 4>& eyes() {
+    static const std::array<glm::dmat3, 4> all{
+        glm::dmat3(1),
+        glm::transpose(
+            glm::dmat3{0.152286, 1.052583, -0.204868, 0.114503, 0.786281, 0.099216, -0.003882, -0.048116, 1.051998}),
+        glm::transpose(
+            glm::dmat3{0.367322, 0.860646, -0.227968, 0.280085, 0.672501, 0.047413, -0.011820, 0.042940, 0.968881}),
+        glm::transpose(
+            glm::dmat3{1.255528, -0.076749, -0.178779, -0.078411, 0.930809, 0.147602, 0.004733, 0.691367, 0.303900})};
+    return all;
+}
+
+TEST(BrushColors, AreToldApartByEveryEyeOnDarkAndLightGround) {
+    vis::Selection selection;
+    std::vector<glm::vec3> colors;
+    for (int i = 0; i < 8; ++i) {
+        selection.brushes.push_back({});
+        selection.brushes.back().color = {};
+        const glm::vec3 color = newBrushColor(selection);
+        selection.brushes.back().color = color;
+        colors.push_back(color);
+    }
+    volume::DatasetInfo info;
+    info.bounds = {{0, 0, 0}, {1, 1, 1}};
+    Session session;
+    for (int i = 0; i < 4; ++i) addLens(session, info, vis::LensEffect::Replace);
+    EXPECT_EQ(colors.front(), vis::Brush{}.color) << "a lone brush";
+    for (const float ground : {1.0f, 0.7f}) { // as drawn on dark and on light ground
+        const double share = ground < 1 ? 0.75 : 1;
+        for (const glm::dmat3& eye : eyes()) {
+            for (std::size_t a = 0; a < colors.size(); ++a) {
+                const glm::dvec3 one = seen(colors[a] * ground, eye);
+                for (std::size_t b = 0; b < a; ++b)
+                    EXPECT_GT(glm::distance(one, seen(colors[b] * ground, eye)), 0.13 * share) << a << " and " << b;
+                for (const vis::Lens& lens : session.lenses)
+                    EXPECT_GT(glm::distance(one, seen(lens.color * ground, eye)), 0.08 * share) << a << ", a lens";
+            }
+        }
+        for (const glm::vec3& color : colors) {
+            const double lightness = seen(color * ground, eyes()[0]).x;
+            if (ground < 1)
+                EXPECT_LT(lightness, 0.75) << "seen on white";
+            else
+                EXPECT_GT(lightness, 0.57) << "seen on black";
+        }
+    }
+}
 
 /// One plot of 200 x 100 pixels with values 0..10 and 0..1, driven by a fed mouse. ImGui needs no GPU for it.
 class BrushEdit : public FedImGui {
