@@ -1,8 +1,11 @@
 #include "app/command/picture_options.h"
 
 #include "app/data/import_options.h"
+#include "app/data/library.h"
 #include "app/described/describe_cli.h"
 #include "app/history/parameter_path.h"
+#include "app/user_files/own_functions.h"
+#include "app/user_files/state_dir.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -106,6 +109,20 @@ void addLayoutOption(CLI::App& command, std::string& layout) {
     command.add_option("--layout", layout, "Layout to show the data in, by file or name" + names)->type_name("LAYOUT");
 }
 
+void addTransferOption(CLI::App& command, std::vector<std::string>& transfer) {
+    std::string names;
+    for (const vis::TransferRecipe& recipe : vis::transferLibrary())
+        names += (names.empty() ? ": " : ", ") + recipe.name;
+    command
+        .add_option(
+            "--transfer", transfer,
+            "Transfer function of the library, for the first layer or for PARAMETER, by name or one of your own" +
+                names)
+        ->type_name("[PARAMETER=]NAME")
+        ->expected(1)
+        ->take_all();
+}
+
 void addPictureOptions(CLI::App& command, PictureOptions& options) {
     command
         .add_option("input", options.inputs,
@@ -121,6 +138,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options) {
         ->type_name("/POINTER=VALUE")
         ->expected(1)
         ->take_all();
+    addTransferOption(command, options.transfer);
     addImportOptions(command, options.import);
 }
 
@@ -150,6 +168,12 @@ Opened openForPicture(const PictureOptions& options, const Progress& progress) {
         const DataRef data = opened.document.session.data;
         if (!(data == opened.document.history.data())) opened = openWith(std::move(opened), data, progress);
         fitSession(opened.document.session, opened.source->info(), opened.messages);
+    }
+    if (!options.transfer.empty()) {
+        const OwnFunctions own = loadOwnFunctions(stateFolder());
+        opened.messages.insert(opened.messages.end(), own.messages.begin(), own.messages.end());
+        for (const std::string& words : options.transfer)
+            applyNamed(opened.document.session, *opened.source, words, own.list);
     }
     for (const std::string& message : opened.messages) std::fprintf(stderr, "tessera: %s\n", message.c_str());
     return opened;

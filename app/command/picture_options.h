@@ -19,11 +19,15 @@ struct PictureOptions {
     std::vector<std::string> without;  ///< parts of the decoration
     bool undecorated = false;
     std::vector<std::string> settings; ///< "/json/pointer=value"
+    std::vector<std::string> transfer; ///< "NAME" or "PARAMETER=NAME" of the library
     volume::ImportOptions import;
 };
 
 /// The option --layout, whose help names the layouts that ship; `layout` must outlive the parsing.
 void addLayoutOption(CLI::App& command, std::string& layout);
+
+/// The option --transfer, whose help names the library; `transfer` must outlive the parsing.
+void addTransferOption(CLI::App& command, std::vector<std::string>& transfer);
 
 /// Adds them to a command; `options` must outlive the parsing.
 void addPictureOptions(CLI::App& command, PictureOptions& options);

@@ -1,6 +1,7 @@
 #include "app/pane/legend.h"
 
 #include "app/ui/ticks.h"
+#include "vis/transfer/region_guess.h"
 
 #include <algorithm>
 #include <array>
@@ -57,19 +58,21 @@ void drawColorStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::Transfe
     draw.AddRect(min, max, colors.frame);
 }
 
+void drawRegionStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function) {
+    for (int i = 0; i < kStripParts; ++i) {
+        const auto x = [&](int k) { return min.x + (max.x - min.x) * static_cast<float>(k) / kStripParts; };
+        const glm::dvec4 shown = vis::shownAs(function, {0, 1}, (i + 0.5) / kStripParts);
+        if (shown.a > 0) draw.AddRectFilled({x(i), min.y}, {x(i + 1), max.y}, toColor({shown.r, shown.g, shown.b}));
+    }
+    draw.AddRect(min, max, plotColors().frame);
+}
+
 void drawOpacityStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function) {
-    constexpr int kGradients = 32;
     const PlotColors colors = plotColors();
     std::array<double, kStripParts + 1> opacity{};
-    double most = 0;
-    for (int i = 0; i <= kStripParts; ++i) {
-        double& own = opacity[static_cast<std::size_t>(i)];
-        for (int k = 0; k <= (function.kind == vis::TransferKind::Regions ? kGradients : 0); ++k)
-            own = std::max(own, vis::evaluate(function, {0, 1}, static_cast<double>(i) / kStripParts,
-                                              static_cast<double>(function.gradientTop) * k / kGradients)
-                                    .a);
-        most = std::max(most, own);
-    }
+    for (int i = 0; i <= kStripParts; ++i)
+        opacity[static_cast<std::size_t>(i)] = vis::shownAs(function, {0, 1}, static_cast<double>(i) / kStripParts).a;
+    const double most = *std::max_element(opacity.begin(), opacity.end());
     const ImVec4 ink = ImGui::ColorConvertU32ToFloat4(colors.text);
     const auto color = [&](int i) {
         const double share = most > 0 ? opacity[static_cast<std::size_t>(i)] / most : 0;
@@ -92,11 +95,13 @@ float drawLegendBar(ImDrawList& draw, ImVec2 min, float width, const LegendEntry
     const ImVec2 lo{min.x + arrow + 1, min.y + em() * 0.2f}, hi{min.x + width - arrow - 1, lo.y + height};
     if (entry.opacity)
         drawOpacityStrip(draw, lo, hi, entry.function);
+    else if (entry.regions)
+        drawRegionStrip(draw, lo, hi, entry.function);
     else
         drawColorStrip(draw, lo, hi, entry.function);
     const auto end = [&](double x) {
         const glm::dvec4 c = vis::evaluate(entry.function, {0, 1}, x);
-        return entry.opacity ? colors.frame : toColor({c.r, c.g, c.b});
+        return entry.opacity || entry.regions ? colors.frame : toColor({c.r, c.g, c.b});
     };
     const double slack = (entry.range.hi - entry.range.lo) * 1e-6;
     if (entry.data.lo < entry.range.lo - slack) drawArrow(draw, {lo.x - 1, lo.y}, height, -1, end(0));

@@ -29,6 +29,7 @@ struct LegendEntry {
     double value = 0;
     std::vector<NamedColor> names = {}; ///< of a label: in place of a bar
     bool opacity = false;               ///< the bar shows the function's opacity and not its colours
+    bool regions = false;               ///< the bar shows the colours of regions; bare where none has the value
     bool operator==(const LegendEntry&) const = default;
 };
 
@@ -36,6 +37,9 @@ struct LegendEntry {
 /// wanted.
 void drawColorStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function,
                     bool withOpacity = false);
+
+/// The same in the colours of the function's regions; bare where none has the value.
+void drawRegionStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function);
 
 /// The same of the opacity alone, as parts of the greatest: regions count with their most at any gradient.
 void drawOpacityStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function);

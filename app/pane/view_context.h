@@ -56,6 +56,8 @@ struct ViewContext {
     /// Asks for the session as it was after so many steps of its history, after this frame; null in tests.
     std::function<void(std::size_t position)> goToStep = {};
     const Messages* log = nullptr; ///< the program's messages; null in tests
+    std::string stateFolder = {};  ///< of what the user keeps beyond sessions; "" = keeps nothing
+    bool idle = true;              ///< no view was busy in the last frame: time for work that can wait
     /// Asks the workbench to run a command of its table, by name, after this frame; null in tests.
     std::function<void(const std::string& command)> runCommand = {};
     /// Asks where to save, then writes what `make` returns, in the background; null in tests.
@@ -69,6 +71,7 @@ struct ViewContext {
     int cameraKey = 0;
     std::vector<std::string> messages = {}; ///< failures that a view adds, for the log
     bool busy = false;        ///< set by a view that needs another frame soon (refining, animating, waiting for a job)
+    bool waiting = false;     ///< set by a view that has work left for frames that are idle
     bool behind = false;      ///< set by a view that shows an older state of the session until an answer is there
     bool compiling = false;   ///< set by a view whose picture waits for a program of the renderer
     bool interacting = false; ///< some edit is in progress (mouse held on a control): draw at reduced size

@@ -250,6 +250,9 @@ std::vector<LegendEntry> sceneLegends(const Session& session, const volume::Data
             entry.names.clear();
             if (seen.insert(entry.title + " " + layer.transfer).second) entries.push_back(entry);
         } else if (seen.insert(name).second) {
+            const auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique);
+            entry.regions = volume && volume->style == vis::RayStyle::Composite &&
+                            entry.function.kind == vis::TransferKind::Regions;
             entries.push_back(entry);
         }
         // A surface's own function is that of its colours.

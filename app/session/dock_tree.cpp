@@ -154,6 +154,21 @@ void followTabs(DockNode& tree, const DockNode& now) {
     for (std::size_t i = 0; i < tree.children.size(); ++i) followTabs(tree.children[i], now.children[i]);
 }
 
+namespace {
+
+void bringForward(DockNode& node, const std::string& pane) {
+    for (DockNode& child : node.children) bringForward(child, pane);
+    const auto found = std::find(node.tabs.begin(), node.tabs.end(), pane);
+    if (found != node.tabs.end()) node.active = int(found - node.tabs.begin());
+}
+
+} // namespace
+
+void showPane(DockTree& tree, const std::string& pane) {
+    if (!tree.maximised.empty()) tree.maximised = pane;
+    bringForward(tree.root, pane);
+}
+
 std::vector<std::string> panesOf(const DockTree& tree) {
     std::vector<std::string> panes;
     collectPanes(tree.root, panes);

@@ -71,6 +71,8 @@ void removePane(DockTree& tree, const std::string& pane);
 /// Puts a pane (new or from elsewhere in the tree) beside, or as a tab into, the stack with that node id.
 void insertPane(DockTree& tree, const std::string& pane, int node, DockSide side);
 void floatPane(DockTree& tree, const std::string& pane, FloatingPane place);
+/// Brings a pane to the front of its stack; it must not hide behind one that fills the window.
+void showPane(DockTree& tree, const std::string& pane);
 /// Every pane of the tree, floating ones included.
 std::vector<std::string> panesOf(const DockTree& tree);
 /// Copies which tabs are in front, for stacks that are the same in both trees.

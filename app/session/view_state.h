@@ -20,6 +20,7 @@ struct TransferView {
     bool logHistogram = true;
     bool visibility = false;
     bool boundaries = false; ///< of a function that is a curve
+    bool library = false;    ///< shows the library in place of an editor
     bool operator==(const TransferView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{.key = "channel",
@@ -33,6 +34,9 @@ struct TransferView {
         visit(self.boundaries, FieldInfo{.key = "boundaries",
                                          .unit = "",
                                          .doc = "Compute the curve from boundaries, with an editable emphasis"});
+        visit(self.library, FieldInfo{.key = "library",
+                                      .unit = "",
+                                      .doc = "Show the library of transfer functions instead of an editor"});
     }
 };
 DrawView<TransferView> drawTransferView;

@@ -4,7 +4,6 @@
 #include "app/ui/fitted_text.h"
 #include "app/ui/theme.h"
 #include "app/ui/ticks.h"
-#include "vis/transfer/transfer_function.h"
 
 #include <algorithm>
 #include <cctype>
@@ -37,21 +36,6 @@ std::string numberFormat(std::optional<Range> range, bool logScale, bool integer
 
 std::string idOf(const FieldInfo& info) {
     return "##" + std::string(info.key);
-}
-
-void drawPreview(ImVec2 lo, ImVec2 hi, std::string_view map, bool reversed) {
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    const int parts = 24;
-    const auto at = [&](int i) {
-        const double x = double(i) / parts;
-        const glm::dvec3 color = vis::colormapColor(map, reversed ? 1 - x : x);
-        return ImGui::ColorConvertFloat4ToU32({float(color.r), float(color.g), float(color.b), 1});
-    };
-    for (int i = 0; i < parts; ++i) {
-        const float x0 = lo.x + (hi.x - lo.x) * float(i) / parts, x1 = lo.x + (hi.x - lo.x) * float(i + 1) / parts;
-        const ImU32 left = at(i), right = at(i + 1);
-        list.AddRectFilledMultiColor({x0, lo.y}, {x1, hi.y}, left, right, right, left);
-    }
 }
 
 } // namespace
@@ -175,47 +159,6 @@ bool chooseVector(const char* id, const volume::DatasetInfo* info, std::string& 
                 value = parameter.name;
             }
     ImGui::EndCombo();
-    return changed;
-}
-
-bool chooseColormap(const char* id, std::string& value, bool reversed) {
-    bool changed = false;
-    const float height = ImGui::GetFrameHeight();
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const float width = ImGui::CalcItemWidth();
-    const bool open = ImGui::BeginCombo(id, "", ImGuiComboFlags_HeightLarge);
-    const float inset = std::round(height * 0.2f);
-    if (open) {
-        std::string_view kind;
-        for (const vis::ColormapInfo& map : vis::colormaps()) {
-            if (map.kind != kind) {
-                kind = map.kind;
-                ImGui::TextDisabled("%s", labelOf(kind).c_str());
-            }
-            ImGui::PushID(map.name.data(), map.name.data() + map.name.size());
-            const ImVec2 at = ImGui::GetCursorScreenPos();
-            if (ImGui::Selectable("##map", map.name == value, 0, {0, height})) {
-                changed = map.name != value;
-                value = std::string(map.name);
-            }
-            const float preview = height * 4;
-            drawPreview({at.x + inset, at.y + inset}, {at.x + preview, at.y + height - inset}, map.name, reversed);
-            ImGui::GetWindowDrawList()->AddText(
-                {at.x + preview + inset * 2, at.y + (height - ImGui::GetFontSize()) / 2}, palette().text,
-                map.name.data(), map.name.data() + map.name.size());
-            ImGui::PopID();
-        }
-        ImGui::EndCombo();
-    }
-    const float right = corner.x + width - height;
-    const float text = ImGui::CalcTextSize(value.c_str()).x + inset * 3;
-    const float split = std::max(corner.x + inset * 2, right - text);
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    if (split > corner.x + 3 * inset)
-        drawPreview({corner.x + inset, corner.y + inset}, {split - inset, corner.y + height - inset}, value, reversed);
-    ImGui::PushClipRect(corner, {right, corner.y + height}, true);
-    list.AddText({split + inset, corner.y + (height - ImGui::GetFontSize()) / 2}, palette().text, value.c_str());
-    ImGui::PopClipRect();
     return changed;
 }
 

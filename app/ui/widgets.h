@@ -53,7 +53,7 @@ bool chooseChannel(const char* id, const volume::DatasetInfo* info, std::string&
                    const char* emptyName = nullptr);
 /// A choice of vector parameter without label.
 bool chooseVector(const char* id, const volume::DatasetInfo* info, std::string& value);
-/// A choice of colour map with a preview of each, without label.
+/// A choice of colour map, with a search and a strip of each, without label (app/ui/choose_colormap.cpp).
 bool chooseColormap(const char* id, std::string& value, bool reversed = false);
 bool beginSection(const char* id, std::string_view label, std::string_view help);
 void endSection();

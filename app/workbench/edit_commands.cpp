@@ -1,14 +1,16 @@
+#include "app/data/library.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/keys.h"
 #include "app/views/data/derived_list.h"
 #include "app/workbench/workbench.h"
 #include "app/workbench/workbench_commands.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <imgui.h>
 
-/// The menu Edit, and commands that add derived parameters.
+/// The menu Edit, and commands that add derived parameters or apply transfer functions.
 namespace tessera::app {
 
 namespace {
@@ -216,12 +218,54 @@ std::vector<Command> differenceCommands(Workbench& workbench) {
                     "Add the parameter shown minus its values at the time shown now", volume::OtherTime::Time)};
 }
 
+/// Gives the layer selected a transfer function of the library.
+void applyToSelected(Workbench& workbench, const vis::TransferRecipe& recipe) {
+    Session changed = workbench.session();
+    const auto to = functionOfLayer(changed, workbench.source()->info(), selectedLayer(changed));
+    if (!to) return workbench.message("there is no layer to colour", true);
+    try {
+        applyRecipe(changed, *workbench.source(), *to, recipe);
+        workbench.document().replace(std::move(changed), recipe.name + " for " + to->function);
+    } catch (const Error& error) {
+        workbench.message(error.what(), true);
+    }
+}
+
+/// Shows the library in the first view of transfer functions, or in a new one.
+void showLibrary(Workbench& workbench) {
+    for (auto& [pane, view] : workbench.session().views)
+        if (auto* transfer = std::get_if<TransferView>(&view)) {
+            transfer->library = true;
+            return workbench.panes().show(workbench.session(), pane);
+        }
+    TransferView view;
+    view.library = true;
+    workbench.panes().open(workbench.session(), view, workbench.look().scale());
+}
+
+std::vector<Command> transferCommands(Workbench& workbench) {
+    const auto loaded = [&workbench] { return workbench.document().loaded(); };
+    std::vector<Command> commands = {
+        {.menu = "Edit",
+         .name = "-Library of transfer functions",
+         .help = "Show transfer functions by name, as pictures of the data (CT bone, gas, temperature, ...)",
+         .run = [&workbench] { showLibrary(workbench); },
+         .enabled = loaded}};
+    for (const vis::TransferRecipe& recipe : vis::transferLibrary())
+        commands.push_back({.menu = "",
+                            .name = "Transfer function: " + recipe.name,
+                            .help = recipe.help + "; for the layer selected",
+                            .run = [&workbench, &recipe] { applyToSelected(workbench, recipe); },
+                            .enabled = loaded});
+    return commands;
+}
+
 } // namespace
 
 std::vector<Command> editCommands(Workbench& workbench) {
     std::vector<Command> all;
-    for (const auto make :
-         {historyCommands, brushCommands, timeCommands, latticeCommands, timeAlongCommands, differenceCommands}) {
+    for (const auto make : {historyCommands, brushCommands, timeCommands, latticeCommands, timeAlongCommands,
+                            differenceCommands, transferCommands}) {
         std::vector<Command> commands = make(workbench);
         std::ranges::move(commands, std::back_inserter(all));
     }

@@ -66,7 +66,8 @@ void PaneHost::draw(const ViewContext& frame, const Area& area) {
     std::erase_if(caches_, [&](const auto& entry) { return !session.views.contains(entry.first); });
     int renderers = 1;
     for (const auto& [pane, cache] : caches_) renderers += cache->renderers();
-    busy_ = compiling_ = false;
+    idle_ = !working_;
+    busy_ = working_ = compiling_ = false;
     hovered_.clear();
     drawn_.clear();
     DockPanes panes;
@@ -110,6 +111,7 @@ void PaneHost::drawPane(const ViewContext& frame, const std::string& pane, int r
     }
     ViewContext context = frame;
     context.renderers = renderers;
+    context.idle = idle_;
     if (cameraPane_ == pane) context.cameraKey = std::exchange(cameraKey_, 0);
     if (frame.headless) context.offerExport = [&](ViewExport made) { exports_[pane] = std::move(made); };
     ImGui::PushID(pane.c_str());
@@ -119,7 +121,8 @@ void PaneHost::drawPane(const ViewContext& frame, const std::string& pane, int r
     });
     ImGui::PopID();
     messages_.insert(messages_.end(), context.messages.begin(), context.messages.end());
-    busy_ = busy_ || context.busy;
+    working_ = working_ || context.busy;
+    busy_ = busy_ || context.busy || context.waiting;
     compiling_ = compiling_ || context.compiling;
     if (paneDrawn) paneDrawn(pane, context.behind);
 }
@@ -131,6 +134,11 @@ void PaneHost::open(Session& session, const ViewState& view, float scale) {
         layoutDock(session.dock, {{0, 0}, ImGui::GetMainViewport()->Size}, scale).rects;
     if (const int id = stackFor(session, beside, rects, scale)) insertPane(session.dock, pane, id, DockSide::Center);
     session.dock.maximised.clear();
+    hand_.focus = pane;
+}
+
+void PaneHost::show(Session& session, const std::string& pane) {
+    showPane(session.dock, pane);
     hand_.focus = pane;
 }
 

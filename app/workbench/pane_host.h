@@ -40,6 +40,8 @@ public:
 
     /// Opens a view as a tab in the stack of the active pane, or where there is room for it.
     void open(Session& session, const ViewState& view, float scale);
+    /// Brings a pane of the session to the front of its stack.
+    void show(Session& session, const std::string& pane);
     /// The pane that commands are for: the one that fills the window, else the one under the mouse, else the one
     /// clicked last; "" = none.
     std::string current(const Session& session) const;
@@ -71,6 +73,7 @@ private:
     std::string cameraPane_;             ///< the target of cameraKey_
     int cameraKey_ = 0;                  ///< key of a camera command, 0 = none
     bool busy_ = true, compiling_ = false;
+    bool working_ = true, idle_ = false; ///< a view is busy with more than work that can wait; none was
     std::vector<std::string> messages_;
 };
 

@@ -236,6 +236,7 @@ ViewContext Workbench::viewContext() {
             .history = &history(),
             .goToStep = [this](std::size_t to) { chosen_ = [this, to] { document_.goToStep(to); }; },
             .log = &messages_,
+            .stateFolder = options_.stateFolder,
             .runCommand =
                 [this](const std::string& name) {
                     for (const Command& command : commands_)

@@ -1,6 +1,7 @@
 #include "app/session/picture_form.h"
 #include "app/session/session.h"
 #include "randomise.h"
+#include "vis/transfer/transfer_recipe.h"
 #include "volume/base/error.h"
 #include "volume/bricks/brick_layout.h"
 #include "volume/synthetic/casting.h"
@@ -124,6 +125,7 @@ std::vector<DescribedStruct> everyStruct() {
     const Lister list{found};
     list.add<Session>();
     list.add<PictureForm>();
+    list.add<vis::TransferRecipe>();
     list.add<volume::MergeOptions>();
     list.add<volume::FuelCellSettings>();
     list.add<volume::MarschnerLobbSettings>();

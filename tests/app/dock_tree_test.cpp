@@ -104,5 +104,20 @@ TEST(DockTreeTest, DropsWhereItIsTold) {
     EXPECT_EQ(tree.root.active, 1);
 }
 
+TEST(DockTreeTest, ShowsAPaneInFrontOfItsStack) {
+    DockTree tree;
+    repair(tree, {"a", "b", "c"});
+    insertPane(tree, "c", tree.root.id, DockSide::Right);
+    for (const char* pane : {"a", "b", "a", "c"}) {
+        const int other = tree.root.children[1].active;
+        showPane(tree, pane);
+        EXPECT_EQ(tree.root.children[0].active, std::string_view(pane) == "b" ? 1 : 0);
+        EXPECT_EQ(tree.root.children[1].active, other);
+    }
+    tree.maximised = "c";
+    showPane(tree, "b");
+    EXPECT_EQ(tree.maximised, "b");
+}
+
 } // namespace
 } // namespace tessera::app

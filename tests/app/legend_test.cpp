@@ -63,6 +63,18 @@ TEST(LegendTest, IsOfTheFunctionsInUse) {
     EXPECT_EQ(legends[1].title, "T");
 }
 
+TEST(LegendTest, OfAVolumeByRegionsShowsTheirColours) {
+    Session session;
+    session.transfer["T"].kind = vis::TransferKind::Regions;
+    session.layers = {{"", true, vis::VolumeLayer{.channel = "T"}}};
+    EXPECT_TRUE(sceneLegends(session, gasInfo()).at(0).regions);
+    session.transfer["T"].kind = vis::TransferKind::Curve;
+    EXPECT_FALSE(sceneLegends(session, gasInfo()).at(0).regions);
+    session.transfer["T"].kind = vis::TransferKind::Regions;
+    session.layers = {{"", true, vis::SliceLayer{.channel = "T"}}};
+    EXPECT_FALSE(sceneLegends(session, gasInfo()).at(0).regions) << "a slice has the colours of the map";
+}
+
 TEST(LegendTest, ParametersThatTheDataLackColourNothing) {
     Session session = defaultSession(gasInfo(), {});
     session.layers = {{"rays", true, vis::VolumeLayer{.channel = "O2", .colorBy = "salt"}},

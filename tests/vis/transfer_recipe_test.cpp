@@ -42,6 +42,7 @@ TEST(ValueDistribution, PlacesAreQuantilesAboveTheBackground) {
 TEST(ValueDistribution, OneValueAroundTheObjectIsItsBackground) {
     EXPECT_EQ(spikeBackground({0, 40, 5, 10, 20, 30}), 2.0 / 6);
     EXPECT_EQ(spikeBackground({20, 20, 20}), 0) << "no spike";
+    EXPECT_EQ(spikeBackground({5, 1, 10, 10}), 0) << "a low one";
     EXPECT_EQ(spikeBackground({1, 5, 90}), 0) << "not at the lower end";
     EXPECT_EQ(spikeBackground({0, 0, 7}), 0) << "one value only";
     EXPECT_EQ(spikeBackground({}), 0);

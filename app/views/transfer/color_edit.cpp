@@ -1,8 +1,9 @@
 #include "app/views/transfer/color_edit.h"
 
+#include "vis/transfer/simplify_colors.h"
+
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 
 namespace tessera::app {
 
@@ -39,23 +40,13 @@ void reverseColors(std::vector<vis::ColorStop>& stops) {
 }
 
 std::vector<vis::ColorStop> ownColors(const vis::TransferFunction& function) {
-    constexpr double kAlike = 0.02;
-    const auto color = [&](double x) { return glm::vec3(vis::evaluate(function, {0, 1}, x)); };
-    std::vector<vis::ColorStop> stops;
-    for (const int count : {3, 5, 9, 17}) {
-        stops.clear();
-        for (int i = 0; i < count; ++i) {
-            const double x = i / (count - 1.0);
-            stops.push_back({float(x), color(x)});
-        }
-        float worst = 0;
-        for (int i = 0; i <= 256; ++i) {
-            const glm::vec3 off = glm::abs(color(i / 256.0) - colorAt(stops, i / 256.0));
-            worst = std::max({worst, off.r, off.g, off.b});
-        }
-        if (double(worst) <= kAlike) break;
+    constexpr int kSamples = 256;
+    std::vector<vis::ColorStop> sampled;
+    for (int i = 0; i <= kSamples; ++i) {
+        const double x = double(i) / kSamples;
+        sampled.push_back({float(x), glm::vec3(vis::evaluate(function, {0, 1}, x))});
     }
-    return stops;
+    return vis::simplified(sampled, kStopsAlike);
 }
 
 bool editColors(ColorDrag& drag, std::vector<vis::ColorStop>& stops, ImVec2 min, ImVec2 max) {

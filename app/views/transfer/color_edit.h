@@ -13,8 +13,10 @@ struct ColorDrag {
     int stop = -1, chosen = -1;
 };
 
-/// The colour map in use as stops of one's own, as it runs now: the fewest of 3, 5, 9 or 17 that differ from it by no
-/// more than 0.02 anywhere (17 else).
+/// Greatest difference of a component of the colour, 0..1, between a map and the few stops that stand for it.
+inline constexpr double kStopsAlike = 0.03;
+
+/// The colour map in use as stops of one's own, as it runs now: few of them (vis::simplified()), within kStopsAlike.
 std::vector<vis::ColorStop> ownColors(const vis::TransferFunction& function);
 
 /// The same colours from the other end.

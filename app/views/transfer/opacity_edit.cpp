@@ -17,6 +17,21 @@ glm::vec2 pointAt(ImVec2 at, const PlotFrame& frame, Range range) {
     return {span > 0 ? std::clamp((value.x - range.lo) / span, 0.0, 1.0) : 0.0, std::clamp(value.y, 0.0, 1.0)};
 }
 
+/// Where point `index` goes when the mouse is at a pixel: within what `drag` allows, and snapped.
+Snap snappedAt(const OpacityDrag& drag, const std::vector<glm::vec2>& curve, std::size_t index, ImVec2 mouse,
+               const PlotFrame& frame, Range range, std::span<const double> peaks) {
+    glm::dvec2 at(pointAt(mouse, frame, range));
+    at.x = std::clamp(at.x, drag.left, drag.right);
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.KeyCtrl || io.KeyAlt) return {at, {}, {}};
+    const double pixels = std::max(4.0, double(em()) * 0.4), span = std::max(range.hi - range.lo, 1e-300);
+    SnapLines lines = snapLines(curve, index, peaks);
+    std::erase_if(lines.positions, [&](double line) { return line < drag.left || line > drag.right; });
+    // The axis catches all that is too thin to be meant, however tall the plot is.
+    const double least = std::max(pixels * frame.perPixelY(), at.y < 0.01 ? 0.01 : 0.0);
+    return snapped(at, lines, {pixels * frame.perPixelX() / span, least});
+}
+
 } // namespace
 
 std::vector<glm::vec2> opacityPreset(OpacityPreset preset) {
@@ -47,7 +62,8 @@ int hitPoint(const std::vector<glm::vec2>& curve, const PlotFrame& frame, Range 
     return best;
 }
 
-bool editOpacity(OpacityDrag& drag, std::vector<glm::vec2>& curve, const PlotFrame& frame, Range range) {
+bool editOpacity(OpacityDrag& drag, std::vector<glm::vec2>& curve, const PlotFrame& frame, Range range,
+                 std::span<const double> peaks) {
     const std::vector<glm::vec2> before = curve;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const bool hovered = ImGui::IsItemHovered();
@@ -68,19 +84,31 @@ bool editOpacity(OpacityDrag& drag, std::vector<glm::vec2>& curve, const PlotFra
             held = static_cast<int>(place - curve.begin());
             curve.insert(place, point);
         }
-        drag.point = held;
-        drag.left = held > 0 ? static_cast<double>(curve[static_cast<std::size_t>(held) - 1].x) : 0.0;
-        drag.right = held + 1 < static_cast<int>(curve.size())
-                         ? static_cast<double>(curve[static_cast<std::size_t>(held) + 1].x)
-                         : 1.0;
+        const auto index = static_cast<std::size_t>(held);
+        drag = {held,
+                index > 0 ? double(curve[index - 1].x) : 0.0,
+                index + 1 < curve.size() ? double(curve[index + 1].x) : 1.0,
+                {glm::dvec2(curve[index]), {}, {}}};
+        if (under < 0) {
+            drag.snap = snappedAt(drag, curve, index, mouse, frame, range, peaks);
+            curve[index] = glm::vec2(drag.snap.at);
+        }
     }
     if (drag.point >= static_cast<int>(curve.size()) || !ImGui::IsMouseDown(ImGuiMouseButton_Left)) drag.point = -1;
     if (drag.point >= 0 && ImGui::IsMouseDragging(ImGuiMouseButton_Left, 2)) {
-        glm::vec2 point = pointAt(mouse, frame, range);
-        point.x = std::clamp(point.x, static_cast<float>(drag.left), static_cast<float>(drag.right));
-        curve[static_cast<std::size_t>(drag.point)] = point;
+        const auto index = static_cast<std::size_t>(drag.point);
+        drag.snap = snappedAt(drag, curve, index, mouse, frame, range, peaks);
+        curve[index] = glm::vec2(drag.snap.at);
     }
     return curve != before;
+}
+
+void drawSnapLines(ImDrawList& draw, const OpacityDrag& drag, const PlotFrame& frame, Range range) {
+    if (drag.point < 0) return;
+    const ImU32 color = plotColors().focus;
+    const ImVec2 at = pixelOf(glm::vec2(drag.snap.at), frame, range);
+    if (drag.snap.height) draw.AddLine({frame.min.x, at.y}, {frame.max.x, at.y}, color);
+    if (drag.snap.position) draw.AddLine({at.x, frame.min.y}, {at.x, frame.max.y}, color);
 }
 
 void drawOpacity(ImDrawList& draw, const std::vector<glm::vec2>& curve, const PlotFrame& frame, Range range, int lit) {

@@ -6,6 +6,7 @@
 #include "app/ui/widgets.h"
 #include "app/user_files/colormap_file.h"
 #include "app/views/transfer/color_edit.h"
+#include "vis/transfer/simplify_colors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,8 @@
 namespace tessera::app {
 
 namespace {
+
+constexpr double kImportedAlike = 0.004; ///< of a colour, 0..1: one step of 8 bits
 
 /// A button with a small picture of the curve it sets.
 bool presetButton(OpacityPreset preset) {
@@ -54,8 +57,8 @@ void drawRange(vis::TransferFunction& function, Range data, float width) {
     ImGui::EndDisabled();
 }
 
-/// What is edited: the curve over values, regions, or the emphasis of boundaries that makes the curve.
-void drawPages(BoundaryPage& boundaries, TransferView& view, vis::TransferFunction& function) {
+/// What is edited: the curve over values, regions, or the emphasis of boundaries that makes the curve; or the library.
+void drawPages(const FindingPages& pages, TransferView& view, vis::TransferFunction& function) {
     const auto page = [&](const char* name, bool chosen, const char* help) {
         if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
         const bool pressed = ImGui::Button(name);
@@ -63,27 +66,35 @@ void drawPages(BoundaryPage& boundaries, TransferView& view, vis::TransferFuncti
         if (ImGui::IsItemHovered()) tooltip(help);
         return pressed && !chosen;
     };
-    const bool curve = function.kind == vis::TransferKind::Curve;
-    if (page("curve", curve && !view.boundaries, "Opacity from the value, by a curve that you draw")) {
-        function.kind = vis::TransferKind::Curve;
-        view.boundaries = false;
+    const auto choose = [&](vis::TransferKind kind, bool boundary) {
+        function.kind = kind;
+        view.boundaries = boundary;
+        view.library = false;
+    };
+    const bool curve = function.kind == vis::TransferKind::Curve, editor = !view.library;
+    if (page("library", view.library, "Transfer functions by name, as pictures of these data")) view.library = true;
+    ImGui::SameLine(0, em() * 0.2f);
+    if (page("curve", editor && curve && !view.boundaries, "Opacity from the value, by a curve that you draw"))
+        choose(vis::TransferKind::Curve, false);
+    ImGui::SameLine(0, em() * 0.2f);
+    if (page("regions", editor && !curve, "Opacity from value and gradient magnitude, by areas of their plane")) {
+        choose(vis::TransferKind::Regions, false);
+        pages.regions.fit = function.regions.empty();
     }
     ImGui::SameLine(0, em() * 0.2f);
-    if (page("regions", !curve, "Opacity from value and gradient magnitude, by areas of their plane")) {
-        function.kind = vis::TransferKind::Regions;
-        view.boundaries = false;
-    }
-    ImGui::SameLine(0, em() * 0.2f);
-    if (page("boundary", curve && view.boundaries,
+    if (page("boundary", editor && curve && view.boundaries,
              "Opacity from the distance to a boundary between materials; computes a new curve")) {
-        function.kind = vis::TransferKind::Curve;
-        view.boundaries = boundaries.apply = true;
-        boundaries.from.reset();
+        choose(vis::TransferKind::Curve, true);
+        pages.boundaries.apply = true;
+        pages.boundaries.from.reset();
     }
 }
 
 /// Gradient magnitude at the top of the plane.
-void drawGradientTop(vis::TransferFunction& function) {
+void drawGradientTop(vis::TransferFunction& function, RegionPage& page) {
+    if (ImGui::Button("fit")) page.fit = true;
+    if (ImGui::IsItemHovered()) tooltip("Make the plane as high as the gradients of the data; regions stay in place");
+    ImGui::SameLine(0, em() * 0.4f);
     ImGui::SetNextItemWidth(em() * 9);
     ImGui::SliderFloat("top", &function.gradientTop, 1e-3f, 2, "%.3g ranges/cell",
                        ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
@@ -121,7 +132,8 @@ void drawOwnColors(ViewContext& context, vis::TransferFunction& function, const 
     if (ImGui::MenuItem("Import...", nullptr, false, bool(context.askFile)))
         context.askFile("Import colours", [channel](Session& session, const std::string& path) {
             vis::TransferFunction& changed = transferOf(session, channel);
-            changed.colors = readColormap(path);
+            // Files of other programs hold hundreds of samples, which nobody could edit.
+            changed.colors = vis::simplified(readColormap(path), kImportedAlike);
             changed.reversed = false;
         });
     if (ImGui::MenuItem("Export...", nullptr, false, own && context.exportText))
@@ -143,7 +155,7 @@ std::string functionName(const Session& session, const TransferView& view, const
     return layerOfFunction(session, view.channel) ? view.channel : channel;
 }
 
-void drawTransferControls(ViewContext& context, TransferView& view, BoundaryPage& boundaries,
+void drawTransferControls(ViewContext& context, TransferView& view, const FindingPages& pages,
                           const volume::DatasetInfo& info, std::string channel) {
     const float room = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.x;
     const float reverse = ImGui::GetFrameHeight() + em() * 0.4f;
@@ -164,7 +176,7 @@ void drawTransferControls(ViewContext& context, TransferView& view, BoundaryPage
     ImGui::SameLine();
     ImGui::SetNextItemWidth(combo);
     if (chooseColormap("##colormap", function.colormap, function.reversed)) function.colors.clear();
-    if (ImGui::IsItemHovered()) tooltip("Colour map; perceptually uniform ones are listed first");
+    if (ImGui::IsItemHovered()) tooltip("Colour map; type to search, perceptually uniform ones are listed first");
     ImGui::SameLine();
     if (iconButton(context, "reverse", icons::kReverse, "Reverse the colour map", true, function.reversed)) {
         if (function.colors.empty())
@@ -180,10 +192,11 @@ void drawTransferControls(ViewContext& context, TransferView& view, BoundaryPage
     if (wide) ImGui::SameLine(0, em());
     drawRange(function, data, std::min(em() * 16, room));
     if (room > em() * 30) ImGui::SameLine(0, em());
-    drawPages(boundaries, view, function);
+    drawPages(pages, view, function);
+    if (view.library) return;
     if (function.kind == vis::TransferKind::Regions) {
         if (room > em() * 30) ImGui::SameLine(0, em());
-        drawGradientTop(function);
+        drawGradientTop(function, pages.regions);
         return;
     }
     if (view.boundaries) return;

@@ -11,8 +11,14 @@ const vis::Layer* layerOfFunction(const Session& session, const std::string& nam
 /// The name of the function that is edited: a layer's own, or the channel's.
 std::string functionName(const Session& session, const TransferView& view, const std::string& channel);
 
+/// The pages that begin with something found in the data when they are chosen.
+struct FindingPages {
+    RegionPage& regions;
+    BoundaryPage& boundaries;
+};
+
 /// `channel`: whose function is shown; another is chosen into the view.
-void drawTransferControls(ViewContext& context, TransferView& view, BoundaryPage& boundaries,
+void drawTransferControls(ViewContext& context, TransferView& view, const FindingPages& pages,
                           const volume::DatasetInfo& info, std::string channel);
 
 } // namespace tessera::app

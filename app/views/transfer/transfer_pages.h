@@ -18,7 +18,12 @@ struct RegionPage {
     vis::PlotTexture picture;
     std::shared_ptr<const DerivativeResult> shown; ///< what the picture shows
     bool dark = true;                              ///< and for which theme
+    bool fit = false; ///< find the top of the plane, and a first region where there is none
 };
+/// Does what page.fit asks for with the histogram of all gradients (its top reaches the largest), null while it is not
+/// there.
+void fitRegions(RegionPage& page, vis::TransferFunction& function,
+                const std::shared_ptr<const DerivativeResult>& everything);
 void drawRegionPage(ViewContext& context, RegionPage& page, vis::TransferFunction& function,
                     const volume::DatasetInfo& info, int channel,
                     const std::shared_ptr<const DerivativeResult>& result);
