@@ -74,8 +74,10 @@ TEST_F(LibraryHands, AClickAppliesAPictureAndIsOneEdit) {
     const auto to = functionOfLayer(session(), info, 0);
     ASSERT_TRUE(to);
     std::vector<vis::TransferRecipe> listed;
-    for (const vis::TransferRecipe& recipe : vis::transferLibrary())
-        if (vis::suits(recipe, info.channelRange(info.channel(to->channel)))) listed.push_back(recipe);
+    for (const bool scan : {false, true}) // computed fields first, since the cell is one
+        for (const vis::TransferRecipe& recipe : vis::transferLibrary())
+            if (recipe.scan == scan && vis::suits(recipe, info.channelRange(info.channel(to->channel))))
+                listed.push_back(recipe);
     ASSERT_EQ(at.size(), listed.size()) << "a picture of each, drawn at once without a window";
     const Session before = session();
     const std::size_t steps = this->steps();
@@ -143,6 +145,7 @@ TEST_F(LibraryPageTest, PicturesWaitUntilNothingElseIsDrawn) {
     }
     EXPECT_FALSE(waiting);
     EXPECT_LE(most, 1u) << "one at a time";
+    drawPage(false); // shows the last one
     const std::size_t all = pictures();
     EXPECT_GE(all, 12u);
     drawPage(false);

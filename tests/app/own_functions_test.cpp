@@ -26,8 +26,8 @@ class OwnFunctionsTest : public testing::Test {
 protected:
     void SetUp() override { fs::create_directories(folder); }
     void TearDown() override { fs::remove_all(folder); }
-    std::string text(const std::string& path) const {
-        std::ifstream file(path, std::ios::binary);
+    std::string text(const std::string& of) const {
+        std::ifstream file(of, std::ios::binary);
         return {std::istreambuf_iterator<char>(file), {}};
     }
     void write(const std::string& words) const { std::ofstream(path, std::ios::binary) << words; }

@@ -260,14 +260,14 @@ TEST_F(TransferPages, ADraggedPointSnapsUnlessCtrlOrAltIsHeld) {
     EXPECT_EQ(curve[1].y, 0);
     EXPECT_EQ(drag.snap.height, 0.0);
     EXPECT_FALSE(drag.snap.position);
-    dragTo({280, 450}, {202, 131}, false, false); // near the right neighbour's height and a peak
+    dragTo({280, 449}, {202, 131}, false, false); // near the right neighbour's height and a peak
     EXPECT_EQ(curve[1], glm::vec2(0.25f, 0.8f));
     dragTo({200, 130}, {202, 448}, true, false);
     EXPECT_NEAR(curve[1].x, 0.255f, 1e-4f);
     EXPECT_NEAR(curve[1].y, 0.005f, 1e-4f);
     dragTo({202, 448}, {202, 131}, false, true);
     EXPECT_NEAR(curve[1].y, 0.7975f, 1e-4f);
-    dragTo({400, 448}, {400, 448}, false, false); // a new one
+    dragTo({400, 447}, {400, 447}, false, false); // a new one
     ASSERT_EQ(curve.size(), 4u);
     EXPECT_EQ(curve[2].y, 0);
 }

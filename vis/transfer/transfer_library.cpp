@@ -34,7 +34,7 @@ std::vector<TransferRecipe> scans() {
          .help = "The outer surface, where the object begins",
          .opacity = {point(-1, 0), point(0, 0, -500), point(0.08, 0.4f, -250), point(1, 0.6f, 200)},
          .colors = {color(0, 0xa8684c, -500), color(0.15, 0xdda483, -200), color(1, 0xffe6d6, 400)}},
-        {.name = "CT skin and bone",
+        {.name = "CT skin, bone",
          .help = "Dense parts inside a clear outer surface",
          .opacity = {point(-1, 0), point(0, 0, -500), point(0.04, 0.025f, -350), point(0.1, 0.004f, -150),
                      point(0.78, 0.004f, 180), point(0.9, 0.5f, 400), point(1, 0.95f, 1800)},
@@ -82,20 +82,23 @@ std::vector<TransferRecipe> fields() {
         {.name = "Low values",
          .help = "Where little is left: the lowest fifth",
          .colormap = "plasma",
-         .opacity = {point(-1, 0), point(0, 0.8f), point(0.08, 0.15f), point(0.2, 0), point(1, 0)}},
+         .reversed = true,
+         .opacity = {point(-1, 0), point(-0.001, 0), point(0, 0.8f), point(0.08, 0.15f), point(0.2, 0), point(1, 0)}},
         {.name = "Extremes",
          .help = "The lowest and the highest tenth together",
          .colormap = "blue-red",
-         .opacity = {point(-1, 0), point(0, 0.8f), point(0.04, 0.2f), point(0.1, 0), point(0.9, 0), point(0.96, 0.2f),
-                     point(1, 0.8f)}},
+         .opacity = {point(-1, 0), point(-0.001, 0), point(0, 0.8f), point(0.04, 0.2f), point(0.1, 0), point(0.9, 0),
+                     point(0.96, 0.2f), point(1, 0.8f)}},
         {.name = "Layers",
          .help = "Four thin shells of equal value, one inside the other",
          .opacity = {point(-1, 0), point(0.18, 0), point(0.2, 0.12f), point(0.22, 0), point(0.48, 0), point(0.5, 0.2f),
                      point(0.52, 0), point(0.78, 0), point(0.8, 0.35f), point(0.82, 0), point(0.94, 0),
                      point(0.96, 0.8f), point(1, 0.8f)}},
         {.name = "Solid",
-         .help = "Everything above the background, opaque",
-         .opacity = {point(-1, 0), point(0, 0), point(0.02, 0.9f), point(1, 0.9f)}},
+         .help = "Everything above the background, opaque, coloured by quantiles",
+         .opacity = {point(-1, 0), point(0, 0), point(0.02, 0.9f), point(1, 0.9f)},
+         .colors = {color(0, 0x440154), color(0.25, 0x3b528b), color(0.5, 0x21918c), color(0.75, 0x5ec962),
+                    color(1, 0xfde725)}},
         {.name = "Signed error",
          .help = "Large differences of either sign; none is clear",
          .aboutZero = true,
@@ -110,6 +113,7 @@ std::vector<TransferRecipe> fields() {
 std::span<const TransferRecipe> transferLibrary() {
     static const std::vector<TransferRecipe> all = [] {
         std::vector<TransferRecipe> made = scans();
+        for (TransferRecipe& each : made) each.scan = true;
         for (TransferRecipe& each : fields()) made.push_back(std::move(each));
         return made;
     }();

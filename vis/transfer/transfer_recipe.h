@@ -71,6 +71,7 @@ struct RecipeRange {
 /// A transfer function for any data. Points are sorted by place.
 struct TransferRecipe {
     std::string name = {}, help = {};
+    bool scan = false;      ///< for scans rather than computed fields
     bool aboutZero = false; ///< of signed values: places are quantiles of magnitudes, the range is symmetric about 0
     std::string colormap = "viridis"; ///< without `colors`
     bool reversed = false;
@@ -85,6 +86,7 @@ struct TransferRecipe {
     static void describe(auto& self, auto&& visit) {
         visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name in the library"});
         visit(self.help, FieldInfo{.key = "help", .unit = "", .doc = "What it shows"});
+        visit(self.scan, FieldInfo{.key = "scan", .unit = "", .doc = "For scans rather than computed fields"});
         visit(self.aboutZero, FieldInfo{.key = "aboutZero", .unit = "", .doc = "For signed values, symmetric about 0"});
         visit(self.colormap, FieldInfo{.key = "colormap", .unit = "", .doc = "Colour map", .refersTo = "colormap"});
         visit(self.reversed, FieldInfo{.key = "reversed", .unit = "", .doc = "Reverse the colour map"});

@@ -46,6 +46,11 @@ bool drawCell(const vis::TransferRecipe& recipe, const vis::TransferFunction& fu
     return clicked;
 }
 
+/// Whether a channel was measured: by its unit, or as whole numbers.
+bool isScan(const volume::DatasetInfo& info, const volume::Channel& channel) {
+    return channel.unit == "HU" || info.parameters[std::size_t(channel.parameter)].type != volume::ScalarType::F32;
+}
+
 void say(ViewContext& context, const Error& error) {
     context.messages.emplace_back(error.what());
 }
@@ -141,8 +146,9 @@ void drawLibraryPage(ViewContext& context, LibraryPage& page, const std::string&
         if (drawCell(recipe, made, page.pictures.get(made), side, used == made)) used = made;
     };
     Grid shipped(side, room), own(side, room);
-    for (const vis::TransferRecipe& recipe : vis::transferLibrary())
-        if (vis::suits(recipe, info.channelRange(channel))) cell(shipped, recipe);
+    for (const bool scans : {isScan(info, channel), !isScan(info, channel)}) // the likelier ones first
+        for (const vis::TransferRecipe& recipe : vis::transferLibrary())
+            if (recipe.scan == scans && vis::suits(recipe, info.channelRange(channel))) cell(shipped, recipe);
     if (!context.stateFolder.empty()) {
         ImGui::TextDisabled("Your own");
         ImGui::PushID("own");

@@ -18,6 +18,8 @@ bool handMoves() {
     return io.MouseDelta.x != 0 || io.MouseDelta.y != 0 || io.MouseWheel != 0 || ImGui::IsAnyMouseDown();
 }
 
+constexpr float kCloser = 0.8f; ///< than where the whole sphere around the box is seen: the corners are mostly empty
+
 } // namespace
 
 void LibraryPictures::begin(const ViewContext& context, int channel, int side) {
@@ -58,6 +60,7 @@ vis::Scene LibraryPictures::sceneOf(const ViewContext& context, const Picture& p
     const vis::WorldFrame world = vis::worldFrame(info.bounds, scene.stretch);
     scene.camera.orientation = vis::firstOrientation(world);
     vis::fit(scene.camera, world, 1);
+    scene.camera.distance *= kCloser;
     return scene;
 }
 

@@ -60,6 +60,7 @@ void drawRange(vis::TransferFunction& function, Range data, float width) {
 /// What is edited: the curve over values, regions, or the emphasis of boundaries that makes the curve; or the library.
 void drawPages(const FindingPages& pages, TransferView& view, vis::TransferFunction& function) {
     const auto page = [&](const char* name, bool chosen, const char* help) {
+        continueLine(buttonWidth(name));
         if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
         const bool pressed = ImGui::Button(name);
         if (chosen) ImGui::PopStyleColor();
@@ -73,15 +74,12 @@ void drawPages(const FindingPages& pages, TransferView& view, vis::TransferFunct
     };
     const bool curve = function.kind == vis::TransferKind::Curve, editor = !view.library;
     if (page("library", view.library, "Transfer functions by name, as pictures of these data")) view.library = true;
-    ImGui::SameLine(0, em() * 0.2f);
     if (page("curve", editor && curve && !view.boundaries, "Opacity from the value, by a curve that you draw"))
         choose(vis::TransferKind::Curve, false);
-    ImGui::SameLine(0, em() * 0.2f);
     if (page("regions", editor && !curve, "Opacity from value and gradient magnitude, by areas of their plane")) {
         choose(vis::TransferKind::Regions, false);
         pages.regions.fit = function.regions.empty();
     }
-    ImGui::SameLine(0, em() * 0.2f);
     if (page("boundary", editor && curve && view.boundaries,
              "Opacity from the distance to a boundary between materials; computes a new curve")) {
         choose(vis::TransferKind::Curve, true);
@@ -92,14 +90,33 @@ void drawPages(const FindingPages& pages, TransferView& view, vis::TransferFunct
 
 /// Gradient magnitude at the top of the plane.
 void drawGradientTop(vis::TransferFunction& function, RegionPage& page) {
+    continueLine(buttonWidth("fit"));
     if (ImGui::Button("fit")) page.fit = true;
     if (ImGui::IsItemHovered()) tooltip("Make the plane as high as the gradients of the data; regions stay in place");
-    ImGui::SameLine(0, em() * 0.4f);
-    ImGui::SetNextItemWidth(em() * 9);
+    const float width = std::min(em() * 9, ImGui::GetContentRegionAvail().x - em() * 2);
+    continueLine(width + em() * 2);
+    ImGui::SetNextItemWidth(width);
     ImGui::SliderFloat("top", &function.gradientTop, 1e-3f, 2, "%.3g ranges/cell",
                        ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     if (ImGui::IsItemHovered())
         tooltip("Gradient magnitude at the top of the plane: change per cell, as a multiple of the value range");
+}
+
+/// Curves to begin with, and what is shown behind the curve.
+void drawCurveControls(TransferView& view, vis::TransferFunction& function) {
+    const float square = ImGui::GetFrameHeight();
+    for (std::size_t i = 0; i < std::size(kOpacityPresetNames); ++i) {
+        continueLine(square * 1.25f);
+        const auto preset = static_cast<OpacityPreset>(i);
+        if (presetButton(preset)) function.opacity = opacityPreset(preset);
+    }
+    const auto check = [&](const char* name, bool& on, const char* help) {
+        continueLine(square + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize(name).x);
+        ImGui::Checkbox(name, &on);
+        if (ImGui::IsItemHovered()) tooltip(help);
+    };
+    check("log", view.logHistogram, "Logarithmic number of samples");
+    check("visible", view.visibility, "Show which values contribute how much to the visible 3D picture");
 }
 
 /// A choice among a parameter's own function and those of layers.
@@ -188,30 +205,17 @@ void drawTransferControls(ViewContext& context, TransferView& view, const Findin
     drawOwnColors(context, function, functionName(context.session, view, channel));
 
     const Range data = info.channelRange(info.channel(*info.findChannel(channel)));
-    const bool wide = room > em() * 48;
-    if (wide) ImGui::SameLine(0, em());
-    drawRange(function, data, std::min(em() * 16, room));
-    if (room > em() * 30) ImGui::SameLine(0, em());
+    const float ends = std::min(em() * 16, room);
+    continueLine(ends);
+    drawRange(function, data, ends);
     drawPages(pages, view, function);
     if (view.library) return;
     if (function.kind == vis::TransferKind::Regions) {
-        if (room > em() * 30) ImGui::SameLine(0, em());
         drawGradientTop(function, pages.regions);
         return;
     }
     if (view.boundaries) return;
-    if (room > em() * 70) ImGui::SameLine(0, em());
-    for (std::size_t i = 0; i < std::size(kOpacityPresetNames); ++i) {
-        if (i > 0) ImGui::SameLine(0, em() * 0.2f);
-        const auto preset = static_cast<OpacityPreset>(i);
-        if (presetButton(preset)) function.opacity = opacityPreset(preset);
-    }
-    ImGui::SameLine(0, em() * 0.8f);
-    ImGui::Checkbox("log", &view.logHistogram);
-    if (ImGui::IsItemHovered()) tooltip("Logarithmic number of samples");
-    ImGui::SameLine();
-    ImGui::Checkbox("visible", &view.visibility);
-    if (ImGui::IsItemHovered()) tooltip("Show which values contribute how much to the visible 3D picture");
+    drawCurveControls(view, function);
 }
 
 } // namespace tessera::app
