@@ -122,7 +122,8 @@ TEST(ComparedViews, AreThoseThatShowData) {
     for (const ViewState& view : {ViewState(CompareView{}), ViewState(VolumeView{}), ViewState(LayersView{}),
                                   ViewState(TransferView{}), ViewState(TimelineView{}), ViewState(LogView{})})
         EXPECT_FALSE(canBeCompared(view)) << traitsOf(view).title;
-    CompareView compare{.mode = CompareMode::Swipe};
+    CompareView compare;
+    compare.mode = CompareMode::Swipe;
     EXPECT_EQ(modeOf(compare), CompareMode::Swipe);
     compare.shows = "slices";
     EXPECT_EQ(modeOf(compare), CompareMode::Grid);
