@@ -10,10 +10,27 @@
 
 namespace tessera::app {
 
+namespace {
+
+constexpr const char *kPackedPath = "/data/packed", *kTimeAxisPath = "/data/timeAxis";
+
+/// The session with what it may leave out set to the defaults.
+Session withOptionalData(Session session) {
+    if (!session.data.packed) session.data.packed.emplace();
+    if (!session.data.timeAxis) session.data.timeAxis.emplace();
+    return session;
+}
+
+} // namespace
+
 Session variantSession(const Session& session, const CompareVariant& variant) {
     if (variant.changes.empty()) return session;
     Json document = toJson(session);
-    for (const auto& [path, value] : variant.changes) setInDocument(document, path, value);
+    for (const auto& [path, value] : variant.changes) {
+        // An empty object stands for the defaults, whole, so that changes of single settings find their place.
+        const bool defaults = value == "{}" && (path == kPackedPath || path == kTimeAxisPath);
+        setInDocument(document, path, defaults ? toJson(withOptionalData({}))[Json::json_pointer(path)].dump() : value);
+    }
     std::vector<JsonIssue> unknown;
     Session out = sessionFromJson(document, {}, &unknown);
     if (!unknown.empty()) throw Error("unknown key", {}, unknown.front().path);
@@ -66,15 +83,6 @@ std::string variantName(const Session& session, const CompareVariant& variant) {
 }
 
 namespace {
-
-constexpr const char *kPackedPath = "/data/packed", *kTimeAxisPath = "/data/timeAxis";
-
-/// The session with what it may leave out set to the defaults.
-Session withOptionalData(Session session) {
-    if (!session.data.packed) session.data.packed.emplace();
-    if (!session.data.timeAxis) session.data.timeAxis.emplace();
-    return session;
-}
 
 /// A value as it stands in CompareVariant::changes.
 std::string settingText(const Json& value) {

@@ -249,12 +249,14 @@ std::vector<Command> transferCommands(Workbench& workbench) {
         {.menu = "Edit",
          .name = "-Library of transfer functions",
          .help = "Show transfer functions by name, as pictures of the data (CT bone, gas, temperature, ...)",
+         .words = "presets opacity colours CT MR bone skin",
          .run = [&workbench] { showLibrary(workbench); },
          .enabled = loaded}};
     for (const vis::TransferRecipe& recipe : vis::transferLibrary())
         commands.push_back({.menu = "",
                             .name = "Transfer function: " + recipe.name,
                             .help = recipe.help + "; for the layer selected",
+                            .words = "library preset opacity colours",
                             .run = [&workbench, &recipe] { applyToSelected(workbench, recipe); },
                             .enabled = loaded});
     return commands;

@@ -117,6 +117,13 @@ const std::map<std::string, Check>& checks() {
                  for (std::size_t i = 0; i < after.selection.brushes.size(); ++i)
                      EXPECT_NE(after.selection.brushes[i].inverted, before.selection.brushes[i].inverted);
              }},
+            {"Library of transfer functions",
+             [](const Session&, const Session& after) {
+                 EXPECT_TRUE(std::ranges::any_of(after.views, [](const auto& view) {
+                     const auto* shown = std::get_if<TransferView>(&view.second);
+                     return shown && shown->library;
+                 }));
+             }},
             {"Previous time", timeOf(0)},
             {"Next time", timeOf(2.0 / 3)},
             {"Ten times back", timeOf(0)},
@@ -224,6 +231,7 @@ TEST_F(CommandTable, HasACheckForEveryCommand) {
         known.insert(title);
         if (each.menu == "Layout" && title != "Reset arrangement") continue; // EveryLayoutIsOneStep
         if (title.starts_with("Example data: ") || title == "Minus another time: the time shown") continue;
+        if (title.starts_with("Transfer function: ")) continue; // Library.TheSelectedLayerIsThatOfTheList
         EXPECT_TRUE(checks().contains(title) != kElsewhere.contains(title)) << title;
         EXPECT_FALSE(each.help.empty()) << title;
     }
