@@ -56,7 +56,7 @@ struct PictureMaker::Impl {
 };
 
 PictureMaker::PictureMaker(const vis::RendererOptions& options) : impl_(std::make_unique<Impl>()) {
-    impl_->renderer = std::make_shared<vis::Renderer>(options);
+    impl_->renderer = std::make_shared<vis::Renderer>(vis::quickestOptions(options));
 }
 
 PictureMaker::~PictureMaker() = default;

@@ -115,6 +115,11 @@ std::string residencyText(const vis::ResidencyInfo& use) {
     return text;
 }
 
+std::string engineText(const vis::EngineUse& use) {
+    if (use.byProcessor) return "   rays by the processor (" + std::string(use.instructions) + ")";
+    return use.refusal.empty() ? std::string() : "   rays by OpenGL: the processor cannot draw " + use.refusal;
+}
+
 void drawStatusBar(const std::string& text, Jobs* jobs, Messages* messages, float height, float scale, bool icons) {
     const ImGuiViewport& viewport = *ImGui::GetMainViewport();
     ImGui::SetNextWindowPos({viewport.Pos.x, viewport.Pos.y + viewport.Size.y - height});

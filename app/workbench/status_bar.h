@@ -15,6 +15,8 @@ std::string dataText(const Sources& sources);
 /// Texture memory used, and bricks loaded and waiting: "   textures 12.5 of 512 MiB, 96 bricks, 4 to come"; "" if
 /// nothing is loaded.
 std::string residencyText(const vis::ResidencyInfo& use);
+/// What casts rays.
+std::string engineText(const vis::EngineUse& use);
 
 /// Draws a text at the left, or the newest message in its place while it is new, and the jobs at the right, each with a
 /// button that cancels it. Messages stand here since over the views they would cover axes and legends; the mouse on one

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 Workbench::Workbench(WorkbenchOptions options)
     : options_(std::move(options)),
-      renderer_(options_.renderer ? options_.renderer : std::make_shared<vis::Renderer>(options_.render)),
+      renderer_(options_.renderer ? options_.renderer : std::make_shared<vis::Renderer>(vis::quickestOptions(options_.render))),
       messages_([this] { return now(); }, options_.headless),
       data_(document_, jobs_, messages_,
             {options_.headless, options_.stateFolder, options_.program, options_.growthInterval},
@@ -276,7 +276,7 @@ void Workbench::drawWindow() {
     panes_.draw(viewContext(), area);
     std::string text = dataText(document_.sources());
     if (document_.loaded() && !options_.headless) {
-        text += residencyText(renderer_->residency());
+        text += residencyText(renderer_->residency()) + engineText(renderer_->engine());
         if (panes_.compiling()) text += "   compiling shaders";
     }
     drawStatusBar(text, options_.headless ? nullptr : &jobs_, options_.headless ? nullptr : &messages_, bottom,

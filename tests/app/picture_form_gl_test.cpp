@@ -150,7 +150,7 @@ TEST(PictureFormGl, WithoutDecorationAPictureIsTheBareScene) {
     request.decoration = *Decoration::preset("none");
     const vis::Image picture = drawn(maker, opened, request);
     const vis::HeadlessContext gl;
-    vis::Renderer renderer;
+    vis::Renderer renderer(vis::quickestOptions());
     renderer.setSource(opened.source);
     vis::Scene scene = sceneOf(opened.document.session);
     scene.showBox = false;

@@ -44,6 +44,13 @@ int colors(const vis::Image& image) {
     return int(std::unique(seen.begin(), seen.end()) - seen.begin());
 }
 
+/// The status bar of a window says more than that of a picture.
+vis::Image withoutStatusBar(vis::Image image) {
+    image.size.y -= 30;
+    image.rgba.resize(std::size_t(image.size.x) * std::size_t(image.size.y) * 4);
+    return image;
+}
+
 TEST(WorkbenchGl, APictureIsWhatAWorkbenchFrameShows) {
     const Opened opened = smallData();
     PictureMaker maker;
@@ -58,7 +65,7 @@ TEST(WorkbenchGl, APictureIsWhatAWorkbenchFrameShows) {
     Workbench workbench({.renderer = nullptr, .render = {}, .headless = false, .onlyPane = {}, .stateFolder = {}});
     workbench.install(opened);
     const vis::Image window = drawUntilDone(workbench, {900, 600}, 1);
-    EXPECT_LT(difference(picture, window, 6), 0.002);
+    EXPECT_LT(difference(withoutStatusBar(picture), withoutStatusBar(window), 6), 0.001);
 }
 
 TEST(WorkbenchGl, OneViewFillsThePicture) {

@@ -1,6 +1,6 @@
 #include "tests/vis/parts_drawing.h"
 
-#include "vis/optics/proxy.h"
+#include "vis/shapes/proxy.h"
 
 #include <functional>
 
@@ -9,13 +9,13 @@
 namespace tessera::vis {
 namespace {
 
-struct Mode {
+struct PartsMode {
     const char* name;
     std::function<void(Scene&)> apply;
     double rmse = 1.5 * kRmse;
 };
 
-const Mode kModes[] = {
+const PartsMode kPartsModes[] = {
     {"composite",
      [](Scene& s) {
          s.layers = {{"", true, VolumeLayer{.channel = "gas", .shaded = false}}};
@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(Lattices, PartsPictures, testing::Values(LatticeKind::C
 
 TEST_P(PartsPictures, AgreeWithTheReference) {
     Drawn drawn(regionSource(GetParam(), Regions::Sloped, true));
-    for (const Mode& mode : kModes) {
+    for (const PartsMode& mode : kPartsModes) {
         Scene scene = regionScene();
         scene.transfer["gas"] = scene.transfer["heat"] = fog();
         mode.apply(scene);
@@ -125,7 +125,7 @@ TEST_P(PartsPictures, AgreeWithTheReferenceInBricksAndBetweenTimes) {
     Drawn bricked(regionSource(GetParam(), Regions::Sloped, true), true);
     Drawn series(std::make_shared<RegionSeries>(GetParam(), Regions::Sloped, true));
     for (std::size_t filter = 0; filter < std::size(kFilterNames); ++filter) {
-        const Mode& mode = kModes[filter == 0 ? 5 : 1]; // surfaces, shaded
+        const PartsMode& mode = kPartsModes[filter == 0 ? 5 : 1]; // surfaces, shaded
         Scene scene = regionScene(false);
         scene.transfer["gas"] = scene.transfer["heat"] = fog();
         scene.render.filter = Filter(filter);
@@ -139,7 +139,7 @@ TEST_P(PartsPictures, AgreeWithTheReferenceInBricksAndBetweenTimes) {
 
 TEST_P(PartsPictures, SixteenBitsAreClose) {
     Drawn drawn(regionSource(GetParam(), Regions::Sloped, true), false, false);
-    for (const Mode& mode : kModes) {
+    for (const PartsMode& mode : kPartsModes) {
         Scene scene = regionScene();
         scene.transfer["gas"] = scene.transfer["heat"] = fog();
         mode.apply(scene);
@@ -150,7 +150,7 @@ TEST_P(PartsPictures, SixteenBitsAreClose) {
 }
 
 /// Techniques that would show a value between what the regions hold.
-const Mode kFilled[] = {
+const PartsMode kFilled[] = {
     {"composite",
      [](Scene& s) {
          s.layers = {{"", true, VolumeLayer{.channel = "heat", .shaded = false}}};
@@ -197,7 +197,7 @@ void expectNothingBetween(LatticeKind kind, Regions regions, const std::function
 }
 
 TEST_P(PartsPictures, ShowNoValueThatNoRegionHolds) {
-    for (const Mode& mode : kFilled) {
+    for (const PartsMode& mode : kFilled) {
         expectNothingBetween(GetParam(), Regions::Constant, mode.apply, mode.name, true, 0);
         expectNothingBetween(GetParam(), Regions::Sloped, mode.apply, mode.name, false, 0.4);
     }

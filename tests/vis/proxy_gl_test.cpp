@@ -1,7 +1,7 @@
 #include "tests/vis/function_source.h"
 #include "tests/vis/gl_fixture.h"
-#include "vis/optics/proxy.h"
 #include "vis/reference/raycast.h"
+#include "vis/shapes/proxy.h"
 
 #include <cmath>
 

@@ -9,20 +9,10 @@
 namespace tessera::vis {
 
 std::optional<RaySegment> clipToBox(const Ray& ray, glm::dvec3 halfSize, bool perspective) {
-    RaySegment segment{perspective ? 0 : -std::numeric_limits<double>::infinity(),
-                       std::numeric_limits<double>::infinity()};
-    for (int axis = 0; axis < 3; ++axis) {
-        const double origin = ray.origin[axis], direction = ray.direction[axis], half = halfSize[axis];
-        if (std::abs(direction) < 1e-12) {
-            if (std::abs(origin) > half) return std::nullopt;
-            continue;
-        }
-        const double a = (-half - origin) / direction, b = (half - origin) / direction;
-        segment.enter = std::max(segment.enter, std::min(a, b));
-        segment.exit = std::min(segment.exit, std::max(a, b));
-    }
+    const SegmentOf<double> segment =
+        segmentInBox<double>({ray.origin, ray.direction}, halfSize, perspective ? 0 : -1e30);
     if (!(segment.enter < segment.exit)) return std::nullopt;
-    return segment;
+    return RaySegment{segment.enter, segment.exit};
 }
 
 glm::dvec3 worldCell(const volume::Lattice& lattice, const WorldFrame& frame) {
@@ -34,14 +24,10 @@ RaySamples raySamples(const RaySegment& segment, glm::dvec3 direction, glm::dvec
     const double length = segment.exit - segment.enter;
     const double wanted = stepVoxels / glm::length(direction / cell);
     RaySamples samples;
-    samples.count = std::max(1, static_cast<int>(std::ceil(length / wanted - 1e-4)));
+    samples.count = int(sampleCount(length, wanted));
     samples.step = length / samples.count;
     samples.enter = segment.enter;
     return samples;
-}
-
-double correctedOpacity(double opacity, double step, double density) {
-    return 1 - std::pow(1 - std::clamp(opacity, 0.0, 1.0), density * step / kReferenceLength);
 }
 
 glm::dvec3 quantizedDirection(glm::dvec3 v, int bits) {

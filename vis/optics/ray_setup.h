@@ -2,6 +2,7 @@
 
 #include "vis/scene/ray_segment.h"
 #include "vis/scene/scene.h"
+#include "volume/base/numbers.h"
 #include "volume/field/lattice.h"
 
 #include <optional>
@@ -69,6 +70,20 @@ inline constexpr double kFlatGradient =
 /// The segment of a ray inside the box |p| <= halfSize, as distances from its origin. A perspective ray starts at the
 /// eye at the earliest; a parallel one may begin behind it.
 std::optional<RaySegment> clipToBox(const Ray& ray, glm::dvec3 halfSize, bool perspective);
+/// The same from `begin` on at the earliest; empty (enter >= exit) if there is none.
+template <class N> SegmentOf<N> segmentInBox(const RayOf<N>& ray, const glm::dvec3& halfSize, N begin) {
+    SegmentOf<N> segment{begin, N(1e30)};
+    for (int axis = 0; axis < 3; ++axis) {
+        const N origin = ray.origin[axis], direction = ray.direction[axis], half(halfSize[axis]);
+        const auto along = magnitude(direction) < N(1e-12);
+        const N slope = choose(along, N(1), direction);
+        const N a = (-half - origin) / slope, b = (half - origin) / slope;
+        const auto misses = along & (magnitude(origin) > half);
+        segment.enter = larger(segment.enter, choose(along, choose(misses, N(1e30), N(-1e30)), smaller(a, b)));
+        segment.exit = smaller(segment.exit, choose(along, choose(misses, N(-1e30), N(1e30)), larger(a, b)));
+    }
+    return segment;
+}
 
 /// World edges of the cell that steps and gradients are measured in: a cell of the CC grid, or of the CC grid with the
 /// same sample density as a BCC lattice (its spacing / sqrt 2).
@@ -85,11 +100,20 @@ struct RaySamples {
     double phase = 0.5; ///< offset by startJitter() if ray starts are jittered
     double at(int k) const { return enter + (k + phase) * step; }
 };
+/// count, for a segment of some length and the wanted step.
+template <class N> N sampleCount(N length, N wanted) {
+    return larger(N(1), roundUp(length / wanted - N(1e-4)));
+}
 RaySamples raySamples(const RaySegment& segment, glm::dvec3 direction, glm::dvec3 cell, double stepVoxels);
 
 /// Opacity correction of a sample for a segment of `step` world units: 1 - (1 - opacity)^(density * step /
 /// kReferenceLength).
-double correctedOpacity(double opacity, double step, double density);
+template <class N> N correctedOpacity(N opacity, N step, N density) {
+    return N(1) - power(N(1) - clamped(opacity, N(0), N(1)), density * step * N(1 / kReferenceLength));
+}
+inline double correctedOpacity(double opacity, double step, double density) {
+    return correctedOpacity<double>(opacity, step, density);
+}
 
 /// A direction (length 1) quantised to `bits` per coordinate on the unfolded octahedron (Q. Meyer et al.: On
 /// floating-point normal vectors, 2010): used for shading with quantised gradients. Zero stays zero.

@@ -83,16 +83,8 @@ glm::dvec3 shade(const Illumination& light, glm::dvec3 albedo, glm::dvec3 gradie
                   (phong ? glm::dvec3(light.surface.specular) : even.specular) * light.maps->specular.at(mirrored);
     }
     glm::dvec3 lit = reach.everywhere * around + albedo * reach.scattered;
-    for (std::size_t i = 0; i < light.lights.size(); ++i) {
-        const PlacedLight& each = light.lights[i];
-        const glm::dvec3 way = each.point ? each.place - place : each.place;
-        const double squared = glm::dot(way, way), falloff = each.point ? 1 / std::max(squared, 1e-4) : 1;
-        const glm::dvec3 toLight = way / std::sqrt(std::max(squared, 1e-12));
-        const double seen = i < std::size_t(kShadowLights) ? reach.lights[int(i)] : 1;
-        lit += seen * falloff * each.color *
-               (phong ? phongLight(at, albedo, toLight, light.surface)
-                      : physicalLight(at, albedo, even, toLight, light.surface));
-    }
+    const auto seen = [&](int i) { return i < kShadowLights ? reach.lights[i] : 1.0; };
+    lit += reflectedLights<double>(light.lights, light.surface, at, albedo, even, place, seen);
     return glm::mix(flat, lit, weight);
 }
 

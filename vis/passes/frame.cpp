@@ -1,8 +1,8 @@
 #include "vis/passes/renderer_impl.h"
 
 #include "vis/demand/lens_pixels.h"
-#include "vis/optics/proxy.h"
 #include "vis/raycast/ray_uniforms.h"
+#include "vis/shapes/proxy.h"
 
 #include <algorithm>
 #include <cmath>
@@ -136,6 +136,7 @@ void Renderer::Impl::addBeyond(RayPrograms& programs, ViewTarget& target, const 
 /// Step lengths scale with the cells of the finest level wanted: there is no detail between coarser samples.
 void Renderer::Impl::setUniforms(const RayPrograms& programs, const ViewTarget& target, const RenderCall& call,
                                  double stepFactor) {
+    if (programs.packets) return;
     const double factor = stepFactor * target.demand.cell();
     const auto set = [&](const Program* program, const RayPlan& plan, const Scene& scene) {
         if (program) setRayUniforms(*program, plan, scene, call.info(), call.grid(), target.buffers.size, factor);
@@ -154,12 +155,12 @@ void Renderer::Impl::drawReduced(ViewTarget& target, const RenderCall& call, con
     buffers.reduced.first = placeInTiles(tile, buffers.reducedSize, buffers.size, tools.driver.sharedTile);
     setUniforms(programs, target, call, how.stepFactor);
     const auto rasterise = [&] { geometry(target, call, buffers.reducedSize, tile); };
-    if (call.plan.peels > 0) target.pace.timeGeometry(rasterise);
+    if (call.plan.peels > 0) target.pace().timeGeometry(rasterise);
     const RayTile what{.size = buffers.reducedSize,
                        .tile = tile,
-                       .parts = target.tables.covered(call, buffers.reducedSize),
-                       .stepFactor = how.stepFactor * target.demand.cell()};
-    target.pace.timeReduced([&] { rays(programs, call, buffers.reduced, what); }, how.stepFactor, tile.area());
+                       .parts = programs.packets ? nullptr : target.tables.covered(call, buffers.reducedSize),
+                       .stepFactor = how.stepFactor * (programs.packets ? 1 : target.demand.cell())};
+    target.pace().timeReduced([&] { rays(programs, call, buffers.reduced, what); }, how.stepFactor, tile.area());
     present(target, call.scene, true, changed);
     target.state.drewReduced();
     target.hidden.drewReduced();
@@ -173,8 +174,8 @@ void Renderer::Impl::drawTile(ViewTarget& target, const RenderCall& call, const 
     geometry(target, call, size, target.state.stale(), pass);
     const RayTile what{.size = size,
                        .tile = tile,
-                       .parts = target.tables.covered(call, size),
-                       .stepFactor = target.demand.cell(),
+                       .parts = programs.packets ? nullptr : target.tables.covered(call, size),
+                       .stepFactor = programs.packets ? 1 : target.demand.cell(),
                        .pass = pass};
     const auto draw = [&] {
         if (pass == 0)
@@ -182,7 +183,7 @@ void Renderer::Impl::drawTile(ViewTarget& target, const RenderCall& call, const 
         else
             accumulate(target, call, programs, what);
     };
-    target.pace.timeTile(draw, tile.area(), pass == 0);
+    target.pace().timeTile(draw, tile.area(), pass == 0);
     present(target, call.scene, false, tile);
     glBindTextureUnit(0, call.plan.fields[0].texture);
     target.state.drewTile();
@@ -194,18 +195,18 @@ void Renderer::Impl::drawTiles(ViewTarget& target, const RenderCall& call, const
                                Clock::time_point start, bool lit) {
     const FrameRequest& request = call.request;
     PictureState& state = target.state;
-    if (state.tilesDone() == 0) target.pace.beginPass(request.wait, request.budgetMs);
-    const std::vector<Tile> tiles = tilesOf(state.stale(), target.pace.tileEdge());
+    if (state.tilesDone() == 0) target.pace().beginPass(request.wait, request.budgetMs);
+    const std::vector<Tile> tiles = tilesOf(state.stale(), target.pace().tileEdge());
     setUniforms(programs, target, call, 1);
     const int perPass = int(tiles.size()), wanted = perPass * std::max(call.scene.render.samples, 1);
     for (bool first = true; state.tilesDone() < wanted; first = false) {
         const Tile& tile = tiles[std::size_t(state.tilesDone() % perPass)];
         const double left = request.budgetMs - millisecondsSince(start);
-        if (!request.wait && !first && !target.pace.fits(tile.area(), left)) break;
+        if (!request.wait && !first && !target.pace().fits(tile.area(), left)) break;
         drawTile(target, call, programs, tile, state.tilesDone() / perPass);
         if (state.tilesDone() != perPass) continue;
         state.drewPass();
-        target.pace.finishPass(state.stale().area(), target.buffers.everything().area());
+        target.pace().finishPass(state.stale().area(), target.buffers.everything().area());
         if (request.moving) break;
     }
     // Context blur crosses the borders of tiles, so it needs the whole picture.
@@ -216,6 +217,20 @@ void Renderer::Impl::drawTiles(ViewTarget& target, const RenderCall& call, const
     if (state.tilesDone() >= wanted && lit) state.setDone(PictureState::Done::Still);
 }
 
+/// Draws a reduced picture if the whole does not fit the budget, then tiles. `lit`: its light is final.
+void Renderer::Impl::drawWithin(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
+                                Clock::time_point start, bool lit) {
+    const FrameRequest& request = call.request;
+    const PictureState& state = target.state;
+    const double left = request.budgetMs - millisecondsSince(start);
+    const bool fast = target.pace().known() && target.pace().expected(state.stale().area()) < std::max(left, 1.0);
+    if (!request.wait && !fast && (request.moving || !(state.reduced() || state.full()))) {
+        drawReduced(target, call, programs, target.pace().reduction(state.changed().area(), left, call.plan.peels > 0));
+        if (request.moving) return;
+    }
+    drawTiles(target, call, programs, start, lit);
+}
+
 /// Draws the bound plan as far as the budget allows.
 void Renderer::Impl::refine(ViewTarget& target, const RenderCall& call, Clock::time_point start) {
     const Scene& scene = call.scene;
@@ -224,7 +239,7 @@ void Renderer::Impl::refine(ViewTarget& target, const RenderCall& call, Clock::t
     const bool probing = target.demand.probing();
     const bool done = state.full() ? state.still() || request.moving : state.reduced() && request.moving;
     if (done && !probing) return;
-    if (!target.pace.beginCall() && !request.wait) return;
+    if (!target.pace().beginCall() && !request.wait) return;
     target.tables.update(call, residency.revision(), target.demand.frames());
     const ProgramRecipe recipe = variant(target, scene, call.plan);
     target.shown.compiling = true;
@@ -245,13 +260,7 @@ void Renderer::Impl::refine(ViewTarget& target, const RenderCall& call, Clock::t
     RayPrograms programs{.program = answer.program, .beyondPlan = {}, .beyondScene = {}};
     addBeyond(programs, target, call);
     if (probing) return drawReduced(target, call, programs, {kProbeShrink, 1});
-    const double left = request.budgetMs - millisecondsSince(start);
-    const bool fast = target.pace.known() && target.pace.expected(state.stale().area()) < std::max(left, 1.0);
-    if (!request.wait && !fast && (request.moving || !(state.reduced() || state.full()))) {
-        drawReduced(target, call, programs, target.pace.reduction(state.changed().area(), left, call.plan.peels > 0));
-        if (request.moving) return;
-    }
-    drawTiles(target, call, programs, start, light.done);
+    drawWithin(target, call, programs, start, light.done);
 }
 
 } // namespace tessera::vis

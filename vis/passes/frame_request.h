@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <string>
+#include <string_view>
 
 /// Input and result of one call of Renderer::render().
 namespace tessera::vis {
@@ -17,13 +19,21 @@ struct FrameRequest {
     bool wait = false; ///< headless: load and refine completely before returning
 };
 
+/// What cast the rays of a picture.
+struct EngineUse {
+    bool byProcessor = false;           ///< else OpenGL
+    std::string_view instructions = {}; ///< of the processor
+    std::string refusal = {};           ///< why OpenGL draws although the processor was wanted, in words for users
+};
+
 /// Result of render(). The texture belongs to the target and is valid until its next frame.
 struct FrameStatus {
     std::uint32_t texture = 0; ///< GL name, RGBA8, `request.size` large (upscaled if reduced), sRGB encoded, opaque
     bool current = false;      ///< the texture shows this scene, possibly at reduced resolution
     bool complete =
         false; ///< converged: full resolution and all bricks at the wanted level; nothing to do until the scene changes
-    bool compiling = false;  ///< the program is being compiled; meanwhile a former picture or the background is shown
+    bool compiling = false; ///< the program is being compiled; meanwhile a former picture or the background is shown
+    EngineUse engine = {};
     int bricksMissing = 0;   ///< bricks drawn coarser than wanted
     double milliseconds = 0; ///< time of the last full pass
     /// Number of lattice samples of the drawn channels at the drawn levels, and bytes of their textures.

@@ -2,9 +2,9 @@
 
 #include "vis/demand/lens_pixels.h"
 #include "vis/optics/jitter.h"
-#include "vis/optics/proxy.h"
 #include "vis/raycast/lens_uniforms.h"
 #include "vis/raycast/ray_uniforms.h"
+#include "vis/shapes/proxy.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -90,6 +90,8 @@ void Renderer::Impl::rays(const RayPrograms& programs, const RenderCall& call, c
     const glm::ivec2 begin = glm::max(tile.begin, glm::ivec2(box)), end = glm::min(tile.end, glm::ivec2(box.z, box.w));
     if (begin.x >= end.x || begin.y >= end.y) return;
     within(begin, end);
+    if (programs.packets)
+        return castPackets(*programs.packets, call, buffer, {size, {begin, end}, nullptr, what.stepFactor, what.pass});
     const std::vector<Tile> whole{{begin, end}};
     glBindVertexArray(tools.vertices.name());
     const auto prepare = [&](const Program& program) {

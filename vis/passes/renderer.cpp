@@ -1,8 +1,8 @@
 #include "vis/passes/renderer_impl.h"
 
 #include "vis/demand/changed_pixels.h"
-#include "vis/optics/proxy.h"
 #include "vis/raycast/lens_uniforms.h"
+#include "vis/shapes/proxy.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -47,6 +47,11 @@ void ViewTargetDeleter::operator()(ViewTarget* target) const {
     delete target;
 }
 
+RendererOptions quickestOptions(RendererOptions options) {
+    options.packets = (options.driver ? *options.driver : currentDriver()).software;
+    return options;
+}
+
 Renderer::Renderer(const RendererOptions& options)
     : impl_(std::make_unique<Impl>(options, options.driver ? *options.driver : currentDriver())) {}
 Renderer::~Renderer() = default;
@@ -55,6 +60,7 @@ void Renderer::setSource(std::shared_ptr<const volume::BrickSource> source, Same
     if (source == impl_->source) return;
     impl_->formerSource = same.channels > 0 && same.times > 0 ? impl_->source.get() : nullptr;
     impl_->source = source;
+    impl_->volumes = source ? std::make_shared<packet::PacketVolumes>(source) : nullptr;
     impl_->residency.setSource(std::move(source), same);
 }
 
@@ -117,9 +123,9 @@ bool Renderer::Impl::bind(ViewTarget& target, const RenderCall& call, FrameStatu
 }
 
 /// Makes the scene that of the target and marks outdated pixels.
-void Renderer::Impl::show(ViewTarget& target, const Scene& scene) {
+/// `resident`: changes with the samples that are drawn.
+void Renderer::Impl::show(ViewTarget& target, const Scene& scene, std::uint64_t resident) {
     ShownScene& shown = target.shown;
-    const std::uint64_t resident = residency.revision();
     const bool same = shown.source == source.get();
     if (shown.started && shown.scene == scene && shown.resident == resident && same) return;
     std::optional<Tile> part;
@@ -137,7 +143,7 @@ void Renderer::Impl::show(ViewTarget& target, const Scene& scene) {
 /// Requests the data of the scene and draws or refines what is resident; false if nothing can be drawn.
 bool Renderer::Impl::draw(ViewTarget& target, const RenderCall& call, Clock::time_point start, FrameStatus& status) {
     const bool any = !call.plan.empty() && bind(target, call, status);
-    show(target, call.scene);
+    show(target, call.scene, residency.revision());
     target.shown.compiling = false;
     if (any) {
         refine(target, call, start);
@@ -209,17 +215,20 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
         impl_->beginFrame(target, scene, request);
         const int most = mostFields(impl_->tools.driver.fragmentSamplers, scene, impl_->residency.bricked());
         RayPlan plan = planRays(scene, impl_->source->info(), most);
-        impl_->drawAll(target, {scene, request, *impl_->source, plan}, start, status);
+        const RenderCall call{scene, request, *impl_->source, plan};
+        if (!impl_->chooseEngine(target, call, status) || !impl_->drawByPackets(target, call, start, status))
+            impl_->drawAll(target, call, start, status);
     } else {
-        impl_->show(target, scene);
+        impl_->show(target, scene, 0);
         target.shown.compiling = false;
         if (!target.state.full()) impl_->nothing(target, scene);
     }
     status.complete = status.complete && target.state.still();
     status.current = status.complete || target.state.changed().empty();
     status.compiling = target.shown.compiling;
-    if (request.wait) target.pace.collect(true);
-    status.milliseconds = target.pace.pass();
+    if (request.wait) target.pace().collect(true);
+    status.milliseconds = target.pace().pass();
+    impl_->engine = status.engine;
     return status;
 }
 
@@ -270,6 +279,10 @@ std::vector<std::uint8_t> Renderer::readPixels(ViewTarget& target, glm::ivec2& s
         std::copy_n(pixels.begin() + std::ptrdiff_t((height - 1 - y) * row), row,
                     out.begin() + std::ptrdiff_t(y * row));
     return out;
+}
+
+const EngineUse& Renderer::engine() const {
+    return impl_->engine;
 }
 
 ResidencyInfo Renderer::residency() const {

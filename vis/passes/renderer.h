@@ -16,6 +16,9 @@
 /// context.
 namespace tessera::vis {
 
+/// Options of renderers that users look at: the processor casts rays where OpenGL runs on it. Needs a current context.
+RendererOptions quickestOptions(RendererOptions options = {});
+
 /// Result of picking: the first sample along the ray with noticeable opacity.
 struct Pick {
     glm::dvec3 position; ///< physical
@@ -54,6 +57,8 @@ public:
     std::vector<std::uint8_t> readPixels(ViewTarget& target, glm::ivec2& size);
 
     ResidencyInfo residency() const;
+    /// What cast the rays of the last picture.
+    const EngineUse& engine() const;
     /// Messages since the last call (shader errors, damaged bricks), for the log pane.
     std::vector<std::string> takeMessages();
 

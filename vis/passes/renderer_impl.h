@@ -7,12 +7,13 @@
 #include "vis/passes/view_target.h"
 
 /// Implementation of the renderer: renderer.cpp has the public functions, frame.cpp schedules drawing within the
-/// budget, ray_pass.cpp draws tiles, present.cpp presents them. The earlier stages (ViewDemand, ViewTables, ViewLight,
-/// ViewHidden) have their own files.
+/// budget, ray_pass.cpp draws tiles, packet_pass.cpp those that the processor draws, present.cpp presents them. The
+/// earlier stages (ViewDemand, ViewTables, ViewLight, ViewHidden) have their own files.
 namespace tessera::vis {
 
-/// The ray-casting program variants of one picture.
+/// What casts the rays of one picture: program variants, or packets.
 struct RayPrograms {
+    PacketView* packets = nullptr; ///< instead of programs: the processor casts the rays
     const Program* program = nullptr;
     const Program* beyond = nullptr; ///< for pixels outside all lenses; null: same as `program`
     RayPlan beyondPlan;              ///< the plan of `beyond`
@@ -32,9 +33,11 @@ struct Renderer::Impl {
     RendererOptions options;
     Residency residency;
     std::shared_ptr<const volume::BrickSource> source;
+    std::shared_ptr<packet::PacketVolumes> volumes; ///< samples of `source` for the processor
     const volume::BrickSource* formerSource =
         nullptr; ///< the source that `source` replaced with shared samples: its pictures stay until new ones are drawn
     RenderTools tools;
+    EngineUse engine;    ///< of the last picture
     std::string limits;  ///< last message about exceeded limits
     std::string refusal; ///< last message about refused memory
 
@@ -45,7 +48,7 @@ struct Renderer::Impl {
     bool resize(ViewTarget& target, const FrameRequest& request);
     void beginFrame(ViewTarget& target, const Scene& scene, const FrameRequest& request);
     bool bind(ViewTarget& target, const RenderCall& call, FrameStatus& status);
-    void show(ViewTarget& target, const Scene& scene);
+    void show(ViewTarget& target, const Scene& scene, std::uint64_t resident);
     bool draw(ViewTarget& target, const RenderCall& call, Clock::time_point start, FrameStatus& status);
     void drawAll(ViewTarget& target, const RenderCall& call, Clock::time_point start, FrameStatus& status);
     bool findsHidden(const Scene& scene) const;
@@ -56,6 +59,8 @@ struct Renderer::Impl {
 
     // frame.cpp
     void refine(ViewTarget& target, const RenderCall& call, Clock::time_point start);
+    void drawWithin(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, Clock::time_point start,
+                    bool lit);
     void postpone(ViewTarget& target, const Scene& scene);
     void giveUp(ViewTarget& target, const RenderCall& call);
     void sayLimits(const RenderCall& call);
@@ -75,6 +80,13 @@ struct Renderer::Impl {
     void rays(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer, const RayTile& what);
     void proxies(const Program& program, const RenderCall& call, const RayBuffer& buffer, double stepFactor);
     void accumulate(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const RayTile& what);
+
+    // packet_pass.cpp
+    std::string refusalOfPackets(const ViewTarget& target, const RenderCall& call) const;
+    bool chooseEngine(ViewTarget& target, const RenderCall& call, FrameStatus& status);
+    bool drawByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start, FrameStatus& status);
+    void refineByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start);
+    void castPackets(PacketView& packets, const RenderCall& call, const RayBuffer& buffer, const RayTile& what);
 
     // present.cpp
     BoxLines box(const ViewTarget& target, const Scene& scene) const;

@@ -1,10 +1,10 @@
 #include "vis/passes/view_tables.h"
 
-#include "vis/optics/proxy.h"
 #include "vis/raycast/block_steps.h"
 #include "vis/raycast/lens_uniforms.h"
 #include "vis/raycast/ray_field.h"
 #include "vis/raycast/ray_tables.h"
+#include "vis/shapes/proxy.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/packet/packet_renderer.h"
 #include "vis/passes/pace.h"
 #include "vis/passes/picture.h"
 #include "vis/passes/view_demand.h"
@@ -41,21 +42,32 @@ private:
     std::optional<Shown> shown_;
 };
 
+/// What the processor draws a view with.
+struct PacketView {
+    packet::PacketRenderer renderer;
+    packet::PacketPicture picture; ///< of the tile drawn last
+    Pace pace{false};              ///< of rays cast by the processor, measured by the clock
+    bool failed = false;           ///< its samples could not be read: OpenGL draws these data, without what is damaged
+};
+
 /// The picture of one view: its buffers, and the stages that produce it, each of which owns its state.
 class ViewTarget {
 public:
-    explicit ViewTarget(const Driver& driver) : pace(driver.timerQueries) {}
+    explicit ViewTarget(const Driver& driver) : glPace(driver.timerQueries) {}
 
     PictureBuffers buffers;
     PictureState state;
     ShownScene shown;
-    Pace pace;
+    Pace glPace; ///< of rays cast by OpenGL
     ViewDemand demand;
     ViewTables tables;
     ViewGeometry geometry;
     ViewLight light;
     ViewHidden hidden;
+    PacketView packets;
+    bool byProcessor = false; ///< casts rays of the current picture
 
+    Pace& pace() { return byProcessor ? packets.pace : glPace; }
     /// Throws MachineError, leaving the target unchanged, when the driver has no memory for it.
     void resize(glm::ivec2 wanted, bool exact);
     /// Marks the pixels of `part` as out of date.

@@ -1,6 +1,6 @@
 #include "vis/raycast/brush_uniforms.h"
 
-#include "vis/optics/proxy.h"
+#include "vis/shapes/proxy.h"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
-#include "vis/optics/proxy.h"
 #include "vis/raycast/brush_uniforms.h"
 #include "vis/raycast/clip_uniforms.h"
 #include "vis/raycast/lens_uniforms.h"
 #include "vis/raycast/light_uniforms.h"
 #include "vis/raycast/ray_tables.h"
+#include "vis/shapes/proxy.h"
 #include "volume/reconstruct/part_choice.h"
 #include "volume/reconstruct/reconstruct.h"
 

@@ -9,7 +9,7 @@ void Projected::add(const Prepared& scene, const DrawnLayer& layer, std::optiona
     const auto& volume = std::get<VolumeLayer>(*layer.technique);
     const double threshold = std::max(0.0, layer.unclamped(volume.threshold));
     if (!found) {
-        if (volume.style == RayStyle::LocalMaximum) found_ = found_ || best_ >= threshold;
+        sums_.add(volume.style, threshold, false, 0, 0, 0);
         return;
     }
     const LensAction lens = scene.lensAction(layer, place);
@@ -18,22 +18,16 @@ void Projected::add(const Prepared& scene, const DrawnLayer& layer, std::optiona
     const double along =
         volume.quantity == Quantity::Gradient ? scene.steepPlace(layer, place) : layer.unclamped(found->value);
     const double x = std::clamp(along, 0.0, 1.0);
-    factors_ += factor;
-    weighted_ += factor * along;
-    const double absorbed =
-        (1 - absorbed_) * correctedOpacity(layer.classifyPlace(x).a * factor, step, double(volume.density));
-    absorbed_ += absorbed;
-    ++count_;
+    const double corrected = correctedOpacity(layer.classifyPlace(x).a * factor, step, double(volume.density));
+    const double absorbed = (1 - sums_.absorbed) * corrected;
+    if (sums_.add(volume.style, threshold, true, along, factor, corrected))
+        bestWorld_ = place, bestInterest_ = doi, bestLens_ = lens;
     const bool sums = volume.style == RayStyle::Average || volume.style == RayStyle::XRay;
     if (const auto tint = sums && layer.colors ? layer.colors->value(scene.cells(place)) : std::nullopt) {
         const double weight = volume.style == RayStyle::XRay ? absorbed : factor;
         tint_ += weight * *tint;
         tintWeight_ += weight;
     }
-    const double score = (volume.style == RayStyle::Minimum ? 1 - x : x) * factor;
-    if (volume.style == RayStyle::LocalMaximum) found_ = found_ || (best_ >= threshold && score < best_);
-    if (score > best_ && !found_)
-        best_ = score, bestPlace_ = x, bestWorld_ = place, bestInterest_ = doi, bestLens_ = lens;
 }
 
 glm::dvec3 Projected::colorOfSum(const DrawnLayer& layer, glm::dvec4 own) const {
@@ -42,16 +36,17 @@ glm::dvec3 Projected::colorOfSum(const DrawnLayer& layer, glm::dvec4 own) const 
 }
 
 std::optional<Projected::Shown> Projected::shown(const Prepared& scene, const DrawnLayer& layer) const {
-    if (count_ == 0 || !(factors_ > 0)) return std::nullopt;
+    if (sums_.count == 0 || !(sums_.factors > 0)) return std::nullopt;
     const auto& volume = std::get<VolumeLayer>(*layer.technique);
     const auto opacity = [&](glm::dvec4 color) { return std::min(1.0, double(volume.density) * color.a); };
-    if (volume.style == RayStyle::XRay) return Shown{colorOfSum(layer, layer.classifyPlace(absorbed_)), absorbed_};
+    if (volume.style == RayStyle::XRay)
+        return Shown{colorOfSum(layer, layer.classifyPlace(sums_.absorbed)), sums_.absorbed};
     if (volume.style == RayStyle::Average) {
         // The mean has no position: brushes affect it only through its weights.
-        const glm::dvec4 color = layer.classifyPlace(std::clamp(weighted_ / factors_, 0.0, 1.0));
-        return Shown{colorOfSum(layer, color), std::min(opacity(color) * factors_ / count_, 1.0)};
+        const glm::dvec4 color = layer.classifyPlace(std::clamp(sums_.weighted / sums_.factors, 0.0, 1.0));
+        return Shown{colorOfSum(layer, color), std::min(opacity(color) * sums_.factors / sums_.count, 1.0)};
     }
-    const glm::dvec4 color = layer.classifyPlace(bestPlace_);
+    const glm::dvec4 color = layer.classifyPlace(sums_.bestPlace);
     const double factor = scene.opacityFactor(layer, bestInterest_) * bestLens_.opacity;
     const glm::dvec3 tinted = scene.tinted(layer, glm::dvec3(color), bestWorld_);
     return Shown{scene.focused(layer, tinted, bestInterest_, bestLens_.saturation),

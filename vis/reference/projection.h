@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/optics/projection_sums.h"
 #include "vis/reference/prepared.h"
 
 #include <optional>
@@ -23,14 +24,11 @@ public:
 private:
     glm::dvec3 colorOfSum(const DrawnLayer& layer, glm::dvec4 own) const;
 
-    double best_ = -1, bestPlace_ = 0;
+    ProjectionSums<double, bool> sums_{.found = false};
     glm::dvec3 bestWorld_{0};
     Interest bestInterest_ = {};
     LensAction bestLens_ = {};
-    bool found_ = false; ///< a local maximum was found
-    double factors_ = 0, weighted_ = 0, absorbed_ = 0;
     double tint_ = 0, tintWeight_ = 0; ///< of sums: weighted sum of the colour channel, and its weight
-    int count_ = 0;
 };
 
 } // namespace tessera::vis::reference

@@ -1,38 +1,10 @@
 #include "vis/scene/clipping.h"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace tessera::vis {
-
-namespace {
-
-constexpr double kFar = 1e6; ///< longer than any ray
-
-RaySegment common(RaySegment a, RaySegment b) {
-    return {std::max(a.enter, b.enter), std::min(a.exit, b.exit)};
-}
-
-/// The interval in which |offset + t slope| <= half.
-RaySegment slab(double offset, double slope, double half) {
-    if (std::abs(slope) < 1e-9) return std::abs(offset) <= half ? RaySegment{-kFar, kFar} : RaySegment{kFar, -kFar};
-    const double a = (-half - offset) / slope, b = (half - offset) / slope;
-    return {std::min(a, b), std::max(a, b)};
-}
-
-/// The interval in which |offset + t slope| <= radius, for vectors.
-RaySegment ball(glm::dvec3 offset, glm::dvec3 slope, double radius) {
-    const double a = glm::dot(slope, slope), b = glm::dot(offset, slope),
-                 c = glm::dot(offset, offset) - radius * radius;
-    if (a < 1e-12) return c <= 0 ? RaySegment{-kFar, kFar} : RaySegment{kFar, -kFar};
-    const double root = b * b - a * c;
-    if (root <= 0) return {kFar, -kFar};
-    return {(-b - std::sqrt(root)) / a, (-b + std::sqrt(root)) / a};
-}
-
-} // namespace
 
 bool PlacedClip::contains(glm::dvec3 p) const {
     const glm::dvec3 d = p - center;
@@ -51,23 +23,8 @@ bool PlacedClip::contains(glm::dvec3 p) const {
 }
 
 RaySegment PlacedClip::inside(const Ray& ray) const {
-    const glm::dvec3 from = ray.origin - center;
-    const double offset = glm::dot(axis, from), slope = glm::dot(axis, ray.direction);
-    switch (kind) {
-    case ClipKind::Plane:
-        if (std::abs(slope) < 1e-9) return offset <= 0 ? RaySegment{-kFar, kFar} : RaySegment{kFar, -kFar};
-        return slope > 0 ? RaySegment{-kFar, -offset / slope} : RaySegment{-offset / slope, kFar};
-    case ClipKind::Box: {
-        RaySegment in{-kFar, kFar};
-        for (int i = 0; i < 3; ++i) in = common(in, slab(from[i], ray.direction[i], half[i]));
-        return in;
-    }
-    case ClipKind::Sphere:
-        return ball(from, ray.direction, half.x);
-    case ClipKind::Cylinder:
-        return common(ball(from - offset * axis, ray.direction - slope * axis, half.x), slab(offset, slope, half.y));
-    }
-    return {-kFar, kFar};
+    const SegmentOf<double> in = insideClip<double>(*this, {ray.origin, ray.direction});
+    return {in.enter, in.exit};
 }
 
 std::vector<PlacedClip> placeClips(const std::vector<Clip>& clips, const WorldFrame& frame) {
@@ -96,8 +53,7 @@ bool kept(const std::vector<PlacedClip>& clips, glm::dvec3 p) {
 
 double coverage(const std::vector<RaySegment>& holes, double k) {
     double left = 1;
-    for (const RaySegment& hole : holes)
-        left -= std::max(0.0, std::min(hole.exit, k + 0.5) - std::max(hole.enter, k - 0.5));
+    for (const RaySegment& hole : holes) left -= coveredBy<double>({hole.enter, hole.exit}, k);
     return std::max(left, 0.0);
 }
 

@@ -2,6 +2,7 @@
 
 #include "vis/scene/camera.h"
 #include "vis/scene/ray_segment.h"
+#include "volume/base/numbers.h"
 
 #include <vector>
 
@@ -74,6 +75,54 @@ struct PlacedClip {
     /// The interval of a line inside; empty (enter >= exit) if there is none.
     RaySegment inside(const Ray& ray) const;
 };
+
+inline constexpr double kFarAlongRay = 1e6; ///< longer than any ray
+
+/// The common part of two intervals.
+template <class N> SegmentOf<N> commonPart(const SegmentOf<N>& a, const SegmentOf<N>& b) {
+    return {larger(a.enter, b.enter), smaller(a.exit, b.exit)};
+}
+/// All of a ray where `inside`, else nothing.
+template <class N, class Inside> SegmentOf<N> wholeRay(Inside inside) {
+    return {choose(inside, N(-kFarAlongRay), N(kFarAlongRay)), choose(inside, N(kFarAlongRay), N(-kFarAlongRay))};
+}
+/// `a` where `first`, else `b`.
+template <class N, class First> SegmentOf<N> chooseSegment(First first, const SegmentOf<N>& a, const SegmentOf<N>& b) {
+    return {choose(first, a.enter, b.enter), choose(first, a.exit, b.exit)};
+}
+/// The interval in which |offset + t slope| <= half.
+template <class N> SegmentOf<N> insideSlab(N offset, N slope, N half) {
+    const auto along = magnitude(slope) < N(1e-9);
+    const N safe = choose(along, N(1), slope), a = (-half - offset) / safe, b = (half - offset) / safe;
+    return chooseSegment(along, wholeRay<N>(magnitude(offset) <= half), SegmentOf<N>{smaller(a, b), larger(a, b)});
+}
+/// The same for vectors.
+template <class N> SegmentOf<N> insideBall(const glm::vec<3, N>& offset, const glm::vec<3, N>& slope, N radius) {
+    const N a = inner(slope, slope), b = inner(offset, slope), c = inner(offset, offset) - radius * radius;
+    const auto still = a < N(1e-12);
+    const N safe = choose(still, N(1), a), square = b * b - a * c, root = squareRoot(larger(square, N(0)));
+    const SegmentOf<N> met{(-b - root) / safe, (root - b) / safe};
+    return chooseSegment(still, wholeRay<N>(c <= N(0)), chooseSegment(square > N(0), met, wholeRay<N>(N(1) < N(0))));
+}
+/// PlacedClip::inside of a ray or a packet of them.
+template <class N> SegmentOf<N> insideClip(const PlacedClip& clip, const RayOf<N>& ray) {
+    const glm::vec<3, N> from = ray.origin - spreadOut<N>(clip.center), axis = spreadOut<N>(clip.axis);
+    const N offset = inner(axis, from), slope = inner(axis, ray.direction);
+    if (clip.kind == ClipKind::Plane) {
+        const auto along = magnitude(slope) < N(1e-9);
+        const N met = -offset / choose(along, N(1), slope);
+        const SegmentOf<N> before{N(-kFarAlongRay), met}, after{met, N(kFarAlongRay)};
+        return chooseSegment(along, wholeRay<N>(offset <= N(0)), chooseSegment(slope > N(0), before, after));
+    }
+    if (clip.kind == ClipKind::Box) {
+        SegmentOf<N> in{N(-kFarAlongRay), N(kFarAlongRay)};
+        for (int i = 0; i < 3; ++i) in = commonPart(in, insideSlab(from[i], ray.direction[i], N(clip.half[i])));
+        return in;
+    }
+    if (clip.kind == ClipKind::Sphere) return insideBall(from, ray.direction, N(clip.half.x));
+    return commonPart(insideBall(from - axis * offset, ray.direction - axis * slope, N(clip.half.x)),
+                      insideSlab(offset, slope, N(clip.half.y)));
+}
 /// The enabled clips, at most kMaxClips; a plane is never a hole (its axis is inverted instead).
 std::vector<PlacedClip> placeClips(const std::vector<Clip>& clips, const WorldFrame& frame);
 /// Whether all clips keep a world point.
@@ -83,5 +132,9 @@ bool kept(const std::vector<PlacedClip>& clips, glm::dvec3 p);
 /// overlap both are subtracted, down to 0). Composite layers weight sample k's optical depth by it; every other ray
 /// style takes a sample completely unless k itself lies in a hole.
 double coverage(const std::vector<RaySegment>& holes, double k);
+/// The part of [k - 1/2, k + 1/2] in one hole.
+template <class N> N coveredBy(const SegmentOf<N>& hole, N k) {
+    return larger(N(0), smaller(hole.exit, k + N(0.5)) - larger(hole.enter, k - N(0.5)));
+}
 
 } // namespace tessera::vis

@@ -22,9 +22,13 @@ namespace tessera::vis {
 enum class Filter { AverageQuasi, Average, Tetrahedral };
 inline constexpr std::string_view kFilterNames[] = {"quasi", "average", "tetrahedral"};
 
-/// How composite volumes are sampled; see vis/optics/proxy.h.
+/// How composite volumes are sampled; see vis/shapes/proxy.h.
 enum class Proxy { Rays, Slices, Shells, Stacks };
 inline constexpr std::string_view kProxyNames[] = {"rays", "slices", "shells", "stacks"};
+
+/// What casts rays. Automatic: the processor where OpenGL itself runs on it, else OpenGL.
+enum class Engine { Automatic, OpenGl, Processor };
+inline constexpr std::string_view kEngineNames[] = {"auto", "gl", "cpu"};
 
 /// Settings of the shared ray caster.
 struct RenderParams {
@@ -42,6 +46,7 @@ struct RenderParams {
     float adaptiveStep = 0; ///< vis/optics/adaptive_step.h
 
     Proxy proxy = Proxy::Rays;
+    Engine engine = Engine::Automatic;
 
     bool operator==(const RenderParams&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -85,6 +90,13 @@ struct RenderParams {
                       "Proxy geometry of composite volumes: rays, or for comparison planes facing the viewer (slices), "
                       "spheres around the eye (shells) or lattice planes (stacks). Other layers always use rays",
                   .names = kProxyNames});
+        visit(self.engine,
+              FieldInfo{.key = "engine",
+                        .unit = "",
+                        .doc =
+                            "What casts rays: OpenGL, or the vector units of the processor (auto: where OpenGL has no "
+                            "graphics card). OpenGL draws what the processor cannot; the status bar says which",
+                        .names = kEngineNames});
         visit(self.jitter,
               FieldInfo{.key = "jitter",
                         .unit = "",

@@ -1,5 +1,5 @@
 // Proxy geometry: one of a stack of planes or spheres, textured with composite layers and blended front to back by the
-// frame buffer. Defined in vis/optics/proxy.h.
+// frame buffer. Defined in vis/shapes/proxy.h.
 #include "lib/bindings.glsl"
 #include "lib/tables.glsl"
 #include "lib/color.glsl"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "volume/base/numbers.h"
 #include "volume/field/lattice.h"
 
 #include <glm/vec3.hpp>
@@ -38,24 +39,44 @@ inline GradientStencil gradientStencil(LatticeKind kind, GradientSpan span) {
     return bcc ? GradientStencil{4, true, 0.25, 4} : GradientStencil{3, false, 0.5, 1};
 }
 
-/// Gradient, per cell and axis, of `value(cells) -> std::optional<double>`. A difference is one-sided where one end is
-/// absent, and 0 where both are. Divide by Lattice::spacing for physical units.
-template <class Value> glm::dvec3 gradient(const Value& value, glm::dvec3 cells, const GradientStencil& stencil) {
-    glm::dvec3 out(0);
-    std::optional<double> centre;
+/// What is read at a position: for one number a value and a bool, for a packet of them a packet of each.
+template <class N, class Present> struct FoundValue {
+    N value;
+    Present present;
+};
+
+/// Gradient, per cell and axis, of `value(cells) -> FoundValue`. A difference is one-sided where one end is absent, and
+/// 0 where both are, or the centre, too. Divide by Lattice::spacing for physical units.
+template <class N, class Value>
+glm::vec<3, N> gradientOf(const Value& value, const glm::vec<3, N>& cells, const GradientStencil& stencil) {
+    glm::vec<3, N> out(N(0), N(0), N(0));
+    const N width(2 * stencil.reach * stencil.squares);
     for (int i = 0; i < stencil.count; ++i) {
-        const glm::dvec3 direction = stencil.direction(i), offset = direction * stencil.reach;
-        std::optional<double> lower = value(cells - offset), upper = value(cells + offset);
-        double width = 2 * stencil.reach;
-        if (lower.has_value() != upper.has_value()) {
-            if (!centre) centre = value(cells);
-            if (!centre) continue;
-            (lower ? upper : lower) = centre;
-            width = stencil.reach;
+        const glm::dvec3 direction = stencil.direction(i);
+        const glm::vec<3, N> offset = spreadOut<N>(direction * stencil.reach);
+        const auto lower = value(cells - offset), upper = value(cells + offset);
+        N difference = choose(lower.present & upper.present, (upper.value - lower.value) / width, N(0));
+        const auto onlyLower = lower.present & !upper.present, onlyUpper = upper.present & !lower.present;
+        if (anyOf(onlyLower | onlyUpper)) {
+            const auto centre = value(cells);
+            const N half = width * N(0.5);
+            difference = choose(onlyLower & centre.present, (centre.value - lower.value) / half, difference);
+            difference = choose(onlyUpper & centre.present, (upper.value - centre.value) / half, difference);
         }
-        if (lower && upper) out += direction * ((*upper - *lower) / width / stencil.squares);
+        out.x += N(direction.x) * difference;
+        out.y += N(direction.y) * difference;
+        out.z += N(direction.z) * difference;
     }
     return out;
+}
+
+/// The same of `value(cells) -> std::optional<double>`.
+template <class Value> glm::dvec3 gradient(const Value& value, glm::dvec3 cells, const GradientStencil& stencil) {
+    const auto found = [&](const glm::dvec3& at) {
+        const std::optional<double> one = value(at);
+        return FoundValue<double, bool>{one.value_or(0), one.has_value()};
+    };
+    return gradientOf<double>(found, cells, stencil);
 }
 
 } // namespace tessera::volume

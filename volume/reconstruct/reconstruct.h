@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volume/bricks/brick_source.h"
+#include "volume/reconstruct/present_coverage.h"
 
 #include <algorithm>
 #include <cmath>
@@ -120,10 +121,6 @@ template <class Samples> struct Prefiltered {
 /// The prefilter above on the samples of a brick gathered with a halo: the result has one sample of each sublattice
 /// less on every side. So gather with halo 2 for filtered samples with halo 1. Absent samples get the value 0.
 BrickSamples prefilter(const BrickSamples& gathered, const LevelGeometry& geometry);
-
-/// Share of the weight that present samples must carry: one half, less a margin, so that places half-way between a
-/// present and an absent sample, which rays meet often, are present whatever the rounding.
-inline constexpr double kPresentCoverage = 0.5 - 1.0 / 512;
 
 /// A weighted sum being accumulated: value() is normalised by coverage.
 struct Blend {

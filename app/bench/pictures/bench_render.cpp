@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <unistd.h>
 
@@ -85,6 +86,23 @@ struct Means {
     Mean gpu, cpu, changed, lattice; ///< changed: of VTK's GPU mapper; lattice: BCC over CC
 };
 
+/// Ours, by one engine: time of a frame and of new data; nothing where it cannot draw the style.
+struct Own {
+    double frame = 0, changed = 0;
+    vis::reference::Image picture;
+};
+
+std::optional<Own> measureOwn(vis::Renderer& renderer, vis::Scene scene, const BenchVolume& volume,
+                              volume::LatticeKind kind, vis::Engine engine) {
+    scene.render.engine = engine;
+    const vis::reference::Image picture = benchPicture(renderer, scene);
+    if (renderer.engine().byProcessor != (engine == vis::Engine::Processor)) return std::nullopt;
+    const double frame = timeFrames(renderer, scene);
+    const double changed =
+        timeChanged(renderer, scene, volume::makeMemorySource(benchDataset(volume), {.lattice = kind}));
+    return Own{frame, changed, picture};
+}
+
 void measure(const BenchVolume& volume, bool peers, std::map<std::string, Means>& means, BenchTable& table) {
     std::map<std::string, double> onCc;
     for (const volume::LatticeKind kind : {volume::LatticeKind::CC, volume::LatticeKind::BCC}) {
@@ -100,37 +118,39 @@ void measure(const BenchVolume& volume, bool peers, std::map<std::string, Means>
             vis::Scene scene = benchScene(style.technique, style.opacity);
             const vis::Scene theirs = scene;
             scene.render.stepVoxels = style.step;
-            const double ours = timeFrames(renderer, scene);
-            Means& mean = means[style.name];
-            if (cc)
-                onCc[style.name] = ours;
-            else
-                add(mean.lattice, ours, onCc[style.name]);
-            const double changed =
-                timeChanged(renderer, scene, volume::makeMemorySource(benchDataset(volume), {.lattice = kind}));
             const bool drawn = i > 0 && all[i - 1].technique == style.technique && all[i - 1].opacity == style.opacity;
             if (peers && cc && !drawn)
                 peer = runVtkPeer(volume.bytes, volume.size, theirs, {kBenchPicture, kBenchCompared, kBenchFrames});
-            const vis::reference::Image picture = benchPicture(renderer, scene), limit = converged(scene, *source);
+            const vis::reference::Image limit = converged(scene, *source);
             const vis::reference::Image same = vis::reference::render(scene, *source, {kBenchCompared, kBenchCompared});
-            std::vector<std::string> row{volume.name,
-                                         std::string(volume::kLatticeNames[std::size_t(kind)]),
-                                         style.name,
-                                         decimals(ours, 1),
-                                         decimals(changed, 0),
-                                         decimals(vis::reference::compare(picture, same, 1).psnr, 1),
-                                         decimals(vis::reference::compare(picture, limit, 1).psnr, 1)};
-            if (peers) {
-                addPeer(row, peer.gpu, ours, limit, mean.gpu);
-                addPeer(row, peer.cpu, ours, limit, mean.cpu);
-                row.push_back(peer.gpu ? decimals(peer.gpu->changed, 0) : "");
-                row.push_back(peer.gpu ? decimals(peer.gpu->changed / changed, 1) : "");
-                if (peer.gpu) add(mean.changed, peer.gpu->changed, changed);
+            for (const vis::Engine engine : {vis::Engine::OpenGl, vis::Engine::Processor}) {
+                const std::optional<Own> ours = measureOwn(renderer, scene, volume, kind, engine);
+                if (!ours) continue;
+                const std::string name = std::string(vis::kEngineNames[std::size_t(engine)]) + ", " + style.name;
+                Means& mean = means[name];
+                if (cc)
+                    onCc[name] = ours->frame;
+                else
+                    add(mean.lattice, ours->frame, onCc[name]);
+                std::vector<std::string> row{volume.name,
+                                             std::string(volume::kLatticeNames[std::size_t(kind)]),
+                                             name,
+                                             decimals(ours->frame, 1),
+                                             decimals(ours->changed, 0),
+                                             decimals(vis::reference::compare(ours->picture, same, 1).psnr, 1),
+                                             decimals(vis::reference::compare(ours->picture, limit, 1).psnr, 1)};
+                if (peers) {
+                    addPeer(row, peer.gpu, ours->frame, limit, mean.gpu);
+                    addPeer(row, peer.cpu, ours->frame, limit, mean.cpu);
+                    row.push_back(peer.gpu ? decimals(peer.gpu->changed, 0) : "");
+                    row.push_back(peer.gpu ? decimals(peer.gpu->changed / ours->changed, 1) : "");
+                    if (peer.gpu) add(mean.changed, peer.gpu->changed, ours->changed);
+                }
+                table.rows.push_back(std::move(row));
+                if (isatty(STDERR_FILENO) != 0)
+                    std::fprintf(stderr, "render: %s %s %s\n", volume.name.c_str(), table.rows.back()[1].c_str(),
+                                 name.c_str());
             }
-            table.rows.push_back(std::move(row));
-            if (isatty(STDERR_FILENO) != 0)
-                std::fprintf(stderr, "render: %s %s %s\n", volume.name.c_str(), table.rows.back()[1].c_str(),
-                             style.name);
         }
     }
 }
@@ -145,7 +165,8 @@ BenchTable benchRender(const std::string& only) {
     const bool peers = vtkPeerAtHand();
     BenchTable table;
     table.name = "render: beside VTK";
-    table.columns = {"volume", "lattice", "style", "CPU ms", "new data ms", "shader dB", "converged dB"};
+    table.columns = {"volume",      "lattice",         "engine and style", "CPU ms",
+                     "new data ms", "same samples dB", "converged dB"};
     if (peers)
         for (const char* column : {"VTK GPU ms", "VTK GPU dB", "VTK GPU / ours", "VTK CPU ms", "VTK CPU dB",
                                    "VTK CPU / ours", "VTK GPU new data ms", "VTK GPU / ours"})
@@ -161,9 +182,8 @@ BenchTable benchRender(const std::string& only) {
     for (const BenchVolume& volume : realVolumes())
         if (wanted(volume.name)) measure(volume, peers, means, table);
     if (wanted("foam")) measure(foamVolume(kFullModel), peers, means, table);
-    for (const Style& style : styles()) {
-        const Means& mean = means[style.name];
-        std::vector<std::string> row{"geometric mean", "BCC / CC", style.name, ratio(mean.lattice), "", "", ""};
+    for (const auto& [name, mean] : means) {
+        std::vector<std::string> row{"geometric mean", "BCC / CC", name, ratio(mean.lattice), "", "", ""};
         if (peers) row.insert(row.end(), {"", "", ratio(mean.gpu), "", "", ratio(mean.cpu), "", ratio(mean.changed)});
         table.rows.push_back(std::move(row));
     }

@@ -95,7 +95,7 @@ bool ComparePictures::openCell(ViewContext& context, const std::string& pane, st
             return false;
         }
         if (!data->renderer) {
-            data->renderer = std::make_unique<vis::Renderer>();
+            data->renderer = std::make_unique<vis::Renderer>(vis::quickestOptions());
             data->renderer->setSource(data->source);
         }
     } else if (cell.data) {

@@ -1,4 +1,4 @@
-#include "vis/optics/proxy.h"
+#include "vis/shapes/proxy.h"
 
 #include "vis/optics/ray_setup.h"
 

@@ -1,0 +1,251 @@
+#include "tests/vis/function_source.h"
+#include "vis/packet/packet_renderer.h"
+#include "vis/reference/raycast.h"
+
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+
+/// Pictures of the packet ray caster against the double-precision reference: every mode that it supports, on both
+/// lattices, with and without absent samples, parallel and perspective, by every instruction set of this machine.
+namespace tessera::vis::packet {
+namespace {
+
+using volume::LatticeKind;
+
+constexpr glm::ivec2 kSize{73, 57}; // odd: the last packets of a row are not full
+constexpr double kPsnr = 70;        ///< dB for a peak of 1
+/// Pixels where a yes or no (present or absent, one sample more or less) falls the other way in single precision.
+constexpr std::size_t kOutliers = 2;
+constexpr double kOutlier = 0.01;
+
+/// Three scalars, the first two of which are absent outside a ball and in a slab if `masked`; sizes that fill no brick.
+std::shared_ptr<FunctionSource> source(LatticeKind kind, bool masked) {
+    const auto present = [masked](glm::dvec3 p) {
+        return !masked || (glm::length((p - glm::dvec3(9, 8, 12)) / glm::dvec3(9.3, 8.4, 12.7)) < 1 &&
+                           std::abs(p.x - p.z * 0.5 - 2.2) > 1.7);
+    };
+    const auto a = [=](glm::dvec3 p) -> std::optional<double> {
+        if (!present(p)) return std::nullopt;
+        return 300 + 40 * std::sin(0.45 * p.x + 0.2) * std::cos(0.5 * p.y) + 35 * std::sin(0.4 * p.z + 0.1 * p.x);
+    };
+    const auto b = [=](glm::dvec3 p) -> std::optional<double> {
+        if (!present({p.x, p.y + 1, p.z})) return std::nullopt;
+        return 0.04 * (p.x + p.y) + 0.3 * std::cos(0.35 * p.z);
+    };
+    const auto whole = [](glm::dvec3 p) -> std::optional<double> { return 0.04 * p.x + 0.05 * p.y + 0.01 * p.z; };
+    return std::make_shared<FunctionSource>(
+        kind, glm::ivec3(19, 17, 25), glm::dvec3(1),
+        std::vector<FunctionSource::Channel>{{"a", a, {225, 375}}, {"b", b, {-0.3, 1.7}}, {"whole", whole, {0, 1.8}}},
+        8, glm::dvec3(0.137, 0.211, 0.173));
+}
+
+Scene baseScene(bool perspective) {
+    Scene scene;
+    scene.camera.projection = perspective ? Projection::Perspective : Projection::Orthographic;
+    scene.camera.distance = perspective ? 1.7f : 2.1f;
+    scene.camera.target = {0.04f, -0.03f, 0.02f};
+    scene.showBox = false;
+    scene.render.samples = 1;
+    scene.transfer["a"].opacity = {{0, 0}, {0.3f, 0}, {1, 0.06f}};
+    scene.transfer["b"].colormap = "inferno";
+    scene.transfer["b"].opacity = {{0, 0.3f}, {1, 1}};
+    return scene;
+}
+
+Layer layerOf(Technique technique) {
+    return {"", true, std::move(technique)};
+}
+
+struct Mode {
+    const char* name;
+    std::function<void(Scene&)> apply;
+};
+
+const Mode kModes[] = {
+    {"composite", [](Scene& s) { s.layers = {layerOf(VolumeLayer{.channel = "a", .shaded = false})}; }},
+    {"shaded", [](Scene& s) { s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 3})}; }},
+    {"opaque",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 10})};
+         s.transfer["a"].opacity = {{0, 0}, {0.55f, 0}, {0.7f, 0.8f}, {1, 0.8f}};
+     }},
+    {"wide gradients",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 3})};
+         s.render.gradient = volume::GradientSpan::Wide;
+     }},
+    {"maximum", [](Scene& s) { s.layers = {layerOf(VolumeLayer{.channel = "b", .style = RayStyle::Maximum})}; }},
+    {"minimum", [](Scene& s) { s.layers = {layerOf(VolumeLayer{.channel = "b", .style = RayStyle::Minimum})}; }},
+    {"average", [](Scene& s) { s.layers = {layerOf(VolumeLayer{.channel = "b", .style = RayStyle::Average})}; }},
+    {"x-ray",
+     [](Scene& s) { s.layers = {layerOf(VolumeLayer{.channel = "b", .style = RayStyle::XRay, .density = 0.3f})}; }},
+    {"local maximum",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "b", .style = RayStyle::LocalMaximum, .threshold = 0.6})};
+     }},
+    {"iso", [](Scene& s) { s.layers = {layerOf(IsoLayer{.channel = "a", .value = 317, .opacity = 0.7f})}; }},
+    {"physical light",
+     [](Scene& s) {
+         s.layers = {layerOf(IsoLayer{.channel = "a", .value = 317})};
+         s.lighting.model = LightModel::Physical;
+         s.lighting.lights = {
+             Light{.color = {1, 0.9f, 0.7f}, .intensity = 1.5f},
+             Light{.kind = LightKind::Point, .color = {0.4f, 0.6f, 1}, .position = {0.6f, 0.2f, -0.4f}}};
+     }},
+    {"clipped",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 3})};
+         s.clips = {{.axis = {0.6f, 0.7f, 0.2f}},
+                    {.kind = ClipKind::Sphere, .keep = ClipKeep::Outside, .center = {0.4f, 0.3f, 0.6f}, .radius = 0.2f},
+                    {.kind = ClipKind::Cylinder,
+                     .keep = ClipKeep::Outside,
+                     .center = {0.3f, 0.6f, 0.2f},
+                     .axis = {1, 0, 0.3f},
+                     .radius = 0.12f,
+                     .length = 0.5f},
+                    {.kind = ClipKind::Box, .size = {0.6f, 0.5f, 0.85f}}};
+     }},
+    {"several layers",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a"}),
+                     layerOf(IsoLayer{.channel = "b", .value = 0.55, .color = {0.2f, 0.5f, 0.9f}, .opacity = 0.5f}),
+                     layerOf(IsoLayer{.channel = "a", .value = 317, .opacity = 0.4f}),
+                     layerOf(VolumeLayer{.channel = "b", .style = RayStyle::Maximum, .density = 0.5f})};
+         s.clips = {{.kind = ClipKind::Box, .keep = ClipKeep::Outside, .size = {0.3f, 0.4f, 0.5f}}};
+     }},
+    {"layers with and without absent samples",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "whole", .shaded = false, .density = 0.5f}),
+                     layerOf(IsoLayer{.channel = "a", .value = 317, .opacity = 0.4f}),
+                     layerOf(IsoLayer{.channel = "whole", .value = 0.9, .opacity = 0.4f})};
+     }},
+    {"jittered passes",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 3})};
+         s.render.jitter = true;
+         s.render.samples = 3;
+     }},
+    {"long steps",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 2})};
+         s.render.stepVoxels = 1.7f;
+     }},
+    {"narrow range",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a", .shaded = false})};
+         s.transfer["a"].autoRange = false;
+         s.transfer["a"].range = {300, 312};
+     }},
+    {"stretched, eye inside",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a"})};
+         s.stretch = {3, 0.7, 1};
+         s.camera.distance = 0.2f;
+     }},
+};
+
+reference::Image asImage(const PacketPicture& picture) {
+    reference::Image image;
+    image.size = picture.size;
+    for (int y = picture.size.y - 1; y >= 0; --y)
+        for (int x = 0; x < picture.size.x; ++x) {
+            const float* pixel = &picture.rgba[std::size_t(y * picture.size.x + x) * 4];
+            image.pixels.emplace_back(pixel[0], pixel[1], pixel[2], pixel[3]);
+        }
+    return image;
+}
+
+struct Case {
+    LatticeKind kind;
+    bool masked;
+    InstructionSet with;
+};
+std::string nameOf(const testing::TestParamInfo<Case>& each) {
+    std::string name = std::string(volume::kLatticeNames[std::size_t(each.param.kind)]) +
+                       (each.param.masked ? "_masked_" : "_whole_") +
+                       std::string(kInstructionSetNames[std::size_t(each.param.with)]);
+    std::erase(name, '-');
+    return name;
+}
+std::vector<Case> cases() {
+    std::vector<Case> out;
+    for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC})
+        for (const bool masked : {false, true})
+            for (const InstructionSet with : instructionSets()) out.push_back({kind, masked, with});
+    return out;
+}
+
+class PacketPictures : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(All, PacketPictures, testing::ValuesIn(cases()), nameOf);
+
+TEST_P(PacketPictures, AgreeWithTheReference) {
+    const auto data = source(GetParam().kind, GetParam().masked);
+    PacketRenderer renderer(GetParam().with);
+    renderer.setSource(data);
+    for (const Mode& mode : kModes)
+        for (const bool perspective : {false, true}) {
+            Scene scene = baseScene(perspective);
+            mode.apply(scene);
+            ASSERT_EQ(packetRefusal(scene, data->info(), data->grid().lattice), "") << mode.name;
+            const reference::Image wanted = reference::render(scene, *data, kSize);
+            const reference::Image got = asImage(renderer.render(scene, kSize));
+            double most = 0;
+            for (const glm::dvec4& pixel : wanted.pixels) most = std::max(most, pixel.a);
+            EXPECT_GT(most, 0.2) << mode.name << " shows next to nothing";
+            const reference::Difference apart = reference::compare(got, wanted, kOutlier);
+            EXPECT_TRUE(apart.beyond <= kOutliers && apart.rmseWithin <= std::pow(10, -kPsnr / 20))
+                << mode.name << (perspective ? " perspective" : " parallel") << ": " << apart.beyond
+                << " outliers, RMSE of the others " << apart.rmseWithin << ", maximum " << apart.maximum << " at "
+                << apart.worst.x << "," << apart.worst.y;
+        }
+}
+
+TEST(PacketRefusal, NamesWhatIsNotDrawn) {
+    const auto data = source(LatticeKind::CC, false);
+    const auto refusal = [&](const Scene& scene) { return packetRefusal(scene, data->info(), data->grid().lattice); };
+    Scene scene = baseScene(true);
+    scene.layers = {layerOf(VolumeLayer{.channel = "a"})};
+    EXPECT_EQ(refusal(scene), "");
+    Scene other = scene;
+    other.lighting.shadows.strength = 1;
+    EXPECT_EQ(refusal(other), "shadows");
+    other = scene;
+    other.layers.push_back(layerOf(SliceLayer{.channel = "b"}));
+    EXPECT_EQ(refusal(other), "slices");
+    other.layers.back().visible = false;
+    EXPECT_EQ(refusal(other), "");
+    other = scene;
+    std::get<VolumeLayer>(other.layers[0].technique).classification = Classification::PreIntegrated;
+    EXPECT_EQ(refusal(other), "classification before or over samples");
+}
+
+/// Each sample lies where PacketVolume::at() says, in every brick that holds it, to half a step of its 16 bits.
+TEST(PacketVolumes, BricksHoldTheSamples) {
+    for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC}) {
+        const auto data = source(kind, true);
+        const PacketVolume volume = readPacketVolume(*data, {.channel = 0, .filter = Filter::Average});
+        const volume::Lattice& lattice = data->grid().lattice;
+        const int slices = kind == LatticeKind::BCC ? 2 : 1;
+        std::size_t present = 0;
+        for (int z = 0; z < lattice.size.z; ++z)
+            for (int y = 0; y < lattice.size.y; ++y)
+                for (int x = 0; x < lattice.size.x; ++x) {
+                    const glm::ivec3 brick = glm::ivec3(x, y, z) / data->grid().brickSize / glm::ivec3(1, 1, slices);
+                    const volume::BrickSamples from = data->read({0, 0, 0, brick});
+                    const glm::ivec3 in = glm::ivec3(x, y, z) - data->grid().begin(brick);
+                    const std::size_t i =
+                        (std::size_t(in.z) * std::size_t(from.size.y) + std::size_t(in.y)) * std::size_t(from.size.x) +
+                        std::size_t(in.x);
+                    const std::size_t at = volume.at(glm::ivec3(x, y, z / slices) + kMargin, z % slices);
+                    ASSERT_EQ(volume.present[at] == kQuantum, from.isPresent(i)) << x << "," << y << "," << z;
+                    if (!from.isPresent(i)) continue;
+                    ++present;
+                    ASSERT_NEAR(volume.offset + volume.scale * volume.shorts[at], from.values[i], volume.scale * 0.51);
+                }
+        EXPECT_GT(present, 1000u);
+    }
+}
+
+} // namespace
+} // namespace tessera::vis::packet

@@ -1,0 +1,178 @@
+#include "tests/vis/function_source.h"
+#include "tests/vis/gl_fixture.h"
+
+#include "volume/base/error.h"
+
+#include <cmath>
+#include <thread>
+
+/// The renderer with rays cast by the processor, beside the same pictures by OpenGL.
+namespace tessera::vis {
+namespace {
+
+class EngineGl : public test::GlTest {};
+
+std::shared_ptr<FunctionSource> waves(volume::LatticeKind kind) {
+    return std::make_shared<FunctionSource>(
+        kind, glm::ivec3(21, 17, 25), glm::dvec3(1),
+        std::vector<FunctionSource::Channel>{
+            {"v", [](glm::dvec3 p) { return 0.5 + 0.3 * std::sin(0.5 * p.x) * std::cos(0.4 * p.y) + 0.008 * p.z; }}});
+}
+
+Scene wavesScene(Engine engine) {
+    Scene scene;
+    scene.layers = {{.name = "waves", .visible = true, .technique = VolumeLayer{.channel = "v", .density = 4}}};
+    scene.transfer["v"].opacity = {{0, 0}, {0.5f, 0}, {1, 0.3f}};
+    scene.render.engine = engine;
+    scene.render.samples = 2;
+    return scene;
+}
+
+double rms(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += double(glm::dot(a[i] - b[i], a[i] - b[i]));
+    return std::sqrt(sum / double(a.size() * 4));
+}
+
+/// At the rim of a surface single precision may decide otherwise.
+struct Apart {
+    int outliers = 0;
+    double rms = 0; ///< of the other pixels
+};
+Apart apartBy(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b) {
+    Apart out;
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const double squared = double(glm::dot(a[i] - b[i], a[i] - b[i]));
+        if (squared > 1e-3)
+            ++out.outliers;
+        else
+            sum += squared;
+    }
+    out.rms = std::sqrt(sum / double(a.size() * 4));
+    return out;
+}
+
+TEST_F(EngineGl, BothEnginesDrawTheSamePicture) {
+    for (const volume::LatticeKind kind : {volume::LatticeKind::CC, volume::LatticeKind::BCC})
+        for (const bool surface : {false, true}) {
+            Renderer renderer({.exactTextures = true});
+            renderer.setSource(waves(kind));
+            std::vector<std::vector<glm::vec4>> pictures;
+            std::vector<glm::dvec3> picked;
+            for (const Engine engine : {Engine::OpenGl, Engine::Processor}) {
+                Scene scene = wavesScene(engine);
+                if (surface) scene.layers[0].technique = IsoLayer{.channel = "v", .value = 0.6};
+                const ViewTargetPtr target = renderer.makeTarget();
+                const FrameStatus status = renderer.render(*target, scene, {.size = {160, 120}, .wait = true});
+                EXPECT_TRUE(status.complete);
+                EXPECT_EQ(status.engine.byProcessor, engine == Engine::Processor) << status.engine.refusal;
+                EXPECT_GT(status.bytes, 21u * 17u);
+                pictures.push_back(renderer.readLinear(*target));
+                const std::optional<Pick> pick = renderer.pick(*target, {80, 70});
+                ASSERT_TRUE(pick);
+                picked.push_back(pick->position);
+            }
+            const Apart apart = apartBy(pictures[0], pictures[1]);
+            EXPECT_LE(apart.outliers, 12) << surface;
+            EXPECT_LT(apart.rms, 3e-4) << surface;
+            EXPECT_LT(glm::length(picked[0] - picked[1]), 0.05);
+            EXPECT_TRUE(renderer.takeMessages().empty());
+        }
+}
+
+TEST_F(EngineGl, AutomaticIsWhatTheOptionsSay) {
+    for (const bool packets : {false, true}) {
+        Renderer renderer({.packets = packets});
+        renderer.setSource(waves(volume::LatticeKind::CC));
+        const ViewTargetPtr target = renderer.makeTarget();
+        EXPECT_EQ(test::renderAll(renderer, *target, wavesScene(Engine::Automatic), {32, 32}).engine.byProcessor,
+                  packets);
+        EXPECT_FALSE(test::renderAll(renderer, *target, wavesScene(Engine::OpenGl), {32, 32}).engine.byProcessor);
+        EXPECT_TRUE(test::renderAll(renderer, *target, wavesScene(Engine::Processor), {32, 32}).engine.byProcessor);
+        EXPECT_TRUE(renderer.engine().byProcessor);
+    }
+}
+
+/// What the processor cannot draw is drawn by OpenGL, which says why; and back.
+TEST_F(EngineGl, OpenGlTakesOverAndSaysWhy) {
+    Renderer renderer;
+    renderer.setSource(waves(volume::LatticeKind::BCC));
+    const ViewTargetPtr target = renderer.makeTarget();
+    Scene scene = wavesScene(Engine::Processor);
+    test::renderAll(renderer, *target, scene, {48, 48});
+    const std::vector<glm::vec4> before = renderer.readLinear(*target);
+    scene.lighting.shadows.strength = 1;
+    const FrameStatus shadowed = test::renderAll(renderer, *target, scene, {48, 48});
+    EXPECT_FALSE(shadowed.engine.byProcessor);
+    EXPECT_EQ(shadowed.engine.refusal, "shadows");
+    EXPECT_GT(rms(before, renderer.readLinear(*target)), 1e-3);
+    scene.lighting.shadows.strength = 0;
+    EXPECT_TRUE(test::renderAll(renderer, *target, scene, {48, 48}).engine.byProcessor);
+    EXPECT_LT(rms(before, renderer.readLinear(*target)), 1e-6);
+    // Data that do not fit into the memory for bricks.
+    scene.render.limits.brickMemory = 0;
+    EXPECT_FALSE(test::renderAll(renderer, *target, scene, {48, 48}).engine.byProcessor);
+}
+
+/// Without waiting, the picture comes once its samples are read; a moving view gets a reduced one that is current.
+TEST_F(EngineGl, PicturesComeWhenTheirSamplesAreRead) {
+    Renderer renderer;
+    renderer.setSource(waves(volume::LatticeKind::CC));
+    const ViewTargetPtr target = renderer.makeTarget(), whole = renderer.makeTarget();
+    const Scene scene = wavesScene(Engine::Processor);
+    const auto drawUntil = [&](bool moving, auto&& done) {
+        FrameStatus status;
+        for (int i = 0; i < 2000; ++i) {
+            status = renderer.render(*target, scene, {.size = {160, 120}, .moving = moving, .budgetMs = 4});
+            if (done(status)) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return false;
+    };
+    EXPECT_TRUE(drawUntil(true, [](const FrameStatus& status) { return status.current; }));
+    EXPECT_TRUE(drawUntil(false, [](const FrameStatus& status) { return status.complete; }));
+    renderer.render(*whole, scene, {.size = {160, 120}, .wait = true});
+    EXPECT_LT(test::maxDifference(renderer.readLinear(*target), renderer.readLinear(*whole)), 2e-3);
+}
+
+/// Another time, and another data set, are other samples.
+TEST_F(EngineGl, NewDataAreDrawn) {
+    Renderer renderer;
+    const ViewTargetPtr target = renderer.makeTarget();
+    const Scene scene = wavesScene(Engine::Processor);
+    std::vector<std::vector<glm::vec4>> pictures;
+    for (const double level : {0.6, 0.9}) {
+        renderer.setSource(std::make_shared<FunctionSource>(
+            volume::LatticeKind::CC, glm::ivec3(9), glm::dvec3(1),
+            std::vector<FunctionSource::Channel>{{"v", [level](glm::dvec3) { return level; }}}));
+        test::renderAll(renderer, *target, scene, {32, 32});
+        pictures.push_back(renderer.readLinear(*target));
+    }
+    EXPECT_GT(rms(pictures[0], pictures[1]), 0.05);
+}
+
+/// A damaged brick: OpenGL draws the others, and the reason is told once.
+TEST_F(EngineGl, DamagedSamplesAreLeftToOpenGl) {
+    struct Damaged : FunctionSource {
+        using FunctionSource::FunctionSource;
+        volume::BrickSamples read(const volume::BrickKey& key) const override {
+            if (key.index == glm::ivec3(1, 0, 0)) throw Error("checksum", "damaged.tsr", "brick 1");
+            return FunctionSource::read(key);
+        }
+    };
+    Renderer renderer;
+    renderer.setSource(std::make_shared<Damaged>(
+        volume::LatticeKind::CC, glm::ivec3(17, 9, 9), glm::dvec3(1),
+        std::vector<FunctionSource::Channel>{{"v", [](glm::dvec3 p) { return 0.5 + 0.02 * p.x; }}}));
+    const ViewTargetPtr target = renderer.makeTarget();
+    const FrameStatus status = test::renderAll(renderer, *target, wavesScene(Engine::Processor), {32, 32});
+    EXPECT_FALSE(status.engine.byProcessor);
+    EXPECT_EQ(status.engine.refusal, "damaged samples");
+    const std::vector<std::string> messages = renderer.takeMessages();
+    ASSERT_FALSE(messages.empty());
+    EXPECT_NE(messages[0].find("damaged.tsr"), std::string::npos) << messages[0];
+}
+
+} // namespace
+} // namespace tessera::vis

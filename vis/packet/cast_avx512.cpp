@@ -1,0 +1,10 @@
+#include "vis/packet/cast.h"
+#include "vis/packet/cast_layers.h"
+
+namespace tessera::vis::packet {
+
+void castAvx512(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) {
+    avx512::castTile(job, begin, end);
+}
+
+} // namespace tessera::vis::packet

@@ -1,0 +1,83 @@
+#pragma once
+
+#include "vis/optics/surface_light.h"
+#include "vis/scene/clipping.h"
+#include "vis/scene/layers.h"
+#include "volume/reconstruct/gradient.h"
+
+#include <cstdint>
+#include <span>
+
+/// What the ray caster of every instruction set gets: plain values and pointers into a PacketScene.
+namespace tessera::vis::packet {
+
+/// A PacketVolume.
+struct VolumeView {
+    const std::int16_t* shorts = nullptr; ///< null: floats
+    const float* floats = nullptr;
+    const std::int16_t* present = nullptr; ///< null: all
+    bool bcc = false;
+    glm::ivec3 cells{1};
+    glm::ivec3 perBrick{0}; ///< added to the place of a sample for each brick before it along an axis
+    int oddOffset = 0;      ///< from the even to the odd sublattice
+};
+
+inline constexpr float kNowhere = -1e9f;
+inline constexpr int kMostPacketLayers = 16, kMostPacketSurfaces = 8;
+inline constexpr int kTableEntries = 2048; ///< of a transfer function
+
+/// A transfer function: entry i has the colour (linear) and opacity at places i and i + 1 of kTableEntries - 1, red,
+/// green, blue and opacity, low and high 16 bits of a number, kQuantum = 1.
+struct LayerView {
+    const VolumeView* volume = nullptr;
+    RayStyle style = RayStyle::Composite;
+    bool shaded = false;
+    float placeScale = 1, placeOffset = 0; ///< place = sample * scale + offset
+    const std::int32_t* table = nullptr;
+    float opacityScale = 1; ///< of the table's opacities
+    float density = 1;
+    float threshold = 0; ///< place; of a local maximum
+    float isoValue = 0;  ///< a sample
+    float isoOpacity = 1;
+    glm::vec3 isoColor{0}; ///< linear
+};
+
+/// Distances of blocks, and what leaps need.
+struct SkipView {
+    const std::uint8_t* distance = nullptr; ///< null: nothing is known to be empty
+    const std::uint8_t* absent = nullptr;   ///< of blocks of kFine^3 cells: some of their samples are absent
+    const std::uint8_t* bound = nullptr;    ///< of a single maximum or minimum: largest score of a block, 255 = 1
+    glm::ivec3 count{1}, fine{1};
+    int edge = 8;
+};
+
+struct CastJob {
+    glm::ivec2 size{0};  ///< of the picture
+    glm::vec2 jitter{0}; ///< of the rays in their pixels
+    bool jitterStarts = false;
+    std::uint32_t pass = 0;
+    float share = 1;          ///< of this pass in the picture
+    glm::ivec2 first{0};      ///< the pixel that `picture` and `pick` begin with, counted from the bottom left
+    int rowLength = 0;        ///< pixels in their rows, bottom up
+    float* picture = nullptr; ///< RGBA, linear, premultiplied: passes are added
+
+    float* pick = nullptr; ///< distance along the ray of what is picked, kNowhere: nothing; rays that miss are left out
+
+    glm::dvec3 origin{0}, originX{0}, originY{0};          ///< linear in ndc
+    glm::dvec3 direction{0}, directionX{0}, directionY{0}; ///< to be normalised
+    float begin = 0;
+    glm::dvec3 halfSize{0.5}, cell{1};           ///< world
+    glm::dvec3 cellsPerWorld{1}, cellsOffset{0}; ///< position in a PacketVolume = world * cellsPerWorld + cellsOffset
+    glm::dvec3 edges{1};                         ///< of a sublattice cell in world space, with sign
+    float stepVoxels = 1;
+    std::span<const PlacedClip> clips;
+
+    std::span<const LayerView> layers;
+    SkipView skip;
+    volume::GradientStencil stencil;
+    const Lighting* surface = nullptr;
+    std::span<const PlacedLight> lights;
+    std::uint64_t* samples = nullptr; ///< counts samples taken, when not null
+};
+
+} // namespace tessera::vis::packet

@@ -1,0 +1,306 @@
+#pragma once
+
+#include "vis/packet/cast_packet.h"
+
+/// Packets of rays through the layers of a scene, sample by sample as vis/optics/ray_setup.h says. Only for cast_*.cpp.
+namespace tessera::vis::packet::TESSERA_LANES {
+
+inline constexpr int kRun = 8; ///< samples between two looks at the map of empty blocks
+
+/// What all layers of a packet share.
+template <bool Bcc, bool Exact> struct Caster {
+    const CastJob& job;
+    Packet& packet;
+    std::uint64_t taken = 0; ///< samples
+
+    using Read = Reader<Bcc, Exact>;
+
+    /// A projection, and the sample that it shows.
+    struct Projected : ProjectionSums<Floats, Mask> {
+        Floats bestAt{0};
+        Projected() : ProjectionSums<Floats, Mask>{.found = maskOf(0)} {}
+    };
+
+    /// `masked`: samples of some layer may be absent here.
+    static Read reader(const LayerView& layer, bool masked) {
+        return {*layer.volume, masked && layer.volume->present != nullptr};
+    }
+
+    void count(Mask lanes) {
+        if (job.samples != nullptr) taken += std::uint64_t(__builtin_popcount(bitsOf(lanes)));
+    }
+
+    /// Samples until blocks are looked up again; short where steps are long, because blocks next to one with absent
+    /// samples count as such only up to kFine * 2 cells away.
+    int run() const { return job.stepVoxels > 1 ? (job.stepVoxels > 4 ? 1 : int(float(kRun) / job.stepVoxels)) : kRun; }
+
+    /// Gradient in world axes, of samples.
+    Vec gradient(const Read& read, const Vec& cells, Mask lanes) {
+        const auto value = [&](const Vec& at) { return read(at, lanes); };
+        count(lanes);
+        return volume::gradientOf<Floats>(value, cells, job.stencil) / spreadOut<Floats>(job.edges);
+    }
+
+    /// The colour of samples of a composite layer after light.
+    Vec lit(const LayerView& layer, const Read& read, const Vec& albedo, const Vec& cells, Floats k, Mask lanes) {
+        const Vec slope = gradient(read, cells, lanes);
+        const Floats steepness = lengthOf(slope * spreadOut<Floats>(job.cell)) * magnitude(Floats(layer.placeScale));
+        const Floats weight = smaller(Floats(1), steepness * Floats(1 / kFlatGradient));
+        return litColor(job, albedo, slope, weight, packet.world(k), -packet.ray.direction);
+    }
+
+    /// Shades samples of a composite layer and puts them behind what is there.
+    void drawSample(const LayerView& layer, const Read& read, Floats place, Floats opacity, const Vec& cells, Floats k,
+                    Mask lanes) {
+        Vec color = colorAt(layer, tablePlace(place), lanes);
+        if (layer.shaded) color = lit(layer, read, color, cells, k, lanes);
+        const Floats thickness = Floats(layer.density) * (packet.holeCount > 0 ? packet.coverage(k) : Floats(1));
+        packet.blend(color, correctedOpacity(opacity, packet.step, thickness), k, lanes);
+    }
+
+    /// A single composite layer: rays march to their next sample with opacity and wait there, then all are shaded.
+    void castComposite() {
+        const LayerView& layer = job.layers[0];
+        Floats k(0);
+        Mask live = packet.meets;
+        const int most = run();
+        while (anyOf(live)) {
+            const Mask full = skipEmpty(job, packet, k, live);
+            if (!anyOf(full & live)) continue;
+            const Read read = reader(layer, someAbsent(job, packet, k, live));
+            for (int n = 0; n < most; ++n) {
+                Mask met = maskOf(0);
+                Floats place(0), opacity(0);
+                march(layer, read, live, k, met, place, opacity, n, most);
+                if (anyOf(met)) {
+                    drawSample(layer, read, place, opacity, packet.cells(k), k, met);
+                    k = choose(met, k + Floats(1), k);
+                }
+                live &= (k < packet.count) & packet.seeThrough();
+                if (!anyOf(live)) return;
+            }
+        }
+    }
+
+    /// Takes samples until every live ray has met opacity or the run is over; `n` counts them.
+    void march(const LayerView& layer, const Read& read, Mask live, Floats& k, Mask& met, Floats& place,
+               Floats& opacity, int& n, int most) {
+        Mask open = live;
+        for (;;) {
+            count(open);
+            const Found found = read(packet.cells(k), open);
+            const Floats at = multiplyAdd(found.value, Floats(layer.placeScale), Floats(layer.placeOffset));
+            const Floats alpha = opacityAt(layer, tablePlace(at), found.present);
+            const Mask hit = found.present & (alpha > Floats(0));
+            place = choose(hit, at, place);
+            opacity = choose(hit, alpha, opacity);
+            met |= hit;
+            open &= !hit;
+            k = choose(open, k + Floats(1), k);
+            open &= k < packet.count;
+            // Unshaded samples are as cheap as looking at them.
+            if (!layer.shaded || !anyOf(open) || ++n >= most) return;
+        }
+    }
+
+    /// A single maximum or minimum: blocks that cannot exceed what a ray has found are passed over.
+    void castExtremum() {
+        const LayerView& layer = job.layers[0];
+        Projected sums;
+        Floats k(0);
+        Mask live = packet.meets;
+        const int most = job.stepVoxels > 1 ? 1 : 4;
+        while (anyOf(live)) {
+            const Vec cells = packet.cells(k);
+            if (job.skip.bound != nullptr) {
+                const Block block = blockAt(cells, job.skip.edge, job.skip.count);
+                const Floats bound = toFloats(byteAt(job.skip.bound, block.index, live)) * Floats(1.0f / 255);
+                const Mask useless = live & (bound <= sums.best);
+                k = choose(useless, k + leap(packet, cells, block.at, Floats(1), job.skip.edge), k);
+                const Mask useful = live & !useless;
+                live &= k < packet.count;
+                if (!anyOf(useful)) continue;
+            }
+            const Read read = reader(layer, someAbsent(job, packet, k, live));
+            for (int n = 0; n < most; ++n) {
+                project(layer, read, sums, k, live);
+                k += Floats(1);
+                live &= k < packet.count;
+            }
+        }
+        showProjection(layer, sums);
+    }
+
+    void project(const LayerView& layer, const Read& read, Projected& sums, Floats k, Mask lanes) {
+        count(lanes);
+        const Found found = read(packet.cells(k), lanes);
+        const Mask present = found.present & packet.shows(k);
+        const Floats along = multiplyAdd(found.value, Floats(layer.placeScale), Floats(layer.placeOffset));
+        Floats opacity(0);
+        if (layer.style == RayStyle::XRay)
+            opacity =
+                correctedOpacity(opacityAt(layer, tablePlace(along), present), packet.step, Floats(layer.density));
+        const Mask foundBefore = sums.found;
+        const Mask better = sums.add(layer.style, Floats(layer.threshold), present, along, Floats(1), opacity);
+        sums.bestAt = choose(better, k, sums.bestAt);
+        // Rays that have ended do not see a local maximum end.
+        sums.found = (sums.found & lanes) | (foundBefore & !lanes);
+    }
+
+    /// Puts a projection behind what is there.
+    void showProjection(const LayerView& layer, const Projected& sums) {
+        const Mask some = sums.count > Floats(0);
+        Floats place = sums.bestPlace, shownAt = sums.bestAt;
+        if (layer.style == RayStyle::XRay || layer.style == RayStyle::Average) shownAt = packet.count * Floats(0.5);
+        if (layer.style == RayStyle::XRay) place = sums.absorbed;
+        if (layer.style == RayStyle::Average) place = sums.weighted / larger(sums.factors, Floats(1e-6));
+        const TablePlace at = tablePlace(place);
+        Floats alpha = smaller(Floats(1), Floats(layer.density) * opacityAt(layer, at, some));
+        if (layer.style == RayStyle::XRay) alpha = sums.absorbed;
+        packet.blend(colorAt(layer, at, some), alpha, shownAt, some);
+    }
+
+    /// A surface that rays meet before their next sample.
+    struct Surface {
+        Floats at; ///< in samples; beyond all where none is met
+        Vec color;
+        Floats opacity;
+    };
+
+    /// The intersections with an iso-surface between samples k - 1 and k.
+    Surface meetSurface(const LayerView& layer, const Read& read, const Found& before, const Found& now, Floats k,
+                        Mask lanes) {
+        const Floats value(layer.isoValue), far(1e9);
+        const Mask above = before.value >= value, below = !above, over = now.value >= value;
+        const Mask crossed = lanes & before.present & now.present & ((above & !over) | (below & over));
+        Surface out{far, {Floats(0), Floats(0), Floats(0)}, Floats(0)};
+        if (!anyOf(crossed)) return out;
+        Floats lo = k - Floats(1), hi = k;
+        for (int i = 0; i < kBisections; ++i) {
+            const Floats middle = (lo + hi) * Floats(0.5);
+            const Found there = read.continued(packet.cells(middle), crossed);
+            const Mask high = there.present & (there.value >= value), same = (high & above) | (!high & below);
+            lo = choose(same, middle, lo);
+            hi = choose(same, hi, middle);
+        }
+        const Floats at = (lo + hi) * Floats(0.5);
+        const Mask shown = crossed & packet.shows(at);
+        if (!anyOf(shown)) return out;
+        const Vec cells = packet.cells(at), slope = gradient(read, cells, shown);
+        out.at = choose(shown, at, far);
+        out.color =
+            litColor(job, spreadOut<Floats>(layer.isoColor), slope, Floats(1), packet.world(at), -packet.ray.direction);
+        out.opacity = choose(shown, Floats(layer.isoOpacity), Floats(0));
+        return out;
+    }
+
+    /// All layers, in order.
+    void castLayers() {
+        Projected sums[kMostPacketLayers];
+        Found before[kMostPacketLayers], now[kMostPacketLayers];
+        const int layers = int(job.layers.size());
+        for (int i = 0; i < layers; ++i) before[i] = {Floats(0), maskOf(0)};
+        Floats k(0), last(-2); // `last`: the sample that `before` holds
+        Mask live = packet.meets;
+        const int most = run();
+        while (anyOf(live)) {
+            const Mask full = skipEmpty(job, packet, k, live);
+            if (!anyOf(full & live)) continue;
+            const bool masked = someAbsent(job, packet, k, live);
+            // What rays that leapt would have read at the sample before.
+            const Mask leapt = live & (k > last + Floats(1)) & (k > Floats(0));
+            if (anyOf(leapt))
+                for (int i = 0; i < layers; ++i) {
+                    if (job.layers[i].style != RayStyle::Iso) continue;
+                    const Found own = reader(job.layers[i], masked)(packet.cells(k - Floats(1)), leapt);
+                    before[i].value = choose(leapt, own.value, before[i].value);
+                    before[i].present = (before[i].present & !leapt) | own.present;
+                }
+            for (int n = 0; n < most && anyOf(live); ++n) {
+                for (int i = 0; i < layers; ++i) {
+                    count(live);
+                    now[i] = reader(job.layers[i], masked)(packet.cells(k), live);
+                }
+                drawSurfaces(before, now, masked, k, live);
+                for (int i = 0; i < layers; ++i) drawVolume(job.layers[i], now[i], sums[i], masked, k, live);
+                for (int i = 0; i < layers; ++i) {
+                    before[i].value = choose(live, now[i].value, before[i].value);
+                    before[i].present = (before[i].present & !live) | now[i].present;
+                }
+                last = choose(live, k, last);
+                k = choose(live, k + Floats(1), k);
+                live &= (k < packet.count) & packet.seeThrough();
+            }
+        }
+        for (int i = 0; i < layers; ++i)
+            if (isProjection(job.layers[i].style)) showProjection(job.layers[i], sums[i]);
+    }
+
+    static bool isProjection(RayStyle style) { return style != RayStyle::Composite && style != RayStyle::Iso; }
+
+    void drawSurfaces(const Found* before, const Found* now, bool masked, Floats k, Mask lanes) {
+        Surface met[kMostPacketSurfaces];
+        int count = 0;
+        for (std::size_t i = 0; i < job.layers.size(); ++i) {
+            const LayerView& layer = job.layers[i];
+            if (layer.style == RayStyle::Iso && count < kMostPacketSurfaces)
+                met[count++] = meetSurface(layer, reader(layer, masked), before[i], now[i], k, lanes);
+        }
+        // Nearest first; equal ones in order.
+        for (int end = count; end > 1; --end)
+            for (int i = 0; i + 1 < end; ++i) {
+                const Mask later = met[i].at > met[i + 1].at;
+                if (!anyOf(later)) continue;
+                const Surface a = met[i], b = met[i + 1];
+                met[i] = pick(later, b, a);
+                met[i + 1] = pick(later, a, b);
+            }
+        for (int i = 0; i < count; ++i) packet.blend(met[i].color, met[i].opacity, met[i].at, lanes);
+    }
+    static Surface pick(Mask which, const Surface& a, const Surface& b) {
+        return {choose(which, a.at, b.at),
+                {choose(which, a.color.x, b.color.x), choose(which, a.color.y, b.color.y),
+                 choose(which, a.color.z, b.color.z)},
+                choose(which, a.opacity, b.opacity)};
+    }
+
+    void drawVolume(const LayerView& layer, const Found& now, Projected& sums, bool masked, Floats k, Mask lanes) {
+        if (layer.style == RayStyle::Iso) return;
+        const Read read = reader(layer, masked);
+        if (layer.style != RayStyle::Composite) return project(layer, read, sums, k, lanes);
+        const Floats place = multiplyAdd(now.value, Floats(layer.placeScale), Floats(layer.placeOffset));
+        const Floats alpha = opacityAt(layer, tablePlace(place), now.present);
+        const Mask hit = lanes & now.present & (alpha > Floats(0));
+        if (anyOf(hit)) drawSample(layer, read, place, alpha, packet.cells(k), k, hit);
+    }
+};
+
+template <bool Bcc, bool Exact> void castPixels(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) {
+    std::uint64_t taken = 0;
+    for (int y = begin.y; y < end.y; y += kRows)
+        for (int x = begin.x; x < end.x; x += kColumns) {
+            Packet packet = beginPacket(job, {x, y}, end);
+            if (!anyOf(packet.meets)) continue;
+            Caster<Bcc, Exact> caster{job, packet};
+            const RayStyle style = job.layers[0].style;
+            const bool one = job.layers.size() == 1;
+            if (one && style == RayStyle::Composite)
+                caster.castComposite();
+            else if (one && (style == RayStyle::Maximum || style == RayStyle::Minimum))
+                caster.castExtremum();
+            else
+                caster.castLayers();
+            storePacket(job, packet, {x, y}, end);
+            taken += caster.taken;
+        }
+    if (job.samples != nullptr) __atomic_fetch_add(job.samples, taken, __ATOMIC_RELAXED);
+}
+
+inline void castTile(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) {
+    const VolumeView& volume = *job.layers[0].volume;
+    const bool exact = volume.shorts == nullptr;
+    (volume.bcc ? (exact ? castPixels<true, true> : castPixels<true, false>)
+                : (exact ? castPixels<false, true> : castPixels<false, false>))(job, begin, end);
+}
+
+} // namespace tessera::vis::packet::TESSERA_LANES

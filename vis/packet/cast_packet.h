@@ -1,0 +1,175 @@
+#pragma once
+
+#include "vis/optics/jitter.h"
+#include "vis/optics/projection_sums.h"
+#include "vis/optics/ray_setup.h"
+#include "vis/packet/cast_read.h"
+
+/// Packets of rays: neighbouring pixels in the lanes. Only for cast_*.cpp.
+namespace tessera::vis::packet::TESSERA_LANES {
+
+inline constexpr float kNoPick = -2, kPickOpacity = 0.1f; // as in vis/shaders/lib/shown.glsl
+
+/// Rays and what they have accumulated. Sample k of a ray lies at enter + (k + phase) step.
+struct Packet {
+    RayOf<Floats> ray;
+    Mask meets;
+    Floats count, step, enter, phase;
+    Vec first, advance;                 ///< of sample 0, and from one to the next, in cells of the volumes
+    SegmentOf<Floats> holes[kMaxClips]; ///< in samples
+    int holeCount = 0;
+
+    Vec color{Floats(0), Floats(0), Floats(0)};
+    Floats opacity{0};
+    Floats pick{kNoPick}; ///< sample at which opacity exceeds kPickOpacity
+
+    Vec cells(Floats k) const {
+        return {multiplyAdd(k, advance.x, first.x), multiplyAdd(k, advance.y, first.y),
+                multiplyAdd(k, advance.z, first.z)};
+    }
+    Vec world(Floats k) const { return ray.origin + ray.direction * (enter + (k + phase) * step); }
+    /// Part of sample k's segment outside of the holes, and whether k itself is.
+    Floats coverage(Floats k) const {
+        Floats left(1);
+        for (int i = 0; i < holeCount; ++i) left -= coveredBy(holes[i], k);
+        return larger(left, Floats(0));
+    }
+    Mask shows(Floats k) const {
+        Mask out = k <= k;
+        for (int i = 0; i < holeCount; ++i) out &= !((k > holes[i].enter) & (k < holes[i].exit));
+        return out;
+    }
+    Mask seeThrough() const { return opacity < Floats(kOpaque); }
+    /// Puts a colour behind what is there, met at a position in samples.
+    void blend(const Vec& over, Floats alpha, Floats at, Mask lanes) {
+        const Floats weight = choose(lanes, (Floats(1) - opacity) * alpha, Floats(0));
+        color = color + over * weight;
+        opacity += weight;
+        pick = choose((pick <= Floats(kNoPick)) & (opacity > Floats(kPickOpacity)), at, pick);
+    }
+};
+
+inline Vec point(const glm::dvec3& a, const glm::dvec3& x, Floats byX, const glm::dvec3& y, Floats byY) {
+    return spreadOut<Floats>(a) + spreadOut<Floats>(x) * byX + spreadOut<Floats>(y) * byY;
+}
+
+/// The rays of the pixels from `begin` on, those below `end`.
+inline Packet beginPacket(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) {
+    float x[kLanes], y[kLanes], phase[kLanes];
+    unsigned within = 0;
+    for (int i = 0; i < kLanes; ++i) {
+        const int column = begin.x + i % kColumns, row = begin.y + i / kColumns;
+        within |= unsigned(column < end.x && row < end.y) << i;
+        x[i] = (float(column) + 0.5f + job.jitter.x) / float(job.size.x) * 2 - 1;
+        y[i] = (float(row) + 0.5f + job.jitter.y) / float(job.size.y) * 2 - 1;
+        phase[i] = 0.5f;
+        if (job.jitterStarts) phase[i] += float(startJitter(std::uint32_t(column), std::uint32_t(row), job.pass));
+    }
+    Packet packet;
+    const Floats across = Floats::load(x), up = Floats::load(y);
+    packet.ray.origin = point(job.origin, job.originX, across, job.originY, up);
+    packet.ray.direction = unit(point(job.direction, job.directionX, across, job.directionY, up));
+    SegmentOf<Floats> segment = segmentInBox<Floats>(packet.ray, job.halfSize, Floats(job.begin));
+    for (const PlacedClip& clip : job.clips)
+        if (!clip.hole) segment = commonPart(segment, insideClip(clip, packet.ray));
+    packet.meets = maskOf(within) & (segment.enter < segment.exit);
+    const Floats length = choose(packet.meets, segment.exit - segment.enter, Floats(0));
+    const Vec perCell = packet.ray.direction / spreadOut<Floats>(job.cell);
+    packet.count = choose(packet.meets, sampleCount(length, Floats(job.stepVoxels) / lengthOf(perCell)), Floats(0));
+    packet.step = length / larger(packet.count, Floats(1));
+    packet.enter = choose(packet.meets, segment.enter, Floats(0));
+    packet.phase = Floats::load(phase);
+    const Vec scale = spreadOut<Floats>(job.cellsPerWorld);
+    packet.advance = packet.ray.direction * packet.step * scale;
+    packet.first = packet.world(Floats(0)) * scale + spreadOut<Floats>(job.cellsOffset);
+    for (const PlacedClip& clip : job.clips) {
+        if (!clip.hole) continue;
+        const SegmentOf<Floats> own = insideClip(clip, packet.ray);
+        const auto samples = [&](Floats t) {
+            return (t - packet.enter) / larger(packet.step, Floats(1e-20)) - packet.phase;
+        };
+        const Mask some = own.enter < own.exit;
+        packet.holes[packet.holeCount++] = {choose(some, samples(own.enter), Floats(-2e6)),
+                                            choose(some, samples(own.exit), Floats(-2e6))};
+    }
+    return packet;
+}
+
+inline std::size_t placeOf(const CastJob& job, const glm::ivec2& pixel) {
+    return std::size_t(pixel.y - job.first.y) * std::size_t(job.rowLength) + std::size_t(pixel.x - job.first.x);
+}
+
+inline void storePacket(const CastJob& job, const Packet& packet, glm::ivec2 begin, glm::ivec2 end) {
+    float out[4][kLanes];
+    packet.color.x.store(out[0]);
+    packet.color.y.store(out[1]);
+    packet.color.z.store(out[2]);
+    packet.opacity.store(out[3]);
+    for (int i = 0; i < kLanes; ++i) {
+        const int column = begin.x + i % kColumns, row = begin.y + i / kColumns;
+        if (column >= end.x || row >= end.y) continue;
+        float* pixel = job.picture + placeOf(job, {column, row}) * 4;
+        for (int c = 0; c < 4; ++c) pixel[c] += out[c][i] * job.share;
+    }
+    if (job.pick == nullptr) return;
+    const Floats distance = packet.enter + (packet.pick + packet.phase) * packet.step;
+    choose(packet.pick <= Floats(kNoPick), Floats(kNowhere), distance).store(out[0]);
+    for (int i = 0; i < kLanes; ++i) {
+        const int column = begin.x + i % kColumns, row = begin.y + i / kColumns;
+        if (column >= end.x || row >= end.y) continue;
+        job.pick[placeOf(job, {column, row})] = out[0][i];
+    }
+}
+
+/// Index of the block of `edge`^3 cells (1 / edge exact) around positions within the volume.
+struct Block {
+    Vec at; ///< its number along each axis
+    Ints index;
+};
+inline Block blockAt(const Vec& cells, int edge, const glm::ivec3& count) {
+    const float scale = 1.0f / float(edge);
+    const auto along = [&](Floats p, int n) {
+        return smaller(larger(roundDown(p * Floats(scale)), Floats(0)), Floats(n - 1));
+    };
+    Block out{{along(cells.x, count.x), along(cells.y, count.y), along(cells.z, count.z)}, Ints(0)};
+    out.index = toInts(out.at.x) + (toInts(out.at.y) + toInts(out.at.z) * Ints(count.y)) * Ints(count.x);
+    return out;
+}
+inline Ints byteAt(const std::uint8_t* bytes, Ints index, Mask lanes) {
+    return gather<1>(bytes, index, lanes) & Ints(255);
+}
+
+/// Number of samples from one at `cells` until the first beyond the blocks that lie less than `distance` blocks away.
+inline Floats leap(const Packet& packet, const Vec& cells, const Vec& block, Floats distance, int edge) {
+    const auto along = [&](Floats p, Floats way, Floats at) {
+        const Floats wall = choose(way > Floats(0), at + distance, at + Floats(1) - distance) * Floats(edge);
+        return choose(magnitude(way) > Floats(1e-9), (wall - p) / way, Floats(1e6));
+    };
+    const Floats inside =
+        smaller(smaller(along(cells.x, packet.advance.x, block.x), along(cells.y, packet.advance.y, block.y)),
+                along(cells.z, packet.advance.z, block.z));
+    return larger(Floats(1), roundDown(inside - Floats(1e-3)) + Floats(1));
+}
+
+/// Moves rays in empty blocks on; `live` loses those that end. Returns where something may be to draw.
+inline Mask skipEmpty(const CastJob& job, const Packet& packet, Floats& k, Mask& live) {
+    if (job.skip.distance == nullptr) return live;
+    const Vec cells = packet.cells(k);
+    const Block block = blockAt(cells, job.skip.edge, job.skip.count);
+    const Ints distance = byteAt(job.skip.distance, block.index, live);
+    const Mask empty = live & (Ints(0) < distance);
+    if (!anyOf(empty)) return live;
+    k = choose(empty, k + leap(packet, cells, block.at, toFloats(distance), job.skip.edge), k);
+    const Mask full = live & !empty;
+    live &= k < packet.count;
+    return full;
+}
+
+/// Whether a packet's samples may be absent around k.
+inline bool someAbsent(const CastJob& job, const Packet& packet, Floats k, Mask live) {
+    if (job.skip.absent == nullptr) return false;
+    const Block block = blockAt(packet.cells(k), kFine, job.skip.fine);
+    return anyOf(live & (Ints(0) < byteAt(job.skip.absent, block.index, live)));
+}
+
+} // namespace tessera::vis::packet::TESSERA_LANES

@@ -1,0 +1,10 @@
+#include "vis/packet/cast.h"
+#include "vis/packet/cast_layers.h"
+
+namespace tessera::vis::packet {
+
+void castPlain(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) {
+    plain::castTile(job, begin, end);
+}
+
+} // namespace tessera::vis::packet

@@ -1,0 +1,177 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#if defined(__AVX512F__) || defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
+/// Packets of numbers, one in each lane of the processor's vector registers: the only file (with lanes_*.h) that knows
+/// instructions. The same source is compiled for several instruction sets, each in a namespace of its own, because a
+/// linker keeps one of several functions of the same name: everything that such a file defines depends on Floats.
+#if defined(__AVX512F__)
+#define TESSERA_LANES avx512
+#elif defined(__AVX2__)
+#define TESSERA_LANES avx2
+#else
+#define TESSERA_LANES plain
+#endif
+
+namespace tessera::vis::packet::TESSERA_LANES {
+
+namespace raw {
+#if defined(__AVX512F__)
+#include "vis/packet/lanes_avx512.h"
+#elif defined(__AVX2__)
+#include "vis/packet/lanes_avx2.h"
+#else
+#include "vis/packet/lanes_plain.h"
+#endif
+} // namespace raw
+
+inline constexpr int kLanes = raw::kLanes, kColumns = raw::kColumns, kRows = kLanes / kColumns;
+
+/// A yes or no in each lane.
+struct Mask {
+    raw::M v;
+    friend Mask operator&(Mask a, Mask b) { return {raw::both(a.v, b.v)}; }
+    friend Mask operator|(Mask a, Mask b) { return {raw::either(a.v, b.v)}; }
+    friend Mask operator!(Mask a) { return {raw::inverse(a.v)}; }
+    Mask& operator&=(Mask b) { return *this = *this & b; }
+    Mask& operator|=(Mask b) { return *this = *this | b; }
+};
+/// Bit i: lane i.
+inline unsigned bitsOf(Mask m) {
+    return raw::bitsOf(m.v);
+}
+inline Mask maskOf(unsigned bits) {
+    return {raw::maskOf(bits)};
+}
+inline bool anyOf(Mask m) {
+    return bitsOf(m) != 0;
+}
+
+struct Ints {
+    raw::I v;
+    Ints() = default;
+    explicit Ints(std::int32_t all) : v(raw::I{} + all) {}
+    explicit Ints(raw::I lanes) : v(lanes) {}
+    friend Ints operator+(Ints a, Ints b) { return Ints(a.v + b.v); }
+    friend Ints operator-(Ints a, Ints b) { return Ints(a.v - b.v); }
+    friend Ints operator*(Ints a, Ints b) { return Ints(a.v * b.v); }
+    friend Ints operator&(Ints a, Ints b) { return Ints(a.v & b.v); }
+    friend Ints operator<<(Ints a, int by) { return Ints(a.v << by); }
+    friend Ints operator>>(Ints a, int by) { return Ints(a.v >> by); }
+    friend Mask operator==(Ints a, Ints b) { return {raw::equal(a.v, b.v)}; }
+    friend Mask operator<(Ints a, Ints b) { return {raw::less(a.v, b.v)}; }
+};
+
+struct Floats {
+    raw::F v;
+    Floats() = default;
+    template <class T> explicit Floats(T all) : v(raw::F{} + float(all)) {}
+    explicit Floats(raw::F lanes) : v(lanes) {}
+    friend Floats operator+(Floats a, Floats b) { return Floats(a.v + b.v); }
+    friend Floats operator-(Floats a, Floats b) { return Floats(a.v - b.v); }
+    friend Floats operator*(Floats a, Floats b) { return Floats(a.v * b.v); }
+    friend Floats operator/(Floats a, Floats b) { return Floats(a.v / b.v); }
+    Floats operator-() const { return Floats(-v); }
+    Floats& operator+=(Floats b) { return *this = *this + b; }
+    Floats& operator-=(Floats b) { return *this = *this - b; }
+    Floats& operator*=(Floats b) { return *this = *this * b; }
+    friend Mask operator<(Floats a, Floats b) { return {raw::less(a.v, b.v)}; }
+    friend Mask operator<=(Floats a, Floats b) { return {raw::lessEqual(a.v, b.v)}; }
+    friend Mask operator>(Floats a, Floats b) { return b < a; }
+    friend Mask operator>=(Floats a, Floats b) { return b <= a; }
+    void store(float* to) const { __builtin_memcpy(to, &v, sizeof v); }
+    static Floats load(const float* from) {
+        Floats out;
+        __builtin_memcpy(&out.v, from, sizeof out.v);
+        return out;
+    }
+};
+
+inline Floats choose(Mask m, Floats a, Floats b) {
+    return Floats(raw::choose(m.v, a.v, b.v));
+}
+inline Ints choose(Mask m, Ints a, Ints b) {
+    return Ints(raw::choose(m.v, a.v, b.v));
+}
+/// A number that is not one counts as b.
+inline Floats smaller(Floats a, Floats b) {
+    return Floats(raw::smaller(a.v, b.v));
+}
+inline Floats larger(Floats a, Floats b) {
+    return Floats(raw::larger(a.v, b.v));
+}
+inline Floats squareRoot(Floats a) {
+    return Floats(raw::root(a.v));
+}
+inline Floats roundDown(Floats a) {
+    return Floats(raw::roundDown(a.v));
+}
+inline Floats roundUp(Floats a) {
+    return -roundDown(-a);
+}
+/// a b + c, rounded once where the processor can.
+inline Floats multiplyAdd(Floats a, Floats b, Floats c) {
+    return Floats(raw::multiplyAdd(a.v, b.v, c.v));
+}
+inline Floats toFloats(Ints a) {
+    return Floats(__builtin_convertvector(a.v, raw::F));
+}
+/// Cuts the fraction off.
+inline Ints toInts(Floats a) {
+    return Ints(__builtin_convertvector(a.v, raw::I));
+}
+inline Floats sameBits(Ints a) {
+    return Floats(raw::F(a.v));
+}
+inline Ints sameBits(Floats a) {
+    return Ints(raw::I(a.v));
+}
+inline Floats magnitude(Floats a) {
+    return sameBits(sameBits(a) & Ints(0x7fffffff));
+}
+
+/// 32 bits from base + index * Scale bytes; 0 in lanes that are not asked for, whose index may be anything.
+template <int Scale> Ints gather(const void* base, Ints index, Mask m) {
+    return Ints(raw::gather<Scale>(base, index.v, m.v));
+}
+inline Floats gatherFloats(const float* base, Ints index, Mask m) {
+    return sameBits(gather<4>(base, index, m));
+}
+/// Lanes hold two signed 16-bit numbers each: low a * low b + high a * high b.
+inline Ints dotPairs(Ints a, Ints b) {
+    return Ints(raw::dotPairs(a.v, b.v));
+}
+
+/// Base-two logarithm of positive normal numbers, relative error below 1e-6 of the result or 1e-7 (polynomial of the
+/// mantissa in sqrt(1/2) .. sqrt(2): log2 m = 2 / ln 2 (s + s^3 / 3 + ...), s = (m - 1) / (m + 1)); 0 gives -127.
+inline Floats logarithm(Floats a) {
+    const Ints bits = sameBits(a);
+    const Ints exponent = (bits - Ints(0x3f3504f3)) >> 23; // so that the mantissa lies around 1
+    const Floats m = sameBits(bits - (exponent << 23));
+    const Floats s = (m - Floats(1)) / (m + Floats(1)), q = s * s;
+    const Floats series = multiplyAdd(
+        q,
+        multiplyAdd(q, multiplyAdd(q, multiplyAdd(q, Floats(1.0 / 9), Floats(1.0 / 7)), Floats(0.2)), Floats(1.0 / 3)),
+        Floats(1));
+    return choose(a > Floats(0), multiplyAdd(s * Floats(2.8853900818), series, toFloats(exponent)), Floats(-127));
+}
+/// 2^a, relative error below 2e-7; 0 below -126 (Taylor series of the fraction around 0, -1/2 .. 1/2).
+inline Floats powerOfTwo(Floats a) {
+    const Floats within = smaller(larger(a, Floats(-126)), Floats(127));
+    const Floats whole = roundDown(within + Floats(0.5)), f = within - whole;
+    constexpr float kSeries[] = {1.3333558e-3f, 9.6181291e-3f, 5.5504109e-2f, 2.4022651e-1f, 6.9314718e-1f, 1.0f};
+    Floats p(1.5403530e-4);
+    for (const float c : kSeries) p = multiplyAdd(p, f, Floats(c));
+    return choose(a < Floats(-126), Floats(0), p * sameBits((toInts(whole) + Ints(127)) << 23));
+}
+/// base >= 0. 0 to any power above 0 is 0.
+inline Floats power(Floats base, Floats exponent) {
+    return choose(base > Floats(0), powerOfTwo(exponent * logarithm(base)), Floats(0));
+}
+
+} // namespace tessera::vis::packet::TESSERA_LANES

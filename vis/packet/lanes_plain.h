@@ -1,0 +1,72 @@
+// Any processor: the operations of vis/packet/lanes.h that vector extensions of the compiler lack, as loops.
+using F = float __attribute__((vector_size(16)));
+using I = std::int32_t __attribute__((vector_size(16)));
+using M = I; ///< all bits of a lane, or none
+inline constexpr int kLanes = 4, kColumns = 2;
+
+inline M less(F a, F b) {
+    return a < b;
+}
+inline M lessEqual(F a, F b) {
+    return a <= b;
+}
+inline M equal(I a, I b) {
+    return a == b;
+}
+inline M less(I a, I b) {
+    return a < b;
+}
+inline I choose(M m, I a, I b) {
+    return (m & a) | (~m & b);
+}
+inline F choose(M m, F a, F b) {
+    return F(choose(m, I(a), I(b)));
+}
+inline unsigned bitsOf(M m) {
+    return unsigned((m[0] & 1) | (m[1] & 2) | (m[2] & 4) | (m[3] & 8));
+}
+inline M maskOf(unsigned bits) {
+    const I each{1, 2, 4, 8};
+    return ((I{} + std::int32_t(bits)) & each) == each;
+}
+inline M both(M a, M b) {
+    return a & b;
+}
+inline M either(M a, M b) {
+    return a | b;
+}
+inline M inverse(M a) {
+    return ~a;
+}
+inline F smaller(F a, F b) {
+    return choose(a < b, a, b);
+}
+inline F larger(F a, F b) {
+    return choose(a > b, a, b);
+}
+inline F root(F a) {
+    for (int i = 0; i < kLanes; ++i) a[i] = __builtin_sqrtf(a[i]);
+    return a;
+}
+inline F roundDown(F a) { // |a| < 2^31
+    const F cut = __builtin_convertvector(__builtin_convertvector(a, I), F);
+    return cut - choose(cut > a, F{} + 1.0f, F{});
+}
+inline F multiplyAdd(F a, F b, F c) {
+    return a * b + c;
+}
+template <int Scale> inline I gather(const void* base, I index, M m) {
+    I out{};
+    for (int i = 0; i < kLanes; ++i) {
+        std::int32_t value = 0;
+        if (m[i]) __builtin_memcpy(&value, static_cast<const char*>(base) + std::ptrdiff_t(index[i]) * Scale, 4);
+        out[i] = value;
+    }
+    return out;
+}
+inline I dotPairs(I a, I b) {
+    I out{};
+    for (int i = 0; i < kLanes; ++i)
+        out[i] = std::int32_t(std::int16_t(a[i])) * std::int16_t(b[i]) + (a[i] >> 16) * (b[i] >> 16);
+    return out;
+}

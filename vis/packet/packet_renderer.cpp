@@ -1,0 +1,154 @@
+#include "vis/packet/packet_renderer.h"
+
+#include "vis/optics/jitter.h"
+#include "vis/packet/cast.h"
+#include "volume/base/parallel.h"
+
+#include <algorithm>
+
+namespace tessera::vis::packet {
+
+namespace {
+
+constexpr int kTile = 16; ///< pixels along the edge of what one core draws in one go
+
+using CastPixels = void (*)(const CastJob& job, glm::ivec2 begin, glm::ivec2 end);
+
+CastPixels casterOf([[maybe_unused]] InstructionSet with) {
+#ifdef TESSERA_X86
+    if (with == InstructionSet::Avx512) return castAvx512;
+    if (with == InstructionSet::Avx2) return castAvx2;
+#endif
+    return castPlain;
+}
+
+/// Whether tables and maps of two scenes are the same.
+bool sameTables(const Scene& a, const Scene& b) {
+    return a.layers == b.layers && a.transfer == b.transfer && a.time == b.time && a.render.filter == b.render.filter;
+}
+
+} // namespace
+
+std::vector<InstructionSet> instructionSets() {
+    std::vector<InstructionSet> out{InstructionSet::Plain};
+#ifdef TESSERA_X86
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) out.push_back(InstructionSet::Avx2);
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512vl"))
+        out.push_back(InstructionSet::Avx512);
+#endif
+    return out;
+}
+
+void PacketPicture::begin(glm::ivec2 whole, const PixelBox& wanted, bool picks) {
+    size = whole;
+    box = wanted;
+    const glm::ivec2 extent = box.extent();
+    const std::size_t count = std::size_t(extent.x) * std::size_t(extent.y);
+    rgba.assign(count * 4, 0);
+    pick.assign(picks ? count : 0, kNowhere);
+}
+
+PacketVolumes::Held& PacketVolumes::entry(const PacketChannel& channel) {
+    std::erase_if(held_, [&](const Held& each) {
+        return !(each.channel == channel) && !each.coming.valid() && each.volume.expired();
+    });
+    const auto found = std::ranges::find_if(held_, [&](const Held& each) { return each.channel == channel; });
+    if (found != held_.end()) return *found;
+    held_.push_back({channel, {}, {}});
+    return held_.back();
+}
+
+SharedVolume PacketVolumes::get(const PacketChannel& channel) {
+    Held& own = entry(channel);
+    SharedVolume volume = own.volume.lock();
+    if (volume) return volume;
+    if (own.coming.valid())
+        volume = own.coming.get();
+    else
+        volume = std::make_shared<const PacketVolume>(readPacketVolume(*source_, channel));
+    own.volume = volume;
+    return volume;
+}
+
+bool PacketVolumes::request(const PacketChannel& channel) {
+    Held& own = entry(channel);
+    if (!own.volume.expired()) return true;
+    if (own.coming.valid()) return own.coming.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    own.coming = std::async(std::launch::async, [source = source_, channel]() -> SharedVolume {
+        return std::make_shared<const PacketVolume>(readPacketVolume(*source, channel));
+    });
+    return false;
+}
+
+PacketRenderer::PacketRenderer(std::optional<InstructionSet> with) : with_(with.value_or(instructionSets().back())) {}
+
+void PacketRenderer::setSource(std::shared_ptr<const volume::BrickSource> source) {
+    setVolumes(std::make_shared<PacketVolumes>(std::move(source)));
+}
+
+bool PacketRenderer::setVolumes(std::shared_ptr<PacketVolumes> volumes) {
+    if (volumes == volumes_) return false;
+    volumes_ = std::move(volumes);
+    held_.clear();
+    scene_.reset();
+    return true;
+}
+
+bool PacketRenderer::request(const Scene& scene) {
+    if (scene_ && sameTables(scene, prepared_)) return true;
+    bool all = true;
+    for (const DrawnChannel& drawn : drawnChannels(scene, source().info()))
+        all = volumes_->request(drawn.channel) && all;
+    return all;
+}
+
+void PacketRenderer::prepare(const Scene& scene) {
+    if (scene_ && sameTables(scene, prepared_)) return;
+    const volume::DatasetInfo& info = source().info();
+    std::vector<SharedVolume> volumes;
+    for (const DrawnChannel& drawn : drawnChannels(scene, info)) volumes.push_back(volumes_->get(drawn.channel));
+    held_ = volumes;
+    scene_ = std::make_unique<PacketScene>(scene, info, std::move(volumes));
+    prepared_ = scene;
+}
+
+void PacketRenderer::draw(const Scene& scene, int pass, int passes, double stepFactor, PacketPicture& picture) {
+    const PixelBox& box = picture.box;
+    if (!scene_ || scene_->empty()) return;
+    CastJob job = scene_->job(scene, source().info(), source().grid().lattice, picture.size, stepFactor);
+    job.jitter = glm::vec2(pixelJitter(pass));
+    job.pass = std::uint32_t(pass);
+    job.share = 1 / float(passes);
+    job.first = box.begin;
+    job.rowLength = box.extent().x;
+    job.picture = picture.rgba.data();
+    job.pick = picture.pick.empty() || pass > 0 ? nullptr : picture.pick.data();
+    job.samples = counts_ ? &samples_ : nullptr;
+    const glm::ivec2 tiles = (box.extent() + kTile - 1) / kTile;
+    const CastPixels cast = casterOf(with_);
+    parallelFor(std::size_t(tiles.x) * std::size_t(tiles.y), [&](std::size_t i) {
+        const glm::ivec2 begin =
+            box.begin + kTile * glm::ivec2(int(i % std::size_t(tiles.x)), int(i / std::size_t(tiles.x)));
+        cast(job, begin, glm::min(begin + kTile, box.end));
+    });
+}
+
+PacketPicture PacketRenderer::render(const Scene& scene, glm::ivec2 size) {
+    PacketPicture picture;
+    picture.begin(size, {{0, 0}, size}, false);
+    prepare(scene);
+    const int passes = std::max(scene.render.samples, 1);
+    for (int pass = 0; pass < passes; ++pass) draw(scene, pass, passes, 1, picture);
+    return picture;
+}
+
+std::size_t PacketRenderer::bytes() const {
+    std::size_t out = 0;
+    for (std::size_t i = 0; i < held_.size(); ++i)
+        if (std::find(held_.begin(), held_.begin() + std::ptrdiff_t(i), held_[i]) == held_.begin() + std::ptrdiff_t(i))
+            out += held_[i]->bytes();
+    return out;
+}
+
+} // namespace tessera::vis::packet

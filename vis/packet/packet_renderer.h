@@ -1,0 +1,93 @@
+#pragma once
+
+#include "vis/packet/packet_scene.h"
+
+#include <chrono>
+#include <future>
+#include <optional>
+
+/// The ray caster on the processor's vector units: pictures without OpenGL.
+namespace tessera::vis::packet {
+
+enum class InstructionSet { Plain, Avx2, Avx512 };
+inline constexpr std::string_view kInstructionSetNames[] = {"plain", "AVX2", "AVX-512"};
+/// Those of this processor, the fastest last.
+std::vector<InstructionSet> instructionSets();
+
+/// Pixels [begin, end) of a picture, rows counted from the bottom.
+struct PixelBox {
+    glm::ivec2 begin{0}, end{0};
+    glm::ivec2 extent() const { return end - begin; }
+};
+
+/// A box of a picture: linear light, RGBA, premultiplied, before the background, rows bottom up.
+struct PacketPicture {
+    glm::ivec2 size{0}; ///< of the whole picture
+    PixelBox box;
+    std::vector<float> rgba;
+    std::vector<float> pick = {}; ///< distance along each ray of what is seen there, kNowhere: nothing; or empty
+
+    /// Becomes an empty box of a picture of `size` pixels; `picks`: with distances.
+    void begin(glm::ivec2 size, const PixelBox& box, bool picks);
+};
+
+/// The samples that renderers of one data set share, as long as one of them holds them.
+class PacketVolumes {
+public:
+    explicit PacketVolumes(std::shared_ptr<const volume::BrickSource> source) : source_(std::move(source)) {}
+    const std::shared_ptr<const volume::BrickSource>& source() const { return source_; }
+    /// The samples of a channel; waits until they are read. Throws Error when the source does.
+    SharedVolume get(const PacketChannel& channel);
+    /// Whether get() would not wait; begins to read them in the background otherwise.
+    bool request(const PacketChannel& channel);
+
+private:
+    struct Held {
+        PacketChannel channel;
+        std::weak_ptr<const PacketVolume> volume;
+        std::future<SharedVolume> coming; ///< valid while being read
+    };
+    Held& entry(const PacketChannel& channel);
+
+    std::shared_ptr<const volume::BrickSource> source_;
+    std::vector<Held> held_;
+};
+
+/// Draws the scenes that packetRefusal() does not refuse; keeps the samples and tables of the last ones. Not for
+/// several threads at once; it uses all cores itself.
+class PacketRenderer {
+public:
+    /// With a certain instruction set, by default the fastest.
+    explicit PacketRenderer(std::optional<InstructionSet> with = {});
+
+    void setSource(std::shared_ptr<const volume::BrickSource> source);
+    /// A source whose samples other renderers use, too; false if it is the former one.
+    bool setVolumes(std::shared_ptr<PacketVolumes> volumes);
+    /// Whether prepare() need not wait for samples; begins to read them in the background otherwise.
+    bool request(const Scene& scene);
+    /// Reads samples and makes tables for a scene. Throws Error when the source does.
+    void prepare(const Scene& scene);
+    /// Adds one pass of a picture with `passes` of them; after prepare().
+    void draw(const Scene& scene, int pass, int passes, double stepFactor, PacketPicture& picture);
+    /// The whole picture with all passes.
+    PacketPicture render(const Scene& scene, glm::ivec2 size);
+
+    InstructionSet instructions() const { return with_; }
+    std::size_t volumes() const { return held_.size(); }    ///< that the last scene draws
+    std::size_t bytes() const;                              ///< of samples
+    std::uint64_t samplesTaken() const { return samples_; } ///< since countSamples(true)
+    void countSamples(bool yes) { counts_ = yes, samples_ = 0; }
+
+private:
+    const volume::BrickSource& source() const { return *volumes_->source(); }
+
+    InstructionSet with_;
+    std::shared_ptr<PacketVolumes> volumes_;
+    std::vector<SharedVolume> held_; ///< of the last scene
+    std::unique_ptr<PacketScene> scene_;
+    Scene prepared_; ///< the scene of scene_
+    bool counts_ = false;
+    std::uint64_t samples_ = 0;
+};
+
+} // namespace tessera::vis::packet

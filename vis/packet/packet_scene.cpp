@@ -1,0 +1,284 @@
+#include "vis/packet/packet_scene.h"
+
+#include "vis/optics/block_distance.h"
+#include "vis/optics/ray_setup.h"
+#include "volume/bricks/parts_bricks.h"
+#include "volume/field/time_pair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace tessera::vis::packet {
+
+namespace {
+
+/// A range of places narrower than this part of the data's range is read from floats.
+constexpr double kNarrow = 1.0 / 8;
+constexpr double kSlack = 2; ///< of bounds, in 16-bit samples, for rounding
+
+struct Transfer {
+    const TransferFunction& function;
+    Range range;
+};
+Transfer transferOfLayer(const Scene& scene, const volume::DatasetInfo& info, const Layer& layer, int channel) {
+    const volume::Channel known = info.channel(channel);
+    const TransferFunction& function = transferFor(scene, layer.transfer.empty() ? known.name : layer.transfer);
+    return {function, effectiveRange(function, info.channelRange(known))};
+}
+
+/// Entries of a transfer function's table (LayerView), and the factor of its opacities.
+struct Table {
+    std::vector<std::int32_t> entries;
+    std::vector<float> opacity;
+    float opacityScale = 1;
+};
+Table makeTable(const TransferFunction& function, Range range) {
+    std::vector<glm::dvec4> colors;
+    for (int i = 0; i < kTableEntries; ++i) {
+        const glm::dvec4 srgb =
+            evaluate(function, range, glm::mix(range.lo, range.hi, double(i) / (kTableEntries - 1)));
+        colors.emplace_back(linearFromSrgb(glm::dvec3(srgb)), srgb.a);
+    }
+    double most = 0;
+    for (const glm::dvec4& color : colors) most = std::max(most, color.a);
+    Table table;
+    table.opacityScale = most > 0 ? float(most) : 1;
+    const auto quantum = [&](std::size_t entry, int component) {
+        const double own = colors[std::min(entry, colors.size() - 1)][component];
+        const double part = component == 3 ? own / double(table.opacityScale) : own;
+        return std::uint32_t(std::lround(std::clamp(part, 0.0, 1.0) * kQuantum));
+    };
+    for (std::size_t i = 0; i < colors.size(); ++i) {
+        for (int c = 0; c < 4; ++c) table.entries.push_back(std::int32_t(quantum(i, c) | quantum(i + 1, c) << 16));
+        table.opacity.push_back(float(quantum(i, 3)));
+    }
+    return table;
+}
+
+VolumeView viewOf(const PacketVolume& volume) {
+    VolumeView view;
+    view.shorts = volume.exact ? nullptr : volume.shorts.data();
+    view.floats = volume.exact ? volume.floats.data() : nullptr;
+    view.present = volume.present.empty() ? nullptr : volume.present.data();
+    view.bcc = volume.bcc;
+    view.cells = volume.cells;
+    view.oddOffset = volume.brickSamples();
+    const int brick = volume.stride(), row = brick * volume.bricks.x, slice = row * volume.bricks.y;
+    view.perBrick = {brick - kBrick, row - kBrick * kRow, slice - kBrick * kRow * kRow};
+    return view;
+}
+
+} // namespace
+
+std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::DatasetInfo& info) {
+    std::vector<DrawnChannel> out;
+    for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+        const Layer& layer = scene.layers[i];
+        if (!layer.visible || std::holds_alternative<FlowLayer>(layer.technique)) continue;
+        const auto* iso = std::get_if<IsoLayer>(&layer.technique);
+        if (iso && iso->method == SurfaceMethod::Polygons) continue;
+        const std::string& name =
+            std::visit([](const auto& t) -> const std::string& { return t.channel; }, layer.technique);
+        const std::optional<int> channel = info.findChannel(name);
+        if (!channel) continue;
+        const volume::TimePair time = volume::timesAround(info.times, scene.time + layer.timeShift);
+        const Range range = transferOfLayer(scene, info, layer, *channel).range,
+                    whole = info.channelRange(info.channel(*channel));
+        const bool narrow = std::abs(range.hi - range.lo) < kNarrow * std::abs(whole.hi - whole.lo);
+        out.push_back({int(i), {*channel, time.earlier, scene.render.filter, narrow}});
+    }
+    return out;
+}
+
+namespace {
+
+std::string refusalOfLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn) {
+    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
+    const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(drawn.channel.channel).parameter)];
+    if (std::holds_alternative<SliceLayer>(layer.technique)) return "slices";
+    if (parameter.categorical) return "labels";
+    if (volume::labelChannel(info, parameter)) return "parameters whose regions are never mixed";
+    if (volume::timesAround(info.times, scene.time + layer.timeShift).between()) return "times between the stored ones";
+    if (!layer.lens.empty()) return "layers in lenses";
+    if (!colorByOf(layer.technique).empty()) return "colours by another parameter";
+    if (const Look* look = lookOf(layer.technique); look && look->any()) return "looks";
+    const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
+    if (!volume) return "";
+    if (volume->quantity == Quantity::Gradient) return "gradient magnitudes";
+    const auto [function, range] = transferOfLayer(scene, info, layer, drawn.channel.channel);
+    if (range.hi == range.lo) return "ranges without width";
+    if (volume->style != RayStyle::Composite) return "";
+    if (volume->classification != Classification::Post) return "classification before or over samples";
+    if (function.kind != TransferKind::Curve) return "transfer functions of two dimensions";
+    return "";
+}
+
+} // namespace
+
+std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
+    if (peelsOf(scene) > 0) return "meshes, lines and points";
+    if (scene.selection.active()) return "brushes";
+    if (std::ranges::any_of(scene.lenses, [](const Lens& lens) { return lens.enabled; })) return "lenses";
+    if (scene.lighting.shadows.any()) return "shadows";
+    if (usesMaps(scene.lighting)) return "light from maps";
+    if (scene.render.proxy != Proxy::Rays) return "proxy geometry";
+    if (scene.render.adaptiveStep > 0) return "adaptive steps";
+    if (scene.render.normalBits > 0) return "quantised normals";
+    if (scene.render.filter == Filter::Tetrahedral && lattice.kind == volume::LatticeKind::BCC)
+        return "tetrahedral interpolation";
+    const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
+    int surfaces = 0;
+    bool exact = false, shorts = false;
+    for (const DrawnChannel& each : drawn) {
+        const std::string refusal = refusalOfLayer(scene, info, each);
+        if (!refusal.empty()) return refusal;
+        surfaces += std::holds_alternative<IsoLayer>(scene.layers[std::size_t(each.layer)].technique);
+        (each.channel.exact ? exact : shorts) = true;
+    }
+    if (drawn.size() > std::size_t(kMostPacketLayers) || surfaces > kMostPacketSurfaces) return "so many layers";
+    if (exact && shorts) return "narrow and wide ranges together";
+    return "";
+}
+
+void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
+                           const VolumeView* view) {
+    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
+    const PacketVolume& volume = *volumes_[layers_.size()];
+    const auto [function, range] = transferOfLayer(scene, info, layer, drawn.channel.channel);
+    const double width = range.hi - range.lo;
+    LayerView out;
+    out.volume = view;
+    out.placeScale = width != 0 ? float(volume.scale / width) : 0;
+    out.placeOffset = width != 0 ? float((volume.offset - range.lo) / width) : 0.5f;
+    Table table = makeTable(function, range);
+    out.opacityScale = table.opacityScale;
+    tables_.push_back(std::move(table.entries));
+    out.table = tables_.back().data();
+    const glm::dvec2 map(out.placeScale, out.placeOffset);
+    const int edge = skip_.edge;
+    const double slack = volume.exact ? kSlack / 2 / kQuantum : kSlack;
+    std::function<bool(float, float)> shows = [](float, float) { return true; };
+    const OpacityRanges opaque(table.opacity, map);
+    if (const auto* iso = std::get_if<IsoLayer>(&layer.technique)) {
+        out.style = RayStyle::Iso;
+        out.isoValue = float((iso->value - volume.offset) / volume.scale);
+        out.isoOpacity = iso->opacity;
+        out.isoColor = glm::vec3(linearFromSrgb(glm::dvec3(iso->color)));
+        shows = [&](float lo, float hi) {
+            return double(lo) - slack <= double(out.isoValue) && double(out.isoValue) <= double(hi) + slack;
+        };
+    } else {
+        const auto& own = std::get<VolumeLayer>(layer.technique);
+        out.style = own.style;
+        out.shaded = own.shaded;
+        out.density = own.density;
+        out.threshold = float(std::max(0.0, (own.threshold - range.lo) / width));
+        if (own.style == RayStyle::Composite || own.style == RayStyle::XRay)
+            shows = [&](float lo, float hi) {
+                return opaque.any(float(double(lo) - slack), float(double(hi) + slack));
+            };
+    }
+    layers_.push_back(out);
+    skip_ = nearer(std::move(skip_), skipMap(volume, edge, shows));
+}
+
+namespace {
+
+/// Largest score of each block of a maximum or minimum, rounded up.
+std::vector<std::uint8_t> scoreBounds(const PacketVolume& volume, const LayerView& layer, const SkipMap& map) {
+    std::vector<std::uint8_t> out(map.distance.size());
+    std::size_t i = 0;
+    const int factor = map.edge / kFine;
+    for (int z = 0; z < map.count.z; ++z)
+        for (int y = 0; y < map.count.y; ++y)
+            for (int x = 0; x < map.count.x; ++x, ++i) {
+                double best = 0;
+                const glm::ivec3 first = glm::ivec3(x, y, z) * factor, last = glm::min(first + factor, volume.blocks);
+                for (int fz = first.z; fz < last.z; ++fz)
+                    for (int fy = first.y; fy < last.y; ++fy)
+                        for (int fx = first.x; fx < last.x; ++fx) {
+                            const std::size_t block =
+                                (std::size_t(fz) * std::size_t(volume.blocks.y) + std::size_t(fy)) *
+                                    std::size_t(volume.blocks.x) +
+                                std::size_t(fx);
+                            if (!(volume.lo[block] <= volume.hi[block])) continue;
+                            for (const float bound : {volume.lo[block], volume.hi[block]}) {
+                                const double place = std::clamp(
+                                    double(bound) * double(layer.placeScale) + double(layer.placeOffset), 0.0, 1.0);
+                                best = std::max(best, layer.style == RayStyle::Minimum ? 1 - place : place);
+                            }
+                        }
+                out[i] = std::uint8_t(std::min(255.0, std::ceil(best * 255 + 0.01)));
+            }
+    return out;
+}
+
+} // namespace
+
+PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, std::vector<SharedVolume> volumes)
+    : volumes_(std::move(volumes)) {
+    const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
+    for (const SharedVolume& volume : volumes_) views_.push_back(viewOf(*volume));
+    tables_.reserve(drawn.size());
+    // Small blocks pay where rays soon end at surfaces.
+    const bool surfaces = std::ranges::all_of(drawn, [&](const DrawnChannel& each) {
+        const auto* volume = std::get_if<VolumeLayer>(&scene.layers[std::size_t(each.layer)].technique);
+        return !volume || (volume->style == RayStyle::Composite && volume->shaded);
+    });
+    skip_.edge = surfaces ? kFine : 2 * kFine;
+    for (std::size_t i = 0; i < drawn.size(); ++i) addLayer(scene, info, drawn[i], &views_[i]);
+    for (const SharedVolume& volume : volumes_) {
+        if (volume->absent.empty()) continue;
+        absent_.resize(volume->absent.size());
+        for (std::size_t i = 0; i < absent_.size(); ++i) absent_[i] = std::uint8_t(absent_[i] | volume->absent[i]);
+    }
+    if (!absent_.empty()) absent_.resize(absent_.size() + 3);
+    if (layers_.size() == 1 && (layers_[0].style == RayStyle::Maximum || layers_[0].style == RayStyle::Minimum))
+        bound_ = scoreBounds(*volumes_[0], layers_[0], skip_);
+}
+
+CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice,
+                         glm::ivec2 size, double stepFactor) {
+    const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
+    CastJob job;
+    job.size = size;
+    const double aspect = double(size.x) / size.y;
+    const Ray middle = cameraRay(scene.camera, aspect, {0, 0});
+    const Ray right = cameraRay(scene.camera, aspect, {1, 0}), up = cameraRay(scene.camera, aspect, {0, 1});
+    // Ray directions scaled to reach the same plane are linear in the picture.
+    const auto onPlane = [&](glm::dvec3 d) { return d / glm::dot(d, middle.direction) - middle.direction; };
+    job.origin = middle.origin;
+    job.originX = right.origin - middle.origin;
+    job.originY = up.origin - middle.origin;
+    job.direction = middle.direction;
+    job.directionX = onPlane(right.direction);
+    job.directionY = onPlane(up.direction);
+    job.begin = scene.camera.projection == Projection::Perspective ? 0.0f : -1e6f;
+    // A data set of a single slice has no thickness; give it enough for rays to meet it.
+    job.halfSize = glm::max(frame.halfSize, glm::dvec3(1e-5));
+    job.cell = worldCell(lattice, frame);
+    job.edges = lattice.spacing * frame.scale;
+    job.cellsPerWorld = 1.0 / job.edges;
+    job.cellsOffset = (-frame.offset / frame.scale - lattice.origin) / lattice.spacing + double(kMargin);
+    job.stepVoxels = float(double(scene.render.stepVoxels) * stepFactor);
+    clips_ = placeClips(scene.clips, frame);
+    job.clips = clips_;
+    job.layers = layers_;
+    job.stencil = volume::gradientStencil(lattice.kind, scene.render.gradient);
+    lighting_ = scene.lighting;
+    lights_ = placeLights(scene.lighting, scene.camera);
+    job.surface = &lighting_;
+    job.lights = lights_;
+    job.jitterStarts = scene.render.jitter;
+    if (layers_.empty()) return job;
+    job.skip.distance = skip_.distance.data();
+    job.skip.count = skip_.count;
+    job.skip.edge = skip_.edge;
+    job.skip.absent = absent_.empty() ? nullptr : absent_.data();
+    job.skip.fine = volumes_[0]->blocks;
+    if (!bound_.empty()) job.skip.bound = bound_.data();
+    return job;
+}
+
+} // namespace tessera::vis::packet

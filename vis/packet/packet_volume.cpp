@@ -1,0 +1,299 @@
+#include "vis/packet/packet_volume.h"
+
+#include "vis/optics/block_distance.h"
+#include "volume/base/parallel.h"
+#include "volume/reconstruct/reconstruct.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tessera::vis::packet {
+
+namespace {
+
+/// All samples of a channel as the source has them.
+struct Gathered {
+    volume::Lattice lattice;
+    std::vector<float> values;
+    std::vector<std::uint8_t> present; ///< empty: all
+    float lo = std::numeric_limits<float>::infinity(), hi = -lo;
+
+    std::size_t at(glm::ivec3 sample) const {
+        return lattice.index(volume::clampToLattice(lattice.kind, lattice.size, sample));
+    }
+};
+
+void insertBrick(Gathered& out, glm::ivec3 begin, const volume::BrickSamples& brick) {
+    for (int z = 0; z < brick.size.z; ++z)
+        for (int y = 0; y < brick.size.y; ++y) {
+            const std::size_t to = out.lattice.index(begin + glm::ivec3(0, y, z));
+            const std::size_t from =
+                (std::size_t(z) * std::size_t(brick.size.y) + std::size_t(y)) * std::size_t(brick.size.x);
+            for (std::size_t x = 0; x < std::size_t(brick.size.x); ++x) {
+                const bool there = brick.isPresent(from + x);
+                out.values[to + x] = there ? brick.values[from + x] : 0;
+                if (!out.present.empty()) out.present[to + x] = there;
+            }
+        }
+}
+
+Gathered gatherAll(const volume::BrickSource& source, const PacketChannel& what) {
+    const volume::BrickGrid& grid = source.grid();
+    Gathered out;
+    out.lattice = grid.lattice;
+    out.values.resize(grid.lattice.count());
+    std::vector<volume::BrickStats> stats(grid.brickCount());
+    std::vector<std::uint8_t> absent(stats.size());
+    const auto key = [&](std::size_t i) { return volume::BrickKey{what.channel, what.time, 0, grid.indexOf(i)}; };
+    out.present.resize(out.values.size(), 1);
+    parallelFor(stats.size(), [&](std::size_t i) {
+        const volume::BrickSamples brick = source.read(key(i));
+        insertBrick(out, grid.begin(grid.indexOf(i)), brick);
+        volume::BrickStats& own = stats[i];
+        own = {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), 0};
+        for (std::size_t s = 0; s < brick.values.size(); ++s) {
+            if (!brick.isPresent(s)) {
+                absent[i] = 1;
+                continue;
+            }
+            own.min = std::min(own.min, brick.values[s]);
+            own.max = std::max(own.max, brick.values[s]);
+        }
+    });
+    for (const volume::BrickStats& own : stats) {
+        out.lo = std::min(out.lo, own.min);
+        out.hi = std::max(out.hi, own.max);
+    }
+    if (std::ranges::none_of(absent, [](std::uint8_t some) { return some != 0; })) out.present = {};
+    if (!(out.lo <= out.hi)) out.lo = out.hi = 0;
+    return out;
+}
+
+/// The samples of a brick with `halo` more of each sublattice on every side.
+volume::BrickSamples neighbourhood(const Gathered& all, glm::ivec3 firstTexel, int halo) {
+    const int slices = all.lattice.kind == volume::LatticeKind::BCC ? 2 : 1;
+    volume::BrickSamples out;
+    const int edge = kRow + 2 * halo;
+    out.size = {edge, edge, edge * slices};
+    const std::size_t count = std::size_t(edge) * std::size_t(edge) * std::size_t(edge * slices);
+    out.values.reserve(count);
+    if (!all.present.empty()) out.present.reserve(count);
+    const glm::ivec3 first = (firstTexel - halo) * glm::ivec3(1, 1, slices);
+    for (int z = 0; z < out.size.z; ++z)
+        for (int y = 0; y < edge; ++y) {
+            const std::size_t row = all.at({0, first.y + y, first.z + z});
+            for (int x = 0; x < edge; ++x) {
+                const std::size_t i = row + std::size_t(std::clamp(first.x + x, 0, all.lattice.size.x - 1));
+                out.values.push_back(all.values[i]);
+                if (!all.present.empty()) out.present.push_back(all.present[i]);
+            }
+        }
+    return out;
+}
+
+/// Writes one brick, and the bounds of its blocks.
+class BrickWriter {
+public:
+    BrickWriter(PacketVolume& out, glm::ivec3 brick, const volume::BrickSamples& from)
+        : out_(out), brick_(brick), from_(from), slices_(out.bcc ? 2 : 1) {}
+
+    void samples() {
+        const std::size_t base =
+            ((std::size_t(brick_.z) * std::size_t(out_.bricks.y) + std::size_t(brick_.y)) * std::size_t(out_.bricks.x) +
+             std::size_t(brick_.x)) *
+            std::size_t(out_.stride());
+        for (int s = 0; s < slices_; ++s)
+            for (int z = 0; z < kRow; ++z)
+                for (int i = 0; i < kRow * kRow; ++i) {
+                    const std::size_t source = std::size_t(z * slices_ + s) * kRow * kRow + std::size_t(i);
+                    const std::size_t to =
+                        base + std::size_t(s * out_.brickSamples()) + std::size_t(z * kRow * kRow + i);
+                    const bool there = from_.isPresent(source);
+                    const double value = there ? (double(from_.values[source]) - out_.offset) / out_.scale : 0;
+                    if (out_.exact)
+                        out_.floats[to] = float(value);
+                    else
+                        out_.shorts[to] =
+                            std::int16_t(std::lround(std::clamp(value, -double(kQuantum), double(kQuantum))));
+                    if (!out_.present.empty()) out_.present[to] = there ? kQuantum : 0;
+                }
+    }
+
+    void bounds() {
+        const int perBrick = kBrick / kFine;
+        for (int i = 0; i < perBrick * perBrick * perBrick; ++i) {
+            const glm::ivec3 inside(i % perBrick, i / perBrick % perBrick, i / perBrick / perBrick);
+            const glm::ivec3 block = brick_ * perBrick + inside;
+            const std::size_t to = (std::size_t(block.z) * std::size_t(out_.blocks.y) + std::size_t(block.y)) *
+                                       std::size_t(out_.blocks.x) +
+                                   std::size_t(block.x);
+            block_(inside * kFine, to);
+        }
+    }
+
+private:
+    /// The odd sublattice lies half a cell further: its cells around the block begin one earlier, which may lie in the
+    /// brick before. Its first samples stand for them here; `spreadOdd` joins the neighbours' bounds.
+    void block_(glm::ivec3 begin, std::size_t to) {
+        float lo = std::numeric_limits<float>::infinity(), hi = -lo;
+        bool absent = false;
+        for (int z = begin.z * slices_; z < (begin.z + kFine + 1) * slices_; ++z)
+            for (int y = begin.y; y <= begin.y + kFine; ++y)
+                for (int x = begin.x; x <= begin.x + kFine; ++x) {
+                    const std::size_t i = (std::size_t(z) * kRow + std::size_t(y)) * kRow + std::size_t(x);
+                    if (!from_.isPresent(i)) {
+                        absent = true;
+                        continue;
+                    }
+                    lo = std::min(lo, from_.values[i]);
+                    hi = std::max(hi, from_.values[i]);
+                }
+        out_.lo[to] = lo <= hi ? float((double(lo) - out_.offset) / out_.scale) : lo;
+        out_.hi[to] = lo <= hi ? float((double(hi) - out_.offset) / out_.scale) : hi;
+        if (!out_.absent.empty()) out_.absent[to] = absent;
+    }
+
+    PacketVolume& out_;
+    glm::ivec3 brick_;
+    const volume::BrickSamples& from_;
+    int slices_;
+};
+
+/// Calls `visit(block, neighbour)` for each of the 27 blocks around each block, within the volume.
+template <class Visit> void eachNeighbour(glm::ivec3 count, int before, int after, const Visit& visit) {
+    const auto index = [&](glm::ivec3 at) {
+        return (std::size_t(at.z) * std::size_t(count.y) + std::size_t(at.y)) * std::size_t(count.x) +
+               std::size_t(at.x);
+    };
+    for (int z = 0; z < count.z; ++z)
+        for (int y = 0; y < count.y; ++y)
+            for (int x = 0; x < count.x; ++x)
+                for (int dz = std::max(z - before, 0); dz <= std::min(z + after, count.z - 1); ++dz)
+                    for (int dy = std::max(y - before, 0); dy <= std::min(y + after, count.y - 1); ++dy)
+                        for (int dx = std::max(x - before, 0); dx <= std::min(x + after, count.x - 1); ++dx)
+                            visit(index({x, y, z}), index({dx, dy, dz}));
+}
+
+/// Bounds of BCC blocks take those before them in (the odd sublattice reads half a cell earlier).
+void spreadOdd(PacketVolume& volume) {
+    const std::vector<float> lo = volume.lo, hi = volume.hi;
+    eachNeighbour(volume.blocks, 1, 0, [&](std::size_t block, std::size_t other) {
+        volume.lo[block] = std::min(volume.lo[block], lo[other]);
+        volume.hi[block] = std::max(volume.hi[block], hi[other]);
+    });
+}
+
+/// A block with an absent sample in a neighbour counts as having one: gradients read there, and so do the few samples
+/// that are taken before blocks are looked up again.
+void spreadAbsent(PacketVolume& volume) {
+    const std::vector<std::uint8_t> own = volume.absent;
+    eachNeighbour(volume.blocks, 2, 2, [&](std::size_t block, std::size_t other) {
+        volume.absent[block] = std::uint8_t(volume.absent[block] | own[other]);
+    });
+}
+
+} // namespace
+
+std::size_t PacketVolume::at(glm::ivec3 sample, int sublattice) const {
+    const glm::ivec3 brick = glm::min(sample / kBrick, bricks - 1), in = sample - brick * kBrick;
+    const std::size_t number =
+        (std::size_t(brick.z) * std::size_t(bricks.y) + std::size_t(brick.y)) * std::size_t(bricks.x) +
+        std::size_t(brick.x);
+    return number * std::size_t(stride()) +
+           std::size_t(sublattice * brickSamples() + (in.z * kRow + in.y) * kRow + in.x);
+}
+
+std::size_t PacketVolume::bytes() const {
+    return shorts.size() * 2 + floats.size() * 4 + present.size() * 2 + (lo.size() + hi.size()) * 4 + absent.size();
+}
+
+PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketChannel& what) {
+    const volume::DatasetInfo& info = source.info();
+    const bool categorical = info.parameters[std::size_t(info.channel(what.channel).parameter)].categorical;
+    const bool filtered = what.filter == Filter::AverageQuasi && !categorical;
+    const Gathered all = gatherAll(source, what);
+    const volume::LevelGeometry geometry = volume::levelGeometry(source.grid(), 0);
+
+    PacketVolume out;
+    out.bcc = all.lattice.kind == volume::LatticeKind::BCC;
+    out.exact = what.exact;
+    out.cells = all.lattice.texels() + (2 * kMargin - 1);
+    out.bricks = (out.cells + kBrick - 1) / kBrick;
+    out.blocks = out.bricks * (kBrick / kFine);
+    // Filtered values leave the range of the data by up to 2/3 of its width.
+    const double width = double(all.hi) - double(all.lo), room = filtered ? 2.0 / 3 : 0;
+    out.offset = (double(all.lo) + double(all.hi)) / 2;
+    out.scale = width > 0 ? (out.exact ? width : width * (0.5 + room) / kQuantum) : 1;
+    const std::size_t bricks = std::size_t(out.bricks.x) * std::size_t(out.bricks.y) * std::size_t(out.bricks.z);
+    const std::size_t samples = bricks * std::size_t(out.stride()), blocks = bricks * 64;
+    // One more: x-neighbours are read together.
+    if (out.exact)
+        out.floats.resize(samples + 2);
+    else
+        out.shorts.resize(samples + 2);
+    if (!all.present.empty()) {
+        out.present.resize(samples + 2);
+        out.absent.resize(blocks);
+    }
+    out.lo.resize(blocks);
+    out.hi.resize(blocks);
+    parallelFor(bricks, [&](std::size_t i) {
+        const glm::ivec3 brick(int(i % std::size_t(out.bricks.x)),
+                               int(i / std::size_t(out.bricks.x) % std::size_t(out.bricks.y)),
+                               int(i / std::size_t(out.bricks.x) / std::size_t(out.bricks.y)));
+        volume::BrickSamples near = neighbourhood(all, brick * kBrick - kMargin, filtered ? 1 : 0);
+        if (filtered) near = volume::prefilter(near, geometry);
+        BrickWriter writer(out, brick, near);
+        writer.samples();
+        writer.bounds();
+    });
+    if (out.bcc) spreadOdd(out);
+    if (!out.absent.empty()) spreadAbsent(out);
+    return out;
+}
+
+SkipMap skipMap(const PacketVolume& volume, int edge, const std::function<bool(float, float)>& shows) {
+    SkipMap out;
+    out.edge = edge;
+    const int factor = edge / kFine;
+    out.count = (volume.blocks + factor - 1) / factor;
+    const std::size_t total = std::size_t(out.count.x) * std::size_t(out.count.y) * std::size_t(out.count.z);
+    out.distance.assign(total, 255);
+    parallelRanges(
+        total,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const glm::ivec3 at(int(i % std::size_t(out.count.x)),
+                                    int(i / std::size_t(out.count.x) % std::size_t(out.count.y)),
+                                    int(i / std::size_t(out.count.x) / std::size_t(out.count.y)));
+                float lo = std::numeric_limits<float>::infinity(), hi = -lo;
+                const glm::ivec3 first = at * factor, last = glm::min(first + factor, volume.blocks);
+                for (int z = first.z; z < last.z; ++z)
+                    for (int y = first.y; y < last.y; ++y)
+                        for (int x = first.x; x < last.x; ++x) {
+                            const std::size_t block = (std::size_t(z) * std::size_t(volume.blocks.y) + std::size_t(y)) *
+                                                          std::size_t(volume.blocks.x) +
+                                                      std::size_t(x);
+                            lo = std::min(lo, volume.lo[block]);
+                            hi = std::max(hi, volume.hi[block]);
+                        }
+                if (lo <= hi && shows(lo, hi)) out.distance[i] = 0;
+            }
+        },
+        1024);
+    const auto occupied = std::ranges::count(out.distance, std::uint8_t(0));
+    out.occupied = double(occupied) / double(total);
+    spreadDistance(out.distance, out.count);
+    out.distance.resize(total + 3);
+    return out;
+}
+
+SkipMap nearer(SkipMap a, const SkipMap& b) {
+    if (a.distance.empty()) return b;
+    for (std::size_t i = 0; i < a.distance.size(); ++i) a.distance[i] = std::min(a.distance[i], b.distance[i]);
+    a.occupied = std::max(a.occupied, b.occupied);
+    return a;
+}
+
+} // namespace tessera::vis::packet

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "vis/scene/scene.h"
+#include "volume/bricks/brick_source.h"
+
+#include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <vector>
+
+/// The samples of one channel at one time, laid out for packets of rays.
+namespace tessera::vis::packet {
+
+inline constexpr int kMargin = 2; ///< samples of each sublattice beyond the lattice, for gradients
+inline constexpr int kBrick = 16; ///< cells along the edge of a brick
+inline constexpr int kRow = 17;   ///< samples along its edge: the next brick's first ones belong to it, too
+inline constexpr int kFine = 4;   ///< cells along the edge of the smallest block with known bounds
+inline constexpr int kQuantum = 32767;
+
+/// Samples (filtered where the scene asks for it) in bricks of 16^3 cells, x fastest in a brick and over the bricks; a
+/// trilinear sample reads only one brick. On BCC the odd sublattice of a brick follows the even one. Positions are
+/// cells of a sublattice plus kMargin. An absent sample is 0.
+struct PacketVolume {
+    bool bcc = false;
+    bool exact = false;  ///< `floats` hold the samples, else `shorts`
+    glm::ivec3 cells{1}; ///< of a sublattice, with margins: a position lies in [0, cells)
+    glm::ivec3 bricks{1};
+    std::vector<std::int16_t> shorts;
+    std::vector<float> floats;
+    std::vector<std::int16_t> present; ///< kQuantum or 0, at the same places; empty: all samples are present
+    double offset = 0, scale = 1;      ///< physical value = offset + scale * sample
+    /// Bounds of the samples that interpolation in a block of kFine^3 cells can read, and whether one is absent. lo >
+    /// hi: all are.
+    glm::ivec3 blocks{1};
+    std::vector<float> lo, hi;
+    std::vector<std::uint8_t> absent; ///< empty: none
+
+    int brickSamples() const { return kRow * kRow * kRow; } ///< of one sublattice
+    /// Samples from one brick to the next.
+    int stride() const { return brickSamples() * (bcc ? 2 : 1); }
+    std::size_t at(glm::ivec3 sample, int sublattice) const; ///< `sample` with margin, 0 .. cells
+    std::size_t bytes() const;
+};
+
+/// What of a channel is read.
+struct PacketChannel {
+    int channel = 0, time = 0;
+    Filter filter = Filter::AverageQuasi;
+    bool exact = false; ///< 32-bit floats, else 16 bit over the range of the data
+    bool operator==(const PacketChannel&) const = default;
+};
+
+/// Throws Error when the source does.
+PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketChannel& what);
+
+/// Chebyshev distances of blocks of edge^3 cells to the nearest one with something to draw, for leaps over empty space.
+struct SkipMap {
+    int edge = 8; ///< a multiple of kFine
+    glm::ivec3 count{1};
+    std::vector<std::uint8_t> distance; ///< with 3 bytes more, because they are read four at a time
+    double occupied = 1;                ///< share of blocks
+};
+/// `shows(lo, hi)`: whether a block whose samples lie in that interval can show something.
+SkipMap skipMap(const PacketVolume& volume, int edge, const std::function<bool(float, float)>& shows);
+/// The smaller distance of both, of equal maps; a map without blocks gives the other.
+SkipMap nearer(SkipMap a, const SkipMap& b);
+
+} // namespace tessera::vis::packet

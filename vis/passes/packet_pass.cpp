@@ -1,0 +1,99 @@
+#include "vis/passes/renderer_impl.h"
+
+#include "volume/base/error.h"
+
+#include <algorithm>
+
+/// Pictures whose rays the processor casts: the same buffers, tiles and passes as those of OpenGL, which presents them.
+namespace tessera::vis {
+
+namespace {
+
+/// Bytes that the samples of a scene take, as PacketVolume lays them out.
+double packetBytes(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
+    constexpr double kShared = 1.2; // samples that several bricks hold
+    std::vector<packet::PacketChannel> channels;
+    for (const packet::DrawnChannel& drawn : packet::drawnChannels(scene, info))
+        if (std::ranges::find(channels, drawn.channel) == channels.end()) channels.push_back(drawn.channel);
+    const double samples = double(lattice.size.x) * double(lattice.size.y) * double(lattice.size.z);
+    double bytes = 0;
+    for (const packet::PacketChannel& channel : channels) bytes += samples * kShared * (channel.exact ? 4 : 2);
+    return bytes;
+}
+
+} // namespace
+
+/// Why OpenGL must cast the rays, in words for users; empty: the processor can.
+std::string Renderer::Impl::refusalOfPackets(const ViewTarget& target, const RenderCall& call) const {
+    if (target.packets.failed) return "damaged samples";
+    if (std::string why = packet::packetRefusal(call.scene, call.info(), call.grid().lattice); !why.empty()) return why;
+    const double most = double(std::min(options.memoryBudget, std::size_t(call.scene.render.limits.brickMemory) << 20));
+    return packetBytes(call.scene, call.info(), call.grid().lattice) > most ? "data larger than the memory for bricks"
+                                                                            : "";
+}
+
+/// Whether the processor casts the rays of a call.
+bool Renderer::Impl::chooseEngine(ViewTarget& target, const RenderCall& call, FrameStatus& status) {
+    const Engine asked = call.scene.render.engine;
+    const bool wanted = asked == Engine::Processor || (asked == Engine::Automatic && options.packets);
+    if (target.packets.renderer.setVolumes(volumes)) target.packets.failed = false;
+    const bool possible = wanted && !call.plan.empty() && !options.countSamples;
+    EngineUse& use = status.engine;
+    if (possible) use.refusal = refusalOfPackets(target, call);
+    target.byProcessor = use.byProcessor = possible && use.refusal.empty();
+    if (use.byProcessor)
+        use.instructions = packet::kInstructionSetNames[std::size_t(target.packets.renderer.instructions())];
+    return use.byProcessor;
+}
+
+/// Draws a call, or keeps the former picture while its samples are being read; false if they cannot be read.
+bool Renderer::Impl::drawByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start,
+                                   FrameStatus& status) {
+    packet::PacketRenderer& renderer = target.packets.renderer;
+    try {
+        const bool here = call.request.wait || renderer.request(call.scene);
+        if (here) renderer.prepare(call.scene);
+        show(target, call.scene, 0);
+        target.shown.compiling = false;
+        status.complete = here;
+        if (here)
+            refineByPackets(target, call, start);
+        else if (!target.state.presented())
+            blank(target, call.scene);
+    } catch (const Error& error) {
+        tools.messages.push_back(error.what());
+        target.packets.failed = true;
+        target.byProcessor = false;
+        status.engine = {.byProcessor = false, .refusal = refusalOfPackets(target, call)};
+        return false;
+    }
+    const glm::ivec3 size = call.grid().lattice.size;
+    status.samples = renderer.volumes() * std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+    status.bytes = renderer.bytes();
+    return true;
+}
+
+void Renderer::Impl::refineByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start) {
+    const PictureState& state = target.state;
+    const bool moving = call.request.moving;
+    if (state.full() ? state.still() || moving : state.reduced() && moving) return;
+    if (!call.request.wait && !presentable(target, call.scene)) return postpone(target, call.scene);
+    drawWithin(target, call, {.packets = &target.packets, .beyondPlan = {}, .beyondScene = {}}, start, true);
+}
+
+/// Draws a tile with the rays of one pass; the buffer there is cleared.
+void Renderer::Impl::castPackets(PacketView& packets, const RenderCall& call, const RayBuffer& buffer,
+                                 const RayTile& what) {
+    const Tile& tile = what.tile;
+    packet::PacketPicture& picture = packets.picture;
+    picture.begin(what.size, {tile.begin, tile.end}, what.pass == 0);
+    packets.renderer.draw(call.scene, what.pass, 1, what.stepFactor, picture);
+    const glm::ivec2 at = buffer.first + tile.begin, extent = tile.end - tile.begin;
+    const auto store = [&](const Texture& texture, GLenum parts, const std::vector<float>& values) {
+        glTextureSubImage2D(texture.name(), 0, at.x, at.y, extent.x, extent.y, parts, GL_FLOAT, values.data());
+    };
+    store(buffer.color, GL_RGBA, picture.rgba);
+    if (!picture.pick.empty()) store(buffer.pick, GL_RED, picture.pick);
+}
+
+} // namespace tessera::vis
