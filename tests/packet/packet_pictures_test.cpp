@@ -120,6 +120,84 @@ const Mode kModes[] = {
                      layerOf(IsoLayer{.channel = "a", .value = 317, .opacity = 0.4f}),
                      layerOf(IsoLayer{.channel = "whole", .value = 0.9, .opacity = 0.4f})};
      }},
+    {"brushes of values",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 3})};
+         Brush ellipse{.name = "ellipse", .combine = BrushCombine::Or, .region = {}};
+         ellipse.region =
+             EllipseRegion{.x = "a", .y = "b", .center = {320, 0.8}, .radius = {20, 0.4}, .correlation = 0.5};
+         Brush lasso{.name = "lasso", .color = {0.1f, 0.8f, 0.3f}, .combine = BrushCombine::Or, .region = {}};
+         lasso.region = LassoRegion{.x = "b", .y = "a", .points = {{0.2, 280}, {0.9, 290}, {0.5, 330}}, .soft = 0.3};
+         s.selection.brushes = {rangeBrush({{.channel = "a", .lo = 290, .hi = 310, .soft = 12}}), ellipse, lasso};
+         s.selection.brushColor = 0.7f;
+         s.selection.contextLightness = 1.4f;
+     }},
+    {"brushes in space",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 3}),
+                     layerOf(IsoLayer{.channel = "whole", .value = 0.9, .opacity = 0.8f})};
+         s.layers[1].brushes = BrushEffect::FocusOnly;
+         Brush box{.name = "box", .combine = BrushCombine::Minus, .region = {}};
+         box.region = BoxRegion{.center = {9, 8, 9}, .radius = {4, 3, 5}, .soft = 0.4};
+         Brush sphere{.name = "sphere", .region = {}};
+         sphere.region = SphereRegion{.center = {9, 8, 12}, .radius = {8, 7, 9}, .soft = 0.2};
+         Brush rest = rangeBrush({{.channel = "b", .lo = 0.2, .hi = 0.5, .soft = 0.2}});
+         rest.inverted = true;
+         s.selection.brushes = {sphere, box, rest};
+         s.selection.contextOpacity = 0.2f;
+     }},
+    {"brushed projections",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "b", .style = RayStyle::Maximum, .density = 0.6f})};
+         s.selection.brushes = {rangeBrush({{.channel = "a", .lo = 290, .hi = 320, .soft = 8}})};
+         s.selection.contextOpacity = 0.3f;
+     }},
+    {"brushed means",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "b", .style = RayStyle::Average, .density = 0.6f}),
+                     layerOf(VolumeLayer{.channel = "b", .style = RayStyle::XRay, .density = 0.2f})};
+         s.selection.brushes = {rangeBrush({{.channel = "a", .lo = 290, .hi = 320, .soft = 8}})};
+         s.selection.contextOpacity = 0.3f;
+     }},
+    {"lenses",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 3}),
+                     layerOf(VolumeLayer{.channel = "whole", .shaded = false, .density = 0.5f})};
+         s.layers[1].lens = "window";
+         s.lenses = {{.name = "window", .center = {8, 7, 10}, .size = glm::vec3(0.2f), .rim = 0.3f},
+                     {.name = "faint",
+                      .shape = LensShape::Box,
+                      .effect = LensEffect::Suppress,
+                      .center = {12, 10, 14},
+                      .size = {0.2f, 0.15f, 0.1f},
+                      .rotation = {10, 30, 20},
+                      .strength = 0.8f},
+                     {.name = "tube",
+                      .shape = LensShape::Cylinder,
+                      .effect = LensEffect::Enhance,
+                      .center = {4, 4, 4},
+                      .size = {0.1f, 0.1f, 0.3f}},
+                     {.name = "disc",
+                      .shape = LensShape::Disc,
+                      .effect = LensEffect::Only,
+                      .center = {9, 8, 12},
+                      .size = glm::vec3(0.4f),
+                      .inverted = true,
+                      .strength = 0.5f}};
+     }},
+    {"brushes and lenses",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 3})};
+         s.lenses = {{.name = "focus", .effect = LensEffect::Focus, .center = {8, 7, 10}, .size = glm::vec3(0.3f)},
+                     {.name = "mark",
+                      .effect = LensEffect::Enhance,
+                      .center = {10, 10, 16},
+                      .size = glm::vec3(0.2f),
+                      .strength = 0.2f}};
+         Brush lens{.name = "lens", .combine = BrushCombine::Or, .region = {}};
+         lens.region = LensRegion{.lens = "mark"};
+         s.selection.brushes = {rangeBrush({{.channel = "a", .lo = 300, .hi = 320, .soft = 5}}), lens};
+     }},
     {"jittered passes",
      [](Scene& s) {
          s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 3})};

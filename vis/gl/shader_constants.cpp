@@ -1,5 +1,7 @@
 #include "vis/gl/shader_constants.h"
 
+#include "vis/optics/brush_tests.h"
+
 #include "vis/scene/brush_effect.h"
 #include "vis/scene/clipping.h"
 #include "vis/scene/layers.h"

@@ -5,7 +5,7 @@
 
 /// Enumerations shared with the shaders. Every shader begins with `#define PREFIX_NAME number` for each enumerator, so
 /// that no number is written twice. Enumerations of the scene are declared there (RayStyle, LensShape, ClipKind,
-/// BrushEffect, ToneCurve), those used only by the ray caster here.
+/// BrushEffect, ToneCurve, BrushTestKind), those used only by the ray caster here.
 namespace tessera::vis {
 
 /// Classification of a composite layer: by the 1D transfer function at its value (Curve), by a 2D table over value and
@@ -13,10 +13,6 @@ namespace tessera::vis {
 /// table (Slab).
 enum class RayLookup { Curve, Plane, Lattice, Slab };
 inline constexpr std::string_view kRayLookupNames[] = {"curve", "plane", "lattice", "slab"};
-
-/// Kinds of brush tests.
-enum class BrushTestKind { Always, Range, Ellipse, Lasso, Sphere, Box, Lens };
-inline constexpr std::string_view kBrushTestNames[] = {"always", "range", "ellipse", "lasso", "sphere", "box", "lens"};
 
 /// Features of looks that need shader code; sets of them are bit masks of 1 << feature.
 enum class LookFeature { Tone, Boundary, Silhouette, Distance, Cartoon, Charcoal, Wire };

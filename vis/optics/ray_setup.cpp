@@ -71,7 +71,7 @@ glm::dvec3 linearFromSrgb(glm::dvec3 encoded) {
 }
 
 double luminance(glm::dvec3 linear) {
-    return glm::dot(linear, glm::dvec3(0.2126, 0.7152, 0.0722));
+    return glm::dot(linear, kLuminance);
 }
 
 } // namespace tessera::vis

@@ -130,6 +130,7 @@ Plane slicePlane(const SliceLayer& layer, const WorldFrame& frame, glm::dvec3 cu
 double linearFromSrgb(double encoded);
 double srgbFromLinear(double linear);
 glm::dvec3 linearFromSrgb(glm::dvec3 encoded);
+inline constexpr glm::dvec3 kLuminance{0.2126, 0.7152, 0.0722}; ///< Rec. 709
 /// Rec. 709 luminance of linear light.
 double luminance(glm::dvec3 linear);
 

@@ -45,6 +45,9 @@ template <class N> FacingOf<N> facing(const glm::vec<3, N>& gradient, const glm:
     at.front = clamped(N(0.5) + N(0.5 / kEdgeOn) * inner(at.normal, toViewer), N(0), N(1));
     return at;
 }
+inline Facing facing(glm::dvec3 gradient, glm::dvec3 toViewer) {
+    return facing<double>(gradient, toViewer);
+}
 
 /// Cosine between the normal and a direction, and the visibility of that side.
 template <class N> struct Incidence { N cosine, share; };

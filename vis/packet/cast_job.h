@@ -1,8 +1,11 @@
 #pragma once
 
+#include "vis/optics/brush_tests.h"
 #include "vis/optics/surface_light.h"
+#include "vis/scene/brush_effect.h"
 #include "vis/scene/clipping.h"
 #include "vis/scene/layers.h"
+#include "vis/scene/lens.h"
 #include "volume/reconstruct/gradient.h"
 
 #include <cstdint>
@@ -23,7 +26,7 @@ struct VolumeView {
 };
 
 inline constexpr float kNowhere = -1e9f;
-inline constexpr int kMostPacketLayers = 16, kMostPacketSurfaces = 8;
+inline constexpr int kMostPacketLayers = 16, kMostPacketSurfaces = 8, kMostBrushFields = 8;
 inline constexpr int kTableEntries = 2048; ///< of a transfer function
 
 /// A transfer function: entry i has the colour (linear) and opacity at places i and i + 1 of kTableEntries - 1, red,
@@ -40,6 +43,32 @@ struct LayerView {
     float isoValue = 0;  ///< a sample
     float isoOpacity = 1;
     glm::vec3 isoColor{0}; ///< linear
+    BrushEffect brushes = BrushEffect::Fade;
+    int lens = -1; ///< index of the lens that it is drawn in; -1: everywhere
+};
+
+/// A BrushTest in samples of its channels.
+struct BrushView {
+    BrushTestKind kind = BrushTestKind::Always;
+    int flags = 0;      ///< BrushTest::Flags
+    int x = -1, y = -1; ///< index of the brushed channels; -1: there is none; of a lens brush, bits of the lenses
+    glm::vec4 place{0}; ///< range: lo, hi; ellipse and lasso: centre, and one over the radii or half the table
+    glm::vec3 center{0}, inverseRadius{1}; ///< of a sphere or box, in cells of a PacketVolume
+    double correlation = 0, soft = 0;
+    const float* lasso = nullptr; ///< its table
+    glm::vec3 color{0};           ///< linear
+    bool holds = false;           ///< gives its colour
+};
+
+/// Brushes and lenses of a picture.
+struct FocusView {
+    bool any = false;
+    std::span<const BrushView> brushes;
+    std::span<const VolumeView* const> fields; ///< the brushed channels
+    float start = 1;                           ///< degree of interest before the first brush
+    float contextOpacity = 1, brushColor = 0;
+    ContextLook context;
+    std::span<const PlacedLens> lenses;
 };
 
 /// Distances of blocks, and what leaps need.
@@ -73,6 +102,7 @@ struct CastJob {
     std::span<const PlacedClip> clips;
 
     std::span<const LayerView> layers;
+    FocusView focus;
     SkipView skip;
     volume::GradientStencil stencil;
     const Lighting* surface = nullptr;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vis/packet/cast_packet.h"
+#include "vis/packet/cast_focus.h"
 
 /// Packets of rays through the layers of a scene, sample by sample as vis/optics/ray_setup.h says. Only for cast_*.cpp.
 namespace tessera::vis::packet::TESSERA_LANES {
@@ -18,12 +18,17 @@ template <bool Bcc, bool Exact> struct Caster {
     /// A projection, and the sample that it shows.
     struct Projected : ProjectionSums<Floats, Mask> {
         Floats bestAt{0};
+        Focus bestFocus;
         Projected() : ProjectionSums<Floats, Mask>{.found = maskOf(0)} {}
     };
 
     /// `masked`: samples of some layer may be absent here.
-    static Read reader(const LayerView& layer, bool masked) {
-        return {*layer.volume, masked && layer.volume->present != nullptr};
+    static Read reader(const VolumeView& volume, bool masked) { return {volume, masked && volume.present != nullptr}; }
+    static Read reader(const LayerView& layer, bool masked) { return reader(*layer.volume, masked); }
+
+    Focus focusOf(const LayerView& layer, const Vec& cells, Floats k, bool masked, Mask lanes) const {
+        const auto read = [&](const VolumeView& field) { return reader(field, masked)(cells, lanes); };
+        return focusAt(job.focus, layer, cells, packet.world(k), lanes, read);
     }
 
     void count(Mask lanes) {
@@ -50,9 +55,15 @@ template <bool Bcc, bool Exact> struct Caster {
     }
 
     /// Shades samples of a composite layer and puts them behind what is there.
-    void drawSample(const LayerView& layer, const Read& read, Floats place, Floats opacity, const Vec& cells, Floats k,
-                    Mask lanes) {
+    void drawSample(const LayerView& layer, bool masked, Floats place, Floats opacity, Floats k, Mask lanes) {
+        const Read read = reader(layer, masked);
+        const Vec cells = packet.cells(k);
         Vec color = colorAt(layer, tablePlace(place), lanes);
+        if (job.focus.any) {
+            const Focus focus = focusOf(layer, cells, k, masked, lanes);
+            color = focused(job.focus, layer, color, focus);
+            opacity = opacity * focus.opacity;
+        }
         if (layer.shaded) color = lit(layer, read, color, cells, k, lanes);
         const Floats thickness = Floats(layer.density) * (packet.holeCount > 0 ? packet.coverage(k) : Floats(1));
         packet.blend(color, correctedOpacity(opacity, packet.step, thickness), k, lanes);
@@ -67,13 +78,14 @@ template <bool Bcc, bool Exact> struct Caster {
         while (anyOf(live)) {
             const Mask full = skipEmpty(job, packet, k, live);
             if (!anyOf(full & live)) continue;
-            const Read read = reader(layer, someAbsent(job, packet, k, live));
+            const bool masked = someAbsent(job, packet, k, live);
+            const Read read = reader(layer, masked);
             for (int n = 0; n < most; ++n) {
                 Mask met = maskOf(0);
                 Floats place(0), opacity(0);
                 march(layer, read, live, k, met, place, opacity, n, most);
                 if (anyOf(met)) {
-                    drawSample(layer, read, place, opacity, packet.cells(k), k, met);
+                    drawSample(layer, masked, place, opacity, k, met);
                     k = choose(met, k + Floats(1), k);
                 }
                 live &= (k < packet.count) & packet.seeThrough();
@@ -121,9 +133,9 @@ template <bool Bcc, bool Exact> struct Caster {
                 live &= k < packet.count;
                 if (!anyOf(useful)) continue;
             }
-            const Read read = reader(layer, someAbsent(job, packet, k, live));
+            const bool masked = someAbsent(job, packet, k, live);
             for (int n = 0; n < most; ++n) {
-                project(layer, read, sums, k, live);
+                project(layer, masked, sums, k, live);
                 k += Floats(1);
                 live &= k < packet.count;
             }
@@ -131,25 +143,37 @@ template <bool Bcc, bool Exact> struct Caster {
         showProjection(layer, sums);
     }
 
-    void project(const LayerView& layer, const Read& read, Projected& sums, Floats k, Mask lanes) {
+    void project(const LayerView& layer, bool masked, Projected& sums, Floats k, Mask lanes) {
         count(lanes);
-        const Found found = read(packet.cells(k), lanes);
+        const Vec cells = packet.cells(k);
+        const Found found = reader(layer, masked)(cells, lanes);
         const Mask present = found.present & packet.shows(k);
         const Floats along = multiplyAdd(found.value, Floats(layer.placeScale), Floats(layer.placeOffset));
+        Focus focus;
+        if (job.focus.any) focus = focusOf(layer, cells, k, masked, present);
         Floats opacity(0);
         if (layer.style == RayStyle::XRay)
-            opacity =
-                correctedOpacity(opacityAt(layer, tablePlace(along), present), packet.step, Floats(layer.density));
+            opacity = correctedOpacity(opacityAt(layer, tablePlace(along), present) * focus.opacity, packet.step,
+                                       Floats(layer.density));
         const Mask foundBefore = sums.found;
-        const Mask better = sums.add(layer.style, Floats(layer.threshold), present, along, Floats(1), opacity);
+        const Mask better = sums.add(layer.style, Floats(layer.threshold), present, along, focus.opacity, opacity);
         sums.bestAt = choose(better, k, sums.bestAt);
+        if (job.focus.any) keepBest(sums.bestFocus, focus, better);
         // Rays that have ended do not see a local maximum end.
         sums.found = (sums.found & lanes) | (foundBefore & !lanes);
     }
 
+    static void keepBest(Focus& best, const Focus& focus, Mask better) {
+        best.opacity = choose(better, focus.opacity, best.opacity);
+        best.saturation = choose(better, focus.saturation, best.saturation);
+        best.interest.doi = choose(better, focus.interest.doi, best.interest.doi);
+        best.interest.held = choose(better, focus.interest.held, best.interest.held);
+        best.interest.color = choose(better, focus.interest.color, best.interest.color);
+    }
+
     /// Puts a projection behind what is there.
     void showProjection(const LayerView& layer, const Projected& sums) {
-        const Mask some = sums.count > Floats(0);
+        const Mask some = (sums.count > Floats(0)) & (sums.factors > Floats(0));
         Floats place = sums.bestPlace, shownAt = sums.bestAt;
         if (layer.style == RayStyle::XRay || layer.style == RayStyle::Average) shownAt = packet.count * Floats(0.5);
         if (layer.style == RayStyle::XRay) place = sums.absorbed;
@@ -157,7 +181,14 @@ template <bool Bcc, bool Exact> struct Caster {
         const TablePlace at = tablePlace(place);
         Floats alpha = smaller(Floats(1), Floats(layer.density) * opacityAt(layer, at, some));
         if (layer.style == RayStyle::XRay) alpha = sums.absorbed;
-        packet.blend(colorAt(layer, at, some), alpha, shownAt, some);
+        Vec color = colorAt(layer, at, some);
+        if (job.focus.any && layer.style == RayStyle::Average)
+            alpha = smaller(Floats(1), alpha * sums.factors / larger(sums.count, Floats(1)));
+        if (job.focus.any && layer.style != RayStyle::Average && layer.style != RayStyle::XRay) {
+            alpha = smaller(Floats(1), alpha * sums.bestFocus.opacity);
+            color = focused(job.focus, layer, color, sums.bestFocus);
+        }
+        packet.blend(color, alpha, shownAt, some);
     }
 
     /// A surface that rays meet before their next sample.
@@ -168,8 +199,9 @@ template <bool Bcc, bool Exact> struct Caster {
     };
 
     /// The intersections with an iso-surface between samples k - 1 and k.
-    Surface meetSurface(const LayerView& layer, const Read& read, const Found& before, const Found& now, Floats k,
+    Surface meetSurface(const LayerView& layer, bool masked, const Found& before, const Found& now, Floats k,
                         Mask lanes) {
+        const Read read = reader(layer, masked);
         const Floats value(layer.isoValue), far(1e9);
         const Mask above = before.value >= value, below = !above, over = now.value >= value;
         const Mask crossed = lanes & before.present & now.present & ((above & !over) | (below & over));
@@ -188,9 +220,15 @@ template <bool Bcc, bool Exact> struct Caster {
         if (!anyOf(shown)) return out;
         const Vec cells = packet.cells(at), slope = gradient(read, cells, shown);
         out.at = choose(shown, at, far);
-        out.color =
-            litColor(job, spreadOut<Floats>(layer.isoColor), slope, Floats(1), packet.world(at), -packet.ray.direction);
-        out.opacity = choose(shown, Floats(layer.isoOpacity), Floats(0));
+        Vec albedo = spreadOut<Floats>(layer.isoColor);
+        Floats opacity(layer.isoOpacity);
+        if (job.focus.any) {
+            const Focus focus = focusOf(layer, cells, at, masked, shown);
+            albedo = focused(job.focus, layer, albedo, focus);
+            opacity = smaller(Floats(1), opacity * focus.opacity);
+        }
+        out.color = litColor(job, albedo, slope, Floats(1), packet.world(at), -packet.ray.direction);
+        out.opacity = choose(shown, opacity, Floats(0));
         return out;
     }
 
@@ -244,7 +282,7 @@ template <bool Bcc, bool Exact> struct Caster {
         for (std::size_t i = 0; i < job.layers.size(); ++i) {
             const LayerView& layer = job.layers[i];
             if (layer.style == RayStyle::Iso && count < kMostPacketSurfaces)
-                met[count++] = meetSurface(layer, reader(layer, masked), before[i], now[i], k, lanes);
+                met[count++] = meetSurface(layer, masked, before[i], now[i], k, lanes);
         }
         // Nearest first; equal ones in order.
         for (int end = count; end > 1; --end)
@@ -266,12 +304,11 @@ template <bool Bcc, bool Exact> struct Caster {
 
     void drawVolume(const LayerView& layer, const Found& now, Projected& sums, bool masked, Floats k, Mask lanes) {
         if (layer.style == RayStyle::Iso) return;
-        const Read read = reader(layer, masked);
-        if (layer.style != RayStyle::Composite) return project(layer, read, sums, k, lanes);
+        if (layer.style != RayStyle::Composite) return project(layer, masked, sums, k, lanes);
         const Floats place = multiplyAdd(now.value, Floats(layer.placeScale), Floats(layer.placeOffset));
         const Floats alpha = opacityAt(layer, tablePlace(place), now.present);
         const Mask hit = lanes & now.present & (alpha > Floats(0));
-        if (anyOf(hit)) drawSample(layer, read, place, alpha, packet.cells(k), k, hit);
+        if (anyOf(hit)) drawSample(layer, masked, place, alpha, k, hit);
     }
 };
 
@@ -286,7 +323,7 @@ template <bool Bcc, bool Exact> void castPixels(const CastJob& job, glm::ivec2 b
             const bool one = job.layers.size() == 1;
             if (one && style == RayStyle::Composite)
                 caster.castComposite();
-            else if (one && (style == RayStyle::Maximum || style == RayStyle::Minimum))
+            else if (one && !job.focus.any && (style == RayStyle::Maximum || style == RayStyle::Minimum))
                 caster.castExtremum();
             else
                 caster.castLayers();

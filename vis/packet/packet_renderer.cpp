@@ -24,7 +24,11 @@ CastPixels casterOf([[maybe_unused]] InstructionSet with) {
 
 /// Whether tables and maps of two scenes are the same.
 bool sameTables(const Scene& a, const Scene& b) {
-    return a.layers == b.layers && a.transfer == b.transfer && a.time == b.time && a.render.filter == b.render.filter;
+    const auto sameLens = [](const Lens& one, const Lens& other) {
+        return one.name == other.name && one.enabled == other.enabled && one.marks == other.marks;
+    };
+    return a.layers == b.layers && a.transfer == b.transfer && a.time == b.time && a.render.filter == b.render.filter &&
+           a.selection == b.selection && std::ranges::equal(a.lenses, b.lenses, sameLens);
 }
 
 } // namespace
@@ -98,8 +102,7 @@ bool PacketRenderer::setVolumes(std::shared_ptr<PacketVolumes> volumes) {
 bool PacketRenderer::request(const Scene& scene) {
     if (scene_ && sameTables(scene, prepared_)) return true;
     bool all = true;
-    for (const DrawnChannel& drawn : drawnChannels(scene, source().info()))
-        all = volumes_->request(drawn.channel) && all;
+    for (const PacketChannel& channel : packetChannels(scene, source().info())) all = volumes_->request(channel) && all;
     return all;
 }
 
@@ -107,7 +110,7 @@ void PacketRenderer::prepare(const Scene& scene) {
     if (scene_ && sameTables(scene, prepared_)) return;
     const volume::DatasetInfo& info = source().info();
     std::vector<SharedVolume> volumes;
-    for (const DrawnChannel& drawn : drawnChannels(scene, info)) volumes.push_back(volumes_->get(drawn.channel));
+    for (const PacketChannel& channel : packetChannels(scene, info)) volumes.push_back(volumes_->get(channel));
     held_ = volumes;
     scene_ = std::make_unique<PacketScene>(scene, info, std::move(volumes));
     prepared_ = scene;

@@ -1,7 +1,7 @@
 #include "vis/packet/packet_scene.h"
 
-#include "vis/optics/block_distance.h"
 #include "vis/optics/ray_setup.h"
+#include "vis/transfer/block_distance.h"
 #include "volume/bricks/parts_bricks.h"
 #include "volume/field/time_pair.h"
 
@@ -71,10 +71,27 @@ VolumeView viewOf(const PacketVolume& volume) {
 
 } // namespace
 
+namespace {
+
+/// Index of an enabled lens among those that placeLenses() gives, -1 if there is none of that name.
+int findEnabledLens(const Scene& scene, const std::string& name) {
+    int index = 0;
+    for (const Lens& lens : scene.lenses) {
+        if (!lens.enabled) continue;
+        if (lens.name == name) return index < kMaxLenses ? index : -1;
+        ++index;
+    }
+    return -1;
+}
+
+} // namespace
+
 std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::DatasetInfo& info) {
     std::vector<DrawnChannel> out;
+    bool exact = false; // all have samples of the same kind
     for (std::size_t i = 0; i < scene.layers.size(); ++i) {
         const Layer& layer = scene.layers[i];
+        if (!layer.lens.empty() && findEnabledLens(scene, layer.lens) < 0) continue;
         if (!layer.visible || std::holds_alternative<FlowLayer>(layer.technique)) continue;
         const auto* iso = std::get_if<IsoLayer>(&layer.technique);
         if (iso && iso->method == SurfaceMethod::Polygons) continue;
@@ -85,22 +102,60 @@ std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::Datase
         const volume::TimePair time = volume::timesAround(info.times, scene.time + layer.timeShift);
         const Range range = transferOfLayer(scene, info, layer, *channel).range,
                     whole = info.channelRange(info.channel(*channel));
-        const bool narrow = std::abs(range.hi - range.lo) < kNarrow * std::abs(whole.hi - whole.lo);
-        out.push_back({int(i), {*channel, time.earlier, scene.render.filter, narrow}});
+        exact = exact || std::abs(range.hi - range.lo) < kNarrow * std::abs(whole.hi - whole.lo);
+        out.push_back({int(i), {*channel, time.earlier, scene.render.filter, false}});
     }
+    for (DrawnChannel& drawn : out) drawn.channel.exact = exact;
     return out;
 }
 
 namespace {
 
-std::string refusalOfLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn) {
-    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
-    const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(drawn.channel.channel).parameter)];
-    if (std::holds_alternative<SliceLayer>(layer.technique)) return "slices";
+/// The channels of the enabled brushes that the data set has.
+std::vector<int> brushedChannels(const Scene& scene, const volume::DatasetInfo& info) {
+    std::vector<int> out;
+    for (const std::string& name : selectedChannels(scene.selection))
+        if (const std::optional<int> channel = info.findChannel(name)) out.push_back(*channel);
+    return out;
+}
+
+} // namespace
+
+std::vector<PacketChannel> packetChannels(const Scene& scene, const volume::DatasetInfo& info) {
+    std::vector<PacketChannel> out;
+    for (const DrawnChannel& drawn : drawnChannels(scene, info)) out.push_back(drawn.channel);
+    const bool exact = !out.empty() && out.front().exact;
+    const int time = volume::timesAround(info.times, scene.time).earlier;
+    for (const int channel : brushedChannels(scene, info)) out.push_back({channel, time, scene.render.filter, exact});
+    return out;
+}
+
+namespace {
+
+std::string refusalOfParameter(const volume::DatasetInfo& info, int channel) {
+    const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(channel).parameter)];
     if (parameter.categorical) return "labels";
     if (volume::labelChannel(info, parameter)) return "parameters whose regions are never mixed";
+    return "";
+}
+
+std::string refusalOfFocus(const Scene& scene, const volume::DatasetInfo& info) {
+    if (lensesBend(scene)) return "magnifying lenses";
+    if (!scene.selection.active()) return "";
+    if (scene.selection.contextBlur > 0) return "blurred context";
+    const std::vector<int> brushed = brushedChannels(scene, info);
+    for (const int channel : brushed)
+        if (std::string why = refusalOfParameter(info, channel); !why.empty()) return "brushes of " + why;
+    if (!brushed.empty() && volume::timesAround(info.times, scene.time).between())
+        return "times between the stored ones";
+    return brushed.size() > std::size_t(kMostBrushFields) ? "brushes of so many parameters" : "";
+}
+
+std::string refusalOfLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn) {
+    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
+    if (std::holds_alternative<SliceLayer>(layer.technique)) return "slices";
+    if (std::string why = refusalOfParameter(info, drawn.channel.channel); !why.empty()) return why;
     if (volume::timesAround(info.times, scene.time + layer.timeShift).between()) return "times between the stored ones";
-    if (!layer.lens.empty()) return "layers in lenses";
     if (!colorByOf(layer.technique).empty()) return "colours by another parameter";
     if (const Look* look = lookOf(layer.technique); look && look->any()) return "looks";
     const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
@@ -118,8 +173,7 @@ std::string refusalOfLayer(const Scene& scene, const volume::DatasetInfo& info, 
 
 std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
     if (peelsOf(scene) > 0) return "meshes, lines and points";
-    if (scene.selection.active()) return "brushes";
-    if (std::ranges::any_of(scene.lenses, [](const Lens& lens) { return lens.enabled; })) return "lenses";
+    if (std::string why = refusalOfFocus(scene, info); !why.empty()) return why;
     if (scene.lighting.shadows.any()) return "shadows";
     if (usesMaps(scene.lighting)) return "light from maps";
     if (scene.render.proxy != Proxy::Rays) return "proxy geometry";
@@ -129,15 +183,12 @@ std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, c
         return "tetrahedral interpolation";
     const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
     int surfaces = 0;
-    bool exact = false, shorts = false;
     for (const DrawnChannel& each : drawn) {
         const std::string refusal = refusalOfLayer(scene, info, each);
         if (!refusal.empty()) return refusal;
         surfaces += std::holds_alternative<IsoLayer>(scene.layers[std::size_t(each.layer)].technique);
-        (each.channel.exact ? exact : shorts) = true;
     }
     if (drawn.size() > std::size_t(kMostPacketLayers) || surfaces > kMostPacketSurfaces) return "so many layers";
-    if (exact && shorts) return "narrow and wide ranges together";
     return "";
 }
 
@@ -149,6 +200,8 @@ void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, 
     const double width = range.hi - range.lo;
     LayerView out;
     out.volume = view;
+    out.brushes = layer.brushes;
+    if (!layer.lens.empty()) out.lens = findLens(lenses_, layer.lens);
     out.placeScale = width != 0 ? float(volume.scale / width) : 0;
     out.placeOffset = width != 0 ? float((volume.offset - range.lo) / width) : 0.5f;
     Table table = makeTable(function, range);
@@ -216,10 +269,54 @@ std::vector<std::uint8_t> scoreBounds(const PacketVolume& volume, const LayerVie
 
 } // namespace
 
+/// Brushes in samples of the volumes that follow those of the layers.
+void PacketScene::addBrushes(const Scene& scene, const volume::DatasetInfo& info) {
+    const std::vector<int> channels = brushedChannels(scene, info);
+    const std::size_t first = volumes_.size() - channels.size();
+    for (std::size_t i = first; i < volumes_.size(); ++i) fields_.push_back(&views_[i]);
+    const BrushTests found = brushTests(scene.selection, info, channels, lenses_);
+    for (const LassoRegion& lasso : found.lassos) lassos_.push_back(lassoTable(lasso));
+    for (const BrushTest& test : found.tests) {
+        BrushView out;
+        out.kind = test.kind;
+        out.flags = test.flags;
+        out.x = test.x;
+        out.y = test.y;
+        out.soft = test.soft;
+        out.correlation = test.correlation;
+        out.color = glm::vec3(test.color);
+        out.holds = test.color.a > 0;
+        const auto volumeOf = [&](int field) -> const PacketVolume& { return *volumes_[first + std::size_t(field)]; };
+        const bool space = test.kind == BrushTestKind::Sphere || test.kind == BrushTestKind::Box;
+        if (space) {
+            out.center = glm::vec3(glm::dvec3(test.place) + double(kMargin));
+            out.inverseRadius = glm::vec3(test.inverseRadius);
+        } else if (test.kind == BrushTestKind::Range && test.x >= 0) {
+            const PacketVolume& volume = volumeOf(test.x);
+            out.place = glm::vec4((glm::dvec2(test.place) - volume.offset) / volume.scale, 0, 0);
+            out.soft = test.soft / volume.scale;
+        } else if (test.kind != BrushTestKind::Lens && test.x >= 0) {
+            const PacketVolume &a = volumeOf(test.x), &b = volumeOf(test.y);
+            out.place = glm::dvec4((test.place.x - a.offset) / a.scale, (test.place.y - b.offset) / b.scale,
+                                   a.scale / test.place.z, b.scale / test.place.w);
+            if (test.kind == BrushTestKind::Lasso) out.lasso = lassos_[std::size_t(test.table)].doi.data();
+        }
+        brushes_.push_back(out);
+    }
+    focus_.brushes = brushes_;
+    focus_.fields = fields_;
+    focus_.start = found.start;
+    focus_.contextOpacity = scene.selection.contextOpacity;
+    focus_.brushColor = scene.selection.brushColor;
+    focus_.context = {double(scene.selection.contextSaturation), double(scene.selection.contextLightness)};
+}
+
 PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, std::vector<SharedVolume> volumes)
     : volumes_(std::move(volumes)) {
     const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
     for (const SharedVolume& volume : volumes_) views_.push_back(viewOf(*volume));
+    lenses_ = placeLenses(scene, worldFrame(info.bounds, scene.stretch));
+    addBrushes(scene, info);
     tables_.reserve(drawn.size());
     // Small blocks pay where rays soon end at surfaces.
     const bool surfaces = std::ranges::all_of(drawn, [&](const DrawnChannel& each) {
@@ -265,6 +362,10 @@ CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, co
     clips_ = placeClips(scene.clips, frame);
     job.clips = clips_;
     job.layers = layers_;
+    lenses_ = placeLenses(scene, frame);
+    job.focus = focus_;
+    job.focus.lenses = lenses_;
+    job.focus.any = !brushes_.empty() || !lenses_.empty();
     job.stencil = volume::gradientStencil(lattice.kind, scene.render.gradient);
     lighting_ = scene.lighting;
     lights_ = placeLights(scene.lighting, scene.camera);

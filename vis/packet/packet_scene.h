@@ -21,25 +21,28 @@ struct DrawnChannel {
     PacketChannel channel;
 };
 std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::DatasetInfo& info);
+/// All samples that a scene needs: those of drawnChannels(), then those of brushed channels.
+std::vector<PacketChannel> packetChannels(const Scene& scene, const volume::DatasetInfo& info);
 
 using SharedVolume = std::shared_ptr<const PacketVolume>;
 
 /// Tables and maps of a scene, for every camera. Owns all that its views refer to; not to be moved.
 class PacketScene {
 public:
-    /// `volumes`: of drawnChannels(), in their order.
+    /// `volumes`: of packetChannels(), in their order.
     PacketScene(const Scene& scene, const volume::DatasetInfo& info, std::vector<SharedVolume> volumes);
     PacketScene(const PacketScene&) = delete;
     PacketScene& operator=(const PacketScene&) = delete;
 
     bool empty() const { return layers_.empty(); }
-    /// A job without a picture. `scene` may differ from that of the constructor in its camera, clips, lighting and
-    /// steps.
+    /// A job without a picture. `scene` may differ from that of the constructor in its camera, clips, lighting, steps
+    /// and the places of its lenses.
     CastJob job(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice, glm::ivec2 size,
                 double stepFactor);
     double occupied() const { return skip_.occupied; }
 
 private:
+    void addBrushes(const Scene& scene, const volume::DatasetInfo& info);
     void addLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
                   const VolumeView* view);
 
@@ -52,6 +55,11 @@ private:
     std::vector<PlacedClip> clips_;
     std::vector<PlacedLight> lights_;
     Lighting lighting_;
+    std::vector<BrushView> brushes_;
+    std::vector<LassoTable> lassos_;
+    std::vector<const VolumeView*> fields_;
+    FocusView focus_;
+    std::vector<PlacedLens> lenses_;
 };
 
 } // namespace tessera::vis::packet

@@ -1,6 +1,6 @@
 #include "vis/packet/packet_volume.h"
 
-#include "vis/optics/block_distance.h"
+#include "vis/transfer/block_distance.h"
 #include "volume/base/parallel.h"
 #include "volume/reconstruct/reconstruct.h"
 

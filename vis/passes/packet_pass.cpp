@@ -13,8 +13,8 @@ namespace {
 double packetBytes(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
     constexpr double kShared = 1.2; // samples that several bricks hold
     std::vector<packet::PacketChannel> channels;
-    for (const packet::DrawnChannel& drawn : packet::drawnChannels(scene, info))
-        if (std::ranges::find(channels, drawn.channel) == channels.end()) channels.push_back(drawn.channel);
+    for (const packet::PacketChannel& channel : packet::packetChannels(scene, info))
+        if (std::ranges::find(channels, channel) == channels.end()) channels.push_back(channel);
     const double samples = double(lattice.size.x) * double(lattice.size.y) * double(lattice.size.z);
     double bytes = 0;
     for (const packet::PacketChannel& channel : channels) bytes += samples * kShared * (channel.exact ? 4 : 2);

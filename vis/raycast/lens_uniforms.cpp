@@ -49,11 +49,6 @@ void setLensUniforms(const Program& program, const std::vector<PlacedLens>& lens
     program.set("lensAct", acts);
 }
 
-bool lensesBend(const Scene& scene) {
-    return std::any_of(scene.lenses.begin(), scene.lenses.end(),
-                       [](const Lens& lens) { return lens.enabled && lens.effect == LensEffect::Magnify; });
-}
-
 std::optional<int> lensOf(const std::vector<PlacedLens>& lenses, const std::string& name) {
     if (name.empty()) return -1;
     const int found = findLens(lenses, name);

@@ -2,8 +2,9 @@
 
 #include "vis/bricks/texels.h"
 #include "vis/gl/program.h"
+#include "vis/gl/shader_constants.h"
+#include "vis/optics/brush_tests.h"
 #include "vis/optics/ray_setup.h"
-#include "vis/raycast/brush_tests.h"
 #include "vis/scene/scene.h"
 
 #include <optional>

@@ -1,6 +1,6 @@
 #include "vis/raycast/ray_tables.h"
 
-#include "vis/optics/block_distance.h"
+#include "vis/transfer/block_distance.h"
 #include "vis/optics/preintegration.h"
 #include "vis/raycast/ray_field.h"
 #include "vis/scene/selection_bounds.h"

@@ -212,11 +212,8 @@ Interest Prepared::interest(glm::dvec3 world) const {
 
 glm::dvec3 Prepared::focused(const DrawnLayer& layer, glm::dvec3 color, const Interest& doi, double saturation) const {
     const Selection& selection = scene.selection;
-    const double share = layer.brushes == BrushEffect::Fade ? doi.doi : 1;
-    color = glm::mix(glm::dvec3(luminance(color)), color,
-                     glm::mix(double(selection.contextSaturation), 1.0, share) * saturation);
-    const double lightness = glm::mix(double(selection.contextLightness), 1.0, share);
-    color = glm::mix(color * std::min(lightness, 1.0), glm::dvec3(1), std::max(lightness - 1, 0.0));
+    const ContextLook context{double(selection.contextSaturation), double(selection.contextLightness)};
+    color = focusedColor<double>(layer.brushes, context, color, luminance(color), doi.doi, saturation);
     const double held = layer.brushes == BrushEffect::None ? 0 : doi.held * doi.doi;
     return glm::mix(color, doi.color, held * double(selection.brushColor));
 }

@@ -1,7 +1,5 @@
 #include "vis/scene/lens.h"
 
-#include "vis/scene/lens_shape.h"
-
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -69,17 +67,6 @@ void setPlace(PlacedLens& placed, const Lens& lens, const Camera& camera) {
 
 } // namespace
 
-double PlacedLens::radius(glm::dvec3 world) const {
-    return lensRadius(shape, toUnit * (world - center));
-}
-
-double PlacedLens::weight(glm::dvec3 world) const {
-    const double r = radius(world);
-    const double t = rim > 0 ? std::clamp((1 - r) / rim, 0.0, 1.0) : r < 1 ? 1.0 : 0.0;
-    const double own = t * t * (3 - 2 * t);
-    return inverted ? 1 - own : own;
-}
-
 glm::dvec3 PlacedLens::bend(glm::dvec3 world) const {
     const double r = radius(world);
     if (!(r < 1)) return world;
@@ -114,32 +101,11 @@ int findLens(const std::vector<PlacedLens>& lenses, const std::string& name) {
     return -1;
 }
 
-LensAction lensAction(const std::vector<PlacedLens>& lenses, int own, glm::dvec3 world) {
-    LensAction action;
-    if (own >= 0) action.opacity = lenses[std::size_t(own)].weight(world);
-    for (std::size_t i = std::size_t(own + 1); i < lenses.size(); ++i) {
-        const double weight = lenses[i].weight(world);
-        action.opacity *= glm::mix(lenses[i].outside, lenses[i].inside, weight);
-        action.saturation *= glm::mix(1.0, lenses[i].saturation, weight);
-    }
-    return action;
-}
-
 glm::dvec3 bend(const std::vector<PlacedLens>& lenses, glm::dvec3 world, glm::dvec3 halfSize) {
     const glm::dvec3 most = glm::max(halfSize, glm::abs(world));
     for (auto lens = lenses.rbegin(); lens != lenses.rend(); ++lens)
         if (lens->magnification > 1) world = lens->bend(world);
     return glm::clamp(world, -most, most);
-}
-
-double confine(const std::vector<PlacedLens>& lenses, double doi, glm::dvec3 world) {
-    double most = 0, share = 0;
-    for (const PlacedLens& lens : lenses) {
-        if (!(lens.focus > 0)) continue;
-        share = std::max(share, lens.focus);
-        most = std::max(most, lens.weight(world));
-    }
-    return glm::mix(doi, 1.0, share * (1 - most));
 }
 
 } // namespace tessera::vis

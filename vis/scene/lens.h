@@ -3,7 +3,9 @@
 #include "vis/scene/camera.h"
 #include "vis/scene/lens_shape.h"
 
+#include <algorithm>
 #include <glm/mat3x3.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -114,9 +116,20 @@ struct PlacedLens {
     double detail = 1; ///< Lens::detail
 
     bool operator==(const PlacedLens&) const = default;
-    double radius(glm::dvec3 world) const;
+    template <class N> N radius(const glm::vec<3, N>& world) const {
+        const glm::vec<3, N> from = world - spreadOut<N>(center);
+        return lensRadius<N>(shape, spreadOut<N>(toUnit[0]) * from.x + spreadOut<N>(toUnit[1]) * from.y +
+                                        spreadOut<N>(toUnit[2]) * from.z);
+    }
+    double radius(glm::dvec3 world) const { return radius<double>(world); }
     /// 1 inside, 0 outside, smoothstep over the rim; reversed if inverted.
-    double weight(glm::dvec3 world) const;
+    template <class N> N weight(const glm::vec<3, N>& world) const {
+        const N inwards = N(1) - radius(world);
+        const N t = rim > 0 ? clamped(inwards * N(1 / rim), N(0), N(1)) : choose(inwards > N(0), N(1), N(0));
+        const N own = t * t * (N(3) - N(2) * t);
+        return inverted ? N(1) - own : own;
+    }
+    double weight(glm::dvec3 world) const { return weight<double>(world); }
     /// The position whose data are shown at `world`: at radius r, the distance from the centre is multiplied by 1 / (1
     /// + d (1 - r)), d = magnification - 1 (inverse of the graphical fisheye of M. Sarkar and M. Brown, 1992).
     glm::dvec3 bend(glm::dvec3 world) const;
@@ -132,16 +145,44 @@ std::vector<PlacedLens> placeLenses(const std::vector<Lens>& lenses, const World
 int findLens(const std::vector<PlacedLens>& lenses, const std::string& name);
 
 /// Effect of all lenses on a layer at a position; the layer belongs to lens `own` (-1: to none).
-struct LensAction {
-    double opacity = 1, saturation = 1; ///< factors
+template <class N> struct LensActionOf {
+    N opacity{1}, saturation{1}; ///< factors
 };
-LensAction lensAction(const std::vector<PlacedLens>& lenses, int own, glm::dvec3 world);
+using LensAction = LensActionOf<double>;
+template <class N>
+LensActionOf<N> lensAction(std::span<const PlacedLens> lenses, int own, const glm::vec<3, N>& world) {
+    LensActionOf<N> action;
+    if (own >= 0) action.opacity = lenses[std::size_t(own)].weight(world);
+    for (const PlacedLens& lens : lenses.subspan(std::size_t(own + 1))) {
+        const N weight = lens.weight(world);
+        action.opacity = action.opacity * blended(N(lens.outside), N(lens.inside), weight);
+        action.saturation = action.saturation * blended(N(1), N(lens.saturation), weight);
+    }
+    return action;
+}
+
+inline LensAction lensAction(const std::vector<PlacedLens>& lenses, int own, glm::dvec3 world) {
+    return lensAction<double>(lenses, own, world);
+}
 
 /// Applies all magnifying lenses, the last of the list first. Positions inside the box stay inside.
 glm::dvec3 bend(const std::vector<PlacedLens>& lenses, glm::dvec3 world, glm::dvec3 halfSize);
 
 /// The degree of interest after lenses that confine the brushes.
-double confine(const std::vector<PlacedLens>& lenses, double doi, glm::dvec3 world);
+template <class N> N confine(std::span<const PlacedLens> lenses, N doi, const glm::vec<3, N>& world) {
+    N most(0);
+    double share = 0;
+    for (const PlacedLens& lens : lenses) {
+        if (!(lens.focus > 0)) continue;
+        share = std::max(share, lens.focus);
+        most = larger(most, lens.weight(world));
+    }
+    return share > 0 ? blended(doi, N(1), N(share) * (N(1) - most)) : doi;
+}
+
+inline double confine(const std::vector<PlacedLens>& lenses, double doi, glm::dvec3 world) {
+    return confine<double>(lenses, doi, world);
+}
 
 /// Lens weights as functions of physical positions.
 struct LensSpace {

@@ -42,20 +42,6 @@ void rim(const Line& line, glm::dvec3 eye, bool direction) {
 
 } // namespace
 
-double lensRadius(LensShape shape, glm::dvec3 place) {
-    switch (shape) {
-    case LensShape::Sphere:
-        return glm::length(place);
-    case LensShape::Box:
-        return std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)});
-    case LensShape::Cylinder:
-        return std::max(std::hypot(place.x, place.y), std::abs(place.z));
-    case LensShape::Disc:
-        return std::hypot(place.x, place.y) / std::max(1 + place.z, 1e-6);
-    }
-    return 0;
-}
-
 void lensOutline(LensShape shape, glm::dvec3 eye, bool perspective, const Line& line) {
     const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
     switch (shape) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "volume/base/numbers.h"
+
 #include <functional>
 #include <glm/vec3.hpp>
 #include <string_view>
@@ -12,7 +14,20 @@ enum class LensShape { Sphere, Box, Cylinder, Disc };
 inline constexpr std::string_view kLensShapeNames[] = {"sphere", "box", "cylinder", "disc"};
 
 /// Normalised radius: 0 at the centre, 1 on the outline; twin: lensRadius in vis/shaders/lib/lens.glsl.
-double lensRadius(LensShape shape, glm::dvec3 place);
+template <class N> N lensRadius(LensShape shape, const glm::vec<3, N>& place) {
+    const N across = squareRoot(place.x * place.x + place.y * place.y);
+    switch (shape) {
+    case LensShape::Sphere:
+        return lengthOf(place);
+    case LensShape::Box:
+        return larger(larger(magnitude(place.x), magnitude(place.y)), magnitude(place.z));
+    case LensShape::Cylinder:
+        return larger(across, magnitude(place.z));
+    case LensShape::Disc:
+        return across / larger(N(1) + place.z, N(1e-6));
+    }
+    return N(0);
+}
 
 /// Draws the outline as lines between positions; `strength` is below 1 for auxiliary lines. `eye`: viewpoint, or
 /// without perspective the direction towards the viewer.

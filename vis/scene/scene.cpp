@@ -10,6 +10,11 @@ const TransferFunction& transferFor(const Scene& scene, const std::string& name)
     return found == scene.transfer.end() ? fallback : found->second;
 }
 
+bool lensesBend(const Scene& scene) {
+    return std::ranges::any_of(scene.lenses,
+                               [](const Lens& lens) { return lens.enabled && lens.effect == LensEffect::Magnify; });
+}
+
 int peelsOf(const Scene& scene) {
     const bool brushed = scene.selection.active();
     int peels = 0;

@@ -149,6 +149,8 @@ int peelsOf(const Scene& scene);
 /// Whether a geometry layer is visible.
 bool drawn(const Scene& scene, const GeometryLayer& layer);
 
+/// Whether a lens magnifies, so that data appear displaced.
+bool lensesBend(const Scene& scene);
 std::vector<PlacedLens> placeLenses(const Scene& scene, const WorldFrame& frame);
 
 /// The ground of the picture: the scene's paper, or else the paper of a visible layer's charcoal look (not drawn in a

@@ -1,5 +1,7 @@
 #include "vis/scene/selection.h"
 
+#include "vis/scene/brush_effect.h"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -79,18 +81,15 @@ bool selectsLens(const Selection& selection) {
 
 double intervalDoi(const BrushInterval& interval, double value) {
     if (std::isnan(value)) return 0;
-    const double outside = std::max({interval.lo - value, value - interval.hi, 0.0});
-    if (outside == 0) return 1;
-    return interval.soft > 0 ? std::max(0.0, 1 - outside / interval.soft) : 0;
+    return softEdge(std::max({interval.lo - value, value - interval.hi, 0.0}), interval.soft);
 }
 
 double radialDoi(double radii, double soft) {
-    if (!(radii > 1)) return std::isnan(radii) ? 0 : 1;
-    return soft > 0 ? std::max(0.0, 1 - (radii - 1) / soft) : 0;
+    return std::isnan(radii) ? 0 : softEdge(std::max(radii - 1, 0.0), soft);
 }
 
 double ellipseRadii(double u, double v, double correlation) {
-    return std::sqrt((u * u - 2 * correlation * u * v + v * v) / (1 - correlation * correlation));
+    return std::sqrt(ellipseSquare(u, v, correlation));
 }
 
 LassoPlace lassoPlace(const LassoRegion& lasso) {

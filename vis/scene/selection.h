@@ -207,6 +207,10 @@ bool selectsLens(const Selection& selection);
 double intervalDoi(const BrushInterval& interval, double value);
 /// 1 up to radius 1, linear to 0 at 1 + soft.
 double radialDoi(double radii, double soft);
+/// Square of the normalised radius of (u, v) in an ellipse.
+template <class N> N ellipseSquare(N u, N v, double correlation) {
+    return (u * u - N(2 * correlation) * u * v + v * v) * N(1 / (1 - correlation * correlation));
+}
 /// Normalised radius of (u, v) in an ellipse.
 double ellipseRadii(double u, double v, double correlation);
 

@@ -81,7 +81,7 @@ uniform sampler2DArray geometryDistance; // distance along the ray, 1e9: nothing
 
 #if BRUSH_TESTS > 0
 uniform int brushTestCount;
-uniform ivec4 brushMeaning[BRUSH_TESTS];   // BRUSH_TEST_ALWAYS, ...; brush fields, flags: BrushTest in vis/raycast/brush_tests.h
+uniform ivec4 brushMeaning[BRUSH_TESTS];   // BRUSH_TEST_ALWAYS, ...; brush fields, flags: BrushTest in vis/optics/brush_tests.h
 uniform vec4 brushShape[2 * BRUSH_TESTS];
 uniform float brushStart;
 uniform sampler2D lassoTables;

@@ -1,4 +1,4 @@
-#include "vis/optics/block_distance.h"
+#include "vis/transfer/block_distance.h"
 
 #include <algorithm>
 #include <cmath>

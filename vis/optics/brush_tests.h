@@ -1,6 +1,5 @@
 #pragma once
 
-#include "vis/gl/shader_constants.h"
 #include "vis/scene/scene.h"
 #include "volume/field/dataset.h"
 
@@ -9,6 +8,10 @@
 /// Converts the selection of a scene to a list of tests: each brush becomes consecutive tests, one per interval, or one
 /// for any other shape.
 namespace tessera::vis {
+
+/// Kinds of brush tests; shaders know them as BRUSH_TEST_ALWAYS and so on.
+enum class BrushTestKind { Always, Range, Ellipse, Lasso, Sphere, Box, Lens };
+inline constexpr std::string_view kBrushTestNames[] = {"always", "range", "ellipse", "lasso", "sphere", "box", "lens"};
 
 inline constexpr int kMaxBrushTests = 128;
 /// Tolerance for labels, so that [1, 1] includes label 1 in single precision.

@@ -1,4 +1,4 @@
-#include "vis/raycast/brush_tests.h"
+#include "vis/optics/brush_tests.h"
 
 #include "vis/optics/ray_setup.h"
 
