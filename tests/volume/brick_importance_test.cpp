@@ -1,9 +1,11 @@
 #include "tests/volume/fields.h"
 #include "volume/bricks/brick_importance.h"
+#include "volume/bricks/smoothed_half.h"
 #include "volume/sources/alternating_source.h"
 #include "volume/sources/memory_source.h"
 
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <limits>
@@ -147,6 +149,63 @@ TEST(BrickImportance, LabelsCountByTheirMixture) {
     EXPECT_GT(own[numberOf(grid, {1, 1, 1})].importance, 0);
     EXPECT_GE(own[numberOf(grid, {3, 1, 1})].importance, 0);
     for (std::size_t b = 0; b < own.size(); ++b) EXPECT_NEAR(own[b].importance, other[b].importance, 1e-6);
+}
+
+// Bricks without gaps are summed by rows, others sample by sample: one absent sample far away changes the way, not the
+// result.
+TEST(BrickImportance, RowsAndSamplesGiveTheSame) {
+    const BrickGrid grid = gridOf(kCube);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> even(0, 1);
+    const Field field = test::sampled<float>(kCube, [&](glm::dvec3 p) { return p.x < 6 ? even(random) : p.x / 32; });
+    Field gap = field;
+    test::removeWhere(gap, [](glm::dvec3 p) { return p == glm::dvec3(31, 31, 31); });
+    const ImportanceOptions options{.borderWeight = 5, .neighbours = 0};
+    const auto rows = importanceOfBricks(grid, field, {0, 1}, false, options),
+               samples = importanceOfBricks(grid, gap, {0, 1}, false, options);
+    for (std::size_t b = 0; b + 1 < rows.size(); ++b) {
+        EXPECT_NEAR(rows[b].importance, samples[b].importance, 1e-5) << b;
+        EXPECT_NEAR(rows[b].detail, samples[b].detail, 1e-5) << b;
+    }
+}
+
+/// The mean of five samples along each axis with the weights 1 4 6 4 1, of every second place; the ends are repeated.
+float binomialMean(const Field& field, int sublattice, glm::ivec3 at) {
+    const glm::ivec3 size = field.lattice.sublatticeSize(sublattice);
+    const int slices = field.lattice.kind == LatticeKind::BCC ? 2 : 1;
+    constexpr double kWeights[] = {1, 4, 6, 4, 1};
+    double sum = 0;
+    for (int n = 0; n < 125; ++n) {
+        const glm::ivec3 tap(n % 5, n / 5 % 5, n / 25);
+        const glm::ivec3 from = glm::clamp(2 * at + tap - 2, glm::ivec3(0), size - 1);
+        sum += kWeights[tap.x] * kWeights[tap.y] * kWeights[tap.z] / 4096 *
+               field.value(field.lattice.index({from.x, from.y, from.z * slices + sublattice}));
+    }
+    return float(sum);
+}
+
+TEST(SmoothedHalf, IsTheBinomialMeanOfEverySecondSample) {
+    std::mt19937 random(8);
+    for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC})
+        for (const glm::ivec3 size :
+             {glm::ivec3(1, 2, 6), glm::ivec3(2, 1, 3), glm::ivec3(9, 8, 7), glm::ivec3(12, 5, 10)})
+            for (const ScalarType type : {ScalarType::U8, ScalarType::F32}) {
+                Lattice lattice = test::ccLattice(size);
+                lattice.kind = kind;
+                Field field = makeField(lattice, type);
+                dispatch(type, [&]<class T>(T) {
+                    for (T& sample : field.as<T>()) sample = T(random() % 256);
+                });
+                for (int sublattice = 0; sublattice < (kind == LatticeKind::BCC ? 2 : 1); ++sublattice) {
+                    const Smoothed got = smoothedHalf(field, sublattice, {{0, 255}, false, true});
+                    const glm::ivec3 half = (lattice.sublatticeSize(sublattice) + 1) / 2;
+                    ASSERT_EQ(got.size, half);
+                    for (std::size_t i = 0; i < countOf(half); ++i) {
+                        const glm::ivec3 at(int(i) % half.x, int(i) / half.x % half.y, int(i) / (half.x * half.y));
+                        EXPECT_NEAR(got.values[i], binomialMean(field, sublattice, at) / 255, 1e-5) << i;
+                    }
+                }
+            }
 }
 
 TEST(BrickImportance, OddSizesAndEveryBrickSize) {

@@ -12,6 +12,8 @@ namespace {
 TEST(Casting, MaterialsAreWhereThePartHasThem) {
     const Casting scan;
     EXPECT_NEAR(scan({0.99, 0.9, 0.9}), Casting::kAir, 1e-9) << "beside the part";
+    EXPECT_NEAR(scan({0.95, 0, 0}), Casting::kAir, 1e-9) << "beside the block, above the flange";
+    EXPECT_NEAR(scan({0, 0.7, 0}), Casting::kAir, 1e-9) << "above the block";
     EXPECT_NEAR(scan({0.4, 0, 0}), Casting::kAir, 1e-9) << "in a bore";
     EXPECT_NEAR(scan({-0.4, 0.1, 0.39}), Casting::kAir, 1e-9) << "in the water jacket";
     EXPECT_NEAR(scan({0, 0.05, 0.8}), Casting::kAir, 1e-9) << "in the pipe";
@@ -20,6 +22,16 @@ TEST(Casting, MaterialsAreWhereThePartHasThem) {
     EXPECT_NEAR(scan({0.4 + 0.27, 0, 0}), Casting::kSteel, 1e-9) << "a liner";
     EXPECT_NEAR(scan({0.86, -0.5, -0.64}), Casting::kSteel, 1e-9) << "a bolt";
     EXPECT_NEAR(scan({0.4 + 0.3, 0, 0}), (Casting::kSteel + Casting::kCast) / 2, 1e-9) << "half and half on a border";
+}
+
+// A detector that smears borders over 0.2 sees a place 0.11 below the side of the block, and farther from all else.
+TEST(Casting, AWideBorderReachesIntoTheBlock) {
+    const Casting scan{.edge = 0.2};
+    const double t = (0.11 + 0.2) / 0.4, share = t * t * (3 - 2 * t);
+    for (const double x : {-0.73, 0.73})
+        for (const double z : {-0.43, 0.43})
+            EXPECT_NEAR(scan({x, 0, z}), Casting::kAir + (Casting::kCast - Casting::kAir) * share, 0.01)
+                << x << " " << z;
 }
 
 TEST(Casting, SamplesAreTheValuesWithinTheNoise) {

@@ -113,6 +113,30 @@ TEST(DataJumps, SlopesNoiseAndSpecksAreNoRegions) {
     EXPECT_EQ(most([](glm::dvec3 p) { return p == glm::dvec3(7, 7, 7) ? 50 : 0.1 * p.x; }), 1) << "one bad sample";
 }
 
+TEST(DataJumps, AJumpIsThatBeyondTheSlopeOnBothSides) {
+    // Seen where it is more than three steps of the slope and a hundredth of the range.
+    const auto most = [](double jump) {
+        return mostOf(regionsOf(
+            sampled<float>(ccLattice({6, 20, 6}), [&](glm::dvec3 p) { return p.y + (p.y > 9.5 ? jump : 0); })));
+    };
+    EXPECT_EQ(most(3), 1);
+    EXPECT_EQ(most(3.5), 2);
+    EXPECT_EQ(most(-3), 1);
+    EXPECT_EQ(most(-3.5), 2);
+}
+
+TEST(DataJumps, ProgressRunsOverParametersAndTimes) {
+    Dataset data = test::twoRegions(ccLattice({9, 8, 7}), test::constantIn, {.speed = 1}, 4);
+    data.info.parameters.resize(1);
+    data.info.parameters[0].parts = {};
+    std::vector<double> fractions;
+    std::vector<std::string> notes;
+    Progress progress;
+    progress.report = [&](double fraction, const std::string&) { fractions.push_back(fraction); };
+    withJumps(std::move(data), {parsePartsRule("v=jumps")}, notes, progress);
+    EXPECT_EQ(fractions, (std::vector<double>{0, 0.25, 0.5, 0.75}));
+}
+
 TEST(DataJumps, AnyComponentOfAVectorCounts) {
     const Lattice cc = ccLattice({12, 12, 12});
     const std::vector<Field> vector{sampled<float>(cc, [](glm::dvec3 p) { return p.x; }),

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 namespace tessera::volume {
@@ -217,6 +218,24 @@ TEST(Derived, SmoothingKeepsWhatIsLinearAndMixesOnlyWhatIsPresent) {
                        });
         below->absent = [](glm::dvec3) { return false; };
     }
+}
+
+TEST(Derived, SmoothingIsAGaussianOfThreeDeviations) {
+    const auto below = functions(LatticeKind::CC);
+    const glm::dvec3 spacing = below->grid().lattice.spacing, peak = below->grid().lattice.position({6, 5, 6});
+    below->value[0] = [=](glm::dvec3 p, double) { return glm::distance(p, peak) < 1e-9 ? 1e6 : 0; };
+    constexpr double kWidth = 0.8; // three of it end before the third sample, which takes part
+    const auto weight = [](double samples) {
+        return std::abs(samples) > 3.5 ? 0 : std::exp(-samples * samples / (2 * kWidth * kWidth));
+    };
+    double all = 0;
+    for (int i = -3; i <= 3; ++i) all += weight(i);
+    const auto source = derive(below, {"s", "K", SmoothRecipe{"f", kWidth}});
+    forSamples(*source, *source->info().findChannel("s"), 0, 0, [&](glm::dvec3 p, std::optional<double> value) {
+        const glm::dvec3 away = (p - peak) / spacing;
+        const double want = 1e6 * weight(away.x) * weight(away.y) * weight(away.z) / (all * all * all);
+        EXPECT_NEAR(value.value_or(-1), want, 1e-6 * want + 1e-9) << away.x << " " << away.y << " " << away.z;
+    });
 }
 
 TEST(Derived, CoordinatesAreParameters) {

@@ -265,6 +265,33 @@ TEST_F(Export, ComponentsThatLackOtherSamplesBecomeFloats) {
     }
 }
 
+TEST_F(Export, VtiHoldsIntegersAsTheyAre) {
+    const Dataset dataset = sample({3, 2, 2});
+    const std::string path = (folder_ / "out.vti").string();
+    ExportSelection counts;
+    counts.parameters = {3};
+    counts.times = {1};
+    exportDataset(dataset, counts, path);
+    std::ifstream in(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_THAT(bytes, testing::HasSubstr("<DataArray type=\"Int16\" Name=\"counts\""));
+    const Field field = dataset.read(3, 0, 1);
+    const std::size_t begin = bytes.find("\n_") + 2 + sizeof(std::uint64_t);
+    EXPECT_EQ(bytes.substr(begin, bytes.find("\n</AppendedData>") - begin),
+              std::string(reinterpret_cast<const char*>(field.samples.data()), field.samples.size()));
+}
+
+TEST_F(Export, LabelsWithoutNamesStayLabels) {
+    Dataset dataset = integerVector([](Field&, int, int) {});
+    dataset.info.parameters = {{"grains", "", 1, ScalarType::I16, true, {}, {}}};
+    const std::string path = (folder_ / "out.raw").string();
+    exportDataset(dataset, {}, path);
+    EXPECT_TRUE(openFiles({path}, {}).info.parameters[0].categorical);
+    dataset.info.parameters[0].categorical = false;
+    exportDataset(dataset, {}, path);
+    EXPECT_FALSE(openFiles({path}, {}).info.parameters[0].categorical);
+}
+
 TEST_F(Export, VtiHoldsPhysicalValuesWhereAnyComponentIsScaled) {
     const Dataset dataset = integerVector([](Field& field, int c, int) { field.scale = c == 1 ? 0.25 : 1; });
     const std::string path = (folder_ / "out.vti").string();

@@ -114,6 +114,12 @@ TEST(FindParts, RulesSayThePartsOrWhatIsWrongWithThem) {
     for (const char* bad : {"q=region:1|3", "p=zone:1|3", "p=T:1|3", "p=region:1|2", "p=region:1|1", "p=region:1|water",
                             "region=region:1|3"})
         EXPECT_THROW(setParts(info, {parsePartsRule(bad)}), Error) << bad;
+    try {
+        setParts(info, {parsePartsRule("p=T:1|3")});
+        ADD_FAILURE();
+    } catch (const Error& error) {
+        EXPECT_STREQ(error.what(), "--parts p=...: \"T\" is not a label");
+    }
 }
 
 TEST(FindParts, TheBuiltInCellSaysWhatItsSamplesShow) {

@@ -196,6 +196,12 @@ TEST(Seeds, LieWhereTheShapeSays) {
     EXPECT_NEAR(glm::distance(plane[0], plane[1]), 1, 1e-12);
     for (const glm::dvec3& p : placeSeeds({.shape = SeedShape::Sphere, .to = {2, 2, 2}, .count = 200}, everywhere))
         EXPECT_LE(glm::distance(p, glm::dvec3(1)), 1);
+    // A plane in any box: even distances to its neighbours, half of them to the edges.
+    const auto placed =
+        placeSeeds({.shape = SeedShape::Plane, .from = {-3, 5, 10}, .to = {1, 7, 10.5}, .count = 8}, everywhere);
+    ASSERT_EQ(placed.size(), 8u);
+    for (std::size_t i = 0; i < placed.size(); ++i)
+        EXPECT_LT(glm::distance(placed[i], glm::dvec3(-2.5 + double(i % 4), i < 4 ? 5.5 : 6.5, 10.25)), 1e-12) << i;
 }
 
 TEST(Seeds, FollowTheWeightAndTheRandomNumber) {

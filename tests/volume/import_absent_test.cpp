@@ -93,6 +93,14 @@ TEST(Absent, ZerosOnWholeLabelsAreSuggested) {
         return field;
     };
     EXPECT_TRUE(suggestAbsentRules(zero).empty());
+    Dataset holes = cell(); // what is not a number is as good as 0
+    holes.read = [inner = holes.read](int p, int c, int t) {
+        Field field = inner(p, c, t);
+        for (std::size_t i = 0; i < 4; ++i)
+            if (p == 0) field.as<float>()[i] = std::nanf("");
+        return field;
+    };
+    EXPECT_EQ(toText(suggestAbsentRules(holes).at(0)), "O2=region:0,3");
 }
 
 TEST(Absent, LabelNames) {

@@ -132,6 +132,9 @@ TEST_F(ImportRaw, WhatIsNotFiniteIsAbsentAndWhatIsNotStatedHasNoUnit) {
     const Field field = dataset.read(0, 0, 0);
     EXPECT_TRUE(field.present(0));
     for (std::size_t i = 1; i < 4; ++i) EXPECT_FALSE(field.present(i));
+    write("a.raw", "1234");
+    write("a.json", R"({"dims":[4,1,1],"dtype":"uint8","missing_value":0})");
+    EXPECT_EQ(openFiles({(folder_ / "a.raw").string()}, {}).read(0, 0, 0).mask, nullptr) << "there is none";
 }
 
 TEST_F(ImportRaw, RawOptionTakesThePlaceOfASidecar) {
@@ -185,6 +188,19 @@ TEST_F(ImportRaw, BadInputGivesOneLine) {
                 testing::HasSubstr("present twice"));
     EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"uint8","components":[]})"), testing::HasSubstr("no component"));
     EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"uint8","byte_order":"pdp"})"), testing::HasSubstr("byte_order"));
+}
+
+TEST_F(ImportRaw, MistakesAreNamedByFileAndPlace) {
+    const std::string path = write("a.raw", "12345678");
+    const auto with = [&](const std::string& json) {
+        write("a.json", json);
+        return failure(path);
+    };
+    const std::string file = (folder_ / "a.json").string() + ": ";
+    EXPECT_EQ(with(R"({"dims":[2,2,2],"dtype":"complex"})"), file + "dtype: unknown type \"complex\"");
+    EXPECT_THAT(with(R"({"dims":[2,0,2],"dtype":"uint8"})"), testing::StartsWith(file + "dims[1]: is 0, must be 1.."));
+    EXPECT_EQ(with(R"({"dims":[2,2,2],"dtype":"uint8","spacing":[1,-1,1]})"),
+              file + "spacing[1]: is -1.0, must be a number above 0");
 }
 
 TEST_F(ImportRaw, AnEmptyFileIsCalledEmpty) {

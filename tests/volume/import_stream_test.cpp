@@ -1,8 +1,10 @@
 #include "volume/base/error.h"
+#include "volume/field/mesh_origin.h"
 #include "volume/import/files/stream.h"
 #include "volume/import/import.h"
 #include "volume/system/process.h"
 
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -83,6 +85,15 @@ TEST(Stream, HeadersOutOfFormAreRefused) {
           with("float32", "float64"), with("\"components\":1", "\"components\":2"), with("[0.5]", "[1,1]"),
           with("[0.5]", "[\"x\"]"), with("\"T\"", "\"\""), with("[1,1,1]", "[0,1,1]"), with("false", "3")})
         EXPECT_THROW(parseStreamHeader(bad, "a"), Error) << bad;
+}
+
+TEST(Stream, HeadersThatAreNoObjectAreCalledSo) {
+    for (const char* bad : {"", "{", "[]", "3", "null"}) try {
+            parseStreamHeader(bad, "a");
+            ADD_FAILURE() << bad;
+        } catch (const Error& error) {
+            EXPECT_STREQ(error.what(), "a: tessera-import sent a header that is not JSON") << bad;
+        }
 }
 
 TEST(ChildProcess, SaysHowItEnded) {
@@ -181,6 +192,17 @@ TEST_F(FakeImporter, FailuresCostOneLine) {
     EXPECT_THAT(failure(), testing::HasSubstr("cannot be started"));
 }
 
+TEST_F(FakeImporter, ScatteredPointsAreNamedAsTheOrigin) {
+    const auto provenance = [&](const std::string& note) {
+        std::string header = kHeader;
+        header.insert(header.find("\"mesh\""), "\"note\":\"" + note + "\",");
+        use(message(1, header) + "sleep 1000");
+        return previewFiles({(folder_ / "a.vti").string()}, {}).info.provenance;
+    };
+    EXPECT_EQ(provenance("scattered points: the nearest one counts"), kFromPoints);
+    EXPECT_EQ(provenance("something else"), "");
+}
+
 TEST_F(FakeImporter, HangsAreCancelled) {
     use("exec sleep 1000");
     std::stop_source stop;
@@ -190,8 +212,12 @@ TEST_F(FakeImporter, HangsAreCancelled) {
                       },
                       stop.get_token()};
     EXPECT_THROW(failure(progress), Cancelled);
-    use("kill -INT $$"); // as Ctrl-C does to the whole group
+    // As Ctrl-C does to the whole group. A program that a shell put into the background ignores it, and so do those
+    // that it starts: here it counts.
+    const auto before = std::signal(SIGINT, SIG_DFL);
+    use("kill -INT $$");
     EXPECT_THROW(failure(), Cancelled);
+    std::signal(SIGINT, before);
 }
 
 } // namespace

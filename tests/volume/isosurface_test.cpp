@@ -1,6 +1,7 @@
 #include "volume/mesh/isosurface.h"
 
 #include "tests/volume/fields.h"
+#include "volume/mesh/crossed_edges.h"
 #include "volume/mesh/cube_cases.h"
 #include "volume/sources/memory_source.h"
 
@@ -227,6 +228,31 @@ TEST_P(Isosurface, OfASourceLiesInPlaceAtEveryLevel) {
             EXPECT_NEAR(mesh.scalars[i], p.x + 2 * p.y - p.z, 1e-3);
         }
     }
+}
+
+// Of a linear function the gradient is exact as long as three diagonals of a sample of BCC have an end each.
+TEST(SampleGradient, NeedsThreeDiagonals) {
+    const Lattice lattice{LatticeKind::BCC, {5, 5, 10}, glm::dvec3(1), glm::dvec3(0)};
+    const glm::dvec3 slope(2, -3, 0.5);
+    const SampleGrid all = gridOf(lattice, [&](glm::dvec3 p) { return glm::dot(slope, p); });
+    for (const int z : {4, 5})
+        for (int lost = 0; lost < 4; ++lost) {
+            const glm::ivec3 at(2, 2, z);
+            SampleGrid grid = all;
+            grid.present.assign(grid.values.size(), 1);
+            for (int n = 0; n < int(grid.values.size()); ++n) {
+                const glm::ivec3 other(n % lattice.size.x, n / lattice.size.x % lattice.size.y,
+                                       n / (lattice.size.x * lattice.size.y));
+                // Along this diagonal both are gone, along the others one is.
+                const glm::dvec3 away = lattice.position(other) - lattice.position(at);
+                const glm::dvec3 lostDiagonal(lost & 1 ? 0.5 : -0.5, lost & 2 ? 0.5 : -0.5, 0.5);
+                if (std::abs(away.z) != 0.5) continue;
+                const bool gone = away == lostDiagonal || away == -lostDiagonal || away.z < 0;
+                grid.present[std::size_t(n)] = gone ? 0 : 1;
+            }
+            const glm::vec3 got = sampleGradient(grid, at);
+            for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(got[axis], slope[axis], 1e-5) << z << " " << lost;
+        }
 }
 
 TEST(CubeCases, UseEachCrossedEdgeAndNoOther) {

@@ -169,6 +169,33 @@ TEST(OtherSource, OnAnotherGridItIsInterpolatedAndAbsentOutside) {
         }
 }
 
+TEST(OtherSource, KnowsEveryNameOfALength) {
+    const std::pair<const char*, double> names[] = {{"km", 1e3},  {"m", 1},     {"cm", 1e-2},      {"mm", 1e-3},
+                                                    {"um", 1e-6}, {"nm", 1e-9}, {"\u00b5m", 1e-6}, {"micron", 1e-6}};
+    for (const auto& [unit, metres] : names) {
+        const Lattice lattice{
+            LatticeKind::CC, {9, 8, 7}, glm::dvec3(0.5, 1, 2) / metres, glm::dvec3(-1, 3, 0) / metres};
+        const auto a = make({.form = linear}, "a"),
+                   b = make({.lattice = lattice,
+                             .lengthUnit = unit,
+                             .form = [&](glm::dvec3 p, double t) { return other(p * metres, t); }},
+                            "b");
+        EXPECT_EQ(otherText(*a, *b), "on the same grid") << unit;
+    }
+}
+
+TEST(OtherSource, BesideASmallerGridItIsInterpolated) {
+    // The same samples as far as it goes, in the same bricks.
+    const Lattice part{LatticeKind::CC, {5, 8, 7}, {0.5, 1, 2}, {-1, 3, 0}};
+    const auto a = make({.form = linear}, "a"), b = make({.lattice = part, .form = other}, "b");
+    EXPECT_EQ(otherText(*a, *b), "interpolated onto the grid of a");
+    const auto both = withOther(a, b);
+    forSamples(*both, channelOf(*both, "T (other)"), [&](glm::dvec3 p, double t, std::optional<double> value) {
+        EXPECT_EQ(value.has_value(), p.x < 1 + 1e-9) << p.x;
+        EXPECT_NEAR(value.value_or(other(p, t)), other(p, t), 1e-4);
+    });
+}
+
 TEST(OtherSource, TheSameTimeIsTaken) {
     const auto at = [](const std::vector<double>& times) {
         const auto a = make({.form = linear}, "a"), b = make({.times = times, .form = other}, "b");

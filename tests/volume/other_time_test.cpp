@@ -144,6 +144,17 @@ TEST(OtherTime, FormulasHaveTheValuesOfOtherTimes) {
                              formula);
 }
 
+TEST(OtherTime, InputsAreInTheOrderOfTheirNames) {
+    const std::vector<std::string> names{"a", "b"};
+    for (const char* formula : {"b + at(a, first) - a", "at(a, first) * a + b", "a + b + at(a, first)"}) {
+        const Expression made(formula, names, OtherTimes::Allowed);
+        EXPECT_EQ(made.used(), (std::vector<int>{0, 0, 1})) << formula;
+        ASSERT_EQ(made.inputs().size(), 3u);
+        EXPECT_FALSE(made.inputs()[0].at) << formula << ": of the time shown first";
+        EXPECT_TRUE(made.inputs()[1].at) << formula;
+    }
+}
+
 TEST(OtherTime, ADifferenceIsAbsentWhereEitherIs) {
     for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC}) {
         const auto source = std::make_shared<Moving>(kind);

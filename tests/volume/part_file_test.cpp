@@ -70,5 +70,14 @@ TEST_F(PartFile, TheNextWriterOfTheSameFileRemovesIt) {
     EXPECT_TRUE(fs::exists(target_));
 }
 
+// Others may read what has its name before its writer is gone.
+TEST_F(PartFile, WhatIsCommittedIsWhole) {
+    AtomicFile file(target_);
+    file.write("all of it");
+    file.commit();
+    std::ifstream in(target_);
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), "all of it");
+}
+
 } // namespace
 } // namespace tessera

@@ -45,6 +45,48 @@ template <class Visit> int each(const std::string& name, int time, Visit visit) 
     return count;
 }
 
+TEST(Planted, ABoxEndsAtEachOfItsFaces) {
+    const Box box{{0, 10, -5}, {1, 12, -4}};
+    EXPECT_TRUE(inside(box, {0.5, 11, -4.5}));
+    EXPECT_TRUE(inside(box, {0, 12, -5})) << "corners belong to it";
+    for (const glm::dvec3 out : {glm::dvec3(-0.1, 11, -4.5),
+                                 {1.1, 11, -4.5},
+                                 {0.5, 9.9, -4.5},
+                                 {0.5, 12.1, -4.5},
+                                 {0.5, 11, -5.1},
+                                 {0.5, 11, -3.9}})
+        EXPECT_FALSE(inside(box, out)) << out.x << " " << out.y << " " << out.z;
+}
+
+TEST(Planted, RangesAreThoseOfTheSamples) {
+    const DatasetInfo& info = models().with.info;
+    for (std::size_t p = 0; p < info.parameters.size(); ++p) {
+        if (info.parameters[p].components > 1 || info.parameters[p].categorical) continue;
+        double least = 1e30, most = -1e30;
+        for (int time = 0; time < int(info.times.size()); ++time)
+            each(info.parameters[p].name, time,
+                 [&](glm::dvec3, double with, double) { least = std::min(least, with), most = std::max(most, with); });
+        EXPECT_EQ(info.parameters[p].ranges.at(0).lo, least) << info.parameters[p].name;
+        EXPECT_EQ(info.parameters[p].ranges.at(0).hi, most) << info.parameters[p].name;
+    }
+}
+
+TEST(Planted, ProgressEndsWithTheRanges) {
+    std::vector<double> fractions;
+    Progress progress;
+    progress.report = [&](double fraction, const std::string& what) {
+        if (fraction < 0.9) fractions.clear();
+        if (!what.empty()) fractions.push_back(fraction);
+    };
+    makePlanted({{"nx", 3}, {"ny", 5}, {"nz", 4}, {"times", 2}}, progress);
+    ASSERT_GT(fractions.size(), 4u);
+    for (std::size_t i = 1; i < fractions.size(); ++i) {
+        EXPECT_GE(fractions[i], fractions[i - 1]) << i;
+        EXPECT_LE(fractions[i], 1 + 1e-12) << i;
+    }
+    EXPECT_LT(fractions[1], 0.95) << "there is more than one to come";
+}
+
 TEST(Planted, TheRestIsTheFuelCell) {
     EXPECT_EQ(models().with.info.times, models().without.info.times);
     for (const char* name : {"U", "region"})

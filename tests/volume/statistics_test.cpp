@@ -252,6 +252,17 @@ TEST(Statistics, DegenerateChannels) {
     EXPECT_TRUE(std::isnan(result.joint[1].correlation));
 }
 
+TEST(Statistics, TheLastBinHoldsTheUpperEndOfTheRange) {
+    const Field field = sampled<float>(ccLattice({9, 3, 2}), [](glm::dvec3 p) { return p.x; });
+    const auto source = makeMemorySource(test::datasetOf({field}), {LatticeKind::CC, 8, 1 << 20});
+    StatisticsQuery query;
+    query.channels = {0};
+    query.ranges = {{1, 7}};
+    query.bins = 3;
+    // 1 2 | 3 4 | 5 6 7, six samples each; 0 and 8 lie outside.
+    EXPECT_EQ(computeStatistics(*source, query).channels[0].histogram.count, (std::vector<std::uint64_t>{12, 12, 18}));
+}
+
 TEST(Statistics, StopsAndReports) {
     const auto source = makeMemorySource(threeChannels(ccLattice({20, 20, 20})), {LatticeKind::CC, 8, 1 << 30});
     double last = -1;

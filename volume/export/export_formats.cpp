@@ -18,9 +18,9 @@ namespace {
 /// Absent floats become NaN; integers stay as they are.
 void markAbsent(Field& field) {
     if (!field.mask || field.type != ScalarType::F32) return;
-    const auto values = field.as<float>();
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (!field.present(i)) values[i] = std::numeric_limits<float>::quiet_NaN();
+    std::size_t i = 0;
+    for (float& value : field.as<float>())
+        if (!field.present(i++)) value = std::numeric_limits<float>::quiet_NaN();
 }
 
 } // namespace

@@ -73,8 +73,9 @@ struct TetrahedronCase {
 
 std::array<TetrahedronCase, 16> makeCases() {
     std::array<TetrahedronCase, 16> out;
-    constexpr int kEven[12][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 0, 3, 2}, {1, 3, 2, 0}, {1, 2, 0, 3},
-                                  {2, 3, 0, 1}, {2, 0, 1, 3}, {2, 1, 3, 0}, {3, 2, 1, 0}, {3, 1, 0, 2}, {3, 0, 2, 1}};
+    // Even permutations that begin with each corner and with each pair of corners.
+    constexpr int kEven[8][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 0, 3, 2},
+                                 {1, 3, 2, 0}, {1, 2, 0, 3}, {2, 3, 0, 1}, {3, 2, 1, 0}};
     for (int mask = 1; mask < 15; ++mask)
         for (const auto& p : kEven) {
             const auto in = [&](int i) { return (mask >> p[i] & 1) != 0; };

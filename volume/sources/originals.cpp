@@ -11,7 +11,6 @@ BrickSamples thinned(const BrickSamples& fine, glm::ivec3 size, int level, Latti
     BrickSamples out{.size = size, .values = {}, .present = {}};
     const auto count = std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
     out.values.reserve(count);
-    if (!fine.present.empty()) out.present.reserve(count);
     for (int z = 0; z < size.z; ++z)
         for (int y = 0; y < size.y; ++y)
             for (int x = 0; x < size.x; ++x) {

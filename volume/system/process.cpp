@@ -70,7 +70,6 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments) {
         closeFile(input_);
         closeFile(output_);
         closeFile(errors_);
-        pid_ = -1;
         throw Error(std::string("cannot be started: ") + std::strerror(failed), arguments[0]);
     }
     fcntl(errors_, F_SETFL, fcntl(errors_, F_GETFL) | O_NONBLOCK);

@@ -71,17 +71,14 @@ Field readComponent(const std::string& path, const RawForm& form, std::size_t co
 
     if (!what.missing.empty()) {
         Mask mask(field.count(), 1);
-        bool any = false;
         dispatch(field.type, [&]<class T>(T) {
             const auto values = field.as<T>();
             for (const double missing : what.missing)
                 for (std::size_t i = 0; i < values.size(); ++i)
-                    if (std::is_same_v<T, float> ? float(values[i]) == float(missing) : double(values[i]) == missing) {
+                    if (std::is_same_v<T, float> ? float(values[i]) == float(missing) : double(values[i]) == missing)
                         mask[i] = 0;
-                        any = true;
-                    }
         });
-        if (any) field.mask = std::make_shared<const Mask>(std::move(mask));
+        field.mask = std::make_shared<const Mask>(std::move(mask)); // withAbsent() drops one that lacks nothing
     }
     return field;
 }

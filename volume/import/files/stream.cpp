@@ -182,7 +182,7 @@ MessageHead parseMessageHead(std::span<const std::byte> bytes, const Lattice& la
 
 std::vector<Piece> parseStreamHeader(std::string_view text, const std::string& file) {
     const json document = json::parse(text, nullptr, false);
-    if (document.is_discarded() || !document.is_object())
+    if (!document.is_object()) // nor is what cannot be parsed
         throw Error("tessera-import sent a header that is not JSON", file);
     const HeaderReader reader{document, file, ""};
     const json& list = reader.get("pieces");
