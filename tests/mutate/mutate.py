@@ -25,7 +25,8 @@ import report
 import trial
 
 ROOMS = {
-    "volume": dict(folders=["volume"], libraries=["volume"], tests=["volume_tests"], programs=[], scripts=[]),
+    "volume": dict(folders=["volume"], libraries=["volume"], tests=["volume_tests", "import_tests"], programs=[],
+                   scripts=[]),
     "codec": dict(folders=["codec"], libraries=["codec"], tests=["codec_tests"], programs=[], scripts=[]),
     "vis": dict(folders=["vis"], libraries=["vis_model", "vis_reference", "vis"], tests=["vis_tests", "vis_gl_tests"],
                 programs=[], scripts=[]),
@@ -127,6 +128,7 @@ def main():
     else:
         copy.mirror(but=build.placed_files(folder))
         copy.configure(room["libraries"])
+        room["tests"] = [t for t in room["tests"] if copy.has(t)]
         numbered = place(copy, args.room, args)
         build.save_placed(folder, numbered)
     if args.build_only:
