@@ -12,9 +12,9 @@ namespace {
 /// Presence flags of a layer of bricks.
 volume::Mask flagsOfLayer(const auto& impl, const FrameRecord& frame, int layer) {
     const volume::BrickGrid& grid = impl.metadata.grid;
-    const glm::ivec3 count = grid.count(), last(count.x - 1, count.y - 1, layer);
-    const std::size_t begin = grid.lattice.index({0, 0, grid.begin({0, 0, layer}).z}),
-                      end = grid.lattice.index({0, 0, grid.end(last).z}), first = grid.numberOf({0, 0, layer});
+    const glm::ivec3 count = grid.count(), corner(0, 0, layer);
+    const std::size_t begin = grid.lattice.index({0, 0, grid.begin(corner).z}),
+                      end = grid.lattice.index({0, 0, grid.end(corner).z}), first = grid.numberOf(corner);
     volume::Mask mask(end - begin, 1);
     parallelFor(std::size_t(count.x) * std::size_t(count.y), [&](std::size_t i) {
         const std::vector<std::uint8_t> fine = impl.flags(frame, first + i);

@@ -323,7 +323,6 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
     assert(samples.lattice().size == grid.lattice.size && samples.lattice().kind == grid.lattice.kind);
     assert(samples.type() == info.parameters[std::size_t(parameter)].type);
     assert(samples.whole() || !impl_->keepsFrames);
-    progress.advance(0);
 
     FrameCoding coding = impl_->prepare(time, ofTime, samples, options);
     FrameRecord& frame = coding.frame;

@@ -5,8 +5,11 @@
 #include "tests/codec/make_dataset.h"
 #include "volume/resample/resample.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <gtest/gtest.h>
+#include <thread>
 
 namespace tessera::codec {
 namespace {
@@ -305,6 +308,57 @@ TEST(Archive, AKeyOutsideIsAnError) {
     EXPECT_THROW((void)archive.read({0, 1, 0, {0, 0, 0}}), Error);
     EXPECT_THROW((void)archive.read({0, 0, 9, {0, 0, 0}}), Error);
     EXPECT_THROW((void)archive.read({0, 0, 0, {0, 0, 1}}), Error);
+}
+
+TEST(Archive, BrickSizesThatCannotBeAreRefused) {
+    const TemporaryFolder folder;
+    volume::Dataset made = makeDataset({9, 8, 7}, {{"n", ScalarType::U8}}, 1);
+    for (const int size : {1, 2, 3, 12, 100, 129, 256}) {
+        PackOptions options;
+        options.brickSize = size;
+        try {
+            pack(made, options, folder / "a.tsr");
+            ADD_FAILURE() << size;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.reason(),
+                      "the brick size must be a power of two from 4 to 128, not " + std::to_string(size));
+        }
+    }
+}
+
+TEST(Archive, OnBccNoVolumeIsOneLargeBrick) {
+    const TemporaryFolder folder;
+    volume::Dataset made = makeDataset({80, 8, 8}, {{"n", ScalarType::U8}}, 1);
+    made.info.lattice.kind = volume::LatticeKind::BCC;
+    made.read = [lattice = made.info.lattice, read = made.read](int p, int c, int t) {
+        volume::Field field = read(p, c, t);
+        field.lattice = lattice;
+        return field;
+    };
+    pack(made, {}, folder / "a.tsr");
+    EXPECT_EQ(Archive(folder / "a.tsr").grid().brickSize, 64);
+}
+
+TEST(Archive, ProgressEndsAtOneAndTimesAreAddedUp) {
+    const TemporaryFolder folder;
+    volume::Dataset made = makeDataset({9, 8, 7}, {{"T"}, {"p"}}, 3);
+    constexpr auto kPause = std::chrono::milliseconds(2);
+    int reads = 0;
+    made.read = [&, read = made.read](int p, int c, int t) {
+        ++reads;
+        std::this_thread::sleep_for(kPause);
+        return read(p, c, t);
+    };
+    std::vector<double> fractions;
+    const Progress progress{[&](double fraction, const std::string&) { fractions.push_back(fraction); }, {}};
+    PackOptions options;
+    options.maxError = 0.01; // of a range that is not known: everything is read twice
+    const PackSummary summary = pack(made, options, folder / "a.tsr", progress);
+    EXPECT_EQ(reads, 12);
+    EXPECT_GE(summary.loadSeconds, 12 * 0.002);
+    EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+    EXPECT_EQ(fractions.front(), 0);
+    EXPECT_EQ(fractions.back(), 1);
 }
 
 } // namespace

@@ -179,6 +179,78 @@ TEST(BandCoder, RefusesTruncatedAndLongerBytesAndSurvivesAnyFlip) {
     }
 }
 
+/// The code of one row of coefficients.
+struct CodedRow {
+    Model model;
+    Bytes bytes;
+    std::vector<std::int32_t> values;
+
+    explicit CodedRow(std::vector<std::int32_t> row) : values(std::move(row)) {
+        const Band<const std::int32_t> band{values.data(),      nullptr, {int(values.size()), 1, 1}, int(values.size()),
+                                            int(values.size()), 0};
+        const Contexts contexts{0, false};
+        Histogram histogram(1, contexts);
+        const TokenRun run = tokensOf<std::int32_t>(std::span(&band, 1), contexts);
+        countTokens(run, 0, histogram);
+        model = makeModel(histogram, 8);
+        BandEncoder(model).encode(run, 0, bytes);
+    }
+    DecodeStatus decode(std::span<const std::byte> in, Cpu cpu) const {
+        std::vector<std::int32_t> out(values.size());
+        Band<std::int32_t> band{out.data(),         nullptr, {int(values.size()), 1, 1}, int(values.size()),
+                                int(values.size()), 0};
+        return BandDecoder(model).decode<std::int32_t>(in, std::span(&band, 1), 0, cpu);
+    }
+};
+
+// Whatever is missing, even if what is left would do for a shorter row.
+TEST(BandCoder, CallsWhatEndsEarlyTruncated) {
+    for (const Cpu cpu : {Cpu::Portable, Cpu::Avx2, Cpu::Avx512}) {
+        if (cpu > bestCpu()) continue;
+        // A byte fewer of raw bits: of numbers with few of them, and of those with more than 25.
+        for (const std::int32_t large : {100, 300'000'000}) {
+            const CodedRow row({0, large, -1, 0, 0, large});
+            ASSERT_EQ(row.decode(row.bytes, cpu), DecodeStatus::Ok);
+            Bytes cut = row.bytes;
+            ASSERT_LT(std::to_integer<int>(cut[0]), 128); // bytes of raw bits, which come first
+            ASSERT_GT(std::to_integer<int>(cut[0]), 0);
+            cut[0] = static_cast<std::byte>(std::to_integer<int>(cut[0]) - 1);
+            cut.erase(cut.begin() + 1);
+            EXPECT_EQ(row.decode(cut, cpu), DecodeStatus::Truncated) << large;
+        }
+        // A word fewer of tokens.
+        std::mt19937 random(6);
+        std::vector<std::int32_t> values(400);
+        for (std::int32_t& value : values) value = int(random() % 9) - 4;
+        const CodedRow row(std::move(values));
+        const std::span<const std::byte> all(row.bytes);
+        EXPECT_EQ(row.decode(all, cpu), DecodeStatus::Ok);
+        EXPECT_EQ(row.decode(all.first(all.size() - 2), cpu), DecodeStatus::Truncated);
+    }
+}
+
+TEST(RansModel, RareTokensTakeTheLeastOfTheTable) {
+    Histogram histogram(1, {0, false});
+    histogram.counts[0][0] = 10'000'000;
+    for (std::size_t t = 1; t <= 20; ++t) histogram.counts[0][t] = 1;
+    const Model model = makeModel(histogram, 1);
+    ASSERT_EQ(model.tables.size(), 1u);
+    for (std::size_t t = 1; t <= 20; ++t) EXPECT_EQ(model.tables[0][t], 1) << t;
+    EXPECT_EQ(model.tables[0][kEscape], 1);
+    EXPECT_EQ(model.tables[0][0], kProbabilityOne - 21);
+}
+
+TEST(RansModel, ContextsThatAreAlikeShareATableWhereverTheyAre) {
+    // Small and large tokens take turns by context: two tables serve all, as well as a table each.
+    Histogram histogram(3, {0, false});
+    for (std::size_t c = 0; c < histogram.counts.size(); ++c)
+        for (std::size_t t = 0; t < 8; ++t) histogram.counts[c][t + (c % 2) * 20] = std::uint32_t(5000 >> t);
+    const Model model = makeModel(histogram, 2);
+    ASSERT_EQ(model.tables.size(), 2u);
+    for (std::size_t c = 2; c < histogram.counts.size(); ++c) EXPECT_EQ(model.tableOf[c], model.tableOf[c - 2]) << c;
+    EXPECT_LT(bitsWith(model, histogram), histogram.bits() * 1.01);
+}
+
 TEST(RansModel, TokensCoverEverySymbol) {
     std::mt19937 random(5);
     for (int trial = 0; trial < 5000; ++trial) {

@@ -2,6 +2,7 @@
 #include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain/decoder.h"
+#include "volume/bricks/brick_importance.h"
 #include "volume/sources/memory_source.h"
 
 #include <cmath>
@@ -221,6 +222,31 @@ TEST(BrickNotes, FormerArchivesHaveNone) {
     EXPECT_FALSE(grown.change({0, 1, 0, {0, 0, 0}}, 2));
     EXPECT_EQ(grown.repeats().bricks, 0u);
     EXPECT_EQ(verifyArchive(grown).damaged, 0u);
+}
+
+TEST(BrickNotes, ImportanceIsThatOfEachFrame) {
+    const TemporaryFolder folder;
+    volume::Dataset made = movingSlabs(3);
+    for (volume::Parameter& parameter : made.info.parameters)
+        parameter.ranges.assign(std::size_t(parameter.components == 1 ? 1 : parameter.components + 1), Range{0, 450});
+    pack(made, smallBricks(StoredLattice::CC), folder / "a.tsr");
+    const Archive archive(folder / "a.tsr");
+    int channel = 0;
+    for (int p = 0; p < 4; ++p) {
+        const volume::Parameter& about = made.info.parameters[std::size_t(p)];
+        for (int c = 0; c < about.components; ++c, ++channel)
+            for (int t = 0; t < 3; ++t) {
+                const auto wanted =
+                    volume::importanceOfBricks(archive.grid(), made.read(p, c, t), {0, 450}, about.categorical);
+                for (std::size_t b = 0; b < wanted.size(); ++b) {
+                    const auto found = archive.importance({channel, t, 0, archive.grid().indexOf(b)});
+                    ASSERT_TRUE(found);
+                    EXPECT_NEAR(found->importance, wanted[b].importance, 1e-5) << about.name << c << " " << t;
+                    EXPECT_NEAR(found->detail, wanted[b].detail, 1e-5) << about.name << c << " " << t;
+                }
+            }
+        if (about.components > 1) ++channel; // the magnitude
+    }
 }
 
 } // namespace

@@ -165,5 +165,16 @@ TEST(BrickTally, HostileBitsAreRefused) {
     EXPECT_LT(refused, 2000);
 }
 
+TEST(BrickTally, NotAllSamplesCanBeInfiniteWhereThereIsARange) {
+    for (const std::uint32_t infinite : {0u, 9u, 10u, 11u}) {
+        BitWriter out;
+        out.put(1, 1);
+        out.put(infinite, 4);
+        BitReader in(out.bytes);
+        BrickTally tally;
+        EXPECT_EQ(take(in, 3, 3, true, 10, tally), infinite == 9) << infinite;
+    }
+}
+
 } // namespace
 } // namespace tessera::codec

@@ -289,7 +289,7 @@ TEST(Growing, WhatDoesNotContinueAnArchiveIsRefused) {
     refused("the unit", [](auto& d) { d.info.parameters[2].unit = "Pa"; });
     refused("components", [](auto& d) { d.info.parameters[1].components = 3; });
     refused("is a label in one", [](auto& d) { d.info.parameters[3].categorical = false; });
-    refused("no parameter", [](auto& d) { d.info.parameters[0].name = "N2"; });
+    refused("the archive has no parameter N2 at its times so far", [](auto& d) { d.info.parameters[0].name = "N2"; });
     refused("no parameter n", [](auto& d) { d.info.parameters.erase(d.info.parameters.begin() + 2); });
     refused("at all times", [](auto& d) {
         for (auto& parameter : d.info.parameters) parameter.name += "'";

@@ -1,9 +1,11 @@
 #include "codec/archive/archive.h"
+#include "codec/pack/error_bound.h"
 #include "codec/pack/lossy_field.h"
 #include "codec/pack/pack.h"
 #include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <random>
 
@@ -273,6 +275,74 @@ TEST(Thresholds, DoNotGoWithWhatTheyCannotPromise) {
     options.psnr = 0;
     options.sizeMb = 1;
     EXPECT_THROW(pack(made, options, folder / "a.tsr"), Error);
+}
+
+/// `number` rounded to a multiple of `step`, halves away from 0.
+std::int64_t roundedTo(std::int64_t number, std::int64_t step) {
+    const std::int64_t size = (std::abs(number) + step / 2) / step * step;
+    return number < 0 ? -size : size;
+}
+
+TEST(InSteps, OnlyStepsThatStayWithinTheTypeFit) {
+    for (const ScalarType type : {ScalarType::U8, ScalarType::I16, ScalarType::U16})
+        volume::dispatch(type, [&]<class T>(T) {
+            const auto least = std::int64_t(std::numeric_limits<T>::lowest()),
+                       most = std::int64_t(std::numeric_limits<T>::max());
+            for (std::int64_t step = 1; step < 400; ++step) {
+                const bool low = roundedTo(least, step) >= least, high = roundedTo(most, step) <= most;
+                EXPECT_EQ(stepFits(type, step, double(least), 1), low) << step;
+                EXPECT_EQ(stepFits(type, step, 0, double(most)), high) << step;
+                const std::int64_t taken = stepWithin(type, double(step));
+                EXPECT_GE(roundedTo(least, taken), least) << step;
+                EXPECT_LE(roundedTo(most, taken), most) << step;
+                EXPECT_TRUE(taken == 2 * step + 1 || roundedTo(most, taken + 2) > most ||
+                            roundedTo(least, taken + 2) < least)
+                    << "a larger one would do for " << step;
+                // Of a bound as well.
+                volume::Field field =
+                    volume::makeField({volume::LatticeKind::CC, {2, 1, 1}, {1, 1, 1}, {0, 0, 0}}, type);
+                PackOptions options;
+                options.absError = double(step);
+                EXPECT_EQ(boundFor(options, {}, field).step, taken) << step;
+            }
+        });
+}
+
+// Of a brick whose details are all dropped nothing is left but its coarsest box.
+TEST(Thresholds, LeaveTheCoarsestLevelAlone) {
+    std::mt19937 random(5);
+    volume::BrickGrid grid;
+    grid.lattice = {volume::LatticeKind::CC, {8, 8, 8}, {1, 1, 1}, {0, 0, 0}};
+    grid.brickSize = 8, grid.levels = 3;
+    volume::Field field = volume::makeField(grid.lattice, ScalarType::I32);
+    for (std::int32_t& sample : field.as<std::int32_t>()) sample = int(random() % 2000) - 1000;
+    FrameSamples samples{volume::Field(field)};
+    const std::vector<float> strength(1, 1);
+    giveUpDetails(grid, samples, Wavelet::W22, Threshold::Hard, 1e6, strength, 0);
+    const auto transformed = [](const volume::Field& of) {
+        const auto numbers = of.as<std::int32_t>();
+        std::vector<std::uint32_t> codes(numbers.begin(), numbers.end());
+        forward(codes, {}, {8, 8, 8}, 2, Wavelet::W22, Arithmetic::Wide);
+        return codes;
+    };
+    const std::vector<std::uint32_t> before = transformed(field), after = transformed(*samples.whole());
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        const bool coarsest = i % 8 < 2 && i / 8 % 8 < 2 && i / 64 < 2;
+        EXPECT_EQ(after[i], coarsest ? before[i] : 0u) << i;
+    }
+}
+
+TEST(Thresholds, AQuantileDropsThatPartOfTheSmallest) {
+    std::vector<std::int32_t> all;
+    for (int i = 1; i <= 100; ++i) all.push_back(i % 2 == 0 ? i : -i);
+    std::shuffle(all.begin(), all.end(), std::mt19937(3));
+    for (const double part : {-1.0, 0.0, 0.25, 0.5, 1.0, 2.0}) {
+        std::vector<std::int32_t> details = all;
+        applyThreshold(details, Threshold::Quantile, part);
+        const int dropped = int(std::clamp(part, 0.0, 1.0) * 100);
+        for (std::size_t i = 0; i < all.size(); ++i)
+            EXPECT_EQ(details[i], std::abs(all[i]) <= dropped ? 0 : all[i]) << part;
+    }
 }
 
 } // namespace

@@ -118,5 +118,21 @@ TEST(Pieces, AModelOfNoBytesIsThatOfNoTokens) {
     EXPECT_EQ(model.tables[0][kEscape], 2048);
 }
 
+TEST(Streams, NumbersOfNoOrTooManyBytesAreRefused) {
+    for (const std::size_t count : {3u, 3000u}) { // as they are, and compressed
+        std::vector<std::uint32_t> symbols(count);
+        for (std::size_t i = 0; i < count; ++i) symbols[i] = std::uint32_t(i * i % 251);
+        Compressor compressor(3);
+        Bytes coded;
+        encodeStream(symbols, compressor, coded);
+        ASSERT_EQ(std::to_integer<int>(coded[1]), 1) << "bytes of each";
+        for (const int width : {0, 5, 255}) {
+            coded[1] = static_cast<std::byte>(width);
+            std::span<const std::byte> in(coded);
+            EXPECT_EQ(decodeStream(in, symbols), DecodeStatus::BadLength) << width;
+        }
+    }
+}
+
 } // namespace
 } // namespace tessera::codec

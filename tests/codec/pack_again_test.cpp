@@ -100,5 +100,41 @@ TEST(PackAgain, ErrorsReferToTheRangeOfTheWhole) {
     EXPECT_NEAR(grown.metadata().maxError, 0.005, 1e-6);
 }
 
+TEST(PackAgain, AnotherFormOfAKnownLabelIsNamed) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.tsr";
+    volume::Dataset first = makeDataset({9, 8, 7}, {{"region", ScalarType::U8, 1, Texture::Noise, false, true}}, 1);
+    pack(first, {}, path);
+    volume::Dataset more = makeDataset({9, 8, 7},
+                                       {{"region", ScalarType::I16, 1, Texture::Noise, false, true},
+                                        {"T", ScalarType::F32, 1, Texture::Smooth, false, false}},
+                                       1);
+    try {
+        append(more, path);
+        ADD_FAILURE();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.reason(), "region has the type int16, in the archive uint8");
+    }
+}
+
+// A single volume of integers is one large brick; later times do not make it another grid.
+TEST(PackAgain, BricksKeepTheSizeTheyBeganWith) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.tsr";
+    const auto made = [](int times, double begin) {
+        volume::Dataset data = makeDataset({80, 8, 7}, {{"n", ScalarType::U8, 1, Texture::Noise}}, times);
+        for (double& time : data.info.times) time += begin;
+        return data;
+    };
+    PackOptions options;
+    options.lattice = StoredLattice::CC;
+    volume::Dataset first = made(1, 0), later = made(2, 100);
+    pack(first, options, path);
+    EXPECT_EQ(Archive(path).grid().brickSize, 128);
+    append(later, path);
+    EXPECT_EQ(Archive(path).grid().brickSize, 128);
+    EXPECT_EQ(Archive(path).info().times.size(), 3u);
+}
+
 } // namespace
 } // namespace tessera::codec

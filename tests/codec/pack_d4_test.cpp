@@ -91,6 +91,13 @@ TEST_F(PackD4, HalfTheSamplesAreStoredFrameByFrame) {
     EXPECT_EQ(verifyArchive(*archive_).damaged, 0u);
 }
 
+TEST_F(PackD4, SeriesAreThoseOfTheirParameter) {
+    for (int p = 0; p < 3; ++p) {
+        const volume::Series series = storedSeries(archive_, p, 0);
+        EXPECT_EQ(series.frame(3)->samples, readField(*archive_, p, 0, 3).samples) << p;
+    }
+}
+
 TEST_F(PackD4, OpensAsBccFieldsOfBothParities) {
     const auto source = openArchive(path_);
     ASSERT_EQ(source->info().lattice.kind, volume::LatticeKind::BCC);

@@ -3,6 +3,7 @@
 #include "codec/pack/pack_size.h"
 #include "tests/codec/make_dataset.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <fstream>
@@ -174,6 +175,77 @@ TEST(PackFeed, ReadsOneStepAheadOrNone) {
     // The limit is no part of what is stored but among the options.
     const Archive ample(folder / "1000.000000.tsr"), tight(folder / "65.200000.tsr");
     for (int t = 0; t < 3; ++t) EXPECT_EQ(readField(ample, 0, 0, t).samples, readField(tight, 0, 0, t).samples);
+}
+
+// Between a bound that is too fine and one that is too coarse the next one is interpolated in the logarithm, by sizes,
+// but not within a tenth of either.
+TEST(PackSize, TheThirdTrialLiesBetweenTheFirstTwo) {
+    const TemporaryFolder folder;
+    const double wanted = 1e6, aim = 0.98 * wanted;
+    const std::pair<double, double> sizes[] = {{2e6, 0.5e6}, {1.2e6, 0.2e6}, {1.001e6, 0.1e6}, {40e6, 0.95e6}};
+    for (const auto& [tooLarge, tooSmall] : sizes) {
+        std::vector<double> bounds;
+        const auto estimate = [&](const Progress&) {
+            std::vector<SizeAtBound> curve{{0, 9e6}};
+            for (int exponent = -26; exponent <= -2; ++exponent)
+                curve.push_back({std::ldexp(1.0, exponent), 2e5 * -exponent});
+            return curve;
+        };
+        const auto packed = [&](const PackOptions& options, const std::string& to, const Progress&) {
+            bounds.push_back(options.maxError);
+            PackSummary summary;
+            summary.archiveBytes = std::uint64_t(bounds.size() == 1   ? tooLarge
+                                                 : bounds.size() == 2 ? tooSmall
+                                                                      : 0.97e6);
+            std::ofstream(to) << summary.archiveBytes;
+            return summary;
+        };
+        PackOptions options;
+        options.sizeMb = 1;
+        packToSize(options, SizeControl::LargestError, folder / "a.tsr", estimate, packed, {});
+        ASSERT_EQ(bounds.size(), 3u);
+        EXPECT_LT(bounds[0], bounds[1]);
+        const double part = std::clamp((tooLarge - aim) / (tooLarge - tooSmall), 0.1, 0.9);
+        EXPECT_NEAR(std::log(bounds[2] / bounds[0]) / std::log(bounds[1] / bounds[0]), part, 1e-9) << tooLarge;
+    }
+}
+
+TEST(PackSize, EstimatesTakeTheFirstTenthOfTheProgress) {
+    const TemporaryFolder folder;
+    volume::Dataset made = waves(2);
+    std::vector<double> ranges, sizes;
+    const Progress progress{[&](double fraction, const std::string& what) {
+                                if (what == "ranges") ranges.push_back(fraction);
+                                if (what == "sizes") sizes.push_back(fraction);
+                            },
+                            {}};
+    PackOptions options;
+    options.sizeMb = 0.3;
+    pack(made, options, folder / "a.tsr", progress);
+    ASSERT_EQ(ranges.size(), 4u); // two parameters at two times
+    ASSERT_EQ(sizes.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_NEAR(ranges[i], 0.05 * double(i) / 4, 1e-12);
+        EXPECT_NEAR(sizes[i], 0.05 + 0.05 * double(i) / 4, 1e-12);
+    }
+}
+
+TEST(PackFeed, AStopIsHeardBetweenSlices) {
+    const TemporaryFolder folder;
+    volume::Dataset made = makeDataset({8, 8, 64}, {{"n", ScalarType::U8, 1, Texture::Noise}}, 1);
+    std::stop_source stop;
+    int reads = 0;
+    made.read = [&, read = made.read](int p, int c, int t, volume::SliceRange slices) {
+        if (++reads == 2) stop.request_stop();
+        return volume::slicesOf(read(p, c, t), slices);
+    };
+    FeedOptions reading;
+    reading.grid = {made.info.lattice, 8, 2, 0};
+    reading.slices = {8, folder / ""};
+    reading.slabLayers = 1;
+    FrameFeed feed(made, reading, stop.get_token());
+    EXPECT_THROW(feed.next(), Cancelled);
+    EXPECT_EQ(reads, 2);
 }
 
 } // namespace

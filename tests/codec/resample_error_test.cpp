@@ -155,5 +155,17 @@ TEST(ResampleErrors, OfLargeFramesAreThoseOfSomeSlices) {
     EXPECT_NEAR(some.meanSquare, squares / double(source.count()), 0.02 * some.meanSquare);
 }
 
+TEST(ResampleErrors, OfNothingAreNone) {
+    volume::Field source = makeDataset({6, 5, 4}, {{"n", ScalarType::U8, 1, Texture::Noise}}, 1).read(0, 0, 0);
+    source.mask = std::make_shared<const volume::Mask>(source.count(), std::uint8_t(0));
+    const ResampleError none = resampleError(source, volume::toBcc(source, false), false);
+    EXPECT_EQ(none.samples, 0);
+    EXPECT_EQ(none.meanSquare, 0);
+    ResampleError sum{4, 2, 10, 1};
+    sum.add(none);
+    EXPECT_EQ(sum.meanSquare, 4);
+    EXPECT_EQ(sum.samples, 10);
+}
+
 } // namespace
 } // namespace tessera::codec

@@ -1,8 +1,11 @@
 #include "codec/archive/archive.h"
+#include "codec/bytes/lzma.h"
 #include "codec/container/container.h"
 #include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
+#include "tests/codec/sealed_file.h"
 
+#include <algorithm>
 #include <cstring>
 #include <gtest/gtest.h>
 
@@ -26,6 +29,68 @@ std::vector<char> rowOfBricks(const TemporaryFolder& folder, bool masked, int ti
     options.brickSize = 8;
     pack(made, options, folder / "row.tsr");
     return readFile(folder / "row.tsr");
+}
+
+TEST(Verify, CountsEveryByteOfModelsMasksAndBricks) {
+    const TemporaryFolder folder;
+    const std::vector<char> whole = rowOfBricks(folder, true, 1, true);
+    std::uint64_t metadataAt = 0; // which follows them
+    std::memcpy(&metadataAt, whole.data() + 24, 8);
+    EXPECT_EQ(verified(folder, whole).bytes, metadataAt - 2 * kHeaderBytes);
+}
+
+/// The archive with its index changed, which is right in all but that.
+template <class Change> std::vector<char> withIndex(const std::vector<char>& whole, const Change& change) {
+    const auto* first = reinterpret_cast<const std::byte*>(whole.data());
+    Bytes bytes(first, first + whole.size());
+    Header header = parseHeaders(bytes, bytes.size(), "").header;
+    EXPECT_EQ(header.index.offset + header.index.length, bytes.size());
+    Bytes page;
+    EXPECT_EQ(decodePiece(std::span(bytes).subspan(header.index.offset), page), DecodeStatus::Ok);
+    change(page);
+    const Bytes piece = encodePiece(page);
+    bytes.resize(header.index.offset);
+    bytes.insert(bytes.end(), piece.begin(), piece.end());
+    header.index = {header.index.offset, piece.size(), checksum(piece)};
+    return sealed(header, std::move(bytes));
+}
+
+TEST(Verify, StatisticsThatAreNotThoseOfTheSamplesAreDamage) {
+    const TemporaryFolder folder;
+    const std::vector<char> forged = withIndex(rowOfBricks(folder, false, 1, true), [](Bytes& page) {
+        const float is = 99, isNot = 98; // the largest number of each brick
+        std::byte pattern[sizeof is];
+        std::memcpy(pattern, &is, sizeof is);
+        const auto at = std::search(page.begin(), page.end(), std::begin(pattern), std::end(pattern));
+        ASSERT_NE(at, page.end());
+        std::memcpy(&*at, &isNot, sizeof isNot);
+    });
+    const VerifyReport report = verified(folder, forged);
+    EXPECT_EQ(report.damage,
+              std::vector<std::string>{
+                  "v component 0 time 0 brick 0,0,0: index: its statistics differ from those of its samples"});
+}
+
+TEST(Verify, AModelOutsideTheFileIsRefused) {
+    const TemporaryFolder folder;
+    volume::Dataset made = makeDataset(
+        {8, 8, 8}, {{"a", ScalarType::U8, 1, Texture::Noise}, {"b", ScalarType::I16, 1, Texture::Smooth}}, 1);
+    PackOptions options;
+    options.lattice = StoredLattice::CC;
+    pack(made, options, folder / "two.tsr");
+    constexpr std::size_t kHead = 64, kTime = 8, kModel = 24;
+    for (const std::size_t model : {0, 1}) {
+        const std::vector<char> forged = withIndex(readFile(folder / "two.tsr"), [&](Bytes& page) {
+            const std::uint64_t beyond = std::uint64_t(1) << 40;
+            std::memcpy(page.data() + kHead + kTime + model * kModel, &beyond, sizeof beyond);
+        });
+        try {
+            verified(folder, forged);
+            ADD_FAILURE() << model;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.reason(), "a chunk lies outside the file") << model;
+        }
+    }
 }
 
 TEST(Verify, ADamagedHeaderIsNoDamagedBrick) {

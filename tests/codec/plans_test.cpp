@@ -1,0 +1,75 @@
+#include "codec/bytes/lzma.h"
+#include "codec/container/container.h"
+#include "codec/container/metadata.h"
+#include "codec/pack/memory_plan.h"
+#include "tests/codec/make_dataset.h"
+#include "volume/resample/resample.h"
+
+#include <gtest/gtest.h>
+
+/// What is decided before a sample is read, and what is said of it.
+namespace tessera::codec {
+namespace {
+
+using namespace testing;
+using volume::ScalarType;
+
+Metadata metadataOf(const volume::DatasetInfo& info, volume::LatticeKind kind) {
+    Metadata metadata;
+    metadata.info = info;
+    metadata.source = info.lattice;
+    if (kind == volume::LatticeKind::BCC) metadata.info.lattice = volume::bccFor(info.lattice);
+    metadata.grid = {metadata.info.lattice, 32, 3, 0};
+    metadata.program = "a test";
+    return metadata;
+}
+
+// Of a slab at least its source, its result, and for sharpening two copies of both, with a flag each, are in memory.
+TEST(MemoryPlan, SlabsFitTheLimit) {
+    volume::Dataset made;
+    made.info.lattice = {volume::LatticeKind::CC, {128, 128, 4096}, {1, 1, 1}, {0, 0, 0}};
+    made.info.parameters = {{"v", "", 1, ScalarType::F32, false, {}, {}}};
+    made.read = [](int, int, int, volume::SliceRange) { return volume::Field(); };
+    const Metadata metadata = metadataOf(made.info, volume::LatticeKind::BCC);
+    for (const double limit : {300.0, 600.0}) {
+        for (const double sharpen : {0.0, 0.5}) {
+            PackOptions options;
+            options.memoryMb = limit;
+            options.resample.sharpen = sharpen;
+            const MemoryPlan plan = planMemory(metadata, made, options, 0);
+            const glm::ivec3 size = metadata.info.lattice.size;
+            const double texels = plan.slabLayers * 32, stored = double(size.x) * size.y * 2 * texels,
+                         source = 128 * 128 * texels * metadata.info.lattice.spacing.z;
+            const double bytes = (stored + source) * (sizeof(float) + 1) * (sharpen > 0 ? 3 : 1);
+            EXPECT_LE(bytes, limit * 1e6) << sharpen;
+            EXPECT_GE(bytes, 0.2 * limit * 1e6) << sharpen << ": with all that is needed besides";
+        }
+    }
+}
+
+TEST(MetadataText, MistakesAreNamedByPlaceAndReason) {
+    const volume::DatasetInfo info = makeDataset({9, 8, 7}, {{"v", ScalarType::U8}}, 1).info;
+    Bytes plain;
+    ASSERT_EQ(decodePiece(serialise(metadataOf(info, volume::LatticeKind::CC), kCompact), plain), DecodeStatus::Ok);
+    const std::string text(reinterpret_cast<const char*>(plain.data()), plain.size());
+    const auto problem = [&](const std::string& from, const std::string& to) {
+        std::string changed = text;
+        const std::size_t at = changed.find(from);
+        EXPECT_NE(at, std::string::npos) << from << " in " << text;
+        changed.replace(at, from.size(), to);
+        try {
+            parseMetadata(encodePiece(std::as_bytes(std::span(changed))), kCompact, "a.tsr");
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(problem("\"v\"", "\"w\""), "");
+    EXPECT_EQ(problem("\"brickSize\":32", "\"brickSize\":33"), "a.tsr: metadata /grid/brickSize: not a power of two");
+    EXPECT_EQ(problem("\"brickSize\":32", "\"brickSize\":2"), "a.tsr: metadata /grid/brickSize: not between 4 and 128");
+    EXPECT_EQ(problem("\"lossless\":true", "\"lossless\":1"), "a.tsr: metadata /lossless: not true or false");
+    EXPECT_EQ(problem("\"program\"", "\"programme\""), "a.tsr: metadata : the key 'program' is missing");
+}
+
+} // namespace
+} // namespace tessera::codec
