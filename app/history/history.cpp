@@ -20,6 +20,11 @@ std::vector<std::string> pathsOf(const Json& patch) {
     return paths;
 }
 
+/// Whether values were only changed. What comes or goes is a step of its own, so that both together cannot be none.
+bool onlyReplaces(const Json& patch) {
+    return std::ranges::all_of(patch, [](const Json& operation) { return operation.at("op") == "replace"; });
+}
+
 /// Steps hold what Json::diff makes. Other operations (a copy, say, which doubles a document each time) are refused.
 bool isDifference(const Json& patch) {
     return patch.is_array() && std::ranges::all_of(patch, [](const Json& operation) {
@@ -79,7 +84,8 @@ bool History::observe(const Session& session, bool editing, double seconds, doub
     }
     Json before = document_;
     const bool merges = name.empty() && position_ > 0 && position_ == steps_.size() &&
-                        seconds - lastCommit_ < mergeSeconds && pathsOf(steps_.back().forward) == pathsOf(forward);
+                        seconds - lastCommit_ < mergeSeconds && onlyReplaces(forward) &&
+                        pathsOf(steps_.back().forward) == pathsOf(forward);
     if (merges) {
         before = document_.patch(steps_.back().inverse);
         steps_.pop_back();

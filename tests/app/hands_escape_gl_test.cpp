@@ -1,9 +1,6 @@
 #include "tests/app/hands_fixture.h"
 #include "tests/app/workbench_fixture.h"
 
-#include <chrono>
-#include <thread>
-
 /// Esc during a drag gives it up: the session is what it was, no step is made, and what the hand does until it lets go
 /// of the button changes nothing.
 namespace tessera::app {
@@ -129,7 +126,6 @@ TEST_F(EscapeClears, OneBrushAtOnceSeveralAfterAQuestion) {
     type(key::kEscape); // no
     EXPECT_EQ(brushes(), 3u);
     ASSERT_FALSE(ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel));
-    std::this_thread::sleep_for(std::chrono::milliseconds(700)); // a step of its own
     type(key::kEscape);
     type(key::kEnter); // yes
     EXPECT_EQ(brushes(), 0u);

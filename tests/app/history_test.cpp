@@ -2,6 +2,7 @@
 #include "cell_info.h"
 #include "randomise.h"
 
+#include <functional>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <random>
@@ -65,6 +66,28 @@ TEST(HistoryTest, ADragIsOneStepAndAWheelTurnIsOneStep) {
     EXPECT_EQ(history.steps().size(), 2u);
     EXPECT_EQ(history.steps()[1].name, "time");
     EXPECT_EQ(history.undo().time, 0);
+}
+
+// However soon one follows the other: of both in one step nothing would be left, or neither could be undone alone.
+TEST(HistoryTest, WhatComesAndGoesIsAStepEach) {
+    Session session;
+    History history;
+    history.reset(session);
+    double seconds = 1;
+    std::vector<Session> states{session};
+    const auto then = [&](const std::function<void()>& edit) {
+        edit();
+        EXPECT_TRUE(history.observe(session, false, seconds += 0.1));
+        states.push_back(session);
+        EXPECT_EQ(history.steps().size(), states.size() - 1);
+    };
+    then([&] { session.transfer["T"] = {}; });
+    then([&] { session.transfer.erase("T"); });
+    then([&] { session.transfer["T"] = {}; });
+    then([&] { session.selection.brushes.push_back({}); });
+    then([&] { session.selection.brushes.push_back({}); });
+    then([&] { session.selection.brushes.clear(); });
+    for (std::size_t i = states.size() - 1; i-- > 0;) EXPECT_TRUE(history.undo() == states[i]) << i;
 }
 
 TEST(HistoryTest, PlayingIsNoEdit) {
