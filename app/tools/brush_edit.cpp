@@ -1,5 +1,6 @@
 #include "app/tools/brush_edit.h"
 
+#include "app/pane/view_context.h"
 #include "app/tools/brush_shape.h"
 #include "app/ui/keys.h"
 
@@ -145,6 +146,7 @@ bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& fr
     const ImGuiIO& io = ImGui::GetIO();
     const vis::Selection before = selection;
     const bool hovered = ImGui::IsItemHovered();
+    drag.asksToClear = false;
     if (hovered && !drag.active) {
         const BrushHit hit = hitBrush(selection, frame, plot, io.MousePos);
         if (hit.brush >= 0) showCursor(hit.edges);
@@ -157,13 +159,16 @@ bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& fr
                     .brush = fresh ? -1 : hit.brush,
                     .edges = fresh ? 0 : hit.edges,
                     .start = frame.data(io.MousePos),
-                    .original = selection};
+                    .original = selection,
+                    .asksToClear = false};
         } else if (ImGui::IsMouseReleased(ImGuiMouseButton_Right) &&
                    ImGui::GetMouseDragDelta(ImGuiMouseButton_Right).x == 0) {
             if (hit.brush >= 0)
                 selection.brushes.erase(selection.brushes.begin() + hit.brush);
-            else
+            else if (selection.brushes.size() == 1)
                 selection.brushes.clear();
+            else
+                drag.asksToClear = !selection.brushes.empty();
         }
     }
     // Esc first: with keyboard navigation ImGui deactivates the item before it can be seen below.
@@ -186,6 +191,10 @@ bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& fr
         }
     }
     return !(selection == before);
+}
+
+void clearAfterQuestion(const BrushDrag& drag, const ViewContext& context) {
+    if (drag.asksToClear && context.runCommand) context.runCommand("Clear brushes");
 }
 
 void drawBrushes(ImDrawList& draw, const vis::Selection& selection, const PlotFrame& frame, const PlotChannels& plot) {

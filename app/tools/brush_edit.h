@@ -9,6 +9,8 @@
 /// Creating and editing brushes with the mouse, in scatterplots (two channels) and histograms (one).
 namespace tessera::app {
 
+struct ViewContext;
+
 /// The brush that a drag on an empty area of a plot creates.
 struct BrushPen {
     BrushTool tool = BrushTool::Rectangle;
@@ -18,12 +20,13 @@ struct BrushPen {
 /// The drag in progress. One per view, since only one mouse drags.
 struct BrushDrag {
     bool active = false;
-    bool made = false;       ///< the drag creates the brush, so releasing it too small takes it back
-    PlotChannels plot;       ///< where it began
-    int brush = -1;          ///< index in the selection, -1 until the mouse has moved far enough
-    int edges = 0;           ///< what is held: bits of BrushEdge, 0 = the whole brush
-    glm::dvec2 start{0};     ///< values where the button went down
-    vis::Selection original; ///< before the drag: Esc goes back to it
+    bool made = false;        ///< the drag creates the brush, so releasing it too small takes it back
+    PlotChannels plot;        ///< where it began
+    int brush = -1;           ///< index in the selection, -1 until the mouse has moved far enough
+    int edges = 0;            ///< what is held: bits of BrushEdge, 0 = the whole brush
+    glm::dvec2 start{0};      ///< values where the button went down
+    vis::Selection original;  ///< before the drag: Esc goes back to it
+    bool asksToClear = false; ///< set for this frame: a right click beside several brushes, to be asked about
 };
 
 /// True if the brush uses only axes of the plot: then it is drawn and edited there.
@@ -38,9 +41,13 @@ BrushHit hitBrush(const vis::Selection& selection, const PlotFrame& frame, const
 /// Handles the mouse on a plot whose InvisibleButton (left and right) was the last ImGui item; returns true when the
 /// selection changed. Left drag on the plot creates a brush and replaces those of this plot; with Shift it is added
 /// ("or"), with Ctrl it is subtracted ("minus"). Dragging a brush moves it, dragging its edges and corners resizes it;
-/// Esc cancels the drag; right click removes the brush under the mouse, or all of them if there is none.
+/// Esc cancels the drag; right click removes the brush under the mouse. Beside all it removes a lone brush; several
+/// stay until the user was asked (clearAfterQuestion).
 bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& frame, const PlotChannels& plot,
                  const BrushPen& pen);
+
+/// Asks whether to remove all brushes, if editBrushes was told to, as Esc does.
+void clearAfterQuestion(const BrushDrag& drag, const ViewContext& context);
 
 /// Outlines of the brushes that fit the plot in their colours, soft edges as a fainter outer line, numbers as in the
 /// list of brushes.

@@ -141,7 +141,30 @@ TEST_F(ScatterHands, ADragIsABrushAndOneStep) {
     EXPECT_TRUE(session() == before) << apart(before);
 }
 
+// The command of Esc is run after the frame; in a picture without a window its question is answered with yes.
+TEST_F(ScatterHands, ARightClickBesideSeveralBrushesIsLeftToTheCommandThatAsks) {
+    showPlots([](Session& edited) { edited.selection.brushes.resize(2); });
+    moveTo(within(plot, 0.5, 0.5));
+    button(1, true);
+    button(1, false);
+    EXPECT_EQ(session().selection.brushes.size(), 2u) << "the plot itself clears nothing";
+    frame();
+    EXPECT_TRUE(session().selection.brushes.empty());
+}
+
 class HistogramHands : public Hands {};
+
+TEST_F(HistogramHands, ARightClickBesideSeveralBrushesIsLeftToTheCommandThatAsks) {
+    HistogramView histogram;
+    histogram.channel = "T";
+    show(histogram, {500, 300}, [](Session& edited) { edited.selection.brushes.resize(2); });
+    moveTo(within(inPane({"plot"}), 0.5, 0.5));
+    button(1, true);
+    button(1, false);
+    EXPECT_EQ(session().selection.brushes.size(), 2u);
+    frame();
+    EXPECT_TRUE(session().selection.brushes.empty());
+}
 
 TEST_F(HistogramHands, ADragSelectsTheValuesBelowIt) {
     HistogramView histogram;

@@ -213,6 +213,14 @@ TEST_F(BrushEdit, EscapeTakesTheDragBack) {
 TEST_F(BrushEdit, RightClickRemovesTheBrushOrClearsAll) {
     dragFromTo(1, 0.1, 3, 0.3);
     selection.brushes.push_back(vis::rangeBrush({{.channel = "p", .lo = 0, .hi = 1}}));
+    moveTo(8, 0.8);
+    button(1, true);
+    EXPECT_FALSE(drag.asksToClear);
+    button(1, false);
+    EXPECT_EQ(selection.brushes.size(), 2u);
+    EXPECT_TRUE(drag.asksToClear) << "of several";
+    frame();
+    EXPECT_FALSE(drag.asksToClear) << "once";
     moveTo(2, 0.2);
     button(1, true);
     button(1, false);
@@ -222,6 +230,9 @@ TEST_F(BrushEdit, RightClickRemovesTheBrushOrClearsAll) {
     button(1, true);
     button(1, false);
     EXPECT_TRUE(selection.brushes.empty());
+    button(1, true);
+    button(1, false);
+    EXPECT_FALSE(drag.asksToClear) << "there is nothing to remove";
 }
 
 TEST_F(BrushEdit, HistogramsBrushOneChannel) {

@@ -179,6 +179,7 @@ bool drawPlot(ViewContext& context, ScatterCache& cache, ScatterMatrixView& view
     if (hovered && !cache.drag.active)
         zoomAndPan(view, frame, channels, matrix.whole[column], matrix.whole[row], histogram);
     editBrushes(cache.drag, session.selection, frame, channels, {view.tool, view.softness});
+    clearAfterQuestion(cache.drag, context);
 
     draw.PushClipRect(frame.min, frame.max, true);
     if (result && histogram)

@@ -95,6 +95,7 @@ void drawPlot(ViewContext& context, HistogramCache& cache, const HistogramView& 
     const bool hovered = ImGui::IsItemHovered();
     const PlotChannels channels{channel.name, {}};
     editBrushes(cache.drag, context.session.selection, frame, channels, {BrushTool::Rectangle, view.softness});
+    clearAfterQuestion(cache.drag, context);
     if (cache.drag.active) context.interacting = true;
     draw.PushClipRect(frame.min, frame.max, true);
     if (result) {
