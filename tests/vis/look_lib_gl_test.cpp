@@ -1,5 +1,6 @@
 #include "tests/vis/shader_probe.h"
 #include "vis/optics/look_shading.h"
+#include "vis/optics/ray_setup.h"
 #include "vis/raycast/look_uniforms.h"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ protected:
     static constexpr const char* kHead =
         "#include \"lib/look.glsl\"\n"
         "LookSample at(vec4 a, vec4 b) { return LookSample(a.x, abs(a.y), abs(a.z), abs(a.w) * 1.2, 40.0 * abs(b.x), "
-        "abs(b.y), 0.005, 1.0, 0.0, abs(b.zw)); }\n";
+        "abs(b.y), 0.005, 1.0, 0.0, abs(b.zwxy)); }\n";
     vis::LookSample sample(int i) const {
         vis::LookSample out;
         const double facing = std::abs(a[i].y);
@@ -30,7 +31,7 @@ protected:
         out.curvature = 40 * std::abs(b[i].x);
         out.depth = std::abs(b[i].y);
         out.pixel = 0.005;
-        out.grain = glm::abs(glm::dvec2(b[i].z, b[i].w));
+        out.grain = glm::abs(glm::dvec4(b[i].z, b[i].w, b[i].x, b[i].y));
         return out;
     }
 };
@@ -66,41 +67,77 @@ TEST_F(LookLib, WiresAgree) {
 }
 
 TEST_F(LookLib, InkAgrees) {
-    for (const vis::Stick stick : {vis::Stick::Charcoal, vis::Stick::Chalk}) {
-        vis::CharcoalDrawing charcoal;
-        charcoal.stick = stick;
-        charcoal.steepness = 0.4f;
-        charcoal.smudge = 0.3f;
-        const std::string chalk = stick == vis::Stick::Chalk ? "1.0" : "0.0";
-        const auto got = evaluate(
-            kHead,
-            "vec4(charcoalInk(abs(c[i].rgb), at(a[i], b[i]), vec3(0.9, 0.4, " + chalk +
-                "), vec3(2.2, 0.9, 0.5), vec4(" + std::to_string(vis::grainSoftness(charcoal)) +
-                ", 0.7, 0.3, 0.93)), toned(abs(c[i].rgb), a[i].x, vec3(0.9, 0.6, 0.2), vec3(0.1, 0.2, 0.5), 0.4))");
-        double least = 1, most = 0;
-        for (int i = 0; i < kCases; ++i) {
-            const double ink = vis::charcoalInk(charcoal, glm::abs(glm::dvec3(c[i])), sample(i));
-            EXPECT_NEAR(got[i].x, ink, 5e-5) << i;
-            least = std::min(least, ink), most = std::max(most, ink);
-            EXPECT_GE(ink, 0);
-            EXPECT_LE(ink, 1);
+    for (const bool light : {false, true})
+        for (const vis::Mark mark : {vis::Mark::Strokes, vis::Mark::Dots}) {
+            vis::CharcoalDrawing charcoal{.mark = mark,
+                                          .pressure = 0.93f,
+                                          .bare = 0.1f,
+                                          .steepness = 0.4f,
+                                          .outline = 2.2f,
+                                          .closure = 0.5f,
+                                          .tooth = 0.8f,
+                                          .crossing = 0.4f,
+                                          .smudge = 0.3f};
+            const auto got = evaluate(
+                kHead, std::string("vec4(charcoalInk(abs(c[i].rgb), at(a[i], b[i]), vec4(0.9, 0.4, ") +
+                           (light ? "1.0" : "0.0") + ", 0.1), vec3(2.2, 0.9, 0.5), vec4(" +
+                           std::to_string(vis::grainSoftness(charcoal)) + ", 0.7, 0.3, 0.93), vec2(0.4, 0.4), " +
+                           (mark == vis::Mark::Dots ? "true" : "false") + "), 0.0, 0.0, 0.0)");
+            double least = 1, most = 0;
+            for (int i = 0; i < kCases; ++i) {
+                const double ink = vis::charcoalInk(charcoal, glm::abs(glm::dvec3(c[i])), sample(i), light);
+                EXPECT_NEAR(got[i].x, ink, 5e-5) << i;
+                least = std::min(least, ink), most = std::max(most, ink);
+                EXPECT_GE(ink, 0);
+                EXPECT_LE(ink, 1);
+            }
+            EXPECT_LT(least, 0.2);
+            EXPECT_GT(most, 0.8);
         }
-        EXPECT_LT(least, 0.2);
-        EXPECT_GT(most, 0.8);
-    }
 }
 
-/// Tone shading equals Gooch's formula with the own colour added where light falls.
+/// Tone shading equals Gooch's ramp as a tint of the own colour.
 TEST_F(LookLib, ToneIsItsFormula) {
     const auto got = evaluate("#include \"lib/look.glsl\"\n",
                               "vec4(toned(abs(c[i].rgb), a[i].x, vec3(0.9, 0.6, 0.2), vec3(0.1, 0.2, 0.5), 0.4), 1.0)");
     for (int i = 0; i < kCases; ++i)
         for (int k = 0; k < 3; ++k) {
             const double warm[] = {0.9, 0.6, 0.2}, cool[] = {0.1, 0.2, 0.5}, l = a[i].x;
-            const double expected = (1 + l) / 2 * warm[k] + (1 - (1 + l) / 2) * cool[k] +
-                                    0.4 * std::max(l, 0.0) * std::abs(double(c[i][k]));
+            const double expected =
+                ((1 + l) / 2 * warm[k] + (1 - (1 + l) / 2) * cool[k]) * (0.6 + 0.4 * std::abs(double(c[i][k])));
             EXPECT_NEAR(got[i][k], expected, 2e-6) << i;
         }
+}
+
+/// Hue in degrees: the angle about the gray axis.
+double hueOf(glm::dvec3 color) {
+    return glm::degrees(std::atan2(std::sqrt(3.0) * (color.g - color.b), 2 * color.r - color.g - color.b));
+}
+
+/// In the light a material looks like itself, in the shade darker and cooler, and materials stay apart.
+TEST(Tone, KeepsTheHueAndCoolsInTheShade) {
+    vis::Look look = *vis::Look::preset("tone");
+    const auto shown = [&](glm::dvec3 albedo, double light) {
+        vis::LookSample at;
+        at.at = {{0, 0, 1}, {0, 0, 1}, 1};
+        at.toLight = glm::dvec3(std::sqrt(1 - light * light), 0, light);
+        at.weight = 1;
+        return vis::lookColor(look, albedo, albedo, at, glm::dvec3(1));
+    };
+    const glm::dvec3 skin(0.6, 0.32, 0.22), bone(0.75, 0.68, 0.55), leaf(0.12, 0.3, 0.06), steel(0.5, 0.55, 0.62);
+    for (const glm::dvec3 albedo : {skin, leaf, glm::dvec3(0.5, 0.1, 0.1), glm::dvec3(0.1, 0.15, 0.6)}) {
+        const double apart = std::abs(std::remainder(hueOf(shown(albedo, 1)) - hueOf(albedo), 360));
+        EXPECT_LT(apart, 12) << "hue in the light";
+        const double inShade = std::abs(std::remainder(hueOf(shown(albedo, -0.3)) - hueOf(albedo), 360));
+        EXPECT_LT(inShade, 40) << "hue in the shade";
+    }
+    for (const glm::dvec3 albedo : {skin, bone, leaf, steel}) {
+        const glm::dvec3 light = shown(albedo, 1), edge = shown(albedo, 0), shade = shown(albedo, -1);
+        EXPECT_GT(edge.b / edge.r, 1.15 * light.b / light.r) << "cooler";
+        EXPECT_GT(shade.b / shade.r, 1.5 * light.b / light.r);
+        EXPECT_LT(vis::luminance(edge), 0.8 * vis::luminance(light)) << "and darker";
+        EXPECT_GT(vis::luminance(shade), 0.15 * vis::luminance(light)) << "never black";
+    }
 }
 
 TEST_F(LookLib, GrainAgrees) {
@@ -110,19 +147,28 @@ TEST_F(LookLib, GrainAgrees) {
         program.set("tile", 1);
         glBindTextureUnit(1, name);
     };
-    const std::string head = "#include \"lib/grain.glsl\"\n#include \"lib/paper.glsl\"\nuniform sampler2D tile;\n";
-    const auto got = evaluate(head,
-                              "vec4(grainAt(tile, 0.5 * a[i].xyz, normalize(b[i].xyz), 0.004 + 0.003 * c[i].x, "
-                              "vec2(cos(0.5), sin(0.5))), paperShade(tile, 300.0 * c[i].xy, 0.8), 0.0)",
-                              {}, prepare);
+    const std::string head = "#include \"lib/grain.glsl\"\n#include \"lib/paper.glsl\"\nuniform sampler2D tile;\n"
+                             "vec3 unit(vec4 v) { return normalize(v.xyz); }\n"
+                             "vec3 way(int i, vec4 n, vec4 c) { return strokeDirection(unit(n), c.yzw, 0.8, 0.3); }\n";
+    const auto got = evaluate(
+        head,
+        "vec4(grainAt(tile, 0.5 * a[i].xyz, unit(b[i]), 0.004 + 0.003 * c[i].x), paperShade(tile, 300.0 * c[i].xy, "
+        "0.8), strokesAt(tile, 0.5 * a[i].xyz, unit(b[i]), way(i, b[i], c[i]), 0.004 + 0.003 * c[i].x, 137.0))",
+        {}, prepare);
+    const auto ways = evaluate(head, "vec4(way(i, b[i], c[i]), 0.0)");
     const auto tile = vis::grainTile();
     double least = 1, most = 0;
     for (int i = 0; i < kCases; ++i) {
-        const glm::dvec2 expected = vis::grainAt(*tile, 0.5 * glm::dvec3(a[i]), glm::normalize(glm::dvec3(b[i])),
-                                                 0.004 + 0.003 * double(c[i].x), glm::degrees(0.5));
+        const glm::dvec3 normal = glm::normalize(glm::dvec3(b[i])), place = 0.5 * glm::dvec3(a[i]);
+        const double size = 0.004 + 0.003 * double(c[i].x);
+        const glm::dvec2 expected = vis::grainAt(*tile, place, normal, size);
         EXPECT_NEAR(got[i].x, expected.x, 1e-3) << i;
-        EXPECT_NEAR(got[i].y, expected.y, 1e-3) << i;
+        EXPECT_NEAR(got[i].y, expected.y, 2e-3) << i;
         EXPECT_NEAR(got[i].z, vis::paperShade(*tile, 300.0 * glm::dvec2(c[i]), 0.8), 1e-4) << i;
+        const glm::dvec3 along = vis::strokeDirection(normal, glm::dvec3(c[i].y, c[i].z, c[i].w), 0.8, 0.3);
+        EXPECT_LT(glm::length(glm::dvec3(ways[i]) - along), 1e-5) << i;
+        EXPECT_NEAR(got[i].w, vis::strokesAt(*tile, place, normal, along, size, 137), 1e-3) << i;
+        EXPECT_NEAR(glm::dot(along, normal), 0, 1e-9);
         least = std::min(least, expected.x), most = std::max(most, expected.x);
     }
     EXPECT_LT(least, 0.2);
@@ -136,10 +182,14 @@ TEST(Grain, ScalesAreFadedAndTonesAreSpread) {
     for (int i = 0; i < 1000; ++i) {
         const glm::dvec3 place(std::sin(i * 1.7), std::cos(i * 2.3), std::sin(i * 0.9));
         const glm::dvec3 normal = glm::normalize(glm::dvec3(std::cos(i * 0.3), std::sin(i * 0.7), 0.5));
-        const glm::dvec2 before = vis::grainAt(*tile, place, normal, 0.0078125 * (1 - 1e-9), 0),
-                         behind = vis::grainAt(*tile, place, normal, 0.0078125 * (1 + 1e-9), 0);
-        EXPECT_NEAR(before.x, behind.x, 1e-6);
-        const glm::dvec2 now = vis::grainAt(*tile, place, normal, 0.006 + 0.004 * (i % 10) / 10, 0);
+        const glm::dvec3 along = vis::strokeDirection(normal, glm::dvec3(0), 1, 0.1 * i);
+        const auto at = [&](double size) {
+            return glm::dvec2(vis::grainAt(*tile, place, normal, size).x,
+                              vis::strokesAt(*tile, place, normal, along, size, 0));
+        };
+        const glm::dvec2 before = at(0.0078125 * (1 - 1e-9)), behind = at(0.0078125 * (1 + 1e-9));
+        EXPECT_LT(glm::length(before - behind), 1e-6);
+        const glm::dvec2 now = at(0.006 + 0.004 * (i % 10) / 10);
         sum += now;
         squares += now * now;
     }

@@ -1,11 +1,9 @@
 #include "tests/vis/ball_silhouette.h"
+#include "tests/vis/drawn_ball.h"
 #include "tests/vis/raycast_compare.h"
-#include "vis/optics/surface_light.h"
 
 #include "vis/optics/look_shading.h"
 
-#include <functional>
-#include <glm/gtc/quaternion.hpp>
 #include <set>
 
 /// Looks in pictures: against the reference, and against what is known of a sphere.
@@ -85,48 +83,6 @@ TEST_P(Looks, PartsComposeWithBrushesAndLayers) {
     check("all parts", scene);
 }
 
-/// A ball of radius 0.4 world units in the middle, as its distance function.
-struct Ball {
-    static constexpr double kRadius = 0.4;
-    HeadlessContext context;
-    std::shared_ptr<FunctionSource> data;
-    Renderer renderer{optionsFor(true, false)};
-    Scene scene;
-
-    Ball() {
-        const auto distance = [](glm::dvec3 p) -> std::optional<double> { return glm::length(p - 20.0) / 40; };
-        data = std::make_shared<FunctionSource>(LatticeKind::CC, glm::ivec3(41), glm::dvec3(1),
-                                                std::vector<FunctionSource::Channel>{{"d", distance, {0, 0.87}}}, 16,
-                                                glm::dvec3(0));
-        renderer.setSource(data);
-        scene.camera.projection = Projection::Orthographic;
-        scene.camera.orientation = {1, 0, 0, 0};
-        scene.showBox = false;
-        scene.render.samples = 1;
-        scene.render.stepVoxels = 0.25f;
-    }
-    IsoLayer& surface() {
-        scene.layers = {{"", true, IsoLayer{.channel = "d", .value = kRadius, .color = glm::vec3(1)}}};
-        return std::get<IsoLayer>(scene.layers[0].technique);
-    }
-    std::vector<glm::vec4> draw(glm::ivec2 size) {
-        const ViewTargetPtr target = renderer.makeTarget();
-        FrameRequest request;
-        request.size = size;
-        request.wait = true;
-        renderer.render(*target, scene, request);
-        for (const std::string& message : renderer.takeMessages()) ADD_FAILURE() << message;
-        return renderer.readLinear(*target);
-    }
-    /// Places on the ball's front, in radii: x, y of a pixel.
-    glm::dvec2 place(int x, int y, glm::ivec2 size) const {
-        const glm::dvec2 ndc = (glm::dvec2(x, size.y - 1 - y) + 0.5) / glm::dvec2(size) * 2.0 - 1.0;
-        return glm::dvec2(cameraRay(scene.camera, double(size.x) / size.y, ndc).origin) / kRadius;
-    }
-};
-
-constexpr glm::ivec2 kPicture{120, 120};
-
 TEST(LooksOfABall, SilhouettesAreTheRim) {
     Ball ball;
     IsoLayer& layer = ball.surface();
@@ -149,8 +105,7 @@ TEST(LooksOfABall, ToneRunsFromWarmToCool) {
             const glm::dvec2 p = ball.place(x, y, kPicture);
             if (glm::length(p) > 0.9) continue;
             const double l = glm::dot(glm::dvec3(p, std::sqrt(1 - glm::dot(p, p))), light);
-            const glm::dvec3 expected =
-                glm::mix(cool, warm, (1 + l) / 2) + double(layer.look.tone->ownColor) * std::max(l, 0.0);
+            const glm::dvec3 expected = glm::mix(cool, warm, (1 + l) / 2); // of white
             const glm::vec4 got = picture[std::size_t(y * kPicture.x + x)];
             for (int k = 0; k < 3; ++k) EXPECT_NEAR(got[k], expected[k], 0.03) << p.x << ' ' << p.y;
         }
@@ -169,7 +124,8 @@ TEST(LooksOfABall, CartoonsHaveTheBandsAskedForAndEvenOutlines) {
     }
     Ball ball;
     IsoLayer& layer = ball.surface();
-    layer.look.cartoon = Cartoon{.shadow = 1, .outline = 5, .outlineColor = glm::vec3(0)};
+    layer.look.cartoon = Cartoon{.shadow = 1, .outline = 5};
+    ball.scene.background = glm::vec3(1);
     const std::vector<glm::vec4> picture = ball.draw(kPicture);
     // Across the middle row: dark at both rims, about five pixels wide.
     int dark = 0, light = 0;
@@ -180,57 +136,6 @@ TEST(LooksOfABall, CartoonsHaveTheBandsAskedForAndEvenOutlines) {
     EXPECT_GE(dark, 6);
     EXPECT_LE(dark, 11);
     EXPECT_GT(light, 40);
-}
-
-/// Mean change of the picture, as shown, at the same places of the ball's surface while it turns by a degree under the
-/// light. `meanwhile` may change the scene between the two pictures.
-double changeOnTheBall(
-    Ball& ball, glm::ivec2 size, const std::function<void()>& meanwhile = [] {}) {
-    const std::vector<glm::vec4> before = ball.draw(size);
-    const glm::dquat turn = glm::angleAxis(glm::radians(1.0), glm::dvec3(0, 1, 0));
-    ball.scene.camera.orientation = glm::quat(turn);
-    meanwhile();
-    const std::vector<glm::vec4> after = ball.draw(size);
-    ball.scene.camera.orientation = {1, 0, 0, 0};
-    const double radius = 1 / (ball.place(1, 0, size).x - ball.place(0, 0, size).x); // pixels
-    const auto at = [&](const std::vector<glm::vec4>& picture, glm::dvec3 place) {
-        const glm::dvec2 pixel = glm::dvec2(place.x, -place.y) * radius + glm::dvec2(size) / 2.0 - 0.5;
-        const glm::dvec2 base = glm::floor(pixel), part = pixel - base;
-        const auto fetch = [&](int x, int y) {
-            const glm::vec4 color = picture[std::size_t((int(base.y) + y) * size.x + int(base.x) + x)];
-            return srgbFromLinear(std::clamp(double(color.g), 0.0, 1.0));
-        };
-        return glm::mix(glm::mix(fetch(0, 0), fetch(1, 0), part.x), glm::mix(fetch(0, 1), fetch(1, 1), part.x), part.y);
-    };
-    double sum = 0;
-    int count = 0;
-    for (double y = -0.8; y <= 0.8; y += 0.008)
-        for (double x = -0.8; x <= 0.8; x += 0.008) {
-            if (x * x + y * y > 0.7) continue;
-            const glm::dvec3 place(x, y, std::sqrt(1 - x * x - y * y)), moved = turn * place;
-            sum += std::abs(at(after, moved) - at(before, place));
-            ++count;
-        }
-    return sum / count;
-}
-
-/// Under a turn of a degree a place of the surface changes no more in charcoal than 1.5 times what it changes in plain
-/// shading; grain that is not fixed to it would change far more.
-TEST(LooksOfABall, CharcoalGrainDoesNotSwim) {
-    Ball ball;
-    IsoLayer& layer = ball.surface();
-    ball.scene.lighting.lights = {{.azimuth = -50, .elevation = 40}};
-    constexpr glm::ivec2 kLarge{480, 480};
-    const double plain = changeOnTheBall(ball, kLarge);
-    EXPECT_GT(plain, 1e-3) << "the light moves over the ball";
-    // Four times the usual grain: as a picture of a quarter of the size that is averaged over its pixels.
-    layer.look.charcoal = CharcoalDrawing{.outline = 9, .grain = 10};
-    const double drawn = changeOnTheBall(ball, kLarge);
-    EXPECT_LE(drawn, 1.5 * plain);
-    const double swimming = changeOnTheBall(ball, kLarge, [&] { layer.look.charcoal->angle = 90; });
-    EXPECT_GT(swimming, 5 * plain) << "the measure sees grain that moves";
-    RecordProperty("drawnOverPlain", std::to_string(drawn / plain));
-    RecordProperty("swimmingOverPlain", std::to_string(swimming / plain));
 }
 
 /// The same size of grain on screen near and far, and the same picture again.

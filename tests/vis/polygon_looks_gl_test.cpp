@@ -79,9 +79,7 @@ struct MeshBall {
         sample.pixel = view.pixel.x;
         sample.toLight = view.light.place;
         if (layer.style.look.charcoal)
-            sample.grain = grainAt(*grainTile(), place, normal,
-                                   sample.pixel * double(layer.style.look.charcoal->grain) / kGrainTexels,
-                                   double(layer.style.look.charcoal->angle));
+            sample.grain = marksAt(*layer.style.look.charcoal, place, normal, SurfaceBend(0), sample.pixel);
         if (layer.style.look.wire)
             sample.wire = wireCoverage(place, normal, toViewer, double(layer.style.look.wire->spacing),
                                        double(layer.style.look.wire->width), sample.pixel);

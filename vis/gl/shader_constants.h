@@ -15,9 +15,9 @@ enum class RayLookup { Curve, Plane, Lattice, Slab };
 inline constexpr std::string_view kRayLookupNames[] = {"curve", "plane", "lattice", "slab"};
 
 /// Features of looks that need shader code; sets of them are bit masks of 1 << feature.
-enum class LookFeature { Tone, Boundary, Silhouette, Distance, Cartoon, Charcoal, Wire };
-inline constexpr std::string_view kLookFeatureNames[] = {"tone",    "boundary", "silhouette", "distance",
-                                                         "cartoon", "charcoal", "wire"};
+enum class LookFeature { Tone, Boundary, Silhouette, Distance, Cartoon, Charcoal, Wire, Smooth, Follow, Cross, Dots };
+inline constexpr std::string_view kLookFeatureNames[] = {
+    "tone", "boundary", "silhouette", "distance", "cartoon", "charcoal", "wire", "smooth", "follow", "cross", "dots"};
 constexpr int bitOf(LookFeature feature) {
     return 1 << int(feature);
 }

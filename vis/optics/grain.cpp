@@ -4,7 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/common.hpp>
-#include <glm/trigonometric.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
 #include <numeric>
 
 namespace tessera::vis {
@@ -52,6 +53,59 @@ std::vector<float> equalized(const std::vector<float>& in) {
     return out;
 }
 
+/// Dots of a tile of half the edge. Candidates lie on a jittered grid; the next dot is the one with the least
+/// potential of those before.
+struct DotTile {
+    static constexpr int kEdge = kGrainEdge / 2, kGrid = kEdge / 2;
+    static constexpr std::size_t kCount = std::size_t(kEdge) * kEdge / 9; ///< spacing of kGrainTexels
+    std::vector<glm::vec2> places;                                        ///< in texels, in order
+
+    DotTile() {
+        const std::vector<float> jitter = whiteNoise(4);
+        // Potential of a dot by distance in candidates, periodic.
+        std::vector<float> kernel(std::size_t(kGrid) * kGrid), potential(kernel.size());
+        for (int y = 0; y < kGrid; ++y)
+            for (int x = 0; x < kGrid; ++x) {
+                const int dx = std::min(x, kGrid - x), dy = std::min(y, kGrid - y);
+                const float squared = float(dx * dx + dy * dy) + 0.5f;
+                kernel[std::size_t(y) * kGrid + std::size_t(x)] = 1 / (squared * squared);
+            }
+        for (std::size_t i = 0; i < potential.size(); ++i) potential[i] = 1e-5f * (jitter[i] + 0.5f);
+        while (places.size() < kCount) {
+            const auto least = std::size_t(std::min_element(potential.begin(), potential.end()) - potential.begin());
+            const auto x = int(least) % kGrid, y = int(least) / kGrid;
+            places.push_back((glm::vec2(x, y) + 0.5f) * 2.0f + glm::vec2(jitter[2 * least], jitter[2 * least + 1]));
+            for (int j = 0; j < kGrid; ++j) {
+                float* row = &potential[std::size_t(j) * kGrid];
+                const float* from = &kernel[std::size_t((j - y) & (kGrid - 1)) * kGrid];
+                for (int i = 0; i < kGrid; ++i) row[i] += from[(i - x) & (kGrid - 1)];
+            }
+        }
+    }
+
+    /// Darkness from which on each texel of the tile is covered.
+    std::vector<float> thresholds() const {
+        constexpr float kRadius = 0.5f * float(kGrainTexels);
+        std::vector<float> first(kTexels / 4, 1e9f); // number of the dot that covers it, or beyond all its distance
+        for (std::size_t n = 0; n < places.size(); ++n)
+            for (int y = -4; y <= 4; ++y)
+                for (int x = -4; x <= 4; ++x) {
+                    const glm::ivec2 at = glm::ivec2(glm::floor(places[n])) + glm::ivec2(x, y);
+                    const float away = glm::length(glm::vec2(at) + 0.5f - places[n]);
+                    float& own = first[std::size_t(at.y & (kEdge - 1)) * kEdge + std::size_t(at.x & (kEdge - 1))];
+                    own = std::min(own, away < kRadius ? float(n) : float(kCount) + away);
+                }
+        std::vector<float> sorted = first, out(kTexels);
+        std::sort(sorted.begin(), sorted.end());
+        for (std::size_t i = 0; i < kTexels; ++i) {
+            const std::size_t y = i / kGrainEdge % kEdge, x = i % kGrainEdge % kEdge;
+            const auto covered = std::lower_bound(sorted.begin(), sorted.end(), first[y * kEdge + x]);
+            out[i] = float(covered - sorted.begin()) / float(sorted.size());
+        }
+        return out;
+    }
+};
+
 GrainTile makeTile() {
     // Paper grains of about three texels, mixed with some of twice the size.
     const std::vector<float> noise = whiteNoise(1);
@@ -60,10 +114,10 @@ GrainTile makeTile() {
     std::vector<float> tooth(kTexels);
     for (std::size_t i = 0; i < kTexels; ++i) tooth[i] = fine[i] + 0.25f * wide[i];
     // Strokes: long along the diagonal, a few texels wide.
-    std::vector<float> strokes = blurred(blurred(blurred(whiteNoise(3), {1, 1}, 36), {1, -1}, 2), {1, 0}, 1);
-    const std::vector<float> even = equalized(tooth), long_ = equalized(strokes);
+    std::vector<float> strokes = blurred(blurred(blurred(whiteNoise(3), {1, 1}, 48), {1, -1}, 1), {1, 0}, 1);
+    const std::vector<float> even = equalized(tooth), long_ = equalized(strokes), dots = DotTile().thresholds();
     GrainTile tile;
-    for (std::size_t i = 0; i < kTexels; ++i) tile.texels.emplace_back(even[i], long_[i]);
+    for (std::size_t i = 0; i < kTexels; ++i) tile.texels.emplace_back(even[i], long_[i], dots[i]);
     return tile;
 }
 
@@ -74,33 +128,96 @@ std::shared_ptr<const GrainTile> grainTile() {
     return tile;
 }
 
-glm::dvec2 GrainTile::at(glm::dvec2 texel) const {
+glm::dvec3 GrainTile::at(glm::dvec2 texel) const {
     const glm::dvec2 moved = texel - 0.5, base = glm::floor(moved), part = moved - base;
     const auto fetch = [&](int x, int y) {
         const int i = (int(base.x) + x) & (kGrainEdge - 1), j = (int(base.y) + y) & (kGrainEdge - 1);
-        return glm::dvec2(texels[std::size_t(j) * kGrainEdge + std::size_t(i)]);
+        return glm::dvec3(texels[std::size_t(j) * kGrainEdge + std::size_t(i)]);
     };
     return glm::mix(glm::mix(fetch(0, 0), fetch(1, 0), part.x), glm::mix(fetch(0, 1), fetch(1, 1), part.x), part.y);
 }
 
-glm::dvec2 grainAt(const GrainTile& tile, glm::dvec3 place, glm::dvec3 normal, double size, double turn) {
-    const double octave = std::log2(std::max(size, 1e-9)), whole = std::floor(octave), part = octave - whole;
-    const double cosine = std::cos(glm::radians(turn)), sine = std::sin(glm::radians(turn));
-    glm::dvec3 planes = normal * normal * normal * normal;
-    planes /= std::max(planes.x + planes.y + planes.z, 1e-12);
-    glm::dvec2 sum(0);
-    double squares = 0;
-    for (int scale = 0; scale < 2; ++scale) {
-        const glm::dvec3 texel = place * std::exp2(-whole - scale);
-        for (int axis = 0; axis < 3; ++axis) {
-            const double weight = planes[axis] * (scale == 0 ? 1 - part : part);
-            // Offsets, so that no plane passes through the origin of another.
-            const glm::dvec2 on = glm::dvec2(texel[(axis + 1) % 3], texel[(axis + 2) % 3]) + 17.3 * (axis + 1);
-            sum += weight * (tile.at({cosine * on.x - sine * on.y, sine * on.x + cosine * on.y}) - 0.5);
-            squares += weight * weight;
+namespace {
+
+/// The planes and scales that a surface shows the tile at.
+struct GrainPlaces {
+    glm::dvec3 place, planes;
+    double whole, part;
+
+    GrainPlaces(glm::dvec3 at, glm::dvec3 normal, double size) : place(at), planes(normal * normal * normal * normal) {
+        const double octave = std::log2(std::max(size, 1e-9));
+        whole = std::floor(octave);
+        part = octave - whole;
+        planes /= std::max(planes.x + planes.y + planes.z, 1e-12);
+    }
+    /// Calls use(axis, weight, position in texels) for each.
+    template <class Use> void each(const Use& use) const {
+        for (int scale = 0; scale < 2; ++scale) {
+            const glm::dvec3 texel = place * std::exp2(-whole - scale);
+            for (int axis = 0; axis < 3; ++axis)
+                // Offsets, so that no plane passes through the origin of another.
+                use(axis, planes[axis] * (scale == 0 ? 1 - part : part),
+                    glm::dvec2(texel[(axis + 1) % 3], texel[(axis + 2) % 3]) + 17.3 * (axis + 1));
         }
     }
-    return glm::clamp(0.5 + sum / std::sqrt(std::max(squares, 1e-12)), 0.0, 1.0);
+};
+
+} // namespace
+
+glm::dvec2 grainAt(const GrainTile& tile, glm::dvec3 place, glm::dvec3 normal, double size) {
+    double sum = 0, squares = 0, dots = 1;
+    GrainPlaces(place, normal, size).each([&](int, double weight, glm::dvec2 on) {
+        const glm::dvec3 texel = tile.at(on);
+        sum += weight * (texel.x - 0.5);
+        squares += weight * weight;
+        dots = std::min(dots, 1 - std::pow(std::max(1 - texel.z, 0.0), 1 / std::max(weight, 1e-3)));
+    });
+    return {std::clamp(0.5 + sum / std::sqrt(std::max(squares, 1e-12)), 0.0, 1.0), dots};
+}
+
+double strokesAt(const GrainTile& tile, glm::dvec3 place, glm::dvec3 normal, glm::dvec3 along, double size,
+                 double shift) {
+    double sum = 0, squares = 0;
+    GrainPlaces(place, normal, size).each([&](int axis, double planeWeight, glm::dvec2 on) {
+        const glm::dvec2 way(along[(axis + 1) % 3], along[(axis + 2) % 3]);
+        const double turns = std::atan2(way.y, way.x + 1e-9) / std::numbers::pi * kStrokeTurns;
+        const double first = std::floor(turns), share = glm::smoothstep(0.35, 0.65, turns - first);
+        for (int next = 0; next < 2; ++next) {
+            // Strokes lie along the tile's diagonal. Half a turn more is the same direction.
+            const double number = first + next - kStrokeTurns * std::floor((first + next) / kStrokeTurns);
+            const double angle = (0.25 - number / kStrokeTurns) * std::numbers::pi;
+            const double cosine = std::cos(angle), sine = std::sin(angle);
+            const double weight = planeWeight * (next == 0 ? 1 - share : share);
+            sum += weight *
+                   (tile.at(glm::dvec2(cosine * on.x - sine * on.y, sine * on.x + cosine * on.y) + shift).y - 0.5);
+            squares += weight * weight;
+        }
+    });
+    return std::clamp(0.5 + sum / std::sqrt(std::max(squares, 1e-12)), 0.0, 1.0);
+}
+
+glm::dvec3 acrossNormal(glm::dvec3 n) {
+    const double sign = n.z < 0 ? -1 : 1, a = -1 / (sign + n.z);
+    return {1 + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x};
+}
+
+double bendAlong(SurfaceBend bend, glm::dvec3 normal, glm::dvec3 along) {
+    const glm::dvec3 first = acrossNormal(normal), second = glm::cross(normal, first);
+    const double u = glm::dot(first, along), v = glm::dot(second, along);
+    return 0.5 * (bend.x + bend.y * (u * u - v * v) + bend.z * 2 * u * v);
+}
+
+glm::dvec3 strokeDirection(glm::dvec3 normal, SurfaceBend bend, double follow, double turn) {
+    const glm::dvec3 first = acrossNormal(normal), second = glm::cross(normal, first);
+    const double u = (first.x + first.y + first.z) / std::sqrt(3.0),
+                 v = (second.x + second.y + second.z) / std::sqrt(3.0);
+    const glm::dvec2 apart(bend.y, bend.z);
+    const double most = std::max(std::abs(bend.x), glm::length(apart));
+    const glm::dvec2 bent = bend.x * apart / std::max(most * most, 1e-12);
+    const glm::dvec2 doubled =
+        follow * glm::smoothstep(0.03, 0.15, most) * bent + 0.25 * glm::dvec2(u * u - v * v, 2 * u * v);
+    const double angle = 0.5 * std::atan2(doubled.y, doubled.x + 1e-9) + turn;
+    return std::cos(angle) * first + std::sin(angle) * second;
 }
 
 double paperShade(const GrainTile& tile, glm::dvec2 at, double tooth) {

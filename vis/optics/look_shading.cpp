@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 
 namespace tessera::vis {
 
@@ -32,8 +33,21 @@ LookView lookView(const Scene& scene, glm::dvec3 halfSize, glm::dvec3 cell, glm:
     return view;
 }
 
+glm::dvec3 inkOn(double luminance) {
+    return glm::mix(linearFromSrgb(glm::dvec3(kLightInk)), linearFromSrgb(glm::dvec3(kDarkInk)),
+                    glm::smoothstep(0.03, 0.12, luminance));
+}
+
+bool drawsLight(const CharcoalDrawing& charcoal, glm::dvec3 ground) {
+    return charcoal.color ? charcoal.stick == Stick::Chalk : luminance(ground) < 0.075;
+}
+
 double lookShare(LookPart part, double interest) {
     return part == LookPart::Everything ? 1 : part == LookPart::Context ? 1 - interest : interest;
+}
+
+double solidOpacity(const Look& look, double opacity, double share) {
+    return look.charcoal ? glm::mix(opacity, glm::smoothstep(0.03, 0.4, opacity), share) : opacity;
 }
 
 double lookOpacity(const Look& look, double opacity, const LookSample& sample) {
@@ -84,18 +98,50 @@ double grainSoftness(const CharcoalDrawing& charcoal) {
     return glm::mix(0.5, 0.05, double(charcoal.hardness));
 }
 
-double charcoalInk(const CharcoalDrawing& charcoal, glm::dvec3 lit, const LookSample& sample) {
-    const double bright = std::sqrt(std::clamp(luminance(lit), 0.0, 1.0));
-    const double drawn = charcoal.stick == Stick::Chalk ? bright : 1 - bright;
+double bendReach(const Look& look, const LookView& view) {
+    return view.reach * std::max(1.0, 1.5 * double(look.smooth));
+}
+
+glm::dvec4 marksAt(const CharcoalDrawing& charcoal, glm::dvec3 place, glm::dvec3 normal, SurfaceBend bend,
+                   double pixel) {
+    const double size = pixel * double(charcoal.grain) / kGrainTexels;
+    const GrainTile& tile = *grainTile();
+    const glm::dvec2 grain = grainAt(tile, place, normal, size);
+    if (charcoal.mark == Mark::Dots) return {grain.x, 0.5, 0.5, grain.y};
+    const glm::dvec3 along =
+        strokeDirection(normal, bend, double(charcoal.follow), glm::radians(double(charcoal.angle)));
+    const double crossing =
+        charcoal.crossing < 1 ? strokesAt(tile, place, normal, glm::cross(normal, along), size, kCrossingShift) : 0.5;
+    return {grain.x, strokesAt(tile, place, normal, along, size, 0), crossing, grain.y};
+}
+
+double charcoalInk(const CharcoalDrawing& charcoal, glm::dvec3 lit, const LookSample& sample, bool light) {
+    const double bright = std::sqrt(std::clamp(luminance(lit), 0.0, 1.0)), bare = double(charcoal.bare);
+    const double drawn =
+        std::pow(std::max((light ? bright : 1 - bright) - bare, 0.0) / (1 - bare), double(charcoal.contrast));
     const double steep = glm::mix(1.0, std::sqrt(std::clamp(sample.steepness, 0.0, 1.0)), double(charcoal.steepness));
-    const double tone = std::pow(drawn, double(charcoal.contrast)) * steep;
+    const double tone = drawn * (light ? drawn : 2 - drawn) * steep;
     const double open = glm::mix(1.0, glm::smoothstep(0.1, 0.6, 1 - bright), double(charcoal.closure));
-    const double line = double(charcoal.outlineStrength) * sample.weight * open *
-                        outline(sample.facing(), sample.curvature, double(charcoal.outline) * sample.pixel);
+    const double width = double(charcoal.outline) * sample.pixel;
+    const double thin = 1 - 0.8 * glm::smoothstep(0.12, 0.45, width * sample.curvature);
+    const double line = double(charcoal.outlineStrength) * sample.weight * open * thin *
+                        outline(sample.facing(), sample.curvature, width);
     const double density = double(charcoal.pressure) * (1 - (1 - tone) * (1 - line));
-    const double stroked = std::min(1.0, density * (1 + double(charcoal.strokes) * (2 * sample.grain.y - 1)));
     const double soft = grainSoftness(charcoal);
-    const double ink = glm::smoothstep(sample.grain.x - soft, sample.grain.x + soft, stroked * (1 + 2 * soft) - soft);
+    const auto mark = [&](double amount, double threshold) {
+        return glm::smoothstep(threshold - soft, threshold + soft, amount * (1 + 2 * soft) - soft);
+    };
+    const auto layer = [&](double amount, double stroke) {
+        const double covered = std::pow(amount, 1 - 0.5 * double(charcoal.tooth));
+        const double pressed = std::pow(amount, 0.5 * double(charcoal.tooth));
+        const double stroked = amount > 0 ? pressed * glm::smoothstep(0.85 - covered, 1.15 - covered, stroke) : 0;
+        return mark(glm::mix(amount, stroked, double(charcoal.strokes)), sample.grain.x);
+    };
+    const double first = std::min(density, glm::mix(double(charcoal.crossing), density, 0.4));
+    const double second = 1 - (1 - density) / std::max(1 - first, 1e-3);
+    const double ink = charcoal.mark == Mark::Dots
+                           ? mark(density, sample.grain.w)
+                           : 1 - (1 - layer(first, sample.grain.y)) * (1 - layer(second, sample.grain.z));
     return glm::mix(ink, density, double(charcoal.smudge));
 }
 
@@ -110,16 +156,28 @@ glm::dvec3 lookColor(const Look& look, glm::dvec3 albedo, glm::dvec3 lit, const 
                          double(own->amount) * sample.weight * sample.share);
     }
     if (const auto& own = look.tone) {
-        const glm::dvec3 toned = glm::mix(linear(own->coolColor), linear(own->warmColor), 0.5 + 0.5 * light) +
-                                 double(own->ownColor) * std::max(light, 0.0) * albedo;
+        const glm::dvec3 toned = glm::mix(linear(own->coolColor), linear(own->warmColor), 0.5 + 0.5 * light) *
+                                 glm::mix(glm::dvec3(1), albedo, std::min(double(own->ownColor), 1.0));
         color = glm::mix(color, toned, double(own->amount) * sample.weight * sample.share);
     }
     if (const auto& own = look.cartoon) {
-        const double line = outline(sample.facing(), sample.curvature, double(own->outline) * sample.pixel);
-        color = glm::mix(color, linear(own->outlineColor), line * double(own->amount) * sample.weight * sample.share);
+        const double width = double(own->outline) * sample.pixel;
+        const double amount = double(own->amount) * sample.weight * sample.share;
+        const glm::dvec3 inner = own->outlineColor ? linear(*own->outlineColor) : inkOn(luminance(albedo));
+        const glm::dvec3 outer = own->outlineColor ? inner : inkOn(luminance(background));
+        color = glm::mix(color, inner, amount * outline(sample.facing(), sample.curvature, width));
+        color = glm::mix(color, outer, amount * outline(sample.facing(), sample.curvature, 0.5 * width));
     }
-    if (const auto& own = look.charcoal)
-        color = glm::mix(color, glm::mix(background, linear(own->color), charcoalInk(*own, lit, sample)), sample.share);
+    if (const auto& own = look.silhouette) {
+        const glm::dvec3 ink = own->inkColor ? linear(*own->inkColor) : inkOn(luminance(background));
+        const double turned = std::pow(1 - std::min(sample.facing(), 1.0), double(own->exponent));
+        color = glm::mix(color, ink, double(own->ink) * turned * sample.weight * sample.share);
+    }
+    if (const auto& own = look.charcoal) {
+        const glm::dvec3 stick = own->color ? linear(*own->color) : inkOn(luminance(background));
+        const double ink = charcoalInk(*own, lit, sample, drawsLight(*own, background));
+        color = glm::mix(color, glm::mix(background, stick, ink), sample.share);
+    }
     if (const auto& own = look.wire)
         color = glm::mix(color, glm::mix(linear(own->color), color, double(own->ownColor)), sample.wire * sample.share);
     if (const auto& own = look.distance)

@@ -19,7 +19,7 @@ struct LookSample {
     double pixel = 0;      ///< world edge of a pixel at that distance
     glm::dvec3 toLight{0}; ///< unit vector
     double wire = 0;       ///< wireCoverage() times weight; for wire frames only
-    glm::dvec2 grain{0.5}; ///< tooth and strokes, 0..1 (vis/optics/grain.h); for charcoal only
+    glm::dvec4 grain{0.5}; ///< marksAt(); for charcoal only
     double share = 1;      ///< fraction of the look that applies here
 
     double facing() const { return std::abs(glm::dot(at.normal, at.toViewer)); }
@@ -38,8 +38,18 @@ struct LookView {
 /// `size`: of the picture in pixels; `cell`: worldCell().
 LookView lookView(const Scene& scene, glm::dvec3 halfSize, glm::dvec3 cell, glm::ivec2 size);
 
+/// The colour (linear) of ink that shows on something of that luminance (linear): mix(kLightInk, kDarkInk,
+/// smoothstep(0.03, 0.12, luminance)).
+glm::dvec3 inkOn(double luminance);
+/// Whether a stick draws what is light: chalk, or without its own colour any stick on dark ground.
+bool drawsLight(const CharcoalDrawing& charcoal, glm::dvec3 ground);
+
 /// Share of a look at degree of interest d: 1, 1 - d or d.
 double lookShare(LookPart part, double interest);
+
+/// Opacity of a volume layer kReferenceLength thick that charcoal draws: mix(a, smoothstep(0.03, 0.4, a), share). What
+/// is faint is left out and the rest is solid, else many half-transparent marks would add up to a pale haze.
+double solidOpacity(const Look& look, double opacity, double share);
 
 /// Opacity (of a layer kReferenceLength thick, or of a surface) with boundary and silhouette enhancement (Rheingans and
 /// Ebert 2001, equations 5 and 6):
@@ -63,20 +73,40 @@ double outline(double facing, double curvature, double thickness);
 /// n.l quantised: min(n - 1, floor(n max(0, n.l))) / (n - 1).
 double lightStep(double light, int steps);
 
+/// World distance over which curvature is measured: view.reach max(1, 1.5 smooth).
+double bendReach(const Look& look, const LookView& view);
+
+/// Tooth, strokes, crossing strokes and dots, 0..1, at a place of a surface (vis/optics/grain.h). `pixel`: world edge.
+glm::dvec4 marksAt(const CharcoalDrawing& charcoal, glm::dvec3 place, glm::dvec3 normal, SurfaceBend bend,
+                   double pixel);
+
 /// The softness s in charcoalInk().
 double grainSoftness(const CharcoalDrawing& charcoal);
 
-/// Amount of ink, 0..1, of a lit sample. With e = sqrt(luminance), at most 1, and dark = 1 - e (chalk: e):
-///   tone = dark^contrast mix(1, sqrt(min(1, steepness)), steepness of the look)
+/// Amount of ink, 0..1, of a lit sample. With e = sqrt(luminance), at most 1, as lightness, and d = 1 - e (`light`, of
+/// drawsLight(): e):
+///   x = (max(0, d - bare) / (1 - bare))^contrast
+///   tone = (1 - (1 - x)^2) mix(1, sqrt(min(1, steepness)), steepness of the look): ink that covers so much of the
+///   paper
+///          leaves the lightness 1 - x (`light`: x^2, which has the lightness x)
 ///   line = outlineStrength weight outline mix(1, smoothstep(0.1, 0.6, 1 - e), closure)
-///   D = pressure (1 - (1 - tone) (1 - line)), with strokes D' = D (1 + strokes (2 stroke - 1)), at most 1
-///   ink = mix(smoothstep(h - s, h + s, D' (1 + 2 s) - s), D, smudge), h the tooth, s = mix(0.5, 0.05, hardness)
-double charcoalInk(const CharcoalDrawing& charcoal, glm::dvec3 lit, const LookSample& sample);
+///          (1 - 0.8 smoothstep(0.12, 0.45, T k)): less where lines would fill what is as small as they are wide
+///   D = pressure (1 - (1 - tone) (1 - line))
+///   ink = mix(marks, D, smudge)
+/// With dots, marks = m(D, t), t the dots' threshold and m(x, h) = smoothstep(h - s, h + s, x (1 + 2 s) - s), s =
+/// mix(0.5, 0.05, hardness). With strokes, marks = 1 - (1 - n(D1)) (1 - n(D2)); n(x) = m(mix(x, p, strokes), h), h the
+/// tooth, p = x^a smoothstep(0.85 - c, 1.15 - c, stroke), c = x^(1 - a), a = tooth of the look / 2: strokes cover the
+/// share c and are filled to x^a; D1 = min(D, mix(crossing, D, 0.4)) is what the first layer of strokes draws, and the
+/// crossing one the rest: 1 - D = (1 - D1) (1 - D2).
+double charcoalInk(const CharcoalDrawing& charcoal, glm::dvec3 lit, const LookSample& sample, bool light);
 
 /// The colour of a sample from its albedo and `lit`, the result of shade() for lookAlbedo(), in this order:
 ///   1. cartoon, by weight: albedo mix(shadow, 1, step of n.l)
-///   2. tone, by weight: mix(cool, warm, (1 + l) / 2) + ownColor max(l, 0) albedo; l = n.l, or its step in cartoons
-///   3. outlines of cartoons
+///   2. tone, by weight: mix(cool, warm, (1 + l) / 2) mix(1, albedo, min(1, ownColor)); l = n.l, or its step in
+///   cartoons
+///   3. outlines of cartoons: their colour; without one, inkOn(albedo) and over it inkOn(ground) in the outer half of
+///      the width
+///      silhouettes, by ink weight (1 - |n.v|)^exponent: their colour, or inkOn(ground)
 ///   4. charcoal: mix(paper, stick, ink)
 ///   5. wire: mix(colour, mix(its own, colour, ownColor), wire)
 ///   6. distance: mix(colour, background, amount depth^exponent)

@@ -248,8 +248,8 @@ void GeometryPass::drawOne(const Draw& each, const GeometryJob& job, int peel) c
     own.set("lineWidth", layer.style.lineWidth);
     own.set("brushEffect", float(int(layer.brushes)));
     // Layers share program variants, so the uniforms of looks are set for each.
-    setLookUniforms(own, {layer.style.look.any() ? &layer.style.look : nullptr}, job.scene, frame,
-                    worldCell(job.info.lattice, frame), job.pictureSize, kGrainUnit);
+    setLookUniforms(own, {layer.style.look.any() ? &layer.style.look : nullptr}, job.scene, frame, job.info.lattice,
+                    job.pictureSize, kGrainUnit);
     glUseProgram(own.name());
     glBindVertexArray(each.lines ? each.up->lines.name() : each.up->mesh.name());
     if (each.lines)

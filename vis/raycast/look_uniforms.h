@@ -9,7 +9,7 @@ namespace tessera::vis {
 /// Sets all uniforms; the grain texture is expected in `unit`. `looks`: per layer, null if it has none. `size`: full
 /// size of the picture in pixels.
 void setLookUniforms(const Program& program, const std::vector<const Look*>& looks, const Scene& scene,
-                     const WorldFrame& frame, glm::dvec3 cell, glm::ivec2 size, int unit);
+                     const WorldFrame& frame, const volume::Lattice& lattice, glm::ivec2 size, int unit);
 /// The looks of a plan's layers, null where a layer has none.
 std::vector<const Look*> looksOf(const RayPlan& plan, const Scene& scene);
 

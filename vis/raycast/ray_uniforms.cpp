@@ -148,18 +148,17 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     program.set("cellsPerWorld", glm::vec3(cellsPerWorld));
     program.set("cellsOffset", glm::vec3((-frame.offset / frame.scale - grid.lattice.origin) / grid.lattice.spacing));
     const volume::GradientStencil stencil = volume::gradientStencil(grid.lattice.kind, render.gradient);
-    const double cell =
-        grid.lattice.kind == volume::LatticeKind::BCC ? 1 / volume::kBccSpacing : 1; // as in worldCell()
+    const double cell = volume::smoothReach(grid.lattice.kind, 1); // as in worldCell()
     program.set("gradientReach", float(stencil.reach));
     program.set("gradientScale", float(cell / (stencil.reach * stencil.squares)));
     program.set("gradientDirections", stencil.count);
+    program.set("diagonals", 4);
     program.set("bisections", kBisections);
     program.set("latticeCorners", grid.lattice.kind == volume::LatticeKind::BCC ? 16 : 8);
     setLightUniforms(program, scene, frame, rayUnits(plan).light);
     setClipUniforms(program, scene, frame);
     setLensUniforms(program, plan.lenses);
-    setLookUniforms(program, looksOf(plan, scene), scene, frame, worldCell(grid.lattice, frame), size,
-                    rayUnits(plan).grain);
+    setLookUniforms(program, looksOf(plan, scene), scene, frame, grid.lattice, size, rayUnits(plan).grain);
     program.set("stepUnit", float(stepUnit(worldCell(grid.lattice, frame))));
     if (const BlockRanges* blocks = commonBlocks(plan)) {
         const double edge = double(1 << blocks->level) * blocks->edge;

@@ -107,6 +107,21 @@ struct Prepared {
         return volume::gradient(seen, lattice.toCells(frame.toPhysical(world)),
                                 volume::gradientStencil(lattice.kind, scene.render.gradient));
     }
+    /// The same of the field smoothed over `width` voxels, from positions within the box. `narrow`: the unsmoothed one.
+    glm::dvec3 smoothGradient(const Samples& of, glm::dvec3 world, int part, double width, glm::dvec3 narrow) const {
+        const auto seen = [&](glm::dvec3 at) {
+            const glm::dvec3 place = frame.toWorld(lattice.origin + at * lattice.spacing);
+            return of.ofPart(part, cells(glm::clamp(place, -frame.halfSize, frame.halfSize)));
+        };
+        return volume::smoothGradient(seen, lattice.toCells(frame.toPhysical(world)),
+                                      volume::smoothReach(lattice.kind, width), narrow);
+    }
+    /// The sum of the values at place - offset and place + offset within the box, less twice that at the place; absent
+    /// ones are like it.
+    double secondDifference(const Samples& of, glm::dvec3 world, int part, glm::dvec3 offset) const;
+    /// Curvature of the surface through a place by four of these in its tangent plane, times the length of the gradient
+    /// per `reach`, in world units.
+    SurfaceBend surfaceBend(const Samples& of, glm::dvec3 world, int part, glm::dvec3 normal, double reach) const;
     /// The gradient within the part that the position belongs to.
     glm::dvec3 gradient(const Samples& of, glm::dvec3 world) const {
         return gradient(of, world, of.part(cells(world)));

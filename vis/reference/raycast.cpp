@@ -79,13 +79,19 @@ template <class Number> struct Caster {
         events.clear();
     }
 
-    /// The gradient in world axes for shading.
-    glm::dvec3 worldGradient(const DrawnLayer& layer, glm::dvec3 place, int part) const {
-        if (layer.samples->categorical()) return glm::dvec3(0);
+    /// The gradient in world axes for shading from that per cell of the sublattice.
+    glm::dvec3 worldGradient(glm::dvec3 perCell) const {
         const glm::dvec3 edges = scene.lattice.spacing * scene.frame.scale; // edges of a sublattice cell, with sign
-        const glm::dvec3 gradient = scene.gradient(*layer.samples, place, part) / edges;
+        const glm::dvec3 gradient = perCell / edges;
         const int bits = scene.scene.render.normalBits;
         return bits > 0 ? quantizedDirection(gradient, bits) * glm::length(gradient) : gradient;
+    }
+
+    /// The gradient per cell that a look is shaded by. `narrow`: the unsmoothed one.
+    glm::dvec3 lookGradient(const DrawnLayer& layer, const Look& look, glm::dvec3 place, int part,
+                            glm::dvec3 narrow) const {
+        if (!look.any() || !(look.smooth > 0)) return narrow;
+        return scene.smoothGradient(*layer.samples, place, part, double(look.smooth), narrow);
     }
 
     /// Weight of the surface in a sample: 1 on iso-surfaces.
@@ -109,24 +115,26 @@ template <class Number> struct Caster {
         sample.toLight = way / std::max(glm::length(way), 1e-6);
         sample.at.normal = glm::dvec3(0);
         sample.at.toViewer = -ray.direction;
+        SurfaceBend bend(0);
+        const int part = layer.samples->part(scene.cells(place));
         if (glm::length(gradient) > 0) {
             sample.at = facing(gradient, -ray.direction);
             sample.weight = surfaceWeight(layer, place);
             const glm::dvec3 tangent = -ray.direction - glm::dot(-ray.direction, sample.at.normal) * sample.at.normal;
             const glm::dvec3 across = tangent / std::max(glm::length(tangent), 1e-6);
-            const int part = layer.samples->part(scene.cells(place));
-            const glm::dvec3 other = worldGradient(layer, place + across * view.reach, part);
-            if (glm::length(other) > 0)
-                sample.curvature = std::abs(glm::dot(glm::normalize(other) - sample.at.normal, across)) / view.reach;
+            const double reach = bendReach(look, view), perReach = 1 / (reach * glm::length(gradient));
+            const bool follows = look.charcoal && look.charcoal->mark == Mark::Strokes && look.charcoal->follow > 0;
+            if (follows) bend = perReach * scene.surfaceBend(*layer.samples, place, part, sample.at.normal, reach);
+            const double turned = follows
+                                      ? bendAlong(bend, sample.at.normal, across)
+                                      : perReach * scene.secondDifference(*layer.samples, place, part, across * reach);
+            sample.curvature = std::abs(turned) / reach;
         }
         if (look.wire)
             sample.wire =
                 sample.weight * wireCoverage(place, sample.at.normal, -ray.direction, double(look.wire->spacing),
                                              double(look.wire->width), sample.pixel);
-        if (look.charcoal)
-            sample.grain =
-                grainAt(*grainTile(), place, sample.at.normal,
-                        sample.pixel * double(look.charcoal->grain) / kGrainTexels, double(look.charcoal->angle));
+        if (look.charcoal) sample.grain = marksAt(*look.charcoal, place, sample.at.normal, bend, sample.pixel);
         return sample;
     }
 
@@ -138,13 +146,18 @@ template <class Number> struct Caster {
     Drawn drawn(const DrawnLayer& layer, const Look& look, glm::dvec3 albedo, double opacity, bool shaded,
                 glm::dvec3 place, double t, double doi) const {
         const int part = layer.samples->part(scene.cells(place));
-        const glm::dvec3 gradient = shaded || look.any() ? worldGradient(layer, place, part) : glm::dvec3(0);
+        glm::dvec3 narrow(0), gradient(0); // per cell; in world axes
+        if ((shaded || look.any()) && !layer.samples->categorical()) {
+            narrow = scene.gradient(*layer.samples, place, part);
+            gradient = worldGradient(lookGradient(layer, look, place, part, narrow));
+        }
         const auto lit = [&](glm::dvec3 color) {
             return vis::shade(scene.light, color, shaded ? gradient : glm::dvec3(0),
                               shaded ? surfaceWeight(layer, place) : 0, place, -ray.direction);
         };
         if (!look.any()) return {lit(albedo), opacity};
         const LookSample sample = lookSample(layer, look, place, gradient, t, doi);
+        if (std::holds_alternative<VolumeLayer>(*layer.technique)) opacity = solidOpacity(look, opacity, sample.share);
         const glm::dvec3 color = lit(lookAlbedo(look, albedo, sample.share));
         return {lookColor(look, albedo, color, sample, scene.look.ground), lookOpacity(look, opacity, sample)};
     }

@@ -6,55 +6,105 @@ namespace tessera::vis {
 
 namespace {
 
-Look tone() {
-    Look look;
-    look.tone = WarmCool{.warmColor = {0.98f, 0.8f, 0.36f}, .coolColor = {0.16f, 0.33f, 0.72f}};
-    return look;
-}
-
 Look illustration() {
-    Look look = tone();
-    look.tone->amount = 0.75f, look.tone->ownColor = 0.6f;
-    look.boundary = BoundaryEnhancement{.retained = 0.3f, .strength = 1.5f};
-    look.silhouette = SilhouetteEnhancement{.retained = 0.5f, .strength = 3};
-    return look;
-}
-
-Look charcoal() {
     Look look;
-    look.charcoal.emplace();
+    look.smooth = 1.5f;
+    look.tone = WarmCool{.amount = 0.8f};
+    look.boundary = BoundaryEnhancement{.retained = 0.3f, .strength = 1.5f};
+    look.silhouette = SilhouetteEnhancement{.retained = 0.5f, .strength = 3, .ink = 0.7f};
     return look;
 }
 
-Look pencil() {
-    Look look = charcoal();
-    CharcoalDrawing& own = *look.charcoal;
-    own.color = {0.22f, 0.22f, 0.24f};
-    own.pressure = 0.85f, own.contrast = 1.8f, own.outline = 1.3f, own.closure = 0.2f;
-    own.grain = 1.2f, own.hardness = 0.4f, own.strokes = 0.8f, own.smudge = 0.1f;
+/// A drawing on paper with normals smoothed over `smooth` voxels.
+Look drawing(float smooth, const CharcoalDrawing& own) {
+    Look look;
+    look.smooth = smooth;
+    look.charcoal = own;
     return look;
 }
 
 Look sanguine() {
-    Look look = charcoal();
-    CharcoalDrawing& own = *look.charcoal;
-    own.color = {0.55f, 0.2f, 0.12f};
-    own.contrast = 1.1f, own.smudge = 0.45f, own.strokes = 0.35f, own.grain = 3;
-    return look;
+    return drawing(
+        2, {.color = glm::vec3(0.55f, 0.2f, 0.12f), .contrast = 0.8f, .grain = 3, .strokes = 0.35f, .smudge = 0.35f});
+}
+
+/// Soft, medium and hard: a wide dark grainy line, a middle one, and a thin light even one.
+Look softPencil() {
+    return drawing(2, {.pressure = 0.97f,
+                       .contrast = 0.85f,
+                       .bare = 0.15f,
+                       .outline = 2.2f,
+                       .closure = 0.3f,
+                       .grain = 1.8f,
+                       .hardness = 0.45f,
+                       .strokes = 0.75f,
+                       .smudge = 0.2f});
+}
+
+Look pencil() {
+    return drawing(1.5f, {.pressure = 0.85f,
+                          .bare = 0.18f,
+                          .outline = 1.6f,
+                          .closure = 0.25f,
+                          .grain = 1.3f,
+                          .hardness = 0.55f,
+                          .tooth = 0.75f,
+                          .strokes = 0.9f,
+                          .crossing = 0.6f,
+                          .smudge = 0.08f});
+}
+
+Look hardPencil() {
+    return drawing(1.5f, {.pressure = 0.72f,
+                          .contrast = 1,
+                          .bare = 0.2f,
+                          .outline = 1.1f,
+                          .closure = 0.2f,
+                          .grain = 0.9f,
+                          .hardness = 0.7f,
+                          .tooth = 0.5f,
+                          .strokes = 1,
+                          .crossing = 0.5f,
+                          .smudge = 0});
+}
+
+Look hatching() {
+    return drawing(2, {.pressure = 1,
+                       .contrast = 0.8f,
+                       .bare = 0.15f,
+                       .localTone = 0,
+                       .outline = 2.2f,
+                       .outlineStrength = 1,
+                       .closure = 0.2f,
+                       .grain = 1.4f,
+                       .hardness = 1,
+                       .tooth = 0,
+                       .strokes = 1,
+                       .crossing = 0.4f,
+                       .smudge = 0});
+}
+
+Look stipple() {
+    return drawing(2, {.mark = Mark::Dots,
+                       .pressure = 1,
+                       .contrast = 0.9f,
+                       .bare = 0.1f,
+                       .localTone = 0.1f,
+                       .outline = 2,
+                       .closure = 0.2f,
+                       .grain = 2,
+                       .hardness = 1,
+                       .smudge = 0});
 }
 
 Look chalk() {
-    Look look = charcoal();
-    CharcoalDrawing& own = *look.charcoal;
-    own.stick = Stick::Chalk;
-    own.color = {0.96f, 0.95f, 0.92f};
-    own.contrast = 1.6f, own.outline = 1.6f, own.closure = 0, own.grain = 3;
-    return look;
+    return drawing(2,
+                   {.stick = Stick::Chalk, .contrast = 1.4f, .bare = 0.25f, .outline = 1.6f, .closure = 0, .grain = 3});
 }
 
 Look made(std::string_view name) {
     Look look;
-    if (name == "tone") look = tone();
+    if (name == "tone") look.tone.emplace(), look.smooth = 1;
     if (name == "illustration") look = illustration();
     if (name == "boundaries") look.boundary = BoundaryEnhancement{.retained = 0.05f, .strength = 4, .exponent = 1.5f};
     if (name == "glass") {
@@ -62,10 +112,14 @@ Look made(std::string_view name) {
         look.boundary = BoundaryEnhancement{.retained = 0.1f, .strength = 2};
     }
     if (name == "distance") look.distance.emplace();
-    if (name == "cartoon") look.cartoon.emplace();
-    if (name == "charcoal") look = charcoal();
-    if (name == "pencil") look = pencil();
+    if (name == "cartoon") look.cartoon.emplace(), look.smooth = 2;
+    if (name == "charcoal") look = drawing(2, {});
     if (name == "sanguine") look = sanguine();
+    if (name == "softpencil") look = softPencil();
+    if (name == "pencil") look = pencil();
+    if (name == "hardpencil") look = hardPencil();
+    if (name == "hatching") look = hatching();
+    if (name == "stipple") look = stipple();
     if (name == "chalk") look = chalk();
     if (name == "wire") look.wire.emplace();
     return look;

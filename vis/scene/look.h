@@ -9,26 +9,30 @@
 /// vis/optics/look_shading.h.
 namespace tessera::vis {
 
-/// Warm colours facing the light, cool colours facing away (Gooch et al.: A non-photorealistic lighting model, 1998).
+/// Ink whose colour is not set contrasts with what it lies on (sRGB).
+inline constexpr glm::vec3 kDarkInk{0.07f, 0.067f, 0.065f}, kLightInk{0.96f, 0.95f, 0.92f};
+
+/// Warm colours facing the light, cool colours facing away (Gooch et al.: A non-photorealistic lighting model, 1998),
+/// as a tint of the material's own colour, so that it keeps its hue.
 struct WarmCool {
     float amount = 1;
-    glm::vec3 warmColor{0.95f, 0.78f, 0.35f}, coolColor{0.12f, 0.2f, 0.5f}; ///< sRGB
-    float ownColor = 0.35f;
+    glm::vec3 warmColor{1, 0.97f, 0.9f}, coolColor{0.4f, 0.45f, 0.62f}; ///< sRGB
+    float ownColor = 0.9f;
     bool operator==(const WarmCool&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.amount,
               FieldInfo{.key = "amount", .unit = "", .doc = "Share of tone shading: 0 = plain", .range = Range{0, 1}});
-        visit(self.warmColor, FieldInfo{.key = "warmColor",
-                                        .unit = "",
-                                        .doc = "Colour towards the first light (sRGB)",
-                                        .range = Range{0, 1}});
+        visit(self.warmColor,
+              FieldInfo{
+                  .key = "warmColor", .unit = "", .doc = "Tint towards the first light (sRGB)", .range = Range{0, 1}});
         visit(self.coolColor, FieldInfo{.key = "coolColor",
                                         .unit = "",
-                                        .doc = "Colour away from the first light (sRGB)",
+                                        .doc = "Tint away from the first light (sRGB)",
                                         .range = Range{0, 1}});
         visit(self.ownColor, FieldInfo{.key = "ownColor",
                                        .unit = "",
-                                       .doc = "Share of the colour of the surface added where light falls",
+                                       .doc = "Share of the material's own colour: 1 and above = tinted by the two "
+                                              "colours, 0 = these colours alone",
                                        .range = Range{0, 2}});
     }
 };
@@ -57,6 +61,8 @@ struct BoundaryEnhancement {
 /// Opacity where the surface faces away from the viewer (Rheingans and Ebert 2001).
 struct SilhouetteEnhancement {
     float retained = 0.15f, strength = 3, exponent = 2.5f;
+    float ink = 0;
+    std::optional<glm::vec3> inkColor = {};
     bool operator==(const SilhouetteEnhancement&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.retained, FieldInfo{.key = "retained",
@@ -72,6 +78,15 @@ struct SilhouetteEnhancement {
                                        .doc = "Exponent; larger = narrower silhouettes",
                                        .range = Range{0.25, 16},
                                        .logScale = true});
+        visit(self.ink,
+              FieldInfo{
+                  .key = "ink", .unit = "", .doc = "Share of ink where the surface turns away", .range = Range{0, 1}});
+        visit(self.inkColor, FieldInfo{.key = "inkColor",
+                                       .unit = "",
+                                       .doc = "Own colour of the ink (sRGB); without one it is dark on a light ground "
+                                              "and light on a dark one",
+                                       .range = Range{0, 1},
+                                       .applies = self.ink > 0});
     }
 };
 
@@ -105,7 +120,7 @@ struct Cartoon {
     int steps = 3;
     float shadow = 0.35f;
     float outline = 2; ///< pixels
-    glm::vec3 outlineColor{0.05f, 0.05f, 0.08f};
+    std::optional<glm::vec3> outlineColor = {};
     bool operator==(const Cartoon&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.amount,
@@ -118,7 +133,8 @@ struct Cartoon {
               FieldInfo{.key = "outline", .unit = "pixel", .doc = "Width of outlines", .range = Range{0, 12}});
         visit(self.outlineColor, FieldInfo{.key = "outlineColor",
                                            .unit = "",
-                                           .doc = "Colour of outlines (sRGB)",
+                                           .doc = "Own colour of outlines (sRGB); without one the inner half contrasts "
+                                                  "with the surface and the outer half with the ground",
                                            .range = Range{0, 1},
                                            .applies = self.outline > 0});
     }
@@ -126,34 +142,49 @@ struct Cartoon {
 
 enum class Stick { Charcoal, Chalk };
 inline constexpr std::string_view kStickNames[] = {"charcoal", "chalk"};
+enum class Mark { Strokes, Dots };
+inline constexpr std::string_view kMarkNames[] = {"strokes", "dots"};
 
-/// Strokes on paper grain (after Majumder and Gopi: Hardware accelerated real time charcoal rendering, 2002). The grain
-/// is fixed to the object; the paper belongs to the scene.
+/// Strokes on paper grain (after Majumder and Gopi: Hardware accelerated real time charcoal rendering, 2002), along the
+/// greatest curvature of the surface (Hertzmann and Zorin: Illustrating smooth surfaces, 2000), or stippling (Lu et
+/// al.: Non-photorealistic volume rendering using stippling techniques, 2002). All marks are fixed to the object; the
+/// paper belongs to the scene.
 struct CharcoalDrawing {
     Stick stick = Stick::Charcoal;
-    glm::vec3 color{0.07f, 0.067f, 0.065f}; ///< sRGB
-    float pressure = 0.93f, contrast = 0.9f, localTone = 0.15f;
+    Mark mark = Mark::Strokes;
+    std::optional<glm::vec3> color = {};
+    float pressure = 0.95f, contrast = 0.9f, bare = 0.22f, localTone = 0.15f;
     float steepness = 0;
     float outline = 2.2f, outlineStrength = 0.9f, closure = 0.5f;
     float grain = 2.4f; ///< pixels
-    float hardness = 0.6f, strokes = 0.7f, angle = 0, smudge = 0.15f;
+    float hardness = 0.6f, tooth = 1, strokes = 0.7f, follow = 1, crossing = 1, angle = 0, smudge = 0.15f;
     bool operator==(const CharcoalDrawing&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.stick, FieldInfo{.key = "stick",
                                     .unit = "",
-                                    .doc = "Charcoal draws what is dark, chalk what is light",
+                                    .doc = "Charcoal draws what is dark and brings light paper, chalk what is light "
+                                           "and dark paper",
                                     .names = kStickNames});
-        visit(self.color,
-              FieldInfo{.key = "color", .unit = "", .doc = "Colour of the stick (sRGB)", .range = Range{0, 1}});
+        visit(self.mark,
+              FieldInfo{.key = "mark", .unit = "", .doc = "Strokes, or the dots of stippling", .names = kMarkNames});
+        visit(self.color, FieldInfo{.key = "color",
+                                    .unit = "",
+                                    .doc = "Own colour of the stick (sRGB); without one it is dark and draws what is "
+                                           "dark on a light ground, light and draws what is light on a dark one",
+                                    .range = Range{0, 1}});
         visit(self.pressure, FieldInfo{.key = "pressure",
                                        .unit = "",
                                        .doc = "Largest share of the paper that a stroke covers",
                                        .range = Range{0, 1}});
         visit(self.contrast, FieldInfo{.key = "contrast",
                                        .unit = "",
-                                       .doc = "Exponent on darkness: larger = more bare paper",
+                                       .doc = "Exponent on darkness: larger = lighter middle tones",
                                        .range = Range{0.25, 6},
                                        .logScale = true});
+        visit(self.bare, FieldInfo{.key = "bare",
+                                   .unit = "",
+                                   .doc = "Share of the tones, from the lightest on, that leave the paper bare",
+                                   .range = Range{0, 0.9}});
         visit(self.localTone,
               FieldInfo{.key = "localTone",
                         .unit = "",
@@ -180,10 +211,35 @@ struct CharcoalDrawing {
                                        .unit = "",
                                        .doc = "Hardness of the grain: 1 is only ink or paper, 0 is continuous tone",
                                        .range = Range{0, 1}});
-        visit(self.strokes,
-              FieldInfo{.key = "strokes", .unit = "", .doc = "Visibility of single strokes", .range = Range{0, 1}});
-        visit(self.angle,
-              FieldInfo{.key = "angle", .unit = "deg", .doc = "Direction of the strokes", .range = Range{-90, 90}});
+        const bool stroked = self.mark == Mark::Strokes;
+        visit(self.tooth, FieldInfo{.key = "tooth",
+                                    .unit = "",
+                                    .doc = "How much the paper's grain breaks strokes: 0 = they are lines as wide as "
+                                           "the tone is dark",
+                                    .range = Range{0, 1},
+                                    .applies = stroked});
+        visit(self.strokes, FieldInfo{.key = "strokes",
+                                      .unit = "",
+                                      .doc = "Visibility of single strokes",
+                                      .range = Range{0, 1},
+                                      .applies = stroked});
+        visit(self.follow, FieldInfo{.key = "follow",
+                                     .unit = "",
+                                     .doc = "How much the greatest curvature of the surface directs the strokes; where "
+                                            "it is even, and with 0 everywhere, they keep one direction in space",
+                                     .range = Range{0, 1},
+                                     .applies = stroked});
+        visit(self.crossing, FieldInfo{.key = "crossing",
+                                       .unit = "",
+                                       .doc = "Darkness from which on a second layer of strokes crosses the first; 1 = "
+                                              "none",
+                                       .range = Range{0, 1},
+                                       .applies = stroked});
+        visit(self.angle, FieldInfo{.key = "angle",
+                                    .unit = "deg",
+                                    .doc = "Turn of the strokes on the surface",
+                                    .range = Range{-90, 90},
+                                    .applies = stroked});
         visit(self.smudge, FieldInfo{.key = "smudge",
                                      .unit = "",
                                      .doc = "Smudging: 0 = grain and strokes, 1 = even tone",
@@ -226,6 +282,7 @@ inline constexpr std::string_view kLookPartNames[] = {"everything", "context", "
 
 struct Look {
     LookPart part = LookPart::Everything;
+    float smooth = 0;
     std::optional<WarmCool> tone;
     std::optional<BoundaryEnhancement> boundary;
     std::optional<SilhouetteEnhancement> silhouette;
@@ -236,9 +293,9 @@ struct Look {
     bool any() const { return tone || boundary || silhouette || distance || cartoon || charcoal || wire; }
     bool operator==(const Look&) const = default;
 
-    static constexpr std::string_view kPresetNames[] = {"plain",  "tone",     "illustration", "boundaries",
-                                                        "glass",  "distance", "cartoon",      "charcoal",
-                                                        "pencil", "sanguine", "chalk",        "wire"};
+    static constexpr std::string_view kPresetNames[] = {
+        "plain",    "tone",       "illustration", "boundaries", "glass",    "distance", "cartoon", "charcoal",
+        "sanguine", "softpencil", "pencil",       "hardpencil", "hatching", "stipple",  "chalk",   "wire"};
     /// The look of a preset; nullopt for other names.
     static std::optional<Look> preset(std::string_view name);
 
@@ -248,6 +305,11 @@ struct Look {
                                    .doc = "What is drawn in this style while brushes are active: everything, what is "
                                           "not brushed (context), or what is brushed (focus)",
                                    .names = kLookPartNames});
+        visit(self.smooth, FieldInfo{.key = "smooth",
+                                     .unit = "voxel",
+                                     .doc = "Width over which the normals of a drawing are smoothed: noise and details "
+                                            "smaller than that do not show; 0 = those of plain shading",
+                                     .range = Range{0, 8}});
         visit(self.tone, FieldInfo{.key = "tone", .unit = "", .doc = "Tone shading: warm light, cool shade (Gooch)"});
         visit(self.boundary,
               FieldInfo{.key = "boundary", .unit = "", .doc = "More opacity where values change steeply"});

@@ -30,7 +30,7 @@ layout(location = 1) out vec2 outDistance; // distance along the ray; BrushEffec
 
 #if LOOKS
 // Inputs of look shading for a surface. `dx`, `dy`: derivatives of the position with respect to the pixel; `turnX`,
-// `turnY`: those of the normal. A surface without a scalar field has maximal steepness.
+// `turnY`: those of the normal. A surface without a scalar field has maximal steepness, and strokes in one direction.
 LookSample surfaceLook(vec3 normal, vec3 toViewer, float along, vec3 dx, vec3 dy, vec3 turnX, vec3 turnY) {
     LookSample at;
     at.share = 1.0;
@@ -50,9 +50,9 @@ LookSample surfaceLook(vec3 normal, vec3 toViewer, float along, vec3 dx, vec3 dy
     float area = xx * yy - xy * xy;
     vec3 turn = ((x * yy - y * xy) * turnX + (y * xx - x * xy) * turnY) / max(area, 1e-30);
     at.curvature = area > 0.0 ? abs(dot(turn, across)) : 0.0;
-    at.grain = vec2(0.5);
+    at.grain = vec4(0.5);
 #if (LOOKS & LOOK_CHARCOAL)
-    at.grain = grainAt(grainTile, world, normal, lookGrain[0].x * at.pixel, lookGrain[0].yz);
+    at.grain = marksAt(0, world, normal, vec3(0.0), at.pixel);
 #endif
     at.wire = 0.0;
 #if (LOOKS & LOOK_WIRE)

@@ -3,6 +3,7 @@
 #include "volume/base/numbers.h"
 #include "volume/field/lattice.h"
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string_view>
@@ -77,6 +78,37 @@ template <class Value> glm::dvec3 gradient(const Value& value, glm::dvec3 cells,
         return FoundValue<double, bool>{one.value_or(0), one.has_value()};
     };
     return gradientOf<double>(found, cells, stencil);
+}
+
+/// Width in cells of the sublattice of `voxels` cells of the CC grid with the same sample density.
+inline double smoothReach(LatticeKind kind, double voxels) {
+    return voxels * (kind == LatticeKind::BCC ? 1 / kBccSpacing : 1);
+}
+
+inline constexpr double kSmoothDepth =
+    0.5; ///< reach of smoothGradient() along the normal, as a share of that across it
+
+/// Gradient of a smoothed field, per cell and axis: the least-squares fit of the differences between -o and +o for the
+/// offsets o = `reach` A d, d the four diagonals (1, 1, 1), ..., A = 1 - (1 - kSmoothDepth) n n^T, n = `narrow` /
+/// |narrow|. So each component is a mean of parallel differences, which smooths over `reach` across a surface with the
+/// unsmoothed gradient `narrow` but less along its normal, where beyond a thin wall other things begin. Absent values
+/// as in gradient().
+template <class Value>
+glm::dvec3 smoothGradient(const Value& value, glm::dvec3 cells, double reach, glm::dvec3 narrow) {
+    const double length = glm::length(narrow);
+    const glm::dvec3 normal = length > 0 ? narrow / length : glm::dvec3(0);
+    const std::optional<double> centre = value(cells);
+    glm::dvec3 sum(0);
+    for (int i = 0; i < 4; ++i) {
+        const glm::dvec3 way(i == 1 ? -1 : 1, i == 2 ? -1 : 1, i == 3 ? -1 : 1);
+        const glm::dvec3 offset = reach * (way - (1 - kSmoothDepth) * glm::dot(way, normal) * normal);
+        const std::optional<double> lower = value(cells - offset), upper = value(cells + offset);
+        if (lower && upper)
+            sum += way * (0.5 * (*upper - *lower));
+        else if (centre)
+            sum += way * (upper.value_or(*centre) - lower.value_or(*centre));
+    }
+    return (sum + (1 / kSmoothDepth - 1) * glm::dot(sum, normal) * normal) / (4 * reach);
 }
 
 } // namespace tessera::volume

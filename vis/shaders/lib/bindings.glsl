@@ -45,9 +45,9 @@ uniform vec3 worldCell;           // world edges of the cell that steps are meas
 uniform float stepVoxels;
 uniform vec3 cellsPerWorld, cellsOffset; // p = world * cellsPerWorld + cellsOffset
 uniform float gradientReach, gradientScale; // volume/reconstruct/gradient.h: reach; factor to change per worldCell
-// 3 or 4, kBisections, and 8 or (BCC) 16. Uniforms instead of constants, so that no compiler unrolls these loops: on
+// 3 or 4, 4, kBisections, and 8 or (BCC) 16. Uniforms instead of constants, so that no compiler unrolls these loops: on
 // software GL that takes seconds.
-uniform int gradientDirections, bisections, latticeCorners;
+uniform int gradientDirections, diagonals, bisections, latticeCorners;
 
 // JITTER: 1 if ray starts are jittered. Number of the pass of a supersampled frame.
 uniform int passNumber;

@@ -36,16 +36,19 @@ void showComposites(int k, float at, int together) {
         bool surface = LAYER_SHADED(i) == 1 || LAYER_LOOK(i) != 0;
         if (surface && !byGradient) g = cellGradient(LAYER_FIELD(i), p, present(s) ? s.x : kUnknown, alpha > 0.0);
         float fade = min(1.0, length(g) * abs(layerMap[i].x) / kFlatGradient);
-        vec3 albedo = c.rgb;
+        vec3 albedo = c.rgb, drawn = g;
 #if LOOKS
         LookSample look;
         if (LAYER_LOOK(i) != 0) {
-            look = lookSample(i, LAYER_FIELD(i), p, g, fade, world, distanceAt(at), ray.direction, doi, alpha > 0.0);
-            alpha = correctedOpacity(lookOpacity(i, opacity, look), thickness);
+            drawn = lookGradient(i, LAYER_FIELD(i), readAt(LAYER_FIELD(i), p), p, present(s) ? s.x : kUnknown, g,
+                                 alpha > 0.0);
+            look = lookSample(i, LAYER_FIELD(i), p, present(s) ? s.x : kUnknown, g, drawn, fade, world, distanceAt(at),
+                              ray.direction, doi, alpha > 0.0);
+            alpha = correctedOpacity(lookOpacity(i, solidOpacity(i, opacity, look), look), thickness);
             c.rgb = lookAlbedo(i, albedo, look);
         }
 #endif
-        c.rgb = LAYER_SHADED(i) == 1 ? shade(c.rgb, shadingGradient(g), fade, world, -ray.direction)
+        c.rgb = LAYER_SHADED(i) == 1 ? shade(c.rgb, shadingGradient(drawn), fade, world, -ray.direction)
                                      : shadeFlat(c.rgb, world);
 #if LOOKS
         if (LAYER_LOOK(i) != 0) c.rgb = lookColor(i, albedo, c.rgb, look);

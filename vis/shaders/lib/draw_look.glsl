@@ -8,7 +8,7 @@
 uniform vec4 lookLight;   // first light: direction towards it, w = 0; or position, w = 1
 uniform vec2 lookDepth;   // view distance of depth 0; depth per world unit
 uniform vec2 lookPixel;   // world edge of a pixel: x + y * distance along the ray
-uniform float lookReach;  // world distance over which curvature is measured
+uniform vec3 lookSmooth[LAYERS]; // of normals: reach in cells, scale; world distance that curvature is measured over
 uniform vec3 lookGround;  // colour of the paper or background
 uniform vec2 lookShare[LAYERS]; // share of the look = x + y * degree of interest
 #if (LOOKS & LOOK_TONE)
@@ -19,26 +19,52 @@ uniform vec3 lookBoundary[LAYERS];
 #endif
 #if (LOOKS & LOOK_SILHOUETTE)
 uniform vec3 lookSilhouette[LAYERS];
+uniform vec4 lookRim[LAYERS]; // colour of the ink, its share
 #endif
 #if (LOOKS & LOOK_DISTANCE)
 uniform vec4 lookDistance[LAYERS]; // colour, amount
 uniform float lookDistanceExponent[LAYERS];
 #endif
 #if (LOOKS & LOOK_CARTOON)
-uniform vec3 lookCartoon[LAYERS];  // amount, steps, shadow
-uniform vec4 lookOutline[LAYERS];  // colour; width in pixels
+uniform vec4 lookCartoon[LAYERS];  // amount, steps, shadow; 1 if outlines have their own colour
+uniform vec4 lookOutline[LAYERS];  // that colour, or the ink on the ground; width in pixels
+uniform vec3 lookDarkInk, lookLightInk;
 #endif
 #if (LOOKS & LOOK_CHARCOAL)
 uniform vec3 lookStick[LAYERS]; // colour
-uniform vec3 lookTone[LAYERS], lookLine[LAYERS]; // see charcoalInk()
-uniform vec4 lookMark[LAYERS];
-uniform vec4 lookGrain[LAYERS];                                    // texel in pixels, rotation, local tone
+uniform vec3 lookLine[LAYERS]; // see charcoalInk()
+uniform vec4 lookTone[LAYERS], lookMark[LAYERS];
+uniform vec4 lookGrain[LAYERS]; // texel in pixels, turn of strokes in radians, local tone, how much curvature directs them
+uniform vec2 lookLayers[LAYERS];
 uniform sampler2D grainTile;
+
+// Tooth, strokes, crossing strokes and dots at a place of a surface. `bend`: see strokeDirection().
+vec4 marksAt(int i, vec3 world, vec3 normal, vec3 bend, float pixel) {
+    float size = lookGrain[i].x * pixel;
+    vec2 grain = grainAt(grainTile, world, normal, size);
+    vec4 marks = vec4(grain.x, 0.5, 0.5, grain.y);
+    if ((LAYER_LOOK(i) & LOOK_DOTS) == 0) {
+        vec3 along = strokeDirection(normal, bend, lookGrain[i].w, lookGrain[i].y);
+        marks.y = strokesAt(grainTile, world, normal, along, size, 0.0);
+#if (LOOKS & LOOK_CROSS)
+        if ((LAYER_LOOK(i) & LOOK_CROSS) != 0)
+            marks.z = strokesAt(grainTile, world, normal, cross(normal, along), size, kCrossingShift);
+#endif
+    }
+    return marks;
+}
 #endif
 #if (LOOKS & LOOK_WIRE)
 uniform vec4 lookWire[LAYERS];      // spacing in world units, width in pixels, retained, own colour
 uniform vec3 lookWireColor[LAYERS];
 #endif
+
+float solidOpacity(int i, float opacity, LookSample at) {
+#if (LOOKS & LOOK_CHARCOAL)
+    if ((LAYER_LOOK(i) & LOOK_CHARCOAL) != 0) return mix(opacity, smoothstep(0.03, 0.4, opacity), at.share);
+#endif
+    return opacity;
+}
 
 float lookOpacity(int i, float opacity, LookSample at) {
     float factor = 1.0;
@@ -57,7 +83,7 @@ float lookOpacity(int i, float opacity, LookSample at) {
 vec3 lookAlbedo(int i, vec3 albedo, LookSample at) {
 #if (LOOKS & LOOK_CHARCOAL)
     if ((LAYER_LOOK(i) & LOOK_CHARCOAL) != 0)
-        return mix(albedo, mix(vec3(1.0), albedo, lookGrain[i].w), at.share);
+        return mix(albedo, mix(vec3(1.0), albedo, lookGrain[i].z), at.share);
 #endif
     return albedo;
 }
@@ -78,12 +104,22 @@ vec3 lookColor(int i, vec3 albedo, vec3 lit, LookSample at) {
 #endif
 #if (LOOKS & LOOK_CARTOON)
     if ((LAYER_LOOK(i) & LOOK_CARTOON) != 0)
-        color = mix(color, lookOutline[i].rgb, outline(at.facing, at.curvature, lookOutline[i].a * at.pixel) *
-                                                   lookCartoon[i].x * at.weight * at.share);
+    {
+        float width = lookOutline[i].a * at.pixel, amount = lookCartoon[i].x * at.weight * at.share;
+        vec3 inner = lookCartoon[i].w > 0.5 ? lookOutline[i].rgb : inkOn(albedo, lookDarkInk, lookLightInk);
+        color = mix(color, inner, amount * outline(at.facing, at.curvature, width));
+        color = mix(color, lookOutline[i].rgb, amount * outline(at.facing, at.curvature, 0.5 * width));
+    }
+#endif
+#if (LOOKS & LOOK_SILHOUETTE)
+    if ((LAYER_LOOK(i) & LOOK_SILHOUETTE) != 0)
+        color = mix(color, lookRim[i].rgb,
+                    lookRim[i].a * turnedAway(lookSilhouette[i].z, at) * at.weight * at.share);
 #endif
 #if (LOOKS & LOOK_CHARCOAL)
     if ((LAYER_LOOK(i) & LOOK_CHARCOAL) != 0) {
-        float ink = charcoalInk(lit, at, lookTone[i], lookLine[i], lookMark[i]);
+        float ink = charcoalInk(lit, at, lookTone[i], lookLine[i], lookMark[i], lookLayers[i],
+                                (LAYER_LOOK(i) & LOOK_DOTS) != 0);
         color = mix(color, mix(lookGround, lookStick[i], ink), at.share);
     }
 #endif

@@ -3,6 +3,7 @@
 #include "lib/place.glsl"
 
 const float kUnknown = -1e9; // replaces a value that is absent or unknown
+const float kSmoothDepth = 0.5;
 
 bool present(vec2 s) {
     return s.y >= PRESENT_COVERAGE;
@@ -23,28 +24,50 @@ float readEdge(int field, Reading like, vec3 p) {
     return edge;
 }
 
-// Gradient in texel units per worldCell edge, by the differences of volume/reconstruct/gradient.h, within the part of
-// `like`: one-sided where one neighbour is absent, 0 if then the value `centre` at p is kUnknown too. Zero unless
-// `needed`, which ends the loop early; software GL executes both sides of a branch.
+// The difference between p - offset and p + offset within the part of `like`, halved: one-sided where one of them is
+// absent, 0 if then the value `centre` at p is kUnknown too.
+float halfDifference(int field, Reading like, vec3 lower, vec3 upper, float centre) {
+    vec2 below = readPart(field, like, lower), above = readPart(field, like, upper);
+    bool hasBelow = present(below), hasAbove = present(above);
+    float difference = (hasAbove ? above.x : centre) - (hasBelow ? below.x : centre);
+    return difference * (hasBelow && hasAbove ? 0.5 : centre > kUnknown ? 1.0 : 0.0);
+}
+
+// Diagonals of the cube.
+vec3 diagonal(int i) {
+    return vec3(i == 1 ? -1.0 : 1.0, i == 2 ? -1.0 : 1.0, i == 3 ? -1.0 : 1.0);
+}
+
+// Gradient in texel units per worldCell edge, by the differences of volume/reconstruct/gradient.h. Zero unless `needed`,
+// which ends the loop early; software GL executes both sides of a branch.
 vec3 partGradient(int field, Reading like, vec3 p, float centre, bool needed) {
     vec3 result = vec3(0.0);
     holdPage(field, p);
     float edge = readEdge(field, like, dataCells(p));
     for (int i = 0; i < (needed && FIELD_NEAREST(field) == 0 ? gradientDirections : 0); ++i) {
 #if GRADIENT_DIAGONAL
-        vec3 direction = vec3(i == 1 ? -1.0 : 1.0, i == 2 ? -1.0 : 1.0, i == 3 ? -1.0 : 1.0);
+        vec3 direction = diagonal(i);
 #else
         vec3 direction = vec3(i == 0, i == 1, i == 2);
 #endif
         vec3 offset = direction * (gradientReach * edge);
-        vec2 lower = readPart(field, like, p - offset), upper = readPart(field, like, p + offset);
-        bool hasLower = present(lower), hasUpper = present(upper);
-        float difference = (hasUpper ? upper.x : centre) - (hasLower ? lower.x : centre);
-        float factor = hasLower && hasUpper ? 0.5 : centre > kUnknown ? 1.0 : 0.0;
-        result += direction * factor * difference;
+        result += direction * halfDifference(field, like, p - offset, p + offset, centre);
     }
     releasePage();
     return result * (gradientScale / edge);
+}
+
+// The same of a smoothed field: smoothGradient() of volume/reconstruct/gradient.h. `scale`: factor to change per
+// worldCell. Positions are limited to the box, beyond which bricks hold no samples from two texels on.
+vec3 smoothGradient(int field, Reading like, vec3 p, float centre, vec3 narrow, float reach, float scale, bool needed) {
+    vec3 normal = dot(narrow, narrow) > 0.0 ? normalize(narrow) : vec3(0.0), sum = vec3(0.0);
+    vec3 end = toCells(-halfSize), other = toCells(halfSize), lo = min(end, other), hi = max(end, other);
+    float edge = readEdge(field, like, dataCells(p));
+    for (int i = 0; i < (needed && FIELD_NEAREST(field) == 0 ? diagonals : 0); ++i) {
+        vec3 way = diagonal(i), offset = reach * edge * (way - (1.0 - kSmoothDepth) * dot(way, normal) * normal);
+        sum += way * halfDifference(field, like, clamp(p - offset, lo, hi), clamp(p + offset, lo, hi), centre);
+    }
+    return (sum + (1.0 / kSmoothDepth - 1.0) * dot(sum, normal) * normal) * (scale / edge);
 }
 
 // The same for the part that p belongs to.

@@ -30,18 +30,23 @@ void showSurfaces(int k) {
         vec3 world = worldAt(at);
         vec2 lens = lensAction(LAYER_LENS(i), world);
         float alpha = crossed ? min(layerMap[i].w * focusOpacity(doi, LAYER_BRUSHED(i)) * lens.x, 1.0) : 0.0;
-        float centre = FIELD_COVERAGE(field) == 1 ? reconstruct(field, q).x : 0.0;
+        bool valued = FIELD_COVERAGE(field) == 1; // whether the value at q is of use
+#if LOOKS
+        valued = valued || (LAYER_LOOK(i) & LOOK_OUTLINE) != 0;
+#endif
+        float centre = valued ? reconstruct(field, q).x : 0.0;
         vec3 g = cellGradient(field, q, centre, crossed);
-        vec3 albedo = focusColor(colorBy(i, q, layerColor[i]), doi, lens.y, LAYER_BRUSHED(i)), c = albedo;
+        vec3 albedo = focusColor(colorBy(i, q, layerColor[i]), doi, lens.y, LAYER_BRUSHED(i)), c = albedo, drawn = g;
 #if LOOKS
         LookSample look;
         if (LAYER_LOOK(i) != 0) {
-            look = lookSample(i, field, q, g, 1.0, world, distanceAt(at), ray.direction, doi, crossed);
+            drawn = lookGradient(i, field, readAt(field, q), q, centre, g, crossed);
+            look = lookSample(i, field, q, centre, g, drawn, 1.0, world, distanceAt(at), ray.direction, doi, crossed);
             alpha = lookOpacity(i, alpha, look);
             c = lookAlbedo(i, albedo, look);
         }
 #endif
-        c = shade(c, shadingGradient(g), 1.0, world, -ray.direction);
+        c = shade(c, shadingGradient(drawn), 1.0, world, -ray.direction);
 #if LOOKS
         if (LAYER_LOOK(i) != 0) c = lookColor(i, albedo, c, look);
 #endif

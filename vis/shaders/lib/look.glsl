@@ -4,15 +4,23 @@
 // Inputs of a look: n.l of the visible side, |n.v|, the rest as in LookSample (C++).
 struct LookSample {
     float light, facing, weight, steepness, curvature, depth, pixel, share, wire;
-    vec2 grain;
+    vec4 grain;
 };
 
 // `own` = retained, strength, exponent of an enhancement.
 float boundaryFactor(vec3 own, LookSample at) {
     return own.x + own.y * pow(clamp(at.steepness, 1e-6, 1.0), own.z);
 }
+float turnedAway(float exponent, LookSample at) {
+    return pow(max(1.0 - at.facing, 1e-6), exponent);
+}
 float silhouetteFactor(vec3 own, LookSample at) {
-    return own.x + own.y * at.weight * pow(max(1.0 - at.facing, 1e-6), own.z);
+    return own.x + own.y * at.weight * turnedAway(own.z, at);
+}
+
+// The ink that shows on a colour.
+vec3 inkOn(vec3 ground, vec3 dark, vec3 light) {
+    return mix(light, dark, smoothstep(0.03, 0.12, dot(ground, vec3(0.2126, 0.7152, 0.0722))));
 }
 
 // Coverage of a pixel by the intersection lines of a surface with planes at multiples of `spacing` along x, y and z;
@@ -41,21 +49,36 @@ float lightStep(float light, float steps) {
     return min(steps - 1.0, floor(steps * max(0.0, light))) / (steps - 1.0);
 }
 
-// `tone` = contrast, steepness, 1 for chalk; `line` = width in pixels, strength, closure; `mark` = half the softness of
-// the grain, strokes, smudge, pressure.
-float charcoalInk(vec3 lit, LookSample at, vec3 tone, vec3 line, vec4 mark) {
+// Ink of one layer of strokes. `press`: half the tooth of the look; `soft`: half the softness of the grain.
+float strokeInk(float density, float tooth, float stroke, float strokes, float press, float soft) {
+    float amount = max(density, 1e-6), covered = pow(amount, 1.0 - press);
+    float stroked = mix(density, pow(amount, press) * smoothstep(0.85 - covered, 1.15 - covered, stroke), strokes);
+    return density > 0.0 ? smoothstep(tooth - soft, tooth + soft, stroked * (1.0 + 2.0 * soft) - soft) : 0.0;
+}
+
+// `tone` = contrast, steepness, 1 if it draws what is light, bare; `line` = width in pixels, strength, closure; `mark` =
+// half the softness of the grain, strokes, smudge, pressure; `layers` = crossing, half the tooth.
+float charcoalInk(vec3 lit, LookSample at, vec4 tone, vec3 line, vec4 mark, vec2 layers, bool dots) {
     float bright = sqrt(clamp(dot(lit, vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0));
-    float drawn = tone.z > 0.5 ? bright : 1.0 - bright;
+    float drawn = max((tone.z > 0.5 ? bright : 1.0 - bright) - tone.w, 0.0) / (1.0 - tone.w);
+    drawn = drawn > 0.0 ? pow(drawn, tone.x) : 0.0;
     float steep = mix(1.0, sqrt(clamp(at.steepness, 0.0, 1.0)), tone.y);
-    float filled = (drawn > 0.0 ? pow(drawn, tone.x) : 0.0) * steep;
+    float filled = drawn * (tone.z > 0.5 ? drawn : 2.0 - drawn) * steep;
     float open = mix(1.0, smoothstep(0.1, 0.6, 1.0 - bright), line.z);
-    float drawnLine = line.y * at.weight * open * outline(at.facing, at.curvature, line.x * at.pixel);
-    float density = mark.w * (1.0 - (1.0 - filled) * (1.0 - drawnLine));
-    float stroked = min(1.0, density * (1.0 + mark.y * (2.0 * at.grain.y - 1.0)));
-    float ink = smoothstep(at.grain.x - mark.x, at.grain.x + mark.x, stroked * (1.0 + 2.0 * mark.x) - mark.x);
+    float width = line.x * at.pixel, thin = 1.0 - 0.8 * smoothstep(0.12, 0.45, width * at.curvature);
+    float drawnLine = line.y * at.weight * open * thin * outline(at.facing, at.curvature, width);
+    float density = mark.w * (1.0 - (1.0 - filled) * (1.0 - drawnLine)), soft = mark.x;
+    float ink;
+    if (dots) {
+        ink = smoothstep(at.grain.w - soft, at.grain.w + soft, density * (1.0 + 2.0 * soft) - soft);
+    } else {
+        float first = min(density, mix(layers.x, density, 0.4)), second = 1.0 - (1.0 - density) / max(1.0 - first, 1e-3);
+        ink = 1.0 - (1.0 - strokeInk(first, at.grain.x, at.grain.y, mark.y, layers.y, soft)) *
+                        (1.0 - strokeInk(second, at.grain.x, at.grain.z, mark.y, layers.y, soft));
+    }
     return mix(ink, density, mark.z);
 }
 
 vec3 toned(vec3 albedo, float light, vec3 warm, vec3 cool, float ownColor) {
-    return mix(cool, warm, 0.5 + 0.5 * light) + ownColor * max(light, 0.0) * albedo;
+    return mix(cool, warm, 0.5 + 0.5 * light) * mix(vec3(1.0), albedo, ownColor);
 }
