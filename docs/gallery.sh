@@ -48,7 +48,7 @@ done
 signal style-localmaximum --set "/layers=[$(volume rho '"style":"localmaximum","threshold":0.6')]"
 picture quantity-gradient --set "/layers=[$(volume T '"quantity":"gradient","density":4')]"
 # Looks
-for look in plain tone illustration cartoon glass distance charcoal pencil sanguine chalk wire; do
+for look in plain tone illustration cartoon glass distance charcoal sanguine softpencil pencil hardpencil hatching stipple chalk wire; do
     "$tessera" render charcoal -o "$out/look-$look.png" --view volume --size "$size" \
         --set '/layers/0/technique/color=[0.9,0.55,0.3]' --set "/layers/0/technique/look=\"$look\""
 done
@@ -61,6 +61,18 @@ picture look-context --set '/selection/contextOpacity=0.8' --set /selection/cont
     --set "/layers=[$(volume T '"density":2,"look":{"part":"context","charcoal":{"contrast":0.6}}')]" \
     --set '/transfer/T={"colormap":"inferno","opacity":[[0,0],[0.6,0],[0.7,0.5],[1,0.9]]}' \
     --set '/selection/brushes=[{"name":"hot","region":{"type":"range","intervals":[{"channel":"T","lo":356.2,"hi":400,"soft":0.2}]}}]'
+# Drawings of four things in four styles, for print
+drawings() { # drawings BASE NAME LAYER ARGUMENTS...: LAYER contains LOOK in place of its look
+    local from=$1 name=$2 layer=$3
+    shift 3
+    for look in cartoon pencil hatching stipple; do
+        picture_of "$from" "drawing-$name-$look" --set "/layers=[${layer/LOOK/\"$look\"}]" \
+            --set '/paper={"color":[1,1,1],"tooth":0}' --without legend,axes,gizmo,scaleBar,cursor,box "$@"
+    done
+}
+drawings scan casting "$(surface density 60 0.75,0.78,0.82 1 '"look":LOOK')"
+drawings signal signal "$(surface rho 0.5 0.85,0.6,0.3 1 '"look":LOOK')"
+drawings cell cell "$(surface H2O 5 0.35,0.6,0.9 1 '"look":LOOK')" --set '/selection/brushes=[]'
 # Classification
 for kind in post pre preintegrated; do
     signal "classification-$kind" --set "/layers=[$(volume rho "\"classification\":\"$kind\",\"shaded\":false")]" \

@@ -224,6 +224,13 @@ bool isDrawing(const vis::Technique& technique) {
 
 } // namespace
 
+bool onlyDrawings(const Session& session) {
+    const auto shown = [](const vis::Layer& layer) { return layer.visible; };
+    return std::ranges::any_of(session.layers, shown) &&
+           std::ranges::all_of(session.layers,
+                               [&](const vis::Layer& layer) { return !shown(layer) || isDrawing(layer.technique); });
+}
+
 std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info, bool drawings) {
     std::vector<LegendEntry> entries;
     std::set<std::string> seen;
@@ -265,8 +272,11 @@ std::vector<LegendEntry> sceneLegends(const Session& session, const volume::Data
 
 vis::Scene sceneWithLimits(const ViewContext& context) {
     vis::Scene scene = sceneOf(context.session);
-    scene.showBox = scene.showBox && context.decoration.box;
-    if (context.whiteGround) scene.background = glm::vec3(1);
+    scene.showBox = scene.showBox && context.decoration.box && !onlyDrawings(context.session);
+    if (context.whiteGround) {
+        scene.background = glm::vec3(1);
+        if (vis::paperOf(scene)) scene.paper = vis::Paper{.color = glm::vec3(1), .tooth = 0};
+    }
     for (int* limit : {&scene.render.limits.textureMemory, &scene.render.limits.brickMemory})
         *limit = std::max(1, *limit / std::max(1, context.renderers));
     return scene;

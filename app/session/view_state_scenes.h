@@ -15,7 +15,7 @@ struct VolumeView {
     static constexpr std::string_view kType = "volume";
     bool showBox = true, showAxes = true, showLegend = true, showCursor = true, showGizmo = true, showScaleBar = true,
          showLenses = true;
-    bool drawingLegend = false;
+    bool drawingLegend = false, drawingBox = false;
     bool inSpace = false; ///< where time runs along an axis: the data that are cut
     bool operator==(const VolumeView&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -27,6 +27,11 @@ struct VolumeView {
                         .unit = "",
                         .doc = "Legends of layers drawn in charcoal or chalk too, although their colours are not shown",
                         .applies = self.showLegend});
+        visit(self.drawingBox,
+              FieldInfo{.key = "drawingBox",
+                        .unit = "",
+                        .doc = "Box and cross-hair also where all layers are drawn on paper in charcoal, ink or chalk",
+                        .applies = self.showBox || self.showCursor});
         visit(self.showCursor, FieldInfo{.key = "cursor", .unit = "", .doc = "Draw the linked cross-hair"});
         visit(self.showGizmo,
               FieldInfo{.key = "gizmo", .unit = "", .doc = "Draw the axis triad; a click on an axis looks along it"});

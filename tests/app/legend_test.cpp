@@ -75,6 +75,21 @@ TEST(LegendTest, OfAVolumeByRegionsShowsTheirColours) {
     EXPECT_FALSE(sceneLegends(session, gasInfo()).at(0).regions) << "a slice has the colours of the map";
 }
 
+TEST(LegendTest, OnlyDrawingsAreThoseWithoutAnyOtherLayer) {
+    Session session;
+    EXPECT_FALSE(onlyDrawings(session)) << "nothing is drawn";
+    session.layers = {{"", true, vis::IsoLayer{.channel = "O2", .look = *vis::Look::preset("pencil")}},
+                      {"", true, vis::VolumeLayer{.channel = "T", .look = *vis::Look::preset("stipple")}}};
+    EXPECT_TRUE(onlyDrawings(session));
+    EXPECT_TRUE(sceneLegends(session, gasInfo()).empty());
+    session.layers.push_back({"", true, vis::SliceLayer{.channel = "T"}});
+    EXPECT_FALSE(onlyDrawings(session));
+    session.layers.back().visible = false;
+    EXPECT_TRUE(onlyDrawings(session));
+    std::get<vis::VolumeLayer>(session.layers[1].technique).look = *vis::Look::preset("cartoon");
+    EXPECT_FALSE(onlyDrawings(session)) << "a cartoon has the colours of its transfer function";
+}
+
 TEST(LegendTest, ParametersThatTheDataLackColourNothing) {
     Session session = defaultSession(gasInfo(), {});
     session.layers = {{"rays", true, vis::VolumeLayer{.channel = "O2", .colorBy = "salt"}},

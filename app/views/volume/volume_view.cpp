@@ -66,6 +66,7 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis:
     ImGui::MenuItem("Legends", "", &view.showLegend);
     ImGui::MenuItem("Legends of drawings", "", &view.drawingLegend, view.showLegend);
     ImGui::MenuItem("Cross-hair", "", &view.showCursor);
+    ImGui::MenuItem("Box and cross-hair of drawings", "", &view.drawingBox, view.showBox || view.showCursor);
     ImGui::MenuItem("Direction gizmo", "", &view.showGizmo);
     ImGui::MenuItem("Scale bar", "", &view.showScaleBar);
     ImGui::MenuItem("Outlines and handles", "", &view.showLenses);
@@ -113,7 +114,7 @@ public:
         vis::Scene scene = cache_.scene.get(context_, pane, request.moving);
         // In motion a third of the frame time is left to other views.
         if (request.moving) request.budgetMs = double(scene.render.limits.frameTime) * 2 / 3;
-        scene.showBox = view_.showBox && shown_.box;
+        scene.showBox = view_.showBox && shown_.box && framed();
         const vis::FrameStatus status = context_.renderer.render(*cache_.target, scene, request);
         context_.follow(status);
 
@@ -135,6 +136,8 @@ public:
 
 private:
     ImVec2 max() const { return picture_.max(); }
+    /// Whether box and cross-hair suit what is shown.
+    bool framed() const { return view_.drawingBox || !onlyDrawings(session_); }
     bool showsLegend() const { return view_.showLegend && shown_.legend; }
 
     /// Mouse and keys over the picture; true while something moves.
@@ -162,7 +165,7 @@ private:
 
     /// Draws lines and handles in space, besides the scene.
     void drawObjects(const SpaceFrame& space) {
-        if (view_.showCursor && shown_.cursor) drawCursor3d(*list_, space, session_.cursor);
+        if (view_.showCursor && shown_.cursor && framed()) drawCursor3d(*list_, space, session_.cursor);
         if (!shown_.outlines) return;
         drawSpaceBrushes(*list_, space, session_.selection);
         drawProfileLines(*list_, space, session_);
