@@ -18,7 +18,7 @@ protected:
     static constexpr const char* kHead =
         "#include \"lib/look.glsl\"\n"
         "LookSample at(vec4 a, vec4 b) { return LookSample(a.x, abs(a.y), abs(a.z), abs(a.w) * 1.2, 40.0 * abs(b.x), "
-        "abs(b.y), 0.005, 1.0, 0.0, abs(b.zwxy)); }\n";
+        "abs(b.y), 0.005, 1.0, 0.0, vec3(0.0), vec3(0.0), vec3(0.0)); }\n";
     vis::LookSample sample(int i) const {
         vis::LookSample out;
         const double facing = std::abs(a[i].y);
@@ -79,8 +79,8 @@ TEST_F(LookLib, InkAgrees) {
                                           .crossing = 0.4f,
                                           .smudge = 0.3f};
             const auto got = evaluate(
-                kHead, std::string("vec4(charcoalInk(abs(c[i].rgb), at(a[i], b[i]), vec4(0.9, 0.4, ") +
-                           (light ? "1.0" : "0.0") + ", 0.1), vec3(2.2, 0.9, 0.5), vec4(" +
+                kHead, std::string("vec4(charcoalInk(charcoalDensity(abs(c[i].rgb), at(a[i], b[i]), vec4(0.9, 0.4, ") +
+                           (light ? "1.0" : "0.0") + ", 0.1), vec3(2.2, 0.9, 0.5), 0.93), abs(b[i].zwxy), vec4(" +
                            std::to_string(vis::grainSoftness(charcoal)) + ", 0.7, 0.3, 0.93), vec2(0.4, 0.4), " +
                            (mark == vis::Mark::Dots ? "true" : "false") + "), 0.0, 0.0, 0.0)");
             double least = 1, most = 0;
@@ -145,6 +145,7 @@ TEST_F(LookLib, GrainAgrees) {
     const GLuint name = texture.get();
     const auto prepare = [&](const vis::Program& program) {
         program.set("tile", 1);
+        program.set("grainPlaneCount", 3);
         glBindTextureUnit(1, name);
     };
     const std::string head = "#include \"lib/grain.glsl\"\n#include \"lib/paper.glsl\"\nuniform sampler2D tile;\n"
@@ -152,8 +153,9 @@ TEST_F(LookLib, GrainAgrees) {
                              "vec3 way(int i, vec4 n, vec4 c) { return strokeDirection(unit(n), c.yzw, 0.8, 0.3); }\n";
     const auto got = evaluate(
         head,
-        "vec4(grainAt(tile, 0.5 * a[i].xyz, unit(b[i]), 0.004 + 0.003 * c[i].x), paperShade(tile, 300.0 * c[i].xy, "
-        "0.8), strokesAt(tile, 0.5 * a[i].xyz, unit(b[i]), way(i, b[i], c[i]), 0.004 + 0.003 * c[i].x, 137.0))",
+        "vec4(grainAt(tile, 0.5 * a[i].xyz, unit(b[i]), 0.004 + 0.003 * c[i].x, true), paperShade(tile, 300.0 * "
+        "c[i].xy, "
+        "0.8), strokesAt(tile, 0.5 * a[i].xyz, unit(b[i]), way(i, b[i], c[i]), 0.004 + 0.003 * c[i].x, 137.0, true))",
         {}, prepare);
     const auto ways = evaluate(head, "vec4(way(i, b[i], c[i]), 0.0)");
     const auto tile = vis::grainTile();

@@ -26,6 +26,7 @@ void setLookUniforms(const Program& program, const std::vector<const Look*>& loo
     program.set("lookPixel", glm::vec2(view.pixel));
     program.set("lookGround", glm::vec3(view.ground));
     program.set("grainTile", unit);
+    program.set("grainPlaneCount", 3);
     std::vector<glm::vec2> share, layers;
     const auto inkOf = [&](const std::optional<glm::vec3>& own) {
         return own ? linear(*own) : glm::vec3(inkOn(luminance(view.ground)));

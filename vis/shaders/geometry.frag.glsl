@@ -50,10 +50,9 @@ LookSample surfaceLook(vec3 normal, vec3 toViewer, float along, vec3 dx, vec3 dy
     float area = xx * yy - xy * xy;
     vec3 turn = ((x * yy - y * xy) * turnX + (y * xx - x * xy) * turnY) / max(area, 1e-30);
     at.curvature = area > 0.0 ? abs(dot(turn, across)) : 0.0;
-    at.grain = vec4(0.5);
-#if (LOOKS & LOOK_CHARCOAL)
-    at.grain = marksAt(0, world, normal, vec3(0.0), at.pixel);
-#endif
+    at.world = world;
+    at.normal = normal;
+    at.bend = vec3(0.0);
     at.wire = 0.0;
 #if (LOOKS & LOOK_WIRE)
     at.wire = wireCoverage(world, normal, toViewer, lookWire[0].x, lookWire[0].y, at.pixel);

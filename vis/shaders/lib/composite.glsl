@@ -30,6 +30,9 @@ void showComposites(int k, float at, int together) {
         vec2 lens = lensAction(LAYER_LENS(i), world);
         c.rgb = focusColor(c.rgb, doi, lens.y, LAYER_BRUSHED(i));
         float opacity = c.a * focusOpacity(doi, LAYER_BRUSHED(i)) * lens.x;
+#if LOOKS
+        if (LAYER_LOOK(i) != 0) opacity = solidOpacity(i, opacity, doi);
+#endif
         float lengths = ray.stepLength * REFERENCE_LENGTHS * layerMap[i].z;
         float thickness = lengths * share * clipCoverage(float(k)) * float(together);
         float alpha = correctedOpacity(opacity, thickness);
@@ -44,7 +47,7 @@ void showComposites(int k, float at, int together) {
                                  alpha > 0.0);
             look = lookSample(i, LAYER_FIELD(i), p, present(s) ? s.x : kUnknown, g, drawn, fade, world, distanceAt(at),
                               ray.direction, doi, alpha > 0.0);
-            alpha = correctedOpacity(lookOpacity(i, solidOpacity(i, opacity, look), look), thickness);
+            alpha = correctedOpacity(lookOpacity(i, opacity, look), thickness);
             c.rgb = lookAlbedo(i, albedo, look);
         }
 #endif

@@ -38,17 +38,19 @@ uniform vec4 lookGrain[LAYERS]; // texel in pixels, turn of strokes in radians, 
 uniform vec2 lookLayers[LAYERS];
 uniform sampler2D grainTile;
 
-// Tooth, strokes, crossing strokes and dots at a place of a surface. `bend`: see strokeDirection().
-vec4 marksAt(int i, vec3 world, vec3 normal, vec3 bend, float pixel) {
-    float size = lookGrain[i].x * pixel;
-    vec2 grain = grainAt(grainTile, world, normal, size);
+// Tooth, strokes, crossing strokes and dots, those that show at a density of ink.
+vec4 marksAt(int i, LookSample at, float density) {
+    float size = lookGrain[i].x * at.pixel;
+    bool needed = density * at.share > 0.0;
+    vec2 grain = grainAt(grainTile, at.world, at.normal, size, needed);
     vec4 marks = vec4(grain.x, 0.5, 0.5, grain.y);
     if ((LAYER_LOOK(i) & LOOK_DOTS) == 0) {
-        vec3 along = strokeDirection(normal, bend, lookGrain[i].w, lookGrain[i].y);
-        marks.y = strokesAt(grainTile, world, normal, along, size, 0.0);
+        vec3 along = strokeDirection(at.normal, at.bend, lookGrain[i].w, lookGrain[i].y);
+        marks.y = strokesAt(grainTile, at.world, at.normal, along, size, 0.0, needed);
 #if (LOOKS & LOOK_CROSS)
         if ((LAYER_LOOK(i) & LOOK_CROSS) != 0)
-            marks.z = strokesAt(grainTile, world, normal, cross(normal, along), size, kCrossingShift);
+            marks.z = strokesAt(grainTile, at.world, at.normal, cross(at.normal, along), size, kCrossingShift,
+                                needed && density > lookLayers[i].x);
 #endif
     }
     return marks;
@@ -59,9 +61,10 @@ uniform vec4 lookWire[LAYERS];      // spacing in world units, width in pixels, 
 uniform vec3 lookWireColor[LAYERS];
 #endif
 
-float solidOpacity(int i, float opacity, LookSample at) {
+float solidOpacity(int i, float opacity, float doi) {
 #if (LOOKS & LOOK_CHARCOAL)
-    if ((LAYER_LOOK(i) & LOOK_CHARCOAL) != 0) return mix(opacity, smoothstep(0.03, 0.4, opacity), at.share);
+    if ((LAYER_LOOK(i) & LOOK_CHARCOAL) != 0)
+        return mix(opacity, smoothstep(0.03, 0.4, opacity), lookShare[i].x + lookShare[i].y * doi);
 #endif
     return opacity;
 }
@@ -118,7 +121,8 @@ vec3 lookColor(int i, vec3 albedo, vec3 lit, LookSample at) {
 #endif
 #if (LOOKS & LOOK_CHARCOAL)
     if ((LAYER_LOOK(i) & LOOK_CHARCOAL) != 0) {
-        float ink = charcoalInk(lit, at, lookTone[i], lookLine[i], lookMark[i], lookLayers[i],
+        float density = charcoalDensity(lit, at, lookTone[i], lookLine[i], lookMark[i].w);
+        float ink = charcoalInk(density, marksAt(i, at, density), lookMark[i], lookLayers[i],
                                 (LAYER_LOOK(i) & LOOK_DOTS) != 0);
         color = mix(color, mix(lookGround, lookStick[i], ink), at.share);
     }

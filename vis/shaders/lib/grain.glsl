@@ -4,6 +4,9 @@ const int kStrokeTurns = 8;
 const float kCrossingShift = 137.0;
 const float kHalfTurn = 3.14159265358979;
 
+// 3. Loops over so many coordinates end at once where no mark is drawn; software GL executes both sides of a branch.
+uniform int grainPlaneCount;
+
 // Weights of the three planes.
 vec3 grainPlanes(vec3 normal) {
     vec3 planes = normal * normal * normal * normal;
@@ -15,15 +18,14 @@ vec2 onPlane(vec3 place, int axis) {
 }
 
 // Tooth and dots, 0..1, at a world position on a surface. `size`: desired world edge of a texel.
-vec2 grainAt(sampler2D tile, vec3 place, vec3 normal, float size) {
+vec2 grainAt(sampler2D tile, vec3 place, vec3 normal, float size, bool needed) {
     float octave = log2(max(size, 1e-9)), whole = floor(octave), part = octave - whole;
     vec3 planes = grainPlanes(normal);
     float edge = float(textureSize(tile, 0).x), sum = 0.0, squares = 0.0, dots = 1.0;
-    for (int scale = 0; scale < 2; ++scale) {
-        vec3 texel = place * exp2(-whole - float(scale));
-        float share = scale == 0 ? 1.0 - part : part;
-        for (int axis = 0; axis < 3; ++axis) {
-            float weight = planes[axis] * share;
+    for (int axis = 0; axis < (needed ? grainPlaneCount : 0); ++axis) {
+        for (int scale = 0; scale < 2; ++scale) {
+            vec3 texel = place * exp2(-whole - float(scale));
+            float weight = planes[axis] * (scale == 0 ? 1.0 - part : part);
             vec3 found = textureLod(tile, (onPlane(texel, axis) + 17.3 * float(axis + 1)) / edge, 0.0).rgb;
             sum += weight * (found.r - 0.5);
             squares += weight * weight;
@@ -34,11 +36,11 @@ vec2 grainAt(sampler2D tile, vec3 place, vec3 normal, float size) {
 }
 
 // Strokes, 0..1, in the direction `along`. `shift` in texels: other strokes.
-float strokesAt(sampler2D tile, vec3 place, vec3 normal, vec3 along, float size, float shift) {
+float strokesAt(sampler2D tile, vec3 place, vec3 normal, vec3 along, float size, float shift, bool needed) {
     float octave = log2(max(size, 1e-9)), whole = floor(octave), part = octave - whole;
     vec3 planes = grainPlanes(normal);
     float edge = float(textureSize(tile, 0).x), sum = 0.0, squares = 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < (needed ? grainPlaneCount : 0); ++axis) {
         vec2 way = onPlane(along, axis);
         float turns = atan(way.y, way.x + 1e-9) / kHalfTurn * float(kStrokeTurns), first = floor(turns);
         float second = smoothstep(0.35, 0.65, turns - first);

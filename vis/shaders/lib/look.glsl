@@ -1,10 +1,11 @@
 // Shading formulas of looks; formulas and papers in the twins: vis/optics/look_shading.h. A sample with share or weight
 // 0 is unchanged.
 
-// Inputs of a look: n.l of the visible side, |n.v|, the rest as in LookSample (C++).
+// Inputs of a look: n.l of the visible side, |n.v|, the rest as in LookSample (C++). World position, normal and bend of
+// the surface say where and which way marks lie.
 struct LookSample {
     float light, facing, weight, steepness, curvature, depth, pixel, share, wire;
-    vec4 grain;
+    vec3 world, normal, bend;
 };
 
 // `own` = retained, strength, exponent of an enhancement.
@@ -56,9 +57,8 @@ float strokeInk(float density, float tooth, float stroke, float strokes, float p
     return density > 0.0 ? smoothstep(tooth - soft, tooth + soft, stroked * (1.0 + 2.0 * soft) - soft) : 0.0;
 }
 
-// `tone` = contrast, steepness, 1 if it draws what is light, bare; `line` = width in pixels, strength, closure; `mark` =
-// half the softness of the grain, strokes, smudge, pressure; `layers` = crossing, half the tooth.
-float charcoalInk(vec3 lit, LookSample at, vec4 tone, vec3 line, vec4 mark, vec2 layers, bool dots) {
+// `tone` = contrast, steepness, 1 if it draws what is light, bare; `line` = width in pixels, strength, closure.
+float charcoalDensity(vec3 lit, LookSample at, vec4 tone, vec3 line, float pressure) {
     float bright = sqrt(clamp(dot(lit, vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0));
     float drawn = max((tone.z > 0.5 ? bright : 1.0 - bright) - tone.w, 0.0) / (1.0 - tone.w);
     drawn = drawn > 0.0 ? pow(drawn, tone.x) : 0.0;
@@ -67,14 +67,19 @@ float charcoalInk(vec3 lit, LookSample at, vec4 tone, vec3 line, vec4 mark, vec2
     float open = mix(1.0, smoothstep(0.1, 0.6, 1.0 - bright), line.z);
     float width = line.x * at.pixel, thin = 1.0 - 0.8 * smoothstep(0.12, 0.45, width * at.curvature);
     float drawnLine = line.y * at.weight * open * thin * outline(at.facing, at.curvature, width);
-    float density = mark.w * (1.0 - (1.0 - filled) * (1.0 - drawnLine)), soft = mark.x;
-    float ink;
+    return pressure * (1.0 - (1.0 - filled) * (1.0 - drawnLine));
+}
+
+// `marks`: tooth, strokes, crossing strokes, dots; `mark` = half the softness of the grain, strokes, smudge; `layers` =
+// crossing, half the tooth.
+float charcoalInk(float density, vec4 marks, vec4 mark, vec2 layers, bool dots) {
+    float ink, soft = mark.x;
     if (dots) {
-        ink = smoothstep(at.grain.w - soft, at.grain.w + soft, density * (1.0 + 2.0 * soft) - soft);
+        ink = smoothstep(marks.w - soft, marks.w + soft, density * (1.0 + 2.0 * soft) - soft);
     } else {
         float first = min(density, mix(layers.x, density, 0.4)), second = 1.0 - (1.0 - density) / max(1.0 - first, 1e-3);
-        ink = 1.0 - (1.0 - strokeInk(first, at.grain.x, at.grain.y, mark.y, layers.y, soft)) *
-                        (1.0 - strokeInk(second, at.grain.x, at.grain.z, mark.y, layers.y, soft));
+        ink = 1.0 - (1.0 - strokeInk(first, marks.x, marks.y, mark.y, layers.y, soft)) *
+                        (1.0 - strokeInk(second, marks.x, marks.z, mark.y, layers.y, soft));
     }
     return mix(ink, density, mark.z);
 }

@@ -38,7 +38,8 @@ vec3 surfaceBend(int field, Reading here, vec3 world, vec3 normal, float centre,
 LookSample lookSample(int i, int field, vec3 p, float centre, vec3 perCell, vec3 drawn, float weight, vec3 world,
                       float t, vec3 direction, float doi, bool shown) {
     LookSample at;
-    at.share = lookShare[i].x + lookShare[i].y * doi;
+    at.share = shown ? lookShare[i].x + lookShare[i].y * doi : 0.0;
+    at.world = world;
     at.steepness = length(perCell) * layerMore[i].x;
     at.depth = clamp((t * dot(direction, rayDirection) - lookDepth.x) * lookDepth.y, 0.0, 1.0);
     at.pixel = lookPixel.x + lookPixel.y * t;
@@ -52,14 +53,14 @@ LookSample lookSample(int i, int field, vec3 p, float centre, vec3 perCell, vec3
     float front = clamp(0.5 + 0.5 * along / kEdgeOn, 0.0, 1.0);
     at.light = (2.0 * front - 1.0) * dot(normal, way) * inversesqrt(max(dot(way, way), 1e-12));
     at.curvature = 0.0;
-    at.grain = vec4(0.5);
+    at.normal = normal;
+    at.bend = vec3(0.0);
     at.wire = 0.0;
 #if (LOOKS & LOOK_WIRE)
     if ((LAYER_LOOK(i) & LOOK_WIRE) != 0)
         at.wire = at.weight * wireCoverage(world, normal, -direction, lookWire[i].x, lookWire[i].y, at.pixel);
 #endif
 #if (LOOKS & LOOK_OUTLINE)
-    vec3 bend = vec3(0.0);
     if ((LAYER_LOOK(i) & LOOK_OUTLINE) != 0) {
         bool curved = shown && surface && centre > kUnknown && FIELD_NEAREST(field) == 0;
         Reading here = readAt(field, p);
@@ -68,17 +69,14 @@ LookSample lookSample(int i, int field, vec3 p, float centre, vec3 perCell, vec3
         float reach = lookSmooth[i].z, perReach = curved ? 1.0 / (reach * length(gradient)) : 0.0, turned = 0.0;
 #if (LOOKS & LOOK_FOLLOW)
         if ((LAYER_LOOK(i) & LOOK_FOLLOW) != 0) {
-            bend = perReach * surfaceBend(field, here, world, normal, centre, reach, curved);
-            turned = bendAlong(bend, normal, across);
+            at.bend = perReach * surfaceBend(field, here, world, normal, centre, reach, curved);
+            turned = bendAlong(at.bend, normal, across);
         } else
 #endif
         for (int once = 0; once < (curved ? min(diagonals, 1) : 0); ++once)
             turned = perReach * secondDifference(field, here, world, across * reach, centre);
         at.curvature = abs(turned) / reach;
     }
-#endif
-#if (LOOKS & LOOK_CHARCOAL)
-    if ((LAYER_LOOK(i) & LOOK_CHARCOAL) != 0) at.grain = marksAt(i, world, normal, bend, at.pixel);
 #endif
     return at;
 }
