@@ -106,6 +106,27 @@ struct DotTile {
     }
 };
 
+/// Divides by the standard deviation; the mean is about 0.
+std::vector<float> normalized(std::vector<float> values) {
+    double squares = 0;
+    for (const float value : values) squares += double(value) * double(value);
+    const auto scale = float(1 / std::sqrt(squares / double(values.size())));
+    for (float& value : values) value *= scale;
+    return values;
+}
+
+/// Strokes of a hand along the diagonal: about kStrokeGap texels apart, wavering, each with a beginning and an end.
+std::vector<float> strokeTile() {
+    const std::vector<float> length = normalized(blurred(blurred(whiteNoise(3), {1, 1}, 40), {1, -1}, 2));
+    const std::vector<float> waver = normalized(blurred(blurred(whiteNoise(5), {1, 1}, 64), {1, -1}, 8));
+    std::vector<float> out(kTexels);
+    for (std::size_t i = 0; i < kTexels; ++i) {
+        const float across = float(int(i % kGrainEdge) - int(i / kGrainEdge)) + 1.2f * waver[i];
+        out[i] = std::cos(2 * std::numbers::pi_v<float> * across / float(kStrokeGap)) + 0.5f * length[i];
+    }
+    return out;
+}
+
 GrainTile makeTile() {
     // Paper grains of about three texels, mixed with some of twice the size.
     const std::vector<float> noise = whiteNoise(1);
@@ -113,11 +134,9 @@ GrainTile makeTile() {
     const std::vector<float> wide = blurred(blurred(whiteNoise(2), {1, 0}, 4), {0, 1}, 4);
     std::vector<float> tooth(kTexels);
     for (std::size_t i = 0; i < kTexels; ++i) tooth[i] = fine[i] + 0.25f * wide[i];
-    // Strokes: long along the diagonal, a few texels wide.
-    std::vector<float> strokes = blurred(blurred(blurred(whiteNoise(3), {1, 1}, 48), {1, -1}, 1), {1, 0}, 1);
-    const std::vector<float> even = equalized(tooth), long_ = equalized(strokes), dots = DotTile().thresholds();
+    const std::vector<float> even = equalized(tooth), strokes = equalized(strokeTile()), dots = DotTile().thresholds();
     GrainTile tile;
-    for (std::size_t i = 0; i < kTexels; ++i) tile.texels.emplace_back(even[i], long_[i], dots[i]);
+    for (std::size_t i = 0; i < kTexels; ++i) tile.texels.emplace_back(even[i], strokes[i], dots[i]);
     return tile;
 }
 

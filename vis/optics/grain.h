@@ -13,6 +13,7 @@ namespace tessera::vis {
 
 inline constexpr int kGrainEdge = 512;        ///< texels of the tile
 inline constexpr double kGrainTexels = 3;     ///< width of a grain, and of a dot, in texels
+inline constexpr int kStrokeGap = 8;          ///< distance of strokes along an axis of the tile, in texels
 inline constexpr int kStrokeTurns = 8;        ///< directions of strokes in a plane
 inline constexpr double kCrossingShift = 137; ///< of crossing strokes, in texels
 

@@ -126,23 +126,26 @@ double charcoalInk(const CharcoalDrawing& charcoal, glm::dvec3 lit, const LookSa
     const double thin = 1 - 0.8 * glm::smoothstep(0.12, 0.45, width * sample.curvature);
     const double line = double(charcoal.outlineStrength) * sample.weight * open * thin *
                         outline(sample.facing(), sample.curvature, width);
-    const double density = double(charcoal.pressure) * (1 - (1 - tone) * (1 - line));
-    const double soft = grainSoftness(charcoal);
+    const double pressure = double(charcoal.pressure), drawnTone = pressure * tone, drawnLine = pressure * line;
+    const double both = 1 - (1 - drawnTone) * (1 - drawnLine), soft = grainSoftness(charcoal);
     const auto mark = [&](double amount, double threshold) {
         return glm::smoothstep(threshold - soft, threshold + soft, amount * (1 + 2 * soft) - soft);
     };
     const auto layer = [&](double amount, double stroke) {
-        const double covered = std::pow(amount, 1 - 0.5 * double(charcoal.tooth));
-        const double pressed = std::pow(amount, 0.5 * double(charcoal.tooth));
-        const double stroked = amount > 0 ? pressed * glm::smoothstep(0.85 - covered, 1.15 - covered, stroke) : 0;
+        if (!(amount > 0)) return 0.0;
+        const double a = 0.5 * double(charcoal.tooth), covered = std::pow(amount, 1 - a), edge = 0.06 + 0.18 * a;
+        const double stroked = std::pow(amount, a) * glm::smoothstep(1 - covered - edge, 1 - covered + edge, stroke);
         return mark(glm::mix(amount, stroked, double(charcoal.strokes)), sample.grain.x);
     };
-    const double first = std::min(density, glm::mix(double(charcoal.crossing), density, 0.4));
-    const double second = 1 - (1 - density) / std::max(1 - first, 1e-3);
-    const double ink = charcoal.mark == Mark::Dots
-                           ? mark(density, sample.grain.w)
-                           : 1 - (1 - layer(first, sample.grain.y)) * (1 - layer(second, sample.grain.z));
-    return glm::mix(ink, density, double(charcoal.smudge));
+    double ink = mark(both, sample.grain.w);
+    if (charcoal.mark == Mark::Strokes) {
+        const double first = std::min(drawnTone, glm::mix(double(charcoal.crossing), drawnTone, 0.4));
+        const double second = 1 - (1 - drawnTone) / std::max(1 - first, 1e-3);
+        const double tooth = glm::mix(0.5, sample.grain.x, double(charcoal.tooth));
+        ink = 1 - (1 - layer(first, sample.grain.y)) * (1 - layer(second, sample.grain.z)) *
+                      (1 - (drawnLine > 0 ? mark(drawnLine, tooth) : 0));
+    }
+    return glm::mix(ink, both, double(charcoal.smudge));
 }
 
 glm::dvec3 lookColor(const Look& look, glm::dvec3 albedo, glm::dvec3 lit, const LookSample& sample,

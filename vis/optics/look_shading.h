@@ -91,13 +91,14 @@ double grainSoftness(const CharcoalDrawing& charcoal);
 ///          leaves the lightness 1 - x (`light`: x^2, which has the lightness x)
 ///   line = outlineStrength weight outline mix(1, smoothstep(0.1, 0.6, 1 - e), closure)
 ///          (1 - 0.8 smoothstep(0.12, 0.45, T k)): less where lines would fill what is as small as they are wide
-///   D = pressure (1 - (1 - tone) (1 - line))
-///   ink = mix(marks, D, smudge)
-/// With dots, marks = m(D, t), t the dots' threshold and m(x, h) = smoothstep(h - s, h + s, x (1 + 2 s) - s), s =
-/// mix(0.5, 0.05, hardness). With strokes, marks = 1 - (1 - n(D1)) (1 - n(D2)); n(x) = m(mix(x, p, strokes), h), h the
-/// tooth, p = x^a smoothstep(0.85 - c, 1.15 - c, stroke), c = x^(1 - a), a = tooth of the look / 2: strokes cover the
-/// share c and are filled to x^a; D1 = min(D, mix(crossing, D, 0.4)) is what the first layer of strokes draws, and the
-/// crossing one the rest: 1 - D = (1 - D1) (1 - D2).
+///   D = pressure tone, L = pressure line, both = 1 - (1 - D) (1 - L)
+///   ink = mix(marks, both, smudge)
+/// With dots, marks = m(both, t), t the dots' threshold and m(x, h) = smoothstep(h - s, h + s, x (1 + 2 s) - s), s =
+/// mix(0.5, 0.05, hardness). With strokes, marks = 1 - (1 - n(D1)) (1 - n(D2)) (1 - m(L, mix(0.5, h, tooth))), h the
+/// tooth of the paper, n(x) = m(mix(x, p, strokes), h), p = x^a smoothstep(1 - c - e, 1 - c + e, stroke), c = x^(1 -
+/// a), a = tooth / 2, e = 0.06 + 0.18 a: strokes cover the share c and are filled to x^a. D1 = min(D, mix(crossing, D,
+/// 0.4)) is what the first layer of strokes draws, and the crossing one the rest: 1 - D = (1 - D1) (1 - D2). Outlines
+/// are lines of their own. Nothing is drawn where x or L is 0.
 double charcoalInk(const CharcoalDrawing& charcoal, glm::dvec3 lit, const LookSample& sample, bool light);
 
 /// The colour of a sample from its albedo and `lit`, the result of shade() for lookAlbedo(), in this order:

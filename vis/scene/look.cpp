@@ -23,6 +23,13 @@ Look drawing(float smooth, const CharcoalDrawing& own) {
     return look;
 }
 
+/// Broad and black, rubbed in the middle tones.
+Look charcoalStick() {
+    return drawing(
+        2,
+        {.pressure = 1, .contrast = 0.6f, .bare = 0.28f, .outline = 3, .grain = 3, .hardness = 0.4f, .smudge = 0.35f});
+}
+
 Look sanguine() {
     return drawing(
         2, {.color = glm::vec3(0.55f, 0.2f, 0.12f), .contrast = 0.8f, .grain = 3, .strokes = 0.35f, .smudge = 0.35f});
@@ -31,7 +38,7 @@ Look sanguine() {
 /// Soft, medium and hard: a wide dark grainy line, a middle one, and a thin light even one.
 Look softPencil() {
     return drawing(2, {.pressure = 0.97f,
-                       .contrast = 0.85f,
+                       .contrast = 0.65f,
                        .bare = 0.15f,
                        .outline = 2.2f,
                        .closure = 0.3f,
@@ -42,11 +49,12 @@ Look softPencil() {
 }
 
 Look pencil() {
-    return drawing(1.5f, {.pressure = 0.85f,
+    return drawing(1.5f, {.pressure = 0.82f,
+                          .contrast = 0.85f,
                           .bare = 0.18f,
                           .outline = 1.6f,
                           .closure = 0.25f,
-                          .grain = 1.3f,
+                          .grain = 1.6f,
                           .hardness = 0.55f,
                           .tooth = 0.75f,
                           .strokes = 0.9f,
@@ -60,7 +68,7 @@ Look hardPencil() {
                           .bare = 0.2f,
                           .outline = 1.1f,
                           .closure = 0.2f,
-                          .grain = 0.9f,
+                          .grain = 1.3f,
                           .hardness = 0.7f,
                           .tooth = 0.5f,
                           .strokes = 1,
@@ -69,14 +77,14 @@ Look hardPencil() {
 }
 
 Look hatching() {
-    return drawing(2, {.pressure = 1,
-                       .contrast = 0.8f,
+    return drawing(3, {.pressure = 1,
+                       .contrast = 0.9f,
                        .bare = 0.15f,
                        .localTone = 0,
                        .outline = 2.2f,
                        .outlineStrength = 1,
                        .closure = 0.2f,
-                       .grain = 1.4f,
+                       .grain = 2,
                        .hardness = 1,
                        .tooth = 0,
                        .strokes = 1,
@@ -113,7 +121,7 @@ Look made(std::string_view name) {
     }
     if (name == "distance") look.distance.emplace();
     if (name == "cartoon") look.cartoon.emplace(), look.smooth = 2;
-    if (name == "charcoal") look = drawing(2, {});
+    if (name == "charcoal") look = charcoalStick();
     if (name == "sanguine") look = sanguine();
     if (name == "softpencil") look = softPencil();
     if (name == "pencil") look = pencil();

@@ -39,10 +39,10 @@ uniform vec2 lookLayers[LAYERS];
 uniform sampler2D grainTile;
 
 // Tooth, strokes, crossing strokes and dots, those that show at a density of ink.
-vec4 marksAt(int i, LookSample at, float density) {
+vec4 marksAt(int i, LookSample at, vec2 density) {
     float size = lookGrain[i].x * at.pixel;
-    bool needed = density * at.share > 0.0;
-    vec2 grain = grainAt(grainTile, at.world, at.normal, size, needed);
+    bool needed = density.x * at.share > 0.0;
+    vec2 grain = grainAt(grainTile, at.world, at.normal, size, needed || density.y * at.share > 0.0);
     vec4 marks = vec4(grain.x, 0.5, 0.5, grain.y);
     if ((LAYER_LOOK(i) & LOOK_DOTS) == 0) {
         vec3 along = strokeDirection(at.normal, at.bend, lookGrain[i].w, lookGrain[i].y);
@@ -50,7 +50,7 @@ vec4 marksAt(int i, LookSample at, float density) {
 #if (LOOKS & LOOK_CROSS)
         if ((LAYER_LOOK(i) & LOOK_CROSS) != 0)
             marks.z = strokesAt(grainTile, at.world, at.normal, cross(at.normal, along), size, kCrossingShift,
-                                needed && density > lookLayers[i].x);
+                                needed && density.x > lookLayers[i].x);
 #endif
     }
     return marks;
@@ -121,7 +121,7 @@ vec3 lookColor(int i, vec3 albedo, vec3 lit, LookSample at) {
 #endif
 #if (LOOKS & LOOK_CHARCOAL)
     if ((LAYER_LOOK(i) & LOOK_CHARCOAL) != 0) {
-        float density = charcoalDensity(lit, at, lookTone[i], lookLine[i], lookMark[i].w);
+        vec2 density = charcoalDensity(lit, at, lookTone[i], lookLine[i], lookMark[i].w);
         float ink = charcoalInk(density, marksAt(i, at, density), lookMark[i], lookLayers[i],
                                 (LAYER_LOOK(i) & LOOK_DOTS) != 0);
         color = mix(color, mix(lookGround, lookStick[i], ink), at.share);

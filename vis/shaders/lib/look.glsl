@@ -53,12 +53,14 @@ float lightStep(float light, float steps) {
 // Ink of one layer of strokes. `press`: half the tooth of the look; `soft`: half the softness of the grain.
 float strokeInk(float density, float tooth, float stroke, float strokes, float press, float soft) {
     float amount = max(density, 1e-6), covered = pow(amount, 1.0 - press);
-    float stroked = mix(density, pow(amount, press) * smoothstep(0.85 - covered, 1.15 - covered, stroke), strokes);
+    float edge = 0.06 + 0.18 * press, drawn = smoothstep(1.0 - covered - edge, 1.0 - covered + edge, stroke);
+    float stroked = mix(density, pow(amount, press) * drawn, strokes);
     return density > 0.0 ? smoothstep(tooth - soft, tooth + soft, stroked * (1.0 + 2.0 * soft) - soft) : 0.0;
 }
 
-// `tone` = contrast, steepness, 1 if it draws what is light, bare; `line` = width in pixels, strength, closure.
-float charcoalDensity(vec3 lit, LookSample at, vec4 tone, vec3 line, float pressure) {
+// Density of tone and of outlines. `tone` = contrast, steepness, 1 if it draws what is light, bare; `line` = width in
+// pixels, strength, closure.
+vec2 charcoalDensity(vec3 lit, LookSample at, vec4 tone, vec3 line, float pressure) {
     float bright = sqrt(clamp(dot(lit, vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0));
     float drawn = max((tone.z > 0.5 ? bright : 1.0 - bright) - tone.w, 0.0) / (1.0 - tone.w);
     drawn = drawn > 0.0 ? pow(drawn, tone.x) : 0.0;
@@ -67,21 +69,23 @@ float charcoalDensity(vec3 lit, LookSample at, vec4 tone, vec3 line, float press
     float open = mix(1.0, smoothstep(0.1, 0.6, 1.0 - bright), line.z);
     float width = line.x * at.pixel, thin = 1.0 - 0.8 * smoothstep(0.12, 0.45, width * at.curvature);
     float drawnLine = line.y * at.weight * open * thin * outline(at.facing, at.curvature, width);
-    return pressure * (1.0 - (1.0 - filled) * (1.0 - drawnLine));
+    return pressure * vec2(filled, drawnLine);
 }
 
 // `marks`: tooth, strokes, crossing strokes, dots; `mark` = half the softness of the grain, strokes, smudge; `layers` =
 // crossing, half the tooth.
-float charcoalInk(float density, vec4 marks, vec4 mark, vec2 layers, bool dots) {
-    float ink, soft = mark.x;
+float charcoalInk(vec2 density, vec4 marks, vec4 mark, vec2 layers, bool dots) {
+    float ink, soft = mark.x, both = 1.0 - (1.0 - density.x) * (1.0 - density.y);
     if (dots) {
-        ink = smoothstep(marks.w - soft, marks.w + soft, density * (1.0 + 2.0 * soft) - soft);
+        ink = smoothstep(marks.w - soft, marks.w + soft, both * (1.0 + 2.0 * soft) - soft);
     } else {
-        float first = min(density, mix(layers.x, density, 0.4)), second = 1.0 - (1.0 - density) / max(1.0 - first, 1e-3);
+        float first = min(density.x, mix(layers.x, density.x, 0.4));
+        float second = 1.0 - (1.0 - density.x) / max(1.0 - first, 1e-3), tooth = mix(0.5, marks.x, 2.0 * layers.y);
+        float line = density.y > 0.0 ? smoothstep(tooth - soft, tooth + soft, density.y * (1.0 + 2.0 * soft) - soft) : 0.0;
         ink = 1.0 - (1.0 - strokeInk(first, marks.x, marks.y, mark.y, layers.y, soft)) *
-                        (1.0 - strokeInk(second, marks.x, marks.z, mark.y, layers.y, soft));
+                        (1.0 - strokeInk(second, marks.x, marks.z, mark.y, layers.y, soft)) * (1.0 - line);
     }
-    return mix(ink, density, mark.z);
+    return mix(ink, both, mark.z);
 }
 
 vec3 toned(vec3 albedo, float light, vec3 warm, vec3 cool, float ownColor) {
