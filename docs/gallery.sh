@@ -67,12 +67,13 @@ drawings() { # drawings BASE NAME LAYER ARGUMENTS...: LAYER contains LOOK in pla
     shift 3
     for look in cartoon pencil hatching stipple; do
         picture_of "$from" "drawing-$name-$look" --set "/layers=[${layer/LOOK/\"$look\"}]" \
-            --set '/paper={"color":[1,1,1],"tooth":0}' --without legend,axes,gizmo,scaleBar,cursor,box "$@"
+            --set '/paper={"color":[1,1,1],"tooth":0}' --without legend,axes,gizmo,scaleBar,cursor,box,title "$@"
     done
 }
 drawings scan casting "$(surface density 60 0.75,0.78,0.82 1 '"look":LOOK')"
-drawings signal signal "$(surface rho 0.5 0.85,0.6,0.3 1 '"look":LOOK')"
-drawings cell cell "$(surface H2O 5 0.35,0.6,0.9 1 '"look":LOOK')" --set '/selection/brushes=[]'
+base rings charcoal
+drawings rings signal "$(surface rho 0.5 0.85,0.6,0.3 1 '"look":LOOK')"
+drawings cell cell "$(surface O2 2.5 0.35,0.6,0.9 1 '"look":LOOK')" --set '/selection/brushes=[]' --set /camera/distance=1.3
 # Classification
 for kind in post pre preintegrated; do
     signal "classification-$kind" --set "/layers=[$(volume rho "\"classification\":\"$kind\",\"shaded\":false")]" \

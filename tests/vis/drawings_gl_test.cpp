@@ -1,5 +1,6 @@
 #include "tests/vis/drawn_ball.h"
 #include "vis/optics/surface_light.h"
+#include "volume/reconstruct/gradient.h"
 
 #include <glm/gtc/quaternion.hpp>
 #include <random>
@@ -98,6 +99,22 @@ TEST(Drawings, ThinWallsKeepTheirNormals) {
     double apart = 0;
     for (std::size_t i = 0; i < narrow.size(); ++i) apart += double(std::abs(narrow[i].g - wide[i].g));
     EXPECT_LT(apart / double(narrow.size()), 0.03);
+}
+
+/// Ripples as narrow as the width of smoothing would be drawn by the normals of their neighbours.
+TEST(Drawings, FeaturesNarrowerThanTheWidthKeepTheirNormals) {
+    for (const double wavelength : {5.0, 6.0, 40.0}) {
+        const auto value = [=](glm::dvec3 p) { return std::optional(std::sin(6.2831853 * p.x / wavelength) + p.z); };
+        const double steep = 6.2831853 / wavelength;
+        for (const double x : {0.0, 0.25}) {
+            const double phase = 6.2831853 * x;
+            const glm::dvec3 narrow(steep * std::cos(phase), 0, 1);
+            const glm::dvec3 smooth = volume::smoothGradient(value, {x * wavelength, 3, 2}, 3, narrow);
+            EXPECT_GT(glm::dot(glm::normalize(smooth), glm::normalize(narrow)), 0.75) << wavelength << ' ' << x;
+        }
+    }
+    const auto ripples = [](glm::dvec3 p) { return std::optional(std::sin(6.2831853 * p.x / 3)); };
+    EXPECT_NEAR(volume::smoothGradient(ripples, glm::dvec3(0), 3, {2.094, 0, 0}).x, 2.094, 1e-3);
 }
 
 /// Mean darkness of a drawing on white where the light and the normal enclose angles between two cosines.

@@ -234,7 +234,7 @@ glm::dvec3 strokeDirection(glm::dvec3 normal, SurfaceBend bend, double follow, d
     const double most = std::max(std::abs(bend.x), glm::length(apart));
     const glm::dvec2 bent = bend.x * apart / std::max(most * most, 1e-12);
     const glm::dvec2 doubled =
-        follow * glm::smoothstep(0.03, 0.15, most) * bent + 0.25 * glm::dvec2(u * u - v * v, 2 * u * v);
+        follow * glm::smoothstep(0.04, 0.2, most) * bent + 0.25 * glm::dvec2(u * u - v * v, 2 * u * v);
     const double angle = 0.5 * std::atan2(doubled.y, doubled.x + 1e-9) + turn;
     return std::cos(angle) * first + std::sin(angle) * second;
 }

@@ -53,7 +53,7 @@ double bendAlong(SurfaceBend bend, glm::dvec3 normal, glm::dvec3 along);
 /// Direction of strokes on a surface: that of the principal curvature of larger magnitude, as far as the two differ and
 /// the surface is bent, else the fixed direction (1, 1, 1). With bend = (s, c) and K = max(|s|, |c|) the doubled angle
 /// in the tangent plane is that of
-///   follow smoothstep(0.03, 0.15, K) s c / K^2 + 0.25 (u^2 - v^2, 2 u v), (u, v) the fixed direction,
+///   follow smoothstep(0.04, 0.2, K) s c / K^2 + 0.25 (u^2 - v^2, 2 u v), (u, v) the fixed direction,
 /// since |c| = |k1 - k2| (Kindlmann et al. 2003 for curvature in volumes). `turn`: radians added to the angle.
 glm::dvec3 strokeDirection(glm::dvec3 normal, SurfaceBend bend, double follow, double turn);
 

@@ -77,19 +77,19 @@ Look hardPencil() {
 }
 
 Look hatching() {
-    return drawing(3, {.pressure = 1,
-                       .contrast = 0.9f,
-                       .bare = 0.15f,
-                       .localTone = 0,
-                       .outline = 2.2f,
-                       .outlineStrength = 1,
-                       .closure = 0.2f,
-                       .grain = 2,
-                       .hardness = 1,
-                       .tooth = 0,
-                       .strokes = 1,
-                       .crossing = 0.4f,
-                       .smudge = 0});
+    return drawing(2.5f, {.pressure = 1,
+                          .contrast = 0.9f,
+                          .bare = 0.15f,
+                          .localTone = 0,
+                          .outline = 2.2f,
+                          .outlineStrength = 1,
+                          .closure = 0.2f,
+                          .grain = 2,
+                          .hardness = 1,
+                          .tooth = 0,
+                          .strokes = 1,
+                          .crossing = 0.4f,
+                          .smudge = 0});
 }
 
 Look stipple() {

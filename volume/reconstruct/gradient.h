@@ -3,6 +3,7 @@
 #include "volume/base/numbers.h"
 #include "volume/field/lattice.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -91,7 +92,8 @@ inline constexpr double kSmoothDepth =
 /// Gradient of a smoothed field, per cell and axis: the least-squares fit of the differences between -o and +o for the
 /// offsets o = `reach` A d, d the four diagonals (1, 1, 1), ..., A = 1 - (1 - kSmoothDepth) n n^T, n = `narrow` /
 /// |narrow|. So each component is a mean of parallel differences, which smooths over `reach` across a surface with the
-/// unsmoothed gradient `narrow` but less along its normal, where beyond a thin wall other things begin. Absent values
+/// unsmoothed gradient `narrow` but less along its normal, where beyond a thin wall other things begin. Where less than
+/// 0.1 to 0.4 of the gradient is left, `reach` is wider than what is there, and the unsmoothed one stays. Absent values
 /// as in gradient().
 template <class Value>
 glm::dvec3 smoothGradient(const Value& value, glm::dvec3 cells, double reach, glm::dvec3 narrow) {
@@ -108,7 +110,8 @@ glm::dvec3 smoothGradient(const Value& value, glm::dvec3 cells, double reach, gl
         else if (centre)
             sum += way * (upper.value_or(*centre) - lower.value_or(*centre));
     }
-    return (sum + (1 / kSmoothDepth - 1) * glm::dot(sum, normal) * normal) / (4 * reach);
+    const glm::dvec3 smooth = (sum + (1 / kSmoothDepth - 1) * glm::dot(sum, normal) * normal) / (4 * reach);
+    return glm::mix(narrow, smooth, glm::smoothstep(0.1, 0.4, length > 0 ? glm::dot(smooth, normal) / length : 0));
 }
 
 } // namespace tessera::volume

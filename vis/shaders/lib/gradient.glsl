@@ -67,7 +67,9 @@ vec3 smoothGradient(int field, Reading like, vec3 p, float centre, vec3 narrow, 
         vec3 way = diagonal(i), offset = reach * edge * (way - (1.0 - kSmoothDepth) * dot(way, normal) * normal);
         sum += way * halfDifference(field, like, clamp(p - offset, lo, hi), clamp(p + offset, lo, hi), centre);
     }
-    return (sum + (1.0 / kSmoothDepth - 1.0) * dot(sum, normal) * normal) * (scale / edge);
+    sum = (sum + (1.0 / kSmoothDepth - 1.0) * dot(sum, normal) * normal) * (scale / edge);
+    float kept = dot(sum, narrow) / max(dot(narrow, narrow), 1e-30);
+    return mix(narrow, sum, smoothstep(0.1, 0.4, kept));
 }
 
 // The same for the part that p belongs to.

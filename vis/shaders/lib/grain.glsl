@@ -79,7 +79,7 @@ vec3 strokeDirection(vec3 normal, vec3 bend, float follow, float turn) {
     vec2 fixedWay = vec2(dot(first, vec3(1.0)), dot(second, vec3(1.0))) * inversesqrt(3.0);
     float most = max(abs(bend.x), length(bend.yz));
     vec2 bent = bend.x * bend.yz / max(most * most, 1e-12);
-    vec2 doubled = follow * smoothstep(0.03, 0.15, most) * bent +
+    vec2 doubled = follow * smoothstep(0.04, 0.2, most) * bent +
                    0.25 * vec2(fixedWay.x * fixedWay.x - fixedWay.y * fixedWay.y, 2.0 * fixedWay.x * fixedWay.y);
     float angle = 0.5 * atan(doubled.y, doubled.x + 1e-9) + turn;
     return cos(angle) * first + sin(angle) * second;
