@@ -73,7 +73,6 @@ drawings() { # drawings BASE NAME LAYER ARGUMENTS...: LAYER contains LOOK in pla
 drawings scan casting "$(surface density 60 0.75,0.78,0.82 1 '"look":LOOK')"
 base rings charcoal
 drawings rings signal "$(surface rho 0.5 0.85,0.6,0.3 1 '"look":LOOK')"
-drawings cell cell "$(surface O2 2.5 0.35,0.6,0.9 1 '"look":LOOK')" --set '/selection/brushes=[]' --set /camera/distance=1.3
 # Classification
 for kind in post pre preintegrated; do
     signal "classification-$kind" --set "/layers=[$(volume rho "\"classification\":\"$kind\",\"shaded\":false")]" \
