@@ -2,6 +2,7 @@
 #include "vis/packet/packet_renderer.h"
 #include "vis/reference/raycast.h"
 
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
@@ -323,6 +324,37 @@ TEST(PacketVolumes, BricksHoldTheSamples) {
                 }
         EXPECT_GT(present, 1000u);
     }
+}
+
+/// The last volumes used are kept within a limit, and read again beyond it.
+TEST(PacketVolumes, KeepsTheLastOnesWithinALimit) {
+    struct Counting : FunctionSource {
+        using FunctionSource::FunctionSource;
+        mutable std::atomic<int> reads = 0;
+        volume::BrickSamples read(const volume::BrickKey& key) const override {
+            ++reads;
+            return FunctionSource::read(key);
+        }
+    };
+    const auto ramp = [](glm::dvec3 p) -> std::optional<double> { return p.x; };
+    const auto counting =
+        std::make_shared<Counting>(LatticeKind::CC, glm::ivec3(9), glm::dvec3(1),
+                                   std::vector<FunctionSource::Channel>{{"a", ramp}, {"b", ramp}, {"c", ramp}});
+    PacketVolumes volumes(counting);
+    const auto readsOf = [&](int channel) {
+        const int before = counting->reads;
+        const std::size_t bytes = volumes.get({.channel = channel})->bytes();
+        EXPECT_GT(bytes, 9u * 9 * 9 * 2);
+        return counting->reads - before;
+    };
+    EXPECT_GT(readsOf(0), 0);
+    EXPECT_GT(readsOf(0), 0) << "nothing is kept without a limit";
+    volumes.keep(volumes.get({.channel = 0})->bytes() * 2);
+    EXPECT_GT(readsOf(0) + readsOf(1), 0);
+    EXPECT_EQ(readsOf(0) + readsOf(1), 0) << "two fit";
+    EXPECT_GT(readsOf(2), 0);
+    EXPECT_EQ(readsOf(1), 0) << "used later than the first";
+    EXPECT_GT(readsOf(0), 0) << "the first had to go";
 }
 
 } // namespace

@@ -22,6 +22,10 @@ CastPixels casterOf([[maybe_unused]] InstructionSet with) {
     return castPlain;
 }
 
+bool isReady(const std::future<SharedVolume>& coming) {
+    return coming.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
 /// Whether tables and maps of two scenes are the same.
 bool sameTables(const Scene& a, const Scene& b) {
     const auto sameLens = [](const Lens& one, const Lens& other) {
@@ -54,31 +58,51 @@ void PacketPicture::begin(glm::ivec2 whole, const PixelBox& wanted, bool picks) 
 }
 
 PacketVolumes::Held& PacketVolumes::entry(const PacketChannel& channel) {
+    constexpr std::uint64_t kForgotten = 64; // what nobody has asked for that often is not taken any more
+    ++asked_;
     std::erase_if(held_, [&](const Held& each) {
-        return !(each.channel == channel) && !each.coming.valid() && each.volume.expired();
+        if (each.channel == channel || !each.volume.expired()) return false;
+        return !each.coming.valid() || (each.asked + kForgotten < asked_ && isReady(each.coming));
     });
-    const auto found = std::ranges::find_if(held_, [&](const Held& each) { return each.channel == channel; });
-    if (found != held_.end()) return *found;
-    held_.push_back({channel, {}, {}});
-    return held_.back();
+    auto found = std::ranges::find_if(held_, [&](const Held& each) { return each.channel == channel; });
+    if (found == held_.end()) found = held_.insert(held_.end(), {channel, {}, {}});
+    found->asked = asked_;
+    return *found;
+}
+
+void PacketVolumes::keep(std::size_t bytes) {
+    keep_ = bytes;
+}
+
+/// Marks a volume as the last one used.
+SharedVolume PacketVolumes::use(const SharedVolume& volume) {
+    std::erase(recent_, volume);
+    recent_.push_back(volume);
+    std::size_t sum = 0;
+    for (std::size_t i = recent_.size(); i-- > 0;)
+        if ((sum += recent_[i]->bytes()) > keep_) {
+            recent_.erase(recent_.begin(), recent_.begin() + std::ptrdiff_t(i) + 1);
+            break;
+        }
+    return volume;
 }
 
 SharedVolume PacketVolumes::get(const PacketChannel& channel) {
     Held& own = entry(channel);
     SharedVolume volume = own.volume.lock();
-    if (volume) return volume;
+    if (volume) return use(volume);
     if (own.coming.valid())
         volume = own.coming.get();
     else
         volume = std::make_shared<const PacketVolume>(readPacketVolume(*source_, channel));
     own.volume = volume;
-    return volume;
+    return use(volume);
 }
 
 bool PacketVolumes::request(const PacketChannel& channel) {
     Held& own = entry(channel);
     if (!own.volume.expired()) return true;
-    if (own.coming.valid()) return own.coming.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    if (own.coming.valid()) return isReady(own.coming);
     own.coming = std::async(std::launch::async, [source = source_, channel]() -> SharedVolume {
         return std::make_shared<const PacketVolume>(readPacketVolume(*source, channel));
     });
@@ -100,7 +124,10 @@ bool PacketRenderer::setVolumes(std::shared_ptr<PacketVolumes> volumes) {
 }
 
 bool PacketRenderer::request(const Scene& scene) {
-    if (scene_ && sameTables(scene, prepared_)) return true;
+    return (scene_ && sameTables(scene, prepared_)) || prefetch(scene);
+}
+
+bool PacketRenderer::prefetch(const Scene& scene) {
     bool all = true;
     for (const PacketChannel& channel : packetChannels(scene, source().info())) all = volumes_->request(channel) && all;
     return all;

@@ -31,10 +31,13 @@ struct PacketPicture {
     void begin(glm::ivec2 size, const PixelBox& box, bool picks);
 };
 
-/// The samples that renderers of one data set share, as long as one of them holds them.
+/// The samples that renderers of one data set share: those that one of them holds, and the last ones used as far as
+/// they fit a limit. Not for several threads at once.
 class PacketVolumes {
 public:
     explicit PacketVolumes(std::shared_ptr<const volume::BrickSource> source) : source_(std::move(source)) {}
+    /// Keeps the last ones used up to so many bytes.
+    void keep(std::size_t bytes);
     const std::shared_ptr<const volume::BrickSource>& source() const { return source_; }
     /// The samples of a channel; waits until they are read. Throws Error when the source does.
     SharedVolume get(const PacketChannel& channel);
@@ -45,12 +48,17 @@ private:
     struct Held {
         PacketChannel channel;
         std::weak_ptr<const PacketVolume> volume;
-        std::future<SharedVolume> coming; ///< valid while being read
+        std::future<SharedVolume> coming; ///< valid until what is being read is taken
+        std::uint64_t asked = 0;          ///< value of asked_ when it was last asked for
     };
     Held& entry(const PacketChannel& channel);
+    SharedVolume use(const SharedVolume& volume);
 
     std::shared_ptr<const volume::BrickSource> source_;
     std::vector<Held> held_;
+    std::uint64_t asked_ = 0;
+    std::vector<SharedVolume> recent_; ///< the last one used at the end
+    std::size_t keep_ = 0;
 };
 
 /// Draws the scenes that packetRefusal() does not refuse; keeps the samples and tables of the last ones. Not for
@@ -65,6 +73,8 @@ public:
     bool setVolumes(std::shared_ptr<PacketVolumes> volumes);
     /// Whether prepare() need not wait for samples; begins to read them in the background otherwise.
     bool request(const Scene& scene);
+    /// Begins to read the samples of a scene that may come next; whether they are there.
+    bool prefetch(const Scene& scene);
     /// Reads samples and makes tables for a scene. Throws Error when the source does.
     void prepare(const Scene& scene);
     /// Adds one pass of a picture with `passes` of them; after prepare().

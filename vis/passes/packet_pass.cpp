@@ -1,6 +1,7 @@
 #include "vis/passes/renderer_impl.h"
 
 #include "volume/base/error.h"
+#include "volume/field/time_pair.h"
 
 #include <algorithm>
 
@@ -37,6 +38,7 @@ bool Renderer::Impl::chooseEngine(ViewTarget& target, const RenderCall& call, Fr
     const Engine asked = call.scene.render.engine;
     const bool wanted = asked == Engine::Processor || (asked == Engine::Automatic && options.packets);
     if (target.packets.renderer.setVolumes(volumes)) target.packets.failed = false;
+    volumes->keep(std::min(options.memoryBudget, std::size_t(call.scene.render.limits.brickMemory) << 20) / 2);
     const bool possible = wanted && !call.plan.empty() && !options.countSamples;
     EngineUse& use = status.engine;
     if (possible) use.refusal = refusalOfPackets(target, call);
@@ -56,9 +58,10 @@ bool Renderer::Impl::drawByPackets(ViewTarget& target, const RenderCall& call, C
         show(target, call.scene, 0);
         target.shown.compiling = false;
         status.complete = here;
-        if (here)
+        if (here) {
             refineByPackets(target, call, start);
-        else if (!target.state.presented())
+            if (!call.request.wait) prefetchTime(target.packets, call);
+        } else if (!target.state.presented())
             blank(target, call.scene);
     } catch (const Error& error) {
         tools.messages.push_back(error.what());
@@ -71,6 +74,19 @@ bool Renderer::Impl::drawByPackets(ViewTarget& target, const RenderCall& call, C
     status.samples = renderer.volumes() * std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
     status.bytes = renderer.bytes();
     return true;
+}
+
+/// While an animation runs, the samples of the next stored time are read in the background.
+void Renderer::Impl::prefetchTime(PacketView& packets, const RenderCall& call) {
+    const std::vector<double>& times = call.info().times;
+    const int now = volume::timesAround(times, call.scene.time).earlier;
+    if (now != packets.time) packets.step = packets.time < 0 ? 0 : now - packets.time;
+    packets.time = now;
+    const int next = now + packets.step;
+    if (packets.step == 0 || next < 0 || next >= int(times.size())) return;
+    Scene coming = call.scene;
+    coming.time = times[std::size_t(next)];
+    packets.renderer.prefetch(coming);
 }
 
 void Renderer::Impl::refineByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start) {

@@ -86,6 +86,7 @@ struct Renderer::Impl {
     bool chooseEngine(ViewTarget& target, const RenderCall& call, FrameStatus& status);
     bool drawByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start, FrameStatus& status);
     void refineByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start);
+    void prefetchTime(PacketView& packets, const RenderCall& call);
     void castPackets(PacketView& packets, const RenderCall& call, const RayBuffer& buffer, const RayTile& what);
 
     // present.cpp

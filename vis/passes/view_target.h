@@ -47,6 +47,7 @@ struct PacketView {
     packet::PacketRenderer renderer;
     packet::PacketPicture picture; ///< of the tile drawn last
     Pace pace{false};              ///< of rays cast by the processor, measured by the clock
+    int time = -1, step = 0;       ///< index of the stored time drawn last, and the way from the one before
     bool failed = false;           ///< its samples could not be read: OpenGL draws these data, without what is damaged
 };
 
