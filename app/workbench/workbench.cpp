@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 
 Workbench::Workbench(WorkbenchOptions options)
     : options_(std::move(options)),
-      renderer_(options_.renderer ? options_.renderer : std::make_shared<vis::Renderer>(vis::quickestOptions(options_.render))),
+      renderer_(options_.renderer ? options_.renderer
+                                  : std::make_shared<vis::Renderer>(vis::quickestOptions(options_.render))),
       messages_([this] { return now(); }, options_.headless),
       data_(document_, jobs_, messages_,
             {options_.headless, options_.stateFolder, options_.program, options_.growthInterval},

@@ -15,7 +15,7 @@ struct RendererOptions {
     /// Largest channel in texels that is kept as a single texture, which is cheapest to sample. Larger ones are divided
     /// into bricks.
     std::size_t denseTexels = std::size_t(32) << 20;
-    bool packets = false; ///< Engine::Automatic is the processor
+    bool packets = false;       ///< Engine::Automatic is the processor
     bool exactTextures = false; ///< store bricks as 32-bit float instead of 16-bit, for comparison with the reference
     /// Simulated memory of the driver for data textures in bytes; larger allocations are refused. For tests.
     std::size_t driverMemory = ~std::size_t(0);

@@ -1,9 +1,9 @@
 #include "vis/raycast/ray_tables.h"
 
-#include "vis/transfer/block_distance.h"
 #include "vis/optics/preintegration.h"
 #include "vis/raycast/ray_field.h"
 #include "vis/scene/selection_bounds.h"
+#include "vis/transfer/block_distance.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>
