@@ -8,7 +8,7 @@ mkdir shaders
 export MESA_SHADER_DUMP_PATH=$work/shaders MESA_SHADER_CACHE_DISABLE=1
 small='{"nx":5,"ny":9,"nz":21,"times":2}'
 for layout in overview flow illustration lens evening shadowcube; do
-    "$tessera" render --layout $layout -o picture.png --size 800x500 --set "/data/settings=$small" > out.txt 2>&1 ||
+    "$tessera" render --layout $layout -o picture.png --size 800x500 --set /render/engine=gl --set "/data/settings=$small" > out.txt 2>&1 ||
         { cat out.txt; die "render --layout $layout"; }
 done
 check_stage() { # check_stage STAGE FILE...

@@ -151,10 +151,11 @@ kill -9 "$app"
 wait "$app" 2>/dev/null
 "$tessera" render brushed.tessera.json --size 1500x950 -o headless.png >>"$work/log" 2>&1 || fail "render fails"
 if command -v compare >/dev/null; then
-    # Pixels that differ by more than 2 % of the range, at most 0.2 % of the picture.
-    differing=$(compare -fuzz 2% -metric AE window.png headless.png null: 2>&1)
-    echo "pixels that differ: $differing of 1425000"
-    [ "${differing%%.*}" -lt 2850 ] || fail "window and headless pictures differ in $differing pixels"
+    # Pixels that differ by more than 2 % of the range, at most 0.2 % of the picture. The status line at the bottom says
+    # what this machine does (memory, what casts the rays), in the window alone.
+    differing=$(compare -extract 1500x915+0+0 -fuzz 2% -metric AE window.png headless.png null: 2>&1)
+    echo "pixels that differ: $differing of 1372500"
+    [ "${differing%%.*}" -lt 2745 ] || fail "window and headless pictures differ in $differing pixels"
 fi
 # The exported picture is a session again, and gives the same picture.
 "$tessera" render headless.png --size 1500x950 -o again.png >>"$work/log" 2>&1 || fail "a picture does not open as a session"

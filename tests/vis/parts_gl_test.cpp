@@ -13,6 +13,7 @@ struct PartsMode {
     const char* name;
     std::function<void(Scene&)> apply;
     double rmse = 1.5 * kRmse;
+    double psnr16 = kPsnr16;
 };
 
 const PartsMode kPartsModes[] = {
@@ -101,7 +102,8 @@ const PartsMode kPartsModes[] = {
          layer.look.silhouette = SilhouetteEnhancement{};
          layer.look.cartoon = Cartoon{};
          s.layers = {{"", true, layer}};
-     }},
+     },
+     1.5 * kRmse, 56}, // the width of outlines follows second differences of the rounded samples
 };
 
 class PartsPictures : public testing::TestWithParam<LatticeKind> {
@@ -145,7 +147,7 @@ TEST_P(PartsPictures, SixteenBitsAreClose) {
         mode.apply(scene);
         const Linear got = drawn.draw(scene), wanted = reference::render(scene, *drawn.data, kSize, {});
         const reference::Difference difference = reference::compare(got, wanted, kOutlier);
-        EXPECT_GE(difference.psnr, kPsnr16) << mode.name << ": " << words(difference);
+        EXPECT_GE(difference.psnr, mode.psnr16) << mode.name << ": " << words(difference);
     }
 }
 
