@@ -13,7 +13,10 @@ packages=(
     fonts-roboto-unhinted fonts-font-awesome                         # text and icons
     libvtk9-dev libtiff-dev zlib1g-dev                               # tessera-import: readers of foreign formats
 )
-test_packages=(libgtest-dev libgmock-dev clang-format glslang-tools xvfb xdotool xauth x11-utils) # only ./test.sh needs these
+test_packages=( # only ./test.sh needs these
+    libgtest-dev libgmock-dev clang-format glslang-tools xvfb xdotool xauth x11-utils
+    pybind11-dev python3-dev python3-numpy python3-xarray # the Python package
+)
 case $(. /etc/os-release && echo "${ID:-} ${VERSION_ID:-}") in
     "debian 12") clang=16 ;; # its "clang" is 14, which cannot compile <ranges> of gcc 12
     "ubuntu 24.04") clang=18 ;;
@@ -27,7 +30,8 @@ if ! command -v apt-get >/dev/null; then
     echo "    gcc-c++ cmake ninja-build pkgconf glm-devel json-devel cli11-devel tbb-devel libzstd-devel xz-devel" >&2
     echo "    xxhash-devel libpng-devel muParser-devel imgui-devel stb-devel freetype-devel glfw-devel libepoxy-devel" >&2
     echo "    mesa-libEGL-devel mesa-dri-drivers google-roboto-fonts fontawesome4-fonts vtk-devel libtiff-devel" >&2
-    echo "    zlib-devel; for tests: gtest-devel gmock-devel clang-tools-extra xorg-x11-server-Xvfb xdotool" >&2
+    echo "    zlib-devel; for tests: gtest-devel gmock-devel clang-tools-extra xorg-x11-server-Xvfb xdotool; for the Python" >&2
+    echo "    package: pybind11-devel python3-devel python3-numpy python3-xarray" >&2
     exit 0
 fi
 
