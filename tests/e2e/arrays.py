@@ -194,5 +194,45 @@ class Xarray(unittest.TestCase):
         self.assertAlmostEqual(float(data["O2"].mean()), float(archive["O2"][:].mean()), 5)
 
 
+class Vtk(unittest.TestCase):
+    def setUp(self):
+        try:
+            from tessera.vtk_reader import TesseraReader
+        except ImportError:
+            self.skipTest("no VTK for Python")
+        run("generate", "fuel-cell", "-o", "v.tsr", "--size", "7x9x20", "--times", "3")
+        run("convert", "v.tsr", "-o", "vcc.tsr", "--lattice", "cc")
+        self.reader, self.archive = TesseraReader(), tessera.open("vcc.tsr")
+        self.reader.SetFileName("vcc.tsr")
+
+    def test_an_image_of_the_time_asked_for(self):
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        self.reader.UpdateInformation()
+        self.reader.UpdateTimeStep(self.archive.times[2])
+        image = self.reader.GetOutputDataObject(0)
+        self.assertEqual(image.GetDimensions(), (7, 9, 20))
+        for i, axis in enumerate(self.archive.coordinates()):
+            self.assertAlmostEqual(image.GetBounds()[2 * i], axis[0], 12)
+            self.assertAlmostEqual(image.GetBounds()[2 * i + 1], axis[-1], 12)
+        data = image.GetPointData()
+        self.assertEqual([data.GetArrayName(i) for i in range(data.GetNumberOfArrays())], self.archive.parameters)
+        T, U, O2 = (vtk_to_numpy(data.GetArray(name)) for name in ("T", "U", "O2"))
+        np.testing.assert_array_equal(T.reshape(20, 9, 7), self.archive["T"][2])
+        np.testing.assert_array_equal(U.reshape(20, 9, 7, 3), self.archive["U"][2].filled(np.nan))
+        np.testing.assert_array_equal(O2.reshape(20, 9, 7), self.archive["O2"][2].filled(np.nan))
+
+    def test_levels_and_chosen_parameters(self):
+        self.reader.UpdateInformation()
+        self.assertEqual(self.reader.GetTimestepValues(), list(self.archive.times))
+        self.reader.GetDataArraySelection().DisableAllArrays()
+        self.reader.GetDataArraySelection().EnableArray("T")
+        self.reader.SetLevel(1)
+        self.reader.Update()
+        image = self.reader.GetOutputDataObject(0)
+        self.assertEqual(image.GetDimensions(), self.archive.size(1))
+        self.assertEqual(image.GetPointData().GetNumberOfArrays(), 1)
+        self.assertAlmostEqual(image.GetSpacing()[2], 2 * (self.archive.coordinates()[2][1] - self.archive.coordinates()[2][0]), 12)
+
+
 if __name__ == "__main__":
     unittest.main(verbosity=2)
