@@ -27,6 +27,13 @@ if has_importer; then
     check "no other importer is taken" 2 env -u TESSERA_IMPORT "$moved/bin/tessera" info cell.vti
 fi
 
+if ls "$build"/python/tessera/_tessera*.so > /dev/null 2>&1 && /usr/bin/python3 -c "import numpy" 2> /dev/null; then
+    "$tessera" generate fuel-cell -o python.tsr --size 7x13x20 --times 1 > /dev/null || die "generate"
+    check "the installed Python package reads" 0 env PYTHONPATH="$moved/lib/python3/dist-packages" PYTHONDONTWRITEBYTECODE=1 \
+        /usr/bin/python3 -c 'import tessera; print(tessera.__file__, tessera.open("python.tsr")["T"].shape)'
+    say "^$moved/.*(1, 20, 13, 7)" out.txt
+fi
+
 # What desktops and people read.
 for file in share/applications/tessera.desktop share/mime/packages/tessera.xml share/man/man1/tessera.1 \
     share/icons/hicolor/scalable/apps/tessera.svg share/doc/tessera/README.md share/doc/tessera/LICENSE \

@@ -2,69 +2,8 @@
 # Drives the real window: opens the built-in data, brushes, undoes, saves by shortcut and quits; then checks the saved
 # session and that it renders without a window to the picture the window showed.
 # usage: window.sh TESSERA SOURCE_DIR
-tessera=$1 source=$2
-for tool in Xvfb xdotool; do
-    command -v $tool >/dev/null || { echo "skipped: no $tool"; exit 77; }
-done
-work=$(mktemp -d)
-export XDG_STATE_HOME=$work/state XDG_CONFIG_HOME=$work/config
-pids=()
-cleanup() {
-    for pid in "${pids[@]}"; do kill "$pid" 2>/dev/null; done
-    wait 2>/dev/null
-    rm -rf "$work"
-}
-trap cleanup EXIT
-fail() {
-    echo "FAILED: $1"
-    [ -f "$work/log" ] && cat "$work/log"
-    exit 1
-}
-
-# A free display: Xvfb itself finds one and tells its number.
-mkfifo "$work/display"
-Xvfb -displayfd 3 -screen 0 1500x950x24 -nolisten tcp -noreset 3>"$work/display" 2>"$work/xvfb.log" &
-pids+=($!)
-read -r number <"$work/display" || { echo "skipped: Xvfb does not start"; exit 77; }
-export DISPLAY=:$number
-
-# await SECONDS COMMAND...: until it succeeds.
-await() {
-    local tries=$(($1 * 5))
-    shift
-    for ((i = 0; i < tries; ++i)); do
-        "$@" && return 0
-        kill -0 "$app" 2>/dev/null || return 1
-        sleep 0.2
-    done
-    return 1
-}
-fresh() { [ "$work/shot.png" -nt "$work/mark" ]; }
-# Waits until no more pictures come of what was done before.
-still() {
-    local try
-    sleep 0.3
-    for ((try = 0; try < 100; ++try)); do
-        [ -n "$(find "$work/shot.png" -newermt '0.8 seconds ago')" ] || break
-        sleep 0.2
-    done
-}
-# `fresh` means a complete picture of the window after what follows `mark`.
-mark() {
-    still
-    touch "$work/mark"
-    sleep 0.05
-}
-
-cd "$work" || exit 1
-touch mark
-"$tessera" --screenshots "$work/shot.png" >"$work/log" 2>&1 &
-app=$!
-pids+=("$app")
-await 120 fresh || fail "the window does not show a picture"
-window=$(xdotool search --pid "$app" 2>/dev/null | tail -1)
-[ -n "$window" ] || window=$(xdotool search --name Tessera | tail -1)
-xdotool windowfocus "$window"
+source "$2/tests/e2e/display.bash"
+start
 
 # Help opens and closes by key.
 mark
@@ -139,11 +78,7 @@ status=$?
 
 # The same session in the window and without one; the mouse rests where nothing answers to it.
 xdotool mousemove 900 945
-touch mark
-"$tessera" brushed.tessera.json --screenshots "$work/shot.png" >"$work/log" 2>&1 &
-app=$!
-pids+=("$app")
-await 120 fresh || fail "the saved session does not open"
+start brushed.tessera.json
 still
 cp shot.png window.png
 # kill -9: the next start finds nothing to recover, for nothing was changed.
