@@ -16,8 +16,9 @@ using volume::LatticeKind;
 
 constexpr glm::ivec2 kSize{73, 57}; // odd: the last packets of a row are not full
 constexpr double kPsnr = 70;        ///< dB for a peak of 1
-/// Pixels where a yes or no (present or absent, one sample more or less) falls the other way in single precision.
-constexpr std::size_t kOutliers = 2;
+/// Pixels where a yes or no (present or absent, crossed or grazed, one sample more or less) falls the other way,
+/// because samples have 15 bits.
+constexpr std::size_t kOutliers = 4;
 constexpr double kOutlier = 0.01;
 
 /// Three scalars, the first two of which are absent outside a ball and in a slab if `masked`; sizes that fill no brick.

@@ -114,6 +114,10 @@ template <class N> N correctedOpacity(N opacity, N step, N density) {
 inline double correctedOpacity(double opacity, double step, double density) {
     return correctedOpacity<double>(opacity, step, density);
 }
+/// The same, of the extinction -log2(1 - opacity).
+template <class N> N correctedOpacityOf(N extinction, N step, N density) {
+    return N(1) - powerOfTwo(-(extinction * (density * step * N(1 / kReferenceLength))));
+}
 
 /// A direction (length 1) quantised to `bits` per coordinate on the unfolded octahedron (Q. Meyer et al.: On
 /// floating-point normal vectors, 2010): used for shading with quantised gradients. Zero stays zero.

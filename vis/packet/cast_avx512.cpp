@@ -1,5 +1,5 @@
 #include "vis/packet/cast.h"
-#include "vis/packet/cast_layers.h"
+#include "vis/packet/cast_single.h"
 
 namespace tessera::vis::packet {
 

@@ -21,13 +21,18 @@ struct VolumeView {
     const std::int16_t* present = nullptr; ///< null: all
     bool bcc = false;
     glm::ivec3 cells{1};
-    glm::ivec3 perBrick{0}; ///< added to the place of a sample for each brick before it along an axis
-    int oddOffset = 0;      ///< from the even to the odd sublattice
+    glm::ivec3 perBrick{0}; ///< added to the place of a pair for each brick before it along an axis
+    int oddOffset = 0;      ///< pairs from the even to the odd sublattice
 };
 
 inline constexpr float kNowhere = -1e9f;
 inline constexpr int kMostPacketLayers = 16, kMostPacketSurfaces = 8, kMostBrushFields = 8;
 inline constexpr int kTableEntries = 2048; ///< of a transfer function
+inline constexpr int kShowBins = 256;      ///< of its places, one bit each
+/// Entries of the table of unshaded samples, which are not interpolated: red and green, blue and extinction in the low
+/// and high 16 bits of two words; kQuantum = 1. The extinction (ray_setup.h) is a float of a sign bit that is 0, 5 bits
+/// of exponent and 10 of mantissa; 0 is 0.
+inline constexpr int kPackedEntries = 4096, kExtinctionShift = 13, kExtinctionLeast = 127 - 20;
 
 /// A transfer function: entry i has the colour (linear) and opacity at places i and i + 1 of kTableEntries - 1, red,
 /// green, blue and opacity, low and high 16 bits of a number, kQuantum = 1.
@@ -37,7 +42,9 @@ struct LayerView {
     bool shaded = false;
     float placeScale = 1, placeOffset = 0; ///< place = sample * scale + offset
     const std::int32_t* table = nullptr;
-    float opacityScale = 1; ///< of the table's opacities
+    const std::uint32_t* packed = nullptr;
+    std::uint32_t shows[kShowBins / 32] = {}; ///< bits of places around which there is opacity
+    float opacityScale = 1;                   ///< of the table's opacities
     float density = 1;
     float threshold = 0; ///< place; of a local maximum
     float isoValue = 0;  ///< a sample

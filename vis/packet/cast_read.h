@@ -16,88 +16,106 @@ inline Floats mix(Floats a, Floats b, Floats share) {
     return multiplyAdd(share, b - a, a);
 }
 
-/// Where a trilinear sample of one sublattice lies: its first sample's place, and the fractions.
-struct Corner {
-    Ints place;
-    Floats fx, fy, fz;
+/// Positions in cells, times 2^16.
+struct Fixed {
+    Ints x, y, z;
+    Fixed& operator+=(const Fixed& way) {
+        x += way.x;
+        y += way.y;
+        z += way.z;
+        return *this;
+    }
 };
-
-inline Corner cornerAt(const VolumeView& volume, const Vec& at) {
-    const auto inside = [](Floats p, int cells) { return smaller(larger(p, Floats(0)), Floats(float(cells) - 0.01f)); };
-    const Floats x = inside(at.x, volume.cells.x), y = inside(at.y, volume.cells.y), z = inside(at.z, volume.cells.z);
-    const Ints ix = toInts(x), iy = toInts(y), iz = toInts(z);
-    Corner out;
-    out.place = ix + iy * Ints(kRow) + iz * Ints(kRow * kRow) + (ix >> 4) * Ints(volume.perBrick.x) +
-                (iy >> 4) * Ints(volume.perBrick.y) + (iz >> 4) * Ints(volume.perBrick.z);
-    out.fx = x - toFloats(ix);
-    out.fy = y - toFloats(iy);
-    out.fz = z - toFloats(iz);
-    return out;
+inline Fixed fixedOf(const Vec& cells) {
+    const Floats one(1 << 16);
+    return {toInts(cells.x * one), toInts(cells.y * one), toInts(cells.z * one)};
+}
+/// On BCC, in cells of the odd sublattice.
+inline Fixed oddOf(const Fixed& at) {
+    const Ints half(1 << 15);
+    return {at.x - half, at.y - half, at.z - half};
 }
 
+/// Where the samples around a position of one sublattice lie (pairs), and the fractions times 2^15, those of x and z
+/// in both halves of a lane, of y with one minus it.
+struct Corner {
+    Ints place, x, y, z;
+};
 /// Weights of two neighbours in 15 bits, in one lane.
 inline Ints pairWeights(Floats f) {
     const Ints high = toInts(multiplyAdd(f, Floats(kQuantum), Floats(0.5)));
     return (high << 16) - high + Ints(kQuantum);
 }
 
-/// The interpolated 16-bit samples, times kQuantum.
-inline Floats trilinear(const std::int16_t* samples, const Corner& corner, Ints weights, Mask lanes) {
-    const auto row = [&](int more) {
-        return toFloats(dotPairs(gather<2>(samples + more, corner.place, lanes), weights));
-    };
-    const Floats low = mix(row(0), row(kRow), corner.fy),
-                 high = mix(row(kRow * kRow), row(kRow * kRow + kRow), corner.fy);
-    return mix(low, high, corner.fz);
+[[gnu::always_inline]] inline Corner cornerAt(const VolumeView& volume, const Fixed& at) {
+    const auto times = [](Ints p, int factor) { return dotPairs(p, Ints(factor << 16)); }; // of cells
+    Corner out;
+    out.place = (at.x >> 16) + times(at.y, kRow) + times(at.z, kSlice) + (at.x >> 20) * Ints(volume.perBrick.x) +
+                (at.y >> 20) * Ints(volume.perBrick.y) + (at.z >> 20) * Ints(volume.perBrick.z);
+    out.x = lowHalves(at.x);
+    out.y = lowHalves(at.y) ^ Ints(kQuantum);
+    out.z = lowHalves(at.z);
+    return out;
 }
 
-inline Floats trilinear(const float* samples, const Corner& corner, Mask lanes) {
-    const auto row = [&](int more) {
-        return mix(gatherFloats(samples + more, corner.place, lanes),
-                   gatherFloats(samples + more + 1, corner.place, lanes), corner.fx);
+/// The interpolated 15-bit samples, times kQuantum.
+[[gnu::always_inline]] inline Floats trilinear(const std::int16_t* samples, const Corner& corner, Mask lanes) {
+    const auto slice = [&](int more) __attribute__((always_inline)) {
+        const IntPair pairs = loadPairs<4>(samples + 2 * more, corner.place, lanes);
+        return mixPairs(pairs.low, pairs.high, corner.x);
     };
-    const Floats low = mix(row(0), row(kRow), corner.fy),
-                 high = mix(row(kRow * kRow), row(kRow * kRow + kRow), corner.fy);
-    return mix(low, high, corner.fz);
+    return toFloats(dotPairs(mixPairs(slice(0), slice(kSlice), corner.z), corner.y));
+}
+
+[[gnu::always_inline]] inline Floats trilinear(const float* samples, const Corner& corner, Mask lanes) {
+    const auto share = [](Ints fraction) { return toFloats(fraction >> 16) * Floats(1.0 / (1 << 15)); };
+    const Floats x = share(corner.x), y = share(corner.y), z = share(corner.z);
+    const auto column = [&](int more) __attribute__((always_inline)) {
+        const IntPair pair = loadPairs<8>(samples + 2 * more, corner.place, lanes);
+        return mix(sameBits(pair.low), sameBits(pair.high), y);
+    };
+    const Floats low = mix(column(0), column(1), x), high = mix(column(kSlice), column(kSlice + 1), x);
+    return mix(low, high, z);
 }
 
 /// Reconstructs samples; Bcc and Exact as in PacketVolume. Twin: volume/reconstruct/reconstruct.h.
 template <bool Bcc, bool Exact> struct Reader {
+    static constexpr float kUnit = (Exact ? 1.0f : 1.0f / kQuantum) * (Bcc ? 0.5f : 1.0f);
     const VolumeView& volume;
     bool masked; ///< some samples may be absent here
 
-    Found operator()(const Vec& at, Mask lanes) const {
+    [[gnu::noinline]] Found operator()(const Vec& cells, Mask lanes) const { return next(fixedOf(cells), lanes); }
+    /// The same within loops over samples.
+    [[gnu::always_inline]] Found next(const Fixed& at, Mask lanes) const {
         Floats sum(0), coverage(0);
-        add(at, 0, lanes, sum, coverage);
-        if constexpr (Bcc) add(at - Vec(Floats(0.5), Floats(0.5), Floats(0.5)), volume.oddOffset, lanes, sum, coverage);
-        const float unit = (Exact ? 1.0f : 1.0f / kQuantum) * (Bcc ? 0.5f : 1.0f);
-        if (!masked) return {sum * Floats(unit), lanes};
+        add(at, lanes, sum, coverage);
+        if (!masked) return {sum * Floats(kUnit), lanes};
         const Floats covered = coverage * Floats((Bcc ? 0.5f : 1.0f) / kQuantum / kQuantum);
         const Mask present = lanes & (covered >= Floats(volume::kPresentCoverage));
-        return {sum * Floats(unit) / larger(covered, Floats(1e-9)), present};
+        return {sum * Floats(kUnit) / larger(covered, Floats(1e-9)), present};
     }
     /// The value as far as samples have any weight, see reference::Samples::continued; present where they have.
-    Found continued(const Vec& at, Mask lanes) const {
-        if (!masked) return (*this)(at, lanes);
+    [[gnu::noinline]] Found continued(const Vec& cells, Mask lanes) const {
+        if (!masked) return (*this)(cells, lanes);
         Floats sum(0), coverage(0);
-        add(at, 0, lanes, sum, coverage);
-        if constexpr (Bcc) add(at - Vec(Floats(0.5), Floats(0.5), Floats(0.5)), volume.oddOffset, lanes, sum, coverage);
+        add(fixedOf(cells), lanes, sum, coverage);
         const Floats weight = coverage * Floats(1.0f / kQuantum / kQuantum);
         return {sum * Floats(Exact ? 1.0f : 1.0f / kQuantum) / larger(weight, Floats(1e-9)),
                 lanes & (weight > Floats(0))};
     }
 
 private:
-    void add(const Vec& at, int offset, Mask lanes, Floats& sum, Floats& coverage) const {
+    [[gnu::always_inline]] void add(const Fixed& at, Mask lanes, Floats& sum, Floats& coverage) const {
+        add(at, 0, lanes, sum, coverage);
+        if constexpr (Bcc) add(oddOf(at), volume.oddOffset, lanes, sum, coverage);
+    }
+    [[gnu::always_inline]] void add(const Fixed& at, int offset, Mask lanes, Floats& sum, Floats& coverage) const {
         const Corner corner = cornerAt(volume, at);
-        if constexpr (Exact) {
-            sum += trilinear(volume.floats + offset, corner, lanes);
-            if (masked) coverage += trilinear(volume.present + offset, corner, pairWeights(corner.fx), lanes);
-        } else {
-            const Ints weights = pairWeights(corner.fx);
-            sum += trilinear(volume.shorts + offset, corner, weights, lanes);
-            if (masked) coverage += trilinear(volume.present + offset, corner, weights, lanes);
-        }
+        if constexpr (Exact)
+            sum += trilinear(volume.floats + 2 * offset, corner, lanes);
+        else
+            sum += trilinear(volume.shorts + 2 * offset, corner, lanes);
+        if (masked) coverage += trilinear(volume.present + 2 * offset, corner, lanes);
     }
 };
 
@@ -113,6 +131,23 @@ inline TablePlace tablePlace(Floats place) {
 inline Floats tableValue(const LayerView& layer, const TablePlace& at, int component, Mask lanes) {
     return toFloats(dotPairs(gather<4>(layer.table + component, at.entry, lanes), at.weights)) *
            Floats(1.0f / kQuantum / kQuantum);
+}
+/// Whether entries around places may have opacity.
+inline Mask mayShow(const LayerView& layer, Floats place) {
+    return bitAt(layer.shows, toInts(clamped(place, Floats(0), Floats(1)) * Floats(kShowBins - 1)));
+}
+/// Colour, times kQuantum, and extinction; `entry` of the packed table, not rounded.
+struct Matter {
+    Vec color;
+    Floats extinction;
+};
+[[gnu::always_inline]] inline Matter matterAt(const LayerView& layer, Floats entry, Mask lanes) {
+    const Floats within = clamped(entry, Floats(0), Floats(kPackedEntries - 1));
+    const IntPair packed = gatherPairs<8>(layer.packed, toInts(within), lanes);
+    const Ints low(0xffff), bits = (packed.high >> (16 - kExtinctionShift)) & Ints(kQuantum << kExtinctionShift);
+    const Floats extinction = sameBits(bits + Ints(kExtinctionLeast << 23));
+    return {{toFloats(packed.low & low), toFloats(packed.low >> 16), toFloats(packed.high & low)},
+            choose(Ints(0) < bits, extinction, Floats(0))};
 }
 inline Floats opacityAt(const LayerView& layer, const TablePlace& at, Mask lanes) {
     return tableValue(layer, at, 3, lanes) * Floats(layer.opacityScale);

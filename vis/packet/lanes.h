@@ -61,6 +61,9 @@ struct Ints {
     friend Ints operator-(Ints a, Ints b) { return Ints(a.v - b.v); }
     friend Ints operator*(Ints a, Ints b) { return Ints(a.v * b.v); }
     friend Ints operator&(Ints a, Ints b) { return Ints(a.v & b.v); }
+    friend Ints operator|(Ints a, Ints b) { return Ints(a.v | b.v); }
+    friend Ints operator^(Ints a, Ints b) { return Ints(a.v ^ b.v); }
+    Ints& operator+=(Ints b) { return *this = *this + b; }
     friend Ints operator<<(Ints a, int by) { return Ints(a.v << by); }
     friend Ints operator>>(Ints a, int by) { return Ints(a.v >> by); }
     friend Mask operator==(Ints a, Ints b) { return {raw::equal(a.v, b.v)}; }
@@ -142,9 +145,42 @@ template <int Scale> Ints gather(const void* base, Ints index, Mask m) {
 inline Floats gatherFloats(const float* base, Ints index, Mask m) {
     return sameBits(gather<4>(base, index, m));
 }
+/// 64 bits from base + index * Scale bytes, the low and the high half; 0 in lanes that are not asked for.
+struct IntPair {
+    Ints low, high;
+};
+template <int Scale> [[gnu::always_inline]] inline IntPair gatherPairs(const void* base, Ints index, Mask m) {
+    IntPair out;
+    raw::gatherPairs<Scale>(base, index.v, m.v, out.low.v, out.high.v);
+    return out;
+}
+/// The same, for large data: faster where the first cache misses often, slower where it does not.
+template <int Scale> [[gnu::always_inline]] inline IntPair loadPairs(const void* base, Ints index, Mask m) {
+    IntPair out;
+    raw::loadPairs<Scale>(base, index.v, m.v, out.low.v, out.high.v);
+    return out;
+}
+/// Bit `index` (0..255) of 8 words.
+inline Mask bitAt(const std::uint32_t* words, Ints index) {
+    return {raw::bitAt(words, index.v)};
+}
+
 /// Lanes hold two signed 16-bit numbers each: low a * low b + high a * high b.
 inline Ints dotPairs(Ints a, Ints b) {
     return Ints(raw::dotPairs(a.v, b.v));
+}
+/// The low 16 bits in both halves of a lane, shifted right by one.
+inline Ints lowHalves(Ints a) {
+    return Ints(raw::lowHalves(a.v));
+}
+/// The same lanes: a + (b - a) share / 2^15, rounded; a, b and share 0 .. 2^15 - 1.
+inline Ints mixPairs(Ints a, Ints b, Ints share) {
+    return Ints(raw::mixPairs(a.v, b.v, share.v));
+}
+
+/// a 2^whole, a in 1/2 .. 2; 0 below 2^-126, the largest power above 2^127.
+inline Floats timesPowerOfTwo(Floats a, Floats whole) {
+    return Floats(raw::timesPowerOfTwo(a.v, whole.v));
 }
 
 /// Base-two logarithm of positive normal numbers, relative error below 1e-6 of the result or 1e-7 (polynomial of the
@@ -162,12 +198,12 @@ inline Floats logarithm(Floats a) {
 }
 /// 2^a, relative error below 2e-7; 0 below -126 (Taylor series of the fraction around 0, -1/2 .. 1/2).
 inline Floats powerOfTwo(Floats a) {
-    const Floats within = smaller(larger(a, Floats(-126)), Floats(127));
-    const Floats whole = roundDown(within + Floats(0.5)), f = within - whole;
-    constexpr float kSeries[] = {1.3333558e-3f, 9.6181291e-3f, 5.5504109e-2f, 2.4022651e-1f, 6.9314718e-1f, 1.0f};
-    Floats p(1.5403530e-4);
-    for (const float c : kSeries) p = multiplyAdd(p, f, Floats(c));
-    return choose(a < Floats(-126), Floats(0), p * sameBits((toInts(whole) + Ints(127)) << 23));
+    const Floats whole = roundDown(a + Floats(0.5)), f = a - whole, q = f * f;
+    const Floats low = multiplyAdd(f, Floats(6.9314718e-1), Floats(1)),
+                 middle = multiplyAdd(f, Floats(5.5504109e-2), Floats(2.4022651e-1)),
+                 high =
+                     multiplyAdd(multiplyAdd(f, Floats(1.5403530e-4), Floats(1.3333558e-3)), f, Floats(9.6181291e-3));
+    return timesPowerOfTwo(multiplyAdd(multiplyAdd(high, q, middle), q, low), whole);
 }
 /// base >= 0. 0 to any power above 0 is 0.
 inline Floats power(Floats base, Floats exponent) {

@@ -60,3 +60,35 @@ template <int Scale> inline I gather(const void* base, I index, M m) {
 inline I dotPairs(I a, I b) {
     return I(_mm256_madd_epi16(__m256i(a), __m256i(b)));
 }
+template <int Scale> [[gnu::always_inline]] inline void gatherPairs(const void* base, I index, M m, I& low, I& high) {
+    const auto half = [&](__m128i at, __m128i lanes) {
+        return _mm256_castsi256_ps(_mm256_mask_i32gather_epi64(
+            _mm256_setzero_si256(), static_cast<const long long*>(base), at, _mm256_cvtepi32_epi64(lanes), Scale));
+    };
+    const __m256 a = half(_mm256_castsi256_si128(__m256i(index)), _mm256_castsi256_si128(__m256i(m)));
+    const __m256 b = half(_mm256_extracti128_si256(__m256i(index), 1), _mm256_extracti128_si256(__m256i(m), 1));
+    const auto inOrder = [](__m256 mixed) { return I(_mm256_permute4x64_epi64(_mm256_castps_si256(mixed), 0xd8)); };
+    low = inOrder(_mm256_shuffle_ps(a, b, 0x88));
+    high = inOrder(_mm256_shuffle_ps(a, b, 0xdd));
+}
+template <int Scale> [[gnu::always_inline]] inline void loadPairs(const void* base, I index, M m, I& low, I& high) {
+    gatherPairs<Scale>(base, index, m, low, high);
+}
+inline M bitAt(const std::uint32_t* words, I index) {
+    const __m256i all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(words));
+    const __m256i word = _mm256_permutevar8x32_epi32(all, __m256i(index >> 5));
+    return M(_mm256_sllv_epi32(word, __m256i(31 - (index & 31)))) < 0;
+}
+inline I mixPairs(I a, I b, I share) {
+    const __m256i way = _mm256_mulhrs_epi16(_mm256_sub_epi16(__m256i(b), __m256i(a)), __m256i(share));
+    return I(_mm256_add_epi16(__m256i(a), way));
+}
+inline I lowHalves(I a) {
+    const I both{0x01000100, 0x05040504, 0x09080908, 0x0d0c0d0c, 0x01000100, 0x05040504, 0x09080908, 0x0d0c0d0c};
+    return I(_mm256_srli_epi16(_mm256_shuffle_epi8(__m256i(a), __m256i(both)), 1));
+}
+inline F timesPowerOfTwo(F a, F whole) {
+    const F most = smaller(whole, F{} + 127.0f);
+    const I bits = (__builtin_convertvector(larger(most, F{} - 127.0f), I) + 127) << 23;
+    return a * F(bits); // 2^-127 is 0
+}

@@ -70,3 +70,36 @@ inline I dotPairs(I a, I b) {
         out[i] = std::int32_t(std::int16_t(a[i])) * std::int16_t(b[i]) + (a[i] >> 16) * (b[i] >> 16);
     return out;
 }
+template <int Scale> [[gnu::always_inline]] inline void gatherPairs(const void* base, I index, M m, I& low, I& high) {
+    for (int i = 0; i < kLanes; ++i) {
+        std::int32_t values[2] = {0, 0};
+        if (m[i]) __builtin_memcpy(values, static_cast<const char*>(base) + std::ptrdiff_t(index[i]) * Scale, 8);
+        low[i] = values[0];
+        high[i] = values[1];
+    }
+}
+template <int Scale> [[gnu::always_inline]] inline void loadPairs(const void* base, I index, M m, I& low, I& high) {
+    gatherPairs<Scale>(base, index, m, low, high);
+}
+inline M bitAt(const std::uint32_t* words, I index) {
+    M out{};
+    for (int i = 0; i < kLanes; ++i) out[i] = -std::int32_t(words[index[i] >> 5] >> (index[i] & 31) & 1);
+    return out;
+}
+inline I mixPairs(I a, I b, I share) {
+    using Halves = std::int16_t __attribute__((vector_size(16)));
+    const Halves from = Halves(a), to = Halves(b), part = Halves(share);
+    Halves out{};
+    for (int i = 0; i < 2 * kLanes; ++i)
+        out[i] = std::int16_t(from[i] + (((to[i] - from[i]) * part[i] + (1 << 14)) >> 15));
+    return I(out);
+}
+inline I lowHalves(I a) {
+    const I low = (a >> 1) & 0x7fff;
+    return low | low << 16;
+}
+inline F timesPowerOfTwo(F a, F whole) {
+    const F most = smaller(whole, F{} + 127.0f);
+    const I bits = (__builtin_convertvector(larger(most, F{} - 127.0f), I) + 127) << 23;
+    return a * F(bits); // 2^-127 is 0
+}

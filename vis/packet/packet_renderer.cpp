@@ -10,7 +10,7 @@ namespace tessera::vis::packet {
 
 namespace {
 
-constexpr int kTile = 16; ///< pixels along the edge of what one core draws in one go
+constexpr int kTile = 32; ///< pixels along the edge of what one core draws in one go
 
 using CastPixels = void (*)(const CastJob& job, glm::ivec2 begin, glm::ivec2 end);
 

@@ -1,6 +1,7 @@
 #include "vis/packet/packet_scene.h"
 
 #include "vis/optics/ray_setup.h"
+#include "vis/packet/packet_table.h"
 #include "vis/transfer/block_distance.h"
 #include "volume/bricks/parts_bricks.h"
 #include "volume/field/time_pair.h"
@@ -27,35 +28,6 @@ Transfer transferOfLayer(const Scene& scene, const volume::DatasetInfo& info, co
     return {function, effectiveRange(function, info.channelRange(known))};
 }
 
-/// Entries of a transfer function's table (LayerView), and the factor of its opacities.
-struct Table {
-    std::vector<std::int32_t> entries;
-    std::vector<float> opacity;
-    float opacityScale = 1;
-};
-Table makeTable(const TransferFunction& function, Range range) {
-    std::vector<glm::dvec4> colors;
-    for (int i = 0; i < kTableEntries; ++i) {
-        const glm::dvec4 srgb =
-            evaluate(function, range, glm::mix(range.lo, range.hi, double(i) / (kTableEntries - 1)));
-        colors.emplace_back(linearFromSrgb(glm::dvec3(srgb)), srgb.a);
-    }
-    double most = 0;
-    for (const glm::dvec4& color : colors) most = std::max(most, color.a);
-    Table table;
-    table.opacityScale = most > 0 ? float(most) : 1;
-    const auto quantum = [&](std::size_t entry, int component) {
-        const double own = colors[std::min(entry, colors.size() - 1)][component];
-        const double part = component == 3 ? own / double(table.opacityScale) : own;
-        return std::uint32_t(std::lround(std::clamp(part, 0.0, 1.0) * kQuantum));
-    };
-    for (std::size_t i = 0; i < colors.size(); ++i) {
-        for (int c = 0; c < 4; ++c) table.entries.push_back(std::int32_t(quantum(i, c) | quantum(i + 1, c) << 16));
-        table.opacity.push_back(float(quantum(i, 3)));
-    }
-    return table;
-}
-
 VolumeView viewOf(const PacketVolume& volume) {
     VolumeView view;
     view.shorts = volume.exact ? nullptr : volume.shorts.data();
@@ -63,9 +35,9 @@ VolumeView viewOf(const PacketVolume& volume) {
     view.present = volume.present.empty() ? nullptr : volume.present.data();
     view.bcc = volume.bcc;
     view.cells = volume.cells;
-    view.oddOffset = volume.brickSamples();
+    view.oddOffset = volume.brickPairs();
     const int brick = volume.stride(), row = brick * volume.bricks.x, slice = row * volume.bricks.y;
-    view.perBrick = {brick - kBrick, row - kBrick * kRow, slice - kBrick * kRow * kRow};
+    view.perBrick = {brick - kBrick, row - kBrick * kRow, slice - kBrick * kSlice};
     return view;
 }
 
@@ -208,6 +180,9 @@ void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, 
     out.opacityScale = table.opacityScale;
     tables_.push_back(std::move(table.entries));
     out.table = tables_.back().data();
+    packed_.push_back(packedTable(function, range));
+    out.packed = packed_.back().data();
+    markShown(table, out);
     const glm::dvec2 map(out.placeScale, out.placeOffset);
     const int edge = skip_.edge;
     const double slack = volume.exact ? kSlack / 2 / kQuantum : kSlack;
@@ -318,10 +293,11 @@ PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, st
     lenses_ = placeLenses(scene, worldFrame(info.bounds, scene.stretch));
     addBrushes(scene, info);
     tables_.reserve(drawn.size());
-    // Small blocks pay where rays soon end at surfaces.
+    // Small blocks pay where rays soon end at surfaces, and where few of them hold an extremum.
     const bool surfaces = std::ranges::all_of(drawn, [&](const DrawnChannel& each) {
         const auto* volume = std::get_if<VolumeLayer>(&scene.layers[std::size_t(each.layer)].technique);
-        return !volume || (volume->style == RayStyle::Composite && volume->shaded);
+        return !volume || (volume->style == RayStyle::Composite && volume->shaded) ||
+               volume->style == RayStyle::Maximum || volume->style == RayStyle::Minimum;
     });
     skip_.edge = surfaces ? kFine : 2 * kFine;
     for (std::size_t i = 0; i < drawn.size(); ++i) addLayer(scene, info, drawn[i], &views_[i]);

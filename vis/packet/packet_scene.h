@@ -49,6 +49,7 @@ private:
     std::vector<SharedVolume> volumes_;
     std::vector<VolumeView> views_;
     std::vector<std::vector<std::int32_t>> tables_;
+    std::vector<std::vector<std::uint32_t>> packed_;
     std::vector<LayerView> layers_;
     SkipMap skip_;
     std::vector<std::uint8_t> absent_, bound_;

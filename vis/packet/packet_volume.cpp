@@ -105,18 +105,11 @@ public:
             std::size_t(out_.stride());
         for (int s = 0; s < slices_; ++s)
             for (int z = 0; z < kRow; ++z)
-                for (int i = 0; i < kRow * kRow; ++i) {
+                for (int i = 0; i < kSlice; ++i) {
                     const std::size_t source = std::size_t(z * slices_ + s) * kRow * kRow + std::size_t(i);
-                    const std::size_t to =
-                        base + std::size_t(s * out_.brickSamples()) + std::size_t(z * kRow * kRow + i);
-                    const bool there = from_.isPresent(source);
-                    const double value = there ? (double(from_.values[source]) - out_.offset) / out_.scale : 0;
-                    if (out_.exact)
-                        out_.floats[to] = float(value);
-                    else
-                        out_.shorts[to] =
-                            std::int16_t(std::lround(std::clamp(value, -double(kQuantum), double(kQuantum))));
-                    if (!out_.present.empty()) out_.present[to] = there ? kQuantum : 0;
+                    const std::size_t to = (base + std::size_t(s * out_.brickPairs() + z * kSlice + i)) * 2;
+                    sample(source, to);
+                    sample(source + kRow, to + 1);
                 }
     }
 
@@ -133,6 +126,16 @@ public:
     }
 
 private:
+    void sample(std::size_t from, std::size_t to) {
+        const bool there = from_.isPresent(from);
+        const double value = there ? (double(from_.values[from]) - out_.offset) / out_.scale : 0;
+        if (out_.exact)
+            out_.floats[to] = float(value);
+        else
+            out_.shorts[to] = std::int16_t(std::clamp(value, 0.0, double(kQuantum)) + 0.5);
+        if (!out_.present.empty()) out_.present[to] = there ? kQuantum : 0;
+    }
+
     /// The odd sublattice lies half a cell further: its cells around the block begin one earlier, which may lie in the
     /// brick before. Its first samples stand for them here; `spreadOdd` joins the neighbours' bounds.
     void block_(glm::ivec3 begin, std::size_t to) {
@@ -193,6 +196,33 @@ void spreadAbsent(PacketVolume& volume) {
     });
 }
 
+struct Extent {
+    float lo = std::numeric_limits<float>::infinity(), hi = -lo;
+};
+
+/// Of the present samples of all bricks. Filtered ones leave the range of the data, by up to 2/3 of its width but
+/// seldom by much, and 15 bits are few: so they are filtered twice.
+template <class Samples> Extent rangeOf(std::size_t bricks, const Samples& samplesOf) {
+    std::vector<Extent> own(bricks);
+    parallelFor(bricks, [&](std::size_t i) {
+        const volume::BrickSamples samples = samplesOf(i);
+        for (std::size_t s = 0; s < samples.values.size(); ++s) {
+            if (!samples.isPresent(s)) continue;
+            own[i].lo = std::min(own[i].lo, samples.values[s]);
+            own[i].hi = std::max(own[i].hi, samples.values[s]);
+        }
+    });
+    Extent out;
+    for (const Extent& each : own) out = {std::min(out.lo, each.lo), std::max(out.hi, each.hi)};
+    return out.lo <= out.hi ? out : Extent{0, 0};
+}
+
+void setScale(PacketVolume& out, const Extent& range) {
+    const double width = double(range.hi) - double(range.lo);
+    out.offset = out.exact ? (double(range.lo) + double(range.hi)) / 2 : double(range.lo);
+    out.scale = width > 0 ? (out.exact ? width : width / kQuantum) : 1;
+}
+
 } // namespace
 
 std::size_t PacketVolume::at(glm::ivec3 sample, int sublattice) const {
@@ -200,8 +230,9 @@ std::size_t PacketVolume::at(glm::ivec3 sample, int sublattice) const {
     const std::size_t number =
         (std::size_t(brick.z) * std::size_t(bricks.y) + std::size_t(brick.y)) * std::size_t(bricks.x) +
         std::size_t(brick.x);
-    return number * std::size_t(stride()) +
-           std::size_t(sublattice * brickSamples() + (in.z * kRow + in.y) * kRow + in.x);
+    return (number * std::size_t(stride()) +
+            std::size_t(sublattice * brickPairs() + in.z * kSlice + in.y * kRow + in.x)) *
+           2;
 }
 
 std::size_t PacketVolume::bytes() const {
@@ -221,30 +252,31 @@ PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketCha
     out.cells = all.lattice.texels() + (2 * kMargin - 1);
     out.bricks = (out.cells + kBrick - 1) / kBrick;
     out.blocks = out.bricks * (kBrick / kFine);
-    // Filtered values leave the range of the data by up to 2/3 of its width.
-    const double width = double(all.hi) - double(all.lo), room = filtered ? 2.0 / 3 : 0;
-    out.offset = (double(all.lo) + double(all.hi)) / 2;
-    out.scale = width > 0 ? (out.exact ? width : width * (0.5 + room) / kQuantum) : 1;
     const std::size_t bricks = std::size_t(out.bricks.x) * std::size_t(out.bricks.y) * std::size_t(out.bricks.z);
-    const std::size_t samples = bricks * std::size_t(out.stride()), blocks = bricks * 64;
-    // One more: x-neighbours are read together.
+    const std::size_t samples = bricks * std::size_t(out.stride()) * 2, blocks = bricks * 64;
     if (out.exact)
-        out.floats.resize(samples + 2);
+        out.floats.resize(samples);
     else
-        out.shorts.resize(samples + 2);
+        out.shorts.resize(samples);
     if (!all.present.empty()) {
-        out.present.resize(samples + 2);
+        out.present.resize(samples);
         out.absent.resize(blocks);
     }
     out.lo.resize(blocks);
     out.hi.resize(blocks);
+    const auto placeOf = [&](std::size_t i) {
+        return glm::ivec3(int(i % std::size_t(out.bricks.x)),
+                          int(i / std::size_t(out.bricks.x) % std::size_t(out.bricks.y)),
+                          int(i / std::size_t(out.bricks.x) / std::size_t(out.bricks.y)));
+    };
+    const auto samplesOf = [&](std::size_t i) {
+        const volume::BrickSamples near = neighbourhood(all, placeOf(i) * kBrick - kMargin, filtered ? 1 : 0);
+        return filtered ? volume::prefilter(near, geometry) : near;
+    };
+    setScale(out, filtered && !out.exact ? rangeOf(bricks, samplesOf) : Extent{all.lo, all.hi});
     parallelFor(bricks, [&](std::size_t i) {
-        const glm::ivec3 brick(int(i % std::size_t(out.bricks.x)),
-                               int(i / std::size_t(out.bricks.x) % std::size_t(out.bricks.y)),
-                               int(i / std::size_t(out.bricks.x) / std::size_t(out.bricks.y)));
-        volume::BrickSamples near = neighbourhood(all, brick * kBrick - kMargin, filtered ? 1 : 0);
-        if (filtered) near = volume::prefilter(near, geometry);
-        BrickWriter writer(out, brick, near);
+        const volume::BrickSamples near = samplesOf(i);
+        BrickWriter writer(out, placeOf(i), near);
         writer.samples();
         writer.bounds();
     });

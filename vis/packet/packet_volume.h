@@ -11,21 +11,24 @@
 /// The samples of one channel at one time, laid out for packets of rays.
 namespace tessera::vis::packet {
 
-inline constexpr int kMargin = 2; ///< samples of each sublattice beyond the lattice, for gradients
-inline constexpr int kBrick = 16; ///< cells along the edge of a brick
-inline constexpr int kRow = 17;   ///< samples along its edge: the next brick's first ones belong to it, too
-inline constexpr int kFine = 4;   ///< cells along the edge of the smallest block with known bounds
+inline constexpr int kMargin = 2;            ///< samples of each sublattice beyond the lattice, for gradients
+inline constexpr int kBrick = 16;            ///< cells along the edge of a brick
+inline constexpr int kRow = 17;              ///< samples along its edge: the next brick's first ones belong to it, too
+inline constexpr int kSlice = kRow * kBrick; ///< pairs of a slice of a brick
+inline constexpr int kFine = 4;              ///< cells along the edge of the smallest block with known bounds
 inline constexpr int kQuantum = 32767;
 
 /// Samples (filtered where the scene asks for it) in bricks of 16^3 cells, x fastest in a brick and over the bricks; a
-/// trilinear sample reads only one brick. On BCC the odd sublattice of a brick follows the even one. Positions are
-/// cells of a sublattice plus kMargin. An absent sample is 0.
+/// trilinear sample reads only one brick. Each sample is followed by its neighbour along y: so two reads of two pairs
+/// give all eight samples around a position. A brick has kRow pairs along x, kBrick along y, kRow along z. On BCC the
+/// odd sublattice of a brick follows the even one. Positions are cells of a sublattice plus kMargin. An absent sample
+/// is 0.
 struct PacketVolume {
     bool bcc = false;
     bool exact = false;  ///< `floats` hold the samples, else `shorts`
     glm::ivec3 cells{1}; ///< of a sublattice, with margins: a position lies in [0, cells)
     glm::ivec3 bricks{1};
-    std::vector<std::int16_t> shorts;
+    std::vector<std::int16_t> shorts; ///< 0 .. kQuantum
     std::vector<float> floats;
     std::vector<std::int16_t> present; ///< kQuantum or 0, at the same places; empty: all samples are present
     double offset = 0, scale = 1;      ///< physical value = offset + scale * sample
@@ -35,10 +38,11 @@ struct PacketVolume {
     std::vector<float> lo, hi;
     std::vector<std::uint8_t> absent; ///< empty: none
 
-    int brickSamples() const { return kRow * kRow * kRow; } ///< of one sublattice
-    /// Samples from one brick to the next.
-    int stride() const { return brickSamples() * (bcc ? 2 : 1); }
-    std::size_t at(glm::ivec3 sample, int sublattice) const; ///< `sample` with margin, 0 .. cells
+    int brickPairs() const { return kSlice * kRow; } ///< of one sublattice
+    /// Pairs from one brick to the next.
+    int stride() const { return brickPairs() * (bcc ? 2 : 1); }
+    /// Index of a sample, which is the first of its pair; `sample` with margin, 0 .. cells - 1.
+    std::size_t at(glm::ivec3 sample, int sublattice) const;
     std::size_t bytes() const;
 };
 
@@ -46,7 +50,7 @@ struct PacketVolume {
 struct PacketChannel {
     int channel = 0, time = 0;
     Filter filter = Filter::AverageQuasi;
-    bool exact = false; ///< 32-bit floats, else 16 bit over the range of the data
+    bool exact = false; ///< 32-bit floats, else 15 bits over the range of the data
     bool operator==(const PacketChannel&) const = default;
 };
 

@@ -1,0 +1,288 @@
+#pragma once
+
+#include "vis/packet/cast_layers.h"
+
+/// Packets of rays through a single layer, by loops that take no more than it needs. Only for cast_*.cpp.
+namespace tessera::vis::packet::TESSERA_LANES {
+
+template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
+    using Base = Caster<Bcc, Exact>;
+    using Base::job, Base::packet, Base::count, Base::run, Base::reader;
+    using typename Base::Read;
+
+    static constexpr int kAhead = 4; ///< samples taken together, because each waits long for its reads
+    static constexpr int kPair = 2;  ///< the same where rays end soon
+    const LayerView& layer = job.layers[0];
+    const Fixed advance = fixedOf(packet.advance);
+
+    explicit SingleCaster(const CastJob& j, Packet& p) : Base{j, p} {}
+
+    Floats placeOf(Floats value) const {
+        return multiplyAdd(value, Floats(layer.placeScale), Floats(layer.placeOffset));
+    }
+
+    /// A composite layer without light, brushes, lenses and holes. The sum of colours is in kQuantum until the end.
+    void castMatter() {
+        constexpr float kLast = kPackedEntries - 1;
+        const Floats length = packet.step * Floats(layer.density), perEntry(layer.placeScale * kLast),
+                     firstEntry(layer.placeOffset * kLast + 0.5f), samples = packet.count;
+        Vec color(Floats(0), Floats(0), Floats(0));
+        Floats opacity(0), pick(kNoPick), k(0);
+        Mask live = packet.meets;
+        const int most = run();
+        while (anyOf(live)) {
+            Mask full = skipEmpty(job, packet, k, live);
+            live &= k < samples;
+            full &= live;
+            if (!anyOf(full)) continue;
+            const Read read = reader(layer, someAbsent(job, packet, k, full));
+            Fixed at = fixedOf(packet.cells(k));
+            for (int n = 0; n < most; n += kAhead) {
+                Mask lanes[kAhead];
+                Floats entry[kAhead];
+                for (int i = 0; i < kAhead; ++i) {
+                    lanes[i] = full & (k + Floats(i) < samples);
+                    count(lanes[i]);
+                    const Found found = read.next(at, lanes[i]);
+                    entry[i] = multiplyAdd(found.value, perEntry, firstEntry);
+                    lanes[i] = found.present;
+                    at += advance;
+                }
+                for (int i = 0; i < kAhead; ++i) {
+                    const Matter matter = matterAt(layer, entry[i], lanes[i]);
+                    const Floats alpha = correctedOpacityOf(matter.extinction, length, Floats(1));
+                    const Floats weight = choose(opacity < Floats(kOpaque), (Floats(1) - opacity) * alpha, Floats(0));
+                    for (int c = 0; c < 3; ++c) color[c] = multiplyAdd(matter.color[c], weight, color[c]);
+                    opacity += weight;
+                    pick = choose((pick <= Floats(kNoPick)) & (opacity > Floats(kPickOpacity)), k + Floats(i), pick);
+                }
+                k = choose(full, k + Floats(kAhead), k);
+                full &= (k < samples) & (opacity < Floats(kOpaque));
+                if (!anyOf(full)) break;
+            }
+            live &= (k < samples) & (opacity < Floats(kOpaque));
+        }
+        packet.color = color * Floats(1.0 / kQuantum);
+        packet.opacity = opacity;
+        packet.pick = pick;
+    }
+
+    /// A composite layer: rays march to their next sample with opacity and wait there until all have met one or left
+    /// the volume; then these are shaded together.
+    void castComposite() {
+        Floats k(0), place(0), opacity(0);
+        Mask live = packet.meets, met = maskOf(0);
+        for (;;) {
+            Mask open = live & !met;
+            if (anyOf(open)) {
+                const Mask full = skipEmpty(job, packet, k, open);
+                open = full & (k < packet.count);
+                if (anyOf(open)) march<kPair>(open, k, met, place, opacity, run());
+                live &= met | (k < packet.count);
+                continue;
+            }
+            if (!anyOf(met)) return;
+            this->drawSample(layer, someAbsent(job, packet, k, met), place, opacity, k, met);
+            k = choose(met, k + Floats(1), k);
+            live &= (k < packet.count) & packet.seeThrough();
+            met = maskOf(0);
+            if (anyOf(live)) march<1>(live, k, met, place, opacity, 1); // the next sample often has opacity, too
+            live &= met | (k < packet.count);
+        }
+    }
+
+    /// Takes samples until every open ray has met opacity or `most` are over.
+    template <int Ahead> void march(Mask open, Floats& k, Mask& met, Floats& place, Floats& opacity, int most) {
+        const Read read = reader(layer, someAbsent(job, packet, k, open));
+        Fixed at = fixedOf(packet.cells(k));
+        for (int n = 0; n < most; n += Ahead) {
+            Found found[Ahead];
+            for (int i = 0; i < Ahead; ++i) {
+                const Mask own = open & (k + Floats(i) < packet.count);
+                count(own);
+                found[i] = read.next(at, own);
+                at += advance;
+            }
+            for (const Found& each : found) {
+                const Floats along = placeOf(each.value);
+                Mask hit = open & each.present & mayShow(layer, along);
+                if (anyOf(hit)) {
+                    const Floats alpha = opacityAt(layer, tablePlace(along), hit);
+                    hit &= alpha > Floats(0);
+                    place = choose(hit, along, place);
+                    opacity = choose(hit, alpha, opacity);
+                    met |= hit;
+                    open &= !hit;
+                }
+                k = choose(open, k + Floats(1), k);
+                open &= k < packet.count;
+            }
+            if (!anyOf(open)) return;
+        }
+    }
+
+    /// A maximum or minimum without brushes and lenses: blocks that cannot exceed what a ray has found are passed over.
+    void castExtremum() {
+        constexpr int kSeed = 16; // samples apart that are taken first, so that more blocks can be passed over
+        const bool least = (layer.style == RayStyle::Minimum) != (layer.placeScale < 0);
+        const Floats sign(least ? -1 : 1);
+        Floats best(-1e30), bestAt(0);
+        if (job.skip.bound != nullptr)
+            for (Floats k(kSeed / 2); anyOf(packet.meets & (k < packet.count)); k += Floats(kSeed))
+                takeExtremum(sign, 1, k, packet.meets & (k < packet.count), best, bestAt);
+        Floats k(0);
+        Mask live = packet.meets;
+        const int most = job.stepVoxels > 1 ? 1 : kAhead;
+        while (anyOf(live)) {
+            Mask useful = live;
+            if (job.skip.bound != nullptr) {
+                const Vec cells = packet.cells(k);
+                const Block block = blockAt(cells, job.skip.edge, job.skip.count);
+                const Floats bound = toFloats(byteAt(job.skip.bound, block.index, live)) * Floats(1.0f / 255);
+                const Mask useless = live & (best > Floats(-1e30)) & (bound <= scoreOf(best * sign));
+                k = choose(useless, k + leap(packet, cells, block.at, Floats(1), job.skip.edge), k);
+                live &= k < packet.count;
+                useful = live & !useless;
+                if (!anyOf(useful)) continue;
+            }
+            takeExtremum(sign, most, k, useful, best, bestAt);
+            k = choose(useful, k + Floats(most), k);
+            live &= k < packet.count;
+        }
+        typename Base::Projected sums;
+        const Mask some = best > Floats(-1e30);
+        sums.add(layer.style, Floats(layer.threshold), some, placeOf(best * sign), Floats(1), Floats(0));
+        sums.bestAt = bestAt;
+        this->showProjection(layer, sums);
+    }
+
+    Floats scoreOf(Floats value) const {
+        const Floats x = clamped(placeOf(value), Floats(0), Floats(1));
+        return layer.style == RayStyle::Minimum ? Floats(1) - x : x;
+    }
+
+    /// Takes samples from k on, kAhead at a time.
+    void takeExtremum(Floats sign, int most, Floats k, Mask lanes, Floats& best, Floats& bestAt) {
+        const Read read = reader(layer, someAbsent(job, packet, k, lanes));
+        Fixed at = fixedOf(packet.cells(k));
+        for (int n = 0; n < most; n += kAhead) {
+            Found found[kAhead];
+            for (int i = 0; i < kAhead && i < most; ++i) {
+                const Mask own = lanes & (k + Floats(i) < packet.count);
+                count(own);
+                found[i] = read.next(at, own);
+                at += advance;
+            }
+            for (int i = 0; i < kAhead && i < most; ++i) {
+                const Floats value = found[i].value * sign;
+                Mask better = found[i].present & (value > best);
+                if (packet.holeCount > 0) better &= packet.shows(k + Floats(i));
+                best = choose(better, value, best);
+                bestAt = choose(better, k + Floats(i), bestAt);
+            }
+            k += Floats(kAhead);
+        }
+    }
+
+    /// An iso-surface: rays march to their next intersection and wait there.
+    void castSurface() {
+        Floats k(0), last(-2); // `last`: the sample that `before` holds
+        Found before{Floats(0), maskOf(0)}, now = before;
+        Mask live = packet.meets, met = maskOf(0);
+        for (;;) {
+            Mask open = live & !met;
+            if (anyOf(open)) {
+                const Mask full = skipEmpty(job, packet, k, open);
+                open = full & (k < packet.count);
+                if (anyOf(open)) cross(open, k, last, met, before, now);
+                live &= met | (k < packet.count);
+                continue;
+            }
+            if (!anyOf(met)) return;
+            const bool masked = someAbsent(job, packet, k, met);
+            const typename Base::Surface surface = this->meetSurface(layer, masked, before, now, k, met);
+            packet.blend(surface.color, surface.opacity, surface.at, met);
+            before.value = choose(met, now.value, before.value);
+            before.present = (before.present & !met) | (now.present & met);
+            last = choose(met, k, last);
+            k = choose(met, k + Floats(1), k);
+            live &= (k < packet.count) & packet.seeThrough();
+            met = maskOf(0);
+        }
+    }
+
+    /// Takes samples until every open ray has crossed the surface or the run is over.
+    void cross(Mask open, Floats& k, Floats& last, Mask& met, Found& before, Found& now) {
+        const Read read = reader(layer, someAbsent(job, packet, k, open));
+        const Mask leapt = open & (k > last + Floats(1)) & (k > Floats(0));
+        if (anyOf(leapt)) { // what these would have read at the sample before
+            const Found own = read(packet.cells(k - Floats(1)), leapt);
+            before.value = choose(leapt, own.value, before.value);
+            before.present = (before.present & !leapt) | own.present;
+        }
+        const int most = run();
+        const Floats value(layer.isoValue);
+        Fixed at = fixedOf(packet.cells(k));
+        for (int n = 0; n < most; n += kPair) {
+            Found found[kPair];
+            for (int i = 0; i < kPair; ++i) {
+                const Mask own = open & (k + Floats(i) < packet.count);
+                count(own);
+                found[i] = read.next(at, own);
+                at += advance;
+            }
+            for (const Found& each : found) {
+                const Mask above = before.value >= value, over = each.value >= value;
+                const Mask hit = open & before.present & each.present & ((above & !over) | (over & !above));
+                now.value = choose(open, each.value, now.value);
+                now.present = (now.present & !open) | (each.present & open);
+                met |= hit;
+                open &= !hit;
+                before.value = choose(open, each.value, before.value);
+                before.present = (before.present & !open) | (each.present & open);
+                last = choose(open, k, last);
+                k = choose(open, k + Floats(1), k);
+                open &= k < packet.count;
+            }
+            if (!anyOf(open)) return;
+        }
+    }
+};
+
+template <bool Bcc, bool Exact> std::uint64_t castPacket(const CastJob& job, Packet& packet) {
+    const LayerView& layer = job.layers[0];
+    const bool one = job.layers.size() == 1, plain = !job.focus.any;
+    SingleCaster<Bcc, Exact> caster(job, packet);
+    if (one && layer.style == RayStyle::Composite && plain && !layer.shaded && packet.holeCount == 0)
+        caster.castMatter();
+    else if (one && layer.style == RayStyle::Composite)
+        caster.castComposite();
+    else if (one && layer.style == RayStyle::Iso)
+        caster.castSurface();
+    else if (one && plain && (layer.style == RayStyle::Maximum || layer.style == RayStyle::Minimum))
+        caster.castExtremum();
+    else
+        caster.castLayers();
+    return caster.taken;
+}
+
+template <bool Bcc, bool Exact> void castPixels(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) {
+    std::uint64_t taken = 0;
+    for (int y = begin.y; y < end.y; y += kRows)
+        for (int x = begin.x; x < end.x; x += kColumns) {
+            Packet packet = beginPacket(job, {x, y}, end);
+            if (!anyOf(packet.meets)) continue;
+            taken += castPacket<Bcc, Exact>(job, packet);
+            storePacket(job, packet, {x, y}, end);
+        }
+    if (job.samples != nullptr) __atomic_fetch_add(job.samples, taken, __ATOMIC_RELAXED);
+}
+
+inline void castTile(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) {
+    const VolumeView& volume = *job.layers[0].volume;
+    const bool exact = volume.shorts == nullptr;
+    (volume.bcc ? (exact ? castPixels<true, true> : castPixels<true, false>)
+                : (exact ? castPixels<false, true> : castPixels<false, false>))(job, begin, end);
+}
+
+} // namespace tessera::vis::packet::TESSERA_LANES

@@ -1,0 +1,63 @@
+#include "vis/packet/packet_table.h"
+
+#include "vis/optics/ray_setup.h"
+#include "vis/packet/packet_volume.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace tessera::vis::packet {
+
+Table makeTable(const TransferFunction& function, Range range) {
+    std::vector<glm::dvec4> colors;
+    for (int i = 0; i < kTableEntries; ++i) {
+        const glm::dvec4 srgb =
+            evaluate(function, range, glm::mix(range.lo, range.hi, double(i) / (kTableEntries - 1)));
+        colors.emplace_back(linearFromSrgb(glm::dvec3(srgb)), srgb.a);
+    }
+    double most = 0;
+    for (const glm::dvec4& color : colors) most = std::max(most, color.a);
+    Table table;
+    table.opacityScale = most > 0 ? float(most) : 1;
+    const auto quantum = [&](std::size_t entry, int component) {
+        const double own = colors[std::min(entry, colors.size() - 1)][component];
+        const double part = component == 3 ? own / double(table.opacityScale) : own;
+        return std::uint32_t(std::lround(std::clamp(part, 0.0, 1.0) * kQuantum));
+    };
+    for (std::size_t i = 0; i < colors.size(); ++i) {
+        for (int c = 0; c < 4; ++c) table.entries.push_back(std::int32_t(quantum(i, c) | quantum(i + 1, c) << 16));
+        table.opacity.push_back(float(quantum(i, 3)));
+    }
+    return table;
+}
+
+std::vector<std::uint32_t> packedTable(const TransferFunction& function, Range range) {
+    std::vector<std::uint32_t> out;
+    const auto quantum = [](double part) { return std::uint32_t(std::clamp(part, 0.0, 1.0) * kQuantum + 0.5); };
+    for (int i = 0; i < kPackedEntries; ++i) {
+        const glm::dvec4 srgb =
+            evaluate(function, range, glm::mix(range.lo, range.hi, double(i) / (kPackedEntries - 1)));
+        const glm::dvec3 color = linearFromSrgb(glm::dvec3(srgb));
+        const double extinction = std::max(0.0, -std::log2(1 - srgb.a)); // not -0
+        const std::int64_t bits = std::int64_t(std::bit_cast<std::uint32_t>(float(std::min(extinction, 1e6)))) -
+                                  (std::int64_t(kExtinctionLeast) << 23);
+        const std::int64_t half = std::int64_t(1) << (kExtinctionShift - 1);
+        const auto shortened =
+            std::uint32_t(std::clamp((bits + half) >> kExtinctionShift, std::int64_t(0), std::int64_t(kQuantum)));
+        out.push_back(quantum(color.x) | quantum(color.y) << 16);
+        out.push_back(quantum(color.z) | shortened << 16);
+    }
+    return out;
+}
+
+void markShown(const Table& table, LayerView& layer) {
+    const int last = int(table.opacity.size()) - 1;
+    for (int bin = 0; bin < kShowBins; ++bin) {
+        const int first = bin * last / (kShowBins - 1) - 1, beyond = (bin + 1) * last / (kShowBins - 1) + 2;
+        for (int i = std::max(first, 0); i <= std::min(beyond, last); ++i)
+            if (table.opacity[std::size_t(i)] > 0) layer.shows[bin / 32] |= 1u << (bin % 32);
+    }
+}
+
+} // namespace tessera::vis::packet

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "vis/packet/cast_job.h"
+#include "vis/transfer/transfer_function.h"
+
+#include <vector>
+
+/// Transfer functions as tables for packets of samples.
+namespace tessera::vis::packet {
+
+/// Entries of LayerView::table, and the factor of their opacities.
+struct Table {
+    std::vector<std::int32_t> entries;
+    std::vector<float> opacity; ///< of each entry, in kQuantum
+    float opacityScale = 1;
+};
+Table makeTable(const TransferFunction& function, Range range);
+
+/// LayerView::packed.
+std::vector<std::uint32_t> packedTable(const TransferFunction& function, Range range);
+
+/// Sets LayerView::shows.
+void markShown(const Table& table, LayerView& layer);
+
+} // namespace tessera::vis::packet
