@@ -12,12 +12,36 @@ namespace tessera::vis::packet {
 
 namespace {
 
+struct Extent {
+    float lo = std::numeric_limits<float>::infinity(), hi = -lo;
+    void add(const Extent& other) { *this = {std::min(lo, other.lo), std::max(hi, other.hi)}; }
+};
+
+/// Of the present samples.
+Extent extentOf(const volume::BrickSamples& brick) {
+    constexpr std::size_t kTogether = 16; // so that the compiler uses vectors
+    Extent out;
+    float lo[kTogether], hi[kTogether];
+    std::ranges::fill(lo, Extent{}.lo);
+    std::ranges::fill(hi, Extent{}.hi);
+    const std::size_t whole = brick.present.empty() ? brick.values.size() / kTogether * kTogether : 0;
+    for (std::size_t s = 0; s < whole; s += kTogether)
+        for (std::size_t i = 0; i < kTogether; ++i) {
+            lo[i] = std::min(lo[i], brick.values[s + i]);
+            hi[i] = std::max(hi[i], brick.values[s + i]);
+        }
+    for (std::size_t s = whole; s < brick.values.size(); ++s)
+        if (brick.isPresent(s)) out.add({brick.values[s], brick.values[s]});
+    for (std::size_t i = 0; i < kTogether; ++i) out.add({lo[i], hi[i]});
+    return out;
+}
+
 /// All samples of a channel as the source has them.
 struct Gathered {
     volume::Lattice lattice;
     std::vector<float> values;
     std::vector<std::uint8_t> present; ///< empty: all
-    float lo = std::numeric_limits<float>::infinity(), hi = -lo;
+    Extent range;
 
     std::size_t at(glm::ivec3 sample) const {
         return lattice.index(volume::clampToLattice(lattice.kind, lattice.size, sample));
@@ -30,6 +54,11 @@ void insertBrick(Gathered& out, glm::ivec3 begin, const volume::BrickSamples& br
             const std::size_t to = out.lattice.index(begin + glm::ivec3(0, y, z));
             const std::size_t from =
                 (std::size_t(z) * std::size_t(brick.size.y) + std::size_t(y)) * std::size_t(brick.size.x);
+            if (brick.present.empty()) {
+                std::copy_n(brick.values.begin() + std::ptrdiff_t(from), brick.size.x,
+                            out.values.begin() + std::ptrdiff_t(to));
+                continue;
+            }
             for (std::size_t x = 0; x < std::size_t(brick.size.x); ++x) {
                 const bool there = brick.isPresent(from + x);
                 out.values[to + x] = there ? brick.values[from + x] : 0;
@@ -43,30 +72,19 @@ Gathered gatherAll(const volume::BrickSource& source, const PacketChannel& what)
     Gathered out;
     out.lattice = grid.lattice;
     out.values.resize(grid.lattice.count());
-    std::vector<volume::BrickStats> stats(grid.brickCount());
-    std::vector<std::uint8_t> absent(stats.size());
+    std::vector<Extent> own(grid.brickCount());
+    std::vector<std::uint8_t> absent(own.size());
     const auto key = [&](std::size_t i) { return volume::BrickKey{what.channel, what.time, 0, grid.indexOf(i)}; };
     out.present.resize(out.values.size(), 1);
-    parallelFor(stats.size(), [&](std::size_t i) {
+    parallelFor(own.size(), [&](std::size_t i) {
         const volume::BrickSamples brick = source.read(key(i));
         insertBrick(out, grid.begin(grid.indexOf(i)), brick);
-        volume::BrickStats& own = stats[i];
-        own = {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), 0};
-        for (std::size_t s = 0; s < brick.values.size(); ++s) {
-            if (!brick.isPresent(s)) {
-                absent[i] = 1;
-                continue;
-            }
-            own.min = std::min(own.min, brick.values[s]);
-            own.max = std::max(own.max, brick.values[s]);
-        }
+        own[i] = extentOf(brick);
+        absent[i] = std::ranges::find(brick.present, std::uint8_t(0)) != brick.present.end();
     });
-    for (const volume::BrickStats& own : stats) {
-        out.lo = std::min(out.lo, own.min);
-        out.hi = std::max(out.hi, own.max);
-    }
+    for (const Extent& each : own) out.range.add(each);
     if (std::ranges::none_of(absent, [](std::uint8_t some) { return some != 0; })) out.present = {};
-    if (!(out.lo <= out.hi)) out.lo = out.hi = 0;
+    if (!(out.range.lo <= out.range.hi)) out.range = {0, 0};
     return out;
 }
 
@@ -77,16 +95,20 @@ volume::BrickSamples neighbourhood(const Gathered& all, glm::ivec3 firstTexel, i
     const int edge = kRow + 2 * halo;
     out.size = {edge, edge, edge * slices};
     const std::size_t count = std::size_t(edge) * std::size_t(edge) * std::size_t(edge * slices);
-    out.values.reserve(count);
-    if (!all.present.empty()) out.present.reserve(count);
+    out.values.resize(count);
+    if (!all.present.empty()) out.present.resize(count);
     const glm::ivec3 first = (firstTexel - halo) * glm::ivec3(1, 1, slices);
+    const int last = all.lattice.size.x - 1;
+    std::vector<int> column(std::size_t(edge), 0);
+    for (int x = 0; x < edge; ++x) column[std::size_t(x)] = std::clamp(first.x + x, 0, last);
+    std::size_t to = 0;
     for (int z = 0; z < out.size.z; ++z)
         for (int y = 0; y < edge; ++y) {
             const std::size_t row = all.at({0, first.y + y, first.z + z});
-            for (int x = 0; x < edge; ++x) {
-                const std::size_t i = row + std::size_t(std::clamp(first.x + x, 0, all.lattice.size.x - 1));
-                out.values.push_back(all.values[i]);
-                if (!all.present.empty()) out.present.push_back(all.present[i]);
+            for (const int x : column) {
+                out.values[to] = all.values[row + std::size_t(x)];
+                if (!all.present.empty()) out.present[to] = all.present[row + std::size_t(x)];
+                ++to;
             }
         }
     return out;
@@ -102,15 +124,19 @@ public:
         const std::size_t base =
             ((std::size_t(brick_.z) * std::size_t(out_.bricks.y) + std::size_t(brick_.y)) * std::size_t(out_.bricks.x) +
              std::size_t(brick_.x)) *
-            std::size_t(out_.stride());
-        for (int s = 0; s < slices_; ++s)
-            for (int z = 0; z < kRow; ++z)
-                for (int i = 0; i < kSlice; ++i) {
-                    const std::size_t source = std::size_t(z * slices_ + s) * kRow * kRow + std::size_t(i);
-                    const std::size_t to = (base + std::size_t(s * out_.brickPairs() + z * kSlice + i)) * 2;
-                    sample(source, to);
-                    sample(source + kRow, to + 1);
-                }
+            std::size_t(out_.stride()) * 2;
+        if (out_.exact)
+            pairs(out_.floats.data() + base, [&](std::size_t i) {
+                return from_.isPresent(i) ? float((double(from_.values[i]) - out_.offset) / out_.scale) : 0.0f;
+            });
+        else
+            pairs(out_.shorts.data() + base, [&, perUnit = 1 / out_.scale](std::size_t i) {
+                const double value = from_.isPresent(i) ? (double(from_.values[i]) - out_.offset) * perUnit : 0;
+                return std::int16_t(std::clamp(value, 0.0, double(kQuantum)) + 0.5);
+            });
+        if (!out_.present.empty())
+            pairs(out_.present.data() + base,
+                  [&](std::size_t i) { return std::int16_t(from_.isPresent(i) ? kQuantum : 0); });
     }
 
     void bounds() {
@@ -126,14 +152,18 @@ public:
     }
 
 private:
-    void sample(std::size_t from, std::size_t to) {
-        const bool there = from_.isPresent(from);
-        const double value = there ? (double(from_.values[from]) - out_.offset) / out_.scale : 0;
-        if (out_.exact)
-            out_.floats[to] = float(value);
-        else
-            out_.shorts[to] = std::int16_t(std::clamp(value, 0.0, double(kQuantum)) + 0.5);
-        if (!out_.present.empty()) out_.present[to] = there ? kQuantum : 0;
+    /// `value(i)`: what is stored of sample i.
+    template <class T, class Value> void pairs(T* to, const Value& value) const {
+        std::vector<T> own(from_.values.size());
+        for (std::size_t i = 0; i < own.size(); ++i) own[i] = value(i);
+        for (int s = 0; s < slices_; ++s)
+            for (int z = 0; z < kRow; ++z) {
+                const T* first = own.data() + std::size_t(z * slices_ + s) * kRow * kRow;
+                for (int i = 0; i < kSlice; ++i) {
+                    *to++ = first[i];
+                    *to++ = first[i + kRow];
+                }
+            }
     }
 
     /// The odd sublattice lies half a cell further: its cells around the block begin one earlier, which may lie in the
@@ -196,24 +226,13 @@ void spreadAbsent(PacketVolume& volume) {
     });
 }
 
-struct Extent {
-    float lo = std::numeric_limits<float>::infinity(), hi = -lo;
-};
-
 /// Of the present samples of all bricks. Filtered ones leave the range of the data, by up to 2/3 of its width but
 /// seldom by much, and 15 bits are few: so they are filtered twice.
 template <class Samples> Extent rangeOf(std::size_t bricks, const Samples& samplesOf) {
     std::vector<Extent> own(bricks);
-    parallelFor(bricks, [&](std::size_t i) {
-        const volume::BrickSamples samples = samplesOf(i);
-        for (std::size_t s = 0; s < samples.values.size(); ++s) {
-            if (!samples.isPresent(s)) continue;
-            own[i].lo = std::min(own[i].lo, samples.values[s]);
-            own[i].hi = std::max(own[i].hi, samples.values[s]);
-        }
-    });
+    parallelFor(bricks, [&](std::size_t i) { own[i] = extentOf(samplesOf(i)); });
     Extent out;
-    for (const Extent& each : own) out = {std::min(out.lo, each.lo), std::max(out.hi, each.hi)};
+    for (const Extent& each : own) out.add(each);
     return out.lo <= out.hi ? out : Extent{0, 0};
 }
 
@@ -273,7 +292,7 @@ PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketCha
         const volume::BrickSamples near = neighbourhood(all, placeOf(i) * kBrick - kMargin, filtered ? 1 : 0);
         return filtered ? volume::prefilter(near, geometry) : near;
     };
-    setScale(out, filtered && !out.exact ? rangeOf(bricks, samplesOf) : Extent{all.lo, all.hi});
+    setScale(out, filtered && !out.exact ? rangeOf(bricks, samplesOf) : all.range);
     parallelFor(bricks, [&](std::size_t i) {
         const volume::BrickSamples near = samplesOf(i);
         BrickWriter writer(out, placeOf(i), near);
