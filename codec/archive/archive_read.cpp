@@ -19,9 +19,9 @@ namespace {
 bool isAlwaysFinite(const FrameRecord& frame) {
     constexpr double kLargestCode = 4294967296.0, kLargest = 3e38;
     if (frame.numbers.kind == NumberKind::Float) return false;
-    const double unit = frame.numbers.kind == NumberKind::Scaled      ? 1 / std::abs(frame.numbers.step)
-                        : frame.numbers.kind == NumberKind::Quantised ? std::abs(frame.numbers.step)
-                                                                      : 1;
+    const double unit = frame.numbers.kind == NumberKind::Scaled    ? 1 / std::abs(frame.numbers.step)
+                        : frame.numbers.kind == NumberKind::Integer ? 1
+                                                                    : std::abs(frame.numbers.step);
     const double number = std::abs(frame.numbers.origin) + unit * kLargestCode;
     return number < kLargest && std::abs(frame.valueOffset) + std::abs(frame.valueScale) * number < kLargest;
 }

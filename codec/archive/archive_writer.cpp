@@ -5,6 +5,7 @@
 #include "codec/archive/brick_input.h"
 #include "codec/archive/coded_bricks.h"
 #include "codec/archive/frame_model.h"
+#include "codec/archive/frame_steps.h"
 #include "codec/brick/whole_brick.h"
 #include "codec/bytes/lzma.h"
 #include "codec/container/growing_file.h"
@@ -52,6 +53,7 @@ struct FrameCoding {
     std::vector<volume::BrickImportance> importance;
     Taken taken;
     Model model;
+    StepChoice steps;     ///< for numbers of kind Stepped
     int step = 1;         ///< times since `before`
     bool tallies = false; ///< store statistics of bricks
     bool keeps = false;   ///< keep samples and sizes for later frames
@@ -82,10 +84,11 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
         const BrickFormat format = brickFormat(grid, brick, part.type, frame);
         input.take(own, own.indexOf(ownNumber), part, frame.mask >= 0);
         if (!taken.bricks[b])
-            taken.bricks[b] = prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory);
+            taken.bricks[b] =
+                prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory, steps);
         segments = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
         for (const Bytes& segment : segments) seen.bytes[b] += segment.size();
-        roundAsDecoded(format, maxError, input);
+        roundAsDecoded(format, maxError, taken.bricks[b]->decoded, input);
         about = tallyOf(part, input, tallies);
     }
     taken.bricks[b].reset();
@@ -211,7 +214,7 @@ std::vector<std::uint8_t> ArchiveWriter::Impl::repeated(const SeenFrame* before,
             flags[b] = mayStandFor(samples.type(), was, is, maxError, absentToo) ? 1 : 0;
             if (flags[b] == 0 || !options.keepsSquares) continue;
             coded = is;
-            roundAsDecoded(brickFormat(metadata.grid, brick, samples.type(), frame), maxError, coded);
+            roundAsDecoded(brickFormat(metadata.grid, brick, samples.type(), frame), maxError, {}, coded);
             flags[b] = squaredError(samples.type(), was, is) <= squaredError(samples.type(), coded, is) ? 1 : 0;
         }
     });
@@ -268,7 +271,15 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     coding.importance = importanceOfBricks(grid, samples, options.range, options.categorical, options.importance);
     const bool byBand = (header.features & kBandContexts) != 0;
     coding.model = chooseModel(grid, samples, last, byBand, frame, options, coding.taken);
-    if (!coding.taken.serves(frame, coding.model)) coding.taken.bricks.clear();
+    if (const auto steps = chooseSteps(grid, samples, frame, coding.model, options)) {
+        useSteps(*steps, frame);
+        coding.steps = steps->steps;
+        coding.taken.bricks.clear();
+        frame.model = last && last->kind == NumberKind::Stepped ? last->number : -1;
+        header.features |= kSteppedBricks;
+    } else if (!coding.taken.serves(frame, coding.model)) {
+        coding.taken.bricks.clear();
+    }
     coding.step = step();
     coding.tallies = (header.features & kBrickTallies) != 0;
     // The last frame only needs its change, not to be kept.
@@ -330,7 +341,8 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
     CodedBricks coded(bricks, levels, samples.store() ? &samples.store()->folder : nullptr);
     const bool allWhole = impl_->codeBricks(coding, samples, effortFor(samples, options.zstdLevel), coded, progress);
     // Without bands the frame needs no tables.
-    if (frame.model < 0) impl_->writeModel(coding.model, allWhole, ofTime, frame);
+    const bool idle = allWhole || frame.numbers.kind == NumberKind::Stepped;
+    if (frame.model < 0) impl_->writeModel(coding.model, idle, ofTime, frame);
     GrowingFile& file = impl_->file;
     frame.offset = file.position();
     for (std::size_t s = 0; s < levels; ++s)

@@ -56,14 +56,16 @@ void putSamples(const volume::BrickGrid& grid, glm::ivec3 brick, std::span<const
     });
 }
 
-void roundAsDecoded(const BrickFormat& format, double maxError, BrickInput& input) {
-    if (format.numbers.kind != NumberKind::Quantised) return;
+void roundAsDecoded(const BrickFormat& format, double maxError, std::span<const std::uint32_t> decoded,
+                    BrickInput& input) {
+    if (format.numbers.kind != NumberKind::Quantised && !format.isStepped()) return;
     for (std::size_t i = 0; i < input.samples.size() / sizeof(float); ++i) {
         if (!volume::isPresent(input.present, i)) continue;
         const auto sample = sampleAt<float>(input.samples, i);
-        const float decoded = sampleOf<float>(format.numbers, codeOf(format.numbers, sample));
-        if (close(format.numbers, maxError, sample, decoded))
-            std::memcpy(input.samples.data() + i * sizeof(float), &decoded, sizeof(float));
+        const std::uint32_t code = format.isStepped() ? decoded[i] : codeOf(format.numbers, sample);
+        const float rounded = sampleOf<float>(format.numbers, code);
+        if (close(format.numbers, maxError, sample, rounded))
+            std::memcpy(input.samples.data() + i * sizeof(float), &rounded, sizeof(float));
     }
 }
 

@@ -22,8 +22,10 @@ struct BrickInput {
 void putSamples(const volume::BrickGrid& grid, glm::ivec3 brick, std::span<const std::byte> samples,
                 volume::Field& field);
 
-/// Replaces samples by the values they decode to: for floats with an error bound, the values of their codes.
-void roundAsDecoded(const BrickFormat& format, double maxError, BrickInput& input);
+/// Replaces samples by the values they decode to: for floats with an error bound, the values of their codes, or of
+/// `decoded` if coefficients are quantised.
+void roundAsDecoded(const BrickFormat& format, double maxError, std::span<const std::uint32_t> decoded,
+                    BrickInput& input);
 
 /// Range of the decoded samples in physical values; also their statistics if `withTally`.
 FrameBrick tallyOf(const volume::Field& field, const BrickInput& decoded, bool withTally);

@@ -177,7 +177,8 @@ int effortFor(const FrameSamples& samples, int zstdLevel) {
 }
 
 double boundOf(const FrameRecord& frame, const FrameOptions& options) {
-    return frame.numbers.kind == NumberKind::Quantised ? std::max(options.maxError - options.spent, 0.0) : 0;
+    const bool bounded = frame.numbers.kind == NumberKind::Quantised || frame.numbers.kind == NumberKind::Stepped;
+    return bounded ? std::max(options.maxError - options.spent, 0.0) : 0;
 }
 
 double estimateFrameBytes(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameOptions& options,

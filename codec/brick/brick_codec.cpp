@@ -17,28 +17,6 @@ namespace {
 using volume::LatticeKind;
 using volume::ScalarType;
 
-/// Decodes the streams of absent and exact samples of full resolution at the front of `in`.
-DecodeStatus decodeExtras(const BrickFormat& format, std::span<const std::uint8_t> present,
-                          std::span<const std::byte>& in, DecodedBrick& out) {
-    if (format.keepsAbsent) {
-        out.absent.resize(std::size_t(std::count(present.begin(), present.end(), std::uint8_t(0))));
-        if (const DecodeStatus status = decodeStream(in, out.absent); status != DecodeStatus::Ok) return status;
-    }
-    if (!format.canHaveExact()) return DecodeStatus::Ok;
-    if (in.size() < 4) return DecodeStatus::Truncated;
-    const std::size_t exact = readU32(in.data());
-    in = in.subspan(4);
-    if (exact > countOf(format.size)) return DecodeStatus::BadLength;
-    std::vector<std::uint32_t> index(exact), bits(exact);
-    if (const DecodeStatus status = decodeStream(in, index); status != DecodeStatus::Ok) return status;
-    if (const DecodeStatus status = decodeStream(in, bits); status != DecodeStatus::Ok) return status;
-    for (std::size_t k = 0; k < exact; ++k) {
-        if (index[k] >= countOf(format.size)) return DecodeStatus::BadLength;
-        out.exact.push_back({index[k], bits[k]});
-    }
-    return DecodeStatus::Ok;
-}
-
 /// Inverts toDifferences: restores codes from differences to the previous coarse sample.
 template <class Word> void fromDifferences(std::span<const Band<Word>> bands) {
     std::uint32_t code = 0;
@@ -148,30 +126,13 @@ DecodeStatus decodeWhole(const BrickFormat& format, std::span<const std::byte> i
 
 } // namespace
 
-void DecodedBrick::begin(const BrickFormat& format, int level) {
-    size = samplesAt(format, level);
-    sublattices = format.sublattices();
-    narrow = false;
-    present.clear();
-    exact.clear();
-    absent.clear();
-}
-
-std::vector<std::uint32_t> DecodedBrick::codes() const {
-    std::vector<std::uint32_t> all(countOf(size));
-    forRows([&](std::size_t first, auto row) {
-        for (std::size_t i = 0; i < row.size(); ++i)
-            all[first + i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(row[i]));
-    });
-    return all;
-}
-
 DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
                          std::span<const std::uint8_t> present, const BandDecoder& bands, DecodedBrick& out) {
     assert(level >= 0 && level < format.levels && int(segments.size()) == format.levels - level);
     assert(present.empty() || present.size() == countOf(format.size));
     out.begin(format, level);
     out.present = maskAt(format, present, level);
+    if (format.isStepped()) return decodeStepped(format, segments, level, present, out);
     const bool narrow = out.narrow = fitsInt16(format, !present.empty());
     // Skip the extra streams to find the mode byte of a brick with one level.
     std::span<const std::byte> first = segments[0];

@@ -51,7 +51,7 @@ Numbers numbersOf(const BrickFormat& format, std::span<const std::byte> samples,
                     continue;
                 }
                 numbers.codes[i] = codeOf(format.numbers, sample);
-                if (!format.canHaveExact()) continue;
+                if (!format.canHaveExact() || format.isStepped()) continue; // see addInexact
                 if (close(format.numbers, maxError, sample, sampleOf<float>(format.numbers, numbers.codes[i])))
                     continue;
                 numbers.exactIndex.push_back(static_cast<std::uint32_t>(i));
@@ -63,6 +63,21 @@ Numbers numbersOf(const BrickFormat& format, std::span<const std::byte> samples,
         }
     });
     return numbers;
+}
+
+/// Lists the samples that decoded codes do not reproduce.
+void addInexact(const BrickFormat& format, std::span<const std::byte> samples, std::span<const std::uint8_t> present,
+                double maxError, std::span<const std::uint32_t> decoded, Numbers& numbers) {
+    std::vector<float> rounded(decoded.size());
+    toSamples(format.numbers, std::span(reinterpret_cast<const std::int32_t*>(decoded.data()), decoded.size()),
+              rounded.data());
+    for (std::size_t i = 0; i < decoded.size(); ++i) {
+        float sample = 0;
+        std::memcpy(&sample, samples.data() + i * sizeof(float), sizeof(float));
+        if (close(format.numbers, maxError, sample, rounded[i]) || !volume::isPresent(present, i)) continue;
+        numbers.exactIndex.push_back(static_cast<std::uint32_t>(i));
+        numbers.exactBits.push_back(std::bit_cast<std::uint32_t>(sample));
+    }
 }
 
 /// Replaces each coarse sample by its difference from the previous one.
@@ -161,13 +176,18 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
 
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
                            std::span<const std::uint8_t> present, double maxError, Contexts contexts,
-                           SplitMemory& memory) {
+                           SplitMemory& memory, const StepChoice& steps) {
     assert(samples.size() == countOf(format.size) * volume::byteSize(format.type));
     assert(present.empty() || present.size() == countOf(format.size));
     PreparedBrick brick;
     Numbers numbers;
     const bool plain = format.type != volume::ScalarType::F32 && present.empty();
     if (!plain) numbers = numbersOf(format, samples, present, maxError);
+    if (format.isStepped()) {
+        SteppedBrick stepped = encodeStepped(format, numbers.codes, present, steps, memory.boxes32);
+        addInexact(format, samples, present, maxError, stepped.codes, numbers);
+        brick = {std::move(stepped.segments), std::move(stepped.codes), {}, {}, {}, {}};
+    }
     const auto tokens = [&](auto& levels) {
         using Word = std::remove_pointer_t<decltype(levels[0].box().values)>;
         if (plain)
@@ -176,7 +196,7 @@ PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte>
             splitBrick<Word>(format, numbers.codes, present, format.levels, levels);
         brick.levels = levelTokens<Word>(format, contexts, levels);
     };
-    fitsInt16(format, !present.empty()) ? tokens(memory.boxes16) : tokens(memory.boxes32);
+    if (!format.isStepped()) fitsInt16(format, !present.empty()) ? tokens(memory.boxes16) : tokens(memory.boxes32);
     brick.exactIndex = std::move(numbers.exactIndex);
     brick.exactBits = std::move(numbers.exactBits);
     brick.absentBits = std::move(numbers.absentBits);
@@ -191,14 +211,14 @@ void countBrick(const PreparedBrick& brick, Histogram& histogram, int every) {
 std::vector<Bytes> encodeBrick(const BrickFormat& format, const PreparedBrick& brick,
                                std::span<const std::byte> samples, std::span<const std::uint8_t> present,
                                Compressor& compressor, const BandEncoder& bands) {
-    std::vector<Bytes> segments(brick.levels.size());
+    std::vector<Bytes> segments = format.isStepped() ? brick.stepped : std::vector<Bytes>(brick.levels.size());
     for (std::size_t level = 0; level < brick.levels.size(); ++level) {
         if (brick.levels[level].tokens.empty()) continue; // no bands
         Bytes& out = segments[brick.levels.size() - 1 - level];
         out.push_back(brick.levels[level].zero ? kNothing : kBands);
         bands.encode(brick.levels[level], int(level), out);
     }
-    tryWhole(format, samples, present, compressor, segments);
+    if (!format.isStepped()) tryWhole(format, samples, present, compressor, segments);
 
     Bytes extras;
     if (format.keepsAbsent) encodeStream(brick.absentBits, compressor, extras);

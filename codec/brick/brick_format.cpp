@@ -18,7 +18,7 @@ bool BrickFormat::predictsOdd(bool masked) const {
 }
 
 bool BrickFormat::canHaveExact() const {
-    return numbers.kind == NumberKind::Scaled || numbers.kind == NumberKind::Quantised;
+    return numbers.kind == NumberKind::Scaled || numbers.kind == NumberKind::Quantised || isStepped();
 }
 
 int codeBitsOf(ScalarType type) {

@@ -34,6 +34,8 @@ struct BrickFormat {
     bool predictsOdd(bool masked) const;
     /// Whether samples can be stored exactly in addition to their codes.
     bool canHaveExact() const;
+    /// Whether coefficients are quantised.
+    bool isStepped() const { return numbers.kind == NumberKind::Stepped; }
 };
 
 /// Code width in bits of a type whose numbers are the codes.

@@ -55,7 +55,7 @@ template <class Word> void spreadDense(const Dense& dense, LevelBox<Word>& to) {
 } // namespace
 
 bool fitsInt16(const BrickFormat& format, bool masked) {
-    return format.codeBits <= kBitsOfInt16 && liftsFast(format, masked);
+    return format.codeBits <= kBitsOfInt16 && !format.isStepped() && liftsFast(format, masked);
 }
 
 namespace {

@@ -85,13 +85,58 @@ std::optional<NumberCoding> chooseQuantised(const FrameSamples& samples, double 
     return coding;
 }
 
+/// Spacing of numbers k / 10^d or k / 2^m if the samples are such; 0 if they are not, or it is far below the bound.
+double spacingOf(const FrameSamples& samples, double maxError) {
+    constexpr double kFar = 16;
+    const NumberCoding exact = chooseLossless(samples);
+    return exact.kind == NumberKind::Scaled && maxError * exact.step < kFar ? 1 / exact.step : 0;
+}
+
+/// The largest odd multiple of a spacing such that samples at this spacing round to multiples of it within the bound.
+/// Decimal fractions are not floats: `safeError` is the bound less the error of rounding to floats.
+double multipleWithin(double spacing, double maxError, double safeError) {
+    if (!(spacing > 0)) return 0;
+    int exponent = 0;
+    const bool isBinary = std::frexp(spacing, &exponent) == 0.5;
+    return (2 * std::floor((isBinary ? maxError : safeError) / spacing) + 1) * spacing;
+}
+
+/// The smallest magnitude of a finite sample; 0 if there is none.
+float leastOf(const FrameSamples& samples) {
+    float least = std::numeric_limits<float>::infinity();
+    all(samples, 1, [&](float sample) {
+        least = std::min(least, std::isnan(sample) ? least : std::abs(sample));
+        return true;
+    });
+    return std::isfinite(least) ? least : 0;
+}
+
 } // namespace
 
 NumberCoding chooseCoding(const FrameSamples& samples, double maxError) {
     if (samples.type() != volume::ScalarType::F32) return {};
     if (maxError > 0)
-        if (const auto quantised = chooseQuantised(samples, maxError)) return *quantised;
+        if (const auto quantised = chooseQuantised(samples, maxError)) {
+            // Numbers that lie on a grid already need no more codes than the grid has points.
+            const double step = multipleWithin(spacingOf(samples, maxError), maxError, quantised->step / 2);
+            return step > quantised->step ? NumberCoding{NumberKind::Quantised, 0, step} : *quantised;
+        }
     return chooseLossless(samples);
+}
+
+std::optional<NumberCoding> steppedCoding(const FrameSamples& samples, double maxError) {
+    const std::optional<NumberCoding> quantised = chooseQuantised(samples, maxError);
+    if (!quantised) return std::nullopt;
+    double step = quantised->step;
+    // Where floats are no denser than the samples, rounding to floats takes off up to half of their distance.
+    const double spacing = spacingOf(samples, maxError);
+    const float least = leastOf(samples);
+    const double apart = double(std::nextafter(least, std::numeric_limits<float>::infinity())) - double(least);
+    if (spacing > 0 && spacing <= apart) step = std::max(step, multipleWithin(spacing, maxError, quantised->step / 2));
+    return NumberCoding{NumberKind::Stepped, quantised->origin, step / (2 * kReach + 1)};
+}
+double boundOf(const NumberCoding& stepped) {
+    return stepped.step * (2 * kReach + 1) / 2;
 }
 
 std::uint32_t codeOf(const NumberCoding&, std::uint8_t sample) {
@@ -114,6 +159,7 @@ std::uint32_t codeOf(const NumberCoding& coding, float sample) {
     case NumberKind::Scaled:
         return clampedCode(double(sample) * coding.step);
     case NumberKind::Quantised:
+    case NumberKind::Stepped:
         return clampedCode((double(sample) - coding.origin) / coding.step);
     }
     return codeOfFloat(sample);
@@ -129,6 +175,7 @@ double valueOf(const NumberCoding& coding, std::uint32_t code) {
     case NumberKind::Float:
         return double(floatOfCode(code));
     case NumberKind::Quantised:
+    case NumberKind::Stepped:
         return coding.origin + coding.step * k;
     }
     return k;
@@ -150,6 +197,7 @@ template <class Visit> void withValues(const NumberCoding& coding, Visit&& visit
     case NumberKind::Scaled:
         return visit([step](std::int32_t k) { return double(k) / step; });
     case NumberKind::Quantised:
+    case NumberKind::Stepped:
         return visit([origin, step](std::int32_t k) { return origin + step * double(k); });
     case NumberKind::Float:
         return visit([](std::int32_t k) { return double(floatOfCode(static_cast<std::uint32_t>(k))); });
@@ -192,10 +240,5 @@ TESSERA_SAMPLES(float)
 #undef TESSERA_SAMPLES
 template void toValues(const NumberCoding&, double, double, std::span<const std::int16_t>, float*);
 template void toValues(const NumberCoding&, double, double, std::span<const std::int32_t>, float*);
-
-bool close(const NumberCoding& coding, double maxError, float sample, float decoded) {
-    if (std::bit_cast<std::uint32_t>(sample) == std::bit_cast<std::uint32_t>(decoded)) return true;
-    return coding.kind == NumberKind::Quantised && std::abs(double(sample) - double(decoded)) <= maxError;
-}
 
 } // namespace tessera::codec

@@ -2,7 +2,10 @@
 
 #include "codec/brick/frame_samples.h"
 
+#include <bit>
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,6 +17,7 @@ enum class NumberKind : std::uint8_t {
     Scaled,    ///< f32 with integer multiples of a step: value = float(code / step), e.g. decimals with step = 10^d
     Float,     ///< f32: the bits as an ordered integer (codeOfFloat)
     Quantised, ///< f32 within an error bound: value = float(origin + step * code)
+    Stepped,   ///< the same with a small step, but coefficients are quantised instead (codec/brick/stepped_brick.h)
 };
 
 /// The number coding of one frame. All arithmetic is in double, with the result rounded once to float; codes are
@@ -29,6 +33,14 @@ struct NumberCoding {
 /// Quantised, with a step that leaves room for the rounding to float; lossless if the bound is below the resolution of
 /// float.
 NumberCoding chooseCoding(const FrameSamples& samples, double maxError);
+
+/// The coding by quantised coefficients with an error bound above 0; none if the bound is below the resolution of
+/// floats.
+std::optional<NumberCoding> steppedCoding(const FrameSamples& samples, double maxError);
+/// The bound that such a coding is for.
+double boundOf(const NumberCoding& stepped);
+/// Largest error of a sample's code with that coding: 2 kReach + 1 codes make a step of the Quantised one.
+inline constexpr std::int32_t kReach = 16;
 
 /// Code of one sample.
 std::uint32_t codeOf(const NumberCoding& coding, std::uint8_t sample);
@@ -52,7 +64,12 @@ double valueOf(const NumberCoding& coding, std::uint32_t code);
 template <class Word>
 void toValues(const NumberCoding& coding, double offset, double scale, std::span<const Word> codes, float* values);
 
-/// Whether `sample` may be replaced by `decoded`: equal bits, or for Quantised a difference of at most `maxError`.
-bool close(const NumberCoding& coding, double maxError, float sample, float decoded);
+/// Whether `sample` may be replaced by `decoded`: equal bits, or for Quantised and Stepped a difference of at most
+/// `maxError`.
+inline bool close(const NumberCoding& coding, double maxError, float sample, float decoded) {
+    if (std::bit_cast<std::uint32_t>(sample) == std::bit_cast<std::uint32_t>(decoded)) return true;
+    const bool bounded = coding.kind == NumberKind::Quantised || coding.kind == NumberKind::Stepped;
+    return bounded && std::abs(double(sample) - double(decoded)) <= maxError;
+}
 
 } // namespace tessera::codec

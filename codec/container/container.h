@@ -29,8 +29,11 @@ inline constexpr std::uint32_t kCompact = 2;
 /// Feature: models can have contexts by band.
 inline constexpr std::uint32_t kBandContexts = 4;
 /// Feature: the index has mean and histogram of each brick.
-inline constexpr std::uint32_t kBrickTallies = 8,
-                               kKnownFeatures = kBrickNotes | kCompact | kBandContexts | kBrickTallies;
+inline constexpr std::uint32_t kBrickTallies = 8;
+/// Feature: numbers of frames can be of kind Stepped. Only set once one is.
+inline constexpr std::uint32_t kSteppedBricks = 16;
+inline constexpr std::uint32_t kUsualFeatures = kBrickNotes | kCompact | kBandContexts | kBrickTallies,
+                               kKnownFeatures = kUsualFeatures | kSteppedBricks;
 
 /// xxh3, 64 bits, seed 0.
 std::uint64_t checksum(std::span<const std::byte> bytes);
@@ -43,7 +46,7 @@ struct Block {
 
 struct Header {
     std::uint32_t version = kFormatVersion;
-    std::uint32_t features = kKnownFeatures; ///< flags that a reader must know
+    std::uint32_t features = kUsualFeatures; ///< flags that a reader must know
     std::uint64_t fileSize = 0;              ///< bytes beyond belong to an unfinished append
     Block metadata, index;                   ///< index: its last page
     bool operator==(const Header&) const = default;

@@ -41,7 +41,7 @@ public:
     RecordReader(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
                  const std::string& file)
         : in_(bytes), notes_((header.features & kBrickNotes) != 0), tallies_((header.features & kBrickTallies) != 0),
-          end_(header.index.offset), shape_(shape), file_(file) {}
+          stepped_((header.features & kSteppedBricks) != 0), end_(header.index.offset), shape_(shape), file_(file) {}
 
     IndexPage page() {
         IndexPage page;
@@ -125,7 +125,8 @@ private:
         requireInside(frame.offset, frame.length);
         const auto kind = in_.get<std::uint8_t>(), wavelet = in_.get<std::uint8_t>(), keeps = in_.get<std::uint8_t>();
         const auto codeBits = in_.get<std::uint8_t>();
-        require(kind <= static_cast<std::uint8_t>(NumberKind::Quantised), "an unknown coding of numbers", file_);
+        require(kind <= static_cast<std::uint8_t>(stepped_ ? NumberKind::Stepped : NumberKind::Quantised),
+                "an unknown coding of numbers", file_);
         require(wavelet < std::size(kWaveletNames), "an unknown wavelet", file_);
         require(keeps <= (notes_ ? 3 : 1), "an unknown flag of a frame", file_);
         require(codeBits >= 1 && codeBits <= 32, "an invalid width of codes", file_);
@@ -158,7 +159,7 @@ private:
     }
 
     ByteReader in_;
-    bool notes_, tallies_;
+    bool notes_, tallies_, stepped_;
     std::uint64_t end_; ///< of the part of the file that may contain chunks
     const IndexShape& shape_;
     const std::string& file_;

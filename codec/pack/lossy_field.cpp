@@ -209,7 +209,7 @@ Thresholded giveUpDetails(const volume::BrickGrid& grid, FrameSamples& samples, 
                 const BrickFormat format = brickFormat(own, brick, part.type, frame);
                 original.take(own, brick, part, part.mask != nullptr);
                 BrickInput rounded = original;
-                roundAsDecoded(format, rounding, rounded);
+                roundAsDecoded(format, rounding, {}, rounded);
                 double strongest = most * double(strength[firstBrick + b]), error = 0;
                 int tries = 0;
                 for (;; ++tries, strongest /= 2) {

@@ -46,11 +46,14 @@ public:
     /// For one parameter, independent of the number of layers.
     double always(const volume::Parameter& parameter) const {
         // Bricks being coded: samples, flags, codes and coefficients on every thread, and the bytes of a batch.
-        constexpr double kThreads = 16, kCodes = 12;
+        // Where coefficients are quantised, what a reader will decode is computed beside them.
+        constexpr double kThreads = 16, kCodes = 12, kWithDecoded = 28;
+        const bool bounded = options_.maxError > 0 || options_.absError > 0 || options_.sizeMb > 0;
+        const double codes = parameter.type == volume::ScalarType::F32 && bounded ? kWithDecoded : kCodes;
         const std::size_t brick = brickBytes(metadata_.grid, parameter.type);
         const double samples = double(brick) / double(volume::byteSize(parameter.type));
         return std::min(kThreads, double(std::thread::hardware_concurrency())) *
-                   (double(brick) + (1 + kCodes) * samples) +
+                   (double(brick) + (1 + codes) * samples) +
                double(batchOf(brick) * brick);
     }
     double ofLayers(const volume::Parameter& parameter, int layers) const {

@@ -3,6 +3,8 @@
 #include "codec/archive/archive_impl.h"
 #include "codec/archive/brick_input.h"
 #include "codec/archive/frame_model.h"
+#include "codec/archive/frame_steps.h"
+#include "codec/brick/stepped_brick.h"
 #include "volume/base/parallel.h"
 
 #include <mutex>
@@ -33,10 +35,12 @@ struct BoxesOfFrame {
         return format;
     }
 
-    /// The model of the archive, or a new one if that saves bytes including its own.
+    /// The model of the archive, unless quantised coefficients need none, or a new one if that saves bytes including
+    /// its own.
     Model modelFor(std::span<const volume::MergedBrick> boxes, const std::vector<std::uint8_t>& wanted,
                    const Model& known, std::uint64_t& bytes) const {
         constexpr int kMostTables = 24;
+        if (frame.numbers.kind == NumberKind::Stepped) return known;
         Histogram tokens(grid.levels, known.contexts);
         std::mutex mutex;
         parallelRanges(boxes.size(), [&](std::size_t first, std::size_t last) {
@@ -58,6 +62,16 @@ struct BoxesOfFrame {
         return fresh;
     }
 };
+
+/// The steps of a frame: those of its first brick that has bytes; the usual ones if bricks have a single level.
+StepChoice stepsOf(const auto& impl, const FrameRecord& frame) {
+    for (std::size_t b = 0; impl.metadata.grid.levels > 1 && b < frame.bricks.size(); ++b) {
+        std::span<const std::byte> in =
+            frame.segments[b].length > 0 ? impl.segment(frame.segments[b]) : std::span<const std::byte>();
+        if (StepChoice steps; takeSteps(in, steps) == DecodeStatus::Ok) return steps;
+    }
+    return usualSteps();
+}
 
 } // namespace
 
@@ -84,14 +98,20 @@ std::vector<MergedBytes> bytesOfMerged(const Archive& archive, std::span<const v
         const BoxesOfFrame work{grid, field, frame};
         const auto decoder = impl.decoder(frame.model);
         const BandEncoder encoder(work.modelFor(boxes, wanted, decoder->model(), sums.front().together));
+        const StepChoice steps = frame.numbers.kind == NumberKind::Stepped ? stepsOf(impl, frame) : StepChoice();
         parallelRanges(boxes.size(), [&](std::size_t first, std::size_t last) {
             Compressor compressor(effortFor(field, impl.metadata.options.zstdLevel),
                                   (impl.header.header.features & kCompact) != 0);
             BrickInput input;
+            SplitMemory memory;
             for (std::size_t b = first; b < last; ++b) {
                 if (wanted[b] == 0) continue;
                 const BrickFormat format = work.take(boxes[b], input);
-                for (const Bytes& segment : encodeBrick(format, input.samples, input.present, 0, compressor, encoder))
+                const double maxError = format.isStepped() ? boundOf(format.numbers) : 0;
+                const PreparedBrick brick = prepareBrick(format, input.samples, input.present, maxError,
+                                                         encoder.model().contexts, memory, steps);
+                for (const Bytes& segment :
+                     encodeBrick(format, brick, input.samples, input.present, compressor, encoder))
                     sums[b].together += segment.size();
             }
         });

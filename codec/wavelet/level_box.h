@@ -27,6 +27,8 @@ public:
         reset(size, false);
         std::fill_n(values_.begin(), std::ptrdiff_t(pitchFor(size.x)) * size.y * size.z, value);
     }
+    /// Sets all words to 0.
+    void clear() { std::fill_n(values_.begin(), std::ptrdiff_t(pitchFor(size_.x)) * size_.y * size_.z, Word(0)); }
     Box<Word> box() { return {values_.data(), size_, pitchFor(size_.x)}; }
     Box<const Word> box() const { return {values_.data(), size_, pitchFor(size_.x)}; }
     Box<std::uint8_t> flags() { return {masked() ? present_.data() : nullptr, size_, pitchFor(size_.x)}; }

@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 #include <vector>
 
 namespace tessera::codec {
@@ -85,11 +86,45 @@ std::uint32_t floatPrediction(const LiftStep& step, const Rows& source, int row,
     return floatMean(source.at(left ? row : row + 1, lane), source.at(right ? row + 1 : row, lane));
 }
 
+/// Sums of symmetric pairs of rows without absent samples, in loops that compilers vectorise.
+template <class Sum>
+void applyPairs(const LiftStep& step, bool update, const Rows& target, const Rows& source, std::uint32_t sign) {
+    const int sources = update ? usableDetails(step.pairs, target.rows, source.rows) : source.rows;
+    using Modulo = std::make_unsigned_t<Sum>;
+    const Modulo half = Modulo(1) << (step.shift - 1);
+    const auto weightOf = [&](std::size_t j) { return static_cast<Modulo>(static_cast<Sum>(step.weight[j])); };
+    const auto pairOf = [](std::int32_t a, std::int32_t b) {
+        return static_cast<Modulo>(Sum(a)) + static_cast<Modulo>(Sum(b));
+    };
+    for (int row = 0; row < target.rows; ++row) {
+        const Pairs pairs = pairsAt(row, step.pairs, sources, update);
+        if (pairs.none) continue;
+        const auto rowOf = [&](int i) { return source.values + std::ptrdiff_t(i) * source.lanes; };
+        const auto* left = reinterpret_cast<const std::int32_t*>(rowOf(pairs.left[0]));
+        const auto* right = reinterpret_cast<const std::int32_t*>(rowOf(pairs.right[0]));
+        const bool two = step.pairs > 1, three = step.pairs > 2;
+        const auto* left1 = two ? reinterpret_cast<const std::int32_t*>(rowOf(pairs.left[1])) : left;
+        const auto* right1 = two ? reinterpret_cast<const std::int32_t*>(rowOf(pairs.right[1])) : right;
+        const auto* left2 = three ? reinterpret_cast<const std::int32_t*>(rowOf(pairs.left[2])) : left;
+        const auto* right2 = three ? reinterpret_cast<const std::int32_t*>(rowOf(pairs.right[2])) : right;
+        const Modulo w0 = weightOf(0), w1 = two ? weightOf(1) : 0, w2 = three ? weightOf(2) : 0;
+        std::uint32_t* __restrict to = target.values + std::ptrdiff_t(row) * target.lanes;
+        for (int i = 0; i < target.lanes; ++i) {
+            const Modulo sum = w0 * pairOf(left[i], right[i]) + w1 * pairOf(left1[i], right1[i]) +
+                               w2 * pairOf(left2[i], right2[i]) + half;
+            to[i] += sign * static_cast<std::uint32_t>(static_cast<Sum>(sum) >> step.shift);
+        }
+    }
+}
+
 /// target[i] += sign * prediction(i), where sign is 1 or 2^32 - 1.
 void apply(const LiftStep& step, bool update, const Rows& target, const Rows& source, std::uint32_t sign,
            Arithmetic arithmetic) {
     const int lanes = target.lanes;
     const bool masked = target.present != nullptr;
+    if (!masked && arithmetic != Arithmetic::Float && step.centre == 0 && step.pairs > 1 && !step.antisymmetric)
+        return arithmetic == Arithmetic::Narrow ? applyPairs<std::int32_t>(step, update, target, source, sign)
+                                                : applyPairs<std::int64_t>(step, update, target, source, sign);
     int begin = 0, end = 0; // rows already handled by the fast loops below
     if (!masked && arithmetic != Arithmetic::Float) {
         if (step.centre != 0 && step.pairs == 0) {
@@ -262,6 +297,22 @@ void inverse(std::span<std::uint32_t> values, std::span<std::uint8_t> present, g
     for (int step = steps - 1; step >= 0; --step)
         for (int axis = 2; axis >= 0; --axis)
             liftAxis(block, levelSize(size, step), axis, filter, arithmetic, false, scratch);
+}
+
+void liftAlong(int axis, bool isForward, std::uint32_t* values, std::uint8_t* present, glm::ivec3 size,
+               std::ptrdiff_t row, std::ptrdiff_t slice, Wavelet wavelet, Arithmetic arithmetic) {
+    assert(arithmetic != Arithmetic::Float);
+    const LiftFilter filter = filterOf(wavelet);
+    Scratch scratch;
+    const bool alongZ = axis == 2;
+    for (int i = 0; i < (alongZ ? size.y : size.z); ++i) {
+        const std::ptrdiff_t at = i * (alongZ ? row : slice);
+        const Lines lines =
+            axis == 0
+                ? Lines{values + at, present ? present + at : nullptr, size.x, 1, size.y, row}
+                : Lines{values + at, present ? present + at : nullptr, size[axis], alongZ ? slice : row, size.x, 1};
+        liftLines(lines, filter, arithmetic, isForward, scratch);
+    }
 }
 
 void deinterleave(std::span<std::uint8_t> present, glm::ivec3 size, int steps) {

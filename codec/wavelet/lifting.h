@@ -2,6 +2,7 @@
 
 #include "codec/wavelet/wavelet.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
@@ -44,6 +45,10 @@ void forward(std::span<std::uint32_t> values, std::span<std::uint8_t> present, g
              Wavelet wavelet, Arithmetic arithmetic);
 void inverse(std::span<std::uint32_t> values, std::span<std::uint8_t> present, glm::ivec3 size, int steps,
              Wavelet wavelet, Arithmetic arithmetic);
+/// One step along one axis of a box of `size` in rows `row` words apart and slices `slice` words apart, in place: even
+/// samples to the low half, or back. `present` has the same layout, or is null: all present. Not with Float arithmetic.
+void liftAlong(int axis, bool isForward, std::uint32_t* values, std::uint8_t* present, glm::ivec3 size,
+               std::ptrdiff_t row, std::ptrdiff_t slice, Wavelet wavelet, Arithmetic arithmetic);
 /// The reordering of `forward` alone, for masks.
 void deinterleave(std::span<std::uint8_t> present, glm::ivec3 size, int steps);
 

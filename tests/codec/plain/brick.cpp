@@ -1,4 +1,5 @@
 #include "tests/codec/plain/bands.h"
+#include "tests/codec/plain/steps.h"
 
 #include <algorithm>
 #include <bit>
@@ -67,7 +68,7 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
             for (const bool flag : flags) absent += flag ? 0 : 1;
             absentBits = stream(in, absent);
         }
-        if (frame.numbers == 1 || frame.numbers == 3) {
+        if (frame.numbers == 1 || frame.numbers >= 3) {
             const std::size_t exact = in.u32();
             exactIndex = stream(in, exact);
             exactBits = stream(in, exact);
@@ -76,9 +77,16 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
     const bool centred = frame.bodyCentred && bcc_ && levels_ > 1 && fine[2] > 1 && frame.numbers != 2 &&
                          std::find(flags.begin(), flags.end(), false) == flags.end();
     bool whole = false;
+    std::vector<Octets> stepped; // 4.8: the segments
+    std::vector<std::pair<std::size_t, std::int64_t>> corrections;
     for (int segment = 0; segment < levels_ - level; ++segment) {
         const Octets bytes = checked(frame.pieces[std::size_t(segment) * bricks + std::size_t(number)]);
         Reader in(bytes);
+        if (frame.numbers == 4) {
+            if (segment == levels_ - 1) extras(in);
+            stepped.push_back(in.take(std::size_t(in.end - in.at)));
+            continue;
+        }
         std::vector<Cell*> order;
         std::vector<Band> bands;
         for (Box& box : boxes) {
@@ -149,6 +157,9 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
         need(in.at == in.end, "trailing bytes");
     }
 
+    if (frame.numbers == 4)
+        corrections = readStepped({levels_, level, frame.wavelet, centred, flags.size()}, stepped, boxes);
+
     // 4.3
     const bool asFloat = frame.numbers == 2;
     int wavelet = frame.wavelet;
@@ -198,14 +209,16 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
         const Cell cell = boxes[std::size_t(p[2] % sublattices)].at(p[0], p[1], p[2] / sublattices);
         const std::size_t at = out.values.size();
         out.present.push_back(cell.has_value());
-        const std::uint32_t code = cell.value_or(0);
+        std::uint32_t code = cell.value_or(0);
+        for (const auto& [sample, times] : corrections)
+            if (sample == at) code += std::uint32_t(33 * times);
         double stored = double(asSigned(code));
         std::uint32_t bits = code;
         if (type == "float32") {
             float value = 0;
             if (frame.numbers == 1) value = float(stored / frame.step);
             if (frame.numbers == 2) value = floatOf(code);
-            if (frame.numbers == 3) value = float(frame.origin + frame.step * stored);
+            if (frame.numbers >= 3) value = float(frame.origin + frame.step * stored);
             if (level == 0)
                 for (std::size_t e = 0; e < exactIndex.size(); ++e)
                     if (exactIndex[e] == at) value = std::bit_cast<float>(exactBits[e]);

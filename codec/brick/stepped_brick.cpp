@@ -1,0 +1,284 @@
+#include "codec/brick/stepped_brick.h"
+
+#include "codec/wavelet/body_centred.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+namespace tessera::codec {
+
+namespace {
+
+constexpr std::uint32_t kMostQuantum = 1u << 28;
+
+/// A subband as a band, with its context group and the size of its steps.
+struct StepBand {
+    Band<std::int32_t> band;
+    int group = 0;
+    std::uint32_t step = 1;
+};
+
+std::uint32_t stepOf(const Subband& subband, std::uint32_t quantum) {
+    constexpr std::uint64_t kOne = std::uint64_t(1) << 20; // gains are in 2^-24, the quantum in 1/16
+    return static_cast<std::uint32_t>(std::max<std::uint64_t>(1, quantum * kOne / subband.gain()));
+}
+
+/// The subbands of the box of one sublattice at a level.
+void addBands(LevelBox<std::int32_t>& box, int level, bool coarsest, DetailSplit split, std::uint32_t quantum,
+              std::vector<StepBand>& bands) {
+    const Box<std::int32_t> values = box.box();
+    const std::ptrdiff_t slice = std::ptrdiff_t(values.pitch) * values.size.y;
+    for (const Subband& part : subbandsOf(values.size, level, coarsest || box.undivided(), split)) {
+        const std::ptrdiff_t at = part.begin.z * slice + std::ptrdiff_t(part.begin.y) * values.pitch + part.begin.x;
+        Band<std::int32_t> band;
+        band.values = values.values + at;
+        band.present = box.masked() ? box.flags().values + at : nullptr;
+        band.size = part.size;
+        band.rowPitch = values.pitch;
+        band.slicePitch = slice;
+        bands.push_back({band, AdaptiveBands::groupOf(std::popcount(static_cast<unsigned>(part.high)), level),
+                         stepOf(part, quantum)});
+    }
+}
+
+/// Calls `visit(row of coefficients, flags or null, step)`.
+template <class Visit> void forRows(const std::vector<StepBand>& bands, Visit&& visit) {
+    for (const StepBand& one : bands)
+        for (int z = 0; z < one.band.size.z; ++z)
+            for (int y = 0; y < one.band.size.y; ++y) {
+                const std::ptrdiff_t at = z * one.band.slicePitch + y * one.band.rowPitch;
+                visit(std::span(one.band.values + at, std::size_t(one.band.size.x)),
+                      one.band.present ? one.band.present + at : nullptr, one.step);
+            }
+}
+
+std::vector<Band<std::int32_t>> plainBands(const std::vector<StepBand>& bands) {
+    std::vector<Band<std::int32_t>> out;
+    for (const StepBand& one : bands) out.push_back(one.band);
+    return out;
+}
+
+void multiply(const std::vector<StepBand>& bands) {
+    forRows(bands, [](std::span<std::int32_t> row, const std::uint8_t*, std::uint32_t step) {
+        for (std::int32_t& value : row) value = static_cast<std::int32_t>(static_cast<std::uint32_t>(value) * step);
+    });
+}
+
+/// Divides by the steps, rounding down a little more often than up. Coefficients of absent samples become 0. True if
+/// all are 0.
+bool divide(const std::vector<StepBand>& bands) {
+    constexpr double kUp = 0.45;
+    std::uint32_t any = 0;
+    forRows(bands, [&](std::span<std::int32_t> row, const std::uint8_t* present, std::uint32_t step) {
+        const double scale = 1.0 / step, up = step == 1 ? 0.5 : kUp;
+        for (std::int32_t& value : row) {
+            const auto steps = static_cast<std::int32_t>(std::abs(double(value)) * scale + up);
+            value = value < 0 ? -steps : steps;
+        }
+        for (std::size_t x = 0; x < row.size(); ++x) {
+            if (present && present[x] == 0) row[x] = 0;
+            any |= static_cast<std::uint32_t>(row[x]);
+        }
+    });
+    return any == 0;
+}
+
+bool isWide(const BrickFormat& format) {
+    return arithmeticOf(format) == Arithmetic::Wide;
+}
+
+/// The samples of finer levels from coarser ones and coefficients, shared by writer and reader.
+struct Joining {
+    const BrickFormat& format;
+    DetailSplit split;
+    DecodedBrick::Boxes<std::int32_t>& boxes;
+    bool predicted;
+
+    int step() const { return format.sublattices(); }
+    /// Adds the coefficients in `boxes.details`.
+    void level() {
+        auto& [samples, details, spare] = boxes;
+        for (std::size_t s = 0; s < std::size_t(predicted ? 1 : step()); ++s) {
+            splitDetails(details[s], format.wavelet, isWide(format), split, false);
+            joinLevel<std::int32_t>(format, samples[s], details[s], spare[s]);
+        }
+        if (predicted) std::swap(spare[1], details[1]);
+        std::swap(samples, spare);
+    }
+    void odd(int level) {
+        auto& samples = boxes.samples;
+        if (predicted && level == 0) {
+            addPrediction<std::int32_t>(std::as_const(samples[0]).box(), samples[1].box(),
+                                        format.codeBits > kBitsOfPrediction);
+        } else if (predicted) {
+            samples[1].reset(levelSize(format.sublatticeSize(1), level), false);
+            interpolateOdd<std::int32_t>(std::as_const(samples[0]).box(), samples[1].box(), level);
+        }
+    }
+};
+
+void correct(std::span<const Correction> corrections, DecodedBrick& out) {
+    const std::size_t nx = std::size_t(out.size.x), ny = std::size_t(out.size.y);
+    for (const Correction& one : corrections) {
+        const int x = int(one.index % nx), y = int(one.index / nx % ny), z = int(one.index / (nx * ny));
+        auto& box = out.boxes32.samples[std::size_t(z % out.sublattices)];
+        std::int32_t& code = box.box().row(y, z / out.sublattices)[x];
+        constexpr std::uint32_t kUnit = 2 * kReach + 1;
+        code =
+            static_cast<std::int32_t>(static_cast<std::uint32_t>(code) + static_cast<std::uint32_t>(one.times) * kUnit);
+    }
+}
+
+} // namespace
+
+DecodeStatus takeSteps(std::span<const std::byte>& in, StepChoice& steps) {
+    if (in.size() < 2) return DecodeStatus::Truncated;
+    steps.split = {static_cast<int>(in[0]), static_cast<int>(in[1])};
+    in = in.subspan(2);
+    std::uint64_t length = 0;
+    if (const DecodeStatus status = takeLength(in, length); status != DecodeStatus::Ok) return status;
+    if (steps.split.axes > 7 || steps.split.least < 2 || length < 1 || length > kMostQuantum)
+        return DecodeStatus::BadMode;
+    steps.quantum = static_cast<std::uint32_t>(length);
+    return DecodeStatus::Ok;
+}
+
+DecodeStatus decodeStepped(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
+                           std::span<const std::uint8_t> present, DecodedBrick& out) {
+    const bool masked = !present.empty();
+    const auto step = static_cast<std::size_t>(format.sublattices());
+    auto& boxes = out.boxes32;
+    Joining joining{format, {}, boxes, format.predictsOdd(masked)};
+    AdaptiveBands model;
+    std::uint32_t quantum = 0;
+    out.corrections.clear();
+    for (int l = format.levels - 1; l >= level; --l) {
+        const bool coarsest = l == format.levels - 1;
+        std::span<const std::byte> in = segments[std::size_t(format.levels - 1 - l)];
+        if (l == 0)
+            if (const DecodeStatus status = decodeExtras(format, present, in, out); status != DecodeStatus::Ok)
+                return status;
+        if (coarsest) {
+            StepChoice steps;
+            if (const DecodeStatus status = takeSteps(in, steps); status != DecodeStatus::Ok) return status;
+            joining.split = steps.split;
+            quantum = steps.quantum;
+        }
+        std::vector<StepBand> bands;
+        auto& coded = coarsest ? boxes.samples : boxes.details;
+        for (std::size_t s = 0; s < step; ++s) {
+            const bool residual = s == 1 && joining.predicted;
+            coded[s].reset(residual ? (l == 0 ? format.sublatticeSize(1) : glm::ivec3(0))
+                                    : levelSize(format.sublatticeSize(int(s)), l),
+                           masked && !residual);
+            if (residual) coded[s].setUndivided();
+            if (coded[s].masked()) {
+                placeFlags<std::int32_t>(format, present, l, int(s), !coarsest, coded[s]);
+                coded[s].clear();
+                if (!coarsest) splitDetails(coded[s], format.wavelet, false, joining.split, true); // moves the flags
+            }
+            addBands(coded[s], l, coarsest, joining.split, quantum, bands);
+        }
+        if (in.empty() && !coarsest) {
+            for (const StepBand& one : bands)
+                forRows({one}, [](std::span<std::int32_t> row, const std::uint8_t*, std::uint32_t) {
+                    std::fill(row.begin(), row.end(), 0);
+                });
+        } else {
+            RangeDecoder coder(in);
+            if (l == 0)
+                if (const DecodeStatus status = model.decode(coder, countOf(format.size), out.corrections);
+                    status != DecodeStatus::Ok)
+                    return status;
+            if (coarsest)
+                model.decodeCoarse(coder, plainBands(bands));
+            else
+                for (const StepBand& one : bands) model.decode(coder, one.band, one.group);
+            if (const DecodeStatus status = coder.end(); status != DecodeStatus::Ok) return status;
+        }
+        multiply(bands);
+        if (!coarsest) joining.level();
+    }
+    joining.odd(level);
+    correct(out.corrections, out);
+    return DecodeStatus::Ok;
+}
+
+SteppedBrick encodeStepped(const BrickFormat& format, std::span<const std::uint32_t> codes,
+                           std::span<const std::uint8_t> present, const StepChoice& steps,
+                           BrickLevels<std::int32_t>& levels) {
+    const bool masked = !present.empty();
+    const int step = format.sublattices(), count = format.levels;
+    SteppedBrick out;
+    out.segments.resize(std::size_t(count));
+    DecodedBrick decoded;
+    decoded.begin(format, 0);
+    Joining joining{format, steps.split, decoded.boxes32, format.predictsOdd(masked)};
+    std::vector<bool> nothing(static_cast<std::size_t>(count), true);
+    std::vector<std::vector<StepBand>> bands(static_cast<std::size_t>(count));
+
+    splitBrick<std::int32_t>(format, codes, present, count, levels);
+    for (int l = count - 1; l >= 0; --l) {
+        const bool coarsest = l == count - 1;
+        const auto at = static_cast<std::size_t>(l);
+        for (int s = 0; s < step; ++s) {
+            LevelBox<std::int32_t>& box = levels[std::size_t(l * step + s)];
+            const bool residual = s == 1 && joining.predicted;
+            if (!coarsest && !residual) splitDetails(box, format.wavelet, isWide(format), steps.split, true);
+            addBands(box, l, coarsest, steps.split, steps.quantum, bands[at]);
+        }
+        nothing[at] = divide(bands[at]);
+        // What a reader will get.
+        auto& coded = coarsest ? decoded.boxes32.samples : decoded.boxes32.details;
+        for (int s = 0; s < step; ++s) coded[std::size_t(s)] = levels[std::size_t(l * step + s)];
+        std::vector<StepBand> again;
+        for (int s = 0; s < step; ++s) addBands(coded[std::size_t(s)], l, coarsest, steps.split, steps.quantum, again);
+        multiply(again);
+        if (!coarsest) joining.level();
+    }
+    joining.odd(0);
+
+    out.codes = decoded.codes();
+    std::vector<Correction> corrections;
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+        if (masked && present[i] == 0) continue;
+        const std::int64_t apart =
+            std::int64_t(static_cast<std::int32_t>(codes[i])) - static_cast<std::int32_t>(out.codes[i]);
+        if (std::abs(apart) <= kReach) continue;
+        constexpr std::int64_t kUnit = 2 * kReach + 1;
+        const auto times = static_cast<std::int32_t>((std::abs(apart) + kReach) / kUnit * (apart < 0 ? -1 : 1));
+        corrections.push_back({static_cast<std::uint32_t>(i), times});
+        out.codes[i] += static_cast<std::uint32_t>(times) * static_cast<std::uint32_t>(kUnit);
+    }
+
+    AdaptiveBands model;
+    for (int l = count - 1; l >= 0; --l) {
+        const auto at = static_cast<std::size_t>(l);
+        const bool coarsest = l == count - 1;
+        Bytes& segment = out.segments[std::size_t(count - 1 - l)];
+        if (coarsest) {
+            segment = {static_cast<std::byte>(steps.split.axes), static_cast<std::byte>(steps.split.least)};
+            appendLength(segment, steps.quantum);
+        } else if (nothing[at] && (l > 0 || corrections.empty())) {
+            continue;
+        }
+        RangeEncoder coder;
+        if (l == 0) model.encode(coder, corrections);
+        if (coarsest)
+            model.encodeCoarse(coder, plainBands(bands[at]));
+        else
+            for (const StepBand& one : bands[at]) {
+                const Band<std::int32_t>& band = one.band;
+                model.encode(coder, {band.values, band.present, band.size, band.rowPitch, band.slicePitch, band.kind},
+                             one.group);
+            }
+        const Bytes bytes = coder.finish();
+        segment.insert(segment.end(), bytes.begin(), bytes.end());
+    }
+    return out;
+}
+
+} // namespace tessera::codec
