@@ -142,6 +142,10 @@ void addCameraCommands(std::vector<Command>& commands, Workbench& workbench) {
 void resetArrangement(Workbench& workbench) {
     Session& session = workbench.session();
     const Session fresh = defaultSession(workbench.document().info(), session.data);
+    std::erase_if(session.views, [](const auto& each) {
+        const auto* volume = std::get_if<VolumeView>(&each.second);
+        return volume && volume->multiple;
+    });
     for (const auto& [pane, view] : fresh.views) session.views.emplace(pane, view);
     session.dock = fresh.dock;
     repair(session.dock, paneKeys(session));

@@ -31,6 +31,8 @@ const std::set<std::string> kElsewhere = {
     "Shortcuts",                    // CommandTable.HelpAndPaletteOpen
     "Command palette",              // the same
     "About Tessera",
+    "One view per parameter", // Multiples.ShowEachParameterAndUndoRestoresTheDock
+    "One view per time",      // Multiples.ShowTimesWithOneLegend
     "Play",                   // tests/app/views_playback_test.cpp, and below for its state
     "Look from the front",    // WorkbenchMenus.CameraCommandsActOnAVolume, tests/app/camera_hand_gl_test.cpp
     "Look from the right",

@@ -2,6 +2,8 @@
 #include "app/session/shown_scene.h"
 #include "tests/app/hands_fixture.h"
 
+#include <set>
+
 /// Several volume views in one window: what each of them shares or owns, under the mouse and keys.
 namespace tessera::app {
 namespace {
@@ -196,6 +198,101 @@ TEST_F(VolumePanes, WhatIsOwnedIsInTheFileAndFitsOtherData) {
     EXPECT_EQ(fitted.time, workbench.document().info().times.back());
     EXPECT_FALSE(fitted.layers->front().visible);
     EXPECT_EQ(messages.size(), 1u);
+}
+
+/// Small multiples of the formula cell in a window.
+class Multiples : public VolumePanes {
+protected:
+    void begin() {
+        show(VolumeView{}, {1000, 700}, [](Session& session) {
+            session.views.clear();
+            const Session all = defaultSession(session, {});
+            session.views = all.views;
+            session.dock = all.dock;
+        });
+    }
+    static Session defaultSession(const Session& session, int) {
+        Opened opened;
+        opened.source = volume::makeMemorySource(formula::makeCell(), {});
+        return app::defaultSession(opened.source->info(), session.data);
+    }
+    bool run(const std::string& title) {
+        for (const Command& command : workbench.commands())
+            if (command.title() == title && command.available()) {
+                command.run();
+                settle();
+                return true;
+            }
+        return false;
+    }
+    std::vector<std::string> multiples() {
+        std::vector<std::string> panes;
+        for (const auto& [pane, view] : session().views)
+            if (const auto* found = std::get_if<VolumeView>(&view); found && found->multiple) panes.push_back(pane);
+        return panes;
+    }
+    /// Every view is in the dock once, and each of the multiples has a place of its own.
+    void expectDocked() {
+        std::vector<std::string> docked = panesOf(session().dock), keys = paneKeys(session());
+        std::ranges::sort(docked);
+        EXPECT_EQ(docked, keys);
+        std::set<int> stacks;
+        for (const std::string& pane : multiples()) stacks.insert(stackWith(session().dock.root, pane));
+        EXPECT_EQ(stacks.size(), multiples().size());
+    }
+};
+
+TEST_F(Multiples, ShowEachParameterAndUndoRestoresTheDock) {
+    begin();
+    const Session before = session();
+    ASSERT_TRUE(run("One view per parameter"));
+    const volume::DatasetInfo& info = workbench.document().info();
+    const std::vector<int> channels = comparedChannels(info);
+    ASSERT_EQ(multiples().size(), channels.size());
+    std::set<std::string> titles;
+    for (const std::string& pane : multiples()) {
+        EXPECT_FALSE(volume(pane).camera) << "one camera";
+        EXPECT_TRUE(volume(pane).showLegend) << "each parameter has its own colours";
+        titles.insert(shownTitle(session(), pane, info));
+        EXPECT_FALSE(pictures().empty());
+    }
+    for (const int channel : channels) EXPECT_TRUE(titles.contains(info.channel(channel).name));
+    expectDocked();
+    EXPECT_EQ(steps(), 1u);
+    for (const auto& [pane, view] : before.views) EXPECT_TRUE(session().views.contains(pane)) << pane;
+    // Again, and by time: the former ones give way.
+    ASSERT_TRUE(run("One view per parameter"));
+    EXPECT_EQ(multiples().size(), channels.size());
+    ASSERT_TRUE(run("One view per time"));
+    EXPECT_EQ(multiples().size(), info.times.size());
+    expectDocked();
+    while (steps() > 0) undo();
+    EXPECT_TRUE(session().dock.root == before.dock.root);
+    session().dock.volume = before.dock.volume;
+    EXPECT_TRUE(session() == before) << apart(before);
+    ASSERT_TRUE(run("One view per parameter"));
+    ASSERT_TRUE(run("Reset arrangement"));
+    EXPECT_TRUE(multiples().empty());
+    EXPECT_TRUE(session().dock.root == before.dock.root);
+}
+
+TEST_F(Multiples, ShowTimesWithOneLegend) {
+    begin();
+    ASSERT_TRUE(run("One view per time"));
+    const std::vector<double>& times = workbench.document().info().times;
+    ASSERT_EQ(multiples().size(), times.size());
+    int legends = 0;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        const VolumeView& view = volume(multiples()[i]);
+        EXPECT_EQ(view.time, times[i]);
+        EXPECT_FALSE(view.layers) << "one transfer function";
+        legends += view.showLegend;
+    }
+    EXPECT_EQ(legends, 1);
+    const std::size_t before = steps();
+    turn(multiples()[1]);
+    EXPECT_EQ(steps(), before + 1) << "the camera of all";
+    EXPECT_FALSE(volume(multiples()[1]).camera);
 }
 
 } // namespace
