@@ -1,7 +1,9 @@
 #include "app/pane/pane_title.h"
 #include "app/session/shown_scene.h"
 #include "tests/app/hands_fixture.h"
+#include "tests/app/workbench_fixture.h"
 
+#include <algorithm>
 #include <set>
 
 /// Several volume views in one window: what each of them shares or owns, under the mouse and keys.
@@ -158,7 +160,8 @@ TEST_F(VolumePanes, TheLayersListedAreThoseOfTheViewClickedLast) {
     EXPECT_FALSE(volume("pane-2").layers->front().visible);
     EXPECT_FALSE(session().layers.front().visible) << "as it was";
     EXPECT_EQ(steps(), before + 1);
-    EXPECT_EQ(workbench.history().steps().back().name, "Volume 2, " + layerName(session().layers.front()) + ": visible");
+    EXPECT_EQ(workbench.history().steps().back().name,
+              "Volume 2, " + layerName(session().layers.front()) + ": visible");
     // Commands add to the list that is shown.
     const std::size_t shared = session().layers.size();
     for (const Command& command : workbench.commands())
@@ -293,6 +296,57 @@ TEST_F(Multiples, ShowTimesWithOneLegend) {
     turn(multiples()[1]);
     EXPECT_EQ(steps(), before + 1) << "the camera of all";
     EXPECT_FALSE(volume(multiples()[1]).camera);
+}
+
+/// A window that draws on in frames, as users have it, not one that waits for its pictures.
+class MultiplesInWindow : public DrawnWorkbench {
+protected:
+    /// Pixels with a colour in a rectangle of the last frame.
+    int coloured(const ImRect& rect) const {
+        const vis::Image image = frames.read();
+        int count = 0;
+        for (int y = int(rect.Min.y) + 1; y < int(rect.Max.y) - 1; ++y)
+            for (int x = int(rect.Min.x) + 1; x < int(rect.Max.x) - 1; ++x) {
+                const std::uint8_t* pixel =
+                    &image.rgba[(std::size_t(y) * std::size_t(image.size.x) + std::size_t(x)) * 4];
+                const auto [least, most] = std::minmax({pixel[0], pixel[1], pixel[2]});
+                count += most - least > 40;
+            }
+        return count;
+    }
+};
+
+TEST_F(MultiplesInWindow, EachTimeIsDrawnAndThenTheWindowRests) {
+    OpenRequest request;
+    request.data.emplace();
+    request.data->model = "fuel-cell";
+    request.data->settings = {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 4}};
+    Opened opened = open(request);
+    Session& session = opened.document.session;
+    for (auto& [name, function] : session.transfer) function.opacity = {{0, 0.6f}, {1, 0.6f}};
+    VolumeView& view = std::get<VolumeView>(session.views.at("volume"));
+    view.showBox = view.showCursor = false;
+    session.appearance.scale = 0.5f;
+    opened.document.history.reset(session);
+    workbench.install(std::move(opened));
+    settle();
+    ASSERT_TRUE(run("One view per time"));
+    settle();
+    int views = 0;
+    for (const auto& [pane, state] : workbench.session().views) {
+        const auto* volume = std::get_if<VolumeView>(&state);
+        if (!volume) continue;
+        ++views;
+        const ImGuiWindow* window = ImGui::FindWindowByName(("###pane." + pane).c_str());
+        ASSERT_TRUE(window && volume->time) << pane;
+        EXPECT_GT(coloured(window->Rect()), 300) << "at " << *volume->time;
+    }
+    EXPECT_EQ(views, 4);
+    for (int i = 0; i < 5; ++i) {
+        frame();
+        EXPECT_FALSE(workbench.busy());
+        EXPECT_GT(workbench.idleSeconds(), 0);
+    }
 }
 
 } // namespace

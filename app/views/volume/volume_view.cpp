@@ -185,9 +185,27 @@ private:
 
     void drawLegend() {
         if (!showsLegend()) return;
-        const LegendArea area =
-            drawLegends(*list_, sceneLegends(session_, info_, view_.drawingLegend), picture_.min, max());
+        const std::vector<LegendEntry> entries = sceneLegends(session_, info_, view_.drawingLegend);
+        if (view_.multiple && entries.size() == 1 && drawUprightLegend(entries.front())) return;
+        const LegendArea area = drawLegends(*list_, entries, picture_.min, max());
         taken_.push_back({area.min, area.max});
+    }
+
+    /// A narrow bar at the right edge, beside the object of a small picture; false where it would not do.
+    bool drawUprightLegend(const LegendEntry& entry) {
+        if (entry.swatch || entry.opacity || entry.regions || !entry.names.empty()) return false;
+        const std::string title = titleWithUnit(entry.title, entry.unit);
+        const float width = std::max(ImGui::CalcTextSize(title.c_str()).x, em() * 5), line = ImGui::GetFontSize();
+        const float height = std::min(em() * 10, picture_.size.y - em() * 5.5f);
+        if (height < line * 3 || width > picture_.size.x / 3) return false;
+        const ImVec2 hi{max().x - em() * 0.5f, max().y - em() * 0.5f};
+        const ImVec2 lo{hi.x - width - em() * 0.8f, hi.y - height - line - em() * 1.2f};
+        list_->AddRectFilled(lo, hi, plotColors().backdrop, em() * 0.25f);
+        const float left = lo.x + em() * 0.4f;
+        list_->AddText({left, lo.y + em() * 0.3f}, plotColors().text, title.c_str());
+        drawLegendColumn(*list_, {left, hi.y - height - em() * 0.4f}, height, entry);
+        taken_.push_back({lo, hi});
+        return true;
     }
 
     void drawTriadAt(const AxisLabels& labels) {
