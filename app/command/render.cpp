@@ -1,5 +1,6 @@
 #include "app/command/command.h"
 #include "app/command/picture_options.h"
+#include "app/session/shown_scene.h"
 #include "app/ui/ticks.h"
 #include "volume/base/error.h"
 #include "volume/system/atomic_file.h"
@@ -29,7 +30,9 @@ void addRenderCommand(CLI::App& app) {
         "render",
         "Draw the window or one view to a PNG, or write the figure or table of a view, without opening a window");
     addPictureOptions(*command, options->picture);
-    command->add_option("--time", options->time, "Time to show, in the unit of the data");
+    command->add_option("--time", options->time,
+                        "Time to show, in the unit of the data; in the whole window that of the timeline, which "
+                        "views with a time of their own do not follow");
     command
         ->add_option(
             "-o,--output", options->output,
@@ -52,6 +55,8 @@ void addRenderCommand(CLI::App& app) {
                 throw Error("is not in " + formatNumber(times.front()) + " .. " + formatNumber(times.back()), "--time",
                             formatNumber(*options->time));
             session.time = *options->time;
+            VolumeView* const view = volumeView(session, paneOf(session, options->picture.view));
+            if (view && view->time) view->time = options->time;
         }
         opened.document.history.reset(session);
         PictureMaker maker;

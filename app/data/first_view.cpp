@@ -95,11 +95,9 @@ void showTails(vis::TransferFunction& function, const volume::BrickSource& sourc
     if (seen < kLeastSeen || seen > kMostSeen) function.opacity = vis::tailOpacity(occurrence.count, kMostSeen);
 }
 
-void aimAtSamples(Session& session, const volume::BrickSource& source, int channel, const std::string& name, int time) {
+/// Chooses the opacity curve of a channel from its values, unless its function was changed.
+void chooseCurve(Session& session, const volume::BrickSource& source, int channel, const std::string& name, int time) {
     const volume::DatasetInfo& info = source.info();
-    const volume::ProbeValue here = volume::probeChannel(source, channel, session.cursor, time);
-    if (!here.interpolated || !here.nearest)
-        session.cursor = middleOfSamples(source, channel, time).value_or(session.cursor);
     const auto transfer = session.transfer.find(name);
     if (transfer == session.transfer.end() || transfer->second != defaultSession(info, {}).transfer[name]) return;
     const volume::Channel what = info.channels()[static_cast<std::size_t>(channel)];
@@ -116,7 +114,24 @@ void aimAtSamples(Session& session, const volume::BrickSource& source, int chann
     }
 }
 
+void aimAtSamples(Session& session, const volume::BrickSource& source, int channel, const std::string& name, int time) {
+    const volume::ProbeValue here = volume::probeChannel(source, channel, session.cursor, time);
+    if (!here.interpolated || !here.nearest)
+        session.cursor = middleOfSamples(source, channel, time).value_or(session.cursor);
+    chooseCurve(session, source, channel, name, time);
+}
+
 } // namespace
+
+void aimFunction(Session& session, const volume::BrickSource& source, const std::string& name) {
+    const volume::DatasetInfo& info = source.info();
+    const auto channel = info.findChannel(name);
+    if (!channel) return;
+    try {
+        chooseCurve(session, source, *channel, name, info.nearestTime(session.time));
+    } catch (const Error&) { // a damaged brick: what the rest says is shown all the same
+    }
+}
 
 void aimFirstView(Session& session, const volume::BrickSource& source, double aspect) {
     const volume::DatasetInfo& info = source.info();

@@ -13,4 +13,8 @@ namespace tessera::app {
 /// to near their strongest boundary. If a brick is damaged, the rest is unchanged.
 void aimFirstView(Session& session, const volume::BrickSource& source, double aspect);
 
+/// Chooses the opacity curve of a channel's function from the values at the session's time, as aimFirstView does for
+/// the first layer; a function that is not the default one stays.
+void aimFunction(Session& session, const volume::BrickSource& source, const std::string& channel);
+
 } // namespace tessera::app

@@ -2,6 +2,7 @@
 
 #include "app/data/boundary_value.h"
 #include "app/data/first_view.h"
+#include "app/session/shown_scene.h"
 #include "app/user_files/import_memory.h"
 
 #include "vis/image/image_io.h"
@@ -178,8 +179,13 @@ void moveTo(Session& session, History& history, const volume::DatasetInfo* from,
     if (from) carryTime(session, *from, to, data.timeAxis);
     if (from && from->timeName != to.timeName) // the same state on another time axis
         if (const auto same = volume::findQuantity(*from, to.timeName)) {
-            const double time = volume::valueAt(from->times, from->quantities[std::size_t(*same)].values, session.time);
-            if (std::isfinite(time)) session.time = time;
+            const auto move = [&](double& time) {
+                const double now = volume::valueAt(from->times, from->quantities[std::size_t(*same)].values, time);
+                if (std::isfinite(now)) time = now;
+            };
+            move(session.time);
+            for (auto& [pane, view] : session.views)
+                if (auto* const volume = std::get_if<VolumeView>(&view); volume && volume->time) move(*volume->time);
         }
     session.data = data;
     history.setData(data);
@@ -255,28 +261,37 @@ void fitSurfaces(Session& session, const volume::BrickSource& source, const Sess
                  std::vector<std::string>& messages) {
     const volume::DatasetInfo& info = source.info();
     const bool own = sameData(layout.data, session.data);
-    const int time = info.nearestTime(session.time);
     std::set<std::string> without;
-    for (std::size_t i = 0; i < session.layers.size(); ++i) {
-        vis::Layer& layer = session.layers[i];
+    const auto fit = [&](vis::Layer& layer, const vis::Layer* former, int time) {
         auto* iso = std::get_if<vis::IsoLayer>(&layer.technique);
         const auto channel = iso ? info.findChannel(iso->channel) : std::nullopt;
-        if (!channel) continue;
+        if (!channel) return;
         try {
             const std::optional<Range> range = rangeAt(source, *channel, time);
             if (!range || !(range->hi > range->lo)) {
                 if (layer.visible && without.insert(iso->channel).second)
                     messages.push_back(iso->channel + (range ? " has one value everywhere" : " has no value anywhere") +
                                        " at this time, so its surface is empty: choose another time or parameter");
-                continue;
+                return;
             }
-            const auto* made =
-                i < layout.layers.size() ? std::get_if<vis::IsoLayer>(&layout.layers[i].technique) : nullptr;
+            const auto* made = former ? std::get_if<vis::IsoLayer>(&former->technique) : nullptr;
             const double share = (double(iso->value) - range->lo) / (range->hi - range->lo), margin = own ? 0 : 0.1;
-            if (made && made->channel == iso->channel && share > margin && share < 1 - margin) continue;
+            if (made && made->channel == iso->channel && share > margin && share < 1 - margin) return;
             iso->value = surfaceValue(source, *channel, time).value_or(0.5 * (range->lo + range->hi));
         } catch (const Error&) { // a damaged brick: use what could be read
         }
+    };
+    const auto fitAll = [&](std::vector<vis::Layer>& layers, const std::vector<vis::Layer>& former, double time) {
+        for (std::size_t i = 0; i < layers.size(); ++i)
+            fit(layers[i], i < former.size() ? &former[i] : nullptr, info.nearestTime(time));
+    };
+    fitAll(session.layers, layout.layers, session.time);
+    for (auto& [pane, view] : session.views) {
+        auto* const volume = std::get_if<VolumeView>(&view);
+        if (!volume || !volume->layers) continue;
+        const VolumeView* former = volumeView(layout, pane);
+        fitAll(*volume->layers, former ? former->layers.value_or(layout.layers) : layout.layers,
+               volume->time.value_or(session.time));
     }
 }
 
@@ -286,8 +301,14 @@ Session changeLayout(const SessionDocument& layout, const volume::BrickSource& s
     next.appearance = shown.appearance;
     next.time = shown.time;
     next.cursor = shown.cursor;
-    if (!sameData(layout.session.data, shown.data))
-        vis::fit(next.camera, vis::worldFrame(source.info().bounds, next.stretch), firstAspect(source.info()));
+    const auto refit = [&](vis::Camera& camera) {
+        vis::fit(camera, vis::worldFrame(source.info().bounds, next.stretch), firstAspect(source.info()));
+    };
+    if (!sameData(layout.session.data, shown.data)) {
+        refit(next.camera);
+        for (auto& [pane, view] : next.views)
+            if (auto* const volume = std::get_if<VolumeView>(&view); volume && volume->camera) refit(*volume->camera);
+    }
     fitSurfaces(next, source, layout.session, messages);
     return next;
 }

@@ -1,5 +1,6 @@
 #include "app/dialogs/dialogs.h"
 
+#include "app/pane/pane_title.h"
 #include "app/ui/file_dialog.h"
 #include "app/ui/fitted_text.h"
 #include "app/ui/widgets.h"
@@ -171,15 +172,16 @@ std::optional<PictureRequest> PictureDialog::drawForm() {
     return request;
 }
 
-std::optional<PictureRequest> PictureDialog::draw(const Session& session, const std::string& stateFolder) {
+std::optional<PictureRequest> PictureDialog::draw(const Session& session, const volume::DatasetInfo& info,
+                                                  const std::string& stateFolder) {
     if (!shown_ || !beginDialog("Save picture", shown_, ImGui::GetFontSize() * 30)) return {};
     if (!form_) form_ = rememberedForm(stateFolder);
     drawLabel(WidgetContext{nullptr, 0.3f}, "What", "The window, or one view");
     const char* const whole = "The whole window";
-    if (ImGui::BeginCombo("##what", pane_.empty() ? whole : paneTitle(session, pane_).c_str())) {
+    if (ImGui::BeginCombo("##what", pane_.empty() ? whole : shownTitle(session, pane_, info).c_str())) {
         if (ImGui::Selectable(whole, pane_.empty())) pane_.clear();
         for (const std::string& pane : paneKeys(session))
-            if (ImGui::Selectable(paneTitle(session, pane).c_str(), pane == pane_)) pane_ = pane;
+            if (ImGui::Selectable(shownTitle(session, pane, info).c_str(), pane == pane_)) pane_ = pane;
         ImGui::EndCombo();
     }
     const std::optional<PictureRequest> request = drawForm();

@@ -52,7 +52,8 @@ public:
     /// `pane`: proposed, "" = the whole window.
     void show(const std::string& pane);
     /// Returns the picture wanted. `stateFolder` keeps the form.
-    std::optional<PictureRequest> draw(const Session& session, const std::string& stateFolder);
+    std::optional<PictureRequest> draw(const Session& session, const volume::DatasetInfo& info,
+                                       const std::string& stateFolder);
 
 private:
     std::optional<PictureRequest> drawForm();

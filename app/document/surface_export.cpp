@@ -1,6 +1,7 @@
 #include "app/document/surface_export.h"
 
 #include "app/queries/surface_query.h"
+#include "app/session/shown_scene.h"
 #include "volume/base/error.h"
 #include "volume/mesh/mesh_file.h"
 
@@ -9,7 +10,8 @@
 
 namespace tessera::app {
 
-int chosenSurface(const Session& session) {
+int chosenSurface(const Session& whole) {
+    const Session session = sessionShownIn(whole, volumePane(whole));
     const auto isSurface = [&](std::size_t i) {
         return i < session.layers.size() && std::holds_alternative<vis::IsoLayer>(session.layers[i].technique);
     };
@@ -22,8 +24,8 @@ int chosenSurface(const Session& session) {
 }
 
 void exportSurface(const Document& document, std::string path, Jobs& jobs, Messages& messages) {
-    const Session& session = document.session();
-    const int chosen = chosenSurface(session);
+    const Session session = sessionShownIn(document.session(), volumePane(document.session()));
+    const int chosen = chosenSurface(document.session());
     if (chosen < 0 || !document.loaded()) return;
     if (!std::filesystem::path(path).has_extension()) path += ".ply";
     const vis::IsoLayer layer = std::get<vis::IsoLayer>(session.layers[std::size_t(chosen)].technique);

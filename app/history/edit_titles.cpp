@@ -2,7 +2,7 @@
 
 #include "app/described/key_words.h"
 #include "app/history/parameter_path.h"
-#include "app/session/session.h"
+#include "app/session/shown_scene.h"
 
 #include <algorithm>
 #include <cctype>
@@ -69,7 +69,11 @@ NamedThing thingAt(const Session& session, const std::vector<std::string>& path)
     } else if (first == "selection") {
         return {"selection", 1};
     } else if (first == "views" && path.size() > 1 && session.views.contains(path[1])) {
-        return {paneTitle(session, path[1]), 2};
+        const VolumeView* view = volumeView(session, path[1]);
+        const std::string title = paneTitle(session, path[1]);
+        if (view && view->layers && path.size() > 2 && path[2] == "layers")
+            if (const auto* layer = at(3, *view->layers)) return {title + ", " + layerName(*layer), 4};
+        return {title, 2};
     } else if (first == "transfer" && path.size() > 1) {
         return {"transfer function of " + path[1], 2};
     } else if (first == "data" && path.size() > 1 && path[1] == "derived") {
@@ -130,14 +134,28 @@ std::string describePatch(const Json& patch) {
 std::string pathTitle(const Session& session, const std::string& path) {
     std::string_view rest;
     const std::string first = detail::firstKey(path, rest);
-    if (first == "layers") {
-        const std::size_t index = detail::indexOf(detail::firstKey(rest, rest), session.layers.size());
-        if (index < session.layers.size()) {
-            if (rest.starts_with("/technique")) rest.remove_prefix(10);
-            const Json patch = Json::array({{{"op", "replace"}, {"path", std::string(rest)}}});
-            return layerName(session.layers[index]) + ": " + describePatch(patch);
+    const std::vector<vis::Layer>* layers = first == "layers" ? &session.layers : nullptr;
+    std::string of;
+    if (first == "views") { // "/views/volume-2/layers/0/...", "/views/volume-2/camera/..."
+        const std::string pane = detail::firstKey(rest, rest);
+        const VolumeView* view = volumeView(session, pane);
+        if (view) of = paneTitle(session, pane) + ", ";
+        std::string_view inside;
+        const std::string member = detail::firstKey(rest, inside);
+        if (view && view->layers && member == "layers") {
+            layers = &*view->layers;
+            rest = inside;
         }
     }
+    if (layers) {
+        const std::size_t index = detail::indexOf(detail::firstKey(rest, rest), layers->size());
+        if (index < layers->size()) {
+            if (rest.starts_with("/technique")) rest.remove_prefix(10);
+            const Json patch = Json::array({{{"op", "replace"}, {"path", std::string(rest)}}});
+            return of + layerName((*layers)[index]) + ": " + describePatch(patch);
+        }
+    }
+    if (!of.empty()) return of + describePatch(Json::array({{{"op", "replace"}, {"path", std::string(rest)}}}));
     return describePatch(Json::array({{{"op", "replace"}, {"path", path}}}));
 }
 

@@ -33,9 +33,10 @@ bool isDifference(const Json& patch) {
            });
 }
 
-/// Takes over changes that are not edits: those made by an animation, and which tabs are in front.
+/// Takes over changes that are not edits: those made by an animation, which tabs are in front, and the volume view
+/// clicked last.
 void followUnrecorded(Session& base, const Session& now) {
-    followTabs(base.dock.root, now.dock.root);
+    followFocus(base.dock, now.dock);
     if (now.animation.playing || base.animation.playing) {
         base.time = now.time;
         for (const Track& track : base.animation.tracks) setNumbersAt(base, track.path, numbersAt(now, track.path));
@@ -156,7 +157,7 @@ History History::fromJson(const Json& json, const Session& session) {
         for (std::size_t i = trial.position_; i-- > 0;) trial.seek(i);
         for (std::size_t i = 1; i <= trial.steps_.size(); ++i) trial.seek(i);
         Session end = trial.seek(history.position_);
-        followTabs(end.dock.root, session.dock.root);
+        followFocus(end.dock, session.dock);
         if (!(end == session)) throw Error("the history does not end at the session");
     } catch (const Json::exception& error) {
         throw Error(std::string("the history cannot be used: ") + error.what());

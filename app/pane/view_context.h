@@ -49,6 +49,7 @@ struct ViewContext {
     float scale = 1;            ///< pixels per design pixel
     bool headless = false;      ///< finish everything before the frame ends: no budget, no progressive states
     int renderers = 1;          ///< that share the session's limits of memory
+    int volumes = 1;            ///< volume views on screen, which share the time for a frame
     bool figure = false;        ///< a picture of this view alone: without the controls, which nobody can press there
     Decoration decoration = {}; ///< what may be drawn over the data, beside the session's own choice
     bool whiteGround = false;   ///< a picture on white

@@ -23,7 +23,8 @@ inline constexpr Icon kEye{icon::kEye, "on"}, kEyeOff{icon::kEyeOff, "off"}, kPl
     kSlice{"\uf24d", "slice"}, kFlow{"\uf178", "flow"}, kPlay{icon::kPlay, ">"}, kPause{icon::kPause, "||"},
     kStepBack{icon::kStepBack, "<|"}, kStepForward{icon::kStepForward, "|>"}, kFirst{icon::kFirst, "|<"},
     kLast{icon::kLast, ">|"}, kRepeat{icon::kRepeat, "loop"}, kPingPong{icon::kPingPong, "<>"},
-    kOnce{icon::kOnce, "once"}, kInvert{icon::kInvert, "inv"}, kReverse{"\uf0ec", "rev"}, kColors{"\uf1fb", "own"};
+    kOnce{icon::kOnce, "once"}, kInvert{icon::kInvert, "inv"}, kReverse{"\uf0ec", "rev"}, kColors{"\uf1fb", "own"},
+    kChain{icon::kChain, "link"}, kChainOff{icon::kChainOff, "own"};
 } // namespace icons
 
 /// A square button with a glyph, its tooltip on hover; `enabled` false greys it out.

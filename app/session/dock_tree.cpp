@@ -112,15 +112,17 @@ void removePane(DockTree& tree, const std::string& pane) {
     removeTab(tree.root, pane);
     std::erase_if(tree.floating, [&](const FloatingPane& floating) { return floating.pane == pane; });
     if (tree.maximised == pane) tree.maximised.clear();
+    if (tree.volume == pane) tree.volume.clear();
 }
 
 void insertPane(DockTree& tree, const std::string& pane, int node, DockSide side) {
     if (DockNode* own = stackOf(tree.root, pane); own && own->id == node) {
         if (own->tabs.size() == 1) return; // beside itself: nothing to do
     }
-    const std::string maximised = tree.maximised;
+    const std::string maximised = tree.maximised, volume = tree.volume;
     removePane(tree, pane);
     tree.maximised = maximised;
+    tree.volume = volume;
     DockNode* target = findNode(tree.root, node);
     if (!target) target = &tree.root; // a split that went away with the pane's old place
     if (side == DockSide::Center) target = firstStack(*target);
@@ -143,18 +145,20 @@ void insertPane(DockTree& tree, const std::string& pane, int node, DockSide side
 }
 
 void floatPane(DockTree& tree, const std::string& pane, FloatingPane place) {
+    const std::string volume = tree.volume;
     removePane(tree, pane);
+    tree.volume = volume;
     place.pane = pane;
     tree.floating.push_back(std::move(place));
 }
+
+namespace {
 
 void followTabs(DockNode& tree, const DockNode& now) {
     if (tree.id != now.id || tree.tabs != now.tabs || tree.children.size() != now.children.size()) return;
     tree.active = now.active;
     for (std::size_t i = 0; i < tree.children.size(); ++i) followTabs(tree.children[i], now.children[i]);
 }
-
-namespace {
 
 void bringForward(DockNode& node, const std::string& pane) {
     for (DockNode& child : node.children) bringForward(child, pane);
@@ -164,9 +168,21 @@ void bringForward(DockNode& node, const std::string& pane) {
 
 } // namespace
 
+void followFocus(DockTree& tree, const DockTree& now) {
+    followTabs(tree.root, now.root);
+    tree.volume = now.volume;
+}
+
 void showPane(DockTree& tree, const std::string& pane) {
     if (!tree.maximised.empty()) tree.maximised = pane;
     bringForward(tree.root, pane);
+}
+
+int stackWith(const DockNode& node, const std::string& pane) {
+    if (std::ranges::find(node.tabs, pane) != node.tabs.end()) return node.id;
+    for (const DockNode& child : node.children)
+        if (const int id = stackWith(child, pane)) return id;
+    return 0;
 }
 
 std::vector<std::string> panesOf(const DockTree& tree) {
@@ -199,6 +215,7 @@ void repair(DockTree& tree, const std::vector<std::string>& panes) {
     for (const std::string& pane : panes)
         if (work.take(pane)) firstStack(tree.root)->tabs.push_back(pane);
     if (!work.wanted.contains(tree.maximised)) tree.maximised.clear();
+    if (!work.wanted.contains(tree.volume)) tree.volume.clear();
 }
 
 } // namespace tessera::app

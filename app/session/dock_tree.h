@@ -56,11 +56,15 @@ struct DockTree {
     DockNode root;
     std::vector<FloatingPane> floating;
     std::string maximised; ///< pane that fills the window, "" = none
+    std::string volume;    ///< volume view clicked last, "" = none
     bool operator==(const DockTree&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.root, FieldInfo{.key = "root", .unit = "", .doc = "Root of the tree"});
         visit(self.floating, FieldInfo{.key = "floating", .unit = "", .doc = "Panes that float"});
         visit(self.maximised, FieldInfo{.key = "maximised", .unit = "", .doc = "Pane that fills the window"});
+        visit(self.volume, FieldInfo{.key = "volume",
+                                     .unit = "",
+                                     .doc = "Volume view clicked last, whose layers are listed and edited"});
     }
 };
 
@@ -73,10 +77,13 @@ void insertPane(DockTree& tree, const std::string& pane, int node, DockSide side
 void floatPane(DockTree& tree, const std::string& pane, FloatingPane place);
 /// Brings a pane to the front of its stack; it must not hide behind one that fills the window.
 void showPane(DockTree& tree, const std::string& pane);
+/// The id of the stack that holds a pane; 0: none.
+int stackWith(const DockNode& node, const std::string& pane);
 /// Every pane of the tree, floating ones included.
 std::vector<std::string> panesOf(const DockTree& tree);
-/// Copies which tabs are in front, for stacks that are the same in both trees.
-void followTabs(DockNode& tree, const DockNode& now);
+/// Copies what is no edit: which tabs are in front, for stacks that are the same in both trees, and which volume view
+/// was clicked.
+void followFocus(DockTree& tree, const DockTree& now);
 /// Repairs a tree from a file: drops duplicates and unknown panes, adds missing ones to the first stack, clamps ratios.
 void repair(DockTree& tree, const std::vector<std::string>& panes);
 

@@ -1,4 +1,5 @@
 #include "app/session/session.h"
+#include "app/session/shown_scene.h"
 
 #include <algorithm>
 #include <map>
@@ -21,20 +22,21 @@ public:
     }
 
     void layers() {
-        for (vis::Layer& layer : session_.layers) {
-            std::visit([&](auto& technique) { fit(layer, technique); }, layer.technique);
-            const auto named = [&](const vis::Lens& lens) { return lens.name == layer.lens; };
-            if (layer.lens.empty() || std::ranges::any_of(session_.lenses, named)) continue;
-            messages_.push_back("layer " + layerName(layer) + " is not drawn: there is no lens " + layer.lens);
-            layer.visible = false;
-            layer.lens.clear();
-        }
+        for (auto* const layers : layerLists(session_))
+            for (vis::Layer& layer : *layers) {
+                std::visit([&](auto& technique) { fit(layer, technique); }, layer.technique);
+                const auto named = [&](const vis::Lens& lens) { return lens.name == layer.lens; };
+                if (layer.lens.empty() || std::ranges::any_of(session_.lenses, named)) continue;
+                messages_.push_back("layer " + layerName(layer) + " is not drawn: there is no lens " + layer.lens);
+                layer.visible = false;
+                layer.lens.clear();
+            }
     }
 
     void views() {
         const auto owned = [&](const std::string& name) { // by a layer alone
-            return !name.empty() && std::ranges::any_of(session_.layers, [&](const vis::Layer& layer) {
-                return layer.transfer == name;
+            return !name.empty() && std::ranges::any_of(layerLists(session_), [&](const auto* layers) {
+                return std::ranges::any_of(*layers, [&](const vis::Layer& layer) { return layer.transfer == name; });
             });
         };
         for (auto& [key, view] : session_.views) {
@@ -62,8 +64,14 @@ public:
             if (!(at >= lo && at <= hi)) at = 0.5 * (lo + hi);
         }
         if (info_.times.empty()) return;
-        if (!(session_.time >= info_.times.front() && session_.time <= info_.times.back()))
-            session_.time = info_.times[static_cast<std::size_t>(info_.nearestTime(session_.time))];
+        const auto fitTime = [&](double& time) {
+            if (!(time >= info_.times.front() && time <= info_.times.back()))
+                time = info_.times[static_cast<std::size_t>(info_.nearestTime(time))];
+        };
+        fitTime(session_.time);
+        if (info_.times.size() == 1) return; // the views' own times come back with the times
+        for (auto& [pane, view] : session_.views)
+            if (auto* const volume = std::get_if<VolumeView>(&view); volume && volume->time) fitTime(*volume->time);
     }
 
 private:

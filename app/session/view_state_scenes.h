@@ -1,10 +1,13 @@
 #pragma once
 
 #include "app/session/view_kind.h"
+#include "vis/scene/camera.h"
+#include "vis/scene/layers.h"
 #include "volume/base/describe.h"
 
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +20,11 @@ struct VolumeView {
          showLenses = true;
     bool drawingLegend = false, drawingBox = false;
     bool inSpace = false; ///< where time runs along an axis: the data that are cut
+    // Of its own, in place of the session's; see ShownScene.
+    std::optional<vis::Camera> camera;
+    std::optional<std::vector<vis::Layer>> layers;
+    std::optional<double> time;
+    bool multiple = false;
     bool operator==(const VolumeView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.showBox, FieldInfo{.key = "box", .unit = "", .doc = "Draw the box around the data"});
@@ -44,6 +52,18 @@ struct VolumeView {
                                       .unit = "",
                                       .doc = "With time along an axis: show the data in space, at the time of the "
                                              "cross-hair, with the outline of the plane that is shown at all times"});
+        visit(self.camera, FieldInfo{.key = "camera",
+                                     .unit = "",
+                                     .doc = "Camera of this view alone; none: the one that all volume views share"});
+        visit(self.layers, FieldInfo{.key = "layers",
+                                     .unit = "",
+                                     .doc = "Layers of this view alone; none: those that all volume views share"});
+        visit(self.time,
+              FieldInfo{.key = "time", .unit = "s", .doc = "Time of this view alone; none: that of the session"});
+        visit(self.multiple, FieldInfo{.key = "multiple",
+                                       .unit = "",
+                                       .doc = "One of small multiples, which give way to the next ones",
+                                       .hidden = true});
     }
 };
 DrawView<VolumeView> drawVolumeView;

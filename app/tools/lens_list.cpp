@@ -1,6 +1,7 @@
 #include "app/tools/lens_list.h"
 
 #include "app/pane/view_parts.h"
+#include "app/session/shown_scene.h"
 #include "app/ui/fitted_text.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
@@ -209,8 +210,9 @@ void addLensWith(Session& session, const volume::DatasetInfo& info, vis::Techniq
 void renameLens(Session& session, std::size_t index, const std::string& name) {
     const std::string before = session.lenses[index].name, now = freeName(session, name, index);
     session.lenses[index].name = now;
-    for (vis::Layer& layer : session.layers)
-        if (!before.empty() && layer.lens == before) layer.lens = now;
+    for (auto* const layers : layerLists(session))
+        for (vis::Layer& layer : *layers)
+            if (!before.empty() && layer.lens == before) layer.lens = now;
     for (vis::Brush& brush : session.selection.brushes)
         if (auto* region = std::get_if<vis::LensRegion>(&brush.region);
             region && region->lens == before && !before.empty())
@@ -227,11 +229,12 @@ void moveLens(Session& session, std::size_t from, std::size_t to) {
 void removeLens(Session& session, std::size_t index) {
     const std::string name = session.lenses[index].name;
     session.lenses.erase(session.lenses.begin() + static_cast<std::ptrdiff_t>(index));
-    for (vis::Layer& layer : session.layers)
-        if (layer.lens == name) {
-            layer.lens.clear();
-            layer.visible = false;
-        }
+    for (auto* const layers : layerLists(session))
+        for (vis::Layer& layer : *layers)
+            if (layer.lens == name) {
+                layer.lens.clear();
+                layer.visible = false;
+            }
     std::erase_if(session.selection.brushes, [&](const vis::Brush& brush) {
         const auto* region = std::get_if<vis::LensRegion>(&brush.region);
         return region && region->lens == name && !name.empty();

@@ -36,6 +36,12 @@ std::string shownName(const Command& command) {
     return command.menu.empty() ? command.title() : command.menu + ": " + command.title();
 }
 
+/// What it does, or why it cannot now.
+std::string helpOf(const Command& command) {
+    if (command.available()) return command.help;
+    return command.help + (command.needs.empty() ? " (not possible now)" : "\nNot now: it needs " + command.needs);
+}
+
 } // namespace
 
 void runShortcuts(const std::vector<Command>& commands) {
@@ -66,9 +72,10 @@ const Command* drawMenu(const std::vector<Command>& commands, const std::string&
         const bool checked = command.checked && command.checked();
         if (ImGui::MenuItem(command.title().c_str(), textOf(command.shortcut).c_str(), checked, command.available()))
             chosen = &command;
-        if (!command.help.empty() && ImGui::IsItemHovered() && ImGui::GetIO().MouseDelta.x == 0 &&
-            ImGui::GetIO().MouseDelta.y == 0 && command.help != command.title())
-            ImGui::SetTooltip("%s", command.help.c_str());
+        const bool hovered = ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) &&
+                             ImGui::GetIO().MouseDelta.x == 0 && ImGui::GetIO().MouseDelta.y == 0;
+        const std::string help = helpOf(command);
+        if (hovered && !help.empty() && help != command.title()) ImGui::SetTooltip("%s", help.c_str());
     }
     return chosen;
 }
@@ -158,7 +165,7 @@ const Command* drawPalette(CommandPalette& palette, const std::vector<Command>& 
         if (i == palette.chosen && keyPressed(key::kDown, true)) ImGui::SetScrollHereY(0.7f);
         if (i == palette.chosen && keyPressed(key::kUp, true)) ImGui::SetScrollHereY(0.3f);
         if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) && !match.help.empty())
-            ImGui::SetTooltip("%s%s", match.help.c_str(), match.available() ? "" : " (not possible now)");
+            ImGui::SetTooltip("%s", helpOf(match).c_str());
         if (!keys.empty()) {
             ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(keys.c_str()).x -
                             ImGui::GetStyle().ItemSpacing.x);

@@ -19,6 +19,7 @@ struct Command {
     std::function<void()> run = {};
     std::function<bool()> enabled = {}; ///< empty = always
     std::function<bool()> checked = {}; ///< empty = no check mark
+    std::string needs = {};             ///< what is missing while it is not available, in words
     bool repeats = false;               ///< runs again while the key is held
     bool keyInView = false;             ///< the view under the mouse answers to the key itself
 

@@ -69,6 +69,8 @@ inline constexpr const char* kCopy = "\xef\x83\x85";        // f0c5
 inline constexpr const char* kCheck = "\xef\x80\x8c";       // f00c
 inline constexpr const char* kDatabase = "\xef\x87\x80";    // f1c0
 inline constexpr const char* kCube = "\xef\x86\xb2";        // f1b2
+inline constexpr const char* kChain = "\xef\x83\x81";       // f0c1
+inline constexpr const char* kChainOff = "\xef\x84\xa7";    // f127
 inline constexpr const char* kLock = "\xef\x80\xa3";        // f023
 inline constexpr const char* kClock = "\xef\x80\x97";       // f017
 } // namespace icon

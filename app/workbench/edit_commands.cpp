@@ -1,5 +1,6 @@
 #include "app/data/library.h"
 #include "app/pane/view_parts.h"
+#include "app/session/shown_scene.h"
 #include "app/ui/keys.h"
 #include "app/views/data/derived_list.h"
 #include "app/workbench/workbench.h"
@@ -14,14 +15,6 @@
 namespace tessera::app {
 
 namespace {
-
-/// The stack that holds a pane; 0: none.
-int stackOf(const DockNode& node, const std::string& pane) {
-    if (std::ranges::find(node.tabs, pane) != node.tabs.end()) return node.id;
-    for (const DockNode& child : node.children)
-        if (const int id = stackOf(child, pane)) return id;
-    return 0;
-}
 
 /// Opens a view of the data in space to the right of the first volume view, or closes it.
 void showSpaceBeside(Session& session, bool wanted) {
@@ -41,7 +34,7 @@ void showSpaceBeside(Session& session, bool wanted) {
     VolumeView view = std::get<VolumeView>(first->second);
     view.inSpace = true;
     const std::string pane = addView(session, view);
-    if (const int id = stackOf(session.dock.root, beside)) insertPane(session.dock, pane, id, DockSide::Right);
+    if (const int id = stackWith(session.dock.root, beside)) insertPane(session.dock, pane, id, DockSide::Right);
     session.dock.maximised.clear();
 }
 
@@ -221,7 +214,8 @@ std::vector<Command> differenceCommands(Workbench& workbench) {
 /// Gives the layer selected a transfer function of the library.
 void applyToSelected(Workbench& workbench, const vis::TransferRecipe& recipe) {
     Session changed = workbench.session();
-    const auto to = functionOfLayer(changed, workbench.source()->info(), selectedLayer(changed));
+    const Session shown = sessionShownIn(changed, volumePane(changed));
+    const auto to = functionOfLayer(shown, workbench.source()->info(), selectedLayer(shown));
     if (!to) return workbench.message("there is no layer to colour", true);
     try {
         applyRecipe(changed, *workbench.source(), *to, recipe);

@@ -1,5 +1,8 @@
 #include "app/workbench/pane_host.h"
 
+#include "app/pane/pane_title.h"
+#include "app/session/shown_scene.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -43,6 +46,11 @@ int stackFor(const Session& session, const std::string& beside, const std::map<i
     return chosen;
 }
 
+bool isClicked() {
+    return ImGui::IsMouseClicked(ImGuiMouseButton_Left) || ImGui::IsMouseClicked(ImGuiMouseButton_Middle) ||
+           ImGui::IsMouseClicked(ImGuiMouseButton_Right);
+}
+
 } // namespace
 
 bool hasNothingToShow(const ViewState& view, const Session& session, const volume::DatasetInfo& info) {
@@ -64,6 +72,7 @@ const ViewExport* PaneHost::exported(const std::string& pane) const {
 void PaneHost::draw(const ViewContext& frame, const Area& area) {
     Session& session = frame.session;
     std::erase_if(caches_, [&](const auto& entry) { return !session.views.contains(entry.first); });
+    if (!session.views.contains(session.dock.volume)) session.dock.volume.clear();
     int renderers = 1;
     for (const auto& [pane, cache] : caches_) renderers += cache->renderers();
     idle_ = !working_;
@@ -71,7 +80,9 @@ void PaneHost::draw(const ViewContext& frame, const Area& area) {
     hovered_.clear();
     drawn_.clear();
     DockPanes panes;
-    panes.title = [&](const std::string& pane) { return paneTitle(session, pane); };
+    panes.title = [&](const std::string& pane) {
+        return frame.source ? shownTitle(session, pane, frame.source->info()) : paneTitle(session, pane);
+    };
     panes.draw = [&](const std::string& pane) { drawPane(frame, pane, renderers); };
     panes.padded = [&](const std::string& pane) {
         const auto found = session.views.find(pane);
@@ -104,6 +115,10 @@ void PaneHost::drawPane(const ViewContext& frame, const std::string& pane, int r
     if (ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows | ImGuiHoveredFlags_AllowWhenBlockedByActiveItem))
         hovered_ = pane;
     if ((focused || hovered_ == pane) && hasCamera(frame.session, pane)) lastSpace_ = pane;
+    const bool clicked = hovered_ == pane && isClicked();
+    if ((clicked || (focused && last_.contains(pane))) && volumeViews(frame.session) > 1 &&
+        volumeView(frame.session, pane))
+        frame.session.dock.volume = pane;
     const auto found = frame.session.views.find(pane);
     if (found == frame.session.views.end()) {
         ImGui::TextDisabled("No view is named %s.", pane.c_str());
@@ -111,6 +126,8 @@ void PaneHost::drawPane(const ViewContext& frame, const std::string& pane, int r
     }
     ViewContext context = frame;
     context.renderers = renderers;
+    context.volumes = static_cast<int>(std::ranges::count_if(
+        last_, [&](const std::string& each) { return volumeView(frame.session, each) != nullptr; }));
     context.idle = idle_;
     if (cameraPane_ == pane) context.cameraKey = std::exchange(cameraKey_, 0);
     if (frame.headless) context.offerExport = [&](ViewExport made) { exports_[pane] = std::move(made); };

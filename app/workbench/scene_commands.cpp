@@ -1,3 +1,4 @@
+#include "app/session/shown_scene.h"
 #include "app/tools/brush_list.h"
 #include "app/tools/lens_list.h"
 #include "app/views/data/layers_view.h"
@@ -19,13 +20,17 @@ std::vector<Command> addingCommands(Workbench& workbench) {
     const auto adds = [&](std::string name, std::string help, std::string words,
                           std::function<void(Session&, const volume::DatasetInfo&)> add,
                           std::function<bool()> enabled) {
-        commands.push_back(
-            {.menu = "",
-             .name = std::move(name),
-             .help = std::move(help),
-             .words = std::move(words),
-             .run = [&workbench, add = std::move(add)] { add(workbench.session(), workbench.document().info()); },
-             .enabled = std::move(enabled)});
+        commands.push_back({.menu = "",
+                            .name = std::move(name),
+                            .help = std::move(help),
+                            .words = std::move(words),
+                            .run =
+                                [&workbench, add = std::move(add)] {
+                                    Session& session = workbench.session();
+                                    const ShownScene scene(session, volumePane(session));
+                                    add(session, workbench.document().info());
+                                },
+                            .enabled = std::move(enabled)});
     };
     static constexpr std::array<std::tuple<const char*, const char*, const char*>, 4> kLayers{
         {{"Add volume layer", "Draw a parameter as a volume", "new fog rays rendering"},

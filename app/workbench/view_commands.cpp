@@ -1,3 +1,4 @@
+#include "app/session/shown_scene.h"
 #include "app/ui/keys.h"
 #include "app/workbench/workbench.h"
 #include "app/workbench/workbench_commands.h"
@@ -58,16 +59,27 @@ void addPaneCommands(std::vector<Command>& commands, Workbench& workbench) {
                             std::string& maximised = workbench.session().dock.maximised;
                             maximised = maximised.empty() ? current() : std::string();
                         }});
-    commands.push_back({.menu = "View",
-                        .name = "Duplicate pane",
-                        .help = "Open a copy of the view under the mouse",
-                        .words = "copy clone second view",
-                        .shortcut = {.key = 'D', .ctrl = true},
-                        .run = [&workbench, current] {
-                            Session& session = workbench.session();
-                            if (const auto found = session.views.find(current()); found != session.views.end())
-                                addView(session, ViewState(found->second));
-                        }});
+    commands.push_back(
+        {.menu = "View",
+         .name = "Duplicate pane",
+         .help = "Open a copy of the view under the mouse, of a 3D view beside it",
+         .words = "copy clone second view side by side split",
+         .shortcut = {.key = 'D', .ctrl = true},
+         .run = [&workbench, current] {
+             Session& session = workbench.session();
+             const auto found = session.views.find(current());
+             if (found == session.views.end()) return;
+             const bool inSpace = traitsOf(found->second).inSpace;
+             const int stack = stackWith(session.dock.root, found->first);
+             const float scale = workbench.look().scale();
+             const auto rects = layoutDock(session.dock, {{0, 0}, ImGui::GetMainViewport()->Size}, scale).rects;
+             const auto rect = rects.find(stack);
+             const bool high = rect != rects.end() && rect->second.length(false) > rect->second.length(true);
+             const DockSide side = high ? DockSide::Bottom : DockSide::Right;
+             const std::string copy = addView(session, ViewState(found->second));
+             if (inSpace && stack) insertPane(session.dock, copy, stack, side);
+             if (inSpace) session.dock.maximised.clear();
+         }});
 }
 
 void addLookCommands(std::vector<Command>& commands, Workbench& workbench) {
@@ -117,7 +129,11 @@ void addCameraCommands(std::vector<Command>& commands, Workbench& workbench) {
                  },
              .checked =
                  [&workbench, key = key] {
-                     return key == '5' && workbench.session().camera.projection == vis::Projection::Orthographic;
+                     if (key != '5') return false;
+                     const VolumeView* view =
+                         volumeView(workbench.session(), workbench.panes().space(workbench.session()));
+                     const vis::Camera& camera = view && view->camera ? *view->camera : workbench.session().camera;
+                     return camera.projection == vis::Projection::Orthographic;
                  },
              .keyInView = true});
 }
@@ -126,6 +142,10 @@ void addCameraCommands(std::vector<Command>& commands, Workbench& workbench) {
 void resetArrangement(Workbench& workbench) {
     Session& session = workbench.session();
     const Session fresh = defaultSession(workbench.document().info(), session.data);
+    std::erase_if(session.views, [](const auto& each) {
+        const auto* volume = std::get_if<VolumeView>(&each.second);
+        return volume && volume->multiple;
+    });
     for (const auto& [pane, view] : fresh.views) session.views.emplace(pane, view);
     session.dock = fresh.dock;
     repair(session.dock, paneKeys(session));

@@ -36,7 +36,8 @@ Workbench::Workbench(WorkbenchOptions options)
         recovery_.show(autosaver_->abandoned());
     }
     panes_.paneDrawn = options_.paneDrawn;
-    for (const auto make : {fileCommands, editCommands, viewCommands, layoutCommands, sceneCommands, helpCommands}) {
+    for (const auto make :
+         {fileCommands, editCommands, viewCommands, volumeViewCommands, layoutCommands, sceneCommands, helpCommands}) {
         std::vector<Command> commands = make(*this);
         std::ranges::move(commands, std::back_inserter(commands_));
     }
@@ -323,7 +324,9 @@ void Workbench::drawDialogs() {
     if (std::optional<Opened> found = missing_.draw(ask))
         openWhole(std::make_shared<Opened>(std::move(*found)), "Opening the session");
     if (const auto recovery = recovery_.draw()) recover(*recovery);
-    if (const auto request = pictures_.draw(session(), options_.stateFolder))
+    const auto request =
+        document_.loaded() ? pictures_.draw(session(), document_.info(), options_.stateFolder) : std::nullopt;
+    if (request)
         files_.askSave("Save picture", (request->pane.empty() ? "tessera" : request->pane) + ".png", ".png",
                        [this, request](const std::string& path) {
                            picture_ = PictureJob{*request, path};

@@ -15,6 +15,8 @@ std::vector<Command> fileCommands(Workbench& workbench);
 std::vector<Command> editCommands(Workbench& workbench);
 std::vector<Command> viewCommands(Workbench& workbench);
 std::vector<Command> layoutCommands(Workbench& workbench);
+/// What volume views share or own; they end the menu View.
+std::vector<Command> volumeViewCommands(Workbench& workbench);
 /// Commands that add to the scene and hide parts of it; they are in no menu of the window.
 std::vector<Command> sceneCommands(Workbench& workbench);
 std::vector<Command> helpCommands(Workbench& workbench);

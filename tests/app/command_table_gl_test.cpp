@@ -1,4 +1,5 @@
 #include "app/data/open.h"
+#include "app/session/shown_scene.h"
 #include "tests/app/workbench_fixture.h"
 
 #include <gtest/gtest.h>
@@ -30,8 +31,10 @@ const std::set<std::string> kElsewhere = {
     "Shortcuts",                    // CommandTable.HelpAndPaletteOpen
     "Command palette",              // the same
     "About Tessera",
-    "Play",                // tests/app/views_playback_test.cpp, and below for its state
-    "Look from the front", // WorkbenchMenus.CameraCommandsActOnAVolume, tests/app/camera_hand_gl_test.cpp
+    "One view per parameter", // Multiples.ShowEachParameterAndUndoRestoresTheDock
+    "One view per time",      // Multiples.ShowTimesWithOneLegend
+    "Play",                   // tests/app/views_playback_test.cpp, and below for its state
+    "Look from the front",    // WorkbenchMenus.CameraCommandsActOnAVolume, tests/app/camera_hand_gl_test.cpp
     "Look from the right",
     "Look from the top",
     "Look isometric",
@@ -97,6 +100,15 @@ template <class Region> void brushAdded(const Session& before, const Session& af
     EXPECT_EQ(std::get<Region>(after.selection.brushes.back().region).center, after.cursor);
 }
 
+Check unlinked(Owned what) {
+    return [what](const Session& before, const Session& after) {
+        EXPECT_FALSE(owns(std::get<VolumeView>(before.views.at("volume")), what));
+        EXPECT_TRUE(owns(std::get<VolumeView>(after.views.at("volume")), what));
+        const Session shown = sessionShownIn(after, "volume");
+        EXPECT_TRUE(shown.camera == before.camera && shown.layers == before.layers && shown.time == before.time);
+    };
+}
+
 Check turned(bool VolumeView::*member) {
     return [member](const Session& before, const Session& after) {
         const auto of = [&](const Session& session) {
@@ -148,6 +160,9 @@ const std::map<std::string, Check>& checks() {
             {"Show direction gizmo", turned(&VolumeView::showGizmo)},
             {"Show scale bar", turned(&VolumeView::showScaleBar)},
             {"Show outlines and handles", turned(&VolumeView::showLenses)},
+            {"Link camera", unlinked(Owned::Camera)},
+            {"Link layers", unlinked(Owned::Layers)},
+            {"Link time", unlinked(Owned::Time)},
             {"Draw on the grid of the file",
              [](const Session&, const Session& after) { EXPECT_EQ(after.data.lattice, PictureLattice::Grid); }},
             {"Draw on the body-centred lattice (70.7 % of the samples)", // it is already
@@ -269,6 +284,7 @@ TEST_F(CommandTable, EveryCommandDoesWhatItSaysAndUndoTakesItBack) {
         EXPECT_TRUE(workbench.session() == before) << "undone";
         ASSERT_TRUE(run("Redo"));
         settle();
+        workbench.session().dock.volume = after.dock.volume; // which view has the focus is no edit
         EXPECT_TRUE(workbench.session() == after) << "done again";
     }
 }

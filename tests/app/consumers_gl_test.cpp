@@ -1,4 +1,5 @@
 #include "app/described/describe_json.h"
+#include "app/session/shown_scene.h"
 #include "tests/app/formula_view.h"
 
 #include <algorithm>
@@ -29,7 +30,11 @@ enum Input {
     kPaper,
     kLattice,
     kDerived,
-    kUnit,
+    // What a volume view has of its own: the view itself, or another one beside it.
+    kOwnCamera,
+    kOwnLayers,
+    kOwnTime,
+    kUnit, ///< last: these are other data
     kInputs
 };
 
@@ -67,25 +72,28 @@ void PrintTo(const Consumer& each, std::ostream* out) {
 //                       | | | | | | | | | | | | | paper
 //                       | | | | | | | | | | | | | | lattice
 //                       | | | | | | | | | | | | | | | derived
-//                       | | | | | | | | | | | | | | | | unit
+//                       | | | | | | | | | | | | | | | | own camera
+//                       | | | | | | | | | | | | | | | | | own layers
+//                       | | | | | | | | | | | | | | | | | | own time
+//                       | | | | | | | | | | | | | | | | | | | unit
 constexpr Consumer kConsumers[] = {
-    {"volume",          "F F F F F F F F F F F F F F F . F"},
-    {"slices",          "F F F F . F F . F . F F F . F F F"},
-    {"scatterMatrix",   "F F . . . F . . . . . F . . . F F"},
-    {"transfer",        "F F F . . F F . . . . F . . . . F"},
-    {"layers",          ". . . . . F . F . . . F . . . . ."},
-    {"timeline",        "F F . . . . . . . . . . . . . . ."},
-    {"data",            "F F . . . F . . . . . F . . F F F"},
+    {"volume",          "F F F F F F F F F F F F F F F . F F F F"},
+    {"slices",          "F F F F . F F . F . F F F . F F . . . F"},
+    {"scatterMatrix",   "F F . . . F . . . . . F . . . F . . . F"},
+    {"transfer",        "F F F . . F F . . . . F . . . . . F . F"},
+    {"layers",          ". . . . . F . F . . . F . . . . . F . ."},
+    {"timeline",        "F F . . . . . . . . . . . . . . . . . ."},
+    {"data",            "F F . . . F . . . . . F . . F F . . . F"},
     {"history",         ""}, // lists the edits themselves
-    {"log",             ". . . . . . . . . . . . . . . . ."},
-    {"statistics",      "F F . . . F . . . . . F . . . F F"},
-    {"histogram",       "F F . . . F . . . . . F . . . . F"},
-    {"profile",         "F F F . . . . . . . . . . . . F F"},
-    {"curves",          ". . . . . F . . . . . F . . . . F"},
-    {"sliceMatrix",     "F F . . . . . . . . . . . . . F F"},
-    {"shadowCube",      "F F F F F F F F F F F F F . F . F"},
-    {"tesseract",       "F F . . . F F . . . . . . . F . F"},
-    {"compare",         "F F F F F F F F F F F F F F F . F"},
+    {"log",             ". . . . . . . . . . . . . . . . . . . ."},
+    {"statistics",      "F F . . . F . . . . . F . . . F . . . F"},
+    {"histogram",       "F F . . . F . . . . . F . . . . . . . F"},
+    {"profile",         "F F F . . . . . . . . . . . . F . . . F"},
+    {"curves",          ". . . . . F . . . . . F . . . . . . . F"},
+    {"sliceMatrix",     "F F . . . . . . . . . . . . . F . . . F"},
+    {"shadowCube",      "F F F F F F F F F F F F F . F . . . . F"},
+    {"tesseract",       "F F . . . F F . . . . . . . F . . . . F"},
+    {"compare",         "F F F F F F F F F F F F F F F . . . . F"},
 };
 // clang-format on
 constexpr bool hasEveryKindInOrder() {
@@ -165,10 +173,27 @@ protected:
         case kDerived:
             session.data.derived = {{"twice", "K", volume::ExpressionRecipe{"2*T"}}};
             break;
+        case kOwnCamera:
+            volumeOf(session).camera = session.camera;
+            volumeOf(session).camera->distance *= 0.8f;
+            break;
+        case kOwnLayers:
+            volumeOf(session).layers = {{"", true, vis::VolumeLayer{.channel = "c"}}};
+            break;
+        case kOwnTime:
+            volumeOf(session).time = 2;
+            break;
         case kUnit:
         case kInputs:
             break;
         }
+    }
+    /// The view under test if it is of the scene, else another one, which is not drawn.
+    static VolumeView& volumeOf(Session& session) {
+        if (auto* const own = std::get_if<VolumeView>(&session.views.at("pane"))) return *own;
+        session.views["volume"] = VolumeView{};
+        repair(session.dock, paneKeys(session));
+        return std::get<VolumeView>(session.views.at("volume"));
     }
     static vis::Brush hot() { return vis::rangeBrush({{.channel = "T", .lo = 318.5, .hi = 1e9}}, "hot"); }
 
@@ -211,6 +236,42 @@ TEST_P(Consumers, FollowWhatTheyDependOnAndNothingElse) {
 
 INSTANTIATE_TEST_SUITE_P(EveryView, Consumers, testing::ValuesIn(kConsumers),
                          [](const auto& each) { return std::string(each.param.kind); });
+
+/// Figures of a view, without its controls.
+class OwnedConsumers : public FormulaView {
+protected:
+    OwnedConsumers() : FormulaView(false) {}
+    std::string shown(const Session& session) {
+        const vis::Image image = picture(session, {260, 200});
+        return {image.rgba.begin(), image.rgba.end()};
+    }
+};
+
+TEST_F(OwnedConsumers, WhatAViewOwnsLooksAsWhenItIsShared) {
+    install(VolumeView{});
+    const auto changes = {+[](Session& session) { session.camera.distance *= 0.8f; },
+                          +[](Session& session) {
+                              session.layers = {{"", true, vis::VolumeLayer{.channel = "c"}}};
+                          },
+                          +[](Session& session) { session.time = 2; }};
+    const std::string before = shown(start);
+    auto what = std::begin(kOwned);
+    for (const auto change : changes) {
+        Session shared = start, own = start;
+        change(shared);
+        VolumeView& view = std::get<VolumeView>(own.views.at("pane"));
+        setOwned(shared, view, *what, true); // a copy of the changed one
+        const std::string wanted = shown(shared);
+        EXPECT_FALSE(wanted == before);
+        EXPECT_TRUE(shown(own) == wanted) << int(*what);
+        // What is shared does not matter any more.
+        setOwned(start, view, *what, false);
+        setOwned(start, view, *what, true);
+        change(own);
+        EXPECT_TRUE(shown(own) == before) << int(*what);
+        ++what;
+    }
+}
 
 TEST(ConsumersTable, HasEveryPartOfASession) {
     Session session;

@@ -22,6 +22,8 @@ namespace tessera::app {
 /// recorded. Where something lies is asked of what was drawn, not of the code that takes the mouse.
 class Hands : public testing::Test {
 protected:
+    explicit Hands(WorkbenchOptions options = {.headless = true, .onlyPane = "pane", .controls = true})
+        : workbench(std::move(options)) {}
     /// Shows the cell on its own grid in this view alone; `prepare` edits the session before.
     void show(const ViewState& view, glm::ivec2 size, const std::function<void(Session&)>& prepare = {}) {
         Opened opened;
@@ -190,7 +192,7 @@ protected:
 
     vis::HeadlessContext gl;
     Gui gui;
-    Workbench workbench{{.headless = true, .onlyPane = "pane", .controls = true}};
+    Workbench workbench;
     std::optional<OffscreenFrames> frames;
     ImVec2 mouse{-1000, -1000};
     bool down[3] = {}, shift = false, ctrl = false, alt = false;

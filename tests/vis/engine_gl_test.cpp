@@ -136,6 +136,24 @@ TEST_F(EngineGl, PicturesComeWhenTheirSamplesAreRead) {
     EXPECT_LT(test::maxDifference(renderer.readLinear(*target), renderer.readLinear(*whole)), 2e-3);
 }
 
+/// So it does where other views are drawn already, and an empty picture could be shown at once.
+TEST_F(EngineGl, ANewViewBesideOthersComesWhenItsSamplesAreRead) {
+    Renderer renderer;
+    const Scene scene = wavesScene(Engine::Processor);
+    renderer.setSource(waves(volume::LatticeKind::CC));
+    const ViewTargetPtr first = renderer.makeTarget(), second = renderer.makeTarget(), whole = renderer.makeTarget();
+    renderer.render(*first, scene, {.size = {80, 60}, .wait = true});
+    renderer.setSource(waves(volume::LatticeKind::BCC)); // no sample of it is read
+    bool complete = false;
+    for (int i = 0; i < 2000 && !complete; ++i) {
+        complete = renderer.render(*second, scene, {.size = {80, 60}, .budgetMs = 4}).complete;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_TRUE(complete);
+    renderer.render(*whole, scene, {.size = {80, 60}, .wait = true});
+    EXPECT_LT(test::maxDifference(renderer.readLinear(*second), renderer.readLinear(*whole)), 2e-3);
+}
+
 /// Another time, and another data set, are other samples.
 TEST_F(EngineGl, NewDataAreDrawn) {
     Renderer renderer;

@@ -61,8 +61,9 @@ bool Renderer::Impl::drawByPackets(ViewTarget& target, const RenderCall& call, C
         if (here) {
             refineByPackets(target, call, start);
             if (!call.request.wait) prefetchTime(target.packets, call);
-        } else if (!target.state.presented())
-            blank(target, call.scene);
+        } else {
+            postpone(target, call.scene);
+        }
     } catch (const Error& error) {
         tools.messages.push_back(error.what());
         target.packets.failed = true;

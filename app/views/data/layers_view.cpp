@@ -1,6 +1,8 @@
 #include "app/views/data/layers_view.h"
 #include "app/edits/context_style.h"
+#include "app/pane/pane_title.h"
 #include "app/pane/view_parts.h"
+#include "app/session/shown_scene.h"
 #include "app/tools/brush_list.h"
 #include "app/tools/lens_list.h"
 #include "app/ui/ticks.h"
@@ -10,6 +12,7 @@
 #include <algorithm>
 #include <imgui.h>
 #include <imgui_stdlib.h>
+#include <utility>
 
 namespace tessera::app {
 
@@ -115,6 +118,26 @@ void drawList(ViewContext& context, const volume::DatasetInfo& info, int& select
     if (layers.empty()) ImGui::TextDisabled("No layers: the volume view is empty.");
 }
 
+/// The heading of the list, which says whose layers it has where there are several lists.
+std::string listTitle(const Session& session, const std::string& pane, const volume::DatasetInfo& info) {
+    if (layerLists(session).size() < 2) return "Layers";
+    const VolumeView* view = volumeView(session, pane);
+    return view && view->layers ? "Layers of " + shownTitle(session, pane, info) + " alone" : "Layers, shared";
+}
+
+/// The place in the session of the layers shown.
+std::string layersPath(const Session& session, const std::string& pane) {
+    const VolumeView* view = volumeView(session, pane);
+    return view && view->layers ? detail::joinPointer("/views", pane) + "/layers" : "/layers";
+}
+
+/// Whether a layer of any list has this function for its own.
+bool usesFunction(const Session& session, const std::string& name) {
+    return std::ranges::any_of(layerLists(session), [&](const auto* layers) {
+        return std::ranges::any_of(*layers, [&](const vis::Layer& layer) { return layer.transfer == name; });
+    });
+}
+
 /// The lens, transfer function and time that a layer has of its own.
 void drawPlace(const WidgetContext& widgets, Session& session, vis::Layer& layer) {
     if (!session.lenses.empty()) {
@@ -134,8 +157,8 @@ void drawPlace(const WidgetContext& widgets, Session& session, vis::Layer& layer
             std::string name = channel + " in " + layerName(layer);
             while (own && session.transfer.contains(name)) name += "'";
             if (own) session.transfer[name] = now;
-            if (!own) session.transfer.erase(layer.transfer);
-            layer.transfer = own ? name : "";
+            const std::string former = std::exchange(layer.transfer, own ? name : "");
+            if (!own && !usesFunction(session, former)) session.transfer.erase(former);
         }
     }
     bool changed = false;
@@ -148,7 +171,7 @@ void drawPlace(const WidgetContext& widgets, Session& session, vis::Layer& layer
 }
 
 /// One click for each way of drawing what is not brushed, and the weights of its hull.
-void drawContextStyles(ViewContext& context, const WidgetContext& widgets) {
+void drawContextStyles(ViewContext& context, const WidgetContext& widgets, const std::string& layersPath) {
     Session& session = context.session;
     ImGui::TextDisabled("What is not brushed");
     const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
@@ -164,13 +187,25 @@ void drawContextStyles(ViewContext& context, const WidgetContext& widgets) {
     const std::optional<std::size_t> hull = hullLayer(session);
     if (!hull) return;
     auto& surface = std::get<vis::IsoLayer>(session.layers[*hull].technique);
-    const std::string path = "/layers/" + std::to_string(*hull) + "/technique";
+    const std::string path = layersPath + "/" + std::to_string(*hull) + "/technique";
     ImGui::PushID("hull");
     if (ImGui::TreeNodeEx("Hull", ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_SpanAvailWidth)) {
         drawDescribed(surface, widgets.at(path));
         ImGui::TreePop();
     }
     ImGui::PopID();
+}
+
+/// How much longer than true each axis is drawn.
+void drawProportions(Session& session, const WidgetContext& widgets) {
+    double stretch[] = {session.stretch.x, session.stretch.y, session.stretch.z};
+    const FieldInfo field{.key = "stretch",
+                          .unit = "",
+                          .doc = "Factor by which each axis is stretched; 1 = true proportions",
+                          .range = Range{0.01, 1000},
+                          .logScale = true};
+    if (drawNumber(widgets, field, {}, stretch, 3, false)) session.stretch = {stretch[0], stretch[1], stretch[2]};
+    if (ImGui::SmallButton("True proportions")) session.stretch = glm::dvec3(1);
 }
 
 void drawListButtons(ViewContext& context, const volume::DatasetInfo& info, int& selected) {
@@ -225,23 +260,34 @@ void drawLayersView(ViewContext& context, const std::string& pane, LayersView& v
     }
     const volume::DatasetInfo& info = context.source->info();
     Session& session = context.session;
-    const auto menu = parameterMenu(context);
+    const std::string of = volumePane(session);
+    const std::string title = listTitle(session, of, info) + "###layers", path = layersPath(session, of);
+    ShownScene scene(session, of, {Owned::Layers}); // numbers are those of the time that is shared
+    // Paths lead into the session as it is.
+    const std::function<void(const std::string&)> menu = [&, own = parameterMenu(context)](const std::string& at) {
+        scene.outside([&] { own(at); });
+    };
     const WidgetContext widgets{.info = &info, .menu = &menu};
     ImGui::BeginChild("layers");
-    if (ImGui::CollapsingHeader("Layers", ImGuiTreeNodeFlags_DefaultOpen)) {
-        drawList(context, info, view.selected);
-        drawListButtons(context, info, view.selected);
+    // Lists differ in length: only a choice of the user is stored.
+    const auto last = [&] { return std::max(0, static_cast<int>(session.layers.size()) - 1); };
+    const int chosen = std::clamp(view.selected, 0, last());
+    int selected = chosen;
+    if (ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {
+        drawList(context, info, selected);
+        drawListButtons(context, info, selected);
     }
-    view.selected = std::clamp(view.selected, 0, std::max(0, static_cast<int>(session.layers.size()) - 1));
+    selected = std::clamp(selected, 0, last());
+    if (selected != chosen) view.selected = selected;
     if (!session.layers.empty()) {
-        vis::Layer& layer = session.layers[static_cast<std::size_t>(view.selected)];
-        const std::string title = std::string(kindName(layer.technique)) + "###technique";
-        if (ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {
-            ImGui::PushID(view.selected);
+        vis::Layer& layer = session.layers[static_cast<std::size_t>(selected)];
+        const std::string kind = std::string(kindName(layer.technique)) + "###technique";
+        if (ImGui::CollapsingHeader(kind.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {
+            ImGui::PushID(selected);
             drawLabel(widgets, "Name", "Name of the layer; empty: what it shows");
             ImGui::InputTextWithHint("##name", layerTitle(layer, info).c_str(), &layer.name);
             const std::string before = channelOf(layer.technique);
-            const WidgetContext own = widgets.at("/layers/" + std::to_string(view.selected) + "/technique");
+            const WidgetContext own = widgets.at(path + "/" + std::to_string(selected) + "/technique");
             std::visit([&](auto& technique) { drawDescribed(technique, own); }, layer.technique);
             followChannel(layer.name, before, channelOf(layer.technique));
             drawPlace(widgets, session, layer);
@@ -252,7 +298,7 @@ void drawLayersView(ViewContext& context, const std::string& pane, LayersView& v
         drawLensList(context, pane, cacheOf<LayersCache>(context, pane).lenses);
     if (ImGui::CollapsingHeader("Focus and context", ImGuiTreeNodeFlags_DefaultOpen)) {
         drawBrushList(context);
-        drawContextStyles(context, widgets);
+        drawContextStyles(context, widgets, path);
     }
     if (ImGui::CollapsingHeader("Light")) {
         const std::function<void()> browse = [&] {
@@ -279,16 +325,7 @@ void drawLayersView(ViewContext& context, const std::string& pane, LayersView& v
                           session.clips);
     if (ImGui::CollapsingHeader("Tone curve")) drawDescribed(session.tone, widgets.at("/tone"));
     if (ImGui::CollapsingHeader("Quality")) drawDescribed(session.render, widgets.at("/render"));
-    if (ImGui::CollapsingHeader("Proportions")) {
-        double stretch[] = {session.stretch.x, session.stretch.y, session.stretch.z};
-        const FieldInfo field{.key = "stretch",
-                              .unit = "",
-                              .doc = "Factor by which each axis is stretched; 1 = true proportions",
-                              .range = Range{0.01, 1000},
-                              .logScale = true};
-        if (drawNumber(widgets, field, {}, stretch, 3, false)) session.stretch = {stretch[0], stretch[1], stretch[2]};
-        if (ImGui::SmallButton("True proportions")) session.stretch = glm::dvec3(1);
-    }
+    if (ImGui::CollapsingHeader("Proportions")) drawProportions(session, widgets);
     ImGui::EndChild();
 }
 

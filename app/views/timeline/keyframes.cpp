@@ -6,6 +6,7 @@
 #include "app/pane/plot.h"
 #include "app/pane/view_parts.h"
 #include "app/session/session_json.h"
+#include "app/session/shown_scene.h"
 #include "app/ui/ticks.h"
 
 #include <algorithm>
@@ -127,9 +128,15 @@ void addVariant(ViewContext& context, const std::string& path) {
 void drawKeyframeButtons(ViewContext& context) {
     Session& session = context.session;
     Animation& animation = session.animation;
+    const std::string pane = volumePane(session);
+    const VolumeView* view = volumeView(session, pane);
+    const bool own = view && view->camera;
+    const std::string owner = own ? detail::joinPointer("/views", pane) : std::string();
+    const std::string whose = own ? " of " + paneTitle(session, pane) : std::string();
     if (ImGui::Button("Set camera key"))
-        for (const char* path : kCameraPaths) setKey(session, path);
-    if (ImGui::IsItemHovered()) tooltip("Set keyframes for the camera at the current time of the animation");
+        for (const char* path : kCameraPaths) setKey(session, owner + path);
+    if (ImGui::IsItemHovered())
+        tooltip(("Set keyframes for the camera" + whose + " at the current time of the animation").c_str());
     ImGui::SameLine(0, em() * 0.2f);
     if (ImGui::Button("Set time key")) setKey(session, "/time");
     if (ImGui::IsItemHovered()) tooltip("Set a keyframe for the time shown; for other settings right-click their name");
@@ -204,7 +211,9 @@ std::function<void(const std::string&)> parameterMenu(ViewContext& context) {
         const auto own =
             std::find_if(tracks.begin(), tracks.end(), [&](const Track& each) { return each.path == path; });
         if (ImGui::MenuItem("Remove its keys", nullptr, false, own != tracks.end())) tracks.erase(own);
-        if (ImGui::MenuItem("Compare with another value")) addVariant(context, path);
+        // A comparison shows what is shared.
+        if (ImGui::MenuItem("Compare with another value", nullptr, false, !path.starts_with("/views/")))
+            addVariant(context, path);
     };
 }
 

@@ -1,6 +1,7 @@
 #include "app/views/transfer/curve_page.h"
 
 #include "app/pane/view_parts.h"
+#include "app/session/shown_scene.h"
 #include "app/tools/brush_edit.h"
 #include "app/ui/ticks.h"
 
@@ -55,11 +56,15 @@ void drawStrip(ViewContext& context, CurvePage& page, vis::TransferFunction& fun
     }
 }
 
-/// The visibility histogram as a line over the plot, its top the plot's.
+/// The visibility histogram of the volume view clicked last, as a line over the plot, its top the plot's.
 void drawVisibility(ViewContext& context, CurvePage& page, int channel, Range range, const PlotFrame& frame,
                     const std::string& pane) {
     constexpr int kBins = 96;
-    const auto seen = page.visibility.get(context, "visibility " + pane, channel, range, kBins);
+    std::shared_ptr<const std::vector<double>> seen;
+    {
+        const ShownScene scene(context.session, volumePane(context.session));
+        seen = page.visibility.get(context, "visibility " + pane, channel, range, kBins);
+    }
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotColors colors = plotColors();
     double top = 0, all = 0;

@@ -2,6 +2,7 @@
 
 #include "app/described/describe_json.h"
 #include "app/pane/view_parts.h"
+#include "app/session/shown_scene.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
 #include "app/user_files/colormap_file.h"
@@ -119,14 +120,23 @@ void drawCurveControls(TransferView& view, vis::TransferFunction& function) {
     check("visible", view.visibility, "Show which values contribute how much to the visible 3D picture");
 }
 
+/// Functions that layers have of their own, in the order of the layers.
+std::vector<std::string> ownFunctions(const Session& session) {
+    std::vector<std::string> names;
+    for (const auto* layers : layerLists(session))
+        for (const vis::Layer& layer : *layers)
+            if (!layer.transfer.empty() && std::ranges::find(names, layer.transfer) == names.end())
+                names.push_back(layer.transfer);
+    return names;
+}
+
 /// A choice among a parameter's own function and those of layers.
 void chooseFunction(const Session& session, TransferView& view, const std::string& channel) {
     const std::string shown = layerOfFunction(session, view.channel) ? view.channel : "all layers";
     if (!ImGui::BeginCombo("##function", shown.c_str())) return;
     if (ImGui::Selectable("all layers", shown == "all layers")) view.channel = channel;
-    for (const vis::Layer& layer : session.layers)
-        if (!layer.transfer.empty() && ImGui::Selectable(layer.transfer.c_str(), layer.transfer == view.channel))
-            view.channel = layer.transfer;
+    for (const std::string& name : ownFunctions(session))
+        if (ImGui::Selectable(name.c_str(), name == view.channel)) view.channel = name;
     ImGui::EndCombo();
 }
 
@@ -163,8 +173,10 @@ void drawOwnColors(ViewContext& context, vis::TransferFunction& function, const 
 } // namespace
 
 const vis::Layer* layerOfFunction(const Session& session, const std::string& name) {
-    for (const vis::Layer& layer : session.layers)
-        if (!name.empty() && layer.transfer == name) return &layer;
+    if (name.empty()) return nullptr;
+    for (const auto* layers : layerLists(session))
+        for (const vis::Layer& layer : *layers)
+            if (layer.transfer == name) return &layer;
     return nullptr;
 }
 
@@ -180,8 +192,7 @@ void drawTransferControls(ViewContext& context, TransferView& view, const Findin
     ImGui::SetNextItemWidth(combo);
     if (chooseChannel("##channel", &info, channel)) view.channel = channel;
     if (ImGui::IsItemHovered()) tooltip("Parameter whose colours and opacity are edited");
-    const bool choice = std::any_of(context.session.layers.begin(), context.session.layers.end(),
-                                    [](const vis::Layer& layer) { return !layer.transfer.empty(); });
+    const bool choice = !ownFunctions(context.session).empty();
     if (choice) {
         ImGui::SameLine();
         ImGui::SetNextItemWidth(combo);

@@ -2,6 +2,7 @@
 #include "app/queries/async_query.h"
 #include "app/queries/derivative_query.h"
 #include "app/queries/readout.h"
+#include "app/session/shown_scene.h"
 #include "app/views/transfer/curve_page.h"
 #include "app/views/transfer/library_page.h"
 #include "app/views/transfer/transfer_controls.h"
@@ -86,6 +87,7 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
     const auto channelNow = [&] {
         const vis::Layer* own = layerOfFunction(context.session, view.channel);
         const std::string name = own ? colouringParameter(own->technique) : view.channel;
+        const ShownScene scene(context.session, volumePane(context.session)); // has the first layer
         return resolveChannel(info, context.session, name);
     };
     const auto channel = channelNow();

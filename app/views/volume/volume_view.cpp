@@ -2,6 +2,7 @@
 #include "app/pane/scale_bar.h"
 #include "app/pane/view_parts.h"
 #include "app/queries/scene_query.h"
+#include "app/session/shown_scene.h"
 #include "app/tools/brush_list.h"
 #include "app/tools/camera_hand.h"
 #include "app/tools/lens_edit.h"
@@ -12,6 +13,7 @@
 #include "app/ui/keys.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "app/views/volume/chain.h"
 #include "app/views/volume/space_beside.h"
 
 #include <algorithm>
@@ -102,18 +104,20 @@ public:
           shown_(context.decoration), info_(context.source->info()),
           world_(vis::worldFrame(info_.bounds, session_.stretch)), triad_(em() * 2.6f),
           triadAt_(picture.min.x + triad_ + em(), max().y - triad_ - em()),
-          hasTriad_(view.showGizmo && picture.size.x > em() * 14 && picture.size.y > em() * 12) {}
+          hasTriad_(view.showGizmo && picture.size.x > em() * 14 && picture.size.y > em() * 12),
+          chain_(context, view, picture) {}
 
     void draw(const std::string& pane) {
         const bool moving = useHands();
         vis::FrameRequest request;
         request.size = {picture_.size.x, picture_.size.y};
-        request.moving = (moving || context_.interacting || session_.animation.playing) && !context_.headless;
+        request.moving = (moving || context_.interacting || plays()) && !context_.headless;
         request.wait = context_.headless;
         if (!cache_.target) cache_.target = context_.renderer.makeTarget();
         vis::Scene scene = cache_.scene.get(context_, pane, request.moving);
         // In motion a third of the frame time is left to other views.
-        if (request.moving) request.budgetMs = double(scene.render.limits.frameTime) * 2 / 3;
+        const double all = double(scene.render.limits.frameTime) * (request.moving ? 2.0 / 3 : 1);
+        request.budgetMs = all / std::max(context_.volumes, 1);
         scene.showBox = view_.showBox && shown_.box && framed();
         const vis::FrameStatus status = context_.renderer.render(*cache_.target, scene, request);
         context_.follow(status);
@@ -125,6 +129,7 @@ public:
         const SpaceFrame space = spaceFrame(picture_.min, max(), session_.camera, info_.bounds, session_.stretch);
         drawObjects(space);
         const AxisLabels labels = axisLabels(session_, info_);
+        if (const auto chain = chain_.draw(*list_)) taken_.push_back(*chain);
         drawLegend();
         if (hasTriad_ && shown_.gizmo) drawTriadAt(labels);
         if (view_.showScaleBar && shown_.scaleBar && !timeAxisOf(session_, info_)) drawBar();
@@ -139,9 +144,12 @@ private:
     /// Whether box and cross-hair suit what is shown.
     bool framed() const { return view_.drawingBox || !onlyDrawings(session_); }
     bool showsLegend() const { return view_.showLegend && shown_.legend; }
+    /// Whether the animation may change what is shown.
+    bool plays() const { return session_.animation.playing && (!view_.time || !session_.animation.tracks.empty()); }
 
     /// Mouse and keys over the picture; true while something moves.
     bool useHands() {
+        chain_.take();
         ImGui::InvisibleButton("picture", picture_.size,
                                ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                                    ImGuiButtonFlags_MouseButtonRight);
@@ -177,9 +185,27 @@ private:
 
     void drawLegend() {
         if (!showsLegend()) return;
-        const LegendArea area =
-            drawLegends(*list_, sceneLegends(session_, info_, view_.drawingLegend), picture_.min, max());
+        const std::vector<LegendEntry> entries = sceneLegends(session_, info_, view_.drawingLegend);
+        if (view_.multiple && entries.size() == 1 && drawUprightLegend(entries.front())) return;
+        const LegendArea area = drawLegends(*list_, entries, picture_.min, max());
         taken_.push_back({area.min, area.max});
+    }
+
+    /// A narrow bar at the right edge, beside the object of a small picture; false where it would not do.
+    bool drawUprightLegend(const LegendEntry& entry) {
+        if (entry.swatch || entry.opacity || entry.regions || !entry.names.empty()) return false;
+        const std::string title = titleWithUnit(entry.title, entry.unit);
+        const float width = std::max(ImGui::CalcTextSize(title.c_str()).x, em() * 5), line = ImGui::GetFontSize();
+        const float height = std::min(em() * 10, picture_.size.y - em() * 5.5f);
+        if (height < line * 3 || width > picture_.size.x / 3) return false;
+        const ImVec2 hi{max().x - em() * 0.5f, max().y - em() * 0.5f};
+        const ImVec2 lo{hi.x - width - em() * 0.8f, hi.y - height - line - em() * 1.2f};
+        list_->AddRectFilled(lo, hi, plotColors().backdrop, em() * 0.25f);
+        const float left = lo.x + em() * 0.4f;
+        list_->AddText({left, lo.y + em() * 0.3f}, plotColors().text, title.c_str());
+        drawLegendColumn(*list_, {left, hi.y - height - em() * 0.4f}, height, entry);
+        taken_.push_back({lo, hi});
+        return true;
     }
 
     void drawTriadAt(const AxisLabels& labels) {
@@ -202,16 +228,16 @@ private:
             taken_.push_back(drawScaleBar(*list_, {left, max().y - em() * 0.5f}, bar));
     }
 
-    /// Writes the stretch of the data, and in exported pictures the time shown.
+    /// Writes the stretch of the data, and the time shown in exported pictures and where it is the view's own.
     void drawTexts() {
         if (const std::string text = stretchText(session_.stretch); !text.empty()) {
-            const ImVec2 at{max().x - em() * 0.5f, picture_.min.y + em() * 0.4f},
+            const ImVec2 at{chain_.left() - em() * 0.5f, picture_.min.y + em() * 0.4f},
                 size = ImGui::CalcTextSize(text.c_str());
             addTextWithBackdrop(*list_, at, {1, 0}, plotColors().faint, text.c_str());
             taken_.push_back({{at.x - size.x, at.y}, {at.x, at.y + size.y}});
         }
         // The window has its timeline, but not where time runs along an axis.
-        if ((context_.figure || session_.data.timeAxis) && info_.times.size() > 1)
+        if ((context_.figure || session_.data.timeAxis || view_.time) && info_.times.size() > 1)
             drawUpperLeft(stateText(info_, session_.time, session_.data.axis), plotColors().text);
     }
 
@@ -239,6 +265,7 @@ private:
     float triad_;    ///< radius, pixels
     ImVec2 triadAt_; ///< its middle
     bool hasTriad_;  ///< or would have it: what is left out of a picture keeps its place
+    Chain chain_;
     ImDrawList* list_ = nullptr;
     std::vector<std::pair<ImVec2, ImVec2>> taken_; ///< corners of what is drawn already, which labels keep clear of
 };
@@ -270,6 +297,7 @@ void drawBeside(ViewContext& context, const std::string& pane, VolumeView& view,
                     .scale = context.scale,
                     .headless = context.headless,
                     .renderers = std::max(context.renderers, 2),
+                    .volumes = context.volumes,
                     .figure = context.figure,
                     .decoration = context.decoration,
                     .whiteGround = context.whiteGround,
@@ -293,8 +321,12 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
         drawHint("No data", "Open a file, drop one onto the window, or choose built-in data in the File menu.");
         return;
     }
-    const auto space = view.inSpace ? cutFrom(context) : nullptr;
-    space ? drawBeside(context, pane, view, space) : drawSpace(context, pane, view);
+    {
+        const ShownScene shown(context.session, &view);
+        const auto space = view.inSpace ? cutFrom(context) : nullptr;
+        space ? drawBeside(context, pane, view, space) : drawSpace(context, pane, view);
+    }
+    drawChainMenu(context, view);
 }
 
 } // namespace tessera::app

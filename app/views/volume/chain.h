@@ -1,0 +1,34 @@
+#pragma once
+
+#include "app/pane/view_context.h"
+#include "app/tools/camera_hand.h"
+
+#include <optional>
+
+/// The chain in the corner of a volume view: whether its camera, layers and time are shared, and a menu that changes
+/// it.
+namespace tessera::app {
+
+class Chain {
+public:
+    /// `picture`: of the view, in whose upper right corner the chain hangs.
+    Chain(const ViewContext& context, const VolumeView& view, const PictureBox& picture);
+
+    /// Takes the mouse over it; before the item of the picture, which lies below.
+    void take();
+    /// Draws it over the picture; returns its corners, nothing where there is no chain.
+    std::optional<std::pair<ImVec2, ImVec2>> draw(ImDrawList& list) const;
+    /// Where the room beside it ends, pixels.
+    float left() const { return shown_ ? min_.x : min_.x + size_.x; }
+
+private:
+    const ViewContext& context_;
+    const VolumeView& view_;
+    ImVec2 min_, size_;
+    bool shown_ = false, hovered_ = false;
+};
+
+/// Its menu, which edits the view; outside of ShownScene.
+void drawChainMenu(ViewContext& context, VolumeView& view);
+
+} // namespace tessera::app
