@@ -1,4 +1,5 @@
 #include "tests/vis/function_source.h"
+#include "vis/optics/ray_setup.h"
 #include "vis/packet/packet_renderer.h"
 #include "vis/reference/raycast.h"
 
@@ -298,6 +299,30 @@ TEST(PacketRefusal, NamesWhatIsNotDrawn) {
     other = scene;
     std::get<VolumeLayer>(other.layers[0].technique).classification = Classification::PreIntegrated;
     EXPECT_EQ(refusal(other), "classification before or over samples");
+}
+
+/// A mean reconstructs every sample of every ray once; counts say so.
+TEST(PacketSamples, AreCounted) {
+    const auto data = source(LatticeKind::CC, false);
+    Scene scene = baseScene(true);
+    scene.layers = {layerOf(VolumeLayer{.channel = "b", .style = RayStyle::Average})};
+    const WorldFrame frame = worldFrame(data->info().bounds, scene.stretch);
+    const glm::dvec3 cell = worldCell(data->grid().lattice, frame);
+    std::uint64_t wanted = 0;
+    for (int y = 0; y < kSize.y; ++y)
+        for (int x = 0; x < kSize.x; ++x) {
+            const glm::dvec2 ndc = (glm::dvec2(x, y) + 0.5) / glm::dvec2(kSize) * 2.0 - 1.0;
+            const Ray ray = cameraRay(scene.camera, double(kSize.x) / kSize.y, ndc);
+            const std::optional<RaySegment> segment = clipToBox(ray, frame.halfSize, true);
+            if (segment)
+                wanted +=
+                    std::uint64_t(raySamples(*segment, ray.direction, cell, double(scene.render.stepVoxels)).count);
+        }
+    PacketRenderer renderer;
+    renderer.setSource(data);
+    renderer.countSamples(true);
+    renderer.render(scene, kSize);
+    EXPECT_NEAR(double(renderer.samplesTaken()), double(wanted), 4);
 }
 
 /// Each sample lies where PacketVolume::at() says, in every brick that holds it, to half a step of its 16 bits.

@@ -31,11 +31,9 @@ template <bool Bcc, bool Exact> struct Caster {
         return focusAt(job.focus, layer, cells, packet.world(k), lanes, read);
     }
 
-    void count(Mask lanes) {
-        if (job.samples != nullptr) {
-            (void)lanes;
-            taken += 16;
-        }
+    /// Counts reconstructions of a value.
+    void count(Mask lanes, int reads = 1) {
+        if (job.samples != nullptr) taken += std::uint64_t(__builtin_popcount(bitsOf(lanes)) * reads);
     }
 
     /// Samples until blocks are looked up again; short where steps are long, because blocks next to one with absent
@@ -47,7 +45,7 @@ template <bool Bcc, bool Exact> struct Caster {
         const auto value = [&](const Vec& at) __attribute__((always_inline)) {
             return read.next(fixedOf(at), lanes);
         };
-        count(lanes);
+        count(lanes, 2 * job.stencil.count);
         return volume::gradientOf<Floats>(value, cells, job.stencil) / spreadOut<Floats>(job.edges);
     }
 
@@ -74,14 +72,11 @@ template <bool Bcc, bool Exact> struct Caster {
         packet.blend(color, correctedOpacity(opacity, packet.step, thickness), k, lanes);
     }
 
-    void project(const LayerView& layer, bool masked, Projected& sums, Floats k, Mask lanes) {
-        count(lanes);
-        const Vec cells = packet.cells(k);
-        const Found found = reader(layer, masked)(cells, lanes);
+    void project(const LayerView& layer, bool masked, const Found& found, Projected& sums, Floats k, Mask lanes) {
         const Mask present = found.present & packet.shows(k);
         const Floats along = multiplyAdd(found.value, Floats(layer.placeScale), Floats(layer.placeOffset));
         Focus focus;
-        if (job.focus.any) focus = focusOf(layer, cells, k, masked, present);
+        if (job.focus.any) focus = focusOf(layer, packet.cells(k), k, masked, present);
         Floats opacity(0);
         if (layer.style == RayStyle::XRay)
             opacity = correctedOpacity(opacityAt(layer, tablePlace(along), present) * focus.opacity, packet.step,
@@ -141,6 +136,7 @@ template <bool Bcc, bool Exact> struct Caster {
         Floats lo = k - Floats(1), hi = k;
         for (int i = 0; i < kBisections; ++i) {
             const Floats middle = (lo + hi) * Floats(0.5);
+            count(crossed);
             const Found there = read.continued(packet.cells(middle), crossed);
             const Mask high = there.present & (there.value >= value), same = (high & above) | (!high & below);
             lo = choose(same, middle, lo);
@@ -236,7 +232,7 @@ template <bool Bcc, bool Exact> struct Caster {
 
     void drawVolume(const LayerView& layer, const Found& now, Projected& sums, bool masked, Floats k, Mask lanes) {
         if (layer.style == RayStyle::Iso) return;
-        if (layer.style != RayStyle::Composite) return project(layer, masked, sums, k, lanes);
+        if (layer.style != RayStyle::Composite) return project(layer, masked, now, sums, k, lanes);
         const Floats place = multiplyAdd(now.value, Floats(layer.placeScale), Floats(layer.placeOffset));
         const Floats alpha = opacityAt(layer, tablePlace(place), now.present);
         const Mask hit = lanes & now.present & (alpha > Floats(0));

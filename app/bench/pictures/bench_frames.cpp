@@ -78,4 +78,11 @@ vis::reference::Image benchPicture(vis::Renderer& renderer, const vis::Scene& sc
     return image;
 }
 
+double samplesPerPixel(vis::Renderer& counter, const vis::Scene& scene) {
+    const vis::reference::Image counts = benchPicture(counter, scene);
+    double sum = 0;
+    for (const glm::dvec4& pixel : counts.pixels) sum += pixel.r;
+    return sum / double(counts.pixels.size());
+}
+
 } // namespace tessera::app

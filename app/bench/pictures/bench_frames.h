@@ -28,4 +28,7 @@ double timeChanged(vis::Renderer& renderer, const vis::Scene& scene, std::shared
 /// A picture of kBenchCompared pixels, linear.
 vis::reference::Image benchPicture(vis::Renderer& renderer, const vis::Scene& scene);
 
+/// Mean number of times that the rays of a timed picture reconstruct a value; `counter` counts samples.
+double samplesPerPixel(vis::Renderer& counter, const vis::Scene& scene);
+
 } // namespace tessera::app

@@ -69,14 +69,6 @@ std::vector<Mode> modes() {
 /// The reference converts all samples to double for each mode: larger volumes are not compared.
 constexpr std::size_t kMostCompared = std::size_t(1) << 25;
 
-/// Mean number of times that the rays of a timed picture reconstruct a value.
-double samplesPerPixel(vis::Renderer& counter, const vis::Scene& scene) {
-    const vis::reference::Image counts = benchPicture(counter, scene);
-    double sum = 0;
-    for (const glm::dvec4& pixel : counts.pixels) sum += pixel.r;
-    return sum / double(counts.pixels.size());
-}
-
 void measure(const BenchVolume& volume, bool peers, BenchTable& table) {
     for (const volume::LatticeKind kind : {volume::LatticeKind::CC, volume::LatticeKind::BCC}) {
         const std::shared_ptr<const volume::BrickSource> source =

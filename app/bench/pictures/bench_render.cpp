@@ -3,6 +3,7 @@
 #include "app/bench/pictures/bench_volumes.h"
 #include "app/bench/pictures/vtk_peer.h"
 #include "vis/gl/headless.h"
+#include "vis/packet/packet_renderer.h"
 #include "volume/sources/memory_source.h"
 
 #include <cmath>
@@ -86,6 +87,15 @@ struct Means {
     Mean gpu, cpu, changed, lattice; ///< changed: of VTK's GPU mapper; lattice: BCC over CC
 };
 
+/// How many million times a frame reconstructs a value.
+double millionSamples(vis::Renderer& counter, vis::packet::PacketRenderer& packets, const vis::Scene& scene,
+                      vis::Engine engine) {
+    if (engine == vis::Engine::OpenGl) return samplesPerPixel(counter, scene) * kBenchPicture * kBenchPicture / 1e6;
+    packets.countSamples(true);
+    packets.render(scene, {kBenchPicture, kBenchPicture});
+    return double(packets.samplesTaken()) / 1e6;
+}
+
 /// Ours, by one engine: time of a frame and of new data; nothing where it cannot draw the style.
 struct Own {
     double frame = 0, changed = 0;
@@ -109,8 +119,11 @@ void measure(const BenchVolume& volume, bool peers, std::map<std::string, Means>
         const std::shared_ptr<const volume::BrickSource> source =
             volume::makeMemorySource(benchDataset(volume), {.lattice = kind});
         const bool cc = kind == volume::LatticeKind::CC;
-        vis::Renderer renderer;
+        vis::Renderer renderer, counter({.countSamples = true});
         renderer.setSource(source);
+        counter.setSource(source);
+        vis::packet::PacketRenderer packets;
+        packets.setSource(source);
         PeerResults peer;
         const std::vector<Style> all = styles();
         for (std::size_t i = 0; i < all.size(); ++i) {
@@ -132,13 +145,15 @@ void measure(const BenchVolume& volume, bool peers, std::map<std::string, Means>
                     onCc[name] = ours->frame;
                 else
                     add(mean.lattice, ours->frame, onCc[name]);
-                std::vector<std::string> row{volume.name,
-                                             std::string(volume::kLatticeNames[std::size_t(kind)]),
-                                             name,
-                                             decimals(ours->frame, 1),
-                                             decimals(ours->changed, 0),
-                                             decimals(vis::reference::compare(ours->picture, same, 1).psnr, 1),
-                                             decimals(vis::reference::compare(ours->picture, limit, 1).psnr, 1)};
+                std::vector<std::string> row{
+                    volume.name,
+                    std::string(volume::kLatticeNames[std::size_t(kind)]),
+                    name,
+                    decimals(ours->frame, 1),
+                    decimals(millionSamples(counter, packets, scene, engine) * 1000 / ours->frame, 0),
+                    decimals(ours->changed, 0),
+                    decimals(vis::reference::compare(ours->picture, same, 1).psnr, 1),
+                    decimals(vis::reference::compare(ours->picture, limit, 1).psnr, 1)};
                 if (peers) {
                     addPeer(row, peer.gpu, ours->frame, limit, mean.gpu);
                     addPeer(row, peer.cpu, ours->frame, limit, mean.cpu);
@@ -165,7 +180,7 @@ BenchTable benchRender(const std::string& only) {
     const bool peers = vtkPeerAtHand();
     BenchTable table;
     table.name = "render: beside VTK";
-    table.columns = {"volume",      "lattice",         "engine and style", "CPU ms",
+    table.columns = {"volume",      "lattice",         "engine and style", "CPU ms", "million samples / s",
                      "new data ms", "same samples dB", "converged dB"};
     if (peers)
         for (const char* column : {"VTK GPU ms", "VTK GPU dB", "VTK GPU / ours", "VTK CPU ms", "VTK CPU dB",
@@ -183,7 +198,7 @@ BenchTable benchRender(const std::string& only) {
         if (wanted(volume.name)) measure(volume, peers, means, table);
     if (wanted("foam")) measure(foamVolume(kFullModel), peers, means, table);
     for (const auto& [name, mean] : means) {
-        std::vector<std::string> row{"geometric mean", "BCC / CC", name, ratio(mean.lattice), "", "", ""};
+        std::vector<std::string> row{"geometric mean", "BCC / CC", name, ratio(mean.lattice), "", "", "", ""};
         if (peers) row.insert(row.end(), {"", "", ratio(mean.gpu), "", "", ratio(mean.cpu), "", ratio(mean.changed)});
         table.rows.push_back(std::move(row));
     }
