@@ -2,6 +2,7 @@
 
 #include "app/pane/plot.h"
 #include "app/ui/ticks.h"
+#include "app/ui/time_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -76,8 +77,15 @@ std::string originText(const ViewContext& context, const std::vector<int>& chann
     return originText(context.origin, context.numbers->info(), channels);
 }
 
-void drawOrigin(const ViewContext& context, const std::vector<int>& channels) {
-    const std::string text = originText(context, channels);
+void drawOrigin(const ViewContext& context, const std::vector<int>& channels, bool atOneTime) {
+    std::string text = originText(context, channels);
+    const volume::DatasetInfo& info = context.numbers->info();
+    const auto ownTime = [](const auto& each) {
+        const auto* volume = std::get_if<VolumeView>(&each.second);
+        return volume && volume->time;
+    };
+    if (atOneTime && info.times.size() > 1 && std::ranges::any_of(context.session.views, ownTime))
+        text += ", at " + timeText(info, context.session.time);
     continueLine(std::min(ImGui::CalcTextSize(text.c_str()).x, em() * 12));
     const std::string fitted = fitText(text, ImGui::GetContentRegionAvail().x);
     ImGui::TextDisabled("%s", fitted.c_str());

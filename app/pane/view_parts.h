@@ -47,8 +47,9 @@ void tooltip(const char* text);
 
 /// originText of the view's numbers for these channels (none: all).
 std::string originText(const ViewContext& context, const std::vector<int>& channels = {});
-/// The same as faint text: on the same line if it fits, truncated otherwise; complete on hover.
-void drawOrigin(const ViewContext& context, const std::vector<int>& channels = {});
+/// The same as faint text: on the same line if it fits, truncated otherwise; complete on hover. Numbers `atOneTime` are
+/// those of the session's time, which is said where a volume view has another one of its own.
+void drawOrigin(const ViewContext& context, const std::vector<int>& channels = {}, bool atOneTime = true);
 
 /// The head row of a table whose columns are set up; names from column `right` on stand over right-aligned numbers.
 void tableHeader(std::initializer_list<const char*> names, int right = 1);

@@ -64,7 +64,7 @@ void drawToolbar(ViewContext& context, const std::shared_ptr<const Profile>& pro
             [info, profile, session](const Progress&) { return profileSvg(info, session, *profile); },
             [info, profile, session](const Progress&) { return profileCsv(info, session, *profile); });
     }
-    drawOrigin(context, shown);
+    drawOrigin(context, shown, view.over == ProfileOver::Line);
     if (view.points.size() == 1 && view.over != ProfileOver::Time) {
         continueLine(ImGui::CalcTextSize("one more corner needed").x);
         ImGui::TextDisabled("one more corner needed");
