@@ -91,20 +91,20 @@ struct Archive::Impl {
 };
 
 /// A brick borrowed from the pool to decode into; the destructor returns it.
-class Lent {
+class PooledBrick {
 public:
-    explicit Lent(const auto& archive) : idle_(archive.idle), mutex_(archive.idleMutex) {
+    explicit PooledBrick(const auto& archive) : idle_(archive.idle), mutex_(archive.idleMutex) {
         const std::lock_guard lock(mutex_);
         if (idle_.empty()) idle_.push_back(std::make_unique<DecodedBrick>());
         brick_ = std::move(idle_.back());
         idle_.pop_back();
     }
-    ~Lent() {
+    ~PooledBrick() {
         const std::lock_guard lock(mutex_);
         idle_.push_back(std::move(brick_));
     }
-    Lent(const Lent&) = delete;
-    Lent& operator=(const Lent&) = delete;
+    PooledBrick(const PooledBrick&) = delete;
+    PooledBrick& operator=(const PooledBrick&) = delete;
     DecodedBrick& operator*() const { return *brick_; }
     DecodedBrick* operator->() const { return brick_.get(); }
 

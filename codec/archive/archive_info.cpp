@@ -182,7 +182,7 @@ std::optional<volume::BrickDistribution> Archive::distribution(const volume::Bri
     const FrameRecord& frame = impl_->holding(impl_->frame(channel.parameter, channel.component, key.time), brick);
     const bool isFloat = frame.numbers.kind != NumberKind::Integer;
     const FrameBrick& about = frame.bricks[brick];
-    return distributionOf(about.min, about.max, isFloat ? 0 : std::abs(frame.valueScale), about.tally);
+    return distributionOf(about.min, about.max, isFloat ? 0 : std::abs(frame.valueScale), about.histogram);
 }
 
 std::optional<volume::BrickImportance> Archive::importance(const volume::BrickKey& key) const {

@@ -126,7 +126,7 @@ volume::BrickSamples Archive::Impl::readComponent(int number, int component, con
     const FrameRecord& record = holding(frame(number, component, key.time), brick);
     const BrickFormat format = brickFormat(metadata.grid, key.index, parameter(number).type, record);
     const std::vector<std::uint8_t> fine = flags(record, brick);
-    const Lent decoded(*this);
+    const PooledBrick decoded(*this);
     decode(record, format, brick, key.level, fine, *decoded);
 
     volume::BrickSamples out;
@@ -206,7 +206,7 @@ volume::Field readLayers(const Archive& archive, int parameter, int component, i
         const glm::ivec3 index = own.indexOf(number);
         const BrickFormat format = brickFormat(own, index, field.type, frame);
         const std::vector<std::uint8_t> fine = impl.flags(frame, brick);
-        const Lent decoded(impl);
+        const PooledBrick decoded(impl);
         impl.decode(frame, format, brick, 0, fine, *decoded);
         const glm::ivec3 begin = own.begin(index), size = decoded->size;
         const auto placeOf = [&](std::size_t i) { // position in the lattice of a sample of the brick

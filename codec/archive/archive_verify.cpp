@@ -44,7 +44,7 @@ struct Verifier {
         const glm::ivec3 at = impl.metadata.grid.indexOf(brick);
         const BrickFormat format = brickFormat(impl.metadata.grid, at, parameter.type, record);
         const std::vector<std::uint8_t> fine = impl.flags(record, brick);
-        const Lent decoded(impl);
+        const PooledBrick decoded(impl);
         std::uint64_t bytes = 0;
         for (int level = impl.metadata.grid.levels - 1; level >= 0; --level) {
             impl.decode(record, format, brick, level, fine, *decoded);
@@ -55,7 +55,7 @@ struct Verifier {
         const FrameBrick& noted = record.bricks[brick];
         const TalliedBrick found = tallied(parameter.type, record.valueOffset, record.valueScale,
                                            impl.numbersOf(record, parameter.type, *decoded), fine, true);
-        if (!agree(found, noted.min, noted.max, noted.tally))
+        if (!agree(found, noted.min, noted.max, noted.histogram))
             throw Error("its statistics differ from those of its samples", impl.path, "index");
         return bytes;
     }

@@ -76,7 +76,7 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
     if (repeated[b] != 0) {
         about = before->bricks[b];
         about.notes.repeats += step;
-        about.tally = {};
+        about.histogram = {};
         segments.resize(std::size_t(grid.levels));
         seen.bytes[b] = before->bytes[b];
         input.take(grid, brick, before->field, false);
@@ -89,7 +89,7 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
         segments = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
         for (const Bytes& segment : segments) seen.bytes[b] += segment.size();
         roundAsDecoded(format, maxError, taken.bricks[b]->decoded, input);
-        about = tallyOf(part, input, tallies);
+        about = statisticsOf(part, input, tallies);
     }
     taken.bricks[b].reset();
     about.notes.importance = importance[b];

@@ -69,10 +69,10 @@ void roundAsDecoded(const BrickFormat& format, double maxError, std::span<const 
     }
 }
 
-FrameBrick tallyOf(const volume::Field& field, const BrickInput& decoded, bool withTally) {
+FrameBrick statisticsOf(const volume::Field& field, const BrickInput& decoded, bool withHistogram) {
     const TalliedBrick brick =
-        tallied(field.type, field.offset, field.scale, decoded.samples, decoded.present, withTally);
-    return {brick.min, brick.max, brick.tally, {}};
+        tallied(field.type, field.offset, field.scale, decoded.samples, decoded.present, withHistogram);
+    return {brick.min, brick.max, brick.histogram, {}};
 }
 
 bool mayStandFor(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input, double maxError,

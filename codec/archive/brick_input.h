@@ -27,8 +27,8 @@ void putSamples(const volume::BrickGrid& grid, glm::ivec3 brick, std::span<const
 void roundAsDecoded(const BrickFormat& format, double maxError, std::span<const std::uint32_t> decoded,
                     BrickInput& input);
 
-/// Range of the decoded samples in physical values; also their statistics if `withTally`.
-FrameBrick tallyOf(const volume::Field& field, const BrickInput& decoded, bool withTally);
+/// Range of the decoded samples in physical values; also their statistics if `withHistogram`.
+FrameBrick statisticsOf(const volume::Field& field, const BrickInput& decoded, bool withHistogram);
 
 /// The latest frame of a component as decoded: the next frame may repeat its bricks, and its change is measured against
 /// it.

@@ -76,7 +76,7 @@ bool FrameSamples::forSlabs(const std::function<bool(const Field&, Slab)>& visit
 }
 
 void FrameSamples::change(const std::function<void(Field&, Slab)>& visit) {
-    if (lent_) own_ = *std::exchange(lent_, nullptr);
+    if (borrowed_) own_ = *std::exchange(borrowed_, nullptr);
     if (own_) return visit(*own_, {0, own_->lattice.size.z});
     Stored& stored = *stored_;
     const bool wasMasked = stored.masked;

@@ -37,7 +37,7 @@ struct SlabStore {
 class FrameSamples {
 public:
     /// Refers to the field without copying it: the field must outlive this object.
-    FrameSamples(const volume::Field& field) : lent_(&field) {}
+    FrameSamples(const volume::Field& field) : borrowed_(&field) {}
     FrameSamples(volume::Field&& field) : own_(std::move(field)) {}
     /// Takes a frame in memory, or writes it to a scratch file slab by slab. Mask values become 0 or 1. Throws
     /// MachineError, Cancelled, and what reading throws.
@@ -45,7 +45,7 @@ public:
                  const Progress& progress);
 
     /// The field; null for a frame in a scratch file.
-    const volume::Field* whole() const { return lent_ ? lent_ : own_ ? &*own_ : nullptr; }
+    const volume::Field* whole() const { return borrowed_ ? borrowed_ : own_ ? &*own_ : nullptr; }
     /// Null for a frame in memory.
     const SlabStore* store() const { return stored_ ? &stored_->store : nullptr; }
 
@@ -79,7 +79,7 @@ private:
         explicit Stored(const SlabStore& to) : store(to), file(to.folder) {}
         void put(const volume::Field& part, int first);
     };
-    const volume::Field* lent_ = nullptr;
+    const volume::Field* borrowed_ = nullptr;
     std::optional<volume::Field> own_;
     std::unique_ptr<Stored> stored_;
 };

@@ -208,7 +208,7 @@ void takeTallies(const Index& index, const IndexShape& shape, IndexPage& page, c
                                     frame.mask < 0 ? samples : index.masks[std::size_t(frame.mask)].bricks[b].present;
             const bool isFloat = frame.numbers.kind != NumberKind::Integer;
             require(present <= samples &&
-                        take(in, brick.min, brick.max, isFloat, static_cast<std::uint32_t>(present), brick.tally),
+                        take(in, brick.min, brick.max, isFloat, static_cast<std::uint32_t>(present), brick.histogram),
                     "statistics of a brick cannot be read", file);
         }
     require(in.atEnd(), "statistics of bricks do not fill the index", file);
@@ -316,7 +316,7 @@ Bytes serialise(const IndexPage& page, std::uint32_t features) {
     for (const FrameRecord& frame : page.frames)
         for (const FrameBrick& brick : frame.bricks)
             if (brick.notes.repeats == 0)
-                put(tallies, brick.min, brick.max, frame.numbers.kind != NumberKind::Integer, brick.tally);
+                put(tallies, brick.min, brick.max, frame.numbers.kind != NumberKind::Integer, brick.histogram);
     if ((features & kBrickTallies) != 0) out.bytes.insert(out.bytes.end(), tallies.bytes.begin(), tallies.bytes.end());
     return out.bytes;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "codec/brick/brick_tally.h"
+#include "codec/brick/brick_histogram.h"
 #include "codec/brick/numbers.h"
 #include "codec/container/container.h"
 #include "codec/wavelet/lifting.h"
@@ -30,8 +30,8 @@ struct MaskRecord {
 };
 
 struct FrameBrick {
-    float min = 0, max = -1; ///< physical values of present samples; min > max: none
-    BrickTally tally;        ///< with kBrickTallies only, and not for repeats
+    float min = 0, max = -1;  ///< physical values of present samples; min > max: none
+    BrickHistogram histogram; ///< with kBrickTallies only, and not for repeats
     /// Properties that archives without kBrickNotes lack.
     struct Notes {
         volume::BrickImportance importance;             ///< stored with 16 bits each

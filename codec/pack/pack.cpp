@@ -5,7 +5,7 @@
 #include "codec/bytes/stopwatch.h"
 #include "codec/pack/continuation.h"
 #include "codec/pack/error_bound.h"
-#include "codec/pack/frame_feed.h"
+#include "codec/pack/frame_queue.h"
 #include "codec/pack/lossy_field.h"
 #include "codec/pack/memory_plan.h"
 #include "codec/pack/pack_passes.h"
@@ -191,7 +191,7 @@ public:
 private:
     std::size_t times() const { return dataset_.info.times.size(); }
     void gather(const Progress& progress);
-    void addStep(ArchiveWriter& writer, FeedStep fed, const Progress& progress);
+    void addStep(ArchiveWriter& writer, QueuedFrames fed, const Progress& progress);
     void addFrame(ArchiveWriter& writer, FrameSamples& samples, int parameter, int component, std::size_t time,
                   const Progress& progress);
     Metadata soFar(std::size_t wholeTimes) const;
@@ -204,7 +204,7 @@ private:
     Metadata metadata_;
     Continuation place_;
     MemoryPlan memory_;
-    FeedOptions reading_;
+    FrameQueueOptions reading_;
     std::vector<std::vector<Range>> ranges_;                    ///< found while packing, by parameter
     std::vector<double> errors_;                                ///< largest of a sample, by parameter, in its unit
     std::vector<double> errorsBefore_;                          ///< previous errors of the source
@@ -283,7 +283,7 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
     writer.addFrame(place_.parameterOf[p], component, int(place_.firstTime + time), samples, frame, progress);
 }
 
-void Packing::addStep(ArchiveWriter& writer, FeedStep fed, const Progress& progress) {
+void Packing::addStep(ArchiveWriter& writer, QueuedFrames fed, const Progress& progress) {
     const auto p = std::size_t(fed.parameter);
     const volume::Parameter& parameter = dataset_.info.parameters[p];
     summary_.loadSeconds += fed.loadSeconds;
@@ -330,14 +330,14 @@ PackSummary Packing::run(const Progress& progress) {
                                    : std::make_unique<ArchiveWriter>(path_, metadata_, memory_.keepFrames);
         reading_.measures = reading_.toBcc; // not in the preliminary passes
         if (reading_.measures) resampled_.resize(dataset_.info.parameters.size());
-        FrameFeed feed(dataset_, reading_, progress.stop);
+        FrameQueue feed(dataset_, reading_, progress.stop);
         const std::vector<volume::Parameter>& parameters = dataset_.info.parameters;
         const std::size_t steps = times() * parameters.size();
         const double frames = double(times()) * double(componentCount(dataset_.info));
         double done = 0;
         for (std::size_t step = 0; step < steps; ++step) {
             work.advance(done / frames, parameters[step % parameters.size()].name);
-            FeedStep fed = [&] {
+            QueuedFrames fed = [&] {
                 Stopwatch wait(summary_.waitSeconds);
                 return feed.next();
             }();

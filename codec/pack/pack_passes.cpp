@@ -10,9 +10,9 @@ namespace {
 
 /// Reads everything once, time by time and parameter by parameter.
 template <class Visit>
-void forSteps(volume::Dataset& dataset, const FeedOptions& reading, const char* what, const Progress& progress,
+void forSteps(volume::Dataset& dataset, const FrameQueueOptions& reading, const char* what, const Progress& progress,
               Visit&& visit) {
-    FrameFeed feed(dataset, reading, progress.stop);
+    FrameQueue feed(dataset, reading, progress.stop);
     const std::size_t steps = dataset.info.parameters.size() * dataset.info.times.size();
     for (std::size_t step = 0; step < steps; ++step) {
         progress.advance(double(step) / double(steps), what);
@@ -32,26 +32,26 @@ void settleRanges(volume::DatasetInfo& info, const std::vector<std::vector<Range
     }
 }
 
-void gatherAllRanges(volume::Dataset& dataset, const FeedOptions& reading, PackSummary& summary,
+void gatherAllRanges(volume::Dataset& dataset, const FrameQueueOptions& reading, PackSummary& summary,
                      const Progress& progress) {
     volume::DatasetInfo& info = dataset.info;
     const auto isKnown = [](const volume::Parameter& parameter) { return !parameter.ranges.empty(); };
     if (std::all_of(info.parameters.begin(), info.parameters.end(), isKnown)) return;
-    FeedOptions plain = reading;
+    FrameQueueOptions plain = reading;
     plain.toBcc = false;
     plain.rangesOnly = true;
     std::vector<std::vector<Range>> ranges(info.parameters.size());
-    forSteps(dataset, plain, "ranges", progress, [&](const FeedStep& fed) {
+    forSteps(dataset, plain, "ranges", progress, [&](const QueuedFrames& fed) {
         summary.loadSeconds += fed.loadSeconds;
         widenRanges(ranges[std::size_t(fed.parameter)], fed.ranges);
     });
     settleRanges(info, ranges);
 }
 
-std::vector<std::uint8_t> bricksToDiscard(volume::Dataset& dataset, const FeedOptions& reading,
+std::vector<std::uint8_t> bricksToDiscard(volume::Dataset& dataset, const FrameQueueOptions& reading,
                                           const PackOptions& options, PackSummary& summary, const Progress& progress) {
     std::vector<float> most(reading.grid.brickCount(), 0);
-    forSteps(dataset, reading, "importance", progress, [&](const FeedStep& fed) {
+    forSteps(dataset, reading, "importance", progress, [&](const QueuedFrames& fed) {
         const volume::Parameter& parameter = dataset.info.parameters[std::size_t(fed.parameter)];
         const std::vector<Range>& known = parameter.ranges.empty() ? fed.ranges : parameter.ranges;
         for (std::size_t c = 0; c < fed.frames.size(); ++c) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "codec/container/pack_options.h"
-#include "codec/pack/frame_feed.h"
+#include "codec/pack/frame_queue.h"
 #include "codec/pack/pack_summary.h"
 
 /// Passes over a whole data set before it is packed.
@@ -11,12 +11,12 @@ namespace tessera::codec {
 void settleRanges(volume::DatasetInfo& info, const std::vector<std::vector<Range>>& gathered);
 
 /// Computes the unknown ranges of all parameters by reading everything once.
-void gatherAllRanges(volume::Dataset& dataset, const FeedOptions& reading, PackSummary& summary,
+void gatherAllRanges(volume::Dataset& dataset, const FrameQueueOptions& reading, PackSummary& summary,
                      const Progress& progress);
 
 /// Flags of the bricks below the importance limit in every parameter at every time. Ranges must be known. Throws Error
 /// when no brick remains.
-std::vector<std::uint8_t> bricksToDiscard(volume::Dataset& dataset, const FeedOptions& reading,
+std::vector<std::uint8_t> bricksToDiscard(volume::Dataset& dataset, const FrameQueueOptions& reading,
                                           const PackOptions& options, PackSummary& summary, const Progress& progress);
 
 } // namespace tessera::codec

@@ -123,8 +123,8 @@ PackOptions withBound(PackOptions options, SizeControl control, double bound) {
     return options;
 }
 
-std::vector<SizeAtBound> estimateSizes(const volume::Dataset& dataset, FeedOptions reading, const PackOptions& options,
-                                       const Progress& progress) {
+std::vector<SizeAtBound> estimateSizes(const volume::Dataset& dataset, FrameQueueOptions reading,
+                                       const PackOptions& options, const Progress& progress) {
     constexpr int kFinest = -26, kCoarsest = -2; // powers of two
     const SizeControl control = sizeControlFor(dataset.info);
     std::vector<SizeAtBound> curve{{0, 0}};
@@ -140,11 +140,11 @@ std::vector<SizeAtBound> estimateSizes(const volume::Dataset& dataset, FeedOptio
             return read(parameter, component, timeOf(time), slices);
         });
     reading.ahead = false;
-    FrameFeed feed(some, reading, progress.stop);
+    FrameQueue feed(some, reading, progress.stop);
     const std::size_t steps = times * some.info.parameters.size();
     for (std::size_t step = 0; step < steps; ++step) {
         progress.advance(double(step) / double(steps), "sizes");
-        const FeedStep fed = feed.next();
+        const QueuedFrames fed = feed.next();
         for (const FrameSamples& samples : fed.frames)
             addEstimates(reading.grid, samples, some.info.parameters[std::size_t(fed.parameter)], options, control,
                          double(all) / double(times), curve);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "codec/container/pack_options.h"
-#include "codec/pack/frame_feed.h"
+#include "codec/pack/frame_queue.h"
 #include "codec/pack/pack_summary.h"
 
 #include <cstdint>
@@ -28,8 +28,8 @@ struct SizeAtBound {
 
 /// Estimates sizes for bounds from 0 up, each twice the previous one, from the tokens of some bricks at some times,
 /// which are read as for packing. Ranges must be known.
-std::vector<SizeAtBound> estimateSizes(const volume::Dataset& dataset, FeedOptions reading, const PackOptions& options,
-                                       const Progress& progress);
+std::vector<SizeAtBound> estimateSizes(const volume::Dataset& dataset, FrameQueueOptions reading,
+                                       const PackOptions& options, const Progress& progress);
 
 /// Packs into `path` with the smallest relative bound for which the archive is at most options.sizeMb large. Starts
 /// from the estimates and corrects them by the sizes of actual trials, until at least 0.96 of the size is used, no

@@ -1,5 +1,5 @@
 #include "codec/archive/archive.h"
-#include "codec/brick/brick_tally.h"
+#include "codec/brick/brick_histogram.h"
 #include "codec/bytes/lzma.h"
 #include "codec/container/container.h"
 #include "codec/pack/pack.h"

@@ -239,11 +239,11 @@ TEST(PackFeed, AStopIsHeardBetweenSlices) {
         if (++reads == 2) stop.request_stop();
         return volume::slicesOf(read(p, c, t), slices);
     };
-    FeedOptions reading;
+    FrameQueueOptions reading;
     reading.grid = {made.info.lattice, 8, 2, 0};
     reading.slices = {8, folder / ""};
     reading.slabLayers = 1;
-    FrameFeed feed(made, reading, stop.get_token());
+    FrameQueue feed(made, reading, stop.get_token());
     EXPECT_THROW(feed.next(), Cancelled);
     EXPECT_EQ(reads, 2);
 }

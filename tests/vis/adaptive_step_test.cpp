@@ -9,8 +9,8 @@
 namespace tessera {
 namespace {
 
-using vis::BlockMatter;
-using vis::CurveMatter;
+using vis::BlockMedium;
+using vis::CurveMedium;
 using vis::TransferFunction;
 
 TransferFunction bumpyCurve() {
@@ -29,12 +29,12 @@ glm::dvec4 matterOf(const TransferFunction& function, double place, double densi
 // Bounds hold every value between two places, and are no wider than these and a little more.
 TEST(AdaptiveStep, BoundsHoldAllValues) {
     const TransferFunction function = bumpyCurve();
-    const CurveMatter curve(function, {0, 1}, 2, false);
+    const CurveMedium curve(function, {0, 1}, 2, false);
     std::mt19937 random(3);
     std::uniform_real_distribution<double> unit(-0.1, 1.1);
     for (int round = 0; round < 300; ++round) {
         const double a = unit(random), b = unit(random);
-        const BlockMatter found = curve.between(a, b, false);
+        const BlockMedium found = curve.between(a, b, false);
         glm::dvec4 least(1e9), most(-1e9);
         for (int i = 0; i <= 500; ++i) {
             const glm::dvec4 at = matterOf(function, std::clamp(glm::mix(a, b, i / 500.0), 0.0, 1.0), 2);
@@ -46,20 +46,20 @@ TEST(AdaptiveStep, BoundsHoldAllValues) {
         EXPECT_GE(found.spread, spread - room);
         EXPECT_LE(found.spread, spread + 0.05 * (1 + most.a));
         EXPECT_GE(found.greatest, most.a - room);
-        const BlockMatter absent = curve.between(a, b, true);
+        const BlockMedium absent = curve.between(a, b, true);
         EXPECT_NEAR(absent.spread, found.greatest, room) << "from nothing to the most";
     }
 }
 
 // The step is the longest whose change is accepted: by one layer's spread, and by two layers that mix.
 TEST(AdaptiveStep, IsTheLongestThatIsAccepted) {
-    const std::vector<BlockMatter> one{{.spread = 4, .greatest = 10}};
+    const std::vector<BlockMedium> one{{.spread = 4, .greatest = 10}};
     EXPECT_DOUBLE_EQ(longestStep(one, 0.02), 0.005);
-    const std::vector<BlockMatter> two{{.spread = 4, .greatest = 10}, {.spread = 1, .greatest = 20}};
+    const std::vector<BlockMedium> two{{.spread = 4, .greatest = 10}, {.spread = 1, .greatest = 20}};
     const double step = longestStep(two, 0.02);
     EXPECT_NEAR(5 * step + 200 * step * step, 0.02, 1e-12);
-    EXPECT_TRUE(std::isinf(longestStep(std::vector<BlockMatter>{{.spread = 0, .greatest = 10}}, 0.01)));
-    EXPECT_TRUE(std::isinf(longestStep(std::vector<BlockMatter>(), 0.01)));
+    EXPECT_TRUE(std::isinf(longestStep(std::vector<BlockMedium>{{.spread = 0, .greatest = 10}}, 0.01)));
+    EXPECT_TRUE(std::isinf(longestStep(std::vector<BlockMedium>(), 0.01)));
     // Coded, a step is never longer and at most an eighth of an octave shorter.
     for (double length = 0.011; length < 100; length *= 1.07) {
         const double coded = vis::stepOfCode(vis::stepCode(length, 0.01), 0.01);
@@ -74,11 +74,11 @@ TEST(AdaptiveStep, IsTheLongestThatIsAccepted) {
 TEST(AdaptiveStep, ShadingCountsByTheChangeOfValues) {
     TransferFunction function;
     function.opacity = {{0, 0.1f}, {1, 0.1f}};
-    const CurveMatter lit(function, {0, 1}, 1, true), flat(function, {0, 1}, 1, false);
+    const CurveMedium lit(function, {0, 1}, 1, true), flat(function, {0, 1}, 1, false);
     EXPECT_NEAR(lit.between(0.4, 0.4, false).spread, flat.between(0.4, 0.4, false).spread, 1e-9);
-    const BlockMatter steep = lit.between(0.4, 0.45, false);
+    const BlockMedium steep = lit.between(0.4, 0.45, false);
     EXPECT_NEAR(steep.spread, flat.between(0.4, 0.45, false).spread + steep.greatest, 1e-9);
-    const BlockMatter slight = lit.between(0.4, 0.4005, false);
+    const BlockMedium slight = lit.between(0.4, 0.4005, false);
     EXPECT_NEAR(slight.spread - flat.between(0.4, 0.4005, false).spread,
                 slight.greatest * std::sqrt(3.0) * 0.0005 / vis::kFlatGradient, 1e-6);
 }

@@ -9,8 +9,8 @@ namespace {
 
 using vis::Camera;
 using vis::HiddenInView;
-using vis::kReachTile;
-using vis::ReachMap;
+using vis::kTerminationTile;
+using vis::TerminationMap;
 
 volume::BrickGrid gridOfHidden(volume::LatticeKind kind) {
     volume::BrickGrid grid;
@@ -21,8 +21,8 @@ volume::BrickGrid gridOfHidden(volume::LatticeKind kind) {
     return grid;
 }
 
-ReachMap reachOf(const Camera& camera, glm::ivec2 size, float end) {
-    ReachMap map;
+TerminationMap reachOf(const Camera& camera, glm::ivec2 size, float end) {
+    TerminationMap map;
     map.camera = camera;
     map.frame = vis::worldFrame({glm::dvec3(0), glm::dvec3(60, 46, 74)}, glm::dvec3(1));
     map.size = size;
@@ -44,7 +44,7 @@ TEST(HiddenBricks, LieBehindTheEndsOfAllRays) {
         camera.distance = float(0.4 + 1.6 * unit(random));
         vis::orbit(camera, {0, 0}, {float(2 * unit(random)), float(unit(random))});
         const glm::ivec2 size(90, 70);
-        ReachMap map = reachOf(camera, size, 0);
+        TerminationMap map = reachOf(camera, size, 0);
         const double from = camera.distance - 0.5 + 0.4 * unit(random);
         for (float& end : map.farthest) end = unit(random) < 0.05 ? 1e6f : float(from + 0.3 * unit(random));
         const std::vector<std::uint8_t> hidden = hiddenBricks(map, grid);
@@ -53,7 +53,7 @@ TEST(HiddenBricks, LieBehindTheEndsOfAllRays) {
         for (int n = 0; n < 4000; ++n) {
             const glm::dvec2 place(unit(random) * size.x, unit(random) * size.y);
             const vis::Ray ray = vis::cameraRay(camera, double(size.x) / size.y, place / glm::dvec2(size) * 2.0 - 1.0);
-            const glm::ivec2 tile = glm::ivec2(place) / kReachTile;
+            const glm::ivec2 tile = glm::ivec2(place) / kTerminationTile;
             const double end = double(map.farthest[std::size_t(tile.y * map.tiles().x + tile.x)]);
             // Before its end: no hidden brick.
             const double t = std::min(end, 4.0) * unit(random);
@@ -96,7 +96,7 @@ TEST(HiddenBricks, AWallHidesWhatIsFarther) {
         // Rays that end at the eye hide all there is in the picture, and nothing beside it.
         camera.distance = 0.8f;
         camera.fieldOfView = 20;
-        ReachMap near = reachOf(camera, {64, 64}, 0);
+        TerminationMap near = reachOf(camera, {64, 64}, 0);
         const std::vector<std::uint8_t> all = hiddenBricks(near, grid);
         EXPECT_EQ(all[std::size_t((count.z / 2 * count.y + count.y / 2) * count.x + count.x / 2)], 1);
         EXPECT_EQ(all[std::size_t((count.z / 2 * count.y) * count.x)], 0);

@@ -17,9 +17,9 @@ LightGrid cube(int edge) {
 TEST(LightVolume, EvenMatterFadesLightByTheDepthItLiesAt) {
     const LightGrid grid = cube(24);
     const double extinction = 3;
-    const Matter<double> matter(grid.count(), {0, 0, 0, extinction});
+    const Medium<double> medium(grid.count(), {0, 0, 0, extinction});
     const PlacedLight down{false, {0, 1, 0}, glm::dvec3(1)};
-    const LightVolume<double> light = spreadLight<double>(grid, matter, {&down, 1}, {.strength = 1});
+    const LightVolume<double> light = spreadLight<double>(grid, medium, {&down, 1}, {.strength = 1});
     for (int y : {0, 5, 23})
         EXPECT_NEAR(light.visible[grid.index({7, y, 9})].x, std::exp(-extinction * (0.5 - grid.center({7, y, 9}).y)),
                     1e-9);
@@ -32,14 +32,14 @@ TEST(LightVolume, ObliqueAndNearLightsAgreeWithTheIntegral) {
     // A ball of matter: the depth along a ray has a closed form.
     const LightGrid grid = cube(64);
     const double extinction = 2, radius = 0.3;
-    Matter<double> matter(grid.count());
+    Medium<double> medium(grid.count());
     for (int z = 0; z < 64; ++z)
         for (int y = 0; y < 64; ++y)
             for (int x = 0; x < 64; ++x)
-                if (glm::length(grid.center({x, y, z})) < radius) matter[grid.index({x, y, z})].a = extinction;
+                if (glm::length(grid.center({x, y, z})) < radius) medium[grid.index({x, y, z})].a = extinction;
     const PlacedLight lights[] = {{false, glm::normalize(glm::dvec3(0.5, 0.7, -0.3)), glm::dvec3(1)},
                                   {true, {0.2, 1.5, 0.4}, glm::dvec3(1)}};
-    const LightVolume<double> light = spreadLight<double>(grid, matter, lights, {.strength = 1});
+    const LightVolume<double> light = spreadLight<double>(grid, medium, lights, {.strength = 1});
     double sum = 0; // far from the ball a sweep has blurred the outline of its shadow
     int count = 0;
     for (int z = 0; z < 64; z += 3)
@@ -66,12 +66,12 @@ TEST(LightVolume, ObliqueAndNearLightsAgreeWithTheIntegral) {
 TEST(LightVolume, OcclusionDarkensHollowsAndNotPlainFaces) {
     // A thick floor with a shaft.
     const LightGrid grid = cube(32);
-    Matter<double> matter(grid.count());
+    Medium<double> medium(grid.count());
     for (int z = 0; z < 32; ++z)
         for (int y = 0; y < 16; ++y)
             for (int x = 0; x < 32; ++x)
-                if (std::abs(x - 16) > 2 || std::abs(z - 16) > 2) matter[grid.index({x, y, z})].a = 200;
-    const LightVolume<double> light = spreadLight<double>(grid, matter, {}, {.occlusion = 1, .reach = 0.2f});
+                if (std::abs(x - 16) > 2 || std::abs(z - 16) > 2) medium[grid.index({x, y, z})].a = 200;
+    const LightVolume<double> light = spreadLight<double>(grid, medium, {}, {.occlusion = 1, .reach = 0.2f});
     EXPECT_GT(light.visible[grid.index({5, 17, 5})].a, 0.85); // on the floor
     EXPECT_EQ(light.visible[grid.index({5, 31, 5})].a, 1);
     EXPECT_LT(light.visible[grid.index({16, 6, 16})].a, 0.3); // down the shaft
@@ -80,10 +80,10 @@ TEST(LightVolume, OcclusionDarkensHollowsAndNotPlainFaces) {
 
 TEST(LightVolume, TranslucentMatterPassesOnItsColor) {
     const LightGrid grid = cube(24);
-    const Matter<double> matter(grid.count(), {4, 2, 0, 4}); // red passes, green half, blue not
+    const Medium<double> medium(grid.count(), {4, 2, 0, 4}); // red passes, green half, blue not
     const PlacedLight down{false, {0, 1, 0}, {0.5, 1, 1}};
     const Shadows shadows{.translucency = 1, .scatter = 0};
-    const LightVolume<double> light = spreadLight<double>(grid, matter, {&down, 1}, shadows);
+    const LightVolume<double> light = spreadLight<double>(grid, medium, {&down, 1}, shadows);
     const glm::ivec3 at(8, 6, 8);
     const double depth = 0.5 - grid.center(at).y;
     const glm::dvec3 got = light.scattered[grid.index(at)];
@@ -91,7 +91,7 @@ TEST(LightVolume, TranslucentMatterPassesOnItsColor) {
     EXPECT_NEAR(got.g, std::exp(-2 * depth) - std::exp(-4 * depth), 1e-9);
     EXPECT_NEAR(got.b, 0, 1e-12);
     // Spreading moves light aside but makes none.
-    Matter<double> half = matter;
+    Medium<double> half = medium;
     for (int z = 0; z < 24; ++z)
         for (int y = 12; y < 24; ++y)
             for (int x = 12; x < 24; ++x) half[grid.index({x, y, z})] = {0, 0, 0, 80};
@@ -103,8 +103,8 @@ TEST(LightVolume, TranslucentMatterPassesOnItsColor) {
 
 TEST(LightVolume, SinglePrecisionIsEnough) {
     const LightGrid grid = cube(20);
-    Matter<double> exact(grid.count());
-    Matter<float> single;
+    Medium<double> exact(grid.count());
+    Medium<float> single;
     for (std::size_t i = 0; i < exact.size(); ++i) {
         exact[i] = glm::dvec4(0.5, 0.25, 0.125, 1) * double(i * 7919 % 13);
         single.emplace_back(exact[i]);

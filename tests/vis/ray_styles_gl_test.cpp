@@ -89,7 +89,7 @@ TEST_P(RayStyles, SurfacesAreCompositedInTheirOrder) {
     std::swap(scene.layers[0], scene.layers[3]);
     std::swap(scene.layers[1], scene.layers[2]);
     const Difference difference = reference::compare(one, drawing.draw(scene), kOutlier);
-    EXPECT_LE(difference.beyond, kOutliers) << "the order of layers does not matter: " << words(difference);
+    EXPECT_LE(difference.beyond, kOutliers) << "the order of layers does not medium: " << words(difference);
 }
 
 TEST_P(RayStyles, PreClassificationAgrees) {

@@ -205,8 +205,8 @@ glm::ivec3 BrickLevels::take(const BrickId& id) {
     return brick.slot;
 }
 
-std::vector<BrickLevels::Guest> BrickLevels::guests(std::uint64_t frame) const {
-    std::vector<Guest> out;
+std::vector<BrickLevels::EvictionCandidate> BrickLevels::evictionCandidates(std::uint64_t frame) const {
+    std::vector<EvictionCandidate> out;
     for (int level = 0; level + 1 < grid_.levels; ++level) {
         const Level& from = levels_[std::size_t(level)];
         eachIndex(glm::ivec3(0), from.count, [&](glm::ivec3 index) {

@@ -43,13 +43,13 @@ public:
     /// Evicts a brick and returns its slot; the next coarser resident brick is drawn instead.
     glm::ivec3 take(const BrickId& id);
     /// An eviction candidate: `stale` if no view wanted it since `frame`.
-    struct Guest {
+    struct EvictionCandidate {
         BrickId id;
         bool stale = false;
         std::uint64_t wanted = 0;
         float priority = 0;
     };
-    std::vector<Guest> guests(std::uint64_t frame) const;
+    std::vector<EvictionCandidate> evictionCandidates(std::uint64_t frame) const;
     /// Number of full-resolution bricks that were occluded in some view since `frame` and visible in none.
     int hidden(std::uint64_t since) const;
     float priority(const BrickId& id) const { return at(id).priority; }

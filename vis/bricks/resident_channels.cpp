@@ -143,8 +143,9 @@ void ResidentChannels::findCandidates(const BrickAtlas* atlas, const Moment& mom
     candidates_ = {atlas, moment.frame, {}};
     for (const auto& [key, channel] : channels_)
         if (channel.shown && channel.shown->atlas == atlas)
-            for (const BrickLevels::Guest& guest : channel.shown->bricks->guests(moment.since()))
-                candidates_.bricks.push_back({key, guest});
+            for (const BrickLevels::EvictionCandidate& candidate :
+                 channel.shown->bricks->evictionCandidates(moment.since()))
+                candidates_.bricks.push_back({key, candidate});
     std::ranges::sort(candidates_.bricks, [](const Candidate& a, const Candidate& b) {
         if (a.brick.stale != b.brick.stale) return b.brick.stale;
         return a.brick.stale ? a.brick.wanted > b.brick.wanted : a.brick.priority < b.brick.priority;

@@ -75,7 +75,7 @@ private:
     /// Eviction candidates of an atlas in one frame; the first to be evicted comes last.
     struct Candidate {
         ChannelKey key;
-        BrickLevels::Guest brick;
+        BrickLevels::EvictionCandidate brick;
     };
     struct Candidates {
         const BrickAtlas* of = nullptr;

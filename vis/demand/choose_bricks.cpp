@@ -96,7 +96,7 @@ std::uint8_t levelOf(double pixels, double detail, int levels) {
 /// cell. Empty if the scene has no such light.
 std::optional<std::uint8_t> lightLevel(const Scene& scene, const WorldFrame& frame, double voxel, int levels) {
     if (!scene.lighting.shadows.any()) return std::nullopt;
-    const glm::dvec3 part = lightGrid(frame, scene.lighting.shadows).cell() / double(kMatterSamples);
+    const glm::dvec3 part = lightGrid(frame, scene.lighting.shadows).cell() / double(kMediumSamples);
     return levelOf(voxel, std::min({part.x, part.y, part.z}), levels);
 }
 

@@ -17,11 +17,12 @@ constexpr int kFewTiles = 4;
 /// Depth tests of world-space boxes against the termination depths of a picture.
 class RayEnds {
 public:
-    explicit RayEnds(const ReachMap& reach)
-        : reach_(reach), projection_(reach.camera, reach.size),
-          toClip_(projectionMatrix(reach.camera, double(reach.size.x) / reach.size.y) * viewMatrix(reach.camera)),
-          perspective_(reach.camera.projection == Projection::Perspective) {
-        const Ray middle = cameraRay(reach.camera, double(reach.size.x) / reach.size.y, {0, 0});
+    explicit RayEnds(const TerminationMap& termination)
+        : termination_(termination), projection_(termination.camera, termination.size),
+          toClip_(projectionMatrix(termination.camera, double(termination.size.x) / termination.size.y) *
+                  viewMatrix(termination.camera)),
+          perspective_(termination.camera.projection == Projection::Perspective) {
+        const Ray middle = cameraRay(termination.camera, double(termination.size.x) / termination.size.y, {0, 0});
         eye_ = middle.origin;
         forward_ = middle.direction;
     }
@@ -46,18 +47,19 @@ private:
             projection_.bounds(0.5 * (lo + hi), glm::dmat3(half.x, 0, 0, 0, half.y, 0, 0, 0, half.z));
         if (!bounds) return std::nullopt;
         // Rays pass through pixel centres: include adjacent tiles.
-        const glm::dvec2 top(reach_.tiles());
-        return Tiles{glm::clamp(glm::floor((bounds->lo - 1.0) / double(kReachTile)), glm::dvec2(0), top),
-                     glm::clamp(glm::ceil((bounds->hi + 1.0) / double(kReachTile)), glm::dvec2(0), top)};
+        const glm::dvec2 top(termination_.tiles());
+        return Tiles{glm::clamp(glm::floor((bounds->lo - 1.0) / double(kTerminationTile)), glm::dvec2(0), top),
+                     glm::clamp(glm::ceil((bounds->hi + 1.0) / double(kTerminationTile)), glm::dvec2(0), top)};
     }
-    float farthest(int x, int y) const { return reach_.farthest[std::size_t(y * reach_.tiles().x + x)]; }
+    float farthest(int x, int y) const { return termination_.farthest[std::size_t(y * termination_.tiles().x + x)]; }
     /// Quick test: most visible boxes are visible at their centre.
     bool seenInTheMiddle(glm::dvec3 lo, glm::dvec3 hi) const {
         const glm::dvec4 clip = toClip_ * glm::dvec4(0.5 * (lo + hi), 1);
         if (!(clip.w > 0)) return false;
-        const glm::dvec2 pixel = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(reach_.size);
-        if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x < reach_.size.x && pixel.y < reach_.size.y)) return false;
-        return double(farthest(int(pixel.x) / kReachTile, int(pixel.y) / kReachTile)) >= nearest(lo, hi);
+        const glm::dvec2 pixel = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(termination_.size);
+        if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x < termination_.size.x && pixel.y < termination_.size.y))
+            return false;
+        return double(farthest(int(pixel.x) / kTerminationTile, int(pixel.y) / kTerminationTile)) >= nearest(lo, hi);
     }
     double nearest(glm::dvec3 lo, glm::dvec3 hi) const {
         if (perspective_) return glm::length(glm::clamp(eye_, lo, hi) - eye_);
@@ -82,7 +84,7 @@ private:
         return true;
     }
 
-    const ReachMap& reach_;
+    const TerminationMap& termination_;
     PictureProjection projection_;
     glm::dmat4 toClip_;
     bool perspective_;
@@ -91,10 +93,10 @@ private:
 
 } // namespace
 
-std::vector<std::uint8_t> hiddenBricks(const ReachMap& reach, const volume::BrickGrid& grid) {
-    const RayEnds ends(reach);
+std::vector<std::uint8_t> hiddenBricks(const TerminationMap& termination, const volume::BrickGrid& grid) {
+    const RayEnds ends(termination);
     const glm::ivec3 count = grid.count();
-    const WorldFrame& frame = reach.frame;
+    const WorldFrame& frame = termination.frame;
     const volume::Lattice& lattice = grid.lattice;
     const auto world = [&](glm::dvec3 cell) { return frame.toWorld(lattice.origin + cell * lattice.spacing); };
     const glm::dvec3 room = kReadBeyond * glm::abs(lattice.spacing * frame.scale);

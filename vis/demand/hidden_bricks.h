@@ -13,22 +13,22 @@
 /// contains transparent values in front of it.
 namespace tessera::vis {
 
-inline constexpr int kReachTile = 4; ///< pixels along an edge of a tile
+inline constexpr int kTerminationTile = 4; ///< pixels along an edge of a tile
 
 /// Termination depths of the rays of a picture.
-struct ReachMap {
+struct TerminationMap {
     Camera camera;
     WorldFrame frame;
     glm::ivec2 size{0}; ///< of the picture, in pixels
     /// Per tile, x fastest, from the bottom: the largest termination depth of its rays in world units, at something
     /// opaque or at the exit from the box; 0: no ray hits anything.
     std::vector<float> farthest;
-    glm::ivec2 tiles() const { return (size + kReachTile - 1) / kReachTile; }
+    glm::ivec2 tiles() const { return (size + kTerminationTile - 1) / kTerminationTile; }
 };
 
 /// For every full-resolution brick, x fastest: 1 if it lies inside the picture and entirely behind the termination
 /// depths of all rays that cross it, else 0. Empty: none does.
-std::vector<std::uint8_t> hiddenBricks(const ReachMap& reach, const volume::BrickGrid& grid);
+std::vector<std::uint8_t> hiddenBricks(const TerminationMap& termination, const volume::BrickGrid& grid);
 
 /// Occluded bricks of a view, updated picture by picture. A new scene starts with those of the last one: bricks that
 /// become visible are requested one picture later, instead of everything at once. Between pictures of the same scene,

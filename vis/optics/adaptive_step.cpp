@@ -12,7 +12,7 @@ namespace tessera::vis {
 namespace {
 
 constexpr int kNodes = 2048;
-constexpr double kThickestMatter = 0.999; ///< opacity; a denser medium ends a ray at once anyway
+constexpr double kThickestMedium = 0.999; ///< opacity; a denser medium ends a ray at once anyway
 
 /// Whether a bound on longer steps is known for a layer, or it is not sampled by rays.
 bool adapts(const Layer& layer, const Scene& scene, const volume::DatasetInfo& info) {
@@ -31,13 +31,13 @@ bool adapts(const Layer& layer, const Scene& scene, const volume::DatasetInfo& i
 
 } // namespace
 
-CurveMatter::CurveMatter(const TransferFunction& function, Range range, double density, bool shaded) : shaded_(shaded) {
+CurveMedium::CurveMedium(const TransferFunction& function, Range range, double density, bool shaded) : shaded_(shaded) {
     std::vector<Bounds>& nodes = levels_.emplace_back();
     for (int i = 0; i < kNodes; ++i) {
         const glm::dvec4 at = evaluate(function, range, glm::mix(range.lo, range.hi, double(i) / (kNodes - 1)));
-        const double t = -std::log(1 - std::min(at.a, kThickestMatter)) * density / kReferenceLength;
-        const glm::vec4 matter(linearFromSrgb(glm::dvec3(at)) * t, t);
-        nodes.push_back({matter.x, matter.y, matter.z, matter.w, matter.x, matter.y, matter.z, matter.w});
+        const double t = -std::log(1 - std::min(at.a, kThickestMedium)) * density / kReferenceLength;
+        const glm::vec4 medium(linearFromSrgb(glm::dvec3(at)) * t, t);
+        nodes.push_back({medium.x, medium.y, medium.z, medium.w, medium.x, medium.y, medium.z, medium.w});
     }
     for (int width = 1; 2 * width <= kNodes; width *= 2) {
         const std::vector<Bounds>& half = levels_.back();
@@ -48,20 +48,20 @@ CurveMatter::CurveMatter(const TransferFunction& function, Range range, double d
     }
 }
 
-CurveMatter::Bounds CurveMatter::both(const Bounds& a, const Bounds& b) {
+CurveMedium::Bounds CurveMedium::both(const Bounds& a, const Bounds& b) {
     Bounds out;
     for (std::size_t i = 0; i < 8; ++i) out[i] = i < 4 ? std::min(a[i], b[i]) : std::max(a[i], b[i]);
     return out;
 }
 
-BlockMatter CurveMatter::between(double a, double b, bool absent) const {
+BlockMedium CurveMedium::between(double a, double b, bool absent) const {
     const auto node = [](double place) { return std::clamp(place, 0.0, 1.0) * (kNodes - 1); };
     const std::size_t first(std::size_t(std::floor(node(std::min(a, b))))),
         last(std::size_t(std::ceil(node(std::max(a, b)))));
     std::size_t level = 0;
     while ((std::size_t(2) << level) <= last - first + 1) ++level;
     const Bounds bounds = both(levels_[level][first], levels_[level][last + 1 - (std::size_t(1) << level)]);
-    BlockMatter out;
+    BlockMedium out;
     out.greatest = double(bounds[7]);
     for (std::size_t i = 0; i < 4; ++i)
         out.spread = std::max(out.spread, double(bounds[i + 4]) - (absent ? 0 : double(bounds[i])));
@@ -69,9 +69,9 @@ BlockMatter CurveMatter::between(double a, double b, bool absent) const {
     return out;
 }
 
-double longestStep(std::span<const BlockMatter> layers, double accepted) {
+double longestStep(std::span<const BlockMedium> layers, double accepted) {
     double spread = 0, thickness = 0, pairs = 0;
-    for (const BlockMatter& layer : layers) {
+    for (const BlockMedium& layer : layers) {
         spread += layer.spread;
         pairs += thickness * layer.greatest;
         thickness += layer.greatest;

@@ -30,18 +30,18 @@ struct Scene;
 inline constexpr int kStepBlock = 4;
 
 /// Bounds on the optical properties in a block, per world unit.
-struct BlockMatter {
+struct BlockMedium {
     double spread = 0;   ///< largest range of extinction, or of emission in a component
     double greatest = 0; ///< largest extinction
 };
 
 /// Bounds for the values in an interval, under a composite layer's transfer function.
-class CurveMatter {
+class CurveMedium {
 public:
-    CurveMatter(const TransferFunction& function, Range range, double density, bool shaded);
+    CurveMedium(const TransferFunction& function, Range range, double density, bool shaded);
     /// For an interval of positions in the transfer function (0..1 and beyond), in any order. `absent`: samples may be
     /// absent.
-    BlockMatter between(double a, double b, bool absent) const;
+    BlockMedium between(double a, double b, bool absent) const;
 
 private:
     using Bounds = std::array<float, 8>; ///< emission and extinction: minimum, maximum
@@ -51,7 +51,7 @@ private:
 };
 
 /// The longest step in world units through a block with these bounds per layer.
-double longestStep(std::span<const BlockMatter> layers, double accepted);
+double longestStep(std::span<const BlockMedium> layers, double accepted);
 
 /// Code of a step length: 0 if not longer than `unit`, else eighths of octaves above it, rounded down, at most
 /// kMostSteps.

@@ -81,7 +81,7 @@ template <class Number> struct Spreader {
     using Vec3 = glm::vec<3, Number>;
     using Vec4 = glm::vec<4, Number>;
     const LightGrid& grid;
-    const Matter<Number>& matter;
+    const Medium<Number>& medium;
     std::stop_token stop;
 
     /// Optical depth towards a directional light, attenuated with distance over `reach` (infinite: not attenuated).
@@ -91,8 +91,8 @@ template <class Number> struct Spreader {
         const auto fade = Number(std::exp(-sweep.length / reach)), half = Number(sweep.length / 2);
         sweep.run(grid, stop, [&](std::size_t cell, auto upstream) {
             const Vec2 before =
-                upstream([&](std::size_t from) { return Vec2(depth[from], matter[from].a); }, Vec2(0), 0, 0);
-            depth[cell] = fade * (before.x + half * before.y) + half * matter[cell].a;
+                upstream([&](std::size_t from) { return Vec2(depth[from], medium[from].a); }, Vec2(0), 0, 0);
+            depth[cell] = fade * (before.x + half * before.y) + half * medium[cell].a;
         });
         return depth;
     }
@@ -133,7 +133,7 @@ template <class Number> struct Spreader {
             if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, grid.size))) continue;
             double weight = 1;
             for (int i = 0; i < 3; ++i) weight *= at[i] == lo[i] ? 1 - w[i] : w[i];
-            sum += Number(weight) * matter[grid.index(at)].a;
+            sum += Number(weight) * medium[grid.index(at)].a;
         }
         return sum;
     }
@@ -145,7 +145,7 @@ template <class Number> struct Spreader {
         std::vector<Vec3> light(grid.count()), more(grid.count());
         const auto half = Number(sweep.length / 2), aside = Number(scatter / 8), t = Number(translucency);
         const auto extinction = [&](std::size_t cell) {
-            return glm::max(Vec3(matter[cell].a) - t * Vec3(matter[cell]), Vec3(0));
+            return glm::max(Vec3(medium[cell].a) - t * Vec3(medium[cell]), Vec3(0));
         };
         const auto lightOf = [&](std::size_t from) { return light[from]; };
         sweep.run(grid, stop, [&](std::size_t cell, auto upstream) {
@@ -186,10 +186,10 @@ template <class Number> auto LightVolume<Number>::scatteredAt(glm::dvec3 world) 
 }
 
 template <class Number>
-LightVolume<Number> spreadLight(const LightGrid& grid, const Matter<Number>& matter,
+LightVolume<Number> spreadLight(const LightGrid& grid, const Medium<Number>& medium,
                                 std::span<const PlacedLight> lights, const Shadows& shadows, std::stop_token stop) {
     using Vec3 = glm::vec<3, Number>;
-    const Spreader<Number> spreader{grid, matter, stop};
+    const Spreader<Number> spreader{grid, medium, stop};
     LightVolume<Number> out;
     out.grid = grid;
     out.visible.assign(grid.count(), glm::vec<4, Number>(1));
@@ -228,9 +228,9 @@ LightVolume<Number> spreadLight(const LightGrid& grid, const Matter<Number>& mat
 
 template struct LightVolume<float>;
 template struct LightVolume<double>;
-template LightVolume<float> spreadLight(const LightGrid&, const Matter<float>&, std::span<const PlacedLight>,
+template LightVolume<float> spreadLight(const LightGrid&, const Medium<float>&, std::span<const PlacedLight>,
                                         const Shadows&, std::stop_token);
-template LightVolume<double> spreadLight(const LightGrid&, const Matter<double>&, std::span<const PlacedLight>,
+template LightVolume<double> spreadLight(const LightGrid&, const Medium<double>&, std::span<const PlacedLight>,
                                          const Shadows&, std::stop_token);
 
 } // namespace tessera::vis

@@ -27,7 +27,7 @@ struct LightGrid {
 };
 LightGrid lightGrid(const WorldFrame& frame, const Shadows& shadows);
 
-/// Optical properties of a cell, from kMatterSamples^3 points (the centres of its subcells): a = extinction per world
+/// Optical properties of a cell, from kMediumSamples^3 points (the centres of its subcells): a = extinction per world
 /// unit, rgb = extinction times colour (linear).
 ///   Composite layers: the mean over the points of -ln(1 - min(opacity, kThickest)) density / kReferenceLength,
 ///     opacity of the transfer function times the factor of the degree of interest; absent and clipped points have
@@ -35,9 +35,9 @@ LightGrid lightGrid(const WorldFrame& frame, const Shadows& shadows);
 ///   Iso layers: -ln(1 - min(opacity, kThickest)) max(0, 1 - d / h) / h with h the longest edge of a cell and d = |m -
 ///     value| / g the distance to the surface, from the mean m of the points and the gradient g of their trilinear
 ///     fit; none if a point is absent or the centre clipped. Integrated along the normal it gives the opacity.
-inline constexpr int kMatterSamples = 2;
+inline constexpr int kMediumSamples = 2;
 inline constexpr double kThickest = 0.999;
-template <class Number> using Matter = std::vector<glm::vec<4, Number>>;
+template <class Number> using Medium = std::vector<glm::vec<4, Number>>;
 
 inline constexpr int kShadowLights = 3; ///< number of lights, from the first, that cast shadows
 
@@ -66,14 +66,14 @@ template <class Number> struct LightVolume {
 /// by the mean of the four neighbours one cell aside; scattered = the sum over lights of colour times its excess over
 /// the direct light. Stops early, with an undefined result, when the token asks.
 template <class Number>
-LightVolume<Number> spreadLight(const LightGrid& grid, const Matter<Number>& matter,
+LightVolume<Number> spreadLight(const LightGrid& grid, const Medium<Number>& medium,
                                 std::span<const PlacedLight> lights, const Shadows& shadows, std::stop_token stop = {});
 
 extern template struct LightVolume<float>;
 extern template struct LightVolume<double>;
-extern template LightVolume<float> spreadLight(const LightGrid&, const Matter<float>&, std::span<const PlacedLight>,
+extern template LightVolume<float> spreadLight(const LightGrid&, const Medium<float>&, std::span<const PlacedLight>,
                                                const Shadows&, std::stop_token);
-extern template LightVolume<double> spreadLight(const LightGrid&, const Matter<double>&, std::span<const PlacedLight>,
+extern template LightVolume<double> spreadLight(const LightGrid&, const Medium<double>&, std::span<const PlacedLight>,
                                                 const Shadows&, std::stop_token);
 
 } // namespace tessera::vis

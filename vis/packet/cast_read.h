@@ -137,11 +137,11 @@ inline Mask mayShow(const LayerView& layer, Floats place) {
     return bitAt(layer.shows, toInts(clamped(place, Floats(0), Floats(1)) * Floats(kShowBins - 1)));
 }
 /// Colour, times kQuantum, and extinction; `entry` of the packed table, not rounded.
-struct Matter {
+struct Medium {
     Vec color;
     Floats extinction;
 };
-[[gnu::always_inline]] inline Matter matterAt(const LayerView& layer, Floats entry, Mask lanes) {
+[[gnu::always_inline]] inline Medium mediumAt(const LayerView& layer, Floats entry, Mask lanes) {
     const Floats within = clamped(entry, Floats(0), Floats(kPackedEntries - 1));
     const IntPair packed = gatherPairs<8>(layer.packed, toInts(within), lanes);
     const Ints low(0xffff), bits = (packed.high >> (16 - kExtinctionShift)) & Ints(kQuantum << kExtinctionShift);

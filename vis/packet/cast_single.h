@@ -49,7 +49,7 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
                     at += advance;
                 }
                 for (int i = 0; i < kAhead; ++i) {
-                    const Matter matter = matterAt(layer, entry[i], lanes[i]);
+                    const Medium matter = mediumAt(layer, entry[i], lanes[i]);
                     const Floats alpha = correctedOpacityOf(matter.extinction, length, Floats(1));
                     const Floats weight = choose(opacity < Floats(kOpaque), (Floats(1) - opacity) * alpha, Floats(0));
                     for (int c = 0; c < 3; ++c) color[c] = multiplyAdd(matter.color[c], weight, color[c]);

@@ -56,7 +56,7 @@ void Renderer::Impl::postpone(ViewTarget& target, const Scene& scene) {
 void Renderer::Impl::giveUp(ViewTarget& target, const RenderCall& call) {
     target.shown.compiling = false;
     if (!target.state.presented() || call.request.wait) nothing(target, call.scene);
-    target.state.setDone(PictureState::Done::Still);
+    target.state.setDone(PictureState::Done::Converged);
 }
 
 /// Reports once which lights, clips, lenses or channel parts exceed a limit.
@@ -214,7 +214,7 @@ void Renderer::Impl::drawTiles(ViewTarget& target, const RenderCall& call, const
         present(target, call.scene, false, target.buffers.everything());
         glBindTextureUnit(0, call.plan.fields[0].texture);
     }
-    if (state.tilesDone() >= wanted && lit) state.setDone(PictureState::Done::Still);
+    if (state.tilesDone() >= wanted && lit) state.setDone(PictureState::Done::Converged);
 }
 
 /// Draws a reduced picture if the whole does not fit the budget, then tiles. `lit`: its light is final.
@@ -237,7 +237,7 @@ void Renderer::Impl::refine(ViewTarget& target, const RenderCall& call, Clock::t
     const FrameRequest& request = call.request;
     const PictureState& state = target.state;
     const bool probing = target.demand.probing();
-    const bool done = state.full() ? state.still() || request.moving : state.reduced() && request.moving;
+    const bool done = state.full() ? state.converged() || request.moving : state.reduced() && request.moving;
     if (done && !probing) return;
     if (!target.pace().beginCall() && !request.wait) return;
     target.tables.update(call, residency.revision(), target.demand.frames());

@@ -93,7 +93,7 @@ void Renderer::Impl::prefetchTime(PacketView& packets, const RenderCall& call) {
 void Renderer::Impl::refineByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start) {
     const PictureState& state = target.state;
     const bool moving = call.request.moving;
-    if (state.full() ? state.still() || moving : state.reduced() && moving) return;
+    if (state.full() ? state.converged() || moving : state.reduced() && moving) return;
     if (!call.request.wait && !presentable(target, call.scene)) return postpone(target, call.scene);
     drawWithin(target, call, {.packets = &target.packets, .beyondPlan = {}, .beyondScene = {}}, start, true);
 }

@@ -8,8 +8,8 @@ RayBuffer makeRayBuffer(glm::ivec2 size, bool exact, const char* label) {
     RayBuffer made;
     made.color = makeTexture2D(size, exact ? GL_RGBA32F : GL_RGBA16F, GL_LINEAR, label);
     made.pick = makeTexture2D(size, GL_RG32F, GL_NEAREST, label);
-    made.reach = makeTexture2D(size, GL_R32F, GL_NEAREST, label);
-    made.framebuffer = makeFramebuffer({made.color.name(), made.pick.name(), made.reach.name()}, label);
+    made.termination = makeTexture2D(size, GL_R32F, GL_NEAREST, label);
+    made.framebuffer = makeFramebuffer({made.color.name(), made.pick.name(), made.termination.name()}, label);
     made.size = size;
     made.clear(); // unwritten pixels may be read: the picture is presented before all tiles are drawn
     return made;
@@ -37,7 +37,7 @@ PictureBuffers PictureBuffers::make(glm::ivec2 size, bool exact) {
 
 void PictureState::redraw(const Tile& part) {
     if (part.empty()) return;
-    stale_ = still() ? part : united(stale_, part);
+    stale_ = converged() ? part : united(stale_, part);
     changed_ = united(changed_, part);
     reduced_.reset();
     done_ = Done::Nothing;

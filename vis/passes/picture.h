@@ -10,7 +10,7 @@ namespace tessera::vis {
 /// Render targets of the ray caster: linear premultiplied colour; distance and degree of interest of the picked sample;
 /// termination depth.
 struct RayBuffer {
-    Texture color, pick, reach;
+    Texture color, pick, termination;
     Framebuffer framebuffer;
     glm::ivec2 size{0};
     glm::ivec2 first{0}; ///< texel of the picture's lower left pixel
@@ -37,8 +37,8 @@ class PictureState {
 public:
     enum class Done {
         Nothing,
-        Full, ///< the full buffer shows the scene
-        Still ///< converged: it also contains all passes of the supersampled frame
+        Full,     ///< the full buffer shows the scene
+        Converged ///< converged: it also contains all passes of the supersampled frame
     };
 
     /// Marks the pixels of `part` as out of date.
@@ -48,7 +48,7 @@ public:
     const Tile& stale() const { return stale_; }
     Done done() const { return done_; }
     bool full() const { return done_ != Done::Nothing; }
-    bool still() const { return done_ == Done::Still; }
+    bool converged() const { return done_ == Done::Converged; }
     void setDone(Done done) { done_ = done; }
     /// Number of tiles drawn in all passes over the stale area.
     int tilesDone() const { return tilesDone_; }

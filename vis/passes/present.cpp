@@ -108,7 +108,7 @@ void Renderer::Impl::blank(ViewTarget& target, const Scene& scene) {
 void Renderer::Impl::nothing(ViewTarget& target, const Scene& scene) {
     target.buffers.full.clear();
     present(target, scene, false, target.buffers.everything());
-    target.state.setDone(PictureState::Done::Still);
+    target.state.setDone(PictureState::Done::Converged);
 }
 
 } // namespace tessera::vis

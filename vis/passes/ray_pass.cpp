@@ -133,9 +133,9 @@ void Renderer::Impl::accumulate(ViewTarget& target, const RenderCall& call, cons
     beside.first = {0, 0};
     rays(programs, call, beside, what);
     average->set("source", 0);
-    average->set("sourceReach", 1);
+    average->set("sourceTermination", 1);
     glBindTextureUnit(0, beside.color.name());
-    glBindTextureUnit(1, beside.reach.name());
+    glBindTextureUnit(1, beside.termination.name());
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.buffers.full.framebuffer.name());
     glScissor(tile.begin.x, tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
     glUseProgram(average->name());

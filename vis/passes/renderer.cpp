@@ -223,7 +223,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
         target.shown.compiling = false;
         if (!target.state.full()) impl_->nothing(target, scene);
     }
-    status.complete = status.complete && target.state.still();
+    status.complete = status.complete && target.state.converged();
     status.current = status.complete || target.state.changed().empty();
     status.compiling = target.shown.compiling;
     if (request.wait) target.pace().collect(true);

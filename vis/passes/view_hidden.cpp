@@ -12,24 +12,24 @@ void ViewHidden::forgetData() {
 void ViewHidden::start(RenderTools& tools, const RenderCall& call, const PictureBuffers& buffers,
                        const PictureState& state, std::uint64_t scene) {
     const bool quick = std::exchange(reducedDrawn_, false) && state.reduced() == buffers.everything();
-    const bool last = state.still() && !known_;
-    if (reach_.pending() || !(quick || last)) return;
-    const Program* program =
-        tools.programs.find({"screen.vert.glsl", "reach.frag.glsl", {}, {{"TILE", std::to_string(kReachTile)}}});
+    const bool last = state.converged() && !known_;
+    if (termination_.pending() || !(quick || last)) return;
+    const Program* program = tools.programs.find(
+        {"screen.vert.glsl", "termination.frag.glsl", {}, {{"TILE", std::to_string(kTerminationTile)}}});
     if (!program) throw Error("the shader that reads back ray ends does not compile");
     const RayBuffer& from = last ? buffers.full : buffers.reduced;
     glDisable(GL_SCISSOR_TEST);
-    reach_.start(*program, tools.vertices.name(), from.reach.name(), from.first,
-                 last ? buffers.size : buffers.reducedSize, call.scene.camera, call.frame());
-    reachScene_ = scene;
+    termination_.start(*program, tools.vertices.name(), from.termination.name(), from.first,
+                       last ? buffers.size : buffers.reducedSize, call.scene.camera, call.frame());
+    terminationScene_ = scene;
     final_ = last;
 }
 
 void ViewHidden::take(bool wait, const volume::BrickGrid* grid) {
-    const std::optional<ReachMap> map = reach_.take(wait);
+    const std::optional<TerminationMap> map = termination_.take(wait);
     if (!map || !grid) return;
-    hidden_.learn(hiddenBricks(*map, *grid), scene_ == reachScene_);
-    scene_ = reachScene_;
+    hidden_.learn(hiddenBricks(*map, *grid), scene_ == terminationScene_);
+    scene_ = terminationScene_;
     known_ = known_ || final_;
 }
 

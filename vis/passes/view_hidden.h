@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vis/demand/hidden_bricks.h"
-#include "vis/demand/reach_reader.h"
+#include "vis/demand/termination_reader.h"
 #include "vis/passes/picture.h"
 #include "vis/passes/render_tools.h"
 
@@ -11,7 +11,7 @@ namespace tessera::vis {
 /// number; pictures of the same scene differ only in what is resident.
 class ViewHidden {
 public:
-    void resize(glm::ivec2 size) { reach_.resize(size); }
+    void resize(glm::ivec2 size) { termination_.resize(size); }
     /// The full buffer has changed, so its occlusion is unknown.
     void forgetPicture() { known_ = final_ = false; }
     /// The data set has changed.
@@ -35,9 +35,9 @@ private:
     HiddenInView hidden_;
     std::uint64_t scene_ = 0; ///< scene of `hidden_`
     bool known_ = false;
-    ReachReader reach_;
-    std::uint64_t reachScene_ = 0; ///< scene of the pending result
-    bool final_ = false;           ///< the pending result is of the current full buffer
+    TerminationReader termination_;
+    std::uint64_t terminationScene_ = 0; ///< scene of the pending result
+    bool final_ = false;                 ///< the pending result is of the current full buffer
     bool reducedDrawn_ = false;
 };
 

@@ -4,12 +4,12 @@
 
 namespace tessera::vis {
 
-ViewLight::Progress ViewLight::bind(RenderTools& tools, const RenderCall& call, const LightBaker::Matter& matter) {
+ViewLight::Progress ViewLight::bind(RenderTools& tools, const RenderCall& call, const LightBaker::Medium& medium) {
     const Lighting& lighting = call.scene.lighting;
     const GLuint first = GLuint(rayUnits(call.plan).light);
     Progress maps, volume;
     if (usesMaps(lighting)) maps = bindMaps(tools, call, first);
-    if (lighting.shadows.any()) volume = bindVolume(tools, call, matter, first + 2);
+    if (lighting.shadows.any()) volume = bindVolume(tools, call, medium, first + 2);
     return {maps.done && volume.done, maps.changed || volume.changed};
 }
 
@@ -31,7 +31,7 @@ void ViewLight::bindTextures(const RenderTools& tools, GLuint firstUnit) const {
     glBindTextureUnit(firstUnit + 1, baker_.scattered() != 0 ? baker_.scattered() : tools.noLight.name());
 }
 
-ViewLight::Progress ViewLight::bindVolume(RenderTools& tools, const RenderCall& call, const LightBaker::Matter& matter,
+ViewLight::Progress ViewLight::bindVolume(RenderTools& tools, const RenderCall& call, const LightBaker::Medium& medium,
                                           GLuint firstUnit) {
     const RayPlan& plan = call.plan;
     const FrameRequest& request = call.request;
@@ -42,7 +42,7 @@ ViewLight::Progress ViewLight::bindVolume(RenderTools& tools, const RenderCall& 
     }
     ProgramRecipe recipe = rayRecipe(plan, call.scene, call.grid(), false);
     recipe.vertex = "screen.vert.glsl";
-    recipe.fragment = "light_matter.frag.glsl";
+    recipe.fragment = "light_medium.frag.glsl";
     const ProgramAnswer answer = request.wait ? ProgramAnswer{tools.programs.find(recipe), ProgramStage::Ready}
                                               : tools.programs.request(recipe, request.budgetMs / 4);
     bindTextures(tools, firstUnit);
@@ -52,12 +52,12 @@ ViewLight::Progress ViewLight::bindVolume(RenderTools& tools, const RenderCall& 
     };
     if (answer.stage == ProgramStage::Linked) {
         setUniforms(*answer.program);
-        const Texture like = makeTexture2D({1, 1}, kMatterFormat, GL_NEAREST, "like the light volume's matter");
-        tools.programs.warmUp(recipe, makeFramebuffer({like.name()}, "like the light volume's matter"));
+        const Texture like = makeTexture2D({1, 1}, kMediumFormat, GL_NEAREST, "like the light volume's medium");
+        tools.programs.warmUp(recipe, makeFramebuffer({like.name()}, "like the light volume's medium"));
         return {false, false};
     }
     const LightBaker::Pass pass{*answer.program, setUniforms, tools.vertices.name(), !tools.driver.timerQueries};
-    baker_.update(call.scene, call.info(), matter, pass, request.budgetMs / 3, request.wait);
+    baker_.update(call.scene, call.info(), medium, pass, request.budgetMs / 3, request.wait);
     const bool changed = version_ != baker_.version();
     version_ = baker_.version();
     bindTextures(tools, firstUnit);

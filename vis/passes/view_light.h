@@ -13,13 +13,13 @@ public:
         bool done = true;     ///< the bound light is that of the scene
         bool changed = false; ///< pictures drawn with the former light are out of date
     };
-    /// Updates and binds the cube maps and the light volume. `matter`: inputs of the volume's extinction besides the
+    /// Updates and binds the cube maps and the light volume. `medium`: inputs of the volume's extinction besides the
     /// scene.
-    Progress bind(RenderTools& tools, const RenderCall& call, const LightBaker::Matter& matter);
+    Progress bind(RenderTools& tools, const RenderCall& call, const LightBaker::Medium& medium);
 
 private:
     Progress bindMaps(RenderTools& tools, const RenderCall& call, GLuint firstUnit);
-    Progress bindVolume(RenderTools& tools, const RenderCall& call, const LightBaker::Matter& matter, GLuint firstUnit);
+    Progress bindVolume(RenderTools& tools, const RenderCall& call, const LightBaker::Medium& medium, GLuint firstUnit);
     void bindTextures(const RenderTools& tools, GLuint firstUnit) const;
 
     LightMapTextures maps_;

@@ -12,7 +12,7 @@ namespace {
 /// The properties of a layer that bound its variation within blocks.
 struct BlockLayer {
     const BoundField* field;
-    std::optional<CurveMatter> matter; ///< none for an iso-surface
+    std::optional<CurveMedium> medium; ///< none for an iso-surface
     glm::dvec2 map{0};                 ///< from texel values to transfer function positions
     double value = 0;                  ///< iso-value, texel units
 };
@@ -33,31 +33,31 @@ std::vector<std::uint8_t> blockSteps(const RayPlan& plan, const Scene& scene, co
             continue;
         }
         const ChannelTransfer transfer = transferOf(scene, info, field);
-        added.matter.emplace(transfer.function, transfer.range, double(std::get<VolumeLayer>(layer.technique).density),
+        added.medium.emplace(transfer.function, transfer.range, double(std::get<VolumeLayer>(layer.technique).density),
                              use.shaded);
         added.map = transferMap(field, scene, info);
     }
-    if (std::ranges::none_of(layers, [](const BlockLayer& layer) { return layer.matter.has_value(); })) return {};
+    if (std::ranges::none_of(layers, [](const BlockLayer& layer) { return layer.medium.has_value(); })) return {};
     const double unit = stepUnit(worldCell(lattice, worldFrame(info.bounds, scene.stretch)));
     std::vector<std::uint8_t> codes(grid->min.size());
     parallelRanges(
         codes.size(),
         [&](std::size_t begin, std::size_t end) {
-            std::vector<BlockMatter> matter;
+            std::vector<BlockMedium> medium;
             for (std::size_t i = begin; i < end; ++i) {
-                matter.clear();
+                medium.clear();
                 bool smooth = true;
                 for (const BlockLayer& layer : layers) {
                     const double lo = double(layer.field->blocks->min[i]), hi = double(layer.field->blocks->max[i]);
                     if (!(lo <= hi)) continue; // absent
-                    if (layer.matter)
-                        matter.push_back(layer.matter->between(lo * layer.map.x + layer.map.y,
+                    if (layer.medium)
+                        medium.push_back(layer.medium->between(lo * layer.map.x + layer.map.y,
                                                                hi * layer.map.x + layer.map.y,
                                                                layer.field->encoding.coverage));
                     else
                         smooth = smooth && !(lo <= layer.value && layer.value <= hi);
                 }
-                codes[i] = smooth ? std::uint8_t(stepCode(longestStep(matter, double(scene.render.adaptiveStep)), unit))
+                codes[i] = smooth ? std::uint8_t(stepCode(longestStep(medium, double(scene.render.adaptiveStep)), unit))
                                   : std::uint8_t(0);
             }
         },

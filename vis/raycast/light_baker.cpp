@@ -16,13 +16,13 @@ bool sameSpread(const Shadows& a, const Shadows& b) {
 
 } // namespace
 
-LightBaker::MatterKey LightBaker::keyOf(const Scene& scene, const LightGrid& grid, const Matter& matter) {
-    MatterKey key{scene, placeLenses(scene, {}), grid, matter};
+LightBaker::MediumKey LightBaker::keyOf(const Scene& scene, const LightGrid& grid, const Medium& medium) {
+    MediumKey key{scene, placeLenses(scene, {}), grid, medium};
     Scene& used = key.scene;
     used.lenses.clear(); // lenses that face the viewer or follow the cursor move without a change of the scene
     used.camera = {};
     used.cursor = glm::dvec3(0);
-    used.time = 0; // part of `matter`
+    used.time = 0; // part of `medium`
     used.render = {};
     used.render.filter = scene.render.filter;
     used.lighting = {};
@@ -35,21 +35,21 @@ LightBaker::MatterKey LightBaker::keyOf(const Scene& scene, const LightGrid& gri
 }
 
 bool LightBaker::same(const Spread& a, const Spread& b) {
-    return a.matter == b.matter && a.lights == b.lights && sameSpread(a.shadows, b.shadows);
+    return a.medium == b.medium && a.lights == b.lights && sameSpread(a.shadows, b.shadows);
 }
 
 bool LightBaker::ready() const {
     return version_ > 0 && same(wanted_, shown_);
 }
 
-void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, const Matter& matter, const Pass& pass,
+void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, const Medium& medium, const Pass& pass,
                         double budgetMs, bool wait) {
     const LightGrid grid = lightGrid(worldFrame(info.bounds, scene.stretch), scene.lighting.shadows);
-    if (MatterKey key = keyOf(scene, grid, matter); matterOf_ != key) {
-        matterOf_ = std::move(key);
+    if (MediumKey key = keyOf(scene, grid, medium); mediumOf_ != key) {
+        mediumOf_ = std::move(key);
         grid_ = grid;
-        ++wanted_.matter;
-        matterReady_ = false;
+        ++wanted_.medium;
+        mediumReady_ = false;
         rows_ = 0;
         reader_.forget();
         casters_ = meshCasters(scene, info);
@@ -59,8 +59,8 @@ void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, con
     }
     wanted_.lights = placeLights(scene.lighting, scene.camera);
     wanted_.shadows = scene.lighting.shadows;
-    if (!matterReady_) drawMatter(pass, budgetMs, wait);
-    if (!matterReady_ && !readMatter(wait)) return;
+    if (!mediumReady_) drawMedium(pass, budgetMs, wait);
+    if (!mediumReady_ && !readMedium(wait)) return;
     // A running propagation is finished and shown even if a light has moved since, so that light updates while the
     // camera turns.
     while (true) {
@@ -73,20 +73,20 @@ void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, con
 }
 
 /// Draws some rows of the extinction; starts reading it back after the last one.
-void LightBaker::drawMatter(const Pass& pass, double budgetMs, bool wait) {
+void LightBaker::drawMedium(const Pass& pass, double budgetMs, bool wait) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point begin = Clock::now();
     const glm::ivec2 size(grid_.size.x, grid_.size.y * grid_.size.z);
     if (atlasSize_ != size) {
-        atlas_ = makeTexture2D(size, kMatterFormat, GL_NEAREST, "matter of the light volume");
-        framebuffer_ = makeFramebuffer({atlas_.name()}, "matter of the light volume");
+        atlas_ = makeTexture2D(size, kMediumFormat, GL_NEAREST, "medium of the light volume");
+        framebuffer_ = makeFramebuffer({atlas_.name()}, "medium of the light volume");
         reader_.resize(grid_.count() * 4);
         atlasSize_ = size;
     }
     if (rows_ == size.y) return;
     pass.setUniforms(pass.program);
     pass.program.set("gridSize", grid_.size);
-    pass.program.set("matterSamples", kMatterSamples * kMatterSamples * kMatterSamples);
+    pass.program.set("mediumSamples", kMediumSamples * kMediumSamples * kMediumSamples);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.name());
     glViewport(0, 0, size.x, size.y);
     glEnable(GL_SCISSOR_TEST);
@@ -102,30 +102,30 @@ void LightBaker::drawMatter(const Pass& pass, double budgetMs, bool wait) {
     }
     if (rows_ < size.y) return;
     reader_.start(atlas_.name(), size, GL_RGBA);
-    read_ = std::make_shared<vis::Matter<float>>(grid_.count());
+    read_ = std::make_shared<vis::Medium<float>>(grid_.count());
 }
 
 /// Receives the extinction that was read back; false while it is pending.
-bool LightBaker::readMatter(bool wait) {
+bool LightBaker::readMedium(bool wait) {
     if (!reader_.pending() || !reader_.take({&read_->data()->x, read_->size() * 4}, wait)) return false;
-    matter_ = std::move(read_);
-    matterReady_ = true;
+    medium_ = std::move(read_);
+    mediumReady_ = true;
     return true;
 }
 
 void LightBaker::start() {
     job_ = std::make_shared<Job>();
     job_->key = wanted_;
-    job_->matter = matter_;
+    job_->medium = medium_;
     worker_ =
         std::jthread([job = job_, grid = grid_, casters = casting_ ? casters_ : MeshCasters()](std::stop_token stop) {
             workInBackground();
             if (!casters.casters.empty()) {
-                vis::Matter<float> sum = meshMatter<float>(grid, casters, stop);
-                for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += (*job->matter)[i];
-                job->matter = std::make_shared<const vis::Matter<float>>(std::move(sum));
+                vis::Medium<float> sum = meshMedium<float>(grid, casters, stop);
+                for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += (*job->medium)[i];
+                job->medium = std::make_shared<const vis::Medium<float>>(std::move(sum));
             }
-            job->result = spreadLight<float>(grid, *job->matter, job->key.lights, job->key.shadows, stop);
+            job->result = spreadLight<float>(grid, *job->medium, job->key.lights, job->key.shadows, stop);
             job->done = !stop.stop_requested();
         });
 }
@@ -147,7 +147,7 @@ void LightBaker::take() {
     }
     shownGrid_ = light.grid;
     shown_ = job_->key;
-    matter_ = job_->matter;
+    medium_ = job_->medium;
     casting_ = false;
     job_.reset();
     ++version_;

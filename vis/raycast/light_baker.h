@@ -2,7 +2,7 @@
 
 #include "vis/gl/pixel_reader.h"
 #include "vis/gl/program.h"
-#include "vis/optics/mesh_matter.h"
+#include "vis/optics/mesh_medium.h"
 #include "vis/optics/surface_light.h"
 
 #include <atomic>
@@ -13,17 +13,17 @@
 
 namespace tessera::vis {
 
-inline constexpr GLenum kMatterFormat = GL_RGBA32F; ///< of the texture of extinction
+inline constexpr GLenum kMediumFormat = GL_RGBA32F; ///< of the texture of extinction
 
 /// Updates the light volume textures of a picture (vis/optics/light_volume.h) without blocking the window: extinction
 /// is drawn a few rows per call; a thread adds meshes and propagates light. The former volume is used until then.
 class LightBaker {
 public:
     /// Inputs of the extinction besides the scene.
-    struct Matter {
+    struct Medium {
         std::uint64_t revision = 0; ///< of the resident data
         double time = 0;            ///< of the data
-        bool operator==(const Matter&) const = default;
+        bool operator==(const Medium&) const = default;
     };
 
     /// How to draw the extinction.
@@ -35,7 +35,7 @@ public:
     };
     /// Continues the work for about `budgetMs`, or until it is finished if `wait`. Changes the framebuffer, viewport
     /// and scissor.
-    void update(const Scene& scene, const volume::DatasetInfo& info, const Matter& matter, const Pass& pass,
+    void update(const Scene& scene, const volume::DatasetInfo& info, const Medium& medium, const Pass& pass,
                 double budgetMs, bool wait);
     /// Whether the textures are up to date.
     bool ready() const;
@@ -48,45 +48,45 @@ public:
 private:
     /// Inputs of one light propagation.
     struct Spread {
-        std::uint64_t matter = 0;
+        std::uint64_t medium = 0;
         std::vector<PlacedLight> lights;
         Shadows shadows;
     };
     struct Job {
         Spread key;
-        std::shared_ptr<const vis::Matter<float>> matter; ///< including the meshes
+        std::shared_ptr<const vis::Medium<float>> medium; ///< including the meshes
         LightVolume<float> result;
         std::atomic<bool> done = false;
     };
     static bool same(const Spread& a, const Spread& b);
-    void drawMatter(const Pass& pass, double budgetMs, bool wait);
-    bool readMatter(bool wait);
+    void drawMedium(const Pass& pass, double budgetMs, bool wait);
+    bool readMedium(bool wait);
     void start();
     void take();
 
     Spread wanted_, shown_;
     /// What the extinction depends on: the reduced scene, and its placed lenses.
-    struct MatterKey {
+    struct MediumKey {
         Scene scene;
         std::vector<PlacedLens> lenses;
         LightGrid grid;
-        Matter matter;
-        bool operator==(const MatterKey&) const = default;
+        Medium medium;
+        bool operator==(const MediumKey&) const = default;
     };
-    static MatterKey keyOf(const Scene& scene, const LightGrid& grid, const Matter& matter);
+    static MediumKey keyOf(const Scene& scene, const LightGrid& grid, const Medium& medium);
 
-    std::optional<MatterKey> matterOf_;
+    std::optional<MediumKey> mediumOf_;
     LightGrid grid_;
     int rows_ = 0; ///< rows of the extinction drawn so far
-    bool matterReady_ = false;
+    bool mediumReady_ = false;
     Texture atlas_;
     Framebuffer framebuffer_;
     PixelReader reader_;
     glm::ivec2 atlasSize_{0};
     MeshCasters casters_;
     bool casting_ = false; ///< `casters_` are not yet added to the extinction
-    std::shared_ptr<const vis::Matter<float>> matter_;
-    std::shared_ptr<vis::Matter<float>> read_; ///< being read back
+    std::shared_ptr<const vis::Medium<float>> medium_;
+    std::shared_ptr<vis::Medium<float>> read_; ///< being read back
     std::shared_ptr<Job> job_;
     Texture visible_, scattered_;
     LightGrid shownGrid_;

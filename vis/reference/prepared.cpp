@@ -1,6 +1,6 @@
 #include "vis/reference/prepared.h"
 
-#include "vis/optics/mesh_matter.h"
+#include "vis/optics/mesh_medium.h"
 #include "vis/optics/surface_light.h"
 #include "volume/base/parallel.h"
 
@@ -95,8 +95,8 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
     if (!scene.lighting.shadows.any()) return;
     const LightGrid grid = lightGrid(frame, scene.lighting.shadows);
     const std::vector<PlacedLight> lights = placeLights(scene.lighting, scene.camera);
-    Matter<double> all = matter(grid);
-    const Matter<double> meshes = meshMatter<double>(grid, meshCasters(scene, info));
+    Medium<double> all = medium(grid);
+    const Medium<double> meshes = meshMedium<double>(grid, meshCasters(scene, info));
     for (std::size_t i = 0; i < all.size(); ++i) all[i] += meshes[i];
     light.volume =
         std::make_shared<const LightVolume<double>>(spreadLight<double>(grid, all, lights, scene.lighting.shadows));
@@ -104,7 +104,7 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
 
 /// Computes the step codes of all blocks.
 void Prepared::findSteps() {
-    std::vector<std::optional<CurveMatter>> curves;
+    std::vector<std::optional<CurveMedium>> curves;
     for (const DrawnLayer& layer : layers) {
         const auto* volume = std::get_if<VolumeLayer>(layer.technique);
         auto& curve = curves.emplace_back();
@@ -118,7 +118,7 @@ void Prepared::findSteps() {
     parallelFor(steps.size(), [&](std::size_t i) {
         const glm::ivec3 block(int(i % std::size_t(blocks.x)), int(i / std::size_t(blocks.x) % std::size_t(blocks.y)),
                                int(i / std::size_t(blocks.x) / std::size_t(blocks.y)));
-        std::vector<BlockMatter> matter;
+        std::vector<BlockMedium> medium;
         for (std::size_t n = 0; n < layers.size(); ++n) {
             const DrawnLayer& layer = layers[n];
             const Range bounds = layer.samples->bounds(block * kStepBlock - 1, (block + 1) * kStepBlock + 1);
@@ -126,10 +126,10 @@ void Prepared::findSteps() {
             if (!(bounds.lo <= bounds.hi)) continue;
             if (iso && bounds.lo <= iso->value && iso->value <= bounds.hi) return;
             if (curves[n])
-                matter.push_back(curves[n]->between(layer.unclamped(bounds.lo), layer.unclamped(bounds.hi),
+                medium.push_back(curves[n]->between(layer.unclamped(bounds.lo), layer.unclamped(bounds.hi),
                                                     layer.samples->someAbsent()));
         }
-        steps[i] = std::uint8_t(stepCode(longestStep(matter, double(scene.render.adaptiveStep)), stepUnit(cell)));
+        steps[i] = std::uint8_t(stepCode(longestStep(medium, double(scene.render.adaptiveStep)), stepUnit(cell)));
     });
 }
 
@@ -143,8 +143,8 @@ double Prepared::stepAt(glm::ivec3 block) const {
 
 namespace {
 
-glm::dvec4 matterAt(const Prepared& scene, const LightGrid& grid, glm::dvec3 center) {
-    constexpr int kPoints = kMatterSamples * kMatterSamples * kMatterSamples;
+glm::dvec4 mediumAt(const Prepared& scene, const LightGrid& grid, glm::dvec3 center) {
+    constexpr int kPoints = kMediumSamples * kMediumSamples * kMediumSamples;
     const glm::dvec3 edges = grid.cell();
     const double longest = std::max({edges.x, edges.y, edges.z});
     glm::dvec4 sum(0);
@@ -189,12 +189,12 @@ glm::dvec4 matterAt(const Prepared& scene, const LightGrid& grid, glm::dvec3 cen
 
 } // namespace
 
-Matter<double> Prepared::matter(const LightGrid& grid) const {
-    Matter<double> out(grid.count());
+Medium<double> Prepared::medium(const LightGrid& grid) const {
+    Medium<double> out(grid.count());
     parallelFor(std::size_t(grid.size.z), [&](std::size_t z) {
         for (int y = 0; y < grid.size.y; ++y)
             for (int x = 0; x < grid.size.x; ++x)
-                out[grid.index({x, y, int(z)})] = matterAt(*this, grid, grid.center({x, y, int(z)}));
+                out[grid.index({x, y, int(z)})] = mediumAt(*this, grid, grid.center({x, y, int(z)}));
     });
     return out;
 }

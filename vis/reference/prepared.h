@@ -81,7 +81,7 @@ struct Prepared {
     /// The longest step in world units through a block.
     double stepAt(glm::ivec3 block) const;
     /// Extinction of every cell of a light grid, see vis/optics/light_volume.h.
-    Matter<double> matter(const LightGrid& grid) const;
+    Medium<double> medium(const LightGrid& grid) const;
     /// Degree of interest at a world point.
     Interest interest(glm::dvec3 world) const;
     /// Length of the change over one worldCell edge per axis, in ranges of the layer's transfer function.

@@ -26,7 +26,7 @@ layout(location = 0) out vec4 outColor; // linear, premultiplied
 layout(location = 1) out vec2 outPick; // distance along the ray of the picked sample, < 0: none; degree of interest
 
 #ifdef REACH
-layout(location = 2) out float outReach; // termination depth along the ray; 0: the ray misses the box
+layout(location = 2) out float outTermination; // termination depth along the ray; 0: the ray misses the box
 #endif
 
 // Number of samples at the end of an empty region that are still taken: 1 if iso-surfaces and local maxima are detected
@@ -229,7 +229,7 @@ void main() {
 #endif
 #ifdef REACH
     // Projections are composited behind everything and do not extend the termination depth.
-    outReach = !ray.meets ? 0.0 : color.a < kOpaque ? ray.inside.y : distanceAt(float(ended));
+    outTermination = !ray.meets ? 0.0 : color.a < kOpaque ? ray.inside.y : distanceAt(float(ended));
 #endif
 #if HAS_PROJECTION
     showProjections();

@@ -13,7 +13,7 @@
 namespace tessera::codec {
 
 /// One parameter at one time, ready to be stored.
-struct FeedStep {
+struct QueuedFrames {
     int parameter = 0;
     std::size_t time = 0;
     std::vector<FrameSamples> frames; ///< per component
@@ -27,7 +27,7 @@ struct FeedStep {
 void widenRanges(std::vector<Range>& ranges, const std::vector<Range>& more);
 
 /// Options of reading and resampling.
-struct FeedOptions {
+struct FrameQueueOptions {
     bool toBcc = false; ///< resample frames to the lattice of the grid
     volume::ResampleOptions resample;
     volume::BrickGrid grid;
@@ -40,28 +40,28 @@ struct FeedOptions {
 
 /// Reads and resamples a data set time by time, and within each time parameter by parameter, one step ahead of the
 /// caller.
-class FrameFeed {
+class FrameQueue {
 public:
     /// A stop request takes effect at the next step or slab.
-    FrameFeed(const volume::Dataset& dataset, FeedOptions options, std::stop_token stop);
-    ~FrameFeed();
-    FrameFeed(const FrameFeed&) = delete;
-    FrameFeed& operator=(const FrameFeed&) = delete;
+    FrameQueue(const volume::Dataset& dataset, FrameQueueOptions options, std::stop_token stop);
+    ~FrameQueue();
+    FrameQueue(const FrameQueue&) = delete;
+    FrameQueue& operator=(const FrameQueue&) = delete;
 
     /// Returns the next step; to be called times x parameters times. Throws what reading throws: Error, Cancelled.
-    FeedStep next();
+    QueuedFrames next();
 
 private:
-    FeedStep read(std::size_t number) const;
+    QueuedFrames read(std::size_t number) const;
     /// Reads the components of a step: into memory if they fit; otherwise scans them for the properties of the whole
     /// frame that later stages need. Sets the ranges of the step.
-    std::vector<volume::SlicedFrame> source(FeedStep& step, const volume::Parameter& parameter) const;
+    std::vector<volume::SlicedFrame> source(QueuedFrames& step, const volume::Parameter& parameter) const;
 
     volume::Dataset dataset_; ///< the original one, with parts if frames are resampled
-    FeedOptions options_;
+    FrameQueueOptions options_;
     std::stop_token stop_;
     std::size_t steps_, taken_ = 0;
-    std::future<FeedStep> coming_;
+    std::future<QueuedFrames> coming_;
 };
 
 } // namespace tessera::codec

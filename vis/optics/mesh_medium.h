@@ -36,9 +36,9 @@ MeshCasters meshCasters(const Scene& scene, const volume::DatasetInfo& info);
 /// trilinear weights, so that integrated along the normal of a flat surface it gives the opacity. Parts with a clipped
 /// centroid are left out; lenses act as on the surface. Stops early, with an undefined result, when the token asks.
 template <class Number>
-Matter<Number> meshMatter(const LightGrid& grid, const MeshCasters& casters, std::stop_token stop = {});
+Medium<Number> meshMedium(const LightGrid& grid, const MeshCasters& casters, std::stop_token stop = {});
 
-extern template Matter<float> meshMatter(const LightGrid&, const MeshCasters&, std::stop_token);
-extern template Matter<double> meshMatter(const LightGrid&, const MeshCasters&, std::stop_token);
+extern template Medium<float> meshMedium(const LightGrid&, const MeshCasters&, std::stop_token);
+extern template Medium<double> meshMedium(const LightGrid&, const MeshCasters&, std::stop_token);
 
 } // namespace tessera::vis

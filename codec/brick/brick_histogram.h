@@ -12,13 +12,13 @@
 namespace tessera::codec {
 
 /// Mean and histogram of the present, finite values of a brick at full resolution, as decoded.
-struct BrickTally {
+struct BrickHistogram {
     std::uint32_t samples = 0;         ///< number of present and finite samples
     std::uint32_t infinite = 0;        ///< number of present samples that are not finite
     std::uint32_t mean = 0;            ///< position between minimum and maximum, in units of 1/kMeanParts
     std::vector<std::uint32_t> counts; ///< in equal bins from minimum to maximum; empty if there is one bin
 
-    bool operator==(const BrickTally&) const = default;
+    bool operator==(const BrickHistogram&) const = default;
 };
 
 inline constexpr std::uint32_t kMeanParts = (1u << 24) - 1;
@@ -31,25 +31,26 @@ bool hasSpread(float min, float max);
 
 struct TalliedBrick {
     float min = 0, max = -1; ///< physical values; min > max: no present, finite sample
-    BrickTally tally;
+    BrickHistogram histogram;
 };
 
 /// Computes the statistics of a brick from stored numbers, whose physical values are offset + scale * number.
-/// `present`: one flag each, or empty: all present. Without `withTally`: only the range.
+/// `present`: one flag each, or empty: all present. Without `withHistogram`: only the range.
 TalliedBrick tallied(volume::ScalarType type, double offset, double scale, std::span<const std::byte> samples,
-                     std::span<const std::uint8_t> present, bool withTally);
+                     std::span<const std::uint8_t> present, bool withHistogram);
 
 /// Whether the statistics of a brick equal stored ones, up to rounding of the mean.
-bool agree(const TalliedBrick& brick, float min, float max, const BrickTally& noted);
+bool agree(const TalliedBrick& brick, float min, float max, const BrickHistogram& noted);
 
 /// Writes the statistics of a brick with this range. `isFloat`: samples can be present but not finite.
-void put(BitWriter& out, float min, float max, bool isFloat, const BrickTally& tally);
+void put(BitWriter& out, float min, float max, bool isFloat, const BrickHistogram& histogram);
 /// Reads the statistics written by put. `present`: number of present samples. False if the bits are invalid or end
 /// early.
-bool take(BitReader& in, float min, float max, bool isFloat, std::uint32_t present, BrickTally& tally);
+bool take(BitReader& in, float min, float max, bool isFloat, std::uint32_t present, BrickHistogram& histogram);
 
 /// Converts the statistics for volume::BrickSource; empty if the range is not finite. `step`: distance between stored
 /// numbers, 0 for floats.
-std::optional<volume::BrickDistribution> distributionOf(float min, float max, double step, const BrickTally& tally);
+std::optional<volume::BrickDistribution> distributionOf(float min, float max, double step,
+                                                        const BrickHistogram& histogram);
 
 } // namespace tessera::codec

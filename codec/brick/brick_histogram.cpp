@@ -1,4 +1,4 @@
-#include "codec/brick/brick_tally.h"
+#include "codec/brick/brick_histogram.h"
 
 #include "volume/base/number_extent.h"
 
@@ -76,11 +76,11 @@ struct Binning {
     }
 };
 
-using TallyCounts = std::array<std::uint32_t, kMostBins>;
+using HistogramCounts = std::array<std::uint32_t, kMostBins>;
 
 template <class T>
-TallyCounts histogramOf(std::span<const T> numbers, const volume::NumberExtent<T>& extent, const Binning& binning) {
-    std::array<TallyCounts, kTurns> turns{};
+HistogramCounts histogramOf(std::span<const T> numbers, const volume::NumberExtent<T>& extent, const Binning& binning) {
+    std::array<HistogramCounts, kTurns> turns{};
     std::vector<std::uint8_t> binOf; // lookup table by number, if there are fewer numbers than samples
     if constexpr (!std::same_as<T, float>) {
         const std::int64_t least = extent.least, values = std::int64_t(extent.most) - least + 1;
@@ -105,8 +105,8 @@ TallyCounts histogramOf(std::span<const T> numbers, const volume::NumberExtent<T
             for (std::size_t i = 0; i < n; ++i) ++turns[i % kTurns][run[i]];
         }
     }
-    TallyCounts counts{};
-    for (const TallyCounts& turn : turns)
+    HistogramCounts counts{};
+    for (const HistogramCounts& turn : turns)
         for (std::size_t b = 0; b < counts.size(); ++b) counts[b] += turn[b];
     return counts;
 }
@@ -161,18 +161,18 @@ bool hasSpread(float min, float max) {
 }
 
 TalliedBrick tallied(volume::ScalarType type, double offset, double scale, std::span<const std::byte> samples,
-                     std::span<const std::uint8_t> present, bool withTally) {
+                     std::span<const std::uint8_t> present, bool withHistogram) {
     return volume::dispatch(type, [&]<class T>(T) {
         TalliedBrick brick;
         const std::span all(reinterpret_cast<const T*>(samples.data()), samples.size() / sizeof(T));
         std::vector<T> kept;
         const std::span<const T> numbers = counting(all, present, kept);
-        BrickTally& tally = brick.tally;
-        tally.samples = static_cast<std::uint32_t>(numbers.size());
+        BrickHistogram& histogram = brick.histogram;
+        histogram.samples = static_cast<std::uint32_t>(numbers.size());
         if constexpr (std::same_as<T, float>) {
             const auto there = static_cast<std::uint32_t>(
                 present.empty() ? all.size() : all.size() - std::size_t(std::count(present.begin(), present.end(), 0)));
-            tally.infinite = there - tally.samples;
+            histogram.infinite = there - histogram.samples;
         }
         if (numbers.empty()) return brick;
 
@@ -180,19 +180,19 @@ TalliedBrick tallied(volume::ScalarType type, double offset, double scale, std::
         constexpr bool kBytes = std::same_as<T, std::uint8_t>;
         volume::NumberExtent<T> extent;
         if constexpr (kBytes) {
-            if (withTally) {
+            if (withHistogram) {
                 times = occurrences(numbers);
                 while (times[extent.least] == 0) ++extent.least;
                 extent.most = 255;
                 while (times[extent.most] == 0) --extent.most;
             }
         }
-        if (!kBytes || !withTally) extent = volume::extentOfNumbers(numbers);
+        if (!kBytes || !withHistogram) extent = volume::extentOfNumbers(numbers);
         const Meaning meaning{offset, scale};
         const double a = meaning.valueOf(double(extent.least)), b = meaning.valueOf(double(extent.most));
         brick.min = static_cast<float>(std::min(a, b));
         brick.max = static_cast<float>(std::max(a, b));
-        if (!withTally || !hasSpread(brick.min, brick.max)) return brick;
+        if (!withHistogram || !hasSpread(brick.min, brick.max)) return brick;
 
         const double from = double(brick.min), width = double(brick.max) - from;
         double sum = 0;
@@ -202,64 +202,65 @@ TalliedBrick tallied(volume::ScalarType type, double offset, double scale, std::
             sum = sumOf(numbers, meaning);
         const double mean = sum / double(numbers.size());
         const double part = std::clamp((mean - from) / width, 0.0, 1.0);
-        tally.mean = static_cast<std::uint32_t>(std::lround(part * kMeanParts));
-        const Binning binning{meaning, from, width, binsOf(tally.samples)};
+        histogram.mean = static_cast<std::uint32_t>(std::lround(part * kMeanParts));
+        const Binning binning{meaning, from, width, binsOf(histogram.samples)};
         if (binning.bins == 1) return brick;
-        TallyCounts counts{};
+        HistogramCounts counts{};
         if constexpr (kBytes)
             for (std::size_t v = extent.least; v <= extent.most; ++v) counts[binning.of(double(v))] += times[v];
         else
             counts = histogramOf(numbers, extent, binning);
-        tally.counts.assign(counts.begin(), counts.begin() + binning.bins);
+        histogram.counts.assign(counts.begin(), counts.begin() + binning.bins);
         return brick;
     });
 }
 
-bool agree(const TalliedBrick& brick, float min, float max, const BrickTally& noted) {
+bool agree(const TalliedBrick& brick, float min, float max, const BrickHistogram& noted) {
     constexpr std::int64_t kRounding = 2; // tolerance for sums added in another order
     if (!(brick.min <= brick.max)) return !(min <= max);
-    return brick.min == min && brick.max == max && brick.tally.samples == noted.samples &&
-           brick.tally.infinite == noted.infinite && brick.tally.counts == noted.counts &&
-           std::abs(std::int64_t(brick.tally.mean) - std::int64_t(noted.mean)) <= kRounding;
+    return brick.min == min && brick.max == max && brick.histogram.samples == noted.samples &&
+           brick.histogram.infinite == noted.infinite && brick.histogram.counts == noted.counts &&
+           std::abs(std::int64_t(brick.histogram.mean) - std::int64_t(noted.mean)) <= kRounding;
 }
 
-void put(BitWriter& out, float min, float max, bool isFloat, const BrickTally& tally) {
+void put(BitWriter& out, float min, float max, bool isFloat, const BrickHistogram& histogram) {
     if (!(min <= max)) return;
     if (isFloat) {
-        out.put(tally.infinite > 0 ? 1 : 0, 1);
-        if (tally.infinite > 0) out.put(tally.infinite, std::bit_width(tally.infinite + tally.samples));
+        out.put(histogram.infinite > 0 ? 1 : 0, 1);
+        if (histogram.infinite > 0) out.put(histogram.infinite, std::bit_width(histogram.infinite + histogram.samples));
     }
     if (!hasSpread(min, max)) return;
-    out.put(tally.mean, 24);
-    putHalves(out, tally.counts, tally.samples);
+    out.put(histogram.mean, 24);
+    putHalves(out, histogram.counts, histogram.samples);
 }
 
-bool take(BitReader& in, float min, float max, bool isFloat, std::uint32_t present, BrickTally& tally) {
-    tally = {};
+bool take(BitReader& in, float min, float max, bool isFloat, std::uint32_t present, BrickHistogram& histogram) {
+    histogram = {};
     if (!(min <= max)) return true;
     if (isFloat && in.get(1) != 0) {
-        tally.infinite = in.get(std::bit_width(present));
-        if (tally.infinite == 0) return false;
+        histogram.infinite = in.get(std::bit_width(present));
+        if (histogram.infinite == 0) return false;
     }
-    if (in.failed || tally.infinite >= present) return false;
-    tally.samples = present - tally.infinite;
+    if (in.failed || histogram.infinite >= present) return false;
+    histogram.samples = present - histogram.infinite;
     if (!hasSpread(min, max)) return true;
-    tally.mean = in.get(24);
-    const int bins = binsOf(tally.samples);
-    if (bins > 1) tally.counts.resize(std::size_t(bins));
-    return !in.failed && (bins == 1 || takeHalves(in, tally.counts, tally.samples));
+    histogram.mean = in.get(24);
+    const int bins = binsOf(histogram.samples);
+    if (bins > 1) histogram.counts.resize(std::size_t(bins));
+    return !in.failed && (bins == 1 || takeHalves(in, histogram.counts, histogram.samples));
 }
 
-std::optional<volume::BrickDistribution> distributionOf(float min, float max, double step, const BrickTally& tally) {
+std::optional<volume::BrickDistribution> distributionOf(float min, float max, double step,
+                                                        const BrickHistogram& histogram) {
     volume::BrickDistribution out;
     if (!(min <= max)) return out;
     if (!std::isfinite(min) || !std::isfinite(max)) return std::nullopt;
     out.range = {double(min), double(max)};
-    out.samples = tally.samples;
-    out.mean = out.range.lo + (out.range.hi - out.range.lo) * tally.mean / kMeanParts;
+    out.samples = histogram.samples;
+    out.mean = out.range.lo + (out.range.hi - out.range.lo) * histogram.mean / kMeanParts;
     out.step = step;
-    out.counts = tally.counts;
-    if (out.counts.empty()) out.counts = {tally.samples};
+    out.counts = histogram.counts;
+    if (out.counts.empty()) out.counts = {histogram.samples};
     return out;
 }
 

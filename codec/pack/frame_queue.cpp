@@ -1,4 +1,4 @@
-#include "codec/pack/frame_feed.h"
+#include "codec/pack/frame_queue.h"
 
 #include "codec/bytes/stopwatch.h"
 #include "volume/base/number_extent.h"
@@ -75,15 +75,15 @@ void widenRanges(std::vector<Range>& ranges, const std::vector<Range>& more) {
     }
 }
 
-FrameFeed::FrameFeed(const volume::Dataset& dataset, FeedOptions options, std::stop_token stop)
+FrameQueue::FrameQueue(const volume::Dataset& dataset, FrameQueueOptions options, std::stop_token stop)
     : dataset_(options.toBcc ? volume::withParts(dataset) : dataset), options_(std::move(options)),
       stop_(std::move(stop)), steps_(dataset_.info.times.size() * dataset_.info.parameters.size()) {}
 
-FrameFeed::~FrameFeed() {
+FrameQueue::~FrameQueue() {
     if (coming_.valid()) coming_.wait();
 }
 
-std::vector<volume::SlicedFrame> FrameFeed::source(FeedStep& step, const volume::Parameter& parameter) const {
+std::vector<volume::SlicedFrame> FrameQueue::source(QueuedFrames& step, const volume::Parameter& parameter) const {
     const volume::Lattice& lattice = dataset_.info.lattice;
     std::vector<volume::SlicedFrame> frames;
     for (int c = 0; c < parameter.components; ++c) {
@@ -112,9 +112,9 @@ std::vector<volume::SlicedFrame> FrameFeed::source(FeedStep& step, const volume:
     return frames;
 }
 
-FeedStep FrameFeed::read(std::size_t number) const {
+QueuedFrames FrameQueue::read(std::size_t number) const {
     if (stop_.stop_requested()) throw Cancelled();
-    FeedStep step;
+    QueuedFrames step;
     step.parameter = int(number % dataset_.info.parameters.size());
     step.time = number / dataset_.info.parameters.size();
     const volume::Parameter& parameter = dataset_.info.parameters[std::size_t(step.parameter)];
@@ -144,8 +144,8 @@ FeedStep FrameFeed::read(std::size_t number) const {
     return step;
 }
 
-FeedStep FrameFeed::next() {
-    FeedStep step = coming_.valid() ? coming_.get() : read(taken_);
+QueuedFrames FrameQueue::next() {
+    QueuedFrames step = coming_.valid() ? coming_.get() : read(taken_);
     ++taken_;
     if (options_.ahead && taken_ < steps_)
         coming_ = std::async(std::launch::async, [this, number = taken_] { return read(number); });

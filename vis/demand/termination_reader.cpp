@@ -1,23 +1,23 @@
-#include "vis/demand/reach_reader.h"
+#include "vis/demand/termination_reader.h"
 
 namespace tessera::vis {
 
-void ReachReader::resize(glm::ivec2 size) {
-    const glm::ivec2 tiles = ReachMap{{}, {}, size, {}}.tiles();
+void TerminationReader::resize(glm::ivec2 size) {
+    const glm::ivec2 tiles = TerminationMap{{}, {}, size, {}}.tiles();
     Texture made = makeTexture2D(tiles, GL_R32F, GL_NEAREST, "ray ends");
     framebuffer_ = makeFramebuffer({made.name()}, "ray ends");
     tiles_ = std::move(made);
     reader_.resize(std::size_t(tiles.x) * std::size_t(tiles.y));
 }
 
-void ReachReader::start(const Program& program, GLuint vertices, GLuint reach, glm::ivec2 first, glm::ivec2 size,
-                        const Camera& camera, const WorldFrame& frame) {
+void TerminationReader::start(const Program& program, GLuint vertices, GLuint termination, glm::ivec2 first,
+                              glm::ivec2 size, const Camera& camera, const WorldFrame& frame) {
     map_ = {camera, frame, size, {}};
     const glm::ivec2 tiles = map_.tiles();
-    program.set("reach", 0);
+    program.set("termination", 0);
     program.set("first", glm::vec2(first));
     program.set("size", glm::vec2(size));
-    glBindTextureUnit(0, reach);
+    glBindTextureUnit(0, termination);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.name());
     glViewport(0, 0, tiles.x, tiles.y);
     glUseProgram(program.name());
@@ -27,7 +27,7 @@ void ReachReader::start(const Program& program, GLuint vertices, GLuint reach, g
     map_.farthest.resize(std::size_t(tiles.x) * std::size_t(tiles.y));
 }
 
-std::optional<ReachMap> ReachReader::take(bool wait) {
+std::optional<TerminationMap> TerminationReader::take(bool wait) {
     if (!reader_.take(map_.farthest, wait)) return std::nullopt;
     return std::move(map_);
 }

@@ -15,10 +15,10 @@
 #include "lib/color_by.glsl"
 #endif
 
-layout(location = 0) out vec4 outMatter;
+layout(location = 0) out vec4 outMedium;
 
 uniform ivec3 gridSize;
-uniform int matterSamples; // 8; a uniform, so that the loop is not unrolled
+uniform int mediumSamples; // 8; a uniform, so that the loop is not unrolled
 
 const float kThickest = 0.999;
 
@@ -52,7 +52,7 @@ void main() {
     for (int i = 0; i < LAYERS; ++i) {
         mean[i] = 0.0; points[i] = 0.0; slope[i] = vec3(0.0);
     }
-    for (int n = 0; n < matterSamples; ++n) {
+    for (int n = 0; n < mediumSamples; ++n) {
         vec3 way = vec3(n & 1, n >> 1 & 1, n >> 2) - 0.5;
         vec3 world = center + 0.5 * way * edges, p = toCells(world);
         float doi = degreeOfInterest(p), kept = clipKept(world) ? 1.0 : 0.0;
@@ -89,5 +89,5 @@ void main() {
         sum += is ? vec4(focusColor(own, middle, lens.y, LAYER_BRUSHED(i)), 1.0) * dense : vec4(0.0);
     }
 #endif
-    outMatter = sum;
+    outMedium = sum;
 }

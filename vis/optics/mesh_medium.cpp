@@ -1,4 +1,4 @@
-#include "vis/optics/mesh_matter.h"
+#include "vis/optics/mesh_medium.h"
 
 #include "vis/optics/ray_setup.h"
 
@@ -14,14 +14,14 @@ namespace {
 constexpr int kMostParts = 512; ///< subdivisions along an edge
 
 /// Adds an amount to the eight cells around a position in cells (centres at integers), as far as they are in the grid.
-template <class Number> void deposit(Matter<Number>& matter, const LightGrid& grid, glm::dvec3 p, glm::dvec4 amount) {
+template <class Number> void deposit(Medium<Number>& medium, const LightGrid& grid, glm::dvec3 p, glm::dvec4 amount) {
     const glm::ivec3 lo(glm::floor(p));
     const glm::dvec3 w = p - glm::dvec3(lo);
     for (int c = 0; c < 8; ++c) {
         const glm::ivec3 up(c & 1, c >> 1 & 1, c >> 2), at = lo + up;
         if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, grid.size))) continue;
         const glm::dvec3 parts = glm::mix(1.0 - w, w, glm::dvec3(up));
-        matter[grid.index(at)] += glm::vec<4, Number>(amount * (parts.x * parts.y * parts.z));
+        medium[grid.index(at)] += glm::vec<4, Number>(amount * (parts.x * parts.y * parts.z));
     }
 }
 
@@ -54,14 +54,14 @@ MeshCasters meshCasters(const Scene& scene, const volume::DatasetInfo& info) {
 }
 
 template <class Number>
-Matter<Number> meshMatter(const LightGrid& grid, const MeshCasters& casters, std::stop_token stop) {
-    Matter<Number> matter(grid.count(), glm::vec<4, Number>(0));
+Medium<Number> meshMedium(const LightGrid& grid, const MeshCasters& casters, std::stop_token stop) {
+    Medium<Number> medium(grid.count(), glm::vec<4, Number>(0));
     const glm::dvec3 cell = grid.cell();
     const double cellVolume = cell.x * cell.y * cell.z;
     for (const MeshCasters::Caster& caster : casters.casters) {
         const volume::SurfaceMesh& mesh = caster.geometry->mesh;
         for (const glm::uvec3& triangle : mesh.triangles) {
-            if (stop.stop_requested()) return matter;
+            if (stop.stop_requested()) return medium;
             glm::dvec3 p[3];
             double scalar = 0, longest = 0;
             for (int i = 0; i < 3; ++i) {
@@ -85,14 +85,14 @@ Matter<Number> meshMatter(const LightGrid& grid, const MeshCasters& casters, std
                     const double opacity = caster.opacity * lensAction(casters.lenses, caster.lens, world).opacity;
                     const double amount =
                         -std::log(1 - std::min(opacity, kThickest)) * area / (double(n) * n) / cellVolume;
-                    deposit(matter, grid, (world + grid.halfSize) / cell - 0.5, glm::dvec4(color, 1) * amount);
+                    deposit(medium, grid, (world + grid.halfSize) / cell - 0.5, glm::dvec4(color, 1) * amount);
                 }
         }
     }
-    return matter;
+    return medium;
 }
 
-template Matter<float> meshMatter(const LightGrid&, const MeshCasters&, std::stop_token);
-template Matter<double> meshMatter(const LightGrid&, const MeshCasters&, std::stop_token);
+template Medium<float> meshMedium(const LightGrid&, const MeshCasters&, std::stop_token);
+template Medium<double> meshMedium(const LightGrid&, const MeshCasters&, std::stop_token);
 
 } // namespace tessera::vis
