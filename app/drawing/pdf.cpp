@@ -1,0 +1,202 @@
+#include "app/drawing/drawing.h"
+
+#include "volume/base/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cairo-ft.h>
+#include <cairo-pdf.h>
+#include <memory>
+#include <numbers>
+
+namespace tessera::app {
+
+namespace {
+
+template <auto destroy> struct Destroy {
+    void operator()(auto* it) const { destroy(it); }
+};
+using Surface = std::unique_ptr<cairo_surface_t, Destroy<cairo_surface_destroy>>;
+using Context = std::unique_ptr<cairo_t, Destroy<cairo_destroy>>;
+using Pattern = std::unique_ptr<cairo_pattern_t, Destroy<cairo_pattern_destroy>>;
+using FontFace = std::unique_ptr<cairo_font_face_t, Destroy<cairo_font_face_destroy>>;
+using FontOptions = std::unique_ptr<cairo_font_options_t, Destroy<cairo_font_options_destroy>>;
+
+/// The fonts of the program, by FreeType; where one is not installed, what cairo has in its place.
+class Fonts {
+public:
+    Fonts() {
+        if (FT_Init_FreeType(&library_) != 0) throw MachineError("FreeType cannot be started");
+    }
+    ~Fonts() {
+        for (FontFace& face : faces_) face.reset();
+        for (FT_Face face : loaded_)
+            if (face) FT_Done_Face(face);
+        FT_Done_FreeType(library_);
+    }
+    Fonts(const Fonts&) = delete;
+    Fonts& operator=(const Fonts&) = delete;
+
+    cairo_font_face_t* get(Face which) {
+        const auto at = static_cast<std::size_t>(which);
+        if (faces_[at]) return faces_[at].get();
+        const char* file = typeface(which).file;
+        if (file && FT_New_Face(library_, file, 0, &loaded_[at]) == 0)
+            faces_[at].reset(cairo_ft_font_face_create_for_ft_face(loaded_[at], FT_LOAD_NO_HINTING));
+        else
+            faces_[at].reset(
+                cairo_toy_font_face_create("sans-serif", CAIRO_FONT_SLANT_NORMAL,
+                                           which == Face::Bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL));
+        return faces_[at].get();
+    }
+
+private:
+    FT_Library library_ = nullptr;
+    std::array<FT_Face, 3> loaded_{};
+    std::array<FontFace, 3> faces_;
+};
+
+class Painter {
+public:
+    Painter(cairo_t* page, Fonts& fonts) : page_(page), fonts_(fonts) {
+        const FontOptions options(cairo_font_options_create());
+        cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
+        cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
+        cairo_set_font_options(page_, options.get());
+        cairo_set_line_join(page_, CAIRO_LINE_JOIN_ROUND);
+    }
+
+    void draw(const Mark& mark) {
+        cairo_save(page_);
+        if (mark.clip) {
+            rectangle(*mark.clip);
+            cairo_clip(page_);
+        }
+        std::visit([&](const auto& shape) { draw(shape); }, mark.shape);
+        cairo_restore(page_);
+    }
+
+private:
+    void color(glm::vec4 ink) {
+        cairo_set_source_rgba(page_, double(ink.r), double(ink.g), double(ink.b), double(ink.a));
+    }
+    void rectangle(const PageBox& box) {
+        cairo_rectangle(page_, box.lo.x, box.lo.y, box.hi.x - box.lo.x, box.hi.y - box.lo.y);
+    }
+    void path(const std::vector<glm::dvec2>& points, bool closed) {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            (i == 0 ? cairo_move_to : cairo_line_to)(page_, points[i].x, points[i].y);
+        if (closed) cairo_close_path(page_);
+    }
+    /// Draws the path: its edge of a width, or with 0 its inside.
+    void paint(glm::vec4 ink, double line) {
+        color(ink);
+        cairo_set_line_width(page_, line);
+        line > 0 ? cairo_stroke(page_) : cairo_fill(page_);
+    }
+
+    void draw(const Stroke& stroke) {
+        path(stroke.points, stroke.closed);
+        paint(stroke.color, stroke.width);
+    }
+    void draw(const Area& area) {
+        for (const std::vector<glm::dvec2>& outline : area.outlines) path(outline, true);
+        paint(area.color, 0);
+    }
+    void draw(const Rect& rect) {
+        rectangle(rect.box);
+        paint(rect.color, rect.line);
+    }
+    void draw(const Circle& circle) {
+        cairo_arc(page_, circle.center.x, circle.center.y, circle.radius, 0, 2 * std::numbers::pi);
+        paint(circle.color, circle.line);
+    }
+    void draw(const Ramp& ramp) {
+        const PageBox& box = ramp.box;
+        const Pattern pattern(cairo_pattern_create_linear(box.lo.x, box.lo.y, ramp.upright ? box.lo.x : box.hi.x,
+                                                          ramp.upright ? box.hi.y : box.lo.y));
+        for (const auto& [at, ink] : ramp.stops)
+            cairo_pattern_add_color_stop_rgba(pattern.get(), at, double(ink.r), double(ink.g), double(ink.b),
+                                              double(ink.a));
+        cairo_set_source(page_, pattern.get());
+        rectangle(box);
+        cairo_fill(page_);
+    }
+    void draw(const Words& words) {
+        cairo_set_font_face(page_, fonts_.get(words.face));
+        cairo_set_font_size(page_, words.size);
+        color(words.color);
+        cairo_text_extents_t extents;
+        cairo_text_extents(page_, words.text.c_str(), &extents);
+        const double width = words.width > 0 ? words.width : extents.x_advance;
+        cairo_translate(page_, words.at.x, words.at.y);
+        cairo_rotate(page_, words.angle * std::numbers::pi / 180);
+        cairo_translate(page_, -words.anchor * width, 0);
+        if (extents.x_advance > 0) cairo_scale(page_, width / extents.x_advance, 1);
+        cairo_move_to(page_, 0, 0);
+        cairo_show_text(page_, words.text.c_str());
+    }
+    void draw(const Picture& picture) {
+        const glm::ivec2 size = picture.image.size;
+        const Surface image(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, size.x, size.y));
+        if (cairo_surface_status(image.get()) != CAIRO_STATUS_SUCCESS)
+            throw MachineError("a picture is too large for a PDF");
+        unsigned char* const rows = cairo_image_surface_get_data(image.get());
+        const int stride = cairo_image_surface_get_stride(image.get());
+        for (int y = 0; y < size.y; ++y) {
+            auto* out = reinterpret_cast<std::uint32_t*>(rows + std::ptrdiff_t(y) * stride);
+            const std::uint8_t* in = &picture.image.rgba[std::size_t(y) * std::size_t(size.x) * 4];
+            for (int x = 0; x < size.x; ++x, in += 4) {
+                const std::uint32_t a = in[3];
+                const auto times = [&](std::uint32_t value) { return (value * a + 127) / 255; }; // by opacity
+                out[x] = a << 24 | times(in[0]) << 16 | times(in[1]) << 8 | times(in[2]);
+            }
+        }
+        cairo_surface_mark_dirty(image.get());
+        cairo_translate(page_, picture.box.lo.x, picture.box.lo.y);
+        cairo_scale(page_, (picture.box.hi.x - picture.box.lo.x) / size.x,
+                    (picture.box.hi.y - picture.box.lo.y) / size.y);
+        cairo_set_source_surface(page_, image.get(), 0, 0);
+        cairo_pattern_set_filter(cairo_get_source(page_), picture.smooth ? CAIRO_FILTER_GOOD : CAIRO_FILTER_NEAREST);
+        cairo_rectangle(page_, 0, 0, size.x, size.y);
+        cairo_fill(page_);
+    }
+
+    cairo_t* page_;
+    Fonts& fonts_;
+};
+
+cairo_status_t append(void* to, const unsigned char* bytes, unsigned count) {
+    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), count);
+    return CAIRO_STATUS_SUCCESS;
+}
+
+} // namespace
+
+std::string pdfOf(const Drawing& drawing) {
+    std::string out;
+    Fonts fonts;
+    const Surface surface(cairo_pdf_surface_create_for_stream(append, &out, drawing.size.x, drawing.size.y));
+    cairo_pdf_surface_restrict_to_version(surface.get(), CAIRO_PDF_VERSION_1_5);
+    cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATOR, "Tessera");
+    cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
+    if (!drawing.numbers.empty())
+        cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_SUBJECT,
+                                       ("numbers: " + drawing.numbers).c_str());
+    {
+        const Context page(cairo_create(surface.get()));
+        Painter painter(page.get(), fonts);
+        for (const Mark& mark : drawing.marks) painter.draw(mark);
+    }
+    cairo_surface_finish(surface.get());
+    if (const cairo_status_t status = cairo_surface_status(surface.get()); status != CAIRO_STATUS_SUCCESS)
+        throw MachineError(std::string("no PDF could be made: ") + cairo_status_to_string(status));
+    if (drawing.session.empty()) return out;
+    // A comment behind all that the table of the file points at.
+    std::string session = drawing.session;
+    std::ranges::replace(session, '\n', ' ');
+    out.insert(out.rfind("startxref"), "%" + std::string(vis::kSessionTextKey) + ": " + session + "\n");
+    return out;
+}
+
+} // namespace tessera::app
