@@ -50,9 +50,10 @@ void drawPicture(const PlotRequest& request, const DataRef& data, const Sources&
 }
 
 void run(const PlotRequest& request) {
-    const bool csv = hasEnding(request.output, ".csv"), svg = hasEnding(request.output, ".svg");
-    if (!csv && !svg && !hasEnding(request.output, ".png"))
-        throw Error("plots are written as .csv, .svg or .png", request.output);
+    const bool csv = hasEnding(request.output, ".csv"), pdf = hasEnding(request.output, ".pdf"),
+               figure = pdf || hasEnding(request.output, ".svg");
+    if (!csv && !figure && !hasEnding(request.output, ".png"))
+        throw Error("plots are written as .csv, .svg, .pdf or .png", request.output);
     const Progress progress = terminalProgress("plot");
     std::vector<std::string> messages;
     const DataRef data = dataRef(request);
@@ -60,12 +61,13 @@ void run(const PlotRequest& request) {
     for (const std::string& message : messages) std::fprintf(stderr, "tessera: %s\n", message.c_str());
     const volume::DatasetInfo& info = sources.numbers->info();
     if (info.times.size() < 2) throw Error("has only one time: curves need several", request.inputs[0]);
-    if (!csv && !svg) return drawPicture(request, data, sources);
+    if (!csv && !figure) return drawPicture(request, data, sources);
     Session session;
     const volume::Curves curves =
         readCurves(*sources.numbers, plotCurvesQuery(request.view, session, info), progress.part(0.4, 1));
     AtomicFile file(request.output);
-    file.write(csv ? originLine(sources.origin, info) + curvesCsv(curves) : curvesSvg(curves, request.time));
+    file.write(csv ? originLine(sources.origin, info) + curvesCsv(curves)
+                   : fileOf(curvesDrawing(curves, request.time), pdf ? "pdf" : "svg"));
     file.commit();
 }
 
@@ -73,7 +75,7 @@ void run(const PlotRequest& request) {
 
 void addPlotCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "plot", "Draw or list quantities and statistics over time, or against each other: .csv, .svg or .png");
+        "plot", "Draw or list quantities and statistics over time, or against each other: .csv, .svg, .pdf or .png");
     const auto request = std::make_shared<PlotRequest>();
     command->add_option("IN", request->inputs, "Archive, data files that belong together, or a built-in model")
         ->required();

@@ -12,9 +12,11 @@ namespace tessera::app {
 
 namespace {
 
-/// The suffix "svg" or "csv" of a path, else "".
+/// The suffix "svg", "pdf" or "csv" of a path, else "".
 std::string textEnding(const std::string& path) {
-    return path.ends_with(".svg") ? "svg" : path.ends_with(".csv") ? "csv" : "";
+    for (const char* ending : {"svg", "pdf", "csv"})
+        if (path.ends_with(std::string(".") + ending)) return ending;
+    return "";
 }
 
 } // namespace
@@ -36,7 +38,7 @@ void addRenderCommand(CLI::App& app) {
     command
         ->add_option(
             "-o,--output", options->output,
-            "File to write: a PNG, which contains the session; with --view also a figure (.svg) or table (.csv)")
+            "File to write: a PNG, which contains the session; with --view also a figure (.svg, .pdf) or table (.csv)")
         ->required();
     command->callback([options] {
         const Progress progress = terminalProgress("render");

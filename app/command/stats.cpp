@@ -37,14 +37,15 @@ std::string stateOf(const Question& question) {
 
 void run(const StatsRequest& request) {
     const StatsOptions& options = request.options;
-    const bool sections = options.planesAcross(), svg = hasEnding(request.output, ".svg");
-    if (!request.output.empty() && !svg && !hasEnding(request.output, ".csv") && !hasEnding(request.output, ".json"))
-        throw Error("statistics are written as .csv, .svg or .json", request.output);
+    const bool sections = options.planesAcross(), pdf = hasEnding(request.output, ".pdf"),
+               figure = pdf || hasEnding(request.output, ".svg");
+    if (!request.output.empty() && !figure && !hasEnding(request.output, ".csv") && !hasEnding(request.output, ".json"))
+        throw Error("statistics are written as .csv, .svg, .pdf or .json", request.output);
     if (sections && !options.balance.empty())
         throw Error("balances are of whole regions: omit --along and --line", "--balance");
-    if (svg && !sections && !options.allTimes && options.balance.empty())
+    if (figure && !sections && !options.allTimes && options.balance.empty())
         throw Error("figures need --along, --line, --balance or --all-times", request.output);
-    if (svg && sections && options.allTimes)
+    if (figure && sections && options.allTimes)
         throw Error("a figure shows one time: choose it with --time", request.output);
     const Progress progress = terminalProgress("stats");
     const Question question = questionOf(request, openInput(request, progress.part(0, 0.3)));
@@ -57,7 +58,7 @@ void run(const StatsRequest& request) {
         if (question.several()) answer.text += "t = " + formatQuantity(time, question.info().timeUnit) + "\n";
         addAnswer(answer, request, question, time, part);
     }
-    if (svg && !sections) answer.panels = figureOf(request, question, {});
+    if (figure && !sections) answer.panels = figureOf(request, question, {});
     progress.advance(1);
     const std::string state = stateOf(question);
     const std::string json = Json{{"kind", "statistics"},
@@ -73,7 +74,9 @@ void run(const StatsRequest& request) {
         AtomicFile file(request.output);
         const std::string origin = originText(question.origin, question.info(), question.channels);
         const std::string line = originLine(question.origin, question.info(), question.channels);
-        file.write(svg                                 ? withDescription(figureSvg(answer.panels, 2), origin)
+        Drawing drawing = drawingOf(answer.panels, 2);
+        drawing.numbers = origin;
+        file.write(figure                              ? fileOf(drawing, pdf ? "pdf" : "svg")
                    : hasEnding(request.output, ".csv") ? line + answer.csv
                                                        : json);
         file.commit();
@@ -95,7 +98,7 @@ void addStatsCommand(CLI::App& app) {
     const auto request = std::make_shared<StatsRequest>();
     command->add_option("IN", request->inputs, "Archive, data files that belong together, or a built-in model")
         ->required();
-    command->add_option("-o,--output", request->output, "File to write: .csv, .svg or .json");
+    command->add_option("-o,--output", request->output, "File to write: .csv, .svg, .pdf or .json");
     addDescribed(*command, request->options);
     addDeriveOption(*command, request->derived);
     addImportOptions(*command, request->import);

@@ -55,6 +55,10 @@ PageBox boundsOf(const Mark& mark) {
     return bounds.box();
 }
 
+std::string fileOf(const Drawing& drawing, std::string_view suffix) {
+    return suffix == "pdf" ? pdfOf(drawing) : svgOf(drawing);
+}
+
 std::optional<std::string> sessionInDrawing(const std::string& bytes) {
     const bool pdf = bytes.starts_with("%PDF-");
     const std::string mark = (pdf ? "\n%" : "<metadata>") + std::string(vis::kSessionTextKey) + ": ";

@@ -7,6 +7,7 @@
 #include <glm/vec4.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -63,10 +64,15 @@ struct Words {
     double size = 9;  ///< of an em
     glm::vec4 color{0, 0, 0, 1};
     Face face = Face::Text;
-    double anchor = 0; ///< share of the text that lies before `at`: 0, 0.5 or 1
-    double angle = 0;  ///< degrees, clockwise
-    double width = 0;  ///< that it takes, whatever font stands in for its own; 0: as it comes
+    double anchor = 0;   ///< share of the text that lies before `at`: 0, 0.5 or 1
+    double angle = 0;    ///< degrees, clockwise
+    double width = 0;    ///< that it takes, whatever font stands in for its own; 0: as it comes
+    double halo = 0;     ///< width of a half transparent white outline, for texts on pictures
+    bool middle = false; ///< `at` is half the height of its capitals above the base line
 };
+
+inline constexpr double kMiddle = 0.35; ///< half the height of capitals, in ems
+inline constexpr glm::vec4 kHalo{1, 1, 1, 0.5f};
 
 /// A raster picture stretched over a box.
 struct Picture {
@@ -96,6 +102,9 @@ std::string svgOf(const Drawing& drawing);
 
 /// As a PDF file of one page, with the fonts it uses. Equal drawings become equal bytes. Throws MachineError.
 std::string pdfOf(const Drawing& drawing);
+
+/// As a file with the suffix "svg" or "pdf".
+std::string fileOf(const Drawing& drawing, std::string_view suffix);
 
 /// The session that an SVG or PDF file carries; nothing where there is none.
 std::optional<std::string> sessionInDrawing(const std::string& bytes);

@@ -131,9 +131,15 @@ private:
         const double width = words.width > 0 ? words.width : extents.x_advance;
         cairo_translate(page_, words.at.x, words.at.y);
         cairo_rotate(page_, words.angle * std::numbers::pi / 180);
-        cairo_translate(page_, -words.anchor * width, 0);
+        cairo_translate(page_, -words.anchor * width, words.middle ? kMiddle * words.size : 0);
         if (extents.x_advance > 0) cairo_scale(page_, width / extents.x_advance, 1);
         cairo_move_to(page_, 0, 0);
+        if (words.halo > 0) {
+            cairo_text_path(page_, words.text.c_str());
+            paint(kHalo, words.halo);
+            color(words.color);
+            cairo_move_to(page_, 0, 0);
+        }
         cairo_show_text(page_, words.text.c_str());
     }
     void draw(const Picture& picture) {

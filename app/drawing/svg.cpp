@@ -139,6 +139,8 @@ private:
     void draw(const Words& words) {
         const Typeface& face = typeface(words.face);
         body_ += "<text" + attribute("x", words.at.x) + attribute("y", words.at.y);
+        if (words.middle) body_ += attribute("dy", kMiddle * words.size);
+        if (words.halo > 0) body_ += stroke(kHalo, words.halo) + " paint-order=\"stroke\"";
         if (words.anchor > 0) body_ += words.anchor < 0.75 ? " text-anchor=\"middle\"" : " text-anchor=\"end\"";
         if (words.angle != 0)
             body_ += " transform=\"rotate(" + number(words.angle) + " " + number(words.at.x) + " " +

@@ -51,7 +51,7 @@ bool showsData(const Session& session, const std::string& pane) {
     const auto found = session.views.find(pane);
     if (found == session.views.end()) return true;
     const ViewTraits& traits = traitsOf(found->second);
-    return traits.svg || traits.csv || traits.inSpace;
+    return traits.figure || traits.csv || traits.inSpace;
 }
 
 bool showsDataOnly(const Session& session, const DockNode& node) {

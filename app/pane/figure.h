@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/drawing/drawing.h"
 #include "app/pane/view_context.h"
 #include "volume/base/describe.h"
 
@@ -53,10 +54,7 @@ inline constexpr double kFigureText = 9;
 double figureTextWidth(const std::string& text);
 
 /// Panels in rows of `columns`, black on white.
-std::string figureSvg(const std::vector<FigurePanel>& panels, int columns);
-
-/// The same with a description of where its numbers come from.
-std::string withDescription(std::string svg, const std::string& numbers);
+Drawing drawingOf(const std::vector<FigurePanel>& panels, int columns);
 
 /// A text as one field of a CSV line.
 std::string csvField(const std::string& text);
@@ -64,7 +62,7 @@ std::string csvField(const std::string& text);
 std::string csvNumber(double value);
 
 /// A button whose menu exports what a view shows: its picture, vector graphics, a table.
-void exportMenu(ViewContext& context, const std::string& name, std::function<std::string(const Progress&)> svg,
+void exportMenu(ViewContext& context, const std::string& name, std::function<Drawing(const Progress&)> figure,
                 std::function<std::string(const Progress&)> csv);
 
 } // namespace tessera::app

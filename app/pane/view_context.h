@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/data/number_origin.h"
+#include "app/drawing/drawing.h"
 #include "app/history/history.h"
 #include "app/session/picture_form.h"
 #include "app/session/session.h"
@@ -30,7 +31,8 @@ struct ViewCache {
 /// What a view can be exported as beside its picture; either may be empty.
 struct ViewExport {
     std::string name; ///< of a file, without ending
-    std::function<std::string(const Progress&)> svg, csv;
+    std::function<Drawing(const Progress&)> figure;
+    std::function<std::string(const Progress&)> csv;
 };
 
 /// Input of a view in one frame of the window. Views read and edit `session`, nothing else; the workbench compares it

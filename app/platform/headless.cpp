@@ -67,9 +67,10 @@ std::string PictureMaker::exportText(const SessionDocument& document, const Sour
     std::string text;
     renderAndInspect(document, sources, impl_->renderer, request, [&](const Workbench& workbench) {
         const ViewExport* offered = workbench.exported(request.pane);
-        const auto make = !offered ? nullptr : ending == "svg" ? offered->svg : offered->csv;
-        if (!make) throw Error("has no " + ending + " of what it shows", "--view", request.pane);
-        text = make(progress);
+        const bool table = ending == "csv";
+        if (!offered || (table ? !offered->csv : !offered->figure))
+            throw Error("has no " + ending + " of what it shows", "--view", request.pane);
+        text = table ? offered->csv(progress) : fileOf(offered->figure(progress), ending);
     });
     return text;
 }

@@ -21,7 +21,7 @@ public:
     PictureMaker(const PictureMaker&) = delete;
     PictureMaker& operator=(const PictureMaker&) = delete;
 
-    /// What Export in the view of request.pane writes: "svg" or "csv". Throws Error where it has none.
+    /// What Export in the view of request.pane writes: "svg", "pdf" or "csv". Throws Error where it has none.
     std::string exportText(const SessionDocument& document, const Sources& sources, PictureRequest request,
                            const std::string& ending, const Progress& progress = {});
 

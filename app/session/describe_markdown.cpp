@@ -43,9 +43,12 @@ template <HasPresets T> std::string presetNames() {
 /// What a kind of view shows, and what it can be exported as.
 std::string describeKind(const ViewTraits& kind) {
     std::string text = std::string(kind.title) + ": " + std::string(kind.help) + ".";
-    if (kind.svg || kind.csv)
-        text += std::string(" Can be exported as ") + (kind.svg ? "SVG" : "") + (kind.svg && kind.csv ? " and " : "") +
-                (kind.csv ? "CSV" : "") + ".";
+    if (kind.figure || kind.csv)
+        text += std::string(" Can be exported as ") +
+                (!kind.figure ? "CSV"
+                 : kind.csv   ? "SVG, PDF and CSV"
+                              : "SVG and PDF") +
+                ".";
     return text;
 }
 

@@ -16,7 +16,7 @@ struct ViewTraits {
     std::string_view title;      ///< of its panes, and of the command that opens one
     std::string_view help;       ///< one line: what it shows
     std::string_view words = {}; ///< others by which the palette finds it
-    bool svg = false;            ///< can be exported as vector graphics
+    bool figure = false;         ///< can be exported as vector graphics
     bool csv = false;            ///< can be exported as a table
     bool inSpace = false;        ///< a picture in space: new views do not open as tabs over it
     bool camera = false;         ///< uses the session's camera, so that camera commands act on it

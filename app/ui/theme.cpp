@@ -1,27 +1,14 @@
 #include "app/ui/theme.h"
 
+#include "app/drawing/typeface.h"
+
 #include <cmath>
-#include <filesystem>
 
 namespace tessera::app {
 
 namespace {
 
-constexpr const char* kTextFonts[] = {"/usr/share/fonts/truetype/roboto/unhinted/RobotoTTF/Roboto-Regular.ttf",
-                                      "/usr/share/fonts/truetype/roboto/hinted/Roboto-Regular.ttf"};
-constexpr const char* kBoldFonts[] = {"/usr/share/fonts/truetype/roboto/unhinted/RobotoTTF/Roboto-Medium.ttf",
-                                      "/usr/share/fonts/truetype/roboto/hinted/Roboto-Medium.ttf"};
-constexpr const char* kIconFonts[] = {"/usr/share/fonts/truetype/font-awesome/fontawesome-webfont.ttf"};
-constexpr float kTextSize = 15;               // from the highest ascender to the lowest descender
-constexpr double kRobotoLine = 2400.0 / 2048; // the same in ems
-
-const char* installed(std::span<const char* const> paths) {
-    for (const char* path : paths) {
-        std::error_code problem;
-        if (std::filesystem::is_regular_file(path, problem)) return path;
-    }
-    return nullptr;
-}
+constexpr float kTextSize = 15; // from the highest ascender to the lowest descender
 
 Palette current;
 
@@ -36,7 +23,7 @@ ImU32 pack(const ImVec4& color) {
 } // namespace
 
 float scaleForText(double emPixels) {
-    return static_cast<float>(emPixels * kRobotoLine / double(kTextSize));
+    return static_cast<float>(emPixels * typeface(Face::Text).line / double(kTextSize));
 }
 
 Fonts loadFonts(float scale) {
@@ -49,9 +36,9 @@ Fonts loadFonts(float scale) {
     static const ImWchar icons[] = {0xF000, 0xF2E0, 0};
     const float size = std::round(kTextSize * scale);
     Fonts fonts;
-    const char* text = installed(kTextFonts);
-    const char* bold = installed(kBoldFonts);
-    const char* symbol = installed(kIconFonts);
+    const char* text = typeface(Face::Text).file;
+    const char* bold = typeface(Face::Bold).file;
+    const char* symbol = typeface(Face::Icons).file;
     const auto add = [&](const char* path) {
         ImFontConfig config;
         config.OversampleH = scale < 1.5f ? 3 : 2;

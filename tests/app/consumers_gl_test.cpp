@@ -214,7 +214,7 @@ TEST_P(Consumers, FollowWhatTheyDependOnAndNothingElse) {
     if (std::string_view(GetParam().effects).empty()) return;
     const std::string before = shown(start);
     const ViewExport* offered = workbench.exported("pane");
-    EXPECT_EQ(offered && offered->svg, traitsOf(start.views.at("pane")).svg);
+    EXPECT_EQ(offered && offered->figure, traitsOf(start.views.at("pane")).figure);
     EXPECT_EQ(offered && offered->csv, traitsOf(start.views.at("pane")).csv);
     ASSERT_TRUE(before == shown(start)) << "shows the same of the same";
     std::string effects;

@@ -174,14 +174,14 @@ TEST(Contours, AreInTheSvgWithTheirValuesAndBothNames) {
     SlicesView view;
     view.contours = 10;
     view.contourOf = "B";
-    const std::string plain = slicesSvg(*source, session, view, 0);
-    EXPECT_EQ(plain.find("<text class=\"contour\""), std::string::npos);
+    const std::string plain = svgOf(slicesDrawing(*source, session, view, 0));
+    EXPECT_EQ(plain.find("paint-order"), std::string::npos);
     EXPECT_NE(plain.find("<path"), std::string::npos);
     view.contourValues = true;
-    const std::string svg = slicesSvg(*source, session, view, 0);
+    const std::string svg = svgOf(slicesDrawing(*source, session, view, 0));
     EXPECT_NE(svg.find("lines: B [K], 20 apart"), std::string::npos);
     EXPECT_NE(svg.find(", A "), std::string::npos) << "the parameter of the colours";
-    const std::regex text("<text class=\"contour\" x=\"([0-9.]+)\" y=\"([0-9.]+)\"[^>]*>([0-9.]+)</text>");
+    const std::regex text("<text x=\"([0-9.]+)\" y=\"([0-9.]+)\"[^>]*paint-order[^>]*>([0-9.]+)</text>");
     int found[3] = {};
     for (auto at = std::sregex_iterator(svg.begin(), svg.end(), text); at != std::sregex_iterator(); ++at) {
         const double x = std::stod((*at)[1]), y = std::stod((*at)[2]);

@@ -115,7 +115,7 @@ TEST_F(CurvesViewTest, TablesAndFiguresHoldTheCurves) {
     EXPECT_EQ(csv.substr(0, csv.find('\n')),
               "time [s],current_density [A/m2],voltage [V],voltage*current_density [W/m2]");
     EXPECT_NE(csv.find(",17000,0.5,8500\n"), std::string::npos);
-    const std::string svg = curvesSvg(curves, curves.times[1]);
+    const std::string svg = svgOf(curvesDrawing(curves, curves.times[1]));
     EXPECT_NE(svg.find("voltage [V]"), std::string::npos);
     std::size_t rings = 0;
     for (std::size_t at = 0; (at = svg.find("<circle", at)) != std::string::npos; ++at) ++rings;

@@ -51,7 +51,7 @@ TEST(CurvesSvg, EveryStateLiesWhereItsNumbersSay) {
     curves.timeUnit = "s";
     curves.x = {"current", "A", {-20, 0, 60, 30}};
     curves.y = {{"voltage", "V", {0.9, 0.7, 0.1, 0.5}}, {"power", "W", {5, -3, 21, 13}}};
-    const std::string svg = curvesSvg(curves, 3.0);
+    const std::string svg = svgOf(curvesDrawing(curves, 3.0));
     const std::vector<Box> panels = frames(svg);
     ASSERT_EQ(panels.size(), 2u) << "one for each unit";
     const std::vector<glm::dvec2> dots = circles(svg, "1.80"), marks = circles(svg, "4.50");
@@ -76,7 +76,7 @@ TEST(CurvesSvg, CurvesOfOneUnitShareAPanelAndItsRange) {
     curves.times = {0, 1};
     curves.x = {"time", "s", {0, 1}};
     curves.y = {{"low", "K", {300, 310}}, {"high", "K", {390, 400}}};
-    const std::string svg = curvesSvg(curves, {});
+    const std::string svg = svgOf(curvesDrawing(curves, {}));
     const std::vector<Box> panels = frames(svg);
     ASSERT_EQ(panels.size(), 1u);
     const std::vector<glm::dvec2> dots = circles(svg, "1.80");

@@ -17,10 +17,10 @@ TEST(Figure, HoldsLinesBarsCellsAndTexts) {
     panel.title = "O2 < 1 & \"hot\"";
     panel.x = {"z [mm]", {0, 10}};
     panel.y = {"T [K]", {300, 400}};
-    panel.series = {{"T", {{0, 300}, {5, std::nan("")}, {10, 400}}, {1, 0, 0}},
+    panel.series = {{"T", {{0, 300}, {2, 320}, {5, std::nan("")}, {8, 380}, {10, 400}}, {1, 0, 0}},
                     {"n", {{1, 320}, {3, 350}}, {0, 0, 1}, true}};
     panel.image = {2, 1, {10, 20, 30, 255, 0, 0, 0, 0}};
-    const std::string svg = figureSvg({panel, panel}, 2);
+    const std::string svg = svgOf(drawingOf({panel, panel}, 2));
     EXPECT_TRUE(svg.starts_with("<svg "));
     EXPECT_NE(svg.find("O2 &lt; 1 &amp; &quot;hot&quot;"), std::string::npos);
     EXPECT_NE(svg.find("T [K]"), std::string::npos);
@@ -44,12 +44,14 @@ TEST(Figure, HoldsLinesBarsCellsAndTexts) {
     EXPECT_EQ(cells.size, glm::ivec2(2, 1));
     EXPECT_EQ(cells.rgba, panel.image.rgba);
     EXPECT_EQ(svg.find("nan"), std::string::npos);
-    // A gap parts the line in two: two moves, no line across.
-    const std::size_t path = svg.find("<path d=\"");
-    const std::string line = svg.substr(path, svg.find("fill", path) - path);
-    EXPECT_EQ(std::count(line.begin(), line.end(), 'M'), 2);
-    EXPECT_EQ(std::count(line.begin(), line.end(), 'L'), 0);
+    // A gap parts the line in two, with no line across, in each of two panels.
+    std::size_t lines = 0;
+    for (std::size_t at = 0; (at = svg.find(" stroke=\"#ff0000\"", at)) != std::string::npos; ++at) ++lines;
+    EXPECT_EQ(lines, 4u);
     EXPECT_NE(svg.find("width=\"600.00pt\""), std::string::npos) << "two panels side by side";
+    const std::string pdf = pdfOf(drawingOf({panel, panel}, 2));
+    EXPECT_TRUE(pdf.starts_with("%PDF-"));
+    EXPECT_NE(pdf.find("/MediaBox [ 0 0 600 240 ]"), std::string::npos);
 }
 
 TEST(Figure, CsvFieldsAreQuotedWhereNeeded) {

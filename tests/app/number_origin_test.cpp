@@ -100,7 +100,9 @@ TEST(NumberOrigin, TellsDerivedParametersAndOriginalsFromWhatIsRead) {
 }
 
 TEST(NumberOrigin, StandsInVectorGraphics) {
-    const std::string svg = withDescription(figureSvg({}, 1), "as computed & < 1 %");
+    Drawing drawing = drawingOf({}, 1);
+    drawing.numbers = "as computed & < 1 %";
+    const std::string svg = svgOf(drawing);
     EXPECT_NE(svg.find("<desc>numbers: as computed &amp; &lt; 1 %</desc>\n<rect "), std::string::npos) << svg;
 }
 

@@ -28,6 +28,10 @@ diff <(grep -v '^#' curve.csv) wanted || die "the polarisation curve"
 printf 'U [V],mean(T) [K],U*j [W/m2]\n0.5,11,4500\n0.8,2,400\n0.9,1,90\n' > wanted
 diff <(grep -v '^#' by.csv) wanted || die "by voltage, with power"
 "$tessera" plot run_*.raw --over-time history.csv -o curve.svg && grep -q '<circle' curve.svg || die "svg"
+"$tessera" plot run_*.raw --over-time history.csv -o curve.pdf && [ "$(head -c 5 curve.pdf)" = %PDF- ] || die "pdf"
+if command -v pdftotext > /dev/null; then # texts are texts
+    pdftotext curve.pdf - | grep -qF 'j [A/m2]' || die "the axis of the PDF"
+fi
 
 # Archives keep what was stated, grow by it, and take a table when they are read.
 "$tessera" pack run_1.raw run_2.raw -o cell.tsr --over-time history.csv --lattice cc > /dev/null || die "pack"

@@ -14,6 +14,8 @@ say 'numbers as computed' out.txt
 "$tessera" stats cell.raw --along z --of O2 -o along.svg > /dev/null 2>err || die "sections as a figure"
 say '<svg' along.svg
 say 'mean of O2' along.svg
+"$tessera" stats cell.raw --along z --of O2 -o along.pdf > /dev/null 2>err || die "sections as a PDF"
+[ "$(head -c 5 along.pdf)" = %PDF- ] || fail "no PDF"
 "$tessera" stats cell.raw --line 0,0,0,0.001,0.002,0.04 --planes 5 --of T --json > line.json 2>err || die "a line"
 say '"kind": "statistics"' line.json
 "$tessera" stats cell.raw --balance O2 > out.txt 2>err || die "a balance"

@@ -29,7 +29,7 @@ void drawState(ViewContext& context, const std::string& pane, ViewState& state) 
 
 bool canBeCompared(const ViewState& view) {
     const ViewTraits& traits = traitsOf(view);
-    return (traits.svg || traits.csv || traits.inSpace) && !std::holds_alternative<CompareView>(view) &&
+    return (traits.figure || traits.csv || traits.inSpace) && !std::holds_alternative<CompareView>(view) &&
            !std::holds_alternative<VolumeView>(view);
 }
 

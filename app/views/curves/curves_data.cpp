@@ -165,7 +165,7 @@ std::string curvesCsv(const volume::Curves& curves) {
     return csv;
 }
 
-std::string curvesSvg(const volume::Curves& curves, std::optional<double> time) {
+Drawing curvesDrawing(const volume::Curves& curves, std::optional<double> time) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     std::vector<FigurePanel> panels;
     for (const std::vector<std::size_t>& group : curveGroups(curves)) {
@@ -186,7 +186,7 @@ std::string curvesSvg(const volume::Curves& curves, std::optional<double> time) 
         panel.y = {group.size() > 1 ? titleWithUnit("", front.unit) : curveTitle(front), paddedRange(range, 0.06)};
         panels.push_back(std::move(panel));
     }
-    return figureSvg(panels, 2);
+    return drawingOf(panels, 2);
 }
 
 } // namespace tessera::app

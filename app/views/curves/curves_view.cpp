@@ -164,7 +164,7 @@ void drawToolbar(ViewContext& context, CurvesCache& cache, const std::shared_ptr
         continueLine(buttonWidth("Export"));
         exportMenu(
             context, "curves",
-            [curves, time = context.session.time](const Progress&) { return curvesSvg(*curves, time); },
+            [curves, time = context.session.time](const Progress&) { return curvesDrawing(*curves, time); },
             [curves](const Progress&) { return curvesCsv(*curves); });
     }
 }

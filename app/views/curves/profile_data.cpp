@@ -140,7 +140,7 @@ FigureImage imageOverTime(const volume::DatasetInfo& info, const Session& sessio
 
 } // namespace
 
-std::string profileSvg(const volume::DatasetInfo& info, const Session& session, const Profile& profile) {
+Drawing profileDrawing(const volume::DatasetInfo& info, const Session& session, const Profile& profile) {
     const std::vector<volume::Channel> channels = info.channels();
     const bool overTime = profile.query.over == ProfileOver::Time;
     const LineAxis along = lineAxis(session, info, profile);
@@ -167,7 +167,7 @@ std::string profileSvg(const volume::DatasetInfo& info, const Session& session, 
         }
         panels.push_back(std::move(panel));
     }
-    return figureSvg(panels, 2);
+    return drawingOf(panels, 2);
 }
 
 } // namespace tessera::app

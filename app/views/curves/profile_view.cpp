@@ -61,7 +61,7 @@ void drawToolbar(ViewContext& context, const std::shared_ptr<const Profile>& pro
         continueLine(buttonWidth("Export"));
         exportMenu(
             context, "profile",
-            [info, profile, session](const Progress&) { return profileSvg(info, session, *profile); },
+            [info, profile, session](const Progress&) { return profileDrawing(info, session, *profile); },
             [info, profile, session](const Progress&) { return profileCsv(info, session, *profile); });
     }
     drawOrigin(context, shown, view.over == ProfileOver::Line);

@@ -124,7 +124,7 @@ void drawToolbar(ViewContext& context, ProfileView& view, const std::vector<int>
     exportMenu(
         context, "sections",
         [info, curves, measure = view.sections.measure](const Progress&) {
-            return figureSvg(sectionPanels(info, *curves, measure), 2);
+            return drawingOf(sectionPanels(info, *curves, measure), 2);
         },
         [info, curves](const Progress&) { return sectionCsv(info, *curves); });
     drawOrigin(context, shown);

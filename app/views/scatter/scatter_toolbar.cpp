@@ -78,7 +78,7 @@ std::string matrixCsv(const volume::DatasetInfo& info, const StatisticsResult& r
     return csv;
 }
 
-std::string matrixSvg(const volume::DatasetInfo& info, const StatisticsResult& result, bool logDensity, ImU32 focus) {
+Drawing matrixDrawing(const volume::DatasetInfo& info, const StatisticsResult& result, bool logDensity, ImU32 focus) {
     const std::vector<volume::Channel> channels = info.channels();
     std::vector<FigurePanel> panels;
     for (const volume::JointHistogram& joint : result.statistics.joint) {
@@ -97,7 +97,7 @@ std::string matrixSvg(const volume::DatasetInfo& info, const StatisticsResult& r
         panel.image.width = panel.image.height = size;
         panels.push_back(std::move(panel));
     }
-    return figureSvg(panels, 3);
+    return drawingOf(panels, 3);
 }
 
 /// The menu of rarely changed settings: colours, derived axes, exports.
@@ -128,7 +128,7 @@ void drawMore(ViewContext& context, ScatterMatrixView& view, const std::vector<i
     exportMenu(
         context, "scatterplots",
         [info, result, logDensity = view.logDensity, focus = focusColor(context.session)](const Progress&) {
-            return matrixSvg(info, *result, logDensity, focus);
+            return matrixDrawing(info, *result, logDensity, focus);
         },
         [info, result](const Progress&) { return matrixCsv(info, *result); });
 }

@@ -83,7 +83,7 @@ FigurePanel slicePanel(const volume::BrickSource& source, const Session& session
     return panel;
 }
 
-std::string slicesSvg(const volume::BrickSource& source, const Session& session, const SlicesView& view, int channel,
+Drawing slicesDrawing(const volume::BrickSource& source, const Session& session, const SlicesView& view, int channel,
                       const Progress& progress) {
     const volume::DatasetInfo& info = source.info();
     const std::optional<int> lined = contourChannel(info, view, channel);
@@ -104,7 +104,7 @@ std::string slicesSvg(const volume::BrickSource& source, const Session& session,
         addContours(panel, readContours(source, query, progress.part(done, done + 1.0 / std::size(kSlicePlanes))),
                     levels.step, view.contourValues, perUnit);
     }
-    return figureSvg(panels, 2);
+    return drawingOf(panels, 2);
 }
 
 } // namespace tessera::app

@@ -100,7 +100,7 @@ std::string sliceCsv(const volume::BrickSource& source, const std::vector<int>& 
 }
 
 /// The slices as vector graphics.
-std::string sliceSvg(const volume::BrickSource& source, const Session& session, const std::vector<int>& channels,
+Drawing sliceDrawing(const volume::BrickSource& source, const Session& session, const std::vector<int>& channels,
                      const SliceAxes& axes, int planes, const Progress& progress) {
     std::vector<FigurePanel> panels;
     for (const int channel : channels)
@@ -110,7 +110,7 @@ std::string sliceSvg(const volume::BrickSource& source, const Session& session, 
             panels.push_back(slicePanel(source, session, channel, axes,
                                         planePosition(source.info().bounds, axes.normal, plane, planes)));
         }
-    return figureSvg(panels, planes);
+    return drawingOf(panels, planes);
 }
 
 /// With the unit where there is room for both.
@@ -143,7 +143,7 @@ void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<
     exportMenu(
         context, "slices",
         [source = context.numbers, session = context.session, shown, axes, planes = view.planes](
-            const Progress& progress) { return sliceSvg(*source, session, shown, axes, planes, progress); },
+            const Progress& progress) { return sliceDrawing(*source, session, shown, axes, planes, progress); },
         [source = context.numbers, shown, axes, planes = view.planes, time](const Progress& progress) {
             return sliceCsv(*source, shown, axes, planes, time, progress);
         });

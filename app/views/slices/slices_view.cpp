@@ -62,7 +62,7 @@ void chooseShown(ViewContext& context, SlicesView& view, int channel, std::strin
     exportMenu(
         context, "slices",
         [source = context.numbers, session = context.session, view, channel](const Progress& progress) {
-            return slicesSvg(*source, session, view, channel, progress);
+            return slicesDrawing(*source, session, view, channel, progress);
         },
         nullptr);
 }

@@ -131,7 +131,7 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
         exportMenu(
             context, channel.name + "-histogram",
             [result, channel](const Progress&) {
-                return figureSvg(
+                return drawingOf(
                     {histogramFigure(channel, result->statistics.channels.front().histogram, result->brushed)}, 1);
             },
             [result, channel](const Progress&) {
