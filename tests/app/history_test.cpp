@@ -181,5 +181,18 @@ TEST(HistoryTest, NoEditJoinsAStepThatWasSaved) {
     EXPECT_EQ(opened.undo().camera.distance, 5);
 }
 
+TEST(HistoryTest, APartOfALayerThatComesIsNoNewLayer) {
+    Session session;
+    session.layers = {{"O2", true, vis::VolumeLayer{.channel = "O2"}}};
+    History history;
+    history.reset(session);
+    std::get<vis::VolumeLayer>(session.layers[0].technique).look.wire.emplace();
+    EXPECT_TRUE(history.observe(session, false, 1));
+    EXPECT_EQ(history.steps().at(0).name, "O2: look");
+    session.layers.push_back({"H2", true, vis::VolumeLayer{.channel = "H2"}});
+    EXPECT_TRUE(history.observe(session, false, 10));
+    EXPECT_EQ(history.steps().at(1).name, "H2 added");
+}
+
 } // namespace
 } // namespace tessera::app

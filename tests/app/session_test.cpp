@@ -255,6 +255,7 @@ TEST(SessionMessages, SayFilePlaceAndReasonInThisOrder) {
                         std::to_string(kSessionSchema) + ")",
                     file, "/schema")
                   .what());
+    EXPECT_THAT(reason("[]"), testing::HasSubstr(file));
     EXPECT_THAT(reason(R"({"schema": 999})"), testing::HasSubstr(file));
     EXPECT_THAT(reason("{\n \"schema\": 3,\n ]"), testing::HasSubstr("line 3, column 2"));
     const SessionDocument document =
