@@ -54,6 +54,8 @@ struct NamedThing {
 };
 NamedThing thingAt(const Session& session, const std::vector<std::string>& path) {
     const auto at = [&](std::size_t part, const auto& list) -> const auto* {
+        // A patch calls the place of what is put behind the last "-".
+        if (path.size() > part && path[part] == "-" && !list.empty()) return &list.back();
         const bool there = path.size() > part && isNumber(path[part]) &&
                            static_cast<std::size_t>(std::stoi(path[part].substr(0, 8))) < list.size();
         return there ? &list[static_cast<std::size_t>(std::stoi(path[part].substr(0, 8)))] : nullptr;
@@ -120,7 +122,7 @@ std::string describePatch(const Json& patch) {
     for (std::size_t i = 1; i < common.size(); ++i) {
         if (isNumber(common[i])) {
             name += " " + std::to_string(std::stoi(common[i].substr(0, 8)) + 1);
-        } else if (common[i] != "technique") {
+        } else if (common[i] != "technique" && common[i] != "-") {
             // Keys of maps are names of parameters and panes: kept as they are.
             const bool mapKey = i == 1 && (common[0] == "transfer" || common[0] == "views");
             name += (i == 1 && mapKey ? " " : ": ") + (mapKey ? common[i] : keyWords(common[i]));

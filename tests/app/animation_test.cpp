@@ -81,6 +81,12 @@ TEST(Tracks, MoveEveryKindOfParameter) {
     EXPECT_EQ(session.cursor, glm::dvec3(1, 2, 3));
     EXPECT_TRUE(setNumbersAt(session, "/layers/0/technique/density", std::vector<double>{1e9}));
     EXPECT_EQ(volume.density, 100) << "kept within its range";
+    EXPECT_TRUE(setNumbersAt(session, "/camera/orientation", std::vector<double>{2, 4, 6, 8}));
+    const double length = std::sqrt(120.0);
+    EXPECT_NEAR(session.camera.orientation.w, 2 / length, 1e-6);
+    EXPECT_NEAR(session.camera.orientation.x, 4 / length, 1e-6);
+    EXPECT_NEAR(session.camera.orientation.y, 6 / length, 1e-6);
+    EXPECT_NEAR(session.camera.orientation.z, 8 / length, 1e-6) << "of unit length";
     EXPECT_FALSE(setNumbersAt(session, "/cursor", std::vector<double>{1}));
     EXPECT_FALSE(setNumbersAt(session, "/layers/7/visible", std::vector<double>{1}));
     EXPECT_FALSE(setNumbersAt(session, "/layers/0/name", std::vector<double>{1}));

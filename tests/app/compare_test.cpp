@@ -1,6 +1,7 @@
 #include "app/edits/compare.h"
 
 #include "app/history/history.h"
+#include "tests/app/table_text.h"
 #include "volume/base/error.h"
 
 #include <gtest/gtest.h>
@@ -95,6 +96,34 @@ TEST(Compare, TheTableIsCsv) {
     const std::string csv = compareCsv({row});
     EXPECT_NE(csv.find("\"a, \"\"b\"\"\",x,no,"), std::string::npos) << csv;
     EXPECT_NE(csv.find(",1.5,inf,"), std::string::npos) << csv;
+}
+
+TEST(Compare, EachNumberOfARowStandsInItsColumn) {
+    CompareRow row;
+    row.name = "half", row.reference = true, row.measured = true;
+    row.milliseconds = 1.25, row.samples = 2000, row.bytes = 3000, row.storedBytes = 4000;
+    row.maximum = 5.5, row.rmse = 6.5, row.psnr = 7.5, row.ssim = 0.875;
+    row.data.emplace();
+    row.data->samples = 90, row.data->differing = 17, row.data->largest = 18.5, row.data->rms = 9.5;
+    CompareRow failed;
+    failed.name = "other", failed.changes = "step 2", failed.failure = "too large";
+    const Table table = tableOf(compareCsv({row, failed}));
+    ASSERT_EQ(table.rows.size(), 2u);
+    const std::vector<std::pair<std::string, double>> wanted = {
+        {"ms per picture", 1.25},    {"samples", 2000},
+        {"texture bytes", 3000},     {"stored bytes", 4000},
+        {"maximum (of 255)", 5.5},   {"RMSE (of 255)", 6.5},
+        {"PSNR (dB)", 7.5},          {"SSIM", 0.875},
+        {"samples that differ", 17}, {"largest error of a sample", 18.5},
+        {"RMSE of samples", 9.5}};
+    for (const auto& [head, value] : wanted) EXPECT_EQ(table.number(0, head), value) << head;
+    for (std::size_t i = 4; i < wanted.size(); ++i) EXPECT_EQ(table.text(1, wanted[i].first), "") << wanted[i].first;
+    EXPECT_EQ(table.text(0, "variant"), "half");
+    EXPECT_EQ(table.text(0, "reference"), "yes");
+    EXPECT_EQ(table.text(0, "failure"), "");
+    EXPECT_EQ(table.text(1, "differs"), "step 2");
+    EXPECT_EQ(table.text(1, "reference"), "no");
+    EXPECT_EQ(table.text(1, "failure"), "too large");
 }
 
 TEST(Compare, SurvivesTheSessionFile) {

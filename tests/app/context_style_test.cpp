@@ -32,6 +32,14 @@ TEST(ContextStyles, HullsAreSurfacesOfWhatIsShown) {
     EXPECT_EQ(session.selection.contextOpacity, 0);
 }
 
+TEST(ContextStyles, TheHullAsksForATenthOfTheMostOpaqueValueEvenTheLast) {
+    Session session;
+    session.layers = {{"seen", true, vis::VolumeLayer{.channel = "a"}}};
+    session.transfer["a"].opacity = {{0, 0}, {0.25f, 0}, {0.26f, 0.06f}, {0.996f, 0.06f}, {1, 1}};
+    setContextStyle(session, dataWithHulls(), ContextStyle::Hull);
+    EXPECT_EQ(std::get<vis::IsoLayer>(session.layers.at(1).technique).value, 5) << "0.06 is less: the middle";
+}
+
 TEST(ContextStyles, OneHullAtATimeThatKeepsItsPlace) {
     const volume::DatasetInfo info = dataWithHulls();
     Session session;
@@ -51,6 +59,23 @@ TEST(ContextStyles, OneHullAtATimeThatKeepsItsPlace) {
         EXPECT_EQ(session.selection.contextBlur > 0, style == ContextStyle::Blurred);
         EXPECT_EQ(session.selection.contextOpacity == 0, style == ContextStyle::Hidden);
     }
+}
+
+TEST(ContextStyles, AHullHasTheLookOfItsStyleAlone) {
+    const auto lookOf = [](ContextStyle style) {
+        Session session;
+        session.layers = {{"seen", true, vis::VolumeLayer{.channel = "a"}}};
+        setContextStyle(session, dataWithHulls(), style);
+        return std::get<vis::IsoLayer>(session.layers.at(1).technique).look;
+    };
+    EXPECT_EQ(lookOf(ContextStyle::Hull), vis::Look{});
+    EXPECT_EQ(lookOf(ContextStyle::Drawn), *vis::Look::preset("tone"));
+    vis::Look wire, silhouette = lookOf(ContextStyle::Silhouette);
+    wire.wire.emplace();
+    EXPECT_EQ(lookOf(ContextStyle::Wire), wire);
+    EXPECT_TRUE(silhouette.silhouette);
+    silhouette.silhouette.reset();
+    EXPECT_EQ(silhouette, vis::Look{});
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <limits>
 #include <set>
 
 namespace tessera::app {
@@ -117,6 +118,29 @@ TEST(DockTreeTest, ShowsAPaneInFrontOfItsStack) {
     tree.maximised = "c";
     showPane(tree, "b");
     EXPECT_EQ(tree.maximised, "b");
+}
+
+TEST(DockTreeTest, AFloatingPaneIsBroughtIntoTheWindow) {
+    const auto repaired = [](const FloatingPane& place) {
+        DockTree tree;
+        repair(tree, {"a", "b"});
+        floatPane(tree, "b", place);
+        repair(tree, {"a", "b"});
+        EXPECT_EQ(tree.floating.size(), 1u);
+        return tree.floating.at(0);
+    };
+    const auto is = [](const FloatingPane& pane, float x, float y, float width, float height) {
+        EXPECT_EQ(pane.pane, "b");
+        EXPECT_EQ(pane.x, x);
+        EXPECT_EQ(pane.y, y);
+        EXPECT_EQ(pane.width, width);
+        EXPECT_EQ(pane.height, height);
+    };
+    is(repaired({"b", -0.1f, 0.2f, 0.7f, 0.6f}), -0.1f, 0.2f, 0.7f, 0.6f);
+    is(repaired({"b", 7, 7, 7, 7}), 0.95f, 0.95f, 1, 1);
+    is(repaired({"b", -7, -7, -7, -7}), -0.2f, 0, 0.05f, 0.05f);
+    const float none = std::numeric_limits<float>::quiet_NaN();
+    is(repaired({"b", none, none, none, none}), 0.3f, 0.3f, 0.4f, 0.4f);
 }
 
 } // namespace

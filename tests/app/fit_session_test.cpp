@@ -1,8 +1,10 @@
 #include "app/history/session_file.h"
 #include "app/session/session.h"
 #include "cell_info.h"
+#include "vis/scene/camera.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -134,6 +136,37 @@ TEST(SessionTest, DefaultStretchesThinCells) {
     fitSession(copy, cellInfo(), messages);
     EXPECT_TRUE(messages.empty());
     EXPECT_TRUE(copy == session);
+}
+
+TEST(SessionTest, DefaultCameraSeesTheSphereAroundTheData) {
+    const Session session = defaultSession(cellInfo(), {});
+    const double radius = glm::length(vis::worldFrame(cellInfo().bounds, session.stretch).halfSize);
+    EXPECT_NEAR(session.camera.distance * std::sin(glm::radians(double(session.camera.fieldOfView)) / 2), radius, 1e-5);
+}
+
+TEST(SessionTest, DefaultMakesNoughtTheMiddleOfTheColoursOfASignedComponent) {
+    volume::DatasetInfo info = cellInfo();
+    volume::Parameter velocity;
+    velocity.name = "U", velocity.components = 3;
+    velocity.ranges = {{-8, 3}, {-2, 5}, {1, 4}, {0, 9}};
+    info.parameters.push_back(velocity);
+    const Session session = defaultSession(info, {});
+    EXPECT_EQ(session.transfer.at("U.x").range, (Range{-8, 8}));
+    EXPECT_EQ(session.transfer.at("U.y").range, (Range{-5, 5}));
+    EXPECT_TRUE(session.transfer.at("U.z").autoRange);
+    EXPECT_TRUE(session.transfer.at("|U|").autoRange);
+}
+
+TEST(SessionTest, FitNamesALayerAsWhatItShowsNow) {
+    Session session = defaultSession(cellInfo(), {});
+    session.layers = {{"salt", true, vis::VolumeLayer{.channel = "salt"}},
+                      {"", true, vis::VolumeLayer{.channel = "sugar"}},
+                      {"mine", true, vis::VolumeLayer{.channel = "T"}}};
+    std::vector<std::string> messages;
+    fitSession(session, cellInfo(), messages);
+    EXPECT_EQ(session.layers[0].name, std::get<vis::VolumeLayer>(session.layers[0].technique).channel);
+    EXPECT_EQ(session.layers[1].name, "");
+    EXPECT_EQ(session.layers[2].name, "mine");
 }
 
 } // namespace

@@ -154,5 +154,46 @@ TEST(HistoryTest, AStepMayHaveAName) {
     EXPECT_EQ(history.steps()[2].name, "several changes");
 }
 
+TEST(HistoryTest, ANameIsForTheNextEditNotForOneAfterUndo) {
+    Session session;
+    History history;
+    history.reset(session);
+    session.camera.distance = 5;
+    EXPECT_TRUE(history.observe(session, false, 1));
+    history.nameNext("Layout: Lens");
+    session = history.undo();
+    session.time = 3;
+    EXPECT_TRUE(history.observe(session, false, 10));
+    ASSERT_EQ(history.steps().size(), 1u);
+    EXPECT_EQ(history.steps()[0].name, "time");
+}
+
+// The last step of the file is undone alone, however soon after opening it the same setting is changed again.
+TEST(HistoryTest, NoEditJoinsAStepThatWasSaved) {
+    Session session;
+    History history;
+    history.reset(session);
+    session.camera.distance = 5;
+    EXPECT_TRUE(history.observe(session, false, 1));
+    History opened = History::fromJson(history.toJson(), session);
+    session.camera.distance = 6;
+    EXPECT_TRUE(opened.observe(session, false, 0.1));
+    EXPECT_EQ(opened.steps().size(), 2u);
+    EXPECT_EQ(opened.undo().camera.distance, 5);
+}
+
+TEST(HistoryTest, APartOfALayerThatComesIsNoNewLayer) {
+    Session session;
+    session.layers = {{"O2", true, vis::VolumeLayer{.channel = "O2"}}};
+    History history;
+    history.reset(session);
+    std::get<vis::VolumeLayer>(session.layers[0].technique).look.wire.emplace();
+    EXPECT_TRUE(history.observe(session, false, 1));
+    EXPECT_EQ(history.steps().at(0).name, "O2: look");
+    session.layers.push_back({"H2", true, vis::VolumeLayer{.channel = "H2"}});
+    EXPECT_TRUE(history.observe(session, false, 10));
+    EXPECT_EQ(history.steps().at(1).name, "H2 added");
+}
+
 } // namespace
 } // namespace tessera::app

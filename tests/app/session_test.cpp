@@ -240,5 +240,30 @@ TEST_F(SessionFileTest, ThePictureOfTheSurroundingsMovesWithTheSession) {
     EXPECT_EQ(loadSession(in("two/a.tessera.json")).session.lighting.environment.picture, in("two/pictures/sky.hdr"));
 }
 
+TEST(SessionMessages, SayFilePlaceAndReasonInThisOrder) {
+    const auto reason = [](const std::string& text) -> std::string {
+        try {
+            parseSession(text, "mine.tessera.json");
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "read";
+    };
+    const std::string file = "mine.tessera.json";
+    EXPECT_EQ(reason(R"({"schema": 999})"),
+              Error("written by a newer version of Tessera (schema 999, this one reads up to " +
+                        std::to_string(kSessionSchema) + ")",
+                    file, "/schema")
+                  .what());
+    EXPECT_THAT(reason("[]"), testing::HasSubstr(file));
+    EXPECT_THAT(reason(R"({"schema": 999})"), testing::HasSubstr(file));
+    EXPECT_THAT(reason("{\n \"schema\": 3,\n ]"), testing::HasSubstr("line 3, column 2"));
+    const SessionDocument document =
+        parseSession("{\"schema\": " + std::to_string(kSessionSchema) + ", \"render\": {\"glitter\": 1}}", file);
+    EXPECT_THAT(document.messages, testing::ElementsAre("mine.tessera.json: /render/glitter: unknown key, kept"));
+    EXPECT_THAT(reason("{\"schema\": " + std::to_string(kSessionSchema) + ", \"render\": {\"filter\": \"sharp\"}}"),
+                testing::HasSubstr("unknown name \"sharp\"; known are "));
+}
+
 } // namespace
 } // namespace tessera::app

@@ -1,4 +1,5 @@
 """Makes a copy of the sources with faults in it, and builds it; faults that do not compile are dropped."""
+import concurrent.futures
 import hashlib
 import json
 import os
@@ -154,24 +155,30 @@ def blamed(said, copy, numbered):
     return bad
 
 
+def find_in(path, name, flags):
+    return finding.faults_of(finding.load_clang(), path, name, flags)
+
+
 def find_all(copy, names, flags):
     """Faults of the files, found again only where a file changed (kept in the folder of the copy)."""
-    cindex = finding.load_clang()
-    if cindex is None:
+    if finding.load_clang() is None:
         raise SystemExit("mutate: install python3-clang-16 (and run it with /usr/bin/python3)")
     rules = b"".join(open(os.path.join(HERE, f), "rb").read() for f in ("faults.py", "rules.py"))
     store = os.path.join(copy.folder, "found.pickle")
     known = pickle.load(open(store, "rb")) if os.path.exists(store) else {}
-    out = []
+    keys = {}
     for name in names:
         data = open(os.path.join(copy.root, name), "rb").read()
-        key = (name, hashlib.sha256(rules + data).hexdigest())
-        if key not in known:
-            known[key] = finding.faults_of(cindex, os.path.join(copy.root, name), name, flags)
-            with open(store, "wb") as file:
-                pickle.dump(known, file)
-        out += known[key]
-    return out
+        keys[name] = (name, hashlib.sha256(rules + data).hexdigest())
+    with concurrent.futures.ProcessPoolExecutor() as pool:
+        running = {pool.submit(find_in, os.path.join(copy.root, name), name, flags): key
+                   for name, key in keys.items() if key not in known}
+        for count, done in enumerate(concurrent.futures.as_completed(running), 1):
+            known[running[done]] = done.result()
+            if count % 20 == 0 or count == len(running):
+                with open(store, "wb") as file:
+                    pickle.dump(known, file)
+    return [fault for name in names for fault in known[keys[name]]]
 
 
 def choose(all_faults, count, seed):

@@ -6,7 +6,7 @@ function(tessera_mutate_targets)
     TARGET_DIRECTORY volume volume_tests PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON COMPILE_OPTIONS -w)
   target_sources(volume PRIVATE ${TESSERA_MUTATE_FOLDER}/switch.cpp)
   # A library without a file that anyone asks for would leave the switch out of a program that has no faults.
-  foreach(target volume_tests codec_tests vis_tests vis_gl_tests app_tests app_gl_tests import_tests)
+  foreach(target volume_tests codec_tests vis_tests packet_tests vis_gl_tests app_tests app_gl_tests import_tests)
     if(TARGET ${target})
       target_sources(${target} PRIVATE ${TESSERA_MUTATE_FOLDER}/cover.cpp)
     endif()

@@ -12,6 +12,8 @@ its place while its own function does.
   mutate.py app --fresh            chooses again: after much new code, or with another --seed, --faults or --placed
   mutate.py app --report           prints the table and the survivors, runs nothing
   mutate.py app --only 17,23       tries these again and says by what they are killed
+  mutate.py app --under app/session,app/history --tests app_tests --folder build/mutate_session
+                                   a part of the room by some of its tests: a run of minutes, with a folder of its own
 
 Needs python3-clang-16 and what ./setup.sh --tests installs.
 """
@@ -24,14 +26,14 @@ import build
 import report
 import trial
 
+# Of each room: folders that are left out, its libraries, and what tries its faults.
 ROOMS = {
-    "volume": dict(folders=["volume"], libraries=["volume"], tests=["volume_tests", "import_tests"], programs=[],
-                   scripts=[]),
-    "codec": dict(folders=["codec"], libraries=["codec"], tests=["codec_tests"], programs=[], scripts=[]),
-    "vis": dict(folders=["vis"], libraries=["vis_model", "vis_reference", "vis"], tests=["vis_tests", "vis_gl_tests"],
-                programs=[], scripts=[]),
-    "app": dict(folders=["app/session", "app/command", "app/ui", "app/views", "app/platform", "app"],
-                libraries=["app_core", "app"], tests=["app_tests", "app_gl_tests"], programs=["tessera"],
+    "volume": dict(but=(), libraries=["volume"], tests=["volume_tests", "import_tests"], programs=[], scripts=[]),
+    "codec": dict(but=(), libraries=["codec"], tests=["codec_tests"], programs=[], scripts=[]),
+    "vis": dict(but=(), libraries=["vis_model", "vis_reference", "vis_packet", "vis"],
+                tests=["vis_tests", "packet_tests", "vis_gl_tests"], programs=[], scripts=[]),
+    "app": dict(but=("app/importer/", "app/bench/"), libraries=["app_core", "app", "tessera"],
+                tests=["app_tests", "app_gl_tests"], programs=["tessera"],
                 scripts=["compare", "diff", "generate", "mesh", "plot", "render", "stats"]),
 }
 
@@ -43,6 +45,8 @@ def options():
     parser.add_argument("--seed", type=int, default=1, help="other seeds choose other faults (1)")
     parser.add_argument("--placed", type=int, default=0,
                         help="how many to build, of which those that tests reach are tried (2.5 times --faults)")
+    parser.add_argument("--under", default="", help="folders of the room to take faults from (all)")
+    parser.add_argument("--tests", default="", help="test programs to try them by, without scripts (all)")
     parser.add_argument("--folder", default="build/mutate", help="where the copy is made (build/mutate)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="for the compiler (one a core)")
     parser.add_argument("--again", action="store_true", help="try survivors again")
@@ -68,18 +72,17 @@ def save(path, value):
     os.replace(path + ".new", path)
 
 
-def sources_of(copy, room):
-    """Sources of the room's libraries: those directly in its folders, or below where a room is one folder."""
-    folders = ROOMS[room]["folders"]
-    deep = len(folders) == 1
-    return sorted(n for n in copy.files() if n.endswith(".cpp") and (
-        n.startswith(folders[0] + "/") if deep else os.path.dirname(n) in folders))
+def sources_of(copy, room, under):
+    """The room's source files in the folders `under`, but those of programs that its tests do not run."""
+    folders = tuple(f.rstrip("/") + "/" for f in (under or room).split(","))
+    return sorted(n for n in copy.files() if n.endswith(".cpp") and n.startswith(folders) and n.startswith(room + "/") and
+                  not n.startswith(ROOMS[room]["but"]))
 
 
 def place(copy, room, args):
     """{number: fault} of the copy, which is written and built. Faults that did not compile once are not tried again."""
     flags = copy.flags()
-    every = build.find_all(copy, sources_of(copy, room), flags)
+    every = build.find_all(copy, sources_of(copy, room, args.under), flags)
     refused_path = os.path.join(copy.folder, "refused.json")
     refused = set(load(refused_path, []))
     wanted = args.placed or args.faults * 5 // 2
@@ -118,6 +121,8 @@ def main():
     args = options()
     root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
     room = ROOMS[args.room]
+    if args.tests:
+        room.update(tests=args.tests.split(","), programs=[], scripts=[])
     folder = os.path.join(root, args.folder, args.room)
     os.makedirs(folder, exist_ok=True)
     copy = build.Copy(root, folder)
