@@ -62,7 +62,7 @@ bool Renderer::Impl::drawByPackets(ViewTarget& target, const RenderCall& call, C
             refineByPackets(target, call, start);
             if (!call.request.wait) prefetchTime(target.packets, call);
         } else if (!target.state.presented())
-            blank(target, call.scene);
+            postpone(target, call.scene);
     } catch (const Error& error) {
         tools.messages.push_back(error.what());
         target.packets.failed = true;
