@@ -73,6 +73,8 @@ void insertPane(DockTree& tree, const std::string& pane, int node, DockSide side
 void floatPane(DockTree& tree, const std::string& pane, FloatingPane place);
 /// Brings a pane to the front of its stack; it must not hide behind one that fills the window.
 void showPane(DockTree& tree, const std::string& pane);
+/// The panes of the stack that a pane is in; empty where it floats.
+std::vector<std::string> tabsBeside(const DockTree& tree, const std::string& pane);
 /// Every pane of the tree, floating ones included.
 std::vector<std::string> panesOf(const DockTree& tree);
 /// Copies which tabs are in front, for stacks that are the same in both trees.

@@ -28,6 +28,11 @@ const std::set<std::string> kElsewhere = {
     "Redo",                         // every case here
     "Add flow layer",               // Palette.FindsByOtherWords
     "Shortcuts",                    // CommandTable.HelpAndPaletteOpen
+    "Menu bar",                     // Keyboard.AltAndF10OpenTheMenusAndArrowsWalkThem
+    "Next part of the window",      // Keyboard.F6GoesToEveryPaneAndBack
+    "Previous part of the window",  // the same
+    "Next tab",                     // Keyboard.CtrlPageDownGoesThroughTheTabs
+    "Previous tab",                 // the same
     "Command palette",              // the same
     "About Tessera",
     "Play",                // tests/app/views_playback_test.cpp, and below for its state
