@@ -74,7 +74,7 @@ void run(const StatsRequest& request) {
         AtomicFile file(request.output);
         const std::string origin = originText(question.origin, question.info(), question.channels);
         const std::string line = originLine(question.origin, question.info(), question.channels);
-        Drawing drawing = drawingOf(answer.panels, 2);
+        VectorPage drawing = drawingOf(answer.panels, 2);
         drawing.numbers = origin;
         file.write(figure                              ? fileOf(drawing, pdf ? "pdf" : "svg")
                    : hasEnding(request.output, ".csv") ? line + answer.csv

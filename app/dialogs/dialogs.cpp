@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 namespace tessera::app {
 
@@ -228,11 +229,13 @@ std::function<void()> QuestionDialog::draw() {
 
 void HelpDialogs::draw(const std::vector<Command>& commands, const Fonts& fonts, const vis::ResidencyInfo& use) {
     if (shortcuts_ && beginDialog("Shortcuts", shortcuts_, ImGui::GetFontSize() * 48)) {
-        ImGui::TextWrapped("In a volume: left drag rotates, wheel and right drag zoom, middle drag or Shift+drag pans, "
-                           "Ctrl+drag rolls, double-click moves the cross-hair. In plots: drag to select (brush); "
-                           "Shift adds, Ctrl removes; Esc clears.");
+        if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+        ImGui::SetNextItemWidth(-FLT_MIN);
+        ImGui::InputTextWithHint("##search", "Search", &search_);
         ImGui::Spacing();
-        drawShortcutHelp(commands);
+        const std::vector<KeyHelp> rows = keyHelp(commands, search_);
+        drawKeyHelp(rows);
+        if (rows.empty()) ImGui::TextDisabled("Nothing found");
         if (dialogButtons({"Close"}) == 0) shortcuts_ = false;
         endDialog(shortcuts_);
     }

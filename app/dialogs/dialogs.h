@@ -97,12 +97,16 @@ private:
 /// The lists of keys, and the About dialog.
 class HelpDialogs {
 public:
-    void showShortcuts() { shortcuts_ = true; }
+    void showShortcuts() {
+        shortcuts_ = true;
+        search_.clear();
+    }
     void showAbout() { about_ = true; }
     void draw(const std::vector<Command>& commands, const Fonts& fonts, const vis::ResidencyInfo& use);
 
 private:
     bool shortcuts_ = false, about_ = false;
+    std::string search_; ///< in the list of keys
 };
 
 } // namespace tessera::app

@@ -7,6 +7,8 @@
 
 namespace tessera::app {
 
+using namespace shapes;
+
 namespace {
 
 class Bounds {
@@ -55,7 +57,7 @@ PageBox boundsOf(const Mark& mark) {
     return bounds.box();
 }
 
-std::string fileOf(const Drawing& drawing, std::string_view suffix) {
+std::string fileOf(const VectorPage& drawing, std::string_view suffix) {
     return suffix == "pdf" ? pdfOf(drawing) : svgOf(drawing);
 }
 

@@ -15,6 +15,8 @@
 /// inch from the upper left corner, y downwards; colours are sRGB with opacity, 0..1.
 namespace tessera::app {
 
+namespace shapes {
+
 struct PageBox {
     glm::dvec2 lo{0}, hi{0};
     bool operator==(const PageBox&) const = default;
@@ -87,24 +89,26 @@ struct Mark {
     std::optional<PageBox> clip = {}; ///< nothing is seen outside
 };
 
-struct Drawing {
+} // namespace shapes
+
+struct VectorPage {
     glm::dvec2 size{0};
-    std::vector<Mark> marks;  ///< later ones cover earlier ones
-    std::string numbers = {}; ///< where its numbers come from, one line
-    std::string session = {}; ///< that it shows, as text; carried by the file
+    std::vector<shapes::Mark> marks; ///< later ones cover earlier ones
+    std::string numbers = {};        ///< where its numbers come from, one line
+    std::string session = {};        ///< that it shows, as text; carried by the file
 };
 
 /// The corners around a shape; of words only if their width is stated.
-PageBox boundsOf(const Mark& mark);
+shapes::PageBox boundsOf(const shapes::Mark& mark);
 
 /// As an SVG file; texts stay texts.
-std::string svgOf(const Drawing& drawing);
+std::string svgOf(const VectorPage& drawing);
 
 /// As a PDF file of one page, with the fonts it uses. Equal drawings become equal bytes. Throws MachineError.
-std::string pdfOf(const Drawing& drawing);
+std::string pdfOf(const VectorPage& drawing);
 
 /// As a file with the suffix "svg" or "pdf".
-std::string fileOf(const Drawing& drawing, std::string_view suffix);
+std::string fileOf(const VectorPage& drawing, std::string_view suffix);
 
 /// The session that an SVG or PDF file carries; nothing where there is none.
 std::optional<std::string> sessionInDrawing(const std::string& bytes);

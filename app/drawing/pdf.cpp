@@ -11,6 +11,8 @@
 
 namespace tessera::app {
 
+using namespace shapes;
+
 namespace {
 
 template <auto destroy> struct Destroy {
@@ -179,7 +181,7 @@ cairo_status_t append(void* to, const unsigned char* bytes, unsigned count) {
 
 } // namespace
 
-std::string pdfOf(const Drawing& drawing) {
+std::string pdfOf(const VectorPage& drawing) {
     std::string out;
     Fonts fonts;
     const Surface surface(cairo_pdf_surface_create_for_stream(append, &out, drawing.size.x, drawing.size.y));

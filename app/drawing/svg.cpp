@@ -6,6 +6,8 @@
 
 namespace tessera::app {
 
+using namespace shapes;
+
 namespace {
 
 std::string number(double value) {
@@ -72,7 +74,7 @@ std::string filledOrEdged(glm::vec4 color, double line) {
 
 class Writer {
 public:
-    explicit Writer(const Drawing& drawing) : drawing_(drawing) {}
+    explicit Writer(const VectorPage& drawing) : drawing_(drawing) {}
 
     std::string write() {
         const std::string width = number(drawing_.size.x), height = number(drawing_.size.y);
@@ -156,7 +158,7 @@ private:
                  base64(vis::encodePng({picture.image.size, picture.image.rgba})) + "\"/>\n";
     }
 
-    const Drawing& drawing_;
+    const VectorPage& drawing_;
     std::string defs_, body_;
     std::optional<PageBox> clip_;
     int clips_ = 0, ramps_ = 0;
@@ -164,7 +166,7 @@ private:
 
 } // namespace
 
-std::string svgOf(const Drawing& drawing) {
+std::string svgOf(const VectorPage& drawing) {
     return Writer(drawing).write();
 }
 

@@ -21,7 +21,7 @@ constexpr double kThin = 0.7, kLine = 1.2, kHaloWidth = 1.8; // widths of lines
 
 class Panel {
 public:
-    Panel(const FigurePanel& panel, double left, double top, std::vector<Mark>& out)
+    Panel(const FigurePanel& panel, double left, double top, std::vector<shapes::Mark>& out)
         : panel_(panel), x0_(left + kLeft), x1_(left + kWidth - kRight), y0_(top + kHeight - kBottom), y1_(top + kTop),
           out_(out) {}
 
@@ -30,14 +30,14 @@ public:
         axes();
         for (const std::vector<glm::dvec2>& contour : panel_.contours) haloed(contour);
         for (const FigureLabel& each : panel_.labels)
-            out_.push_back({Words{.text = each.text,
-                                  .at = at(each.at),
-                                  .size = kFigureText,
-                                  .color = kInk,
-                                  .anchor = 0.5,
-                                  .angle = each.angle,
-                                  .halo = kHaloWidth,
-                                  .middle = true}});
+            out_.push_back({shapes::Words{.text = each.text,
+                                          .at = at(each.at),
+                                          .size = kFigureText,
+                                          .color = kInk,
+                                          .anchor = 0.5,
+                                          .angle = each.angle,
+                                          .halo = kHaloWidth,
+                                          .middle = true}});
         for (const FigureSeries& series : panel_.series) series.bars ? bars(series) : line(series);
         for (const glm::dvec2& mark : panel_.marks) circle(mark, 4.5, {0, 0, 0, 1}, kLine);
         legend();
@@ -53,14 +53,14 @@ private:
     glm::dvec2 at(glm::dvec2 values) const { return {px(values.x), py(values.y)}; }
 
     void text(double x, double y, const std::string& what, double anchor, double angle = 0) {
-        out_.push_back(
-            {Words{.text = what, .at = {x, y}, .size = kFigureText, .color = kInk, .anchor = anchor, .angle = angle}});
+        out_.push_back({shapes::Words{
+            .text = what, .at = {x, y}, .size = kFigureText, .color = kInk, .anchor = anchor, .angle = angle}});
     }
     void stroke(std::vector<glm::dvec2> points, glm::vec4 color, double width) {
-        out_.push_back({Stroke{.points = std::move(points), .width = width, .color = color}});
+        out_.push_back({shapes::Stroke{.points = std::move(points), .width = width, .color = color}});
     }
     void rect(glm::dvec2 lo, glm::dvec2 hi, glm::vec4 color, double line = 0) {
-        out_.push_back({Rect{.box = {lo, hi}, .color = color, .line = line}});
+        out_.push_back({shapes::Rect{.box = {lo, hi}, .color = color, .line = line}});
     }
     void axes() {
         rect({x0_, y1_}, {x1_, y0_}, kFrame, kThin);
@@ -87,7 +87,7 @@ private:
     void haloed(const std::vector<glm::dvec2>& values) {
         std::vector<glm::dvec2> points;
         for (const glm::dvec2& each : values) points.push_back(at(each));
-        stroke(points, kHalo, kHaloWidth);
+        stroke(points, shapes::kHalo, kHaloWidth);
         stroke(std::move(points), kInk, kThin);
     }
     void bars(const FigureSeries& series) {
@@ -115,13 +115,13 @@ private:
     }
     void circle(glm::dvec2 center, double radius, glm::vec4 color, double line = 0) {
         if (!std::isfinite(center.x) || !std::isfinite(center.y)) return;
-        out_.push_back({Circle{.center = at(center), .radius = radius, .color = color, .line = line}});
+        out_.push_back({shapes::Circle{.center = at(center), .radius = radius, .color = color, .line = line}});
     }
     /// A picture with one pixel per cell, seen as they are.
     void image() {
         const FigureImage& image = panel_.image;
         if (image.width <= 0 || image.height <= 0) return;
-        out_.push_back({Picture{
+        out_.push_back({shapes::Picture{
             .box = {{x0_, y1_}, {x1_, y0_}}, .image = {{image.width, image.height}, image.rgba}, .smooth = false}});
     }
     void legend() {
@@ -136,7 +136,7 @@ private:
 
     const FigurePanel& panel_;
     double x0_, x1_, y0_, y1_;
-    std::vector<Mark>& out_;
+    std::vector<shapes::Mark>& out_;
 };
 
 } // namespace
@@ -147,12 +147,12 @@ double figureTextWidth(const std::string& text) {
     return width * kFigureText;
 }
 
-Drawing drawingOf(const std::vector<FigurePanel>& panels, int columns) {
+VectorPage drawingOf(const std::vector<FigurePanel>& panels, int columns) {
     const int across = std::max(1, std::min(columns, static_cast<int>(panels.size())));
     const int rows = (static_cast<int>(panels.size()) + across - 1) / across;
-    Drawing out;
+    VectorPage out;
     out.size = {across * kWidth, std::max(1, rows) * kHeight};
-    out.marks.push_back({Rect{.box = {{0, 0}, out.size}, .color = kWhite}});
+    out.marks.push_back({shapes::Rect{.box = {{0, 0}, out.size}, .color = kWhite}});
     for (std::size_t i = 0; i < panels.size(); ++i)
         Panel(panels[i], static_cast<int>(i) % across * kWidth, static_cast<int>(i) / across * kHeight, out.marks)
             .draw();
@@ -173,7 +173,7 @@ std::string csvNumber(double value) {
     return text;
 }
 
-void exportMenu(ViewContext& context, const std::string& title, std::function<Drawing(const Progress&)> figure,
+void exportMenu(ViewContext& context, const std::string& title, std::function<VectorPage(const Progress&)> figure,
                 std::function<std::string(const Progress&)> csv) {
     std::string name = title; // as a file
     std::replace(name.begin(), name.end(), '/', '_');
@@ -187,7 +187,7 @@ void exportMenu(ViewContext& context, const std::string& title, std::function<Dr
             };
         if (figure)
             made.figure = [figure, origin](const Progress& progress) {
-                Drawing drawing = figure(progress);
+                VectorPage drawing = figure(progress);
                 drawing.numbers = origin;
                 return drawing;
             };

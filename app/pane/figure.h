@@ -54,7 +54,7 @@ inline constexpr double kFigureText = 9;
 double figureTextWidth(const std::string& text);
 
 /// Panels in rows of `columns`, black on white.
-Drawing drawingOf(const std::vector<FigurePanel>& panels, int columns);
+VectorPage drawingOf(const std::vector<FigurePanel>& panels, int columns);
 
 /// A text as one field of a CSV line.
 std::string csvField(const std::string& text);
@@ -62,7 +62,7 @@ std::string csvField(const std::string& text);
 std::string csvNumber(double value);
 
 /// A button whose menu exports what a view shows: its picture, vector graphics, a table.
-void exportMenu(ViewContext& context, const std::string& name, std::function<Drawing(const Progress&)> figure,
+void exportMenu(ViewContext& context, const std::string& name, std::function<VectorPage(const Progress&)> figure,
                 std::function<std::string(const Progress&)> csv);
 
 } // namespace tessera::app

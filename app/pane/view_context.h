@@ -1,7 +1,6 @@
 #pragma once
 
 #include "app/data/number_origin.h"
-#include "app/drawing/drawing.h"
 #include "app/history/history.h"
 #include "app/session/picture_form.h"
 #include "app/session/session.h"
@@ -20,6 +19,8 @@ struct ImFont;
 
 namespace tessera::app {
 
+struct VectorPage;
+
 /// Cached state of a view between frames: render targets, plot textures, running jobs. Losing it changes only how long
 /// drawing takes, never the result. Each view derives its own.
 struct ViewCache {
@@ -31,7 +32,7 @@ struct ViewCache {
 /// What a view can be exported as beside its picture; either may be empty.
 struct ViewExport {
     std::string name; ///< of a file, without ending
-    std::function<Drawing(const Progress&)> figure;
+    std::function<VectorPage(const Progress&)> figure;
     std::function<std::string(const Progress&)> csv;
 };
 

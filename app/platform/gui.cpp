@@ -74,7 +74,6 @@ Gui::Gui() {
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr; // the session stores the arrangement
     io.LogFilename = nullptr;
-    io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
     io.ConfigWindowsMoveFromTitleBarOnly = true;
     setUpKeys(io);
     ImGui_ImplOpenGL3_Init("#version 450 core");

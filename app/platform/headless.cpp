@@ -1,5 +1,6 @@
 #include "app/platform/headless.h"
 
+#include "app/drawing/drawing.h"
 #include "app/platform/gui.h"
 #include "vis/gl/headless.h"
 #include "volume/base/error.h"

@@ -107,6 +107,7 @@ struct Window {
         });
         glfwSetWindowFocusCallback(handle, [](GLFWwindow* w, int focused) {
             wake(w);
+            if (focused == GLFW_FALSE && of(w).workbench) of(w).workbench->keyboard().lostWindow();
             ImGui_ImplGlfw_WindowFocusCallback(w, focused);
         });
         glfwSetCursorEnterCallback(handle, [](GLFWwindow* w, int entered) {

@@ -185,6 +185,12 @@ int stackWith(const DockNode& node, const std::string& pane) {
     return 0;
 }
 
+std::vector<std::string> tabsBeside(const DockTree& tree, const std::string& pane) {
+    DockNode root = tree.root;
+    const DockNode* const stack = stackOf(root, pane);
+    return stack ? stack->tabs : std::vector<std::string>();
+}
+
 std::vector<std::string> panesOf(const DockTree& tree) {
     std::vector<std::string> panes;
     collectPanes(tree.root, panes);

@@ -79,6 +79,8 @@ void floatPane(DockTree& tree, const std::string& pane, FloatingPane place);
 void showPane(DockTree& tree, const std::string& pane);
 /// The id of the stack that holds a pane; 0: none.
 int stackWith(const DockNode& node, const std::string& pane);
+/// The panes of the stack that a pane is in; empty where it floats.
+std::vector<std::string> tabsBeside(const DockTree& tree, const std::string& pane);
 /// Every pane of the tree, floating ones included.
 std::vector<std::string> panesOf(const DockTree& tree);
 /// Copies what is no edit: which tabs are in front, for stacks that are the same in both trees, and which volume view

@@ -66,7 +66,7 @@ void handleKeys(vis::Camera& camera, const vis::WorldFrame& world, double aspect
     if (down('5'))
         camera.projection = camera.projection == vis::Projection::Perspective ? vis::Projection::Orthographic
                                                                               : vis::Projection::Perspective;
-    if (down('R') || (keys && ImGui::IsWindowFocused() && pressed({.key = key::kEnter})))
+    if (down('R') || (keys && ImGui::IsWindowFocused() && !keysNavigate(key::kEnter) && pressed({.key = key::kEnter})))
         resetCamera(camera, world, aspect);
 }
 

@@ -53,7 +53,7 @@ void runShortcuts(const std::vector<Command>& commands) {
             if (typing() &&
                 (plain || shortcut.key == 'C' || shortcut.key == 'V' || shortcut.key == 'Z' || shortcut.key == 'Y'))
                 continue;
-            if (plain && ImGui::IsAnyItemActive()) continue;
+            if (plain && (ImGui::IsAnyItemActive() || keysNavigate(shortcut.key))) continue;
             if (!pressed(shortcut, command.repeats) || !command.available()) continue;
             const std::function<void()> run = command.run; // a copy: running it may rebuild the table
             run();
@@ -72,7 +72,7 @@ const Command* drawMenu(const std::vector<Command>& commands, const std::string&
         const bool checked = command.checked && command.checked();
         if (ImGui::MenuItem(command.title().c_str(), textOf(command.shortcut).c_str(), checked, command.available()))
             chosen = &command;
-        const bool hovered = ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) &&
+        const bool hovered = ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) && !ImGui::GetIO().NavVisible &&
                              ImGui::GetIO().MouseDelta.x == 0 && ImGui::GetIO().MouseDelta.y == 0;
         const std::string help = helpOf(command);
         if (hovered && !help.empty() && help != command.title()) ImGui::SetTooltip("%s", help.c_str());
@@ -184,22 +184,62 @@ const Command* drawPalette(CommandPalette& palette, const std::vector<Command>& 
     return chosen;
 }
 
-void drawShortcutHelp(const std::vector<Command>& commands) {
-    if (!ImGui::BeginTable("##keys", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit)) return;
+std::vector<KeyHelp> keyHelp(const std::vector<Command>& commands, const std::string& search) {
+    std::vector<KeyHelp> rows;
+    for (const Command& command : commands) {
+        if (command.shortcut.key == 0) continue;
+        std::string keys = textOf(command.shortcut);
+        if (command.alternative.key != 0) keys += "  " + textOf(command.alternative);
+        rows.push_back({keys, command.title(), command.help});
+    }
+    for (const auto& [keys, name, help] :
+         {std::tuple{"Alt", "Menus", "Open the menus, or close them; arrows, Enter and Esc walk them"},
+          {"Alt+F E V L H", "One menu", "Open File, Edit, View, Layout or Help"},
+          {"Tab, Shift+Tab", "Next item", "Go to the next or previous control of a pane; a frame marks it"},
+          {"Arrows", "Walk", "From the marked control to its neighbours; in a held slider, change it"},
+          {"Space, Enter", "Press", "Press the marked control; Enter on a number types"},
+          {"Ctrl+Tab", "Other pane", "Choose a pane from a list"},
+          {"Esc", "Give up", "Give up a drag, close a menu or dialog, end the walk of the mark"},
+          {"Left drag", "Volume: rotate", "Ctrl: roll, Shift: pan"},
+          {"Middle drag", "Volume: pan", "A middle click makes the point the centre of rotation"},
+          {"Wheel, right drag", "Volume: zoom", "Ctrl+wheel: to the mouse"},
+          {"Double click", "Cross-hair", "Move it to the point under the mouse, in volumes; on a number: type"},
+          {"Right click", "Menu", "Of the view, a brush, a layer or a setting under the mouse"},
+          {"Alt+drag, Alt+wheel", "Lens: move, resize", "Alt+right drag turns it"},
+          {"F", "Lens: follow", "The lens under the mouse follows it, or stays"},
+          {"Drag of a dot", "Handle: move", "Shift: nearer or farther"},
+          {"Drag in a slice", "Cross-hair", "The wheel steps along the normal; Shift: ten at a time"},
+          {"Drag in a plot", "Brush", "Shift adds, Ctrl removes; drag a brush to move it, its edges to resize"},
+          {"Wheel in a plot", "Zoom", "Middle drag pans"},
+          {"Drag of a number", "Change it", "Shift: finer, Ctrl: round values"}})
+        rows.push_back({keys, name, help});
+    const std::vector<std::string> wanted = wordsOf(search);
+    std::erase_if(rows, [&](const KeyHelp& row) {
+        const std::vector<std::string> own = wordsOf(row.keys + " " + row.name + " " + row.help);
+        return !std::ranges::all_of(wanted, [&](const std::string& word) { return hasWord(own, word); });
+    });
+    return rows;
+}
+
+void drawKeyHelp(const std::vector<KeyHelp>& rows) {
+    const float height = std::min(ImGui::GetTextLineHeightWithSpacing() * float(rows.size() + 1),
+                                  ImGui::GetMainViewport()->Size.y * 0.6f);
+    if (!ImGui::BeginTable(
+            "##keys", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollY, {0, height}))
+        return;
     ImGui::TableSetupColumn("keys");
     ImGui::TableSetupColumn("name");
     ImGui::TableSetupColumn("help", ImGuiTableColumnFlags_WidthStretch);
-    for (const Command& command : commands) {
-        if (command.shortcut.key == 0) continue;
+    for (const KeyHelp& row : rows) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        std::string keys = textOf(command.shortcut);
-        if (command.alternative.key != 0) keys += "  " + textOf(command.alternative);
-        ImGui::TextUnformatted(keys.c_str());
+        ImGui::TextUnformatted(row.keys.c_str());
         ImGui::TableNextColumn();
-        ImGui::TextUnformatted(command.title().c_str());
+        ImGui::TextUnformatted(row.name.c_str());
         ImGui::TableNextColumn();
-        ImGui::TextDisabled("%s", command.help.c_str());
+        ImGui::PushTextWrapPos(0);
+        ImGui::TextDisabled("%s", row.help.c_str());
+        ImGui::PopTextWrapPos();
     }
     ImGui::EndTable();
 }

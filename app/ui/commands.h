@@ -53,7 +53,12 @@ inline constexpr int kWholeWords = 500; ///< the least score of a match by words
 /// comes after what is.
 std::vector<const Command*> matchingCommands(const std::string& typed, const std::vector<Command>& commands);
 
-/// Table of shortcuts for the help window.
-void drawShortcutHelp(const std::vector<Command>& commands);
+/// What keys and mouse do, for the help window.
+struct KeyHelp {
+    std::string keys, name, help;
+};
+/// Those of the commands, then those of the mouse and of moving about; only rows that hold every word searched for.
+std::vector<KeyHelp> keyHelp(const std::vector<Command>& commands, const std::string& search = {});
+void drawKeyHelp(const std::vector<KeyHelp>& rows);
 
 } // namespace tessera::app

@@ -78,6 +78,37 @@ bool typing() {
     return ImGui::GetIO().WantTextInput;
 }
 
+bool keysNavigate(int code) {
+    static constexpr int kKeys[] = {key::kSpace, key::kEnter, key::kKeypadEnter, key::kEscape,
+                                    key::kLeft,  key::kRight, key::kUp,          key::kDown,
+                                    key::kHome,  key::kEnd,   key::kPageUp,      key::kPageDown};
+    return ImGui::GetIO().NavVisible && std::ranges::find(kKeys, code) != std::end(kKeys);
+}
+
+#if IMGUI_VERSION_NUM >= 19140
+
+void showFocusMark() {
+    ImGui::SetNavCursorVisible(true);
+    GImGui->NavHighlightItemUnderNav = true;
+}
+
+bool focusMarkShown() {
+    return GImGui->NavCursorVisible;
+}
+
+#else
+
+void showFocusMark() {
+    GImGui->NavDisableHighlight = false;
+    GImGui->NavDisableMouseHover = true;
+}
+
+bool focusMarkShown() {
+    return !GImGui->NavDisableHighlight;
+}
+
+#endif
+
 #if IMGUI_VERSION_NUM >= 18900
 
 namespace {
@@ -140,6 +171,26 @@ bool keyPressed(int code, bool repeat) {
     return known != ImGuiKey_None && ImGui::IsKeyPressed(known, repeat);
 }
 
+bool otherKeyHeld() {
+    for (int code = static_cast<int>(ImGuiKey_NamedKey_BEGIN); code < static_cast<int>(ImGuiKey_NamedKey_END); ++code) {
+        const ImGuiKey each = static_cast<ImGuiKey>(code);
+        const bool modifier = each >= ImGuiKey_LeftCtrl && each <= ImGuiKey_RightSuper;
+        const bool mouse = each >= ImGuiKey_MouseLeft; // the last ones, with the modifiers as ImGui keeps them
+        if (!modifier && !mouse && ImGui::IsKeyDown(each)) return true;
+    }
+    return false;
+}
+
+void focusInMenuBar(ImGuiWindow* bar, unsigned header) {
+    ImGui::FocusWindow(bar);
+    ImGui::SetNavID(header, ImGuiNavLayer_Menu, bar->NavRootFocusScopeId, ImRect());
+    showFocusMark();
+}
+
+void enterPresses() {} // it does by itself
+
+void tabThroughAll() {}
+
 void setUpKeys(ImGuiIO& io) {
     io.ConfigInputTrickleEventQueue = false; // InputQueue spreads events over frames
 }
@@ -164,6 +215,33 @@ void feedMouse(ImGuiIO& io, ImVec2 at, std::span<const bool> buttons) {
 
 bool keyPressed(int code, bool repeat) {
     return ImGui::IsKeyPressed(code, repeat);
+}
+
+bool otherKeyHeld() {
+    constexpr int kFirstModifier = 340, kLastModifier = 347;
+    const auto& down = ImGui::GetIO().KeysDown;
+    for (int code = 0; code < IM_ARRAYSIZE(down); ++code)
+        if (down[code] && (code < kFirstModifier || code > kLastModifier)) return true;
+    return false;
+}
+
+void focusInMenuBar(ImGuiWindow* bar, unsigned header) {
+    ImGui::FocusWindow(bar);
+    ImGui::SetNavID(header, ImGuiNavLayer_Menu, 0, ImRect());
+    showFocusMark();
+}
+
+void enterPresses() {
+    ImGuiContext& g = *GImGui;
+    if (g.NavActivateInputId != 0)
+        g.NavActivateId = g.NavActivateDownId = g.NavActivatePressedId = g.NavActivateInputId;
+}
+
+void tabThroughAll() {
+    ImGuiContext& g = *GImGui;
+    if (!g.NavMoveSubmitted || (g.NavMoveFlags & ImGuiNavMoveFlags_Tabbing) == 0) return;
+    g.NavMoveFlags |= ImGuiNavMoveFlags_FocusApi;
+    if (g.NavTabbingDir == 0 && g.NavId != 0) g.NavTabbingDir = 1;
 }
 
 void setUpKeys(ImGuiIO& io) {

@@ -4,6 +4,7 @@
 #include <string>
 
 struct ImGuiIO;
+struct ImGuiWindow;
 struct ImVec2;
 
 /// The keyboard, the only place that knows key codes: they are those of GLFW, since ImGui 1.86 has no names for most
@@ -14,7 +15,8 @@ namespace tessera::app {
 namespace key {
 inline constexpr int kSpace = 32, kEscape = 256, kEnter = 257, kTab = 258, kBackspace = 259, kInsert = 260,
                      kDelete = 261, kRight = 262, kLeft = 263, kDown = 264, kUp = 265, kPageUp = 266, kPageDown = 267,
-                     kHome = 268, kEnd = 269, kF1 = 290, kF5 = 294, kF11 = 300, kF12 = 301, kKeypadEnter = 335;
+                     kHome = 268, kEnd = 269, kF1 = 290, kF5 = 294, kF6 = 295, kF10 = 299, kF11 = 300, kF12 = 301,
+                     kKeypadEnter = 335;
 } // namespace key
 
 /// A key with modifiers; letters and digits by their upper-case character.
@@ -47,6 +49,25 @@ void letGoOfItems();
 
 /// True while text is being typed somewhere: single keys are letters then.
 bool typing();
+
+/// True while arrows, Space, Enter, Home, End and Page keys move or press the item that has the keyboard's mark.
+bool keysNavigate(int code);
+
+/// Some key that is not a modifier is held down.
+bool otherKeyHeld();
+
+/// Shows the mark of the item that has the keyboard.
+void showFocusMark();
+bool focusMarkShown();
+
+/// Gives the keyboard to the header of a menu in the menu bar, inside the bar, and shows its mark.
+void focusInMenuBar(ImGuiWindow* bar, unsigned header);
+
+/// Enter presses the item that has the keyboard's mark as Space does (ImGui before 1.89: it only begins to type).
+void enterPresses();
+
+/// Tab, pressed in this frame, goes to the next item of any kind (ImGui before 1.89: only to fields to type in).
+void tabThroughAll();
 
 /// Sets up a new context for `feedKey`, so that the next frame takes all keys fed to it.
 void setUpKeys(ImGuiIO& io);

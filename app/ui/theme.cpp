@@ -158,7 +158,7 @@ void setColors(ImVec4* c, const Shades& shades) {
     c[ImGuiCol_TableRowBgAlt] = shades.dark ? rgb(0xFFFFFF, 0.025f) : rgb(0x000000, 0.025f);
     c[ImGuiCol_TextSelectedBg] = shades.tint(0.35f);
     c[ImGuiCol_DragDropTarget] = shades.accent;
-    c[ImGuiCol_NavHighlight] = shades.accent;
+    c[ImGuiCol_NavHighlight] = {0, 0, 0, 0}; // KeyboardFocus draws the mark
     c[ImGuiCol_NavWindowingHighlight] = shades.accent;
     c[ImGuiCol_NavWindowingDimBg] = {0, 0, 0, 0.35f};
     c[ImGuiCol_ModalWindowDimBg] = {0, 0, 0, shades.dark ? 0.5f : 0.28f};

@@ -159,6 +159,14 @@ void PaneHost::show(Session& session, const std::string& pane) {
     hand_.focus = pane;
 }
 
+void PaneHost::nextTab(Session& session, int direction) {
+    const std::vector<std::string> tabs = tabsBeside(session.dock, focused_);
+    const auto now = std::ranges::find(tabs, focused_);
+    if (now == tabs.end()) return;
+    const int count = int(tabs.size()), at = int(now - tabs.begin());
+    show(session, tabs[std::size_t((at + direction + count) % count)]);
+}
+
 std::string PaneHost::current(const Session& session) const {
     if (!session.dock.maximised.empty()) return session.dock.maximised;
     if (session.views.contains(hovered_)) return hovered_;

@@ -45,6 +45,8 @@ public:
     /// The pane that commands are for: the one that fills the window, else the one under the mouse, else the one
     /// clicked last; "" = none.
     std::string current(const Session& session) const;
+    /// Brings the next (or previous) tab to the front of the stack that has the keyboard.
+    void nextTab(Session& session, int direction);
     /// The target of camera commands: the view used last if it is on screen, else the first one that is.
     std::string space(const Session& session) const;
     /// Sends a key to the target of camera commands in the next frame, as if pressed over its picture.

@@ -82,6 +82,24 @@ void addPaneCommands(std::vector<Command>& commands, Workbench& workbench) {
          }});
 }
 
+void addKeyboardCommands(std::vector<Command>& commands, Workbench& workbench) {
+    const auto add = [&](const char* name, const char* help, const char* words, Shortcut shortcut,
+                         std::function<void()> run) {
+        commands.push_back(
+            {.menu = "", .name = name, .help = help, .words = words, .shortcut = shortcut, .run = std::move(run)});
+    };
+    add("Menu bar", "Open the menus; Alt does so too, and Alt with the first letter of a menu",
+        "keyboard alt file edit", {.key = key::kF10}, [&workbench] { workbench.keyboard().openMenus(); });
+    add("Next part of the window", "Go to the next pane or list; Tab and arrows go on within it", "keyboard focus pane",
+        {.key = key::kF6}, [&workbench] { workbench.keyboard().nextPart(1); });
+    add("Previous part of the window", "Go to the pane or list before", "keyboard focus pane back",
+        {.key = key::kF6, .shift = true}, [&workbench] { workbench.keyboard().nextPart(-1); });
+    add("Next tab", "Bring the next pane of a stack to the front", "keyboard pane switch",
+        {.key = key::kPageDown, .ctrl = true}, [&workbench] { workbench.panes().nextTab(workbench.session(), 1); });
+    add("Previous tab", "Bring the pane before to the front", "keyboard pane switch back",
+        {.key = key::kPageUp, .ctrl = true}, [&workbench] { workbench.panes().nextTab(workbench.session(), -1); });
+}
+
 void addLookCommands(std::vector<Command>& commands, Workbench& workbench) {
     const auto looks = [&workbench]() -> Appearance& { return workbench.session().appearance; };
     const auto resize = [looks](float factor) {
@@ -167,7 +185,8 @@ void showLayout(Workbench& workbench, const std::string& name, const std::string
 
 std::vector<Command> viewCommands(Workbench& workbench) {
     std::vector<Command> commands;
-    for (const auto add : {addOpeningCommands, addPaneCommands, addLookCommands, addCameraCommands})
+    for (const auto add :
+         {addOpeningCommands, addPaneCommands, addKeyboardCommands, addLookCommands, addCameraCommands})
         add(commands, workbench);
     return commands;
 }

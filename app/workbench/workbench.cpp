@@ -193,6 +193,7 @@ void Workbench::frame() {
     for (const std::string& text : renderer_->takeMessages()) message(text, true);
     if (const auto run = std::exchange(chosen_, nullptr)) run();
     data_.follow(ImGui::IsAnyItemActive(), ImGui::IsMouseDown(ImGuiMouseButton_Left));
+    keyboard_.begin();
     const bool givenUp = givenUp_.begin() && document_.loaded();
     if (givenUp)
         document_.giveUpEdit();
@@ -212,6 +213,7 @@ void Workbench::frame() {
     document_.observe(editing, now());
     if (autosaver_) autosaver_->update(document_, now(), jobs_, messages_);
     givenUp_.end();
+    keyboard_.end();
 }
 
 void Workbench::pressKeys() {
@@ -288,6 +290,7 @@ void Workbench::drawWindow() {
 void Workbench::drawMenus() {
     if (!ImGui::BeginMainMenuBar()) return;
     for (const char* menu : {"File", "Edit", "View", "Layout", "Help"}) {
+        keyboard_.offerMenu(menu);
         if (!ImGui::BeginMenu(menu)) continue;
         if (const Command* command = drawMenu(commands_, menu)) chosen_ = command->run;
         if (std::string_view(menu) == "File") drawRecentFiles();

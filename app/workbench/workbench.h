@@ -7,6 +7,7 @@
 #include "app/document/data_follower.h"
 #include "app/document/document.h"
 #include "app/workbench/given_up_drag.h"
+#include "app/workbench/keyboard_focus.h"
 #include "app/workbench/pane_host.h"
 #include "app/workbench/window_look.h"
 #include "vis/image/image_io.h"
@@ -89,6 +90,7 @@ public:
     PictureDialog& pictureDialog() { return pictures_; }
     HelpDialogs& help() { return help_; }
     CommandPalette& palette() { return palette_; }
+    KeyboardFocus& keyboard() { return keyboard_; }
     const WindowLook& look() const { return look_; }
     const std::vector<Command>& commands() const { return commands_; }
 
@@ -151,6 +153,7 @@ private:
     HelpDialogs help_;
     std::vector<Command> commands_;
     CommandPalette palette_;
+    KeyboardFocus keyboard_;
     GivenUpDrag givenUp_;
     std::function<void()> chosen_; ///< command chosen in this frame, run before the next one
 

@@ -29,6 +29,11 @@ const std::set<std::string> kElsewhere = {
     "Redo",                         // every case here
     "Add flow layer",               // Palette.FindsByOtherWords
     "Shortcuts",                    // CommandTable.HelpAndPaletteOpen
+    "Menu bar",                     // Keyboard.AltAndF10OpenTheMenusAndArrowsWalkThem
+    "Next part of the window",      // Keyboard.F6GoesToEveryPaneAndBack
+    "Previous part of the window",  // the same
+    "Next tab",                     // Keyboard.CtrlPageDownGoesThroughTheTabs
+    "Previous tab",                 // the same
     "Command palette",              // the same
     "About Tessera",
     "One view per parameter", // Multiples.ShowEachParameterAndUndoRestoresTheDock

@@ -5,13 +5,13 @@
 namespace tessera::app {
 namespace {
 
-Drawing drawnPage() {
-    Drawing made;
+VectorPage drawnPage() {
+    VectorPage made;
     made.size = {240.94, 181.42}; // 85 x 64 mm
     made.session = "{\"a\": \"<&>\"}";
-    made.marks = {{Stroke{{{10, 20}, {30, 40.5}}, 0.5}},
-                  {Words{"T [K] < 3", {50, 60}, 8}},
-                  {Picture{{{100, 100}, {140, 120}}, {{2, 1}, {255, 0, 0, 255, 0, 0, 255, 255}}, false}}};
+    made.marks = {{shapes::Stroke{{{10, 20}, {30, 40.5}}, 0.5}},
+                  {shapes::Words{"T [K] < 3", {50, 60}, 8}},
+                  {shapes::Picture{{{100, 100}, {140, 120}}, {{2, 1}, {255, 0, 0, 255, 0, 0, 255, 255}}, false}}};
     return made;
 }
 

@@ -100,7 +100,7 @@ TEST(NumberOrigin, TellsDerivedParametersAndOriginalsFromWhatIsRead) {
 }
 
 TEST(NumberOrigin, StandsInVectorGraphics) {
-    Drawing drawing = drawingOf({}, 1);
+    VectorPage drawing = drawingOf({}, 1);
     drawing.numbers = "as computed & < 1 %";
     const std::string svg = svgOf(drawing);
     EXPECT_NE(svg.find("<desc>numbers: as computed &amp; &lt; 1 %</desc>\n<rect "), std::string::npos) << svg;

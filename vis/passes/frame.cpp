@@ -1,6 +1,7 @@
 #include "vis/passes/renderer_impl.h"
 
 #include "vis/demand/lens_pixels.h"
+#include "vis/demand/tile_order.h"
 #include "vis/raycast/ray_uniforms.h"
 #include "vis/shapes/proxy.h"
 
@@ -13,18 +14,8 @@ namespace {
 
 constexpr double kProbeShrink = 3;
 
-std::vector<Tile> tilesOf(const Tile& whole, int edge) {
-    std::vector<Tile> tiles;
-    for (int y = whole.begin.y; y < whole.end.y; y += edge)
-        for (int x = whole.begin.x; x < whole.end.x; x += edge)
-            tiles.push_back(intersection({{x, y}, glm::ivec2(x, y) + edge}, whole));
-    const auto away = [&](const Tile& tile) { // squared distance from the centre, where the user looks
-        const glm::ivec2 d = tile.begin + tile.end - whole.begin - whole.end;
-        return d.x * d.x + d.y * d.y;
-    };
-    std::ranges::stable_sort(tiles, {}, away);
-    return tiles;
-}
+/// A picture whose pixels take longer than this many budgets is drawn at half resolution first.
+constexpr double kQuick = 3;
 
 /// Offset of a reduced picture in its buffer, chosen so that the corner between four of the driver's tiles
 /// (Driver::sharedTile) lies in the middle of the drawn area: then more CPU cores share the work.
@@ -104,7 +95,7 @@ bool Renderer::Impl::ready(ViewTarget& target, const RenderCall& call, const Ren
     if (!linked && !tools.programs.firstUse(*answer.program)) return true;
     const glm::ivec2 size = target.buffers.size;
     setRayUniforms(*answer.program, own.plan, own.scene, own.info(), own.grid(), size, 1);
-    geometry(target, call, size, target.buffers.everything());
+    geometry(target, call, target.buffers.full, target.buffers.everything());
     if (linked) {
         tools.programs.warmUp(recipe, target.buffers.full.framebuffer);
         return false;
@@ -150,28 +141,61 @@ void Renderer::Impl::drawReduced(ViewTarget& target, const RenderCall& call, con
                                  Pace::Reduction how) {
     PictureBuffers& buffers = target.buffers;
     const Tile changed = target.state.changed();
-    buffers.reducedSize = glm::max(glm::ivec2(glm::vec2(buffers.size) / float(how.shrink)), glm::ivec2(1));
-    const Tile tile = reducedTile(changed, buffers.reducedSize, buffers.size);
-    buffers.reduced.first = placeInTiles(tile, buffers.reducedSize, buffers.size, tools.driver.sharedTile);
+    RayBuffer& reduced = buffers.reduced;
+    reduced.used = glm::max(glm::ivec2(glm::vec2(buffers.size) / float(how.shrink)), glm::ivec2(1));
+    const Tile tile = reducedTile(changed, reduced.used, buffers.size);
+    reduced.first = placeInTiles(tile, reduced.used, buffers.size, tools.driver.sharedTile);
     setUniforms(programs, target, call, how.stepFactor);
-    const auto rasterise = [&] { geometry(target, call, buffers.reducedSize, tile); };
+    const auto rasterise = [&] { geometry(target, call, reduced, tile); };
     if (call.plan.peels > 0) target.pace().timeGeometry(rasterise);
-    const RayTile what{.size = buffers.reducedSize,
+    const RayTile what{.size = reduced.used,
                        .tile = tile,
-                       .parts = programs.packets ? nullptr : target.tables.covered(call, buffers.reducedSize),
+                       .parts = programs.packets ? nullptr : target.tables.covered(call, reduced.used),
                        .stepFactor = how.stepFactor * (programs.packets ? 1 : target.demand.cell())};
-    target.pace().timeReduced([&] { rays(programs, call, buffers.reduced, what); }, how.stepFactor, tile.area());
-    present(target, call.scene, true, changed);
+    target.pace().timeReduced([&] { rays(programs, call, reduced, what); }, how.stepFactor, tile.area());
+    present(target, call.scene, reduced, changed);
     target.state.drewReduced();
     target.hidden.drewReduced();
     glBindTextureUnit(0, call.plan.fields[0].texture);
+}
+
+/// Draws the stale area at half resolution, tile by tile within the budget; it is presented as it comes, and takes a
+/// quarter of the time of the pass at full resolution.
+void Renderer::Impl::drawHalf(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
+                              Clock::time_point start) {
+    PictureState& state = target.state;
+    const RayBuffer& half = target.buffers.half;
+    if (state.halfTilesDone() == 0) target.pace().beginPass(false, call.request.budgetMs);
+    const std::vector<Tile> tiles = tilesFromMiddle(state.stale(), 2 * target.pace().tileEdge());
+    const Tile all = reducedTile(state.stale(), half.used, target.buffers.size);
+    setUniforms(programs, target, call, 1);
+    const int drawnBefore = state.halfTilesDone();
+    double area = 0;
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+        const Tile small = reducedTile(tiles[i], half.used, target.buffers.size);
+        area += small.area();
+        if (int(i) < state.halfTilesDone()) continue;
+        const double left = call.request.budgetMs - millisecondsSince(start);
+        if (!target.pace().fits(small.area(), left) && int(i) > drawnBefore) return;
+        geometry(target, call, half, all);
+        const RayTile what{.size = half.used,
+                           .tile = small,
+                           .parts = programs.packets ? nullptr : target.tables.covered(call, half.used),
+                           .stepFactor = programs.packets ? 1 : target.demand.cell()};
+        target.pace().timeTile([&] { rays(programs, call, half, what); }, small.area(), true);
+        present(target, call.scene, half, tiles[i]);
+        glBindTextureUnit(0, call.plan.fields[0].texture);
+        state.drewHalfTile();
+    }
+    state.drewHalf();
+    target.pace().finishPass(area, target.buffers.everything().area());
 }
 
 /// Draws one tile of a pass into the full buffer and presents it.
 void Renderer::Impl::drawTile(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const Tile& tile,
                               int pass) {
     const glm::ivec2 size = target.buffers.size;
-    geometry(target, call, size, target.state.stale(), pass);
+    geometry(target, call, target.buffers.full, target.state.stale(), pass);
     const RayTile what{.size = size,
                        .tile = tile,
                        .parts = programs.packets ? nullptr : target.tables.covered(call, size),
@@ -184,7 +208,7 @@ void Renderer::Impl::drawTile(ViewTarget& target, const RenderCall& call, const 
             accumulate(target, call, programs, what);
     };
     target.pace().timeTile(draw, tile.area(), pass == 0);
-    present(target, call.scene, false, tile);
+    present(target, call.scene, target.buffers.full, tile);
     glBindTextureUnit(0, call.plan.fields[0].texture);
     target.state.drewTile();
 }
@@ -196,7 +220,7 @@ void Renderer::Impl::drawTiles(ViewTarget& target, const RenderCall& call, const
     const FrameRequest& request = call.request;
     PictureState& state = target.state;
     if (state.tilesDone() == 0) target.pace().beginPass(request.wait, request.budgetMs);
-    const std::vector<Tile> tiles = tilesOf(state.stale(), target.pace().tileEdge());
+    const std::vector<Tile> tiles = tilesFromMiddle(state.stale(), target.pace().tileEdge());
     setUniforms(programs, target, call, 1);
     const int perPass = int(tiles.size()), wanted = perPass * std::max(call.scene.render.samples, 1);
     for (bool first = true; state.tilesDone() < wanted; first = false) {
@@ -211,13 +235,14 @@ void Renderer::Impl::drawTiles(ViewTarget& target, const RenderCall& call, const
     }
     // Context blur crosses the borders of tiles, so it needs the whole picture.
     if (blursContext(call.scene) && state.tilesDone() >= perPass) {
-        present(target, call.scene, false, target.buffers.everything());
+        present(target, call.scene, target.buffers.full, target.buffers.everything());
         glBindTextureUnit(0, call.plan.fields[0].texture);
     }
     if (state.tilesDone() >= wanted && lit) state.setDone(PictureState::Done::Converged);
 }
 
-/// Draws a reduced picture if the whole does not fit the budget, then tiles. `lit`: its light is final.
+/// Draws a reduced picture if the whole does not fit the budget; at rest then the whole at half resolution, and tiles
+/// at full resolution from the middle outwards. `lit`: its light is final.
 void Renderer::Impl::drawWithin(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
                                 Clock::time_point start, bool lit) {
     const FrameRequest& request = call.request;
@@ -228,6 +253,10 @@ void Renderer::Impl::drawWithin(ViewTarget& target, const RenderCall& call, cons
         drawReduced(target, call, programs, target.pace().reduction(state.changed().area(), left, call.plan.peels > 0));
         if (request.moving) return;
     }
+    const bool slow = !fast && target.pace().expected(state.stale().area()) > kQuick * request.budgetMs;
+    if (!request.wait && !state.full() && !state.half() && state.tilesDone() == 0 &&
+        (slow || state.halfTilesDone() > 0))
+        return drawHalf(target, call, programs, start);
     drawTiles(target, call, programs, start, lit);
 }
 

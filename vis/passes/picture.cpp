@@ -10,7 +10,7 @@ RayBuffer makeRayBuffer(glm::ivec2 size, bool exact, const char* label) {
     made.pick = makeTexture2D(size, GL_RG32F, GL_NEAREST, label);
     made.termination = makeTexture2D(size, GL_R32F, GL_NEAREST, label);
     made.framebuffer = makeFramebuffer({made.color.name(), made.pick.name(), made.termination.name()}, label);
-    made.size = size;
+    made.size = made.used = size;
     made.clear(); // unwritten pixels may be read: the picture is presented before all tiles are drawn
     return made;
 }
@@ -29,6 +29,7 @@ PictureBuffers PictureBuffers::make(glm::ivec2 size, bool exact) {
     PictureBuffers made;
     made.size = size;
     made.full = makeRayBuffer(size, exact, "picture");
+    made.half = makeRayBuffer((size + 1) / 2, exact, "picture of half resolution");
     made.reduced = makeRayBuffer(size, exact, "reduced picture");
     made.output = makeTexture2D(size, GL_RGBA8, GL_LINEAR, "presented picture");
     made.outputFramebuffer = makeFramebuffer({made.output.name()}, "presented picture");
@@ -40,8 +41,9 @@ void PictureState::redraw(const Tile& part) {
     stale_ = converged() ? part : united(stale_, part);
     changed_ = united(changed_, part);
     reduced_.reset();
+    half_.reset();
     done_ = Done::Nothing;
-    tilesDone_ = 0;
+    tilesDone_ = halfTilesDone_ = 0;
 }
 
 void PictureState::drewPass() {

@@ -14,6 +14,7 @@ struct RayBuffer {
     Framebuffer framebuffer;
     glm::ivec2 size{0};
     glm::ivec2 first{0}; ///< texel of the picture's lower left pixel
+    glm::ivec2 used{0};  ///< size of the picture in it
     /// Clears all targets.
     void clear() const;
 };
@@ -22,9 +23,9 @@ struct RayBuffer {
 struct PictureBuffers {
     glm::ivec2 size{0};
     RayBuffer full;    ///< at the size of the picture, filled tile by tile
-    RayBuffer reduced; ///< a quick picture in its lower left `reducedSize` pixels
-    glm::ivec2 reducedSize{0};
-    Texture output; ///< the presented picture
+    RayBuffer half;    ///< at half that size, filled tile by tile before it
+    RayBuffer reduced; ///< a quick picture, smaller than the buffer
+    Texture output;    ///< the presented picture
     Framebuffer outputFramebuffer;
 
     Tile everything() const { return {glm::ivec2(0), size}; }
@@ -56,6 +57,12 @@ public:
     /// The first pass over the stale area is drawn and presented.
     void drewPass();
 
+    /// The area of the picture that the half buffer shows, once all its tiles are drawn and presented.
+    const std::optional<Tile>& half() const { return half_; }
+    int halfTilesDone() const { return halfTilesDone_; }
+    void drewHalfTile() { ++halfTilesDone_; }
+    void drewHalf() { half_ = stale_; }
+
     /// The area of the picture that the reduced buffer shows.
     const std::optional<Tile>& reduced() const { return reduced_; }
     /// The reduced picture of the changed area is drawn and presented.
@@ -71,8 +78,8 @@ public:
 private:
     Tile stale_, changed_;
     Done done_ = Done::Nothing;
-    int tilesDone_ = 0;
-    std::optional<Tile> reduced_;
+    int tilesDone_ = 0, halfTilesDone_ = 0;
+    std::optional<Tile> reduced_, half_;
     bool presented_ = false;
 };
 

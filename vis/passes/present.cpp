@@ -35,11 +35,9 @@ ProgramRecipe resolveRecipe(const Scene& scene, bool lines) {
 
 /// Sets all uniforms and textures of the presenting program, except its viewport.
 void Renderer::Impl::setPresented(const Program& resolve, const ViewTarget& target, const Scene& scene,
-                                  const BoxLines& lines, bool reduced) {
+                                  const BoxLines& lines, const RayBuffer& from) {
     const std::optional<Paper> paper = paperOf(scene);
-    const RayBuffer& from = reduced ? target.buffers.reduced : target.buffers.full;
-    const glm::vec2 used(reduced ? target.buffers.reducedSize : target.buffers.size), whole(from.size),
-        first(from.first);
+    const glm::vec2 used(from.used), whole(from.size), first(from.first);
     resolve.set("source", 0);
     resolve.set("sourceScale", used / glm::vec2(target.buffers.size) / whole);
     resolve.set("sourceFirst", first / whole);
@@ -69,11 +67,11 @@ BoxLines Renderer::Impl::box(const ViewTarget& target, const Scene& scene) const
     return boxLines(scene.camera, worldFrame(source->info().bounds, scene.stretch).halfSize, target.buffers.size);
 }
 
-void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile) {
+void Renderer::Impl::present(ViewTarget& target, const Scene& scene, const RayBuffer& from, const Tile& tile) {
     const BoxLines lines = box(target, scene);
     const Program* resolve = tools.programs.find(resolveRecipe(scene, !lines.edges.empty()));
     if (!resolve) throw Error("the shader that presents pictures does not compile");
-    setPresented(*resolve, target, scene, lines, reduced);
+    setPresented(*resolve, target, scene, lines, from);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.buffers.outputFramebuffer.name());
     glViewport(0, 0, target.buffers.size.x, target.buffers.size.y);
     glEnable(GL_SCISSOR_TEST);
@@ -90,7 +88,7 @@ bool Renderer::Impl::presentable(const ViewTarget& target, const Scene& scene) {
     const ProgramRecipe recipe = resolveRecipe(scene, !lines.edges.empty());
     const ProgramAnswer answer = tools.programs.request(recipe, 0);
     if (answer.stage == ProgramStage::Linked) {
-        setPresented(*answer.program, target, scene, lines, false);
+        setPresented(*answer.program, target, scene, lines, target.buffers.full);
         tools.programs.warmUp(recipe, target.buffers.outputFramebuffer);
     }
     return answer.stage == ProgramStage::Ready || answer.stage == ProgramStage::Failed; // present() handles both
@@ -107,7 +105,7 @@ void Renderer::Impl::blank(ViewTarget& target, const Scene& scene) {
 /// Shows only the background: nothing is loaded, or the program does not compile.
 void Renderer::Impl::nothing(ViewTarget& target, const Scene& scene) {
     target.buffers.full.clear();
-    present(target, scene, false, target.buffers.everything());
+    present(target, scene, target.buffers.full, target.buffers.everything());
     target.state.setDone(PictureState::Done::Converged);
 }
 

@@ -21,25 +21,25 @@ ProgramRecipe Renderer::Impl::variant(const ViewTarget& target, const Scene& sce
     return made;
 }
 
-/// Rasterises the geometry for a tile of a picture of this size, unless the target already has it. A reduced picture
-/// uses the two nearest surfaces only.
-void Renderer::Impl::geometry(ViewTarget& target, const RenderCall& call, glm::ivec2 size, const Tile& tile, int pass) {
+/// Rasterises the geometry for a tile of the picture of a buffer, unless the target already has it. The
+/// reduced picture has the two nearest surfaces only.
+void Renderer::Impl::geometry(ViewTarget& target, const RenderCall& call, const RayBuffer& rays, const Tile& tile,
+                              int pass) {
     const int peels = peelsOf(call.scene);
     if (peels == 0) return;
-    const glm::ivec2 whole = target.buffers.size;
+    const glm::ivec2 whole = target.buffers.size, size = rays.used;
     GeometryBuffer& buffer = target.geometry.buffer();
     if (!target.geometry.shows(size, tile, pass)) {
         buffer.resize(whole, peels);
-        const glm::ivec2 first = size == whole ? glm::ivec2(0) : target.buffers.reduced.first;
         tools.geometryPass.draw(buffer,
                                 {.scene = call.scene,
                                  .info = call.info(),
                                  .lenses = call.plan.lenses,
                                  .size = size,
-                                 .first = first,
+                                 .first = rays.first,
                                  .tile = tile,
                                  .pictureSize = whole,
-                                 .most = size == whole ? peels : std::min(peels, 2),
+                                 .most = &rays == &target.buffers.reduced ? std::min(peels, 2) : peels,
                                  .lightUnit = rayUnits(call.plan).light,
                                  .jitter = pixelJitter(pass)},
                                 tools.grain);

@@ -238,14 +238,14 @@ std::optional<Pick> Renderer::pick(ViewTarget& target, glm::ivec2 pixel) {
     const glm::ivec2 place(pixel.x, buffers.size.y - 1 - pixel.y);
     if (!target.shown.started || !impl_->source || !buffers.everything().holds(place)) return std::nullopt;
     const bool full = state.full() || (state.presented() && !state.stale().holds(place));
-    if (!full && !(state.reduced() && state.reduced()->holds(place))) return std::nullopt;
-    const RayBuffer& from = full ? buffers.full : buffers.reduced;
+    const bool half = state.half() && state.half()->holds(place);
+    if (!full && !half && !(state.reduced() && state.reduced()->holds(place))) return std::nullopt;
+    const RayBuffer& from = full ? buffers.full : half ? buffers.half : buffers.reduced;
     const glm::dvec2 size(buffers.size);
     glm::dvec2 at = glm::dvec2(place) + 0.5;
     const glm::ivec2 texel =
-        full ? glm::ivec2(at)
-             : from.first + glm::min(glm::ivec2(at / size * glm::dvec2(buffers.reducedSize)), buffers.reducedSize - 1);
-    if (!full) at = (glm::dvec2(texel - from.first) + 0.5) / glm::dvec2(buffers.reducedSize) * size;
+        full ? glm::ivec2(at) : from.first + glm::min(glm::ivec2(at / size * glm::dvec2(from.used)), from.used - 1);
+    if (!full) at = (glm::dvec2(texel - from.first) + 0.5) / glm::dvec2(from.used) * size;
     float distance = 0;
     glGetTextureSubImage(from.pick.name(), 0, texel.x, texel.y, 0, 1, 1, 1, GL_RED, GL_FLOAT, sizeof distance,
                          &distance);

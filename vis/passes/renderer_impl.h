@@ -70,13 +70,14 @@ struct Renderer::Impl {
     void addBeyond(RayPrograms& programs, ViewTarget& target, const RenderCall& call);
     void setUniforms(const RayPrograms& programs, const ViewTarget& target, const RenderCall& call, double stepFactor);
     void drawReduced(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, Pace::Reduction how);
+    void drawHalf(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, Clock::time_point start);
     void drawTile(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const Tile& tile, int pass);
     void drawTiles(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, Clock::time_point start,
                    bool lit);
 
     // ray_pass.cpp
     ProgramRecipe variant(const ViewTarget& target, const Scene& scene, const RayPlan& plan) const;
-    void geometry(ViewTarget& target, const RenderCall& call, glm::ivec2 size, const Tile& tile, int pass = 0);
+    void geometry(ViewTarget& target, const RenderCall& call, const RayBuffer& buffer, const Tile& tile, int pass = 0);
     void rays(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer, const RayTile& what);
     void proxies(const Program& program, const RenderCall& call, const RayBuffer& buffer, double stepFactor);
     void accumulate(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const RayTile& what);
@@ -92,8 +93,8 @@ struct Renderer::Impl {
     // present.cpp
     BoxLines box(const ViewTarget& target, const Scene& scene) const;
     void setPresented(const Program& resolve, const ViewTarget& target, const Scene& scene, const BoxLines& lines,
-                      bool reduced);
-    void present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile);
+                      const RayBuffer& from);
+    void present(ViewTarget& target, const Scene& scene, const RayBuffer& from, const Tile& tile);
     bool presentable(const ViewTarget& target, const Scene& scene);
     void blank(ViewTarget& target, const Scene& scene);
     void nothing(ViewTarget& target, const Scene& scene);

@@ -19,8 +19,8 @@ void ViewHidden::start(RenderTools& tools, const RenderCall& call, const Picture
     if (!program) throw Error("the shader that reads back ray ends does not compile");
     const RayBuffer& from = last ? buffers.full : buffers.reduced;
     glDisable(GL_SCISSOR_TEST);
-    termination_.start(*program, tools.vertices.name(), from.termination.name(), from.first,
-                       last ? buffers.size : buffers.reducedSize, call.scene.camera, call.frame());
+    termination_.start(*program, tools.vertices.name(), from.termination.name(), from.first, from.used,
+                       call.scene.camera, call.frame());
     terminationScene_ = scene;
     final_ = last;
 }

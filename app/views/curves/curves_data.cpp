@@ -165,7 +165,7 @@ std::string curvesCsv(const volume::Curves& curves) {
     return csv;
 }
 
-Drawing curvesDrawing(const volume::Curves& curves, std::optional<double> time) {
+VectorPage curvesDrawing(const volume::Curves& curves, std::optional<double> time) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     std::vector<FigurePanel> panels;
     for (const std::vector<std::size_t>& group : curveGroups(curves)) {

@@ -53,6 +53,6 @@ std::string curveTitle(const volume::Curve& curve);
 /// One line per time.
 std::string curvesCsv(const volume::Curves& curves);
 /// A panel per unit, the state at `time` marked.
-Drawing curvesDrawing(const volume::Curves& curves, std::optional<double> time);
+VectorPage curvesDrawing(const volume::Curves& curves, std::optional<double> time);
 
 } // namespace tessera::app

@@ -140,7 +140,7 @@ FigureImage imageOverTime(const volume::DatasetInfo& info, const Session& sessio
 
 } // namespace
 
-Drawing profileDrawing(const volume::DatasetInfo& info, const Session& session, const Profile& profile) {
+VectorPage profileDrawing(const volume::DatasetInfo& info, const Session& session, const Profile& profile) {
     const std::vector<volume::Channel> channels = info.channels();
     const bool overTime = profile.query.over == ProfileOver::Time;
     const LineAxis along = lineAxis(session, info, profile);

@@ -48,7 +48,7 @@ LineAxis lineAxis(const Session& session, const volume::DatasetInfo& info, const
 /// One line per place, or per time, or per time and place.
 std::string profileCsv(const volume::DatasetInfo& info, const Session& session, const Profile& profile);
 /// A panel per channel: curves, or pictures coloured by the session's transfer functions.
-Drawing profileDrawing(const volume::DatasetInfo& info, const Session& session, const Profile& profile);
+VectorPage profileDrawing(const volume::DatasetInfo& info, const Session& session, const Profile& profile);
 
 /// A picture of a channel over distance (to the right) and time (upwards, row 0 at the top is the last time): RGBA,
 /// a row per stored time, transparent where absent.

@@ -78,7 +78,8 @@ std::string matrixCsv(const volume::DatasetInfo& info, const StatisticsResult& r
     return csv;
 }
 
-Drawing matrixDrawing(const volume::DatasetInfo& info, const StatisticsResult& result, bool logDensity, ImU32 focus) {
+VectorPage matrixDrawing(const volume::DatasetInfo& info, const StatisticsResult& result, bool logDensity,
+                         ImU32 focus) {
     const std::vector<volume::Channel> channels = info.channels();
     std::vector<FigurePanel> panels;
     for (const volume::JointHistogram& joint : result.statistics.joint) {

@@ -83,7 +83,7 @@ FigurePanel slicePanel(const volume::BrickSource& source, const Session& session
     return panel;
 }
 
-Drawing slicesDrawing(const volume::BrickSource& source, const Session& session, const SlicesView& view, int channel,
+VectorPage slicesDrawing(const volume::BrickSource& source, const Session& session, const SlicesView& view, int channel,
                       const Progress& progress) {
     const volume::DatasetInfo& info = source.info();
     const std::optional<int> lined = contourChannel(info, view, channel);

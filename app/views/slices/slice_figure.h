@@ -18,7 +18,7 @@ FigurePanel slicePanel(const volume::BrickSource& source, const Session& session
 
 /// The three slices of a view through the session's cursor, coloured by a channel, with the view's contour lines and
 /// their values. Throws Error, Cancelled.
-Drawing slicesDrawing(const volume::BrickSource& source, const Session& session, const SlicesView& view, int channel,
+VectorPage slicesDrawing(const volume::BrickSource& source, const Session& session, const SlicesView& view, int channel,
                       const Progress& progress = {});
 
 /// The three slices of a view, in its order.

@@ -100,8 +100,8 @@ std::string sliceCsv(const volume::BrickSource& source, const std::vector<int>& 
 }
 
 /// The slices as vector graphics.
-Drawing sliceDrawing(const volume::BrickSource& source, const Session& session, const std::vector<int>& channels,
-                     const SliceAxes& axes, int planes, const Progress& progress) {
+VectorPage sliceDrawing(const volume::BrickSource& source, const Session& session, const std::vector<int>& channels,
+                        const SliceAxes& axes, int planes, const Progress& progress) {
     std::vector<FigurePanel> panels;
     for (const int channel : channels)
         for (int plane = 0; plane < planes; ++plane) {

@@ -1,0 +1,131 @@
+#include "tests/vis/renderer_scenes.h"
+#include "vis/passes/view_target.h"
+
+#include <algorithm>
+#include <map>
+#include <thread>
+
+/// How a picture refines at rest: reduced, then the whole at half resolution, then full resolution from the middle.
+namespace tessera::vis {
+namespace {
+
+class Refinement : public test::GlTest {
+protected:
+    static Scene scene(Engine engine) {
+        Scene made = test::flatScene(0.1f);
+        made.transfer["v"].opacity = {{0, 0}, {0.4f, 0}, {0.6f, 0.3f}, {1, 0.6f}};
+        made.render.engine = engine;
+        made.render.stepVoxels = 0.1f; // slow enough that no picture fits the shortest budget
+        return made;
+    }
+    std::vector<std::uint8_t> pixels() {
+        glm::ivec2 size;
+        return renderer.readPixels(*target, size);
+    }
+    /// Frames of a budget that is far too small, until `done`.
+    template <class Done> bool frames(const Scene& shown, Done&& done) {
+        for (int i = 0; i < 4000; ++i) {
+            const FrameStatus status = renderer.render(*target, shown, {.size = kSize, .budgetMs = 0.01});
+            if (done(status)) return true;
+            if (!status.current) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return false;
+    }
+    void open() {
+        renderer.setSource(test::brickedSource(volume::LatticeKind::CC));
+        target = renderer.makeTarget();
+    }
+
+    static constexpr glm::ivec2 kSize{301, 203};
+    Renderer renderer{{.exactTextures = true}};
+    ViewTargetPtr target;
+};
+
+/// Bound of the error of the first refinement: every pixel lies within the values that the final picture has around it,
+/// two pixels far, and 8 of 255 beyond.
+TEST_F(Refinement, HalfResolutionComesFirstAndIsNearTheFinalPictureEverywhere) {
+    for (const Engine engine : {Engine::OpenGl, Engine::Processor}) {
+        SCOPED_TRACE(int(engine));
+        open();
+        const Scene shown = scene(engine);
+        ASSERT_TRUE(frames(shown, [&](const FrameStatus&) {
+            EXPECT_TRUE(target->state.tilesDone() == 0 || target->state.half()) << "full tiles beside coarse ones";
+            return target->state.half().has_value();
+        }));
+        EXPECT_EQ(target->state.half(), target->buffers.everything());
+        const std::vector<std::uint8_t> early = pixels();
+        const std::optional<Pick> soon = renderer.pick(*target, {150, 100});
+        ASSERT_TRUE(frames(shown, [](const FrameStatus& status) { return status.complete; }));
+        const std::vector<std::uint8_t> late = pixels();
+        const std::optional<Pick> then = renderer.pick(*target, {150, 100});
+        ASSERT_TRUE(soon && then);
+        EXPECT_LT(glm::length(soon->position - then->position), 1);
+        constexpr int kBeyond = 8, kFar = 2;
+        int worst = 0;
+        for (int y = 0; y < kSize.y; ++y)
+            for (int x = 0; x < kSize.x; ++x)
+                for (int c = 0; c < 3; ++c) {
+                    int low = 255, high = 0;
+                    for (int v = std::max(y - kFar, 0); v <= std::min(y + kFar, kSize.y - 1); ++v)
+                        for (int u = std::max(x - kFar, 0); u <= std::min(x + kFar, kSize.x - 1); ++u) {
+                            low = std::min(low, int(late[std::size_t((v * kSize.x + u) * 4 + c)]));
+                            high = std::max(high, int(late[std::size_t((v * kSize.x + u) * 4 + c)]));
+                        }
+                    const int value = early[std::size_t((y * kSize.x + x) * 4 + c)];
+                    worst = std::max({worst, low - value, value - high});
+                }
+        EXPECT_LE(worst, kBeyond) << int(engine);
+        EXPECT_NE(early, late);
+    }
+}
+
+/// What changes from frame to frame: first the whole, bit by bit, then again, each time from the middle outwards.
+TEST_F(Refinement, EachPassGrowsFromTheMiddle) {
+    open();
+    const Scene shown = scene(Engine::OpenGl);
+    std::vector<std::uint8_t> last;
+    std::map<bool, std::vector<double>> away; // of the changes, by whether half resolution is complete
+    ASSERT_TRUE(frames(shown, [&](const FrameStatus& status) {
+        std::vector<std::uint8_t> now = pixels();
+        const bool tiles = target->state.halfTilesDone() > 1 && target->state.tilesDone() != 1;
+        if (!last.empty() && last != now && tiles) {
+            Tile changed{kSize, {0, 0}};
+            for (int y = 0; y < kSize.y; ++y)
+                for (int x = 0; x < kSize.x; ++x)
+                    if (!std::equal(&now[std::size_t(y * kSize.x + x) * 4], &now[std::size_t(y * kSize.x + x) * 4 + 4],
+                                    &last[std::size_t(y * kSize.x + x) * 4])) {
+                        changed.begin = glm::min(changed.begin, {x, y});
+                        changed.end = glm::max(changed.end, {x + 1, y + 1});
+                    }
+            const glm::dvec2 middle = glm::dvec2(changed.begin + changed.end - kSize) / 2.0;
+            away[target->state.half().has_value()].push_back(glm::length(middle));
+        }
+        last = std::move(now);
+        return status.complete;
+    }));
+    for (const bool full : {false, true}) {
+        const std::vector<double>& far = away[full];
+        ASSERT_GE(far.size(), 3u) << full;
+        // The boxes of changes are a little smaller than the tiles.
+        for (std::size_t i = 1; i < far.size(); ++i) EXPECT_GT(far[i], far[i - 1] - 45) << full << " " << i;
+        EXPECT_GT(far.back(), far.front()) << full;
+    }
+}
+
+/// While something moves only the reduced picture is drawn, and a quick picture needs no half resolution.
+TEST_F(Refinement, NotInMotionAndNotWhereThePictureIsQuick) {
+    open();
+    const Scene shown = scene(Engine::OpenGl);
+    for (int i = 0; i < 300; ++i) {
+        const FrameStatus status = renderer.render(*target, shown, {.size = kSize, .moving = true, .budgetMs = 0.01});
+        if (!status.current) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_TRUE(target->state.reduced());
+    EXPECT_EQ(target->state.halfTilesDone(), 0);
+    for (int i = 0; i < 300; ++i) renderer.render(*target, shown, {.size = kSize, .budgetMs = 10000});
+    EXPECT_TRUE(target->state.still());
+    EXPECT_EQ(target->state.halfTilesDone(), 0);
+}
+
+} // namespace
+} // namespace tessera::vis
