@@ -123,7 +123,7 @@ TEST_F(Refinement, NotInMotionAndNotWhereThePictureIsQuick) {
     EXPECT_TRUE(target->state.reduced());
     EXPECT_EQ(target->state.halfTilesDone(), 0);
     for (int i = 0; i < 300; ++i) renderer.render(*target, shown, {.size = kSize, .budgetMs = 10000});
-    EXPECT_TRUE(target->state.still());
+    EXPECT_TRUE(target->state.converged());
     EXPECT_EQ(target->state.halfTilesDone(), 0);
 }
 
