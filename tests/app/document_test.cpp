@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <string>
+#include <unistd.h>
 
 /// What is open, without a window.
 namespace tessera::app {
@@ -22,7 +24,7 @@ Opened smallData(int times = 3) {
 
 struct DocumentTest : testing::Test {
     Document document;
-    fs::path folder = fs::temp_directory_path() / "tessera-document-test";
+    fs::path folder = fs::temp_directory_path() / ("tessera-document-test-" + std::to_string(getpid()));
 
     void SetUp() override {
         fs::remove_all(folder);

@@ -56,7 +56,7 @@ const std::vector<Shipped>& shipped() {
          true},
         {"compression_error",
          "data histogram history layers log scatterMatrix slices timeline transfer volume",
-         "T error [K] -0.354 .. 0.194",
+         "T error [K] -0.355 .. 0.190",
          {{"slices", Warm, 0.067}, {"histogram", Orange, 0}, {"scatterMatrix", Orange, 0}}},
         {"evening",
          "data layers transfer volume",

@@ -30,7 +30,7 @@ diff <(grep -v '^#' by.csv) wanted || die "by voltage, with power"
 "$tessera" plot run_*.raw --over-time history.csv -o curve.svg && grep -q '<circle' curve.svg || die "svg"
 "$tessera" plot run_*.raw --over-time history.csv -o curve.pdf && [ "$(head -c 5 curve.pdf)" = %PDF- ] || die "pdf"
 if command -v pdftotext > /dev/null; then # texts are texts
-    pdftotext curve.pdf - | grep -qF 'j [A/m2]' || die "the axis of the PDF"
+    pdftotext curve.pdf - | grep -qF 'j [A/m²]' || die "the axis of the PDF"
 fi
 
 # Archives keep what was stated, grow by it, and take a table when they are read.

@@ -84,7 +84,7 @@ FigurePanel slicePanel(const volume::BrickSource& source, const Session& session
 }
 
 VectorPage slicesDrawing(const volume::BrickSource& source, const Session& session, const SlicesView& view, int channel,
-                      const Progress& progress) {
+                         const Progress& progress) {
     const volume::DatasetInfo& info = source.info();
     const std::optional<int> lined = contourChannel(info, view, channel);
     const ContourLevels levels = lined ? contourLevels(session, info, *lined, view.contours) : ContourLevels{};

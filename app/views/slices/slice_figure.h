@@ -19,7 +19,7 @@ FigurePanel slicePanel(const volume::BrickSource& source, const Session& session
 /// The three slices of a view through the session's cursor, coloured by a channel, with the view's contour lines and
 /// their values. Throws Error, Cancelled.
 VectorPage slicesDrawing(const volume::BrickSource& source, const Session& session, const SlicesView& view, int channel,
-                      const Progress& progress = {});
+                         const Progress& progress = {});
 
 /// The three slices of a view, in its order.
 inline constexpr SliceAxes kSlicePlanes[] = {{0, 1, 2}, {2, 1, 0}, {0, 2, 1}};
