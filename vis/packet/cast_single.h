@@ -2,6 +2,8 @@
 
 #include "vis/packet/cast_layers.h"
 
+#include <algorithm>
+
 /// Packets of rays through a single layer, by loops that take no more than it needs. Only for cast_*.cpp.
 namespace tessera::vis::packet::TESSERA_LANES {
 
@@ -21,8 +23,18 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         return multiplyAdd(value, Floats(layer.placeScale), Floats(layer.placeOffset));
     }
 
+    /// Reads `number` samples of rays from k on; `at`, the position of the first, moves beyond the last.
+    [[gnu::always_inline]] void readAhead(const Read& read, Fixed& at, Floats k, Mask rays, int number, Found* found) {
+        for (int i = 0; i < number; ++i) {
+            const Mask own = rays & (k + Floats(i) < packet.count);
+            count(own);
+            found[i] = read.next(at, own);
+            at += advance;
+        }
+    }
+
     /// A composite layer without light, brushes, lenses and holes. The sum of colours is in kQuantum until the end.
-    void castMatter() {
+    void castUnshaded() {
         constexpr float kLast = kPackedEntries - 1;
         const Floats length = packet.step * Floats(layer.density), perEntry(layer.placeScale * kLast),
                      firstEntry(layer.placeOffset * kLast + 0.5f), samples = packet.count;
@@ -49,10 +61,10 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
                     at += advance;
                 }
                 for (int i = 0; i < kAhead; ++i) {
-                    const Medium matter = mediumAt(layer, entry[i], lanes[i]);
-                    const Floats alpha = correctedOpacityOf(matter.extinction, length, Floats(1));
+                    const Medium medium = mediumAt(layer, entry[i], lanes[i]);
+                    const Floats alpha = correctedOpacityOf(medium.extinction, length, Floats(1));
                     const Floats weight = choose(opacity < Floats(kOpaque), (Floats(1) - opacity) * alpha, Floats(0));
-                    for (int c = 0; c < 3; ++c) color[c] = multiplyAdd(matter.color[c], weight, color[c]);
+                    for (int c = 0; c < 3; ++c) color[c] = multiplyAdd(medium.color[c], weight, color[c]);
                     opacity += weight;
                     pick = choose((pick <= Floats(kNoPick)) & (opacity > Floats(kPickOpacity)), k + Floats(i), pick);
                 }
@@ -97,12 +109,7 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         Fixed at = fixedOf(packet.cells(k));
         for (int n = 0; n < most; n += Ahead) {
             Found found[Ahead];
-            for (int i = 0; i < Ahead; ++i) {
-                const Mask own = open & (k + Floats(i) < packet.count);
-                count(own);
-                found[i] = read.next(at, own);
-                at += advance;
-            }
+            readAhead(read, at, k, open, Ahead, found);
             for (const Found& each : found) {
                 const Floats along = placeOf(each.value);
                 Mask hit = open & each.present & mayShow(layer, along);
@@ -167,12 +174,7 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         Fixed at = fixedOf(packet.cells(k));
         for (int n = 0; n < most; n += kAhead) {
             Found found[kAhead];
-            for (int i = 0; i < kAhead && i < most; ++i) {
-                const Mask own = lanes & (k + Floats(i) < packet.count);
-                count(own);
-                found[i] = read.next(at, own);
-                at += advance;
-            }
+            readAhead(read, at, k, lanes, std::min(most, kAhead), found);
             for (int i = 0; i < kAhead && i < most; ++i) {
                 const Floats value = found[i].value * sign;
                 Mask better = found[i].present & (value > best);
@@ -225,12 +227,7 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         Fixed at = fixedOf(packet.cells(k));
         for (int n = 0; n < most; n += kPair) {
             Found found[kPair];
-            for (int i = 0; i < kPair; ++i) {
-                const Mask own = open & (k + Floats(i) < packet.count);
-                count(own);
-                found[i] = read.next(at, own);
-                at += advance;
-            }
+            readAhead(read, at, k, open, kPair, found);
             for (const Found& each : found) {
                 const Mask above = before.value >= value, over = each.value >= value;
                 const Mask hit = open & before.present & each.present & ((above & !over) | (over & !above));
@@ -254,7 +251,7 @@ template <bool Bcc, bool Exact> std::uint64_t castPacket(const CastJob& job, Pac
     const bool one = job.layers.size() == 1, plain = !job.focus.any;
     SingleCaster<Bcc, Exact> caster(job, packet);
     if (one && layer.style == RayStyle::Composite && plain && !layer.shaded && packet.holeCount == 0)
-        caster.castMatter();
+        caster.castUnshaded();
     else if (one && layer.style == RayStyle::Composite)
         caster.castComposite();
     else if (one && layer.style == RayStyle::Iso)
