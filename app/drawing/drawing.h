@@ -5,34 +5,25 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
-/// A page as lines, areas, texts and pictures: what plots and panes become in SVG and PDF. Lengths are points of 1/72
-/// inch from the upper left corner, y downwards; colours are sRGB with opacity, 0..1.
+/// A page as lines, rectangles, circles, texts and pictures: what plots and panes become in SVG and PDF. Lengths are
+/// points of 1/72 inch from the upper left corner, y downwards; colours are sRGB with opacity, 0..1.
 namespace tessera::app {
 
 namespace shapes {
 
 struct PageBox {
     glm::dvec2 lo{0}, hi{0};
-    bool operator==(const PageBox&) const = default;
 };
 
 /// A line through points.
 struct Stroke {
     std::vector<glm::dvec2> points;
     double width = 1;
-    glm::vec4 color{0, 0, 0, 1};
-    bool closed = false;
-};
-
-/// Polygons of one colour, filled as one area.
-struct Area {
-    std::vector<std::vector<glm::dvec2>> outlines;
     glm::vec4 color{0, 0, 0, 1};
 };
 
@@ -49,17 +40,6 @@ struct Circle {
     double line = 0; ///< width of its edge; 0: filled
 };
 
-/// A rectangle whose colour changes along x (or, `upright`, along y): stops at rising shares of its extent.
-struct Ramp {
-    struct Stop {
-        double at = 0;
-        glm::vec4 color{0};
-    };
-    PageBox box;
-    std::vector<Stop> stops;
-    bool upright = false;
-};
-
 struct Words {
     std::string text; ///< UTF-8, one line
     glm::dvec2 at{0}; ///< on the base line
@@ -68,7 +48,6 @@ struct Words {
     Face face = Face::Text;
     double anchor = 0;   ///< share of the text that lies before `at`: 0, 0.5 or 1
     double angle = 0;    ///< degrees, clockwise
-    double width = 0;    ///< that it takes, whatever font stands in for its own; 0: as it comes
     double halo = 0;     ///< width of a half transparent white outline, for texts on pictures
     bool middle = false; ///< `at` is half the height of its capitals above the base line
 };
@@ -85,8 +64,7 @@ struct Picture {
 
 /// A shape on the page.
 struct Mark {
-    std::variant<Stroke, Area, Rect, Circle, Ramp, Words, Picture> shape;
-    std::optional<PageBox> clip = {}; ///< nothing is seen outside
+    std::variant<Stroke, Rect, Circle, Words, Picture> shape;
 };
 
 } // namespace shapes
@@ -95,11 +73,7 @@ struct VectorPage {
     glm::dvec2 size{0};
     std::vector<shapes::Mark> marks; ///< later ones cover earlier ones
     std::string numbers = {};        ///< where its numbers come from, one line
-    std::string session = {};        ///< that it shows, as text; carried by the file
 };
-
-/// The corners around a shape; of words only if their width is stated.
-shapes::PageBox boundsOf(const shapes::Mark& mark);
 
 /// As an SVG file; texts stay texts.
 std::string svgOf(const VectorPage& drawing);
@@ -109,8 +83,5 @@ std::string pdfOf(const VectorPage& drawing);
 
 /// As a file with the suffix "svg" or "pdf".
 std::string fileOf(const VectorPage& drawing, std::string_view suffix);
-
-/// The session that an SVG or PDF file carries; nothing where there is none.
-std::optional<std::string> sessionInDrawing(const std::string& bytes);
 
 } // namespace tessera::app

@@ -2,7 +2,6 @@
 
 #include "volume/base/error.h"
 
-#include <algorithm>
 #include <array>
 #include <cairo-ft.h>
 #include <cairo-pdf.h>
@@ -20,7 +19,6 @@ template <auto destroy> struct Destroy {
 };
 using Surface = std::unique_ptr<cairo_surface_t, Destroy<cairo_surface_destroy>>;
 using Context = std::unique_ptr<cairo_t, Destroy<cairo_destroy>>;
-using Pattern = std::unique_ptr<cairo_pattern_t, Destroy<cairo_pattern_destroy>>;
 using FontFace = std::unique_ptr<cairo_font_face_t, Destroy<cairo_font_face_destroy>>;
 using FontOptions = std::unique_ptr<cairo_font_options_t, Destroy<cairo_font_options_destroy>>;
 
@@ -70,10 +68,6 @@ public:
 
     void draw(const Mark& mark) {
         cairo_save(page_);
-        if (mark.clip) {
-            rectangle(*mark.clip);
-            cairo_clip(page_);
-        }
         std::visit([&](const auto& shape) { draw(shape); }, mark.shape);
         cairo_restore(page_);
     }
@@ -85,10 +79,9 @@ private:
     void rectangle(const PageBox& box) {
         cairo_rectangle(page_, box.lo.x, box.lo.y, box.hi.x - box.lo.x, box.hi.y - box.lo.y);
     }
-    void path(const std::vector<glm::dvec2>& points, bool closed) {
+    void path(const std::vector<glm::dvec2>& points) {
         for (std::size_t i = 0; i < points.size(); ++i)
             (i == 0 ? cairo_move_to : cairo_line_to)(page_, points[i].x, points[i].y);
-        if (closed) cairo_close_path(page_);
     }
     /// Draws the path: its edge of a width, or with 0 its inside.
     void paint(glm::vec4 ink, double line) {
@@ -98,12 +91,8 @@ private:
     }
 
     void draw(const Stroke& stroke) {
-        path(stroke.points, stroke.closed);
+        path(stroke.points);
         paint(stroke.color, stroke.width);
-    }
-    void draw(const Area& area) {
-        for (const std::vector<glm::dvec2>& outline : area.outlines) path(outline, true);
-        paint(area.color, 0);
     }
     void draw(const Rect& rect) {
         rectangle(rect.box);
@@ -113,28 +102,15 @@ private:
         cairo_arc(page_, circle.center.x, circle.center.y, circle.radius, 0, 2 * std::numbers::pi);
         paint(circle.color, circle.line);
     }
-    void draw(const Ramp& ramp) {
-        const PageBox& box = ramp.box;
-        const Pattern pattern(cairo_pattern_create_linear(box.lo.x, box.lo.y, ramp.upright ? box.lo.x : box.hi.x,
-                                                          ramp.upright ? box.hi.y : box.lo.y));
-        for (const auto& [at, ink] : ramp.stops)
-            cairo_pattern_add_color_stop_rgba(pattern.get(), at, double(ink.r), double(ink.g), double(ink.b),
-                                              double(ink.a));
-        cairo_set_source(page_, pattern.get());
-        rectangle(box);
-        cairo_fill(page_);
-    }
     void draw(const Words& words) {
         cairo_set_font_face(page_, fonts_.get(words.face));
         cairo_set_font_size(page_, words.size);
         color(words.color);
         cairo_text_extents_t extents;
         cairo_text_extents(page_, words.text.c_str(), &extents);
-        const double width = words.width > 0 ? words.width : extents.x_advance;
         cairo_translate(page_, words.at.x, words.at.y);
         cairo_rotate(page_, words.angle * std::numbers::pi / 180);
-        cairo_translate(page_, -words.anchor * width, words.middle ? kMiddle * words.size : 0);
-        if (extents.x_advance > 0) cairo_scale(page_, width / extents.x_advance, 1);
+        cairo_translate(page_, -words.anchor * extents.x_advance, words.middle ? kMiddle * words.size : 0);
         cairo_move_to(page_, 0, 0);
         if (words.halo > 0) {
             cairo_text_path(page_, words.text.c_str());
@@ -199,11 +175,6 @@ std::string pdfOf(const VectorPage& drawing) {
     cairo_surface_finish(surface.get());
     if (const cairo_status_t status = cairo_surface_status(surface.get()); status != CAIRO_STATUS_SUCCESS)
         throw MachineError(std::string("no PDF could be made: ") + cairo_status_to_string(status));
-    if (drawing.session.empty()) return out;
-    // A comment behind all that the table of the file points at.
-    std::string session = drawing.session;
-    std::ranges::replace(session, '\n', ' ');
-    out.insert(out.rfind("startxref"), "%" + std::string(vis::kSessionTextKey) + ": " + session + "\n");
     return out;
 }
 

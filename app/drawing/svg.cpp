@@ -56,10 +56,10 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
     return out;
 }
 
-std::string path(const std::vector<glm::dvec2>& points, bool closed) {
+std::string path(const std::vector<glm::dvec2>& points) {
     std::string out;
     for (const glm::dvec2& point : points) out += (out.empty() ? "M" : "L") + number(point.x) + " " + number(point.y);
-    return closed ? out + "Z" : out;
+    return out;
 }
 
 std::string placed(const PageBox& box) {
@@ -81,62 +81,26 @@ public:
         std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" "
                           "width=\"" +
                           width + "pt\" height=\"" + height + "pt\" viewBox=\"0 0 " + width + " " + height + "\">\n";
-        if (!drawing_.session.empty())
-            out +=
-                "<metadata>" + std::string(vis::kSessionTextKey) + ": " + escaped(drawing_.session) + "</metadata>\n";
         if (!drawing_.numbers.empty()) out += "<desc>numbers: " + escaped(drawing_.numbers) + "</desc>\n";
-        for (const Mark& mark : drawing_.marks) {
-            clip(mark.clip);
-            std::visit([&](const auto& shape) { draw(shape); }, mark.shape);
-        }
-        clip({});
-        return out + (defs_.empty() ? "" : "<defs>\n" + defs_ + "</defs>\n") + body_ + "</svg>\n";
+        for (const Mark& mark : drawing_.marks) std::visit([&](const auto& shape) { draw(shape); }, mark.shape);
+        return out + body_ + "</svg>\n";
     }
 
 private:
-    /// Marks with the same clip share a group.
-    void clip(const std::optional<PageBox>& box) {
-        if (box == clip_) return;
-        if (clip_) body_ += "</g>\n";
-        clip_ = box;
-        if (!box) return;
-        const std::string id = "clip" + std::to_string(++clips_);
-        defs_ += "<clipPath id=\"" + id + "\"><rect" + placed(*box) + "/></clipPath>\n";
-        body_ += "<g clip-path=\"url(#" + id + ")\">\n";
-    }
-
     void draw(const Stroke& line) {
-        if (line.points.size() == 2 && !line.closed) {
+        if (line.points.size() == 2) {
             const glm::dvec2 a = line.points[0], b = line.points[1];
             body_ +=
                 "<line" + attribute("x1", a.x) + attribute("y1", a.y) + attribute("x2", b.x) + attribute("y2", b.y);
         } else {
-            body_ += "<path d=\"" + path(line.points, line.closed) + "\" fill=\"none\" stroke-linejoin=\"round\"";
+            body_ += "<path d=\"" + path(line.points) + "\" fill=\"none\" stroke-linejoin=\"round\"";
         }
         body_ += stroke(line.color, line.width) + "/>\n";
-    }
-    void draw(const Area& area) {
-        std::string outlines;
-        for (const std::vector<glm::dvec2>& outline : area.outlines) outlines += path(outline, true);
-        body_ += "<path d=\"" + outlines + "\"" + fill(area.color) + "/>\n";
     }
     void draw(const Rect& rect) { body_ += "<rect" + placed(rect.box) + filledOrEdged(rect.color, rect.line) + "/>\n"; }
     void draw(const Circle& circle) {
         body_ += "<circle" + attribute("cx", circle.center.x) + attribute("cy", circle.center.y) +
                  attribute("r", circle.radius) + filledOrEdged(circle.color, circle.line) + "/>\n";
-    }
-    void draw(const Ramp& ramp) {
-        const std::string id = "ramp" + std::to_string(++ramps_);
-        defs_ += "<linearGradient id=\"" + id + "\" x1=\"0\" y1=\"0\" " +
-                 (ramp.upright ? "x2=\"0\" y2=\"1\"" : "x2=\"1\" y2=\"0\"") + ">";
-        for (const Ramp::Stop& stop : ramp.stops) {
-            char at[32];
-            std::snprintf(at, sizeof at, "%.4f", stop.at);
-            defs_ +=
-                "<stop offset=\"" + std::string(at) + "\"" + paint("stop-color", "stop-opacity", stop.color) + "/>";
-        }
-        defs_ += "</linearGradient>\n";
-        body_ += "<rect" + placed(ramp.box) + " fill=\"url(#" + id + ")\"/>\n";
     }
     void draw(const Words& words) {
         const Typeface& face = typeface(words.face);
@@ -149,7 +113,6 @@ private:
                      number(words.at.y) + ")\"";
         body_ += std::string(" font-family=\"") + face.family + ", Helvetica, Arial, sans-serif\" font-weight=\"" +
                  face.weight + "\"" + attribute("font-size", words.size) + fill(words.color);
-        if (words.width > 0) body_ += attribute("textLength", words.width) + " lengthAdjust=\"spacingAndGlyphs\"";
         body_ += " xml:space=\"preserve\">" + escaped(words.text) + "</text>\n";
     }
     void draw(const Picture& picture) {
@@ -159,9 +122,7 @@ private:
     }
 
     const VectorPage& drawing_;
-    std::string defs_, body_;
-    std::optional<PageBox> clip_;
-    int clips_ = 0, ramps_ = 0;
+    std::string body_;
 };
 
 } // namespace
