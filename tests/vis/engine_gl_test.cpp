@@ -115,6 +115,23 @@ TEST_F(EngineGl, OpenGlTakesOverAndSaysWhy) {
     EXPECT_FALSE(test::renderAll(renderer, *target, scene, {48, 48}).engine.byProcessor);
 }
 
+/// What a window says of its volume is not what its slices are drawn by.
+TEST_F(EngineGl, PicturesOfSectionsSayNothingOfRays) {
+    Renderer renderer;
+    renderer.setSource(waves(volume::LatticeKind::CC));
+    const ViewTargetPtr volume = renderer.makeTarget(), slice = renderer.makeTarget();
+    Scene scene = wavesScene(Engine::Processor);
+    scene.layers.push_back({.name = "cut", .visible = false, .technique = SliceLayer{.channel = "v"}});
+    test::renderAll(renderer, *volume, scene, {32, 32});
+    Scene section = scene;
+    section.layers = {{.name = "cut", .technique = SliceLayer{.channel = "v"}}};
+    EXPECT_EQ(test::renderAll(renderer, *slice, section, {32, 32}).engine.refusal, "slices");
+    EXPECT_TRUE(renderer.engine().byProcessor);
+    scene.layers.back().visible = true;
+    test::renderAll(renderer, *volume, scene, {32, 32});
+    EXPECT_EQ(renderer.engine().refusal, "slices") << "a slice in the volume's picture";
+}
+
 /// Without waiting, the picture comes once its samples are read; a moving view gets a reduced one that is current.
 TEST_F(EngineGl, PicturesComeWhenTheirSamplesAreRead) {
     Renderer renderer;

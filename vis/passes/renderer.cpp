@@ -195,6 +195,18 @@ void Renderer::Impl::drawAll(ViewTarget& target, const RenderCall& call, Clock::
     if (any && finds) status.complete = status.complete && target.hidden.known();
 }
 
+namespace {
+
+/// Whether a volume or surface is shown. The pictures of sections, in slices and cubes, say nothing of what casts rays.
+bool hasVolumes(const Scene& scene) {
+    return std::ranges::any_of(scene.layers, [](const Layer& layer) {
+        return layer.visible && (std::holds_alternative<VolumeLayer>(layer.technique) ||
+                                 std::holds_alternative<IsoLayer>(layer.technique));
+    });
+}
+
+} // namespace
+
 FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const FrameRequest& wanted) {
     const Clock::time_point start = Clock::now();
     FrameStatus status;
@@ -228,7 +240,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     status.compiling = target.shown.compiling;
     if (request.wait) target.pace().collect(true);
     status.milliseconds = target.pace().pass();
-    impl_->engine = status.engine;
+    if (hasVolumes(scene)) impl_->engine = status.engine;
     return status;
 }
 

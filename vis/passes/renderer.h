@@ -57,7 +57,7 @@ public:
     std::vector<std::uint8_t> readPixels(ViewTarget& target, glm::ivec2& size);
 
     ResidencyInfo residency() const;
-    /// What cast the rays of the last picture.
+    /// What cast the rays of the last picture that shows a volume or surface.
     const EngineUse& engine() const;
     /// Messages since the last call (shader errors, damaged bricks), for the log pane.
     std::vector<std::string> takeMessages();

@@ -37,7 +37,7 @@ struct Renderer::Impl {
     const volume::BrickSource* formerSource =
         nullptr; ///< the source that `source` replaced with shared samples: its pictures stay until new ones are drawn
     RenderTools tools;
-    EngineUse engine;    ///< of the last picture
+    EngineUse engine;    ///< of the last picture with a volume or surface
     std::string limits;  ///< last message about exceeded limits
     std::string refusal; ///< last message about refused memory
 
