@@ -148,6 +148,17 @@ volume::Field frameOf(const Given& given, const volume::Lattice& lattice, int co
     return field;
 }
 
+/// Options as in the metadata of an archive. Reading those is tolerant; here what is not taken as given is an error.
+PackOptions optionsOf(const std::string& text) {
+    const nlohmann::json given = nlohmann::json::parse(text);
+    const PackOptions options = optionsFromJson(given);
+    const nlohmann::json taken = toJson(options);
+    for (const auto& [key, value] : given.items())
+        if (!taken.contains(key) || taken[key] != value)
+            throw Error("the option " + key + " = " + value.dump() + " is unknown, not allowed, or the default");
+    return options;
+}
+
 /// Packs arrays into an archive. `about` has the keys of info(); options as in the metadata of an archive.
 void write(const std::string& path, const py::dict& about, const py::list& parameters, const std::string& options) {
     volume::Dataset dataset;
@@ -184,7 +195,7 @@ void write(const std::string& path, const py::dict& about, const py::list& param
     dataset.read = [&given, lattice](int parameter, int component, int time) {
         return frameOf(given[std::size_t(parameter)], lattice, component, time);
     };
-    const PackOptions packed = optionsFromJson(nlohmann::json::parse(options));
+    const PackOptions packed = optionsOf(options);
     const py::gil_scoped_release others;
     pack(dataset, packed, path);
 }

@@ -153,6 +153,16 @@ class Writing(unittest.TestCase):
         self.assertGreater(error, 0)
         self.assertLessEqual(error, 0.001 * (smooth.max() - smooth.min()) * 1.0001)
 
+    def test_options_are_those_of_packing_and_no_others(self):
+        values = np.arange(40 * 40 * 40, dtype=np.float32).reshape(40, 40, 40)
+        tessera.write("o.tsr", {"T": values}, lattice="bcc", brickSize=16)
+        self.assertEqual(tessera.open("o.tsr").lattice, "bcc")
+        self.assertEqual(tessera.open("o.tsr").levels, 3)
+        for options in ({"lattice": "bc"}, {"max_error": 2}, {"max_error": -1}, {"brickSise": 16}, {"brickSize": "big"},
+                        {"wavelet": "9,9"}):
+            with self.assertRaises(tessera.Error, msg=options):
+                tessera.write("no.tsr", {"T": values}, **options)
+
     def test_one_time_needs_no_axis(self):
         tessera.write("one.tsr", {"T": self.T[1], "U": self.U[1]})
         back = tessera.open("one.tsr")

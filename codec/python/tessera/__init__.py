@@ -173,7 +173,8 @@ def write(path, parameters, times=None, spacing=(1, 1, 1), origin=(0, 0, 0), *, 
     """Packs arrays into an archive.
 
     parameters: arrays by name, [z, y, x] or [time, z, y, x], vectors with a last axis of 3; uint8, int16, uint16, int32
-        or float32 (float64 is rounded to float32). Masked and NaN samples are absent.
+        or float32 (float64 is rounded to float32). Masked and NaN samples are absent. Without `times`, or with one, an
+        array of four axes whose last has 3 members is a vector at one time.
     times: one number for each time, rising; by default 0, 1, ...
     spacing, origin: (x, y, z) in length_unit.
     units: by parameter. labels: {parameter: {value: name}} makes a parameter of integers a label.
@@ -204,8 +205,15 @@ def write(path, parameters, times=None, spacing=(1, 1, 1), origin=(0, 0, 0), *, 
     about = {"size": shape[:0:-1], "spacing": tuple(map(float, spacing)), "origin": tuple(map(float, origin)),
              "name": name, "length_unit": length_unit, "times": times, "time_name": time_name, "time_unit": time_unit,
              "quantities": quantities}
-    _write(os.fspath(path), about, given, json.dumps({"lattice": lattice, "maxError": max_error,
-                                                      "lossless": max_error == 0, **options}))
+    if lattice not in ("cc", "bcc", "d4"):
+        raise Error(f"{path}: lattice is {lattice!r}; there are 'cc', 'bcc' and 'd4'")
+    if not 0 <= max_error < 1:
+        raise Error(f"{path}: max_error is {max_error}, not in 0 .. 1")
+    if lattice != "bcc":  # what is not given has the defaults of `tessera pack`
+        options["lattice"] = lattice
+    if max_error > 0:
+        options.update(maxError=max_error, lossless=False)
+    _write(os.fspath(path), about, given, json.dumps(options))
 
 
 def _samples(name, values, times):
