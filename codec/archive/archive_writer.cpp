@@ -100,6 +100,14 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
     return segments;
 }
 
+constexpr int kTimesOfSteps = 15; ///< after which others are tried again
+
+/// Steps of a component's former frame, and how many more times they may be used.
+struct KnownSteps {
+    StepChoice steps;
+    int uses = 0;
+};
+
 } // namespace
 
 struct ArchiveWriter::Impl {
@@ -112,6 +120,7 @@ struct ArchiveWriter::Impl {
     IndexPage page;                               ///< additions since the last commit
     std::map<MaskHash::Value, int> maskByHash;
     std::map<std::size_t, KnownModel> lastModel; ///< per component
+    std::map<std::size_t, KnownSteps> lastSteps; ///< likewise
     bool keepsFrames = true;
     Archive::Repeats repeats;
     /// Per component, and on D4* per parity. Missing: changes are unknown.
@@ -128,6 +137,9 @@ struct ArchiveWriter::Impl {
     const SeenFrame* frameBefore(const FrameRecord& frame, const FrameSamples& samples) const;
     std::vector<std::uint8_t> repeated(const SeenFrame* before, const FrameSamples& samples, const FrameRecord& frame,
                                        const FrameOptions& options) const;
+    /// Whether and how coefficients of a frame are quantised: as at the time before where that is still shorter.
+    std::optional<SteppedFrame> stepsFor(std::size_t component, const FrameSamples& samples, const FrameRecord& frame,
+                                         const Model& model, const FrameOptions& options);
     /// Determines all coding parameters of a frame.
     FrameCoding prepare(int time, std::size_t component, const FrameSamples& samples, const FrameOptions& options);
     /// Codes every brick; true if no token was coded.
@@ -249,6 +261,22 @@ ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, b
 
 ArchiveWriter::~ArchiveWriter() = default;
 
+std::optional<SteppedFrame> ArchiveWriter::Impl::stepsFor(std::size_t component, const FrameSamples& samples,
+                                                          const FrameRecord& frame, const Model& model,
+                                                          const FrameOptions& options) {
+    KnownSteps& known = lastSteps[component];
+    std::optional<SteppedFrame> steps;
+    if (known.uses > 0) {
+        steps = chooseSteps(metadata.grid, samples, frame, model, options, &known.steps);
+        --known.uses;
+    }
+    if (!steps) {
+        steps = chooseSteps(metadata.grid, samples, frame, model, options, nullptr);
+        known = steps ? KnownSteps{steps->steps, kTimesOfSteps} : KnownSteps{};
+    }
+    return steps;
+}
+
 FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const FrameSamples& samples,
                                          const FrameOptions& options) {
     const volume::BrickGrid& grid = metadata.grid;
@@ -271,7 +299,7 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     coding.importance = importanceOfBricks(grid, samples, options.range, options.categorical, options.importance);
     const bool byBand = (header.features & kBandContexts) != 0;
     coding.model = chooseModel(grid, samples, last, byBand, frame, options, coding.taken);
-    if (const auto steps = chooseSteps(grid, samples, frame, coding.model, options)) {
+    if (const auto steps = stepsFor(component, samples, frame, coding.model, options)) {
         useSteps(*steps, frame);
         coding.steps = steps->steps;
         coding.taken.bricks.clear();

@@ -104,13 +104,14 @@ StepChoice usualSteps() {
 }
 
 std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, const FrameSamples& samples,
-                                        const FrameRecord& frame, const Model& model, const FrameOptions& options) {
+                                        const FrameRecord& frame, const Model& model, const FrameOptions& options,
+                                        const StepChoice* before) {
     if (frame.numbers.kind != NumberKind::Quantised || options.numbers || options.keepsSquares) return std::nullopt;
     constexpr int kMostBits = 29;
     constexpr double kApart = 1.4; // factor between quanta
     const std::optional<NumberCoding> numbers = steppedCoding(samples, boundOf(frame, options));
     if (!numbers) return std::nullopt;
-    SteppedFrame how{*numbers, frame.wavelet, 0, usualSteps()};
+    SteppedFrame how{*numbers, frame.wavelet, 0, before ? *before : usualSteps()};
     how.codeBits = codeBitsOf(samples, how.numbers) + 1;
     if (how.codeBits > kMostBits) return std::nullopt;
     const StepTrials trials(grid, samples, frame, options);
@@ -126,7 +127,8 @@ std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, const Fra
         return true;
     };
     how.wavelet = options.wavelet.value_or(Wavelet::W44);
-    if (attempt(how); least > kHopeless * limit) return std::nullopt;
+    attempt(how);
+    if (before || least > kHopeless * limit) return least < limit ? best : std::nullopt;
     for (int axis = 0; axis < 3; ++axis) {
         how = *best;
         how.steps.split.axes &= ~(1 << axis);

@@ -251,6 +251,35 @@ TEST(SteppedArchive, KeepsABoundOfAboutTheDistanceOfFloats) {
     EXPECT_LT(8.0 * double(archive.fileBytes()) / double(source.count()), 2.5);
 }
 
+// Later times are coded as the one before while that is shorter, and otherwise chosen anew.
+TEST(SteppedArchive, LaterTimesAreCodedAsWellAsAlone) {
+    const TemporaryFolder folder;
+    const glm::ivec3 size(40, 36, 50);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> noise(-1, 1);
+    const auto ripple = [](glm::dvec3 at) { return wave(at) + 0.02 * std::sin(90 * at.x) * std::sin(80 * at.z); };
+    const auto rough = [&](glm::dvec3) { return noise(random); };
+    const std::vector<volume::Dataset> times = {smoothDataset(size, wave, false), smoothDataset(size, ripple, false),
+                                                smoothDataset(size, rough, false), smoothDataset(size, wave, true)};
+    PackOptions options;
+    options.lattice = StoredLattice::CC;
+    options.absError = 0.005;
+    double alone = 0;
+    for (volume::Dataset one : times) {
+        pack(one, options, folder / "one.tsr");
+        alone += double(Archive(folder / "one.tsr").fileBytes());
+    }
+    volume::Dataset series = times[0];
+    series.info.times = {0, 1, 2, 3};
+    series.info.parameters[0].ranges.clear();
+    series.read = [&](int, int, int time) { return times[std::size_t(time)].read(0, 0, 0); };
+    pack(series, options, folder / "series.tsr");
+    const Archive archive(folder / "series.tsr");
+    EXPECT_LT(double(archive.fileBytes()), 1.05 * alone);
+    for (int time = 0; time < 4; ++time)
+        EXPECT_LE(errorsOf(readField(archive, 0, 0, time), times[std::size_t(time)].read(0, 0, 0)).largest, 0.005);
+}
+
 TEST(SteppedArchive, GrowsAsIfWrittenAtOnce) {
     const TemporaryFolder folder;
     const std::vector<MadeParameter> parameters{{"a", ScalarType::F32, 1, Texture::Smooth, false, false}};
