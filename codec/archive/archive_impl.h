@@ -25,7 +25,8 @@ struct Archive::Impl {
     Index index;
     std::vector<volume::Channel> channels;
     std::size_t components = 0, bricks = 0;
-    /// Decoders of the most recently used models, latest first; their tables take about 200 KiB each.
+    /// Decoders of the most recently used models, latest first; their tables take about 200 KiB each. -1: the model of
+    /// stepped frames.
     mutable std::list<std::pair<std::int32_t, std::shared_ptr<const BandDecoder>>> decoders;
     mutable std::mutex decodersMutex;
     /// Decoded bricks in the pool, whose memory is reused.
@@ -72,8 +73,11 @@ struct Archive::Impl {
     const volume::Parameter& parameter(int number) const { return metadata.info.parameters[std::size_t(number)]; }
     std::span<const std::byte> segment(const Segment& segment) const;
     std::vector<std::uint8_t> flags(const FrameRecord& frame, std::size_t brick) const;
-    Model model(std::int32_t number) const;
-    std::shared_ptr<const BandDecoder> decoder(std::int32_t model) const;
+    /// The model of a frame; throws Error when it is damaged. Stepped frames have the one for frames without bands.
+    Model model(const FrameRecord& frame) const;
+    /// The steps of a frame with numbers of kind Stepped; throws Error when they are damaged.
+    StepChoice steps(const FrameRecord& frame) const;
+    std::shared_ptr<const BandDecoder> decoder(const FrameRecord& frame) const;
     void decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
                 std::span<const std::uint8_t> present, DecodedBrick& out) const;
     /// Converts a brick decoded at full resolution to stored numbers; undefined for absent samples.

@@ -75,8 +75,18 @@ std::vector<std::uint8_t> Archive::Impl::flags(const FrameRecord& frame, std::si
     return flags;
 }
 
-Model Archive::Impl::model(std::int32_t number) const {
-    const Block& record = index.models[std::size_t(number)];
+StepChoice Archive::Impl::steps(const FrameRecord& frame) const {
+    const Block& record = index.models[std::size_t(frame.model)];
+    const auto bytes = checkedPart(file.bytes(), record.offset, record.length, record.checksum, path, "a model");
+    StepChoice parsed;
+    if (const DecodeStatus status = parseSteps(bytes, parsed); status != DecodeStatus::Ok)
+        damaged(path, record.offset, std::string("steps cannot be read: ") + reason(status));
+    return parsed;
+}
+
+Model Archive::Impl::model(const FrameRecord& frame) const {
+    if (frame.numbers.kind == NumberKind::Stepped) return makeModel(Histogram(metadata.grid.levels, {}), 1);
+    const Block& record = index.models[std::size_t(frame.model)];
     const auto bytes = checkedPart(file.bytes(), record.offset, record.length, record.checksum, path, "a model");
     Model parsed;
     if (const DecodeStatus status = parseModel(bytes, metadata.grid.levels, parsed); status != DecodeStatus::Ok)
@@ -87,15 +97,16 @@ Model Archive::Impl::model(std::int32_t number) const {
 }
 
 /// Returns the cached decoder of a model.
-std::shared_ptr<const BandDecoder> Archive::Impl::decoder(std::int32_t model) const {
+std::shared_ptr<const BandDecoder> Archive::Impl::decoder(const FrameRecord& frame) const {
+    const std::int32_t number = frame.numbers.kind == NumberKind::Stepped ? -1 : frame.model;
     const std::lock_guard lock(decodersMutex);
     for (auto at = decoders.begin(); at != decoders.end(); ++at)
-        if (at->first == model) {
+        if (at->first == number) {
             decoders.splice(decoders.begin(), decoders, at);
             return at->second;
         }
     constexpr std::size_t kKept = 16;
-    decoders.emplace_front(model, std::make_shared<const BandDecoder>(this->model(model)));
+    decoders.emplace_front(number, std::make_shared<const BandDecoder>(model(frame)));
     if (decoders.size() > kKept) decoders.pop_back();
     return decoders.front().second;
 }
@@ -105,7 +116,9 @@ void Archive::Impl::decode(const FrameRecord& frame, const BrickFormat& format, 
     std::vector<std::span<const std::byte>> segments;
     for (int s = 0; s < format.levels - level; ++s)
         segments.push_back(segment(frame.segments[std::size_t(s) * bricks + brick]));
-    const DecodeStatus status = decodeBrick(format, segments, level, present, *decoder(frame.model), out);
+    BrickFormat whole = format;
+    if (format.isStepped()) whole.steps = steps(frame);
+    const DecodeStatus status = decodeBrick(whole, segments, level, present, *decoder(frame), out);
     if (status != DecodeStatus::Ok)
         damaged(path, frame.segments[(segments.size() - 1) * bricks + brick].offset, reason(status));
 }

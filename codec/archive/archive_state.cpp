@@ -44,8 +44,9 @@ ArchiveState stateOf(const Archive& archive, bool withFrames) {
         std::size_t t = 0;
         while (impl.index.frames[t * impl.components + c].model != number) ++t;
         const FrameRecord& frame = impl.index.frames[t * impl.components + c];
-        state.lastModels.push_back(
-            {number, impl.model(number), frame.wavelet, frame.numbers.kind, frame.codeBits, frame.bodyCentred});
+        state.lastModels.push_back({number, impl.model(frame), frame.wavelet, frame.numbers.kind, frame.codeBits,
+                                    frame.bodyCentred,
+                                    frame.numbers.kind == NumberKind::Stepped ? impl.steps(frame) : StepChoice()});
         const FrameRecord& last = impl.index.frames[(state.times - 1) * impl.components + c];
         const auto sameMask = [&](const auto& entry) { return entry.first == last.mask; };
         if (last.mask < 0 || std::any_of(state.lastMasks.begin(), state.lastMasks.end(), sameMask)) continue;

@@ -12,7 +12,8 @@
 /// The state that a writer needs to continue an archive with the same bytes as in a single run.
 namespace tessera::codec {
 
-/// A model and the frame it was made for; tried first for later frames with the same code width.
+/// The model or the steps of a component's last frame, and the frame it was made for; tried first for later frames with
+/// the same code width.
 struct KnownModel {
     std::int32_t number = -1;
     Model model;
@@ -20,6 +21,7 @@ struct KnownModel {
     NumberKind kind{};
     int codeBits = 0;
     bool bodyCentred = false;
+    StepChoice steps; ///< for Stepped, whose model is idle
 
     bool resembles(const FrameRecord& frame) const {
         return kind == frame.numbers.kind && codeBits - frame.codeBits <= 1 && frame.codeBits - codeBits <= 1;

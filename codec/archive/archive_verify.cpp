@@ -107,9 +107,20 @@ struct Verifier {
         }
     }
 
+    /// The model or the steps of each frame, and models that no frame uses.
     void models() {
-        for (std::size_t m = 0; m < impl.index.models.size(); ++m) {
-            const auto load = [&] { (void)impl.decoder(static_cast<std::int32_t>(m)); };
+        const std::size_t count = impl.index.models.size();
+        std::vector<FrameRecord> users(count);
+        for (std::size_t m = 0; m < count; ++m) users[m].model = static_cast<std::int32_t>(m);
+        for (const FrameRecord& frame : impl.index.frames)
+            users[std::size_t(frame.model)].numbers.kind = frame.numbers.kind;
+        for (std::size_t m = 0; m < count; ++m) {
+            const auto load = [&] {
+                if (users[m].numbers.kind == NumberKind::Stepped)
+                    (void)impl.steps(users[m]);
+                else
+                    (void)impl.decoder(users[m]);
+            };
             badModels.push_back(guarded("model " + std::to_string(m), load) ? 0 : 1);
             report.bytes += impl.index.models[m].length;
         }

@@ -53,7 +53,6 @@ struct FrameCoding {
     std::vector<volume::BrickImportance> importance;
     Taken taken;
     Model model;
-    StepChoice steps;     ///< for numbers of kind Stepped
     int step = 1;         ///< times since `before`
     bool tallies = false; ///< store statistics of bricks
     bool keeps = false;   ///< keep samples and sizes for later frames
@@ -84,8 +83,7 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
         const BrickFormat format = brickFormat(grid, brick, part.type, frame);
         input.take(own, own.indexOf(ownNumber), part, frame.mask >= 0);
         if (!taken.bricks[b])
-            taken.bricks[b] =
-                prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory, steps);
+            taken.bricks[b] = prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory);
         segments = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
         for (const Bytes& segment : segments) seen.bytes[b] += segment.size();
         roundAsDecoded(format, maxError, taken.bricks[b]->decoded, input);
@@ -100,13 +98,7 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
     return segments;
 }
 
-constexpr int kTimesOfSteps = 15; ///< after which others are tried again
-
-/// Steps of a component's former frame, and how many more times they may be used.
-struct KnownSteps {
-    StepChoice steps;
-    int uses = 0;
-};
+constexpr int kTimesOfSteps = 16; ///< at every such time several steps are tried, at others those of the time before
 
 } // namespace
 
@@ -120,7 +112,6 @@ struct ArchiveWriter::Impl {
     IndexPage page;                               ///< additions since the last commit
     std::map<MaskHash::Value, int> maskByHash;
     std::map<std::size_t, KnownModel> lastModel; ///< per component
-    std::map<std::size_t, KnownSteps> lastSteps; ///< likewise
     bool keepsFrames = true;
     Archive::Repeats repeats;
     /// Per component, and on D4* per parity. Missing: changes are unknown.
@@ -132,14 +123,14 @@ struct ArchiveWriter::Impl {
     Impl(const std::string& path, const Header& last) : file(path, last), header(last) {}
 
     int maskFor(const FrameSamples& samples, int zstdLevel);
-    /// `idle`: the frame codes no token with it.
+    /// Or the steps of a frame. `idle`: the frame codes no token with the model.
     void writeModel(const Model& model, bool idle, std::size_t component, FrameRecord& frame);
     const SeenFrame* frameBefore(const FrameRecord& frame, const FrameSamples& samples) const;
     std::vector<std::uint8_t> repeated(const SeenFrame* before, const FrameSamples& samples, const FrameRecord& frame,
                                        const FrameOptions& options) const;
     /// Whether and how coefficients of a frame are quantised: as at the time before where that is still shorter.
-    std::optional<SteppedFrame> stepsFor(std::size_t component, const FrameSamples& samples, const FrameRecord& frame,
-                                         const Model& model, const FrameOptions& options);
+    std::optional<SteppedFrame> stepsFor(const KnownModel* last, const FrameSamples& samples, const FrameRecord& frame,
+                                         const Model& model, const FrameOptions& options) const;
     /// Determines all coding parameters of a frame.
     FrameCoding prepare(int time, std::size_t component, const FrameSamples& samples, const FrameOptions& options);
     /// Codes every brick; true if no token was coded.
@@ -191,11 +182,15 @@ int ArchiveWriter::Impl::maskFor(const FrameSamples& samples, int zstdLevel) {
 
 void ArchiveWriter::Impl::writeModel(const Model& chosen, bool idle, std::size_t component, FrameRecord& frame) {
     const Model model = idle ? makeModel(Histogram(metadata.grid.levels, {}), 1) : chosen;
-    const Bytes bytes = idle && (header.features & kCompact) != 0 ? Bytes() : serialise(model);
+    const bool isStepped = frame.numbers.kind == NumberKind::Stepped;
+    const Bytes bytes = isStepped                                   ? serialise(frame.steps)
+                        : idle && (header.features & kCompact) != 0 ? Bytes()
+                                                                    : serialise(model);
     frame.model = static_cast<std::int32_t>(models++);
     page.models.push_back({file.position(), bytes.size(), checksum(bytes)});
     file.append(bytes);
-    lastModel[component] = {frame.model, model, frame.wavelet, frame.numbers.kind, frame.codeBits, frame.bodyCentred};
+    lastModel[component] = {frame.model,       model,      frame.wavelet, frame.numbers.kind, frame.codeBits,
+                            frame.bodyCentred, frame.steps};
 }
 
 /// The previous frame of the component on the same grid, if it is in memory and has the same scale and offset.
@@ -261,20 +256,12 @@ ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, b
 
 ArchiveWriter::~ArchiveWriter() = default;
 
-std::optional<SteppedFrame> ArchiveWriter::Impl::stepsFor(std::size_t component, const FrameSamples& samples,
+std::optional<SteppedFrame> ArchiveWriter::Impl::stepsFor(const KnownModel* last, const FrameSamples& samples,
                                                           const FrameRecord& frame, const Model& model,
-                                                          const FrameOptions& options) {
-    KnownSteps& known = lastSteps[component];
-    std::optional<SteppedFrame> steps;
-    if (known.uses > 0) {
-        steps = chooseSteps(metadata.grid, samples, frame, model, options, &known.steps);
-        --known.uses;
-    }
-    if (!steps) {
-        steps = chooseSteps(metadata.grid, samples, frame, model, options, nullptr);
-        known = steps ? KnownSteps{steps->steps, kTimesOfSteps} : KnownSteps{};
-    }
-    return steps;
+                                                          const FrameOptions& options) const {
+    if (last && last->kind == NumberKind::Stepped && int(frame.time) / step() % kTimesOfSteps != 0)
+        if (const auto again = chooseSteps(metadata.grid, samples, frame, model, options, &last->steps)) return again;
+    return chooseSteps(metadata.grid, samples, frame, model, options, nullptr);
 }
 
 FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const FrameSamples& samples,
@@ -299,11 +286,10 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     coding.importance = importanceOfBricks(grid, samples, options.range, options.categorical, options.importance);
     const bool byBand = (header.features & kBandContexts) != 0;
     coding.model = chooseModel(grid, samples, last, byBand, frame, options, coding.taken);
-    if (const auto steps = stepsFor(component, samples, frame, coding.model, options)) {
+    if (const auto steps = stepsFor(last, samples, frame, coding.model, options)) {
         useSteps(*steps, frame);
-        coding.steps = steps->steps;
         coding.taken.bricks.clear();
-        frame.model = last && last->kind == NumberKind::Stepped ? last->number : -1;
+        frame.model = last && last->kind == NumberKind::Stepped && last->steps == frame.steps ? last->number : -1;
         header.features |= kSteppedBricks;
     } else if (!coding.taken.serves(frame, coding.model)) {
         coding.taken.bricks.clear();

@@ -72,9 +72,10 @@ public:
             format.numbers = how.numbers;
             format.wavelet = how.wavelet;
             format.codeBits = how.codeBits;
+            format.steps = how.steps;
             SplitMemory memory;
             const PreparedBrick brick =
-                prepareBrick(format, box.input.samples, box.input.present, maxError_, {}, memory, how.steps);
+                prepareBrick(format, box.input.samples, box.input.present, maxError_, {}, memory);
             return encodeBrick(format, brick, box.input.samples, box.input.present, compressor, idle);
         });
     }
@@ -156,6 +157,7 @@ void useSteps(const SteppedFrame& steps, FrameRecord& frame) {
     frame.numbers = steps.numbers;
     frame.wavelet = steps.wavelet;
     frame.codeBits = steps.codeBits;
+    frame.steps = steps.steps;
 }
 
 } // namespace tessera::codec

@@ -176,7 +176,7 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
 
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
                            std::span<const std::uint8_t> present, double maxError, Contexts contexts,
-                           SplitMemory& memory, const StepChoice& steps) {
+                           SplitMemory& memory) {
     assert(samples.size() == countOf(format.size) * volume::byteSize(format.type));
     assert(present.empty() || present.size() == countOf(format.size));
     PreparedBrick brick;
@@ -184,7 +184,7 @@ PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte>
     const bool plain = format.type != volume::ScalarType::F32 && present.empty();
     if (!plain) numbers = numbersOf(format, samples, present, maxError);
     if (format.isStepped()) {
-        SteppedBrick stepped = encodeStepped(format, numbers.codes, present, steps, memory.boxes32);
+        SteppedBrick stepped = encodeStepped(format, numbers.codes, present, memory.boxes32);
         addInexact(format, samples, present, maxError, stepped.codes, numbers);
         brick = {std::move(stepped.segments), std::move(stepped.codes), {}, {}, {}, {}};
     }

@@ -2,6 +2,7 @@
 
 #include "codec/brick/numbers.h"
 #include "codec/wavelet/lifting.h"
+#include "codec/wavelet/subbands.h"
 #include "volume/field/lattice.h"
 #include "volume/field/scalar.h"
 
@@ -23,7 +24,8 @@ struct BrickFormat {
     bool keepsAbsent = false; ///< the stored numbers of absent samples are coded as well
     int codeBits = 32;        ///< every |code| is below 2^codeBits; narrow codes are faster
     bool bodyCentred =
-        false; ///< of BCC: the odd sublattice is predicted from the even one (codec/wavelet/body_centred.h)
+        false;          ///< of BCC: the odd sublattice is predicted from the even one (codec/wavelet/body_centred.h)
+    StepChoice steps{}; ///< for numbers of kind Stepped
 
     bool operator==(const BrickFormat&) const = default;
 

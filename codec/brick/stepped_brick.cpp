@@ -27,11 +27,11 @@ std::uint32_t stepOf(const Subband& subband, std::uint32_t quantum) {
 }
 
 /// The subbands of the box of one sublattice at a level.
-void addBands(LevelBox<std::int32_t>& box, int level, bool coarsest, DetailSplit split, std::uint32_t quantum,
+void addBands(LevelBox<std::int32_t>& box, int level, bool coarsest, const StepChoice& steps,
               std::vector<StepBand>& bands) {
     const Box<std::int32_t> values = box.box();
     const std::ptrdiff_t slice = std::ptrdiff_t(values.pitch) * values.size.y;
-    for (const Subband& part : subbandsOf(values.size, level, coarsest || box.undivided(), split)) {
+    for (const Subband& part : subbandsOf(values.size, level, coarsest || box.undivided(), steps.split)) {
         const std::ptrdiff_t at = part.begin.z * slice + std::ptrdiff_t(part.begin.y) * values.pitch + part.begin.x;
         Band<std::int32_t> band;
         band.values = values.values + at;
@@ -40,7 +40,7 @@ void addBands(LevelBox<std::int32_t>& box, int level, bool coarsest, DetailSplit
         band.rowPitch = values.pitch;
         band.slicePitch = slice;
         bands.push_back({band, AdaptiveBands::groupOf(std::popcount(static_cast<unsigned>(part.high)), level),
-                         stepOf(part, quantum)});
+                         stepOf(part, steps.quantum)});
     }
 }
 
@@ -93,7 +93,6 @@ bool isWide(const BrickFormat& format) {
 /// The samples of finer levels from coarser ones and coefficients, shared by writer and reader.
 struct Joining {
     const BrickFormat& format;
-    DetailSplit split;
     DecodedBrick::Boxes<std::int32_t>& boxes;
     bool predicted;
 
@@ -102,7 +101,7 @@ struct Joining {
     void level() {
         auto& [samples, details, spare] = boxes;
         for (std::size_t s = 0; s < std::size_t(predicted ? 1 : step()); ++s) {
-            splitDetails(details[s], format.wavelet, isWide(format), split, false);
+            splitDetails(details[s], format.wavelet, isWide(format), format.steps.split, false);
             joinLevel<std::int32_t>(format, samples[s], details[s], spare[s]);
         }
         if (predicted) std::swap(spare[1], details[1]);
@@ -134,16 +133,22 @@ void correct(std::span<const Correction> corrections, DecodedBrick& out) {
 
 } // namespace
 
-DecodeStatus takeSteps(std::span<const std::byte>& in, StepChoice& steps) {
-    if (in.size() < 2) return DecodeStatus::Truncated;
-    steps.split = {static_cast<int>(in[0]), static_cast<int>(in[1])};
-    in = in.subspan(2);
+Bytes serialise(const StepChoice& steps) {
+    Bytes out{static_cast<std::byte>(steps.split.axes), static_cast<std::byte>(steps.split.least)};
+    appendLength(out, steps.quantum);
+    return out;
+}
+
+DecodeStatus parseSteps(std::span<const std::byte> bytes, StepChoice& steps) {
+    if (bytes.size() < 2) return DecodeStatus::Truncated;
+    steps.split = {static_cast<int>(bytes[0]), static_cast<int>(bytes[1])};
+    std::span<const std::byte> in = bytes.subspan(2);
     std::uint64_t length = 0;
     if (const DecodeStatus status = takeLength(in, length); status != DecodeStatus::Ok) return status;
     if (steps.split.axes > 7 || steps.split.least < 2 || length < 1 || length > kMostQuantum)
         return DecodeStatus::BadMode;
     steps.quantum = static_cast<std::uint32_t>(length);
-    return DecodeStatus::Ok;
+    return in.empty() ? DecodeStatus::Ok : DecodeStatus::Trailing;
 }
 
 DecodeStatus decodeStepped(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
@@ -151,9 +156,8 @@ DecodeStatus decodeStepped(const BrickFormat& format, std::span<const std::span<
     const bool masked = !present.empty();
     const auto step = static_cast<std::size_t>(format.sublattices());
     auto& boxes = out.boxes32;
-    Joining joining{format, {}, boxes, format.predictsOdd(masked)};
+    Joining joining{format, boxes, format.predictsOdd(masked)};
     AdaptiveBands model;
-    std::uint32_t quantum = 0;
     out.corrections.clear();
     for (int l = format.levels - 1; l >= level; --l) {
         const bool coarsest = l == format.levels - 1;
@@ -161,12 +165,6 @@ DecodeStatus decodeStepped(const BrickFormat& format, std::span<const std::span<
         if (l == 0)
             if (const DecodeStatus status = decodeExtras(format, present, in, out); status != DecodeStatus::Ok)
                 return status;
-        if (coarsest) {
-            StepChoice steps;
-            if (const DecodeStatus status = takeSteps(in, steps); status != DecodeStatus::Ok) return status;
-            joining.split = steps.split;
-            quantum = steps.quantum;
-        }
         std::vector<StepBand> bands;
         auto& coded = coarsest ? boxes.samples : boxes.details;
         for (std::size_t s = 0; s < step; ++s) {
@@ -178,11 +176,11 @@ DecodeStatus decodeStepped(const BrickFormat& format, std::span<const std::span<
             if (coded[s].masked()) {
                 placeFlags<std::int32_t>(format, present, l, int(s), !coarsest, coded[s]);
                 coded[s].clear();
-                if (!coarsest) splitDetails(coded[s], format.wavelet, false, joining.split, true); // moves the flags
+                if (!coarsest) splitDetails(coded[s], format.wavelet, false, format.steps.split, true); // moves flags
             }
-            addBands(coded[s], l, coarsest, joining.split, quantum, bands);
+            addBands(coded[s], l, coarsest, format.steps, bands);
         }
-        if (in.empty() && !coarsest) {
+        if (in.empty()) {
             for (const StepBand& one : bands)
                 forRows({one}, [](std::span<std::int32_t> row, const std::uint8_t*, std::uint32_t) {
                     std::fill(row.begin(), row.end(), 0);
@@ -208,15 +206,14 @@ DecodeStatus decodeStepped(const BrickFormat& format, std::span<const std::span<
 }
 
 SteppedBrick encodeStepped(const BrickFormat& format, std::span<const std::uint32_t> codes,
-                           std::span<const std::uint8_t> present, const StepChoice& steps,
-                           BrickLevels<std::int32_t>& levels) {
+                           std::span<const std::uint8_t> present, BrickLevels<std::int32_t>& levels) {
     const bool masked = !present.empty();
     const int step = format.sublattices(), count = format.levels;
     SteppedBrick out;
     out.segments.resize(std::size_t(count));
     DecodedBrick decoded;
     decoded.begin(format, 0);
-    Joining joining{format, steps.split, decoded.boxes32, format.predictsOdd(masked)};
+    Joining joining{format, decoded.boxes32, format.predictsOdd(masked)};
     std::vector<bool> nothing(static_cast<std::size_t>(count), true);
     std::vector<std::vector<StepBand>> bands(static_cast<std::size_t>(count));
 
@@ -227,15 +224,15 @@ SteppedBrick encodeStepped(const BrickFormat& format, std::span<const std::uint3
         for (int s = 0; s < step; ++s) {
             LevelBox<std::int32_t>& box = levels[std::size_t(l * step + s)];
             const bool residual = s == 1 && joining.predicted;
-            if (!coarsest && !residual) splitDetails(box, format.wavelet, isWide(format), steps.split, true);
-            addBands(box, l, coarsest, steps.split, steps.quantum, bands[at]);
+            if (!coarsest && !residual) splitDetails(box, format.wavelet, isWide(format), format.steps.split, true);
+            addBands(box, l, coarsest, format.steps, bands[at]);
         }
         nothing[at] = divide(bands[at]);
         // What a reader will get.
         auto& coded = coarsest ? decoded.boxes32.samples : decoded.boxes32.details;
         for (int s = 0; s < step; ++s) coded[std::size_t(s)] = levels[std::size_t(l * step + s)];
         std::vector<StepBand> again;
-        for (int s = 0; s < step; ++s) addBands(coded[std::size_t(s)], l, coarsest, steps.split, steps.quantum, again);
+        for (int s = 0; s < step; ++s) addBands(coded[std::size_t(s)], l, coarsest, format.steps, again);
         multiply(again);
         if (!coarsest) joining.level();
     }
@@ -259,12 +256,7 @@ SteppedBrick encodeStepped(const BrickFormat& format, std::span<const std::uint3
         const auto at = static_cast<std::size_t>(l);
         const bool coarsest = l == count - 1;
         Bytes& segment = out.segments[std::size_t(count - 1 - l)];
-        if (coarsest) {
-            segment = {static_cast<std::byte>(steps.split.axes), static_cast<std::byte>(steps.split.least)};
-            appendLength(segment, steps.quantum);
-        } else if (nothing[at] && (l > 0 || corrections.empty())) {
-            continue;
-        }
+        if (nothing[at] && (l > 0 || corrections.empty())) continue;
         RangeEncoder coder;
         if (l == 0) model.encode(coder, corrections);
         if (coarsest)
@@ -275,8 +267,7 @@ SteppedBrick encodeStepped(const BrickFormat& format, std::span<const std::uint3
                 model.encode(coder, {band.values, band.present, band.size, band.rowPitch, band.slicePitch, band.kind},
                              one.group);
             }
-        const Bytes bytes = coder.finish();
-        segment.insert(segment.end(), bytes.begin(), bytes.end());
+        segment = coder.finish();
     }
     return out;
 }

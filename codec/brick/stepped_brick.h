@@ -3,7 +3,6 @@
 #include "codec/brick/brick_levels.h"
 #include "codec/brick/decoded_brick.h"
 #include "codec/bytes/bytes.h"
-#include "codec/wavelet/subbands.h"
 
 #include <span>
 #include <vector>
@@ -16,12 +15,6 @@
 /// bricks".)
 namespace tessera::codec {
 
-/// How coefficients of a brick are quantised, for numbers of kind Stepped.
-struct StepChoice {
-    DetailSplit split;
-    std::uint32_t quantum = 0; ///< of coefficients whose waveforms have length 1, in 1/16 of a code
-};
-
 struct SteppedBrick {
     std::vector<Bytes> segments;      ///< without absent and exact samples
     std::vector<std::uint32_t> codes; ///< as decoded, storage order; undefined where absent
@@ -29,11 +22,11 @@ struct SteppedBrick {
 
 /// Codes a brick such that no code of a present sample changes by more than kReach.
 SteppedBrick encodeStepped(const BrickFormat& format, std::span<const std::uint32_t> codes,
-                           std::span<const std::uint8_t> present, const StepChoice& steps,
-                           BrickLevels<std::int32_t>& memory);
+                           std::span<const std::uint8_t> present, BrickLevels<std::int32_t>& memory);
 
-/// Takes the steps from the front of segment 0, behind what it may have "first" (FORMAT.md 4.1).
-DecodeStatus takeSteps(std::span<const std::byte>& in, StepChoice& steps);
+Bytes serialise(const StepChoice& steps);
+/// Parses steps; the bytes must end with them.
+DecodeStatus parseSteps(std::span<const std::byte> bytes, StepChoice& steps);
 
 /// decodeBrick for such bricks.
 DecodeStatus decodeStepped(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,

@@ -4,6 +4,7 @@
 #include "codec/brick/numbers.h"
 #include "codec/container/container.h"
 #include "codec/wavelet/lifting.h"
+#include "codec/wavelet/subbands.h"
 #include "volume/bricks/brick_source.h"
 
 #include <vector>
@@ -54,7 +55,8 @@ struct FrameRecord {
     bool keepsAbsent = false;
     bool bodyCentred = false; ///< with kBrickNotes only
     std::int32_t mask = -1;   ///< index of a MaskRecord; -1: all present
-    std::int32_t model = -1;  ///< index of a model of the coefficient coder; -1: none yet
+    std::int32_t model = -1;  ///< index of a model of the coefficient coder, or of steps; -1: none yet
+    StepChoice steps;         ///< for numbers of kind Stepped; stored in place of a model
     int codeBits = 32;        ///< every |code| is below 2^codeBits
     double valueOffset = 0, valueScale = 1;
     std::vector<FrameBrick> bricks;

@@ -3,8 +3,6 @@
 #include "codec/archive/archive_impl.h"
 #include "codec/archive/brick_input.h"
 #include "codec/archive/frame_model.h"
-#include "codec/archive/frame_steps.h"
-#include "codec/brick/stepped_brick.h"
 #include "volume/base/parallel.h"
 
 #include <mutex>
@@ -63,16 +61,6 @@ struct BoxesOfFrame {
     }
 };
 
-/// The steps of a frame: those of its first brick that has bytes; the usual ones if bricks have a single level.
-StepChoice stepsOf(const auto& impl, const FrameRecord& frame) {
-    for (std::size_t b = 0; impl.metadata.grid.levels > 1 && b < frame.bricks.size(); ++b) {
-        std::span<const std::byte> in =
-            frame.segments[b].length > 0 ? impl.segment(frame.segments[b]) : std::span<const std::byte>();
-        if (StepChoice steps; takeSteps(in, steps) == DecodeStatus::Ok) return steps;
-    }
-    return usualSteps();
-}
-
 } // namespace
 
 std::vector<MergedBytes> bytesOfMerged(const Archive& archive, std::span<const volume::MergedBrick> boxes,
@@ -82,7 +70,8 @@ std::vector<MergedBytes> bytesOfMerged(const Archive& archive, std::span<const v
     std::vector<MergedBytes> sums(boxes.size());
     for (std::size_t f = 0; !boxes.empty() && f < impl.index.frames.size(); ++f) {
         progress.advance(double(f) / double(impl.index.frames.size()), "merging");
-        const FrameRecord& frame = impl.index.frames[f];
+        FrameRecord frame = impl.index.frames[f];
+        if (frame.numbers.kind == NumberKind::Stepped) frame.steps = impl.steps(frame);
         std::size_t component = f % impl.components, parameter = 0;
         while (component >= std::size_t(impl.metadata.info.parameters[parameter].components))
             component -= std::size_t(impl.metadata.info.parameters[parameter++].components);
@@ -96,9 +85,8 @@ std::vector<MergedBytes> bytesOfMerged(const Archive& archive, std::span<const v
                 wanted[b] = 1;
             });
         const BoxesOfFrame work{grid, field, frame};
-        const auto decoder = impl.decoder(frame.model);
+        const auto decoder = impl.decoder(frame);
         const BandEncoder encoder(work.modelFor(boxes, wanted, decoder->model(), sums.front().together));
-        const StepChoice steps = frame.numbers.kind == NumberKind::Stepped ? stepsOf(impl, frame) : StepChoice();
         parallelRanges(boxes.size(), [&](std::size_t first, std::size_t last) {
             Compressor compressor(effortFor(field, impl.metadata.options.zstdLevel),
                                   (impl.header.header.features & kCompact) != 0);
@@ -108,8 +96,8 @@ std::vector<MergedBytes> bytesOfMerged(const Archive& archive, std::span<const v
                 if (wanted[b] == 0) continue;
                 const BrickFormat format = work.take(boxes[b], input);
                 const double maxError = format.isStepped() ? boundOf(format.numbers) : 0;
-                const PreparedBrick brick = prepareBrick(format, input.samples, input.present, maxError,
-                                                         encoder.model().contexts, memory, steps);
+                const PreparedBrick brick =
+                    prepareBrick(format, input.samples, input.present, maxError, encoder.model().contexts, memory);
                 for (const Bytes& segment :
                      encodeBrick(format, brick, input.samples, input.present, compressor, encoder))
                     sums[b].together += segment.size();

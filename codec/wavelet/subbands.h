@@ -20,6 +20,14 @@ struct DetailSplit {
     bool operator==(const DetailSplit&) const = default;
 };
 
+/// How coefficients are quantised.
+struct StepChoice {
+    DetailSplit split;
+    std::uint32_t quantum = 0; ///< of coefficients whose waveforms have length 1, in 1/16 of a code
+
+    bool operator==(const StepChoice&) const = default;
+};
+
 /// A part of the box of a level.
 struct Subband {
     glm::ivec3 begin{0}, size{0};

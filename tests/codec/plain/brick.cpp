@@ -158,7 +158,8 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
     }
 
     if (frame.numbers == 4)
-        corrections = readStepped({levels_, level, frame.wavelet, centred, flags.size()}, stepped, boxes);
+        corrections = readStepped({levels_, level, frame.wavelet, centred, flags.size(), checked(models_[frame.model])},
+                                  stepped, boxes);
 
     // 4.3
     const bool asFloat = frame.numbers == 2;

@@ -211,19 +211,13 @@ std::vector<std::pair<std::size_t, std::int64_t>>
 readStepped(const SteppedShape& shape, const std::vector<Octets>& segments, std::vector<Box>& boxes) {
     std::vector<std::pair<std::size_t, std::int64_t>> corrections;
     Contexts contexts;
-    int axes = 0, least = 2;
-    std::uint64_t quantum = 0;
+    Reader chunk(shape.steps);
+    const int axes = int(chunk.number(1)), least = int(chunk.number(1));
+    const std::uint64_t quantum = chunk.length();
+    need(axes < 8 && least >= 2 && quantum >= 1 && quantum <= 1u << 28 && chunk.at == chunk.end, "steps");
     for (int s = 0; s < int(segments.size()); ++s) {
         const int l = shape.levels - 1 - s;
-        Octets bytes = segments[std::size_t(s)];
-        if (s == 0) {
-            Reader in(bytes);
-            axes = int(in.number(1));
-            least = int(in.number(1));
-            quantum = in.length();
-            need(axes < 8 && least >= 2 && quantum >= 1 && quantum <= 1u << 28, "steps");
-            bytes = in.take(std::size_t(in.end - in.at));
-        }
+        const Octets& bytes = segments[std::size_t(s)];
         // Subbands, with the flags of those that are split further moved to their places.
         std::vector<std::pair<Box*, Part>> parts, details;
         for (Box& box : boxes) {
@@ -262,7 +256,7 @@ readStepped(const SteppedShape& shape, const std::vector<Octets>& segments, std:
                 for (const Part& one : partsOf(whole, axes, least)) parts.push_back({&box, one});
             }
         }
-        if (s == 0 || !bytes.empty()) {
+        if (!bytes.empty()) {
             Bits bits(bytes);
             if (l == 0) {
                 std::uint64_t next = 0;

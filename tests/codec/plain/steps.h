@@ -12,6 +12,7 @@ struct SteppedShape {
     int levels = 1, level = 0, wavelet = 0;
     bool centred = false;
     std::size_t samples = 0; ///< at full resolution
+    Octets steps;            ///< the chunk that takes the place of a model
 };
 
 /// Reads the coefficients of all levels from `wanted` on into boxes with flags in coded order; their details are as in
