@@ -45,8 +45,8 @@ void addRenderCommand(CLI::App& app) {
         // Report a wrong size or a missing folder before the work starts.
         pictureRequest(options->picture, Session{});
         const std::string ending = textEnding(options->output);
-        if (!ending.empty() && options->picture.view.empty())
-            throw Error("figures and tables are of one view: name it with --view", options->output);
+        if (ending == "csv" && options->picture.view.empty())
+            throw Error("a table is of one view: name it with --view", options->output);
         const auto folder = std::filesystem::absolute(options->output).parent_path();
         if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
         Opened opened = openForPicture(options->picture, progress);

@@ -20,10 +20,16 @@ struct PageBox {
     glm::dvec2 lo{0}, hi{0};
 };
 
-/// A line through points.
+/// A line through points; closed if the last is the first.
 struct Stroke {
     std::vector<glm::dvec2> points;
     double width = 1;
+    glm::vec4 color{0, 0, 0, 1};
+};
+
+/// The area within points.
+struct Polygon {
+    std::vector<glm::dvec2> points;
     glm::vec4 color{0, 0, 0, 1};
 };
 
@@ -64,7 +70,7 @@ struct Picture {
 
 /// A shape on the page.
 struct Mark {
-    std::variant<Stroke, Rect, Circle, Words, Picture> shape;
+    std::variant<Stroke, Polygon, Rect, Circle, Words, Picture> shape;
 };
 
 } // namespace shapes

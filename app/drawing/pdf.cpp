@@ -82,6 +82,7 @@ private:
     void path(const std::vector<glm::dvec2>& points) {
         for (std::size_t i = 0; i < points.size(); ++i)
             (i == 0 ? cairo_move_to : cairo_line_to)(page_, points[i].x, points[i].y);
+        if (points.size() > 2 && points.front() == points.back()) cairo_close_path(page_);
     }
     /// Draws the path: its edge of a width, or with 0 its inside.
     void paint(glm::vec4 ink, double line) {
@@ -93,6 +94,10 @@ private:
     void draw(const Stroke& stroke) {
         path(stroke.points);
         paint(stroke.color, stroke.width);
+    }
+    void draw(const Polygon& polygon) {
+        path(polygon.points);
+        paint(polygon.color, 0);
     }
     void draw(const Rect& rect) {
         rectangle(rect.box);

@@ -59,6 +59,7 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
 std::string path(const std::vector<glm::dvec2>& points) {
     std::string out;
     for (const glm::dvec2& point : points) out += (out.empty() ? "M" : "L") + number(point.x) + " " + number(point.y);
+    if (points.size() > 2 && points.front() == points.back()) out += "Z";
     return out;
 }
 
@@ -96,6 +97,9 @@ private:
             body_ += "<path d=\"" + path(line.points) + "\" fill=\"none\" stroke-linejoin=\"round\"";
         }
         body_ += stroke(line.color, line.width) + "/>\n";
+    }
+    void draw(const Polygon& polygon) {
+        body_ += "<path d=\"" + path(polygon.points) + "Z\"" + fill(polygon.color) + "/>\n";
     }
     void draw(const Rect& rect) { body_ += "<rect" + placed(rect.box) + filledOrEdged(rect.color, rect.line) + "/>\n"; }
     void draw(const Circle& circle) {

@@ -1,5 +1,6 @@
 #include "app/platform/gui.h"
 
+#include "app/platform/drawn_page.h"
 #include "app/ui/keys.h"
 #include "app/workbench/workbench.h"
 #include "volume/base/error.h"
@@ -46,13 +47,15 @@ private:
     GLint former_ = 0;
 };
 
-vis::Image readPicture(glm::ivec2 size) {
+/// The pixels from `lo` to before `hi`, counted from the top, of the bound framebuffer, which is `height` high.
+vis::Image readPixels(glm::ivec2 lo, glm::ivec2 hi, int height) {
+    const glm::ivec2 size = hi - lo;
     vis::Image image;
     image.size = size;
     const std::size_t row = static_cast<std::size_t>(size.x) * 4;
     std::vector<std::uint8_t> upside(row * static_cast<std::size_t>(size.y));
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE, upside.data());
+    glReadPixels(lo.x, height - hi.y, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE, upside.data());
     image.rgba.resize(upside.size());
     for (std::size_t y = 0; y < static_cast<std::size_t>(size.y); ++y) {
         const auto from =
@@ -60,8 +63,20 @@ vis::Image readPicture(glm::ivec2 size) {
         std::copy(from, from + static_cast<std::ptrdiff_t>(row),
                   image.rgba.begin() + static_cast<std::ptrdiff_t>(y * row));
     }
-    for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
     return image;
+}
+
+/// Colours as they were before they were blended onto nothing, which multiplies them by their opacity.
+void divideByOpacity(vis::Image& image) {
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+        const int opacity = image.rgba[i + 3];
+        for (std::size_t c = i; opacity > 0 && opacity < 255 && c < i + 3; ++c)
+            image.rgba[c] = static_cast<std::uint8_t>(std::min(255, (image.rgba[c] * 255 + opacity / 2) / opacity));
+    }
+}
+
+glm::vec3 groundOf(Theme theme) {
+    return glm::vec3(theme == Theme::Dark ? 0.075f : 0.87f);
 }
 
 } // namespace
@@ -96,8 +111,8 @@ void Gui::uploadFonts() {
 void Gui::draw(glm::ivec2 framebuffer, Theme theme) {
     glViewport(0, 0, framebuffer.x, framebuffer.y);
     glDisable(GL_SCISSOR_TEST);
-    const float gray = theme == Theme::Dark ? 0.075f : 0.87f;
-    glClearColor(gray, gray, gray, 1);
+    const glm::vec3 ground = groundOf(theme);
+    glClearColor(ground.r, ground.g, ground.b, 1);
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
@@ -105,13 +120,33 @@ void Gui::draw(glm::ivec2 framebuffer, Theme theme) {
 struct OffscreenFrames::Impl {
     glm::ivec2 size;
     Framebuffer target;
+    bool smooth;
+
+    /// Draws some triangles of the last frame on nothing.
+    vis::Image drawParts(const std::vector<DrawnPart>& parts, glm::ivec2 lo, glm::ivec2 hi) const {
+        ImDrawData& frame = *ImGui::GetDrawData();
+        std::vector<ImVector<ImDrawCmd>> all(static_cast<std::size_t>(frame.CmdListsCount));
+        for (int n = 0; n < frame.CmdListsCount; ++n) all[std::size_t(n)].swap(frame.CmdLists[n]->CmdBuffer);
+        for (const DrawnPart& part : parts) part.list->CmdBuffer.push_back(part.command);
+        target.bind();
+        glViewport(0, 0, size.x, size.y);
+        glDisable(GL_SCISSOR_TEST);
+        glClearColor(0, 0, 0, 0);
+        glClear(GL_COLOR_BUFFER_BIT);
+        ImGui_ImplOpenGL3_RenderDrawData(&frame);
+        for (int n = 0; n < frame.CmdListsCount; ++n) all[std::size_t(n)].swap(frame.CmdLists[n]->CmdBuffer);
+        vis::Image image = readPixels(lo, hi, size.y);
+        divideByOpacity(image);
+        return image;
+    }
 };
 
-OffscreenFrames::OffscreenFrames(glm::ivec2 size) : impl_(new Impl{size, Framebuffer(size)}) {}
+OffscreenFrames::OffscreenFrames(glm::ivec2 size, bool smooth) : impl_(new Impl{size, Framebuffer(size), smooth}) {}
 OffscreenFrames::~OffscreenFrames() = default;
 
 void OffscreenFrames::draw(Workbench& workbench, float scale, const std::function<void(ImGuiIO&)>& input) {
     if (workbench.prepare(scale)) Gui::uploadFonts();
+    ImGui::GetStyle().AntiAliasedLines = ImGui::GetStyle().AntiAliasedFill = impl_->smooth;
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = {static_cast<float>(impl_->size.x), static_cast<float>(impl_->size.y)};
     io.DeltaTime = 1.0f / 60;
@@ -128,15 +163,28 @@ void OffscreenFrames::draw(Workbench& workbench, float scale, const std::functio
 
 vis::Image OffscreenFrames::read() const {
     impl_->target.bind();
-    return readPicture(impl_->size);
+    vis::Image image = readPixels({0, 0}, impl_->size, impl_->size.y);
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+    return image;
+}
+
+VectorPage OffscreenFrames::page(const Workbench& workbench, double points) const {
+    const auto drawn = [&](const std::vector<DrawnPart>& parts, glm::ivec2 lo, glm::ivec2 hi) {
+        return impl_->drawParts(parts, lo, hi);
+    };
+    VectorPage page = pageOf(*ImGui::GetDrawData(), workbench.look().fonts(), points, drawn);
+    const glm::vec4 ground(groundOf(workbench.session().appearance.theme), 1);
+    page.marks.insert(page.marks.begin(), {shapes::Rect{.box = {{0, 0}, page.size}, .color = ground}});
+    return page;
 }
 
 void OffscreenFrames::finish() {
     glFinish();
 }
 
-vis::Image drawUntilDone(Workbench& workbench, glm::ivec2 size, float scale) {
-    OffscreenFrames target(size);
+namespace {
+
+void drawUntilQuiet(OffscreenFrames& target, Workbench& workbench, float scale) {
     // Two quiet frames in a row: sizes that ImGui learns in one frame are right in the next.
     int quiet = 0;
     for (int frames = 0; quiet < 3; ++frames) {
@@ -149,7 +197,20 @@ vis::Image drawUntilDone(Workbench& workbench, glm::ivec2 size, float scale) {
         }
         if (frames > 100000) throw MachineError("the picture was not completed");
     }
+}
+
+} // namespace
+
+vis::Image drawUntilDone(Workbench& workbench, glm::ivec2 size, float scale) {
+    OffscreenFrames target(size);
+    drawUntilQuiet(target, workbench, scale);
     return target.read();
+}
+
+VectorPage drawPageUntilDone(Workbench& workbench, glm::ivec2 size, float scale, double points) {
+    OffscreenFrames target(size, false);
+    drawUntilQuiet(target, workbench, scale);
+    return target.page(workbench, points);
 }
 
 } // namespace tessera::app

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/drawing/drawing.h"
 #include "app/session/session.h"
 #include "vis/image/image_io.h"
 
@@ -37,8 +38,8 @@ private:
 /// (Gui) and a GL context.
 class OffscreenFrames {
 public:
-    /// Throws MachineError when the size is too large.
-    explicit OffscreenFrames(glm::ivec2 size);
+    /// `smooth`: edges of shapes are antialiased. Throws MachineError when the size is too large.
+    explicit OffscreenFrames(glm::ivec2 size, bool smooth = true);
     ~OffscreenFrames();
     OffscreenFrames(const OffscreenFrames&) = delete;
     OffscreenFrames& operator=(const OffscreenFrames&) = delete;
@@ -46,6 +47,8 @@ public:
     /// Draws one frame; `input` may set mouse and keys; without it the mouse is outside and nothing is pressed.
     void draw(Workbench& workbench, float scale, const std::function<void(ImGuiIO&)>& input = {});
     vis::Image read() const;
+    /// The last frame as vector graphics, `points` of the page per pixel; it must not be smooth.
+    VectorPage page(const Workbench& workbench, double points) const;
     /// Waits until GL has drawn everything so far.
     static void finish();
 
@@ -58,5 +61,8 @@ private:
 /// reads the last one. Needs an ImGui context (Gui) and a GL context. Throws MachineError when the size is too large,
 /// Cancelled.
 vis::Image drawUntilDone(Workbench& workbench, glm::ivec2 size, float scale);
+
+/// The same as vector graphics, `points` of the page per pixel.
+VectorPage drawPageUntilDone(Workbench& workbench, glm::ivec2 size, float scale, double points);
 
 } // namespace tessera::app

@@ -9,9 +9,10 @@ namespace tessera::app {
 
 namespace {
 
-vis::Image renderAndInspect(const SessionDocument& document, const Sources& sources,
-                            std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request,
-                            const Inspect& inspect) {
+/// Installs a session in a workbench without a window, and calls `draw(workbench)`.
+template <class Draw>
+auto withWorkbench(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
+                   const PictureRequest& request, const Draw& draw) {
     if (!request.pane.empty() && !document.session.views.contains(request.pane)) {
         std::string known;
         for (const std::string& pane : paneKeys(document.session)) known += (known.empty() ? "" : ", ") + pane;
@@ -38,10 +39,24 @@ vis::Image renderAndInspect(const SessionDocument& document, const Sources& sour
     opened.numbers = sources.numbers;
     opened.origin = sources.origin;
     workbench.install(std::move(opened));
-    vis::Image image = drawUntilDone(workbench, request.size, request.scale);
-    image.dpi = request.dpi;
-    if (inspect) inspect(workbench);
-    return image;
+    return draw(workbench);
+}
+
+vis::Image renderAndInspect(const SessionDocument& document, const Sources& sources,
+                            std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request,
+                            const Inspect& inspect) {
+    return withWorkbench(document, sources, std::move(renderer), request, [&](Workbench& workbench) {
+        vis::Image image = drawUntilDone(workbench, request.size, request.scale);
+        image.dpi = request.dpi;
+        if (inspect) inspect(workbench);
+        return image;
+    });
+}
+
+/// Points of a page per pixel of a picture; on screens there are 96 pixels in an inch.
+double pointsPerPixel(const PictureRequest& request) {
+    constexpr double kOfScreens = 96;
+    return 72 / (request.dpi > 0 ? request.dpi : kOfScreens);
 }
 
 } // namespace
@@ -64,16 +79,27 @@ PictureMaker::~PictureMaker() = default;
 
 std::string PictureMaker::exportText(const SessionDocument& document, const Sources& sources, PictureRequest request,
                                      const std::string& ending, const Progress& progress) {
-    request.controls = true;
+    const bool table = ending == "csv";
     std::string text;
-    renderAndInspect(document, sources, impl_->renderer, request, [&](const Workbench& workbench) {
-        const ViewExport* offered = workbench.exported(request.pane);
-        const bool table = ending == "csv";
-        if (!offered || (table ? !offered->csv : !offered->figure))
-            throw Error("has no " + ending + " of what it shows", "--view", request.pane);
-        text = table ? offered->csv(progress) : fileOf(offered->figure(progress), ending);
+    request.controls = true;
+    if (!request.pane.empty())
+        renderAndInspect(document, sources, impl_->renderer, request, [&](const Workbench& workbench) {
+            const ViewExport* offered = workbench.exported(request.pane);
+            if (offered && table && offered->csv) text = offered->csv(progress);
+            if (offered && !table && offered->figure) text = fileOf(offered->figure(progress), ending);
+        });
+    if (!text.empty()) return text;
+    if (table) throw Error("has no " + ending + " of what it shows", "--view", request.pane);
+    request.controls = false;
+    return fileOf(page(document, sources, request), ending);
+}
+
+VectorPage PictureMaker::page(const SessionDocument& document, const Sources& sources, const PictureRequest& request) {
+    return withWorkbench(document, sources, impl_->renderer, request, [&](Workbench& workbench) {
+        VectorPage page = drawPageUntilDone(workbench, request.size, request.scale, pointsPerPixel(request));
+        page.numbers = originText(sources.origin, sources.numbers->info());
+        return page;
     });
-    return text;
 }
 
 vis::Image PictureMaker::render(const SessionDocument& document, const Sources& sources, const PictureRequest& request,

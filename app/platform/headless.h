@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/drawing/drawing.h"
 #include "app/workbench/workbench.h"
 
 /// The workbench without a window: the same frames, drawn into memory.
@@ -21,9 +22,13 @@ public:
     PictureMaker(const PictureMaker&) = delete;
     PictureMaker& operator=(const PictureMaker&) = delete;
 
-    /// What Export in the view of request.pane writes: "svg", "pdf" or "csv". Throws Error where it has none.
+    /// What Export in the view of request.pane writes: "svg", "pdf" or "csv"; for figures of views that have none, and of
+    /// the window, its page. Throws Error where there is no table.
     std::string exportText(const SessionDocument& document, const Sources& sources, PictureRequest request,
                            const std::string& ending, const Progress& progress = {});
+
+    /// What render() would draw, as vector graphics.
+    VectorPage page(const SessionDocument& document, const Sources& sources, const PictureRequest& request);
 
     vis::Image render(const SessionDocument& document, const Sources& sources, const PictureRequest& request,
                       const Inspect& inspect = {});
