@@ -22,8 +22,8 @@ public:
     PictureMaker(const PictureMaker&) = delete;
     PictureMaker& operator=(const PictureMaker&) = delete;
 
-    /// What Export in the view of request.pane writes: "svg", "pdf" or "csv"; for figures of views that have none, and of
-    /// the window, its page. Throws Error where there is no table.
+    /// What Export in the view of request.pane writes: "svg", "pdf" or "csv"; for figures of views that have none, and
+    /// of the window, its page. Throws Error where there is no table.
     std::string exportText(const SessionDocument& document, const Sources& sources, PictureRequest request,
                            const std::string& ending, const Progress& progress = {});
 
