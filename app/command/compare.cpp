@@ -81,7 +81,10 @@ void addCompareCommand(CLI::App& app) {
         ->take_all();
     command->add_option("--reference", options->reference, "Variant that the others are compared with, counted from 0")
         ->check(CLI::Range(0, 15));
-    command->add_option("-o,--output", options->output, "PNG to write; it contains the session")->required();
+    command
+        ->add_option("-o,--output", options->output,
+                     "Picture to write: a PNG, which contains the session, or a figure (.svg, .pdf)")
+        ->required();
     command->add_option("--csv", options->csv, "CSV file to write the table to");
     command->callback([options] {
         const Progress progress = terminalProgress("compare");
@@ -109,14 +112,14 @@ void addCompareCommand(CLI::App& app) {
         opened.document.history.reset(session);
         PictureRequest request = pictureRequest(options->picture, session);
         request.pane = pane;
+        request.panels.clear();
         PictureMaker maker;
         std::vector<CompareRow> rows;
-        const vis::Image image =
-            maker.render(opened.document, opened.sources(), request,
-                         [&](const Workbench& workbench) { rows = drawnComparison(workbench.cache(pane)); });
-        for (const CompareRow& row : rows)
-            if (!row.failure.empty()) throw Error(row.failure, {}, row.name);
-        vis::writePng(options->output, image, {{vis::kSessionTextKey, printSession(opened.document, options->output)}});
+        maker.write(opened.document, opened.sources(), request, options->output, [&](const Workbench& workbench) {
+            rows = drawnComparison(workbench.cache(pane));
+            for (const CompareRow& row : rows)
+                if (!row.failure.empty()) throw Error(row.failure, {}, row.name);
+        });
         if (!options->csv.empty()) {
             AtomicFile csv(options->csv);
             csv.write(compareCsv(rows));

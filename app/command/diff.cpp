@@ -178,8 +178,7 @@ void writePicture(const DiffRequest& request, const DataRef& data, const Progres
     for (const auto& [pane, view] : session.views)
         if (std::holds_alternative<VolumeView>(view)) picture.pane = pane;
     PictureMaker maker;
-    const vis::Image image = maker.render(opened.document, opened.sources(), picture);
-    vis::writePng(request.output, image, {{vis::kSessionTextKey, printSession(opened.document, request.output)}});
+    maker.write(opened.document, opened.sources(), picture, request.output);
     progress.advance(1);
 }
 

@@ -103,6 +103,10 @@ std::string paneOf(const Session& session, const std::string& view) {
     return {};
 }
 
+std::vector<std::string> viewsOf(const PictureOptions& options) {
+    return options.view.empty() ? std::vector<std::string>() : CLI::detail::split(options.view, ',');
+}
+
 void addLayoutOption(CLI::App& command, std::string& layout) {
     std::string names;
     for (const std::string& name : layoutNames()) names += (names.empty() ? ": " : ", ") + name;
@@ -129,8 +133,13 @@ void addPictureOptions(CLI::App& command, PictureOptions& options) {
                     "Session, layout, PNG exported by Tessera, or data files (default: the built-in fuel cell)")
         ->type_name("SESSION|LAYOUT|DATA");
     addLayoutOption(command, options.layout);
-    command.add_option("--view", options.view,
-                       "Draw this view only, e.g. volume or histogram (default: the whole window)");
+    command
+        .add_option("--view", options.view,
+                    "Draw this view only, e.g. volume or histogram, or several as a figure with panels a, b, c "
+                    "(default: the whole window)")
+        ->type_name("VIEW,...");
+    command.add_option("--columns", options.columns, "Panels side by side where there are several views")
+        ->check(CLI::Range(1, 64));
     addFormOptions(command, options);
     command
         .add_option("--set", options.settings,
@@ -157,8 +166,9 @@ Opened openForPicture(const PictureOptions& options, const Progress& progress) {
         const DataFile& wanted = opened.missing.front().wanted;
         throw Error("data file not found; it was at " + wanted.absolutePath, wanted.path);
     }
-    if (const auto view = viewOfKind(options.view); view && paneOf(opened.document.session, options.view).empty())
-        addView(opened.document.session, *view);
+    for (const std::string& name : viewsOf(options))
+        if (const auto view = viewOfKind(name); view && paneOf(opened.document.session, name).empty())
+            addView(opened.document.session, *view);
     if (!options.settings.empty()) {
         Json document = toJson(opened.document.session);
         for (const std::string& setting : options.settings) applySetting(document, setting);
@@ -181,8 +191,12 @@ Opened openForPicture(const PictureOptions& options, const Progress& progress) {
 
 PictureRequest pictureRequest(const PictureOptions& options, const Session& session) {
     PictureRequest request = pictureRequest(formOf(options), "");
-    request.pane = paneOf(session, options.view);
-    if (request.pane.empty()) request.pane = options.view; // an unknown pane is reported when it is drawn
+    request.columns = options.columns;
+    for (const std::string& name : viewsOf(options)) {
+        const std::string pane = paneOf(session, name);
+        request.panels.push_back(pane.empty() ? name : pane); // an unknown pane is reported when it is drawn
+    }
+    if (request.panels.size() == 1) request.pane = std::exchange(request.panels, {}).front();
     return request;
 }
 

@@ -13,7 +13,8 @@ namespace tessera::app {
 /// Options that render and replay share: the input, and the size of the picture.
 struct PictureOptions {
     std::vector<std::string> inputs;
-    std::string layout, view, size; ///< size: "" = as the form says
+    std::string layout, view, size; ///< view: several are separated by commas; size: "" = as the form says
+    int columns = 0;                ///< of several views; 0: as many as suit
     PictureForm form{.size = {.width = 1600, .height = 1000}};
     std::vector<CLI::Option*> onPaper; ///< options of which any makes a picture for paper
     std::vector<std::string> without;  ///< parts of the decoration
@@ -34,6 +35,9 @@ void addPictureOptions(CLI::App& command, PictureOptions& options);
 
 /// Opens what the options name, with the settings applied. Throws Error, also for data that cannot be found.
 Opened openForPicture(const PictureOptions& options, const Progress& progress);
+
+/// The views that the option --view names.
+std::vector<std::string> viewsOf(const PictureOptions& options);
 
 /// The pane with this key, or the first view of this kind; "" if there is none.
 std::string paneOf(const Session& session, const std::string& view);

@@ -30,7 +30,7 @@ void addRenderCommand(CLI::App& app) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(
         "render",
-        "Draw the window or one view to a PNG, or write the figure or table of a view, without opening a window");
+        "Draw the window or views to a PNG, SVG or PDF, or write the table of a view, without opening a window");
     addPictureOptions(*command, options->picture);
     command->add_option("--time", options->time,
                         "Time to show, in the unit of the data; in the whole window that of the timeline, which "
@@ -38,14 +38,14 @@ void addRenderCommand(CLI::App& app) {
     command
         ->add_option(
             "-o,--output", options->output,
-            "File to write: a PNG, which contains the session; with --view also a figure (.svg, .pdf) or table (.csv)")
+            "File to write: a PNG, which contains the session, a figure (.svg, .pdf), or with --view a table (.csv)")
         ->required();
     command->callback([options] {
         const Progress progress = terminalProgress("render");
         // Report a wrong size or a missing folder before the work starts.
         pictureRequest(options->picture, Session{});
         const std::string ending = textEnding(options->output);
-        if (ending == "csv" && options->picture.view.empty())
+        if (ending == "csv" && viewsOf(options->picture).size() != 1)
             throw Error("a table is of one view: name it with --view", options->output);
         const auto folder = std::filesystem::absolute(options->output).parent_path();
         if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
@@ -57,19 +57,19 @@ void addRenderCommand(CLI::App& app) {
                 throw Error("is not in " + formatNumber(times.front()) + " .. " + formatNumber(times.back()), "--time",
                             formatNumber(*options->time));
             session.time = *options->time;
-            VolumeView* const view = volumeView(session, paneOf(session, options->picture.view));
-            if (view && view->time) view->time = options->time;
+            for (const std::string& name : viewsOf(options->picture)) {
+                VolumeView* const view = volumeView(session, paneOf(session, name));
+                if (view && view->time) view->time = options->time;
+            }
         }
         opened.document.history.reset(session);
         PictureMaker maker;
         const PictureRequest request = pictureRequest(options->picture, session);
-        if (!ending.empty()) {
-            AtomicFile file(options->output);
-            file.write(maker.exportText(opened.document, opened.sources(), request, ending, progress));
-            return file.commit();
-        }
-        const vis::Image image = maker.render(opened.document, opened.sources(), request);
-        vis::writePng(options->output, image, {{vis::kSessionTextKey, printSession(opened.document, options->output)}});
+        if (ending.empty() || request.pane.empty())
+            return maker.write(opened.document, opened.sources(), request, options->output);
+        AtomicFile file(options->output);
+        file.write(maker.exportText(opened.document, opened.sources(), request, ending, progress));
+        file.commit();
     });
 }
 

@@ -96,12 +96,12 @@ void run(const ReplayOptions& options) {
         document.session = reel.at(i);
         document.history.reset(document.session);
         const PictureRequest request = pictureRequest(options.picture, document.session);
-        if (!request.pane.empty() && !document.session.views.contains(request.pane)) continue; // not open yet
+        const auto isOpen = [&](const std::string& pane) { return document.session.views.contains(pane); };
+        if (!std::ranges::all_of(panesOf(request), isOpen)) continue; // not yet
         char name[32];
         std::snprintf(name, sizeof name, reel.name.c_str(), i);
         const std::string path = (folder / name).string();
-        const vis::Image image = maker.render(document, opened.sources(), request);
-        vis::writePng(path, image, {{vis::kSessionTextKey, printSession(document, path)}});
+        maker.write(document, opened.sources(), request, path);
     }
     if (!options.video.empty())
         writeVideo((folder / "frame-%04d.png").string(), reel.framesPerSecond, options.video, progress.part(0.9, 1));

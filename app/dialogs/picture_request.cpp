@@ -8,12 +8,18 @@
 
 namespace tessera::app {
 
+std::vector<std::string> panesOf(const PictureRequest& request) {
+    if (!request.panels.empty()) return request.panels;
+    return request.pane.empty() ? std::vector<std::string>() : std::vector<std::string>{request.pane};
+}
+
 PictureRequest pictureRequest(const PictureForm& form, const std::string& pane) {
     PictureRequest request;
     request.pane = pane;
     request.size = form.size.pixels();
     request.ground = form.ground;
     request.decoration = form.decoration;
+    request.format = form.format;
     if (std::min(request.size.x, request.size.y) < 16 || std::max(request.size.x, request.size.y) > 16384)
         throw Error("a picture of " + std::to_string(request.size.x) + "x" + std::to_string(request.size.y) +
                     " pixels cannot be drawn; each side must be 16 to 16384");

@@ -87,6 +87,9 @@ std::string svgOf(const VectorPage& drawing);
 /// As a PDF file of one page, with the fonts it uses. Equal drawings become equal bytes. Throws MachineError.
 std::string pdfOf(const VectorPage& drawing);
 
+/// As a raster picture of so many pixels, which is the page without margins. Throws MachineError.
+vis::Image imageOf(const VectorPage& drawing, glm::ivec2 pixels);
+
 /// As a file with the suffix "svg" or "pdf".
 std::string fileOf(const VectorPage& drawing, std::string_view suffix);
 

@@ -183,4 +183,32 @@ std::string pdfOf(const VectorPage& drawing) {
     return out;
 }
 
+vis::Image imageOf(const VectorPage& drawing, glm::ivec2 pixels) {
+    Fonts fonts;
+    const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, pixels.x, pixels.y));
+    {
+        const Context page(cairo_create(surface.get()));
+        cairo_scale(page.get(), pixels.x / drawing.size.x, pixels.y / drawing.size.y);
+        Painter painter(page.get(), fonts);
+        for (const Mark& mark : drawing.marks) painter.draw(mark);
+    }
+    cairo_surface_flush(surface.get());
+    if (const cairo_status_t status = cairo_surface_status(surface.get()); status != CAIRO_STATUS_SUCCESS)
+        throw MachineError(std::string("no picture could be made: ") + cairo_status_to_string(status));
+    vis::Image image;
+    image.size = pixels;
+    image.rgba.reserve(std::size_t(pixels.x) * std::size_t(pixels.y) * 4);
+    const unsigned char* const rows = cairo_image_surface_get_data(surface.get());
+    const std::ptrdiff_t stride = cairo_image_surface_get_stride(surface.get());
+    for (int y = 0; y < pixels.y; ++y) {
+        const auto* in = reinterpret_cast<const std::uint32_t*>(rows + y * stride);
+        for (int x = 0; x < pixels.x; ++x)
+            for (const int shift : {16, 8, 0}) {
+                image.rgba.push_back(static_cast<std::uint8_t>(in[x] >> shift & 255));
+                if (shift == 0) image.rgba.push_back(255);
+            }
+    }
+    return image;
+}
+
 } // namespace tessera::app

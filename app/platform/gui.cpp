@@ -75,10 +75,6 @@ void divideByOpacity(vis::Image& image) {
     }
 }
 
-glm::vec3 groundOf(Theme theme) {
-    return glm::vec3(theme == Theme::Dark ? 0.075f : 0.87f);
-}
-
 } // namespace
 
 Gui::Gui() {
@@ -111,10 +107,14 @@ void Gui::uploadFonts() {
 void Gui::draw(glm::ivec2 framebuffer, Theme theme) {
     glViewport(0, 0, framebuffer.x, framebuffer.y);
     glDisable(GL_SCISSOR_TEST);
-    const glm::vec3 ground = groundOf(theme);
+    const glm::vec3 ground = windowGround(theme);
     glClearColor(ground.r, ground.g, ground.b, 1);
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+glm::vec3 windowGround(Theme theme) {
+    return glm::vec3(theme == Theme::Dark ? 0.075f : 0.87f);
 }
 
 struct OffscreenFrames::Impl {
@@ -173,7 +173,7 @@ VectorPage OffscreenFrames::page(const Workbench& workbench, double points) cons
         return impl_->drawParts(parts, lo, hi);
     };
     VectorPage page = pageOf(*ImGui::GetDrawData(), workbench.look().fonts(), points, drawn);
-    const glm::vec4 ground(groundOf(workbench.session().appearance.theme), 1);
+    const glm::vec4 ground(windowGround(workbench.session().appearance.theme), 1);
     page.marks.insert(page.marks.begin(), {shapes::Rect{.box = {{0, 0}, page.size}, .color = ground}});
     return page;
 }

@@ -34,6 +34,9 @@ private:
     ImGuiContext* former_ = nullptr;
 };
 
+/// The colour behind all panes.
+glm::vec3 windowGround(Theme theme);
+
 /// Frames of a workbench in a framebuffer of its own, as a window of this size would show them. Needs an ImGui context
 /// (Gui) and a GL context.
 class OffscreenFrames {

@@ -1,9 +1,10 @@
 #include "app/platform/headless.h"
 
-#include "app/drawing/drawing.h"
+#include "app/drawing/panels.h"
 #include "app/platform/gui.h"
 #include "vis/gl/headless.h"
 #include "volume/base/error.h"
+#include "volume/system/atomic_file.h"
 
 namespace tessera::app {
 
@@ -42,28 +43,98 @@ auto withWorkbench(const SessionDocument& document, const Sources& sources, std:
     return draw(workbench);
 }
 
-vis::Image renderAndInspect(const SessionDocument& document, const Sources& sources,
-                            std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request,
-                            const Inspect& inspect) {
-    return withWorkbench(document, sources, std::move(renderer), request, [&](Workbench& workbench) {
-        vis::Image image = drawUntilDone(workbench, request.size, request.scale);
-        image.dpi = request.dpi;
-        if (inspect) inspect(workbench);
-        return image;
-    });
-}
-
 /// Points of a page per pixel of a picture; on screens there are 96 pixels in an inch.
 double pointsPerPixel(const PictureRequest& request) {
     constexpr double kOfScreens = 96;
     return 72 / (request.dpi > 0 ? request.dpi : kOfScreens);
 }
 
+VectorPage pageOfPane(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
+                      const PictureRequest& request, const Inspect& inspect) {
+    return withWorkbench(document, sources, std::move(renderer), request, [&](Workbench& workbench) {
+        VectorPage page = drawPageUntilDone(workbench, request.size, request.scale, pointsPerPixel(request));
+        if (inspect) inspect(workbench);
+        page.numbers = originText(sources.origin, sources.numbers->info());
+        return page;
+    });
+}
+
+vis::Image imageOfPane(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
+                       const PictureRequest& request, const Inspect& inspect) {
+    return withWorkbench(document, sources, std::move(renderer), request, [&](Workbench& workbench) {
+        vis::Image image = drawUntilDone(workbench, request.size, request.scale);
+        if (inspect) inspect(workbench);
+        return image;
+    });
+}
+
+/// The panels of a request as one page; `pageOf(request of a panel)`.
+template <class PageOf> VectorPage panelsOf(const PictureRequest& request, Theme theme, const PageOf& pageOf) {
+    const int count = int(request.panels.size());
+    const double points = pointsPerPixel(request), text = textPixels(request.scale);
+    const std::vector<PanelPlace> places =
+        panelPlaces(request.size, count, request.columns > 0 ? request.columns : usualColumns(count), text);
+    std::vector<VectorPage> pages;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        PictureRequest panel = request;
+        panel.panels.clear();
+        panel.pane = request.panels[i];
+        panel.size = places[i].hi - places[i].lo;
+        pages.push_back(pageOf(panel));
+    }
+    const bool dark = request.ground == PictureGround::Shown && theme == Theme::Dark;
+    return figureOfPanels(glm::dvec2(request.size) * points, places, pages, points, text * points,
+                          request.ground == PictureGround::White ? glm::vec4(1) : glm::vec4(windowGround(theme), 1),
+                          glm::vec4(glm::vec3(dark ? 0.9f : 0.1f), 1));
+}
+
+VectorPage pageOfRequest(const SessionDocument& document, const Sources& sources,
+                         const std::shared_ptr<vis::Renderer>& renderer, const PictureRequest& request,
+                         const Inspect& inspect) {
+    const auto page = [&](const PictureRequest& one) { return pageOfPane(document, sources, renderer, one, inspect); };
+    return request.panels.empty() ? page(request) : panelsOf(request, document.session.appearance.theme, page);
+}
+
+vis::Image renderAndInspect(const SessionDocument& document, const Sources& sources,
+                            std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request,
+                            const Inspect& inspect) {
+    vis::Image image;
+    if (request.panels.empty()) {
+        image = imageOfPane(document, sources, renderer, request, inspect);
+    } else {
+        const auto page = [&](const PictureRequest& one) {
+            const double points = pointsPerPixel(request);
+            VectorPage made;
+            made.size = glm::dvec2(one.size) * points;
+            made.marks.push_back({shapes::Picture{.box = {{0, 0}, made.size},
+                                                  .image = imageOfPane(document, sources, renderer, one, inspect),
+                                                  .smooth = false}});
+            return made;
+        };
+        image = imageOf(panelsOf(request, document.session.appearance.theme, page), request.size);
+    }
+    image.dpi = request.dpi;
+    return image;
+}
+
+/// The suffix of a path to vector graphics, "svg" or "pdf", else "".
+std::string vectorSuffix(const std::string& path) {
+    for (const char* suffix : {"svg", "pdf"})
+        if (path.ends_with(std::string(".") + suffix)) return suffix;
+    return "";
+}
+
 } // namespace
 
-vis::Image renderPicture(const SessionDocument& document, const Sources& sources,
-                         std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request) {
-    return renderAndInspect(document, sources, std::move(renderer), request, {});
+void writePicture(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
+                  const PictureRequest& request, const std::string& path, const Inspect& inspect) {
+    if (const std::string suffix = vectorSuffix(path); !suffix.empty()) {
+        AtomicFile file(path);
+        file.write(fileOf(pageOfRequest(document, sources, std::move(renderer), request, inspect), suffix));
+        return file.commit();
+    }
+    const vis::Image image = renderAndInspect(document, sources, std::move(renderer), request, inspect);
+    vis::writePng(path, image, {{vis::kSessionTextKey, printSession(document, path)}});
 }
 
 struct PictureMaker::Impl {
@@ -82,24 +153,20 @@ std::string PictureMaker::exportText(const SessionDocument& document, const Sour
     const bool table = ending == "csv";
     std::string text;
     request.controls = true;
-    if (!request.pane.empty())
-        renderAndInspect(document, sources, impl_->renderer, request, [&](const Workbench& workbench) {
-            const ViewExport* offered = workbench.exported(request.pane);
-            if (offered && table && offered->csv) text = offered->csv(progress);
-            if (offered && !table && offered->figure) text = fileOf(offered->figure(progress), ending);
-        });
+    renderAndInspect(document, sources, impl_->renderer, request, [&](const Workbench& workbench) {
+        const ViewExport* offered = workbench.exported(request.pane);
+        if (offered && table && offered->csv) text = offered->csv(progress);
+        if (offered && !table && offered->figure) text = fileOf(offered->figure(progress), ending);
+    });
     if (!text.empty()) return text;
     if (table) throw Error("has no " + ending + " of what it shows", "--view", request.pane);
     request.controls = false;
-    return fileOf(page(document, sources, request), ending);
+    return fileOf(pageOfRequest(document, sources, impl_->renderer, request, {}), ending);
 }
 
-VectorPage PictureMaker::page(const SessionDocument& document, const Sources& sources, const PictureRequest& request) {
-    return withWorkbench(document, sources, impl_->renderer, request, [&](Workbench& workbench) {
-        VectorPage page = drawPageUntilDone(workbench, request.size, request.scale, pointsPerPixel(request));
-        page.numbers = originText(sources.origin, sources.numbers->info());
-        return page;
-    });
+void PictureMaker::write(const SessionDocument& document, const Sources& sources, const PictureRequest& request,
+                         const std::string& path, const Inspect& inspect) {
+    writePicture(document, sources, impl_->renderer, request, path, inspect);
 }
 
 vis::Image PictureMaker::render(const SessionDocument& document, const Sources& sources, const PictureRequest& request,

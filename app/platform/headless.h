@@ -6,12 +6,13 @@
 /// The workbench without a window: the same frames, drawn into memory.
 namespace tessera::app {
 
-/// Renders a session in the GL context that is current; what the window would show.
-vis::Image renderPicture(const SessionDocument& document, const Sources& sources,
-                         std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request);
-
 /// Called with the workbench after it has drawn its picture.
 using Inspect = std::function<void(const Workbench&)>;
+
+/// Writes a picture of a session to a file, in the GL context that is current: what the window would show. Its suffix
+/// says the form; a PNG contains the session. Throws Error, MachineError.
+void writePicture(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
+                  const PictureRequest& request, const std::string& path, const Inspect& inspect = {});
 
 /// A GL context without a window together with a renderer: makes any number of pictures of one data set.
 class PictureMaker {
@@ -22,13 +23,14 @@ public:
     PictureMaker(const PictureMaker&) = delete;
     PictureMaker& operator=(const PictureMaker&) = delete;
 
-    /// What Export in the view of request.pane writes: "svg", "pdf" or "csv"; for figures of views that have none, and
-    /// of the window, its page. Throws Error where there is no table.
+    /// What Export in the view of request.pane writes: "svg", "pdf" or "csv"; figures of views that have none of their
+    /// own are their page. Throws Error where there is no table.
     std::string exportText(const SessionDocument& document, const Sources& sources, PictureRequest request,
                            const std::string& ending, const Progress& progress = {});
 
-    /// What render() would draw, as vector graphics.
-    VectorPage page(const SessionDocument& document, const Sources& sources, const PictureRequest& request);
+    /// writePicture.
+    void write(const SessionDocument& document, const Sources& sources, const PictureRequest& request,
+               const std::string& path, const Inspect& inspect = {});
 
     vis::Image render(const SessionDocument& document, const Sources& sources, const PictureRequest& request,
                       const Inspect& inspect = {});

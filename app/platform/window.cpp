@@ -173,7 +173,7 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
         {.renderer = nullptr, .render = {}, .headless = false, .onlyPane = {}, .stateFolder = app::stateFolder()});
     window.workbench = &workbench;
     workbench.jobs().wake = [] { glfwPostEmptyEvent(); };
-    workbench.takePicture = renderPicture;
+    workbench.writePicture = [](const auto&... what) { writePicture(what...); };
     workbench.open(request);
 
     std::string title;

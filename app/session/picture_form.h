@@ -108,12 +108,22 @@ struct PictureSize {
 enum class PictureGround { Shown, White };
 inline constexpr std::string_view kPictureGroundNames[] = {"shown", "white"};
 
+enum class PictureFormat { Png, Svg, Pdf };
+inline constexpr std::string_view kPictureFormatNames[] = {"png", "svg", "pdf"};
+
 struct PictureForm {
     PictureSize size = {};
     PictureGround ground = PictureGround::Shown;
     Decoration decoration = {};
+    PictureFormat format = PictureFormat::Png;
     bool operator==(const PictureForm&) const = default;
     static void describe(auto& self, auto&& visit) {
+        visit(self.format,
+              FieldInfo{.key = "format",
+                        .unit = "",
+                        .doc = "PNG: a raster picture, which contains the session; SVG and PDF: texts and lines "
+                               "as vectors, views as pictures of the size above",
+                        .names = kPictureFormatNames});
         visit(self.size, FieldInfo{.key = "size", .unit = "", .doc = "Size of the picture and of its text"});
         visit(self.ground, FieldInfo{.key = "ground",
                                      .unit = "",

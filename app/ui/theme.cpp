@@ -26,6 +26,10 @@ float scaleForText(double emPixels) {
     return static_cast<float>(emPixels * typeface(Face::Text).line / double(kTextSize));
 }
 
+double textPixels(float scale) {
+    return double(scale * kTextSize) / typeface(Face::Text).line;
+}
+
 Fonts loadFonts(float scale) {
     ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
     atlas.Clear();

@@ -17,6 +17,8 @@ struct Fonts {
 inline constexpr float kLeastScale = 0.4f, kLargestScale = 6;
 /// The pixels per design pixel at which an em of text, its size in print, has so many pixels.
 float scaleForText(double emPixels);
+/// The pixels of an em at a scale.
+double textPixels(float scale);
 
 /// Builds the font atlas for a number of pixels per design pixel: Roboto with the letters and signs of units, Font
 /// Awesome merged in; ImGui's own font where they are not installed. The back end must upload the atlas again.

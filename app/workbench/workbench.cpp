@@ -329,11 +329,13 @@ void Workbench::drawDialogs() {
     if (const auto recovery = recovery_.draw()) recover(*recovery);
     const auto request =
         document_.loaded() ? pictures_.draw(session(), document_.info(), options_.stateFolder) : std::nullopt;
-    if (request)
-        files_.askSave("Save picture", (request->pane.empty() ? "tessera" : request->pane) + ".png", ".png",
+    if (request) {
+        const std::string suffix = "." + std::string(kPictureFormatNames[std::size_t(request->format)]);
+        files_.askSave("Save picture", (request->pane.empty() ? "tessera" : request->pane) + suffix, suffix,
                        [this, request](const std::string& path) {
                            picture_ = PictureJob{*request, path};
                        });
+    }
     const LeaveDialog::Answer answer = leave_.draw(!document_.path().empty());
     if (answer == LeaveDialog::Answer::Save) saveThen(leave_.take());
     if (answer == LeaveDialog::Answer::Discard) leave_.take()();
@@ -348,12 +350,11 @@ void Workbench::play() {
 }
 
 void Workbench::afterFrame() {
-    if (!picture_ || !takePicture || !document_.loaded()) return;
+    if (!picture_ || !writePicture || !document_.loaded()) return;
     const PictureJob job = *std::exchange(picture_, {});
     try {
         const SessionDocument shown = document_.snapshot();
-        const vis::Image image = takePicture(shown, document_.sources(), renderer_, job.request);
-        vis::writePng(job.path, image, {{vis::kSessionTextKey, printSession(shown, job.path)}});
+        writePicture(shown, document_.sources(), renderer_, job.request, job.path);
         message("Saved picture " + fs::path(job.path).filename().string());
     } catch (const Error& error) {
         message(error.what(), true);

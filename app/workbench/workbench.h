@@ -41,9 +41,9 @@ struct WorkbenchOptions {
     std::function<void(const std::string& pane, bool behind)> paneDrawn = {};
 };
 
-/// Renders a picture of a session; implemented by the platform.
-using TakePicture = std::function<vis::Image(const SessionDocument&, const Sources&, std::shared_ptr<vis::Renderer>,
-                                             const PictureRequest&)>;
+/// Writes a picture of a session to a path, whose suffix says the form; implemented by the platform. Throws Error.
+using WritePicture = std::function<void(const SessionDocument&, const Sources&, std::shared_ptr<vis::Renderer>,
+                                        const PictureRequest&, const std::string& path)>;
 
 class Workbench {
 public:
@@ -105,7 +105,7 @@ public:
     const ViewCache* cache(const std::string& pane) const { return panes_.cache(pane); }
     const ViewExport* exported(const std::string& pane) const { return panes_.exported(pane); }
 
-    TakePicture takePicture; ///< given by the platform
+    WritePicture writePicture; ///< given by the platform
 
 private:
     /// A picture that is taken after the frame.
