@@ -1,5 +1,6 @@
 #include "app/dialogs/dialogs.h"
 
+#include "app/drawing/panels.h"
 #include "app/pane/pane_title.h"
 #include "app/ui/file_dialog.h"
 #include "app/ui/fitted_text.h"
@@ -127,6 +128,7 @@ std::optional<Recovery> RecoveryDialog::draw() {
 
 void PictureDialog::show(const std::string& pane) {
     pane_ = pane;
+    several_ = false;
     shown_ = true;
 }
 
@@ -145,6 +147,60 @@ PictureForm rememberedForm(const std::string& stateFolder) {
 
 } // namespace
 
+PictureRequest PictureDialog::request() const {
+    PictureRequest wanted = pictureRequest(*form_, several_ ? "" : pane_);
+    if (!several_) return wanted;
+    if (panels_.empty()) throw Error("Choose the views of the figure");
+    wanted.panels = panels_;
+    wanted.columns = columns_;
+    const int count = int(panels_.size());
+    (void)panelPlaces(wanted.size, count, columns_ > 0 ? columns_ : usualColumns(count), textPixels(wanted.scale));
+    return wanted;
+}
+
+void PictureDialog::drawWhat(const Session& session, const volume::DatasetInfo& info) {
+    drawLabel(WidgetContext{nullptr, 0.3f}, "What", "The window, one view, or several as panels a, b, c of a figure");
+    const char* const whole = "The whole window";
+    const char* const several = "Several views";
+    if (ImGui::BeginCombo("##what", several_        ? several
+                                    : pane_.empty() ? whole
+                                                    : shownTitle(session, pane_, info).c_str())) {
+        const auto choose = [&](bool panels, const std::string& pane) {
+            several_ = panels;
+            pane_ = pane;
+        };
+        if (ImGui::Selectable(whole, !several_ && pane_.empty())) choose(false, "");
+        if (ImGui::Selectable(several, several_)) choose(true, pane_);
+        ImGui::Separator();
+        for (const std::string& pane : paneKeys(session))
+            if (ImGui::Selectable(shownTitle(session, pane, info).c_str(), !several_ && pane == pane_))
+                choose(false, pane);
+        ImGui::EndCombo();
+    }
+    std::erase_if(panels_, [&](const std::string& pane) { return !session.views.contains(pane); });
+    if (several_) drawPanels(session, info);
+}
+
+void PictureDialog::drawPanels(const Session& session, const volume::DatasetInfo& info) {
+    const WidgetContext widgets{nullptr, 0.3f};
+    drawLabel(widgets, "Panels", "In the order in which they are chosen");
+    if (ImGui::BeginChild("panels", {0, ImGui::GetFrameHeightWithSpacing() * 5}, true))
+        for (const std::string& pane : paneKeys(session)) {
+            const auto at = std::find(panels_.begin(), panels_.end(), pane);
+            bool chosen = at != panels_.end();
+            const std::string letter = chosen ? panelLetter(int(at - panels_.begin())) + "   " : "";
+            if (!ImGui::Checkbox((letter + shownTitle(session, pane, info) + "##" + pane).c_str(), &chosen)) continue;
+            if (chosen)
+                panels_.push_back(pane);
+            else
+                panels_.erase(at);
+        }
+    ImGui::EndChild();
+    drawLabel(widgets, "Columns", "Panels side by side; 0: as many as suit");
+    ImGui::SliderInt("##columns", &columns_, 0, std::max(1, int(panels_.size())),
+                     columns_ == 0 ? "as many as suit" : "%d");
+}
+
 std::optional<PictureRequest> PictureDialog::drawForm() {
     const WidgetContext widgets{nullptr, 0.3f};
     PictureForm& form = *form_;
@@ -155,7 +211,7 @@ std::optional<PictureRequest> PictureDialog::drawForm() {
     std::optional<PictureRequest> request;
     std::string problem;
     try {
-        request = pictureRequest(form, pane_);
+        request = this->request();
     } catch (const Error& error) {
         problem = error.what();
     }
@@ -177,17 +233,12 @@ std::optional<PictureRequest> PictureDialog::draw(const Session& session, const 
                                                   const std::string& stateFolder) {
     if (!shown_ || !beginDialog("Save picture", shown_, ImGui::GetFontSize() * 30)) return {};
     if (!form_) form_ = rememberedForm(stateFolder);
-    drawLabel(WidgetContext{nullptr, 0.3f}, "What", "The window, or one view");
-    const char* const whole = "The whole window";
-    if (ImGui::BeginCombo("##what", pane_.empty() ? whole : shownTitle(session, pane_, info).c_str())) {
-        if (ImGui::Selectable(whole, pane_.empty())) pane_.clear();
-        for (const std::string& pane : paneKeys(session))
-            if (ImGui::Selectable(shownTitle(session, pane, info).c_str(), pane == pane_)) pane_ = pane;
-        ImGui::EndCombo();
-    }
+    drawWhat(session, info);
     const std::optional<PictureRequest> request = drawForm();
     ImGui::Spacing();
-    ImGui::TextDisabled("The picture contains the session: open it in Tessera to continue from it.");
+    ImGui::TextDisabled("%s", form_->format == PictureFormat::Png
+                                  ? "The picture contains the session: open it in Tessera to continue from it."
+                                  : "Texts and lines are vectors. A PNG would contain the session as well.");
     const int button = dialogButtons({"Cancel", "Save..."});
     const bool save = button == 1 && request;
     if (button == 0 || save) shown_ = false;

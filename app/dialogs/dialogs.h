@@ -56,9 +56,16 @@ public:
                                        const std::string& stateFolder);
 
 private:
+    void drawWhat(const Session& session, const volume::DatasetInfo& info);
+    void drawPanels(const Session& session, const volume::DatasetInfo& info);
     std::optional<PictureRequest> drawForm();
+    /// What is chosen. Throws Error where it cannot be drawn.
+    PictureRequest request() const;
 
     std::string pane_;
+    bool several_ = false;            ///< panels in place of one pane
+    std::vector<std::string> panels_; ///< in the order in which they were chosen
+    int columns_ = 0;                 ///< of panels; 0: usualColumns
     std::optional<PictureForm> form_; ///< nothing until it is first shown
     bool shown_ = false;
 };

@@ -164,6 +164,10 @@ std::string PictureMaker::exportText(const SessionDocument& document, const Sour
     return fileOf(pageOfRequest(document, sources, impl_->renderer, request, {}), ending);
 }
 
+VectorPage PictureMaker::page(const SessionDocument& document, const Sources& sources, const PictureRequest& request) {
+    return pageOfRequest(document, sources, impl_->renderer, request, {});
+}
+
 void PictureMaker::write(const SessionDocument& document, const Sources& sources, const PictureRequest& request,
                          const std::string& path, const Inspect& inspect) {
     writePicture(document, sources, impl_->renderer, request, path, inspect);

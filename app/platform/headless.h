@@ -28,6 +28,9 @@ public:
     std::string exportText(const SessionDocument& document, const Sources& sources, PictureRequest request,
                            const std::string& ending, const Progress& progress = {});
 
+    /// What render() would draw, as vector graphics.
+    VectorPage page(const SessionDocument& document, const Sources& sources, const PictureRequest& request);
+
     /// writePicture.
     void write(const SessionDocument& document, const Sources& sources, const PictureRequest& request,
                const std::string& path, const Inspect& inspect = {});
