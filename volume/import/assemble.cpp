@@ -210,7 +210,8 @@ bool isBlock(const OpenedFile& file, const Piece& piece) {
 std::string dataName(const std::vector<OpenedFile>& files) {
     const NumberedName numbered = numberedName(files.front().entry.path);
     std::string name = fs::path(numbered.pattern).filename().string();
-    if (files.size() == 1) name = fs::path(files.front().entry.path).filename().string();
+    if (files.size() == 1 && !files.front().entry.growing)
+        name = fs::path(files.front().entry.path).filename().string();
     name.resize(std::min(name.find('.'), name.size()));
     std::erase(name, '#');
     while (!name.empty() && (name.back() == '_' || name.back() == '-')) name.pop_back();
@@ -334,8 +335,7 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
     const FileFormat* row = formatNamed(format);
     info.lengthUnit = row != nullptr ? row->lengthUnit : format == "raw" ? "" : "m";
     info.timeUnit = ""; // few files state it
-    const bool numbers = std::ranges::any_of(
-        all->groups, [](const FileGroup& group) { return group.timesAreNumbers && group.times.size() > 1; });
+    const bool numbers = std::ranges::any_of(all->groups, &FileGroup::timesAreNumbers);
     if (numbers) info.timeName = "step";
 
     const Gathered found = gather(*all, numbers, info, result.notes);

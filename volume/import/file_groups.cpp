@@ -41,7 +41,7 @@ void setTimes(FileGroup& group) {
         const double first = file->entry.time ? *file->entry.time : own.empty() ? 0 : own.front();
         if ((file->entry.time || !own.empty()) && !seen.insert(first).second) allDistinct = false;
     }
-    const bool several = group.files.size() > 1;
+    const bool several = group.files.size() > 1 || group.files.front()->entry.growing;
     for (std::size_t f = 0; f < group.files.size(); ++f) {
         const SeriesFile& entry = group.files[f]->entry;
         const auto& own = group.files[f]->pieces.front().times;

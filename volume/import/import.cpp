@@ -10,6 +10,7 @@
 #include "volume/import/files/raw.h"
 #include "volume/import/find_parts.h"
 #include "volume/import/foreign.h"
+#include "volume/import/opened_series.h"
 #include "volume/import/over_time.h"
 #include "volume/import/unit_guess.h"
 
@@ -24,12 +25,6 @@
 namespace tessera::volume {
 
 namespace {
-
-struct Opened {
-    Dataset dataset;
-    std::string format;
-    std::vector<std::string> notes;
-};
 
 /// Final names, units and choice of parameters.
 void nameParameters(DatasetInfo& info, const ImportOptions& options) {
@@ -252,9 +247,10 @@ std::vector<AbsentRule> withSuggested(const std::vector<AbsentRule>& stated, con
     return rules;
 }
 
-Opened open(const std::vector<std::string>& paths, const ImportOptions& options, bool readSamples,
-            const Progress& progress, bool meshRanges) {
-    if (paths.empty()) throw Error("no file given");
+} // namespace
+
+OpenedSeries openSeries(const std::vector<SeriesFile>& entries, const ImportOptions& options, bool readSamples,
+                        const Progress& progress, bool meshRanges) {
     std::vector<AbsentRule> rules;
     for (const std::string& rule : options.absent) rules.push_back(parseAbsentRule(rule));
     std::vector<PartsRule> parts;
@@ -262,8 +258,8 @@ Opened open(const std::vector<std::string>& paths, const ImportOptions& options,
     std::vector<LabelRule> labels;
     for (const std::string& rule : options.labels) labels.push_back(parseLabelRule(rule));
 
-    std::vector<OpenedFile> files = openEach(expandPaths(paths), options.raw, progress.part(0, 0.3));
-    Opened opened;
+    std::vector<OpenedFile> files = openEach(entries, options.raw, progress.part(0, 0.3));
+    OpenedSeries opened;
     opened.format = files.front().pieces.empty() ? "" : files.front().pieces.front().format;
     Assembled assembled = assemble(std::move(files), options.gridSize, readSamples, progress.part(0.3, 0.7));
     Dataset& dataset = opened.dataset;
@@ -285,6 +281,7 @@ Opened open(const std::vector<std::string>& paths, const ImportOptions& options,
     if (options.autoAbsent && readSamples && !assembled.madeLabel)
         rules = withSuggested(rules, dataset, opened.notes, progress.part(0.7, 0.85));
     dataset = withAbsent(std::move(dataset), rules);
+    for (const AbsentRule& rule : rules) opened.absent.push_back(toText(rule));
     if (meshRanges && assembled.ranges) stateRanges(dataset.info, assembled, rules, options, progress.part(0.8, 0.85));
     if (readSamples) {
         setParts(dataset.info, parts);
@@ -297,11 +294,10 @@ Opened open(const std::vector<std::string>& paths, const ImportOptions& options,
     return opened;
 }
 
-} // namespace
-
 ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOptions& options,
                            const Progress& progress) {
-    Opened opened = open(paths, options, false, progress, false);
+    if (paths.empty()) throw Error("no file given");
+    OpenedSeries opened = openSeries(expandPaths(paths), options, false, progress, false);
     ImportPreview preview{opened.format, {}, 0, std::move(opened.notes)};
     preview.bytes = bytesOf(opened.dataset.info);
     preview.info = std::move(opened.dataset.info);
@@ -310,7 +306,8 @@ ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOp
 
 Dataset openFiles(const std::vector<std::string>& paths, const ImportOptions& options, const Progress& progress,
                   bool meshRanges) {
-    return open(paths, options, true, progress, meshRanges).dataset;
+    if (paths.empty()) throw Error("no file given");
+    return openSeries(expandPaths(paths), options, true, progress, meshRanges).dataset;
 }
 
 void scanRanges(Dataset& dataset, const Progress& progress) {

@@ -88,17 +88,32 @@ PartsRule parsePartsRule(std::string_view text) {
     return rule;
 }
 
-std::string partsText(const Parameter& parameter) {
-    const Parts& parts = parameter.parts;
-    if (parts.count() < 2) return {};
-    std::string text = std::to_string(parts.count()) + " parts by " +
-                       (parts.label == jumpsLabel(parameter.name) ? "jumps of the data" : parts.label) + ": ";
+namespace {
+
+/// "1,2 | 3" with " | " between the parts.
+std::string groupsText(const Parts& parts, const char* between) {
+    std::string text;
     for (std::size_t p = 0; p < parts.regions.size(); ++p) {
-        if (p > 0) text += " | ";
+        if (p > 0) text += between;
         for (std::size_t i = 0; i < parts.regions[p].size(); ++i)
             text += (i > 0 ? "," : "") + std::to_string(parts.regions[p][i]);
     }
     return text;
+}
+
+} // namespace
+
+std::string partsText(const Parameter& parameter) {
+    const Parts& parts = parameter.parts;
+    if (parts.count() < 2) return {};
+    return std::to_string(parts.count()) + " parts by " +
+           (parts.label == jumpsLabel(parameter.name) ? "jumps of the data" : parts.label) + ": " +
+           groupsText(parts, " | ");
+}
+
+std::string partsRule(const Parameter& parameter) {
+    const Parts& parts = parameter.parts;
+    return parameter.name + "=" + (parts.count() < 2 ? "joined" : parts.label + ":" + groupsText(parts, "|"));
 }
 
 void setParts(DatasetInfo& info, const std::vector<PartsRule>& rules) {

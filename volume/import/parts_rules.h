@@ -25,6 +25,9 @@ PartsRule parsePartsRule(std::string_view text);
 /// for a parameter with one part.
 std::string partsText(const Parameter& parameter);
 
+/// The rule that states the parts of a parameter: "p=region:1|3", "T=joined".
+std::string partsRule(const Parameter& parameter);
+
 /// Sets the parts stated by rules, except "jumps" rules. Throws Error for a parameter, label or value that does not
 /// exist, or a value in two parts. The last of several rules for a parameter is used.
 void setParts(DatasetInfo& info, const std::vector<PartsRule>& rules);

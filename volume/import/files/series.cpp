@@ -101,16 +101,6 @@ std::vector<std::pair<std::string, double>> furtherNumbers(std::string_view tag)
     return numbers;
 }
 
-std::vector<std::string> expandPattern(const std::string& pattern) {
-    glob_t found{};
-    const int status = glob(pattern.c_str(), 0, nullptr, &found);
-    std::vector<std::string> paths;
-    if (status == 0) paths.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
-    globfree(&found);
-    if (paths.empty()) throw Error("no file fits this pattern", pattern);
-    return paths;
-}
-
 std::vector<std::string> expandFolder(const std::string& folder) {
     std::map<std::string, std::vector<std::string>> byEnding;
     std::map<const FileFormat*, std::vector<std::string>> byFormat;
@@ -165,6 +155,15 @@ std::vector<SeriesFile> withSlices(std::vector<SeriesFile> files) {
 }
 
 } // namespace
+
+std::vector<std::string> filesOfPattern(const std::string& pattern) {
+    glob_t found{};
+    const int status = glob(pattern.c_str(), 0, nullptr, &found);
+    std::vector<std::string> paths;
+    if (status == 0) paths.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+    globfree(&found);
+    return paths;
+}
 
 NumberedName numberedName(const std::string& path) {
     const fs::path file(path);
@@ -270,7 +269,8 @@ std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths) {
         }
         if (!fs::exists(path, ignored)) {
             if (path.find_first_of("*?[") == std::string::npos) throw Error("no such file", path);
-            const std::vector<std::string> fits = expandPattern(path);
+            const std::vector<std::string> fits = filesOfPattern(path);
+            if (fits.empty()) throw Error("no file fits this pattern", path);
             pending.insert(pending.end(), fits.rbegin(), fits.rend());
             continue;
         }

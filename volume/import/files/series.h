@@ -21,6 +21,8 @@ struct SeriesFile {
     std::vector<std::pair<std::string, double>> numbers = {};
     /// All files of a volume whose slices are files, `path` first; else empty.
     std::vector<std::string> slices = {};
+    /// Further files of the group may come later: alone, too, it is one time, at its number if it states none.
+    bool growing = false;
     bool operator==(const SeriesFile&) const = default;
 };
 
@@ -29,6 +31,9 @@ struct SeriesFile {
 /// of their first file; files of a group are sorted by time, then number. Duplicate paths are ignored. Throws Error for
 /// paths that do not exist or cannot be read.
 std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths);
+
+/// The files that a pattern with * or ? fits, in alphabetical order; empty if there is none.
+std::vector<std::string> filesOfPattern(const std::string& pattern);
 
 /// Contents of a .pvd (XML Collection). `file` names it in errors; paths are relative to its folder.
 std::vector<SeriesFile> parsePvd(const std::string& xml, const std::string& file);
