@@ -1,5 +1,6 @@
 #include "codec/pack/pack.h"
 #include "app/command/command.h"
+#include "app/command/follow.h"
 #include "app/data/format.h"
 #include "app/data/import_options.h"
 #include "app/described/describe_cli.h"
@@ -8,11 +9,13 @@
 #include "codec/pack/unpack.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <malloc.h>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sys/resource.h>
 
 namespace tessera::app {
@@ -26,6 +29,9 @@ struct PackRequest {
     codec::PackOptions options;
     bool append = false, json = false, progressJson = false;
     bool keepsLattice = false; ///< convert without --lattice: keep the archive's
+    bool follows = false;
+    ArrivalTimes arrival;
+    std::optional<double> untilIdle;
 };
 
 /// One JSON object per line on stdout, for a window that runs this command.
@@ -72,12 +78,7 @@ PackInput open(const PackRequest& request, const Progress& progress) {
         return {asStored ? codec::storedDataset(archive) : codec::gridDataset(archive, 0), before};
     }
     const volume::ImportOptions options = recallOptions(request.inputs, request.import, progress);
-    for (const std::string& rule : options.absent)
-        if (std::find(request.import.absent.begin(), request.import.absent.end(), rule) == request.import.absent.end())
-            std::fprintf(stderr, "tessera: remembered: --absent %s\n", rule.c_str());
-    for (const auto& [from, to] : options.rename)
-        if (!request.import.rename.contains(from))
-            std::fprintf(stderr, "tessera: remembered: --rename %s=%s\n", from.c_str(), to.c_str());
+    sayRemembered(request.import, options);
     volume::Dataset data = volume::openFiles(request.inputs, options, progress, false);
     rememberStated(request.import, data.info.name);
     return {std::move(data), {}};
@@ -146,8 +147,14 @@ nlohmann::json reportOf(const codec::PackSummary& summary, const std::string& pa
 }
 
 void run(PackRequest request) {
-    checkOutput(request);
+    if (!request.follows) checkOutput(request);
     if (request.options.memoryMb > 0) keepNoFreedFrames();
+    if (request.follows) {
+        if (request.inputs.size() > 1)
+            throw Error("--follow needs one pattern in quotes, such as 'run_*.vti'", request.inputs[1]);
+        return follow({request.inputs[0], request.output, request.import, request.options, request.arrival,
+                       request.untilIdle, request.json});
+    }
     if (request.keepsLattice) request.options.lattice = storedLattice(request.inputs[0]);
     const Progress terminal = terminalProgress("pack");
     const Progress progress = request.progressJson ? jsonProgress(terminal) : terminal;
@@ -183,6 +190,34 @@ void run(PackRequest request) {
     std::printf("%s\n", exactnessOf(request.output).c_str());
 }
 
+void addFollowOptions(CLI::App& command, PackRequest& request) {
+    CLI::Option* const follow =
+        command
+            .add_flag("--follow", request.follows,
+                      "Append files as another program writes them: IN is a pattern in quotes ('run_*.vti'), each file "
+                      "that fits a later time, in the order of the numbers. Prints a line for each time; ends by "
+                      "Ctrl-C or --until-idle; the same command again continues the archive")
+            ->excludes("--append")
+            ->excludes("--progress-json")
+            ->group("Follow");
+    command.add_option("--until-idle", request.untilIdle, "End after so many seconds without a new file")
+        ->check(CLI::NonNegativeNumber)
+        ->needs(follow)
+        ->group("Follow");
+    const auto seconds = [&](const char* name, ArrivalTimes::Duration& value, const char* help) {
+        command
+            .add_option_function<double>(
+                name, [&value](double given) { value = ArrivalTimes::Duration(given); }, help)
+            ->check(CLI::NonNegativeNumber)
+            ->default_str(std::to_string(std::lround(value.count())))
+            ->needs(follow)
+            ->group("Follow");
+    };
+    seconds("--settle", request.arrival.settle, "A file is read once it has not changed for so many seconds");
+    seconds("--retry", request.arrival.retry,
+            "A file that cannot be read is tried again for so many seconds before later ones go ahead");
+}
+
 } // namespace
 
 void addPackCommand(CLI::App& app) {
@@ -195,6 +230,7 @@ void addPackCommand(CLI::App& app) {
                       "was packed with; the archive stays readable meanwhile, even after a crash");
     command->add_flag("--json", request->json, "Print the summary as JSON");
     command->add_flag("--progress-json", request->progressJson, "Print progress and summary as JSON lines");
+    addFollowOptions(*command, *request);
     addDescribed(*command, request->options);
     addImportOptions(*command, request->import);
     command->callback([request] { run(*request); });
