@@ -12,9 +12,6 @@ if(NOT pybind11_FOUND)
   return()
 endif()
 
-# Code of a static library that becomes part of a shared one.
-set_target_properties(volume codec PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
-                      VISIBILITY_INLINES_HIDDEN ON)
 pybind11_add_module(tessera_python NO_EXTRAS codec/python/module.cpp)
 set_target_properties(tessera_python PROPERTIES OUTPUT_NAME _tessera UNITY_BUILD OFF
                       LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/python/tessera)

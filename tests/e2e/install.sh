@@ -34,6 +34,19 @@ if ls "$build"/python/tessera/_tessera*.so > /dev/null 2>&1 && /usr/bin/python3 
     say "^$moved/.*(1, 20, 13, 7)" out.txt
 fi
 
+# The C example of the documentation, with what is installed. (Not with sanitizers, which the program would need too.)
+if ! grep -q "^TESSERA_SANITIZE:BOOL=ON" "$build/CMakeCache.txt" && command -v cc > /dev/null && command -v pkg-config > /dev/null; then
+    sed -n '/^```c$/,/^```$/p' "$source/docs/archives.md" | sed '/^```/d' > solver.c
+    [ "$(wc -l < solver.c)" -gt 20 ] || fail "docs/archives.md has no solver in C"
+    export PKG_CONFIG_PATH
+    PKG_CONFIG_PATH=$(dirname "$(find "$moved" -name tessera_writer.pc)")
+    # shellcheck disable=SC2046
+    check "the C example" 0 cc -Wall -Wextra -Werror solver.c -o solver $(pkg-config --cflags --libs tessera_writer)
+    check "it runs" 0 env LD_LIBRARY_PATH="$(pkg-config --variable=libdir tessera_writer)" ./solver
+    check "its archive" 0 "$tessera" info live.tsr
+    say "times *10" out.txt
+fi
+
 # What desktops and people read.
 for file in share/applications/tessera.desktop share/mime/packages/tessera.xml share/man/man1/tessera.1 \
     share/icons/hicolor/scalable/apps/tessera.svg share/doc/tessera/README.md share/doc/tessera/LICENSE \
