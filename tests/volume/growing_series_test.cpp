@@ -104,6 +104,14 @@ TEST_F(GrowingSeriesTest, WhatDoesNotFitIsAnError) {
     const GrowingSeries series = growingSeries(at("run_8.raw"), {});
     write("run_11", 11, "", "p");
     EXPECT_THROW(openOfSeries(series, at("run_11.raw")), Error) << "another array";
+    ImportOptions plain;
+    plain.autoAbsent = false;
+    try {
+        openOfSeries(growingSeries(at("run_8.raw"), plain), at("run_11.raw"));
+        ADD_FAILURE() << "took another array";
+    } catch (const Error& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("run_11.raw: holds other arrays than "));
+    }
     fs::resize_file(folder_ / "run_9.raw", 100);
     EXPECT_THROW(openOfSeries(series, at("run_9.raw")), Error) << "cut";
     EXPECT_THROW(openOfSeries(series, at("run_12.raw")), Error) << "none";
