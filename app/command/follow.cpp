@@ -66,7 +66,7 @@ void checkFollowed(const FollowRequest& request) {
 /// Says what the first file of a series decides for all others.
 void sayDecided(const volume::GrowingSeries& series, const volume::ImportOptions& stated) {
     const auto say = [&](const std::string& text) {
-        std::fprintf(stderr, "tessera: %s: %s, as in all later files\n", series.first.c_str(), text.c_str());
+        std::fprintf(stderr, "tessera: %s: %s (taken for all later files)\n", series.first.c_str(), text.c_str());
     };
     for (const std::string& rule : series.options.absent)
         if (std::ranges::find(stated.absent, rule) == stated.absent.end()) say("absent: " + rule);
