@@ -173,8 +173,8 @@ std::string csvNumber(double value) {
     return text;
 }
 
-void exportMenu(ViewContext& context, const std::string& title, std::function<VectorPage(const Progress&)> figure,
-                std::function<std::string(const Progress&)> csv) {
+void exportMenu(ViewContext& context, ToolRow& tools, const std::string& title,
+                std::function<VectorPage(const Progress&)> figure, std::function<std::string(const Progress&)> csv) {
     std::string name = title; // as a file
     std::replace(name.begin(), name.end(), '/', '_');
     const auto described = [&]() -> ViewExport { // tables and pictures state the origin of their numbers
@@ -194,6 +194,7 @@ void exportMenu(ViewContext& context, const std::string& title, std::function<Ve
         return made;
     };
     if (context.offerExport) context.offerExport(described());
+    if (!tools.next(buttonWidth("Export"))) return;
     ImGui::BeginDisabled(!context.exportText);
     if (ImGui::Button("Export")) ImGui::OpenPopup("export");
     ImGui::EndDisabled();

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/drawing/drawing.h"
-#include "app/pane/view_context.h"
+#include "app/pane/tool_row.h"
 #include "volume/base/describe.h"
 
 #include <glm/vec2.hpp>
@@ -61,8 +61,8 @@ std::string csvField(const std::string& text);
 /// A number for CSV, empty where it is not finite.
 std::string csvNumber(double value);
 
-/// A button whose menu exports what a view shows: its picture, vector graphics, a table.
-void exportMenu(ViewContext& context, const std::string& name, std::function<VectorPage(const Progress&)> figure,
-                std::function<std::string(const Progress&)> csv);
+/// A tool whose menu exports what a view shows: its picture, vector graphics, a table.
+void exportMenu(ViewContext& context, ToolRow& tools, const std::string& name,
+                std::function<VectorPage(const Progress&)> figure, std::function<std::string(const Progress&)> csv);
 
 } // namespace tessera::app

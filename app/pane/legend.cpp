@@ -34,6 +34,24 @@ float drawSwatch(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& e
     return em() * 1.25f;
 }
 
+/// The strip of a legend: its colours, or what else it shows.
+void drawStrip(ImDrawList& draw, ImVec2 lo, ImVec2 hi, const LegendEntry& entry) {
+    if (entry.opacity)
+        drawOpacityStrip(draw, lo, hi, entry.function);
+    else if (entry.regions)
+        drawRegionStrip(draw, lo, hi, entry.function);
+    else
+        drawColorStrip(draw, lo, hi, entry.function);
+}
+
+/// A line at the value of the cross-hair.
+void drawMarker(ImDrawList& draw, const PlotFrame& frame, const LegendEntry& entry) {
+    if (!entry.marker || *entry.marker < frame.x.lo || *entry.marker > frame.x.hi) return;
+    const float x = std::round(frame.pixel(*entry.marker, 0).x) + 0.5f, over = em() * 0.15f;
+    draw.AddLine({x, frame.min.y - over}, {x, frame.max.y + over}, plotColors().backdrop, 3);
+    draw.AddLine({x, frame.min.y - over}, {x, frame.max.y + over}, plotColors().cursor);
+}
+
 } // namespace
 
 void drawColorStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function, bool withOpacity) {
@@ -93,12 +111,7 @@ float drawLegendBar(ImDrawList& draw, ImVec2 min, float width, const LegendEntry
     const PlotColors colors = plotColors();
     const float height = barHeight(), arrow = height * 0.6f;
     const ImVec2 lo{min.x + arrow + 1, min.y + em() * 0.2f}, hi{min.x + width - arrow - 1, lo.y + height};
-    if (entry.opacity)
-        drawOpacityStrip(draw, lo, hi, entry.function);
-    else if (entry.regions)
-        drawRegionStrip(draw, lo, hi, entry.function);
-    else
-        drawColorStrip(draw, lo, hi, entry.function);
+    drawStrip(draw, lo, hi, entry);
     const auto end = [&](double x) {
         const glm::dvec4 c = vis::evaluate(entry.function, {0, 1}, x);
         return entry.opacity || entry.regions ? colors.frame : toColor({c.r, c.g, c.b});
@@ -108,11 +121,7 @@ float drawLegendBar(ImDrawList& draw, ImVec2 min, float width, const LegendEntry
     if (entry.data.hi > entry.range.hi + slack) drawArrow(draw, {hi.x + 1, lo.y}, height, 1, end(1));
     const PlotFrame frame{lo, hi, paddedRange(entry.range), {0, 1}};
     drawAxis(draw, frame, AxisSide::Bottom, entry.title, entry.unit, min.x, min.x + width);
-    if (entry.marker && *entry.marker >= frame.x.lo && *entry.marker <= frame.x.hi) {
-        const float x = std::round(frame.pixel(*entry.marker, 0).x) + 0.5f;
-        draw.AddLine({x, lo.y - em() * 0.15f}, {x, hi.y + em() * 0.15f}, colors.backdrop, 3);
-        draw.AddLine({x, lo.y - em() * 0.15f}, {x, hi.y + em() * 0.15f}, colors.cursor);
-    }
+    drawMarker(draw, frame, entry);
     return legendBarHeight();
 }
 
@@ -198,16 +207,68 @@ void drawLegendRows(ImDrawList& draw, const std::vector<LegendEntry>& entries, I
     });
 }
 
+bool legendsAsLines(float height, float room) {
+    return room < em() * 24 ? height > em() * 2 : height > room * 0.3f;
+}
+
+namespace {
+
+/// Legends whose bars are one line each, in columns: title, least value, bar, largest value.
+class LegendLines {
+public:
+    LegendLines(const std::vector<LegendEntry>& entries, float room) : width_(std::min(em() * 18, room * 0.65f)) {
+        for (const LegendEntry& entry : entries) {
+            if (!isBar(entry)) continue;
+            title_ = std::max(title_, ImGui::CalcTextSize(titleWithUnit(entry.title, entry.unit).c_str()).x);
+            for (const bool high : {false, true})
+                number_ = std::max(number_, ImGui::CalcTextSize(numberOf(entry, high).c_str()).x);
+        }
+        title_ = std::min(title_, width_ * 0.5f);
+    }
+    float width() const { return width_; }
+    float height(const LegendEntry& entry) const { return isBar(entry) ? em() * 1.3f : heightOf(entry); }
+    float draw(ImDrawList& draw, ImVec2 min, const LegendEntry& entry) const {
+        if (!isBar(entry)) return drawLegend(draw, min, width_, entry);
+        const PlotColors colors = plotColors();
+        const float gap = em() * 0.4f, top = min.y + em() * 0.3f;
+        const std::string whole = titleWithUnit(entry.title, entry.unit);
+        addFittedText(draw, min, colors.text, firstThatFits({whole, entry.title}, title_ + 1), title_ + 1);
+        const ImVec2 lo{min.x + title_ + number_ + 2 * gap, top}, hi{min.x + width_ - number_ - gap, top + barHeight()};
+        const auto write = [&](float x, const std::string& text) {
+            draw.AddText({std::round(x), min.y}, colors.text, text.c_str());
+        };
+        const std::string least = numberOf(entry, false);
+        write(lo.x - gap - ImGui::CalcTextSize(least.c_str()).x, least);
+        write(hi.x + gap, numberOf(entry, true));
+        drawStrip(draw, lo, hi, entry);
+        drawMarker(draw, {lo, hi, paddedRange(entry.range), {0, 1}}, entry);
+        return height(entry);
+    }
+
+private:
+    static bool isBar(const LegendEntry& entry) { return entry.names.empty() && !entry.swatch; }
+    static std::string numberOf(const LegendEntry& entry, bool high) {
+        return formatNumber(high ? entry.range.hi : entry.range.lo, (entry.range.hi - entry.range.lo) / 30);
+    }
+    float width_, title_ = 0, number_ = 0;
+};
+
+} // namespace
+
 LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max,
-                       LegendCorner corner) {
-    const float pad = em() * 0.5f;
-    const float width = std::min(em() * 15, (max.x - min.x) * 0.45f);
+                       LegendCorner corner, bool whole) {
+    const float pad = em() * 0.5f, room = max.y - min.y;
+    const LegendLines lines(entries, max.x - min.x);
+    float all = 0;
+    for (const LegendEntry& entry : entries) all += heightOf(entry);
+    const bool small = !whole && legendsAsLines(all, room);
+    const float width = small ? lines.width() : std::min(em() * 15, (max.x - min.x) * 0.45f);
     if (width < em() * 7) return {max, max};
     std::vector<const LegendEntry*> shown;
     float height = 0;
     for (const LegendEntry& entry : entries) {
-        const float own = heightOf(entry);
-        if (height + own > (max.y - min.y) * 0.6f) break;
+        const float own = small ? lines.height(entry) : heightOf(entry);
+        if (height + own > room * 0.6f) break;
         height += own;
         shown.push_back(&entry);
     }
@@ -216,7 +277,8 @@ LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries
     const ImVec2 from{max.x - width - pad, bottom - height - pad};
     draw.AddRectFilled({from.x - pad, from.y - pad * 0.5f}, {max.x, bottom}, plotColors().backdrop, em() * 0.25f);
     float y = from.y;
-    for (const LegendEntry* entry : shown) y += drawLegend(draw, {from.x, y}, width, *entry);
+    for (const LegendEntry* entry : shown)
+        y += small ? lines.draw(draw, {from.x, y}, *entry) : drawLegend(draw, {from.x, y}, width, *entry);
     return {{from.x - pad, from.y - pad * 0.5f}, {max.x, bottom}};
 }
 

@@ -44,13 +44,18 @@ void drawRegionStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::Transf
 /// The same of the opacity alone, as parts of the greatest: regions count with their most at any gradient.
 void drawOpacityStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function);
 
-/// Legends stacked in a right corner of a rectangle, at most as many as fit; returns the pixels they cover.
+/// Whether legends that would be `height` pixels high together are one line each, to leave the object of a picture of
+/// `room` pixels in sight.
+bool legendsAsLines(float height, float room);
+
+/// Legends stacked in a right corner of a rectangle, at most as many as fit; returns the pixels they cover. `whole`:
+/// never one line each.
 struct LegendArea {
     ImVec2 min, max;
 };
 enum class LegendCorner { Bottom, Top };
 LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max,
-                       LegendCorner corner = LegendCorner::Bottom);
+                       LegendCorner corner = LegendCorner::Bottom, bool whole = false);
 
 /// Legends side by side in rows, as they are placed below a picture; those that do not fit into `most` are dropped.
 /// Returns the height, 0 if there are none.

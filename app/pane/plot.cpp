@@ -107,6 +107,17 @@ float axisRoom(AxisSide side, Range range, bool title) {
     return std::ceil(room + (title ? em() * 1.3f : 0.0f));
 }
 
+ColumnHeights columnHeights(float room, std::size_t plots) {
+    const float count = std::max(1.0f, static_cast<float>(plots)), gap = em() * 0.4f;
+    ColumnHeights out{};
+    out.bottom = axisRoom(AxisSide::Bottom, {0, 1}, true);
+    out.titled = room >= out.bottom + gap + em() * 2.2f * count;
+    if (!out.titled) out.bottom = axisRoom(AxisSide::Bottom, {0, 1}, false);
+    out.all = std::max(room, out.bottom + gap + em() * 1.7f * count);
+    out.each = (out.all - out.bottom - gap) / count;
+    return out;
+}
+
 void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::string_view title, std::string_view unit,
               float lo, float hi, const AxisOptions& options) {
     const bool bottom = side == AxisSide::Bottom;
@@ -229,11 +240,13 @@ void drawBars(ImDrawList& draw, const PlotFrame& frame, std::span<const float> h
     }
 }
 
-void drawCrosshair(ImDrawList& draw, const PlotFrame& frame, double x, double y) {
-    const ImU32 color = plotColors().cursor;
+void drawCrosshair(ImDrawList& draw, const PlotFrame& frame, double x, double y, bool onPicture) {
+    const ImU32 color = plotColors().cursor, rim = (plotColors().backdrop & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 80);
     const bool hasX = x >= frame.x.lo && x <= frame.x.hi, hasY = y >= frame.y.lo && y <= frame.y.hi;
     const ImVec2 at = frame.pixel(hasX ? x : frame.x.lo, hasY ? y : frame.y.lo);
     const float px = std::round(at.x) + 0.5f, py = std::round(at.y) + 0.5f;
+    if (hasX && onPicture) draw.AddLine({px, frame.min.y}, {px, frame.max.y}, rim, 3);
+    if (hasY && onPicture) draw.AddLine({frame.min.x, py}, {frame.max.x, py}, rim, 3);
     if (hasX) draw.AddLine({px, frame.min.y}, {px, frame.max.y}, color);
     if (hasY) draw.AddLine({frame.min.x, py}, {frame.max.x, py}, color);
     if (hasX && hasY) draw.AddCircleFilled({px, py}, em() * 0.2f, color);

@@ -60,6 +60,16 @@ struct AxisOptions {
 /// Pixels that drawAxis needs outside the frame for ticks, labels and title.
 float axisRoom(AxisSide side, Range range, bool title);
 
+/// Heights of plots below each other over one axis, pixels.
+struct ColumnHeights {
+    float all;    ///< more than the pane has where that must scroll
+    float each;   ///< a plot with the gap below it
+    float bottom; ///< the axis
+    bool titled;  ///< it has its title in a line of its own, not in that of the numbers
+};
+/// For `room` pixels: plots and title as there is room, but no plot lower than its name.
+ColumnHeights columnHeights(float room, std::size_t plots);
+
 /// Ticks, labels and a title with unit along one side of a frame. Labels never overlap and never leave
 /// [lo, hi] pixels along the axis: those at the ends are moved inwards.
 void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::string_view title, std::string_view unit,
@@ -81,8 +91,9 @@ void addFittedWithBackdrop(ImDrawList& draw, ImVec2 at, ImVec2 pivot, ImU32 colo
 /// Bars from the bottom of the frame; heights 0..1 of the frame, equal widths over its x range.
 void drawBars(ImDrawList& draw, const PlotFrame& frame, std::span<const float> heights, ImU32 color);
 
-/// Lines through (x, y), NaN = outside of the plot; with a dot where they meet if both are inside.
-void drawCrosshair(ImDrawList& draw, const PlotFrame& frame, double x, double y);
+/// Lines through (x, y), NaN = outside of the plot; with a dot where they meet if both are inside. On a picture, whose
+/// colours may be like theirs, they have a light or dark rim.
+void drawCrosshair(ImDrawList& draw, const PlotFrame& frame, double x, double y, bool onPicture = false);
 
 /// Colours of a density plot, row 0 at the top (the largest y): transparent where no sample is, else the density from
 /// faint to full, hue by the share of focus. `counts` and `focus` have size x size bins, x fastest, row 0 = lowest y;

@@ -12,42 +12,6 @@
 
 namespace tessera::app {
 
-bool iconButton(const ViewContext& context, const char* id, Icon icon, const char* help, bool enabled, bool lit) {
-    const float height = ImGui::GetFrameHeight();
-    const ImVec2 glyph = iconSize(context, icon);
-    const ImVec2 size{std::max(height, glyph.x + em() * 0.5f), height};
-    ImGui::BeginDisabled(!enabled);
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    if (lit) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
-    const bool pressed = ImGui::Button((std::string("##") + id).c_str(), size);
-    if (lit) ImGui::PopStyleColor();
-    ImGui::EndDisabled();
-    if (help && *help && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) tooltip(help);
-    const ImU32 color = ImGui::GetColorU32(enabled ? ImGuiCol_Text : ImGuiCol_TextDisabled);
-    ImFont* font = context.iconFont ? context.iconFont : ImGui::GetFont();
-    ImGui::GetWindowDrawList()->AddText(
-        font, context.iconFont ? em() * 0.95f : em(),
-        {std::round(at.x + (size.x - glyph.x) / 2), std::round(at.y + (size.y - glyph.y) / 2)}, color,
-        context.iconFont ? icon.glyph : icon.word);
-    return pressed;
-}
-
-ImVec2 iconSize(const ViewContext& context, Icon icon) {
-    if (!context.iconFont) return ImGui::CalcTextSize(icon.word);
-    return context.iconFont->CalcTextSizeA(em() * 0.95f, 1e6f, 0, icon.glyph);
-}
-
-void iconText(const ViewContext& context, Icon icon, ImU32 color) {
-    const ImVec2 at = ImGui::GetCursorScreenPos(), size = iconSize(context, icon);
-    const float width = std::max(em() * 1.4f, size.x);
-    ImFont* font = context.iconFont ? context.iconFont : ImGui::GetFont();
-    ImGui::GetWindowDrawList()->AddText(
-        font, context.iconFont ? em() * 0.95f : em(),
-        {std::round(at.x + (width - size.x) / 2), std::round(at.y + (ImGui::GetFrameHeight() - size.y) / 2)}, color,
-        context.iconFont ? icon.glyph : icon.word);
-    ImGui::Dummy({width, ImGui::GetFrameHeight()});
-}
-
 void drawHint(const char* title, const char* hint) {
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const ImVec2 start = ImGui::GetCursorPos();
@@ -68,16 +32,11 @@ void drawHint(const char* title, const char* hint) {
     if (*hint) line(hint, b, ImGuiCol_TextDisabled);
 }
 
-void continueLine(float width) {
-    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-    if (ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width <= right) ImGui::SameLine();
-}
-
 std::string originText(const ViewContext& context, const std::vector<int>& channels) {
     return originText(context.origin, context.numbers->info(), channels);
 }
 
-void drawOrigin(const ViewContext& context, const std::vector<int>& channels, bool atOneTime) {
+void drawOrigin(const ViewContext& context, ToolRow& tools, const std::vector<int>& channels, bool atOneTime) {
     std::string text = originText(context, channels);
     const volume::DatasetInfo& info = context.numbers->info();
     const auto ownTime = [](const auto& each) {
@@ -86,22 +45,30 @@ void drawOrigin(const ViewContext& context, const std::vector<int>& channels, bo
     };
     if (atOneTime && info.times.size() > 1 && std::ranges::any_of(context.session.views, ownTime))
         text += ", at " + timeText(info, context.session.time);
-    continueLine(std::min(ImGui::CalcTextSize(text.c_str()).x, em() * 12));
-    const std::string fitted = fitText(text, ImGui::GetContentRegionAvail().x);
+    const float whole = ImGui::CalcTextSize(text.c_str()).x, least = std::min(whole, em() * 12);
+    if (!tools.next(least)) return;
+    const std::string fitted = fitText(text, tools.grow(least, whole));
     ImGui::TextDisabled("%s", fitted.c_str());
     if (ImGui::IsItemHovered()) tooltip(("Numbers: " + text).c_str());
 }
 
-float buttonWidth(const char* text) {
-    return ImGui::CalcTextSize(text).x + 2 * ImGui::GetStyle().FramePadding.x;
+void drawNote(ToolRow& tools, const std::string& text) {
+    const float width = ImGui::CalcTextSize(text.c_str()).x;
+    if (tools.narrow() && !tools.fits(width)) return;
+    if (tools.next(width)) ImGui::TextDisabled("%s", text.c_str());
 }
 
-void tooltip(const char* text) {
-    ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(em() * 28);
-    ImGui::TextUnformatted(text);
-    ImGui::PopTextWrapPos();
-    ImGui::EndTooltip();
+bool narrowRows() {
+    return ImGui::GetContentRegionAvail().x < em() * 14;
+}
+
+float heightAtLeast(float least) {
+    const float left = ImGui::GetContentRegionAvail().y;
+    if (left >= least) return left;
+    const ImVec2 at = ImGui::GetCursorPos();
+    ImGui::Dummy({1, least}); // what is drawn there without items takes part in the height of the content
+    ImGui::SetCursorPos(at);
+    return least;
 }
 
 void tableHeader(std::initializer_list<const char*> names, int right) {
@@ -151,7 +118,9 @@ std::vector<int> chosenChannels(const volume::DatasetInfo& info, const std::vect
     return out;
 }
 
-void chooseChannels(const volume::DatasetInfo& info, std::vector<std::string>& names, const std::vector<int>& shown) {
+void chooseChannels(ToolRow& tools, const volume::DatasetInfo& info, std::vector<std::string>& names,
+                    const std::vector<int>& shown) {
+    if (!tools.next(em() * 7.8f)) return;
     const std::string label = std::to_string(shown.size()) + (shown.size() == 1 ? " parameter" : " parameters");
     ImGui::SetNextItemWidth(em() * 7.8f);
     if (ImGui::BeginCombo("##channels", label.c_str(), ImGuiComboFlags_HeightLarge)) {

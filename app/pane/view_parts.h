@@ -1,8 +1,9 @@
 #pragma once
 
+#include "app/pane/controls.h"
 #include "app/pane/legend.h"
+#include "app/pane/tool_row.h"
 #include "app/pane/view_context.h"
-#include "app/ui/theme.h"
 
 #include <initializer_list>
 #include <optional>
@@ -12,44 +13,24 @@
 /// Helpers that several views use.
 namespace tessera::app {
 
-/// Glyphs of Font Awesome 4 and the words that stand for them where the font is missing.
-struct Icon {
-    const char* glyph;
-    const char* word;
-};
-namespace icons {
-inline constexpr Icon kEye{icon::kEye, "on"}, kEyeOff{icon::kEyeOff, "off"}, kPlus{icon::kPlus, "+"},
-    kTrash{icon::kTrash, "x"}, kCopy{icon::kCopy, "copy"}, kCube{icon::kCube, "vol"}, kIso{"\uf219", "iso"},
-    kSlice{"\uf24d", "slice"}, kFlow{"\uf178", "flow"}, kPlay{icon::kPlay, ">"}, kPause{icon::kPause, "||"},
-    kStepBack{icon::kStepBack, "<|"}, kStepForward{icon::kStepForward, "|>"}, kFirst{icon::kFirst, "|<"},
-    kLast{icon::kLast, ">|"}, kRepeat{icon::kRepeat, "loop"}, kPingPong{icon::kPingPong, "<>"},
-    kOnce{icon::kOnce, "once"}, kInvert{icon::kInvert, "inv"}, kReverse{"\uf0ec", "rev"}, kColors{"\uf1fb", "own"},
-    kChain{icon::kChain, "link"}, kChainOff{icon::kChainOff, "own"};
-} // namespace icons
-
-/// A square button with a glyph, its tooltip on hover; `enabled` false greys it out.
-bool iconButton(const ViewContext& context, const char* id, Icon icon, const char* tooltip, bool enabled = true,
-                bool lit = false);
-/// A glyph without a button.
-void iconText(const ViewContext& context, Icon icon, ImU32 color);
-ImVec2 iconSize(const ViewContext& context, Icon icon);
-
 /// Two or three lines in the middle of the pane where there is nothing to draw.
 void drawHint(const char* title, const char* hint = "");
 
-/// Continues the line if an item of this width fits, else starts the next one, so that toolbars of narrow panes stay
-/// complete.
-void continueLine(float width);
-float buttonWidth(const char* text);
+/// Whether the rest of a row of a list, which has a check box and a colour, is too narrow for all that belongs there:
+/// then what is set rarely is in a second row.
+bool narrowRows();
 
-/// Wrapped help on hover of the last item.
-void tooltip(const char* text);
+/// The height left in the pane for what a view is about, but at least `least` pixels: a smaller pane scrolls.
+float heightAtLeast(float least);
 
 /// originText of the view's numbers for these channels (none: all).
 std::string originText(const ViewContext& context, const std::vector<int>& channels = {});
-/// The same as faint text: on the same line if it fits, truncated otherwise; complete on hover. Numbers `atOneTime` are
-/// those of the session's time, which is said where a volume view has another one of its own.
-void drawOrigin(const ViewContext& context, const std::vector<int>& channels = {}, bool atOneTime = true);
+/// The same as faint text among the tools, truncated where the row has no room; complete on hover. Numbers `atOneTime`
+/// are those of the session's time, which is said where a volume view has another one of its own.
+void drawOrigin(const ViewContext& context, ToolRow& tools, const std::vector<int>& channels = {},
+                bool atOneTime = true);
+/// Faint text among the tools; left out where these are narrow and its row has no room.
+void drawNote(ToolRow& tools, const std::string& text);
 
 /// The head row of a table whose columns are set up; names from column `right` on stand over right-aligned numbers.
 void tableHeader(std::initializer_list<const char*> names, int right = 1);
@@ -63,8 +44,9 @@ std::vector<int> comparedChannels(const volume::DatasetInfo& info);
 /// `most`.
 std::vector<int> chosenChannels(const volume::DatasetInfo& info, const std::vector<std::string>& names,
                                 std::size_t most);
-/// A list with a tick for each of them.
-void chooseChannels(const volume::DatasetInfo& info, std::vector<std::string>& names, const std::vector<int>& shown);
+/// A tool: a list with a tick for each of them.
+void chooseChannels(ToolRow& tools, const volume::DatasetInfo& info, std::vector<std::string>& names,
+                    const std::vector<int>& shown);
 
 /// The channel a view shows: the wanted one if the data has it, else that of the first layer, else the first. Nothing
 /// for data without parameters.

@@ -99,8 +99,7 @@ void drawFlowing(const std::vector<std::string>& texts) {
 
 float readoutHeight(const Readout& readout) {
     const float row = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
-    return 2 * ImGui::GetTextLineHeightWithSpacing() + row * static_cast<float>(readout.channels.size() + 1) +
-           ImGui::GetFrameHeight();
+    return 2 * ImGui::GetTextLineHeightWithSpacing() + row * static_cast<float>(readout.channels.size() + 1);
 }
 
 void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
@@ -120,7 +119,6 @@ void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
         at.insert(at.begin(), text);
     }
     drawFlowing(at);
-    const auto copy = [&] { return originLine(context.origin, info) + readoutCsv(context.session, info, readout); };
     if (compact) {
         std::vector<std::string> values;
         for (std::size_t i = 0; i < readout.channels.size() && i < readout.values.size(); ++i) {
@@ -132,7 +130,6 @@ void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
                 values.push_back(channel.name + " " + valueText(info, channel, value) + " " + prettyUnit(channel.unit));
         }
         drawFlowing(values);
-        if (!context.figure && ImGui::SmallButton("Copy as CSV")) ImGui::SetClipboardText(copy().c_str());
         return;
     }
     ImGui::PushTextWrapPos(0);
@@ -171,7 +168,6 @@ void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
         textRight(rows[i][3], true);
     }
     ImGui::EndTable();
-    if (!context.figure && ImGui::SmallButton("Copy as CSV")) ImGui::SetClipboardText(copy().c_str());
 }
 
 std::vector<std::string> readoutHeads(const volume::DatasetInfo& info) {

@@ -22,6 +22,8 @@ struct ViewTraits {
     bool camera = false;         ///< uses the session's camera, so that camera commands act on it
     bool padded = true;          ///< has a margin inside its pane
     bool plays = false;          ///< moves the session's time itself while the session plays
+    /// What its pane keeps beside others where the window has room, its tab included, in design pixels.
+    float leastWidth = 160, leastHeight = 120;
 };
 
 /// A kind of view opened with other settings than the default, by a command of its own.

@@ -99,8 +99,11 @@ bool drawBrush(ViewContext& context, vis::Brush& brush, std::size_t index, std::
                       ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel | ImGuiColorEditFlags_NoTooltip);
     if (ImGui::IsItemHovered()) tooltip(("Colour of brush " + std::to_string(index + 1) + " in the plots").c_str());
     ImGui::SameLine(0, em() * 0.3f);
-    chooseCombine(brush);
-    ImGui::SameLine(0, em() * 0.3f);
+    const bool narrow = narrowRows();
+    if (!narrow) {
+        chooseCombine(brush);
+        ImGui::SameLine(0, em() * 0.3f);
+    }
     const float buttons = ImGui::GetFrameHeight() * 2 + em() * 0.9f;
     ImGui::SetNextItemWidth(std::max(em() * 3, ImGui::GetContentRegionAvail().x - buttons));
     ImGui::InputText("##name", &brush.name);
@@ -110,6 +113,7 @@ bool drawBrush(ViewContext& context, vis::Brush& brush, std::size_t index, std::
     ImGui::SameLine(0, em() * 0.2f);
     const bool removed = iconButton(context, "delete", icons::kTrash, "Remove this brush");
     ImGui::Indent(em() * 1.6f);
+    if (narrow) chooseCombine(brush);
     const std::string text =
         std::to_string(index + 1) + "  " + (brush.inverted ? "not " : "") + regionText(info, brush.region);
     if (fittedTreeNode(text, "region", unfold)) {
@@ -172,7 +176,7 @@ void drawBrushList(ViewContext& context) {
         ImGui::PopID();
     }
     if (removed >= 0) selection.brushes.erase(selection.brushes.begin() + removed);
-    if (selection.brushes.empty()) ImGui::TextDisabled("No brushes: drag in a plot to select.");
+    if (selection.brushes.empty()) faintText("No brushes: drag in a plot to select.");
     if (const std::string together = combinationText(selection); !together.empty()) {
         ImGui::PushTextWrapPos();
         ImGui::TextDisabled("Selected: %s", together.c_str());

@@ -70,7 +70,7 @@ void drawStatistics(ViewContext& context, const std::string& pane, LensStatistic
         ImGui::TextDisabled("Counting...");
         return;
     }
-    ImGui::TextDisabled("%s", originText(context, shown).c_str());
+    faintText(originText(context, shown));
     if (!ImGui::BeginTable("inside", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) return;
     for (const char* name : {"Inside", "Mean", "Range"}) ImGui::TableSetupColumn(name);
     tableHeader({"Inside", "Mean", "Range"}, 1);
@@ -142,21 +142,35 @@ RowAction drawLens(ViewContext& context, const std::string& pane, LensStatistics
                       ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel | ImGuiColorEditFlags_NoTooltip);
     if (ImGui::IsItemHovered()) tooltip("Colour of its outline");
     ImGui::SameLine(0, em() * 0.3f);
-    chooseEffect(lens);
-    ImGui::SameLine(0, em() * 0.3f);
-    const float buttons = ImGui::GetFrameHeight() * 3 + em() * 1.1f;
+    const bool narrow = narrowRows();
+    if (!narrow) {
+        chooseEffect(lens);
+        ImGui::SameLine(0, em() * 0.3f);
+    }
+    const float buttons = ImGui::GetFrameHeight() * (narrow ? 2 : 3) + em() * (narrow ? 0.9f : 1.1f);
     ImGui::SetNextItemWidth(std::max(em() * 3, ImGui::GetContentRegionAvail().x - buttons));
     std::string name = lens.name;
     if (ImGui::InputText("##name", &name) && !name.empty()) renameLens(session, index, name);
     ImGui::SameLine(0, em() * 0.3f);
-    if (iconButton(context, "up", {"\uf062", "up"}, "Move below the lens above it", index > 0)) action = RowAction::Up;
-    ImGui::SameLine(0, em() * 0.2f);
+    const auto up = [&] {
+        if (iconButton(context, "up", {"\uf062", "up"}, "Move below the lens above it", index > 0))
+            action = RowAction::Up;
+    };
+    if (!narrow) {
+        up();
+        ImGui::SameLine(0, em() * 0.2f);
+    }
     if (iconButton(context, "invert", icons::kInvert, "Act outside instead of inside", true, lens.inverted))
         lens.inverted = !lens.inverted;
     ImGui::SameLine(0, em() * 0.2f);
     if (iconButton(context, "delete", icons::kTrash, "Remove this lens; its layers are no longer drawn"))
         action = RowAction::Remove;
     ImGui::Indent(em() * 1.6f);
+    if (narrow) {
+        chooseEffect(lens);
+        ImGui::SameLine(0, em() * 0.3f);
+        up();
+    }
     const std::string inside = layersOf(session, lens.name);
     const std::string text = std::string(vis::kLensShapeNames[static_cast<std::size_t>(lens.shape)]) +
                              (inside.empty() ? "" : "  with " + inside);
@@ -305,7 +319,7 @@ void drawLensList(ViewContext& context, const std::string& pane, LensStatistics&
     if (action == RowAction::Remove) removeLens(session, which);
     if (action == RowAction::Up) std::swap(session.lenses[which], session.lenses[which - 1]);
     if (action == RowAction::None && from != to) moveLens(session, from, to);
-    if (session.lenses.empty()) ImGui::TextDisabled("No lenses: add one at the cross-hair.");
+    if (session.lenses.empty()) faintText("No lenses: add one at the cross-hair.");
     if (iconButton(context, "add lens", icons::kPlus, "Add a lens at the cross-hair")) ImGui::OpenPopup("add lens");
     if (ImGui::BeginPopup("add lens")) {
         drawLensMenu(context);

@@ -205,7 +205,7 @@ void drawSplitters(DockLayout& layout, DockTree& tree, DockHand& hand, const Doc
         }
         ImGui::PopID();
     }
-    if (moved) layout = layoutDock(tree, whole, layout.scale, layout.hidden);
+    if (moved) layout = layoutDock(tree, whole, layout.scale, layout.hidden, layout.least);
 }
 
 void drawFloating(Drawing& drawing, const DockRect& whole) {
@@ -300,7 +300,7 @@ void drawDock(DockTree& tree, DockHand& hand, const DockPanes& panes, ImVec2 ori
             drawing.window(tree.maximised, whole.lo, whole.hi, kPaneFlags | ImGuiWindowFlags_NoScrollbar);
         return;
     }
-    DockLayout layout = layoutDock(tree, whole, scale, panes.hidden);
+    DockLayout layout = layoutDock(tree, whole, scale, panes.hidden, panes.least);
 
     beginDockWindow(whole);
     const bool maximised = !tree.maximised.empty();

@@ -17,6 +17,7 @@ struct DockPanes {
     std::function<void(const std::string& pane)> close;   ///< removes the view
     std::function<void(const std::string& pane)> tabMenu; ///< further items of a tab's context menu; may be empty
     HiddenPanes hidden = {};                              ///< panes that take no room
+    LeastSizes least = {};                                ///< what each keeps
     std::string none = {};                                ///< text shown if no pane is open
 };
 

@@ -8,7 +8,7 @@ namespace tessera::app {
 namespace {
 
 constexpr float kGap = 4;       // design pixels between panes
-constexpr float kSmallest = 90; // design pixels a pane keeps, if there is room
+constexpr float kSmallest = 90; // design pixels that a pane keeps where nothing else is said
 
 DockRect sideOf(const DockRect& rect, DockSide side, float share) {
     DockRect part = rect;
@@ -40,9 +40,30 @@ ShownTabs shownTabs(const DockNode& stack, const HiddenPanes& hidden) {
     return shown;
 }
 
+ImVec2 DockLayout::leastOf(const DockNode& node) const {
+    if (allHidden(node, hidden)) return {0, 0};
+    ImVec2 most{0, 0};
+    if (node.kind == DockKind::Tabs) { // whichever is in front: a split stays where it is when another tab comes
+        most = {kSmallest, kSmallest};
+        for (const std::string& pane : shownTabs(node, hidden).panes) {
+            const ImVec2 own = least ? least(pane) : most;
+            most = {std::max(most.x, own.x), std::max(most.y, own.y)};
+        }
+        return {std::round(most.x * scale), std::round(most.y * scale)};
+    }
+    const ImVec2 a = leastOf(node.children[0]), b = leastOf(node.children[1]);
+    const bool row = node.kind == DockKind::Row;
+    const bool split = !allHidden(node.children[0], hidden) && !allHidden(node.children[1], hidden);
+    const float gap = split ? std::round(kGap * scale) : 0;
+    return {row ? a.x + gap + b.x : std::max(a.x, b.x), row ? std::max(a.y, b.y) : a.y + gap + b.y};
+}
+
 float DockLayout::firstPart(const DockNode& node, float room) const {
-    const float least = std::min(kSmallest * scale, room / 2);
-    return std::round(std::clamp(node.ratio * room, least, room - least));
+    const ImVec2 a = leastOf(node.children[0]), b = leastOf(node.children[1]);
+    const bool row = node.kind == DockKind::Row;
+    const float first = row ? a.x : a.y, second = row ? b.x : b.y;
+    if (first + second > room) return std::round(room * first / (first + second));
+    return std::round(std::clamp(node.ratio * room, first, room - second));
 }
 
 void DockLayout::place(DockNode& node, DockRect rect) {
@@ -67,8 +88,8 @@ void DockLayout::place(DockNode& node, DockRect rect) {
     place(node.children[1], b);
 }
 
-DockLayout layoutDock(DockTree& tree, DockRect whole, float scale, const HiddenPanes& hidden) {
-    DockLayout layout{scale, hidden, {}, {}, {}};
+DockLayout layoutDock(DockTree& tree, DockRect whole, float scale, const HiddenPanes& hidden, const LeastSizes& least) {
+    DockLayout layout{scale, hidden, least, {}, {}, {}};
     layout.place(tree.root, whole);
     return layout;
 }

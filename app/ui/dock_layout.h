@@ -25,6 +25,9 @@ struct DockSplitter {
 /// Which panes take no room although they are in the tree; empty: none.
 using HiddenPanes = std::function<bool(const std::string& pane)>;
 
+/// The size that a pane with its tab keeps where there is room, design pixels; empty: the same for all.
+using LeastSizes = std::function<ImVec2(const std::string& pane)>;
+
 /// The tabs of a stack that are not hidden, and which of them is in front (the first one where that is hidden).
 struct ShownTabs {
     std::vector<std::string> panes;
@@ -33,17 +36,22 @@ struct ShownTabs {
 ShownTabs shownTabs(const DockNode& stack, const HiddenPanes& hidden);
 
 struct DockLayout {
-    float scale;                   ///< pixels per design pixel
-    HiddenPanes hidden;            ///< stacks with nothing else are left out
+    float scale;        ///< pixels per design pixel
+    HiddenPanes hidden; ///< stacks with nothing else are left out
+    LeastSizes least;
     std::map<int, DockRect> rects; ///< of every stack, its strip of tabs included
     std::vector<DockNode*> stacks;
     std::vector<DockSplitter> splitters;
 
-    /// Size of the first part of a split in pixels: by its ratio, but neither part smaller than its minimum.
+    /// The size that every pane of a node keeps where there is room, pixels.
+    ImVec2 leastOf(const DockNode& node) const;
+    /// Size of the first part of a split in pixels: by its ratio, but neither part smaller than its minimum; in
+    /// proportion to the minima where there is no room for both.
     float firstPart(const DockNode& node, float room) const;
     void place(DockNode& node, DockRect rect);
 };
-DockLayout layoutDock(DockTree& tree, DockRect whole, float scale, const HiddenPanes& hidden = {});
+DockLayout layoutDock(DockTree& tree, DockRect whole, float scale, const HiddenPanes& hidden = {},
+                      const LeastSizes& least = {});
 
 /// The target of a dragged tab.
 struct DockDrop {

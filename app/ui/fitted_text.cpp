@@ -14,10 +14,22 @@ std::string fitText(std::string_view text, float width) {
     return {};
 }
 
+std::string firstThatFits(std::initializer_list<std::string> texts, float width) {
+    for (const std::string& text : texts)
+        if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+    return texts.size() > 0 ? fitText(*(texts.end() - 1), width) : std::string();
+}
+
 void fittedText(std::string_view text, float width) {
     const std::string shown = fitText(text, width > 0 ? width : ImGui::GetContentRegionAvail().x);
     ImGui::TextUnformatted(shown.c_str());
     if (shown != text && ImGui::IsItemHovered()) ImGui::SetTooltip("%.*s", int(text.size()), text.data());
+}
+
+void faintText(std::string_view text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    fittedText(text);
+    ImGui::PopStyleColor();
 }
 
 bool beginFittedCombo(const char* id, std::string_view chosen) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <imgui.h>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,9 +13,15 @@ namespace tessera::app {
 /// have room, nothing.
 std::string fitText(std::string_view text, float width);
 
+/// The first of the texts, which say ever less, that is at most `width` pixels wide; else the last one, cut off.
+std::string firstThatFits(std::initializer_list<std::string> texts, float width);
+
 /// The text as an item of a window, at most `width` pixels wide (0: up to the right end of the window). What was cut
 /// off stands in a tooltip.
 void fittedText(std::string_view text, float width = 0);
+
+/// The same in the faint colour of hints, up to the right end of the window.
+void faintText(std::string_view text);
 
 /// A list of choices as wide as the next item; ImGui::EndCombo() follows where it is true.
 bool beginFittedCombo(const char* id, std::string_view chosen);

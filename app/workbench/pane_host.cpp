@@ -97,6 +97,11 @@ void PaneHost::draw(const ViewContext& frame, const Area& area) {
         return found != session.views.end() && frame.source &&
                hasNothingToShow(found->second, session, frame.source->info());
     };
+    panes.least = [&](const std::string& pane) {
+        const auto found = session.views.find(pane);
+        const ViewTraits traits = found == session.views.end() ? ViewTraits{} : traitsOf(found->second);
+        return ImVec2{traits.leastWidth, traits.leastHeight};
+    };
     panes.none = area.none;
     if (area.only.empty()) {
         drawDock(session.dock, hand_, panes, area.origin, area.size, frame.scale);

@@ -1,4 +1,5 @@
 #include "app/pane/pane_title.h"
+#include "app/pane/view_parts.h"
 #include "app/session/shown_scene.h"
 #include "tests/app/hands_fixture.h"
 #include "tests/app/workbench_fixture.h"

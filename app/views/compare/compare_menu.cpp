@@ -82,9 +82,31 @@ void chooseShownView(const ViewContext& context, CompareView& view) {
     if (ImGui::IsItemHovered()) tooltip("What is compared: the 3D scene, or a view that is open");
 }
 
+/// The settings of a way to compare.
+void drawModeTools(ToolRow& tools, CompareView& view, CompareMode mode) {
+    if (mode == CompareMode::Blink && tools.next(em() * 6, em() * 0.8f)) {
+        ImGui::SetNextItemWidth(em() * 6);
+        ImGui::SliderFloat("##blink", &view.blinkSeconds, 0.1f, 10, "%.2g s", ImGuiSliderFlags_Logarithmic);
+        if (ImGui::IsItemHovered()) tooltip("How long each variant is shown");
+    }
+    if (mode != CompareMode::Difference) return;
+    if (tools.next(checkboxWidth("Values"), em() * 0.8f)) {
+        bool values = view.differenceOf == DifferenceOf::Values;
+        if (ImGui::Checkbox("Values", &values))
+            view.differenceOf = values ? DifferenceOf::Values : DifferenceOf::Colors;
+        if (ImGui::IsItemHovered())
+            tooltip("On: values of the first layer's parameter minus those of the reference, in their unit, on the "
+                    "planes through the cross-hair. Off: colours of the pictures");
+    }
+    if (view.differenceOf != DifferenceOf::Colors || !tools.next(em() * 6, em() * 0.8f)) return;
+    ImGui::SetNextItemWidth(em() * 6);
+    ImGui::SliderFloat("##top", &view.differenceTop, 0, 255, view.differenceTop > 0 ? "up to %.0f" : "automatic");
+    if (ImGui::IsItemHovered()) tooltip("Difference that is drawn brightest, of 255; 0 = the largest that occurs");
+}
+
 } // namespace
 
-void drawCompareToolbar(ViewContext& context, CompareView& view, std::vector<CompareVariant> variants) {
+void drawCompareToolbar(ViewContext& context, ToolRow& tools, CompareView& view, std::vector<CompareVariant> variants) {
     static constexpr const char* kNames[] = {"Grid", "Swipe", "Blink", "Difference"};
     static constexpr const char* kHelp[] = {
         "Side by side",
@@ -94,49 +116,28 @@ void drawCompareToolbar(ViewContext& context, CompareView& view, std::vector<Com
     const CompareMode mode = modeOf(view);
     for (int i = 0; i < 4; ++i) {
         if (!view.shows.empty() && i != int(CompareMode::Grid) && i != int(CompareMode::Blink)) continue;
+        if (!tools.next(buttonWidth(kNames[i]), em() * 0.15f)) continue;
         const bool lit = static_cast<int>(mode) == i;
         if (lit) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
         if (ImGui::Button(kNames[i])) view.mode = static_cast<CompareMode>(i);
         if (lit) ImGui::PopStyleColor();
         if (ImGui::IsItemHovered()) tooltip(kHelp[i]);
-        ImGui::SameLine(0, em() * 0.15f);
     }
-    ImGui::SameLine(0, em() * 0.8f);
-    if (iconButton(context, "add", icons::kPlus, "Add a variant")) ImGui::OpenPopup("add variant");
-    if (ImGui::BeginPopup("add variant")) {
-        drawAddMenu(context, view, variants);
-        ImGui::EndPopup();
+    if (tools.next(iconButtonWidth(context, icons::kPlus), em() * 0.95f)) {
+        if (iconButton(context, "add", icons::kPlus, "Add a variant")) ImGui::OpenPopup("add variant");
+        if (ImGui::BeginPopup("add variant")) {
+            drawAddMenu(context, view, variants);
+            ImGui::EndPopup();
+        }
     }
-    ImGui::SameLine(0, em() * 0.5f);
-    chooseShownView(context, view);
-    ImGui::SameLine(0, em() * 0.5f);
-    ImGui::Checkbox("Table", &view.showTable);
-    ImGui::SameLine(0, em() * 0.5f);
-    if (ImGui::Button("Ask")) view.questions.emplace_back();
-    if (ImGui::IsItemHovered())
-        tooltip("Add a question about the comparison; the session keeps the answer and the time it took");
-    if (mode == CompareMode::Blink) {
-        ImGui::SameLine(0, em() * 0.8f);
-        ImGui::SetNextItemWidth(em() * 6);
-        ImGui::SliderFloat("##blink", &view.blinkSeconds, 0.1f, 10, "%.2g s", ImGuiSliderFlags_Logarithmic);
-        if (ImGui::IsItemHovered()) tooltip("How long each variant is shown");
-    }
-    if (mode == CompareMode::Difference) {
-        ImGui::SameLine(0, em() * 0.8f);
-        bool values = view.differenceOf == DifferenceOf::Values;
-        if (ImGui::Checkbox("Values", &values))
-            view.differenceOf = values ? DifferenceOf::Values : DifferenceOf::Colors;
+    if (tools.next(em() * 8, em() * 0.5f)) chooseShownView(context, view);
+    if (tools.next(checkboxWidth("Table"), em() * 0.5f)) ImGui::Checkbox("Table", &view.showTable);
+    if (tools.next(buttonWidth("Ask"), em() * 0.5f)) {
+        if (ImGui::Button("Ask")) view.questions.emplace_back();
         if (ImGui::IsItemHovered())
-            tooltip("On: values of the first layer's parameter minus those of the reference, in their unit, on the "
-                    "planes through the cross-hair. Off: colours of the pictures");
+            tooltip("Add a question about the comparison; the session keeps the answer and the time it took");
     }
-    if (mode == CompareMode::Difference && view.differenceOf == DifferenceOf::Colors) {
-        ImGui::SameLine(0, em() * 0.8f);
-        ImGui::SetNextItemWidth(em() * 6);
-        ImGui::SliderFloat("##top", &view.differenceTop, 0, 255, view.differenceTop > 0 ? "up to %.0f" : "automatic");
-        if (ImGui::IsItemHovered()) tooltip("Difference that is drawn brightest, of 255; 0 = the largest that occurs");
-    }
-    ImGui::SameLine(0, em() * 0.8f);
+    drawModeTools(tools, view, mode);
 }
 
 void drawVariantMenu(ViewContext& context, const char* id, CompareView& view, std::vector<CompareVariant> variants,
@@ -214,9 +215,6 @@ float compareTableHeight(std::size_t rows) {
 }
 
 void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows) {
-    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp |
-                                       ImGuiTableFlags_PadOuterX | ImGuiTableFlags_ScrollY |
-                                       ImGuiTableFlags_BordersInnerV;
     const bool stored =
         std::any_of(rows.begin(), rows.end(), [](const CompareRow& row) { return row.storedBytes > 0; });
     const bool compared =
@@ -229,16 +227,23 @@ void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows) {
     if (pictures) names.insert(names.end(), {"Max.", "RMSE", "PSNR [dB]", "SSIM"});
     const auto [room, below] = ImGui::GetContentRegionAvail();
     const float height = std::min(compareTableHeight(rows.size()), below);
-    if (!ImGui::BeginTable("compare", static_cast<int>(names.size()), kFlags, {0, height})) return;
-    ImGui::TableSetupScrollFreeze(1, 1);
-    // Where there is room numbers take what they need and names are whole; what differs has the rest.
+    // Where there is room numbers take what they need and names are whole; what differs has the rest. Else the table
+    // scrolls: a number cut off would be wrong.
     std::vector<float> widths(names.size(), em() * 4.5f);
     widths[0] = em() * 4, widths[1] = em() * 12;
     for (const CompareRow& row : rows) widths[0] = std::max(widths[0], ImGui::CalcTextSize(row.name.c_str()).x);
     const bool fits = std::accumulate(widths.begin(), widths.end(), 0.0f) + em() * 0.6f * float(names.size()) < room;
+    const ImGuiTableFlags flags =
+        ImGuiTableFlags_RowBg | ImGuiTableFlags_PadOuterX | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerV |
+        (fits ? ImGuiTableFlags_SizingStretchProp : ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX);
+    if (!fits) widths[0] = std::min(widths[0], std::max(em() * 4, room * 0.3f));
+    // ImGui stores the widths per table, so each layout has an id of its own.
+    if (!ImGui::BeginTable(fits ? "compare" : "compare scrolled", static_cast<int>(names.size()), flags, {0, height}))
+        return;
+    ImGui::TableSetupScrollFreeze(1, 1);
     for (std::size_t i = 0; i < names.size(); ++i)
         ImGui::TableSetupColumn(names[i],
-                                fits && i != 1 ? ImGuiTableColumnFlags_WidthFixed : ImGuiTableColumnFlags_WidthStretch,
+                                fits && i == 1 ? ImGuiTableColumnFlags_WidthStretch : ImGuiTableColumnFlags_WidthFixed,
                                 widths[i]);
     ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
     for (std::size_t i = 0; i < names.size(); ++i) {

@@ -319,8 +319,9 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
     CompareCache& cache = cacheOf<CompareCache>(context, pane);
     const std::vector<CompareVariant> variants = shownVariants(view, context.session, context.source->info());
     if (!context.figure) {
-        drawCompareToolbar(context, view, variants);
-        exportMenu(context, "comparison", {}, [rows = cache.rows](const Progress&) { return compareCsv(rows); });
+        ToolRow tools(context);
+        drawCompareToolbar(context, tools, view, variants);
+        exportMenu(context, tools, "comparison", {}, [rows = cache.rows](const Progress&) { return compareCsv(rows); });
     }
     Frame frame{context, view, cache, variants};
     const std::size_t count = frame.variants.size();

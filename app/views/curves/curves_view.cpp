@@ -115,10 +115,10 @@ void chooseCurves(const volume::DatasetInfo& info, const CurvesView& resolved, C
     ImGui::EndCombo();
 }
 
-void chooseRegion(const volume::DatasetInfo& info, CurvesView& view) {
+void chooseRegion(ToolRow& tools, const volume::DatasetInfo& info, CurvesView& view) {
     const std::vector<LabelRegion> regions = labelRegions(info);
     if (regions.empty()) return;
-    continueLine(em() * 8);
+    if (!tools.next(em() * 8)) return;
     ImGui::SetNextItemWidth(em() * 8);
     if (ImGui::BeginCombo("##region", view.region.empty() ? "everywhere" : view.region.c_str())) {
         if (ImGui::Selectable("everywhere", view.region.empty())) view.region.clear();
@@ -136,34 +136,34 @@ void drawToolbar(ViewContext& context, CurvesCache& cache, const std::shared_ptr
                  CurvesView& view) {
     const volume::DatasetInfo& info = context.numbers->info();
     const CurvesView resolved = resolvedCurves(view, info);
-    chooseCurves(info, resolved, view, cache.draft);
-    continueLine(em() * 9);
-    chooseAcross(info, resolved, view);
-    chooseRegion(info, view);
-    if (context.session.selection.active()) {
-        continueLine(em() * 6);
+    ToolRow tools(context);
+    if (tools.next(em() * 6.5f)) chooseCurves(info, resolved, view, cache.draft);
+    if (tools.next(em() * 9)) chooseAcross(info, resolved, view);
+    chooseRegion(tools, info, view);
+    if (context.session.selection.active() && tools.next(em() * 6)) {
         ImGui::Checkbox("selected", &view.brushed);
         if (ImGui::IsItemHovered()) tooltip("Compute statistics of the selection");
     }
     const volume::CellQuantities cell = volume::cellQuantities(info);
     if (!cell.voltage.empty() && !cell.current.empty()) {
-        continueLine(buttonWidth("Polarisation curve"));
-        if (ImGui::Button("Polarisation curve")) {
-            view.x = cell.current;
-            view.y = {cell.voltage};
+        if (tools.next(buttonWidth("Polarisation curve"))) {
+            if (ImGui::Button("Polarisation curve")) {
+                view.x = cell.current;
+                view.y = {cell.voltage};
+            }
+            if (ImGui::IsItemHovered()) tooltip("Voltage over current density");
         }
-        if (ImGui::IsItemHovered()) tooltip("Voltage over current density");
-        continueLine(buttonWidth("Power"));
-        if (ImGui::Button("Power")) {
-            view.x = cell.current;
-            view.y = {cell.voltage, "`" + cell.voltage + "` * `" + cell.current + "`"};
+        if (tools.next(buttonWidth("Power"))) {
+            if (ImGui::Button("Power")) {
+                view.x = cell.current;
+                view.y = {cell.voltage, "`" + cell.voltage + "` * `" + cell.current + "`"};
+            }
+            if (ImGui::IsItemHovered()) tooltip("Voltage and power density over current density");
         }
-        if (ImGui::IsItemHovered()) tooltip("Voltage and power density over current density");
     }
     if (curves) {
-        continueLine(buttonWidth("Export"));
         exportMenu(
-            context, "curves",
+            context, tools, "curves",
             [curves, time = context.session.time](const Progress&) { return curvesDrawing(*curves, time); },
             [curves](const Progress&) { return curvesCsv(*curves); });
     }
@@ -241,14 +241,14 @@ void drawPlots(ViewContext& context, const volume::Curves& curves) {
         up.push_back(paddedRange(range, 0.08));
         left = std::max(left, axisRoom(AxisSide::Left, up.back(), false));
     }
-    const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
-    const float bottom = axisRoom(AxisSide::Bottom, across, true);
-    const float height = (room.y - bottom - em() * 0.4f) / std::max<float>(1, static_cast<float>(groups.size()));
-    if (height < em() * 1.6f || room.x - left < em() * 4)
-        return drawHint("Not enough room", "Enlarge the pane or choose fewer curves.");
+    const ImVec2 origin = ImGui::GetCursorScreenPos();
+    const ColumnHeights heights = columnHeights(ImGui::GetContentRegionAvail().y, groups.size());
+    const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(heights.all)};
+    const float height = heights.each;
+    if (room.x - left < em() * 4) return drawHint("Not enough room", "Enlarge the pane.");
     const float x0 = origin.x + left, x1 = origin.x + room.x - em() * 0.6f;
     ImGui::SetCursorScreenPos({x0, origin.y});
-    ImGui::InvisibleButton("plots", {x1 - x0, room.y - bottom});
+    ImGui::InvisibleButton("plots", {x1 - x0, room.y - heights.bottom});
     const bool hovered = ImGui::IsItemHovered(), held = ImGui::IsItemActive();
     Near near;
     PlotFrame frame;
@@ -258,7 +258,7 @@ void drawPlots(ViewContext& context, const volume::Curves& curves) {
         drawPlot(context, curves, groups[g], frame, near);
     }
     drawAxis(*ImGui::GetWindowDrawList(), frame, AxisSide::Bottom, curves.x.name == "time" ? "t" : curves.x.name,
-             curves.x.unit, origin.x, origin.x + room.x);
+             curves.x.unit, origin.x, origin.x + room.x, {.inlineTitle = !heights.titled});
     if ((!hovered && !held) || near.distance > em()) return;
     ImGui::SetTooltip("%s", stateText(info, curves.times[near.time], session.data.axis).c_str());
     if (!held) return;

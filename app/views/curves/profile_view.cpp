@@ -30,45 +30,45 @@ void drawToolbar(ViewContext& context, const std::shared_ptr<const Profile>& pro
                  const std::vector<int>& shown) {
     Session& session = context.session;
     const volume::DatasetInfo& info = context.numbers->info();
-    chooseChannels(info, view.channels, shown);
-    chooseOver(view.over, info.times.size() > 1);
+    ToolRow tools(context);
+    chooseChannels(tools, info, view.channels, shown);
+    chooseOver(tools, view.over, info.times.size() > 1);
     if (view.over != ProfileOver::Time) {
-        continueLine(buttonWidth("Corner at cross-hair"));
-        if (ImGui::Button("Corner at cross-hair")) view.points.push_back(session.cursor);
-        if (ImGui::IsItemHovered())
-            tooltip("Add a corner of the line at the cross-hair, which you move by a double-click in the volume or by "
+        if (tools.next(buttonWidth("Corner at cross-hair"))) {
+            if (ImGui::Button("Corner at cross-hair")) view.points.push_back(session.cursor);
+            if (ImGui::IsItemHovered())
+                tooltip(
+                    "Add a corner of the line at the cross-hair, which you move by a double-click in the volume or by "
                     "dragging in a slice");
-        continueLine(buttonWidth("Axis"));
-        if (ImGui::Button("Axis")) ImGui::OpenPopup("axis");
-        if (ImGui::IsItemHovered()) tooltip("Use a straight line along an axis through the cross-hair");
-        if (ImGui::BeginPopup("axis")) {
-            for (int axis = 0; axis < 3; ++axis) {
-                const char name[] = {"xyz"[axis], 0};
-                if (!ImGui::MenuItem(name)) continue;
-                view.points = {session.cursor, session.cursor};
-                view.points[0][axis] = info.bounds.lo[axis];
-                view.points[1][axis] = info.bounds.hi[axis];
-            }
-            ImGui::EndPopup();
         }
-        continueLine(ImGui::GetFrameHeight());
-        if (iconButton(context, "clear", icons::kTrash,
+        if (tools.next(buttonWidth("Axis"))) {
+            if (ImGui::Button("Axis")) ImGui::OpenPopup("axis");
+            if (ImGui::IsItemHovered()) tooltip("Use a straight line along an axis through the cross-hair");
+            if (ImGui::BeginPopup("axis")) {
+                for (int axis = 0; axis < 3; ++axis) {
+                    const char name[] = {"xyz"[axis], 0};
+                    if (!ImGui::MenuItem(name)) continue;
+                    view.points = {session.cursor, session.cursor};
+                    view.points[0][axis] = info.bounds.lo[axis];
+                    view.points[1][axis] = info.bounds.hi[axis];
+                }
+                ImGui::EndPopup();
+            }
+        }
+        if (tools.next(ImGui::GetFrameHeight()) &&
+            iconButton(context, "clear", icons::kTrash,
                        "Remove the corners: the line runs through the cross-hair along the longest axis",
                        !view.points.empty()))
             view.points.clear();
     }
     if (profile) {
-        continueLine(buttonWidth("Export"));
         exportMenu(
-            context, "profile",
+            context, tools, "profile",
             [info, profile, session](const Progress&) { return profileDrawing(info, session, *profile); },
             [info, profile, session](const Progress&) { return profileCsv(info, session, *profile); });
     }
-    drawOrigin(context, shown, view.over == ProfileOver::Line);
-    if (view.points.size() == 1 && view.over != ProfileOver::Time) {
-        continueLine(ImGui::CalcTextSize("one more corner needed").x);
-        ImGui::TextDisabled("one more corner needed");
-    }
+    drawOrigin(context, tools, shown, view.over == ProfileOver::Line);
+    if (view.points.size() == 1 && view.over != ProfileOver::Time) drawNote(tools, "one more corner needed");
 }
 
 /// What the plots share: the axis to the right and what is marked on it.
@@ -141,7 +141,7 @@ void drawPicture(const Session& session, const std::string& title, const vis::Pl
     }
     draw.PopClipRect();
     draw.PushClipRect(frame.min, frame.max, true);
-    drawCrosshair(draw, frame, across.marked ? across.values[*across.marked] : std::nan(""), session.time);
+    drawCrosshair(draw, frame, across.marked ? across.values[*across.marked] : std::nan(""), session.time, true);
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, colors.frame);
     drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
@@ -191,18 +191,17 @@ public:
     }
 
     void draw() {
-        const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+        const ImVec2 origin = ImGui::GetCursorScreenPos();
         float left = pictures() ? axisRoom(AxisSide::Left, times_, false) : 0;
         for (std::size_t c = 0; c < profile_->values.size() && !pictures(); ++c)
             left = std::max(left, axisRoom(AxisSide::Left, paddedRange(rangeOf(c), 0.06), false));
-        const float bottom = axisRoom(AxisSide::Bottom, across_.range, true);
-        const auto plots = static_cast<float>(profile_->values.size());
-        const float height = (room.y - bottom - em() * 0.4f) / std::max(1.0f, plots);
-        if (height < em() * 1.6f || room.x - left < em() * 4)
-            return drawHint("Not enough room", "Enlarge the pane or choose fewer parameters.");
+        const ColumnHeights heights = columnHeights(ImGui::GetContentRegionAvail().y, profile_->values.size());
+        const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(heights.all)};
+        const float height = heights.each;
+        if (room.x - left < em() * 4) return drawHint("Not enough room", "Enlarge the pane.");
         const float x0 = origin.x + left, x1 = origin.x + room.x - em() * 0.6f;
         ImGui::SetCursorScreenPos({x0, origin.y});
-        ImGui::InvisibleButton("plots", {x1 - x0, room.y - bottom});
+        ImGui::InvisibleButton("plots", {x1 - x0, room.y - heights.bottom});
         const bool taken = ImGui::IsItemActive();
         const double share = std::clamp(double((ImGui::GetIO().MousePos.x - x0) / (x1 - x0)), 0.0, 1.0);
         across_.marked = marked(ImGui::IsItemHovered() || taken, share);
@@ -217,7 +216,7 @@ public:
             drawOne(c, frame, taken);
             if (c + 1 == profile_->values.size())
                 drawAxis(*ImGui::GetWindowDrawList(), frame, AxisSide::Bottom, across_.title, across_.unit, origin.x,
-                         origin.x + room.x);
+                         origin.x + room.x, {.inlineTitle = !heights.titled});
         }
     }
 

@@ -26,8 +26,9 @@ struct SectionCache : ViewCache {
 
 /// A list of names for an enumeration; true where another one was chosen.
 template <class Enum, std::size_t N>
-void choose(const char* id, Enum& value, const char* const (&names)[N], const char* const (&help)[N], float width) {
-    continueLine(em() * width);
+void choose(ToolRow& tools, const char* id, Enum& value, const char* const (&names)[N], const char* const (&help)[N],
+            float width) {
+    if (!tools.next(em() * width)) return;
     ImGui::SetNextItemWidth(em() * width);
     const auto now = static_cast<std::size_t>(value);
     if (ImGui::BeginCombo(id, names[now])) {
@@ -41,13 +42,13 @@ void choose(const char* id, Enum& value, const char* const (&names)[N], const ch
     }
 }
 
-void chooseRegions(const volume::DatasetInfo& info, int label, SectionSettings& settings) {
+void chooseRegions(ToolRow& tools, const volume::DatasetInfo& info, int label, SectionSettings& settings) {
     const volume::Parameter& parameter = volume::parameterOf(info, label);
     const std::string shown = !settings.byRegion             ? "all together"
                               : settings.regions.empty()     ? "every " + parameter.name
                               : settings.regions.size() == 1 ? volume::labelName(parameter, settings.regions[0])
                                                              : std::to_string(settings.regions.size()) + " regions";
-    continueLine(em() * 8);
+    if (!tools.next(em() * 8)) return;
     ImGui::SetNextItemWidth(em() * 8);
     if (ImGui::BeginCombo("##regions", shown.c_str(), ImGuiComboFlags_HeightLarge)) {
         if (ImGui::Selectable("All together", !settings.byRegion)) settings.byRegion = false;
@@ -112,22 +113,22 @@ void drawToolbar(ViewContext& context, ProfileView& view, const std::vector<int>
     static constexpr const char* kMeasureNames[] = {"mean", "minimum",     "maximum", "integral",
                                                     "flux", "volume flow", "area"};
     const volume::DatasetInfo& info = context.numbers->info();
-    chooseChannels(info, view.channels, shown);
-    chooseOver(view.over, info.times.size() > 1);
-    choose("##across", view.sections.across, kAcross, kAcrossHelp, 7);
-    choose("##measure", view.sections.measure, kMeasureNames, kSectionMeasureDocs, 6.5f);
+    ToolRow tools(context);
+    chooseChannels(tools, info, view.channels, shown);
+    chooseOver(tools, view.over, info.times.size() > 1);
+    choose(tools, "##across", view.sections.across, kAcross, kAcrossHelp, 7);
+    choose(tools, "##measure", view.sections.measure, kMeasureNames, kSectionMeasureDocs, 6.5f);
     if (view.sections.measure == SectionMeasure::Mean)
-        choose("##weight", view.sections.weight, kWeights, kWeightHelp, 7);
-    if (const auto label = volume::labelChannel(info)) chooseRegions(info, *label, view.sections);
+        choose(tools, "##weight", view.sections.weight, kWeights, kWeightHelp, 7);
+    if (const auto label = volume::labelChannel(info)) chooseRegions(tools, info, *label, view.sections);
     if (!curves) return;
-    continueLine(buttonWidth("Export"));
     exportMenu(
-        context, "sections",
+        context, tools, "sections",
         [info, curves, measure = view.sections.measure](const Progress&) {
             return drawingOf(sectionPanels(info, *curves, measure), 2);
         },
         [info, curves](const Progress&) { return sectionCsv(info, *curves); });
-    drawOrigin(context, shown);
+    drawOrigin(context, tools, shown);
 }
 
 /// The point of a series nearest to a place; nothing where it is not finite.
@@ -185,14 +186,14 @@ void drawPanel(const FigurePanel& panel, const PlotFrame& frame, std::optional<d
 
 } // namespace
 
-void chooseOver(ProfileOver& over, bool severalTimes) {
+void chooseOver(ToolRow& tools, ProfileOver& over, bool severalTimes) {
     static constexpr const char* kNames[] = {"along the line", "over time", "line and time", "over planes"};
     static constexpr const char* kHelp[] = {"Values along the line at the time shown",
                                             "Values at the cross-hair at every stored time",
                                             "Values along the line at every stored time, as colours",
                                             "Averages over planes across an axis or the line, for every region"};
     const auto now = static_cast<std::size_t>(over);
-    continueLine(em() * 8);
+    if (!tools.next(em() * 8)) return;
     ImGui::SetNextItemWidth(em() * 8);
     if (ImGui::BeginCombo("##over", kNames[now])) {
         for (std::size_t i = 0; i < std::size(kNames); ++i) {
@@ -232,17 +233,17 @@ void drawSections(ViewContext& context, const std::string& pane, ProfileView& vi
     if (curves->velocity.empty() && (measure == SectionMeasure::Flux || measure == SectionMeasure::Flow))
         return drawHint("No flux", "The data have no vector with the name or unit of a velocity.");
     const std::vector<FigurePanel> panels = sectionPanels(info, *curves, measure);
-    const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+    const ImVec2 origin = ImGui::GetCursorScreenPos();
     float left = 0;
     for (const FigurePanel& panel : panels) left = std::max(left, axisRoom(AxisSide::Left, panel.y.range, false));
-    const float bottom = axisRoom(AxisSide::Bottom, panels.front().x.range, true);
-    const float height = (room.y - bottom - em() * 0.4f) / static_cast<float>(panels.size());
-    if (height < em() * 1.6f || room.x - left < em() * 4)
-        return drawHint("Not enough room", "Enlarge the pane or choose fewer parameters.");
+    const ColumnHeights heights = columnHeights(ImGui::GetContentRegionAvail().y, panels.size());
+    const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(heights.all)};
+    const float height = heights.each;
+    if (room.x - left < em() * 4) return drawHint("Not enough room", "Enlarge the pane.");
     const float x0 = origin.x + left, x1 = origin.x + room.x - em() * 0.6f;
     const Range across = panels.front().x.range;
     ImGui::SetCursorScreenPos({x0, origin.y});
-    ImGui::InvisibleButton("plots", {x1 - x0, room.y - bottom});
+    ImGui::InvisibleButton("plots", {x1 - x0, room.y - heights.bottom});
     const bool taken = ImGui::IsItemActive();
     const double share = std::clamp(double((ImGui::GetIO().MousePos.x - x0) / (x1 - x0)), 0.0, 1.0);
     // What is under the mouse is read; a click or drag takes the cursor to that plane.
@@ -267,7 +268,7 @@ void drawSections(ViewContext& context, const std::string& pane, ProfileView& vi
         drawPanel(panels[i], frame, marked);
         if (i + 1 == panels.size())
             drawAxis(*ImGui::GetWindowDrawList(), frame, AxisSide::Bottom, panels[i].x.title, "", origin.x,
-                     origin.x + room.x);
+                     origin.x + room.x, {.inlineTitle = !heights.titled});
     }
 }
 

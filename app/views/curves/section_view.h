@@ -1,11 +1,11 @@
 #pragma once
 
-#include "app/pane/view_context.h"
+#include "app/pane/tool_row.h"
 
 namespace tessera::app {
 
-/// A list of what a profile runs over, on in the line where it fits; without several times the line and the planes.
-void chooseOver(ProfileOver& over, bool severalTimes);
+/// A list of what a profile runs over; without several times the line and the planes.
+void chooseOver(ToolRow& tools, ProfileOver& over, bool severalTimes);
 
 /// A profile view over planes: controls, and a plot for each parameter with a line for each region.
 void drawSections(ViewContext& context, const std::string& pane, ProfileView& view);

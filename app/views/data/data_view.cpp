@@ -6,6 +6,7 @@
 #include "app/session/label_colors.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "app/ui/widgets.h"
 #include "app/views/data/derived_list.h"
 #include "app/views/data/selection_rows.h"
 #include "codec/archive/archive.h"
@@ -31,8 +32,8 @@ void row(const char* label, const std::string& text) {
     ImGui::TableNextColumn();
     ImGui::TextDisabled("%s", label);
     ImGui::TableNextColumn();
-    ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(text.c_str());
+    ImGui::PushTextWrapPos(0); // for words wider than the column; numbers must not break at their points
+    ImGui::TextUnformatted(wrappedAtSpaces(text, ImGui::GetContentRegionAvail().x).c_str());
     ImGui::PopTextWrapPos();
 }
 
@@ -69,7 +70,7 @@ void chooseLattice(DataRef& data) {
     ImGui::TableNextColumn();
     const auto now = static_cast<std::size_t>(data.lattice);
     ImGui::SetNextItemWidth(-1);
-    if (ImGui::BeginCombo("##lattice", kShown[now])) {
+    if (beginFittedCombo("##lattice", kShown[now])) {
         for (std::size_t i = 0; i < std::size(kShown); ++i)
             if (ImGui::Selectable(kShown[i], i == now)) data.lattice = static_cast<PictureLattice>(i);
         ImGui::EndCombo();

@@ -115,7 +115,7 @@ void drawList(ViewContext& context, const volume::DatasetInfo& info, int& select
         layers.insert(layers.begin() + moveTo, moved);
         selected = moveTo;
     }
-    if (layers.empty()) ImGui::TextDisabled("No layers: the volume view is empty.");
+    if (layers.empty()) faintText("No layers: the volume view is empty.");
 }
 
 /// The heading of the list, which says whose layers it has where there are several lists.
@@ -234,7 +234,7 @@ void drawListButtons(ViewContext& context, const volume::DatasetInfo& info, int&
         selected = std::min(selected, static_cast<int>(layers.size()) - 1);
     }
     ImGui::SameLine(0, em() * 0.8f);
-    ImGui::TextDisabled("drag to reorder");
+    faintText("drag to reorder");
 }
 
 } // namespace

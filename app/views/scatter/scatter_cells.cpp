@@ -219,6 +219,8 @@ int meanImage(const volume::JointHistogram& joint, int merge, const vis::Transfe
 
 MatrixTitles matrixTitles(const ScatterLayout& matrix, float cellX, float cellY) {
     MatrixTitles titles;
+    titles.shown = matrix.size() == 1 || (cellX >= em() * 2.6f && cellY >= em() * 1.9f);
+    if (!titles.shown) return titles;
     const float across = widestTitle(matrix, 0), up = widestTitle(matrix, 1);
     titles.upright = across > cellX - em() * 0.2f;
     titles.level = up > cellY - em() * 0.2f;
@@ -233,7 +235,7 @@ MatrixTitles matrixTitles(const ScatterLayout& matrix, float cellX, float cellY)
 
 void drawMatrixAxes(ImDrawList& draw, const ScatterLayout& matrix, const MatrixTitles& titles) {
     const ImU32 color = plotColors().text;
-    for (std::size_t i = 0; i < matrix.size(); ++i) {
+    for (std::size_t i = 0; i < matrix.size() && titles.shown; ++i) {
         const volume::Channel& info = matrix.infos[i];
         const PlotFrame across = matrix.cell(i, matrix.size() - 1), up = matrix.cell(0, i);
         const ImVec2 size = ImGui::CalcTextSize(info.name.c_str());

@@ -40,6 +40,7 @@ int meanImage(const volume::JointHistogram& joint, int merge, const vis::Transfe
 
 /// A titled axis along every column and row; where a title does not fit beside its cell it is written across.
 struct MatrixTitles {
+    bool shown = true;                   ///< small cells have neither numbers nor titles: their diagonal has the names
     bool upright = false, level = false; ///< below the columns, beside the rows
     float left = 0, bottom = 0;          ///< pixels they need with the numbers
 };

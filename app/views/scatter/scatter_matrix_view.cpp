@@ -216,7 +216,7 @@ bool drawPlot(ViewContext& context, ScatterCache& cache, ScatterMatrixView& view
         draw.AddCircle(at, em() * 0.28f, colors.cursor, 16, 1.5f);
     }
     draw.PopClipRect();
-    if (histogram && frame.height() > em() * 1.6f) {
+    if (histogram && frame.height() > em() * 1.05f) {
         addFittedWithBackdrop(draw, {frame.max.x - em() * 0.3f, frame.min.y + em() * 0.15f}, {1, 0}, colors.text,
                               channels.x, frame.width() - em() * 0.5f);
     }
@@ -315,18 +315,17 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
     const std::shared_ptr<const StatisticsResult> result = cache.answers.get(context, "statistics " + pane, query);
 
     if (!context.figure) drawScatterToolbar(context, view, matrix.channels, result);
-    const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     const auto n = static_cast<float>(matrix.size());
+    const ImVec2 origin = ImGui::GetCursorScreenPos();
+    const ImVec2 room{ImGui::GetContentRegionAvail().x,
+                      heightAtLeast(em() * (matrix.size() == 1 ? 5 : 1.3f * n + 0.2f))};
     const MatrixTitles titles = matrixTitles(matrix, (room.x - em() * 4) / n, (room.y - em() * 3) / n);
     const float left = titles.left, bottom = titles.bottom;
     matrix.gap = std::round(em() * 0.35f);
     matrix.min = {origin.x + left, origin.y + em() * 0.2f};
     matrix.cellX = (room.x - left - em() * 0.2f) / n;
     matrix.cellY = (room.y - bottom - em() * 0.2f) / n;
-    if (matrix.cellX < em() * 1.6f || matrix.cellY < em() * 1.3f) {
-        drawHint("Not enough room", "Enlarge the pane or choose fewer parameters.");
-        return;
-    }
+    if (matrix.cellX < em()) return drawHint("Not enough room", "Enlarge the pane or choose fewer parameters.");
     cache.layout = matrix;
     const Enlarged large = enlargedPlot(matrix, view);
     if (result)

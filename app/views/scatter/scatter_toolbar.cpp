@@ -17,7 +17,8 @@ namespace {
 
 constexpr float kSoftWidth = 4.4f; ///< of the slider, em
 
-void chooseTool(BrushTool& tool) {
+void chooseTool(ToolRow& tools, BrushTool& tool) {
+    if (!tools.next(em() * 6.6f)) return;
     static constexpr const char* kTools[] = {"rectangle", "ellipse", "lasso"};
     ImGui::SetNextItemWidth(em() * 6.6f);
     if (ImGui::BeginCombo("##tool", kTools[static_cast<std::size_t>(tool)])) {
@@ -102,12 +103,13 @@ VectorPage matrixDrawing(const volume::DatasetInfo& info, const StatisticsResult
 }
 
 /// The menu of rarely changed settings: colours, derived axes, exports.
-void drawMore(ViewContext& context, ScatterMatrixView& view, const std::vector<int>& shown,
+void drawMore(ViewContext& context, ToolRow& tools, ScatterMatrixView& view, const std::vector<int>& shown,
               const std::shared_ptr<const StatisticsResult>& result) {
     const volume::DatasetInfo& info = context.numbers->info();
-    if (ImGui::Button("More")) ImGui::OpenPopup("more");
-    if (ImGui::IsItemHovered()) tooltip("Colours, further axes, zoom");
-    if (ImGui::BeginPopup("more")) {
+    const bool shownHere = tools.next(buttonWidth("More"), em() * 0.3f);
+    if (shownHere && ImGui::Button("More")) ImGui::OpenPopup("more");
+    if (shownHere && ImGui::IsItemHovered()) tooltip("Colours, further axes, zoom");
+    if (shownHere && ImGui::BeginPopup("more")) {
         ImGui::SetNextItemWidth(em() * 10);
         chooseChannel("colour by mean of##colorBy", &info, view.colorBy, "density");
         ImGui::Checkbox("Mark outliers", &view.outliers);
@@ -125,9 +127,8 @@ void drawMore(ViewContext& context, ScatterMatrixView& view, const std::vector<i
         ImGui::EndPopup();
     }
     if (!result) return;
-    ImGui::SameLine(0, em() * 0.3f);
     exportMenu(
-        context, "scatterplots",
+        context, tools, "scatterplots",
         [info, result, logDensity = view.logDensity, focus = focusColor(context.session)](const Progress&) {
             return matrixDrawing(info, *result, logDensity, focus);
         },
@@ -136,13 +137,13 @@ void drawMore(ViewContext& context, ScatterMatrixView& view, const std::vector<i
 
 /// The end of the line: the share in focus, and the button that clears the brushes. Their space is reserved even
 /// without brushes: else the plots would move under the mouse while the first brush is drawn.
-void drawShare(Session& session, const ViewContext& context, const StatisticsResult* result) {
+void drawShare(Session& session, const ViewContext& context, ToolRow& tools, const StatisticsResult* result) {
     const bool brushes = !session.selection.brushes.empty();
     const float button = ImGui::GetFrameHeight(), gap = em() * 0.3f;
     const float least = button + gap + ImGui::CalcTextSize("99.9 %").x;
-    continueLine(least);
+    if (!tools.next(least)) return;
     const ImVec2 place = ImGui::GetCursorPos();
-    const float room = ImGui::GetContentRegionAvail().x;
+    const float room = tools.grow(least, tools.narrow(3) ? least : ImGui::GetContentRegionAvail().x);
     std::vector<std::string> texts; // the longest first
     if (session.selection.active() && result && result->brushed) {
         texts = shareTexts(focusShare(*result, context.numbers->info(), context.numbers->grid()));
@@ -180,22 +181,23 @@ void drawScatterToolbar(ViewContext& context, ScatterMatrixView& view, const std
                         const std::shared_ptr<const StatisticsResult>& shared) {
     Session& session = context.session;
     const volume::DatasetInfo& info = context.numbers->info();
-    const float gap = em() * 0.3f;
-    chooseChannels(info, view.channels, shown);
-    ImGui::SameLine(0, gap);
-    ImGui::Checkbox("log", &view.logDensity);
-    if (ImGui::IsItemHovered()) tooltip("Logarithmic number of samples");
-    ImGui::SameLine(0, gap);
-    drawMore(context, view, shown, shared);
-    continueLine(em() * 6.6f);
-    chooseTool(view.tool);
-    continueLine(em() * kSoftWidth);
-    ImGui::SetNextItemWidth(em() * kSoftWidth);
-    float percent = view.softness * 100;
-    if (ImGui::SliderFloat("##soft", &percent, 0, 50, "soft %.0f %%")) view.softness = percent / 100;
-    if (ImGui::IsItemHovered()) tooltip("Soft edge of new brushes, as a share of their width");
-    drawOrigin(context, shown);
-    drawShare(session, context, shared.get());
+    ToolRow tools(context);
+    chooseChannels(tools, info, view.channels, shown);
+    if (tools.narrow(3)) drawShare(session, context, tools, shared.get());
+    if (tools.next(em() * 3.5f, em() * 0.3f)) {
+        ImGui::Checkbox("log", &view.logDensity);
+        if (ImGui::IsItemHovered()) tooltip("Logarithmic number of samples");
+    }
+    drawMore(context, tools, view, shown, shared);
+    chooseTool(tools, view.tool);
+    if (tools.next(em() * kSoftWidth)) {
+        ImGui::SetNextItemWidth(em() * kSoftWidth);
+        float percent = view.softness * 100;
+        if (ImGui::SliderFloat("##soft", &percent, 0, 50, "soft %.0f %%")) view.softness = percent / 100;
+        if (ImGui::IsItemHovered()) tooltip("Soft edge of new brushes, as a share of their width");
+    }
+    drawOrigin(context, tools, shown);
+    if (!tools.narrow(3)) drawShare(session, context, tools, shared.get());
 }
 
 } // namespace tessera::app

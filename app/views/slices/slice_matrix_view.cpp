@@ -119,37 +119,51 @@ std::string rowTitle(const volume::Channel& channel, float room) {
     return ImGui::CalcTextSize(whole.c_str()).x <= room ? whole : fitText(channel.name, room);
 }
 
+void chooseAxis(volume::SpaceAxis& axis, const std::string& directions) {
+    ImGui::SetNextItemWidth(em() * 3.4f);
+    if (ImGui::BeginCombo("##axis", volume::kSpaceAxisNames[static_cast<std::size_t>(axis)].data())) {
+        for (int i = 0; i < 3; ++i)
+            if (ImGui::Selectable(volume::kSpaceAxisNames[i].data(), static_cast<int>(axis) == i))
+                axis = static_cast<volume::SpaceAxis>(i);
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered()) tooltip(("Axis perpendicular to the planes; " + directions).c_str());
+}
+
 void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<int>& shown, const SliceAxes& axes) {
     const volume::DatasetInfo& info = context.source->info();
     const AxisLabels labels = axisLabels(context.session, info);
     const std::string directions = std::string(labels[static_cast<std::size_t>(axes.right)].name) + " to the right, " +
                                    labels[static_cast<std::size_t>(axes.up)].name + " up";
-    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-    chooseChannels(info, view.channels, shown);
-    continueLine(em() * 3.4f);
-    ImGui::SetNextItemWidth(em() * 3.4f);
-    if (ImGui::BeginCombo("##axis", volume::kSpaceAxisNames[static_cast<std::size_t>(view.axis)].data())) {
-        for (int i = 0; i < 3; ++i)
-            if (ImGui::Selectable(volume::kSpaceAxisNames[i].data(), static_cast<int>(view.axis) == i))
-                view.axis = static_cast<volume::SpaceAxis>(i);
-        ImGui::EndCombo();
+    ToolRow tools(context);
+    chooseChannels(tools, info, view.channels, shown);
+    if (tools.next(em() * 3.4f)) chooseAxis(view.axis, directions);
+    if (tools.next(em() * 6)) {
+        ImGui::SetNextItemWidth(em() * 6);
+        ImGui::SliderInt("##planes", &view.planes, 1, 12, view.planes == 1 ? "%d plane" : "%d planes");
     }
-    if (ImGui::IsItemHovered()) tooltip(("Axis perpendicular to the planes; " + directions).c_str());
-    continueLine(em() * 6);
-    ImGui::SetNextItemWidth(em() * 6);
-    ImGui::SliderInt("##planes", &view.planes, 1, 12, view.planes == 1 ? "%d plane" : "%d planes");
-    continueLine(buttonWidth("Export"));
     const volume::TimePair time = volume::timesAround(info.times, context.session.time);
     exportMenu(
-        context, "slices",
+        context, tools, "slices",
         [source = context.numbers, session = context.session, shown, axes, planes = view.planes](
             const Progress& progress) { return sliceDrawing(*source, session, shown, axes, planes, progress); },
         [source = context.numbers, shown, axes, planes = view.planes, time](const Progress& progress) {
             return sliceCsv(*source, shown, axes, planes, time, progress);
         });
-    if (ImGui::GetItemRectMax().x + em() + ImGui::CalcTextSize(directions.c_str()).x > right) return;
-    ImGui::SameLine();
-    ImGui::TextDisabled("%s", directions.c_str());
+    if (tools.fits(ImGui::CalcTextSize(directions.c_str()).x)) drawNote(tools, directions);
+}
+
+/// Where a plane lies, in as many words as its column has room for. `position` and `size`: on its axis.
+void drawPlace(ImDrawList& draw, ImVec2 at, const AxisLabel& axis, double position, double size, float width) {
+    const LengthUnit& unit = axis.unit;
+    const double digits = size * unit.perUnit / 100;
+    const std::string number = formatNumber(position * unit.perUnit, digits),
+                      length = formatQuantity(position * unit.perUnit, unit.name, digits),
+                      whole = std::string(axis.name) + " = " + length;
+    const std::string text = firstThatFits({whole, length, number}, width);
+    const ImVec2 room = ImGui::CalcTextSize(text.c_str());
+    draw.AddText(at, plotColors().text, text.c_str());
+    tellWhole(at, {at.x + room.x, at.y + room.y}, whole, text);
 }
 
 } // namespace
@@ -170,29 +184,28 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
     const double worldX = world.halfSize[axes.right], worldY = world.halfSize[axes.up];
     if (!(worldX > 0) || !(worldY > 0)) return drawHint("No extent", "The data have no extent within these planes.");
 
-    const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     const std::vector<volume::Channel> channels = info.channels();
-    const float title = em() * 1.5f, gap = em() * 0.4f, head = em() * 1.3f, legend = em() * 5;
+    const float title = em() * 1.5f, gap = em() * 0.4f, head = em() * 1.3f;
+    const float legend = ImGui::GetContentRegionAvail().x < em() * 20 ? 0 : em() * 5;
+    const ImVec2 origin = ImGui::GetCursorScreenPos();
+    const ImVec2 room{ImGui::GetContentRegionAvail().x,
+                      heightAtLeast(head + (em() * 1.8f + gap) * static_cast<float>(shown.size()))};
     const float cellX = (room.x - title - legend) / static_cast<float>(view.planes) - gap;
     const float cellY = (room.y - head) / static_cast<float>(shown.size()) - gap;
-    if (cellX < em() * 2 || cellY < em() * 1.2f)
-        return drawHint("Not enough room", "Enlarge the pane, or show fewer parameters or planes.");
+    if (cellX < em()) return drawHint("Not enough room", "Enlarge the pane, or show fewer planes.");
     const double scale = std::min(static_cast<double>(cellX) / worldX, static_cast<double>(cellY) / worldY);
     const glm::ivec2 pixels(std::max(1.0, std::floor(worldX * scale)), std::max(1.0, std::floor(worldY * scale)));
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotColors colors = plotColors();
     const AxisLabel along = axisLabels(context.session, info)[static_cast<std::size_t>(axes.normal)];
-    const LengthUnit& unit = along.unit;
     // Narrow slices stand close together, but not closer than their titles.
     const float pitch = std::min(cellX, std::max(static_cast<float>(pixels.x), em() * 6.5f)) + gap;
     cache.targets.resize(shown.size() * static_cast<std::size_t>(view.planes));
     for (int plane = 0; plane < view.planes; ++plane) {
         const double position = planePosition(info.bounds, axes.normal, plane, view.planes);
         const float x = std::round(origin.x + title + pitch * static_cast<float>(plane));
-        const std::string place =
-            std::string(along.name) + " = " +
-            formatQuantity(position * unit.perUnit, unit.name, info.bounds.size()[axes.normal] * unit.perUnit / 100);
-        if (context.decoration.title) addFittedText(draw, {x, origin.y}, colors.text, place, pitch - gap);
+        if (context.decoration.title)
+            drawPlace(draw, {x, origin.y}, along, position, info.bounds.size()[axes.normal], pitch - gap);
         for (std::size_t row = 0; row < shown.size(); ++row) {
             const float y = std::round(origin.y + head + (cellY + gap) * static_cast<float>(row));
             const volume::Channel& channel = channels[static_cast<std::size_t>(shown[row])];
@@ -200,7 +213,7 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
                       cache.targets[row * static_cast<std::size_t>(view.planes) + static_cast<std::size_t>(plane)],
                       channel.name, axes, position, {x, y}, pixels, 40.0 / static_cast<double>(cache.targets.size()));
             if (plane > 0) continue;
-            if (context.decoration.legend)
+            if (context.decoration.legend && legend > 0)
                 drawLegendColumn(draw, {origin.x + title + pitch * static_cast<float>(view.planes), y},
                                  static_cast<float>(pixels.y), legendOf(context.session, info, shown[row]));
             if (context.decoration.title)

@@ -55,6 +55,7 @@ struct PlaneFrame {
     SliceAxes axes;
     AxisLabel right, up, normal;
     Range rangeX, rangeY; ///< of the box, in the units shown
+    bool numbered = true; ///< has axes
     float left = 0;       ///< room of the vertical axis
     ImVec2 min, max;      ///< the pane
     ImVec2 lo, hi;        ///< what is left for the picture
@@ -63,7 +64,8 @@ struct PlaneFrame {
     glm::ivec2 pixels{0};
 };
 
-PlaneFrame planeFrame(const Session& session, const volume::DatasetInfo& info, int index, ImVec2 min, ImVec2 max) {
+PlaneFrame planeFrame(const Session& session, const volume::DatasetInfo& info, int index, const SliceRooms& rooms) {
+    const auto& [min, max] = rooms.planes[static_cast<std::size_t>(index)];
     const SliceAxes& axes = kSlicePlanes[index];
     const AxisLabels labels = axisLabels(session, info);
     PlaneFrame frame;
@@ -71,11 +73,16 @@ PlaneFrame planeFrame(const Session& session, const volume::DatasetInfo& info, i
     frame.right = labels[std::size_t(axes.right)], frame.up = labels[std::size_t(axes.up)];
     frame.normal = labels[std::size_t(axes.normal)];
     frame.min = min, frame.max = max;
+    frame.numbered = rooms.axes;
     frame.perUnit = {frame.right.unit.perUnit, frame.up.unit.perUnit};
     const auto range = [&](int axis, const LengthUnit& unit) {
         return Range{info.bounds.lo[axis] * unit.perUnit, info.bounds.hi[axis] * unit.perUnit};
     };
     frame.rangeX = range(axes.right, frame.right.unit), frame.rangeY = range(axes.up, frame.up.unit);
+    if (!frame.numbered) {
+        frame.lo = {min.x, min.y + em() * 1.35f}, frame.hi = max;
+        return frame;
+    }
     // Slices below each other begin at the same pixel, whatever their numbers.
     frame.left = std::max(axisRoom(AxisSide::Left, frame.rangeY, false),
                           axisRoom(AxisSide::Left, range(2, labels[2].unit), false));
@@ -107,11 +114,15 @@ bool placePlane(PlaneFrame& frame, const vis::WorldFrame& world) {
 void drawPlaneTitle(const PlaneFrame& frame, const Session& session, const volume::DatasetInfo& info) {
     const int axis = frame.axes.normal;
     const LengthUnit& unit = frame.normal.unit;
-    const std::string place =
-        std::string(frame.normal.name) + " = " +
-        formatQuantity(session.cursor[axis] * unit.perUnit, unit.name, info.bounds.size()[axis] * unit.perUnit / 1000);
-    ImGui::GetWindowDrawList()->AddText({std::round(frame.hi.x - ImGui::CalcTextSize(place.c_str()).x), frame.min.y},
-                                        axisColor(axis), place.c_str());
+    const std::string name(frame.normal.name);
+    const double at = session.cursor[axis] * unit.perUnit, digits = info.bounds.size()[axis] * unit.perUnit / 1000;
+    const std::string whole = name + " = " + formatQuantity(at, unit.name, digits);
+    const float room = frame.hi.x - frame.min.x + 1;
+    const std::string place = firstThatFits(
+        {whole, formatQuantity(at, unit.name, digits), name + " " + formatNumber(at, digits * 10), name}, room);
+    const ImVec2 size = ImGui::CalcTextSize(place.c_str()), from{std::round(frame.hi.x - size.x), frame.min.y};
+    ImGui::GetWindowDrawList()->AddText(from, axisColor(axis), place.c_str());
+    tellWhole(from, {from.x + size.x, from.y + size.y}, whole, place);
 }
 
 /// What the mouse does in the picture: drags a handle, a lens or the cross-hair; the wheel steps through the slices.
@@ -188,7 +199,7 @@ void drawOverPlane(ViewContext& context, SlicePlanes& planes, const std::string&
     const double place = session.cursor[normal];
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     if (shown.box) draw.AddRect(frame.plot.min, frame.plot.max, plotColors().frame);
-    if (shown.axes) {
+    if (shown.axes && frame.numbered) {
         drawAxis(draw, frame.plot, AxisSide::Bottom, frame.right.name, frame.right.unit.name, frame.min.x,
                  std::min(frame.max.x, frame.plot.max.x + em() * 4), {.inlineTitle = true});
         drawAxis(draw, frame.plot, AxisSide::Left, frame.up.name, frame.up.unit.name, frame.min.y, frame.max.y,
@@ -208,17 +219,18 @@ void drawOverPlane(ViewContext& context, SlicePlanes& planes, const std::string&
                     frame.perUnit);
     }
     if (shown.cursor)
-        drawCrosshair(draw, frame.plot, session.cursor[right] * frame.perUnit.x, session.cursor[up] * frame.perUnit.y);
+        drawCrosshair(draw, frame.plot, session.cursor[right] * frame.perUnit.x, session.cursor[up] * frame.perUnit.y,
+                      true);
     draw.PopClipRect();
 }
 
 } // namespace
 
 void drawSlicePlane(ViewContext& context, SlicePlanes& planes, const std::string& pane, const SlicesView& view,
-                    const std::string& channel, const DrawnContours& lines, int index, ImVec2 min, ImVec2 max) {
+                    const std::string& channel, const DrawnContours& lines, int index, const SliceRooms& rooms) {
     const volume::DatasetInfo& info = context.source->info();
     const vis::WorldFrame world = vis::worldFrame(info.bounds, context.session.stretch);
-    PlaneFrame frame = planeFrame(context.session, info, index, min, max);
+    PlaneFrame frame = planeFrame(context.session, info, index, rooms);
     if (context.decoration.title) drawPlaneTitle(frame, context.session, info);
     if (!placePlane(frame, world)) return;
     handlePlaneMouse(context, planes, frame, index);

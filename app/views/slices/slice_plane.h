@@ -4,6 +4,7 @@
 #include "app/tools/space_handles.h"
 #include "app/views/slices/contour_data.h"
 #include "app/views/slices/contour_lines.h"
+#include "app/views/slices/slice_rooms.h"
 
 #include <array>
 #include <optional>
@@ -27,9 +28,9 @@ struct DrawnContours {
     ContourLevels levels;
 };
 
-/// Draws plane `index` of kSlicePlanes with its axes between two corners of the pane, and lets the mouse move
-/// cross-hair, lenses and handles in it.
+/// Draws plane `index` of kSlicePlanes in its room of the pane, and lets the mouse move cross-hair, lenses and handles
+/// in it.
 void drawSlicePlane(ViewContext& context, SlicePlanes& planes, const std::string& pane, const SlicesView& view,
-                    const std::string& channel, const DrawnContours& lines, int index, ImVec2 min, ImVec2 max);
+                    const std::string& channel, const DrawnContours& lines, int index, const SliceRooms& rooms);
 
 } // namespace tessera::app

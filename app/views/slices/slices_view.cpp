@@ -4,6 +4,7 @@
 #include "app/ui/widgets.h"
 #include "app/views/slices/slice_figure.h"
 #include "app/views/slices/slice_plane.h"
+#include "app/views/slices/slice_rooms.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,28 +18,22 @@ struct SlicesCache : ViewCache {
     Readout readout;
 };
 
-/// Size of the first of two columns or rows whose plots share `room` in proportion to the box, none too narrow to
-/// read; each has `around` pixels of axes besides.
-float split(double first, double second, float room, float around, double least) {
-    const double share = first + second > 0 ? first / (first + second) : 0.5;
-    const float plots = std::max(0.0f, room - 2 * around);
-    return std::round(around + plots * static_cast<float>(std::clamp(share, least, 1 - least)));
-}
-
 /// Chooses the parameter of the lines, and whether they are labelled.
-void chooseContours(const volume::DatasetInfo& info, SlicesView& view) {
-    continueLine(em() * 8);
-    ImGui::SetNextItemWidth(em() * 8);
-    ImGui::SliderInt("##contours", &view.contours, 0, 50, view.contours == 0 ? "no contours" : "%d contours");
-    if (ImGui::IsItemHovered())
-        tooltip("Number of contour lines over the colour range; of another parameter, or with values, at most this "
-                "many at round values");
+void chooseContours(ToolRow& tools, const volume::DatasetInfo& info, SlicesView& view) {
+    if (tools.next(em() * 8)) {
+        ImGui::SetNextItemWidth(em() * 8);
+        ImGui::SliderInt("##contours", &view.contours, 0, 50, view.contours == 0 ? "no contours" : "%d contours");
+        if (ImGui::IsItemHovered())
+            tooltip("Number of contour lines over the colour range; of another parameter, or with values, at most this "
+                    "many at round values");
+    }
     if (view.contours == 0) return;
-    continueLine(em() * 8);
-    ImGui::SetNextItemWidth(em() * 8);
-    chooseChannel("##contourOf", &info, view.contourOf, "same parameter");
-    if (ImGui::IsItemHovered()) tooltip("Parameter of the contour lines");
-    continueLine(buttonWidth("values") + em());
+    if (tools.next(em() * 8)) {
+        ImGui::SetNextItemWidth(em() * 8);
+        chooseChannel("##contourOf", &info, view.contourOf, "same parameter");
+        if (ImGui::IsItemHovered()) tooltip("Parameter of the contour lines");
+    }
+    if (!tools.next(buttonWidth("values") + em())) return;
     ImGui::Checkbox("values", &view.contourValues);
     if (ImGui::IsItemHovered()) tooltip("Draw the lines at round values, labelled with them");
 }
@@ -51,29 +46,39 @@ std::string contourNote(const volume::DatasetInfo& info, const SlicesView& view,
            (info.findChannel(view.contourOf) ? "labels have none" : "there is no " + view.contourOf);
 }
 
-/// Parameter, contour lines and export.
-void chooseShown(ViewContext& context, SlicesView& view, int channel, std::string& name) {
+/// Parameter, contour lines and export, and a copy of the values at the cross-hair.
+void chooseShown(ViewContext& context, ToolRow& tools, SlicesView& view, const Readout& readout, int channel,
+                 std::string& name) {
     const volume::DatasetInfo& info = context.source->info();
-    ImGui::SetNextItemWidth(std::min(em() * 11, ImGui::GetContentRegionAvail().x * 0.4f));
-    if (chooseChannel("##channel", &info, name)) view.channel = name;
-    if (ImGui::IsItemHovered()) tooltip("Parameter that colours the slices");
-    chooseContours(info, view);
-    continueLine(buttonWidth("Export"));
+    const float width = std::min(em() * 11, tools.room() * 0.4f);
+    if (tools.next(width)) {
+        ImGui::SetNextItemWidth(width);
+        if (chooseChannel("##channel", &info, name)) view.channel = name;
+        if (ImGui::IsItemHovered()) tooltip("Parameter that colours the slices");
+    }
+    chooseContours(tools, info, view);
     exportMenu(
-        context, "slices",
+        context, tools, "slices",
         [source = context.numbers, session = context.session, view, channel](const Progress& progress) {
             return slicesDrawing(*source, session, view, channel, progress);
         },
         nullptr);
+    if (!view.showReadout || !tools.next(iconButtonWidth(context, icons::kCopy))) return;
+    if (iconButton(context, "copy", icons::kCopy, "Copy the values at the cross-hair as CSV"))
+        ImGui::SetClipboardText((originLine(context.origin, context.numbers->info()) +
+                                 readoutCsv(context.session, context.numbers->info(), readout))
+                                    .c_str());
 }
 
 /// The stretch of the box, if it has one, at the end of the line.
 void drawStretch(const ViewContext& context) {
-    const std::string text = stretchText(context.session.stretch);
-    if (text.empty()) return;
-    const float width = ImGui::CalcTextSize(text.c_str()).x;
+    const std::string whole = stretchText(context.session.stretch);
+    if (whole.empty()) return;
     if (!context.figure) ImGui::SameLine();
-    if (ImGui::GetContentRegionAvail().x > width + em()) {
+    const float room = ImGui::GetContentRegionAvail().x - em();
+    const std::string text = firstThatFits({whole, whole.substr(whole.find(' ') + 1), ""}, room);
+    const float width = ImGui::CalcTextSize(text.c_str()).x;
+    if (!text.empty()) {
         ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
         ImGui::AlignTextToFramePadding();
         if (context.decoration.title)
@@ -93,13 +98,14 @@ void drawNumbers(ViewContext& context, const std::string& pane, const SlicesView
     updateReadout(context, pane, cache.readout);
     if (const auto value = cache.readout.value(info.channel(channel).name); value && context.decoration.cursor)
         legend.marker = *value;
-    // If the table does not fit below the legend, the values come first, as running text; in figures after the legend,
-    // which is whole.
+    // If the table does not fit below the legend, the values come first, as running text; after the legend, which is
+    // whole, in figures and where both have no room, so that values scroll.
     const std::string note = contourNote(info, view, lines);
     const float legends = legendBarHeight() + (note.empty() ? 0 : ImGui::GetTextLineHeightWithSpacing());
     const bool readout = view.showReadout && context.decoration.cursor;
     const bool compact = readout && legends + readoutHeight(cache.readout) > ImGui::GetContentRegionAvail().y;
-    if (compact && !context.figure) drawReadout(context, cache.readout, true);
+    const bool first = compact && !context.figure && ImGui::GetScrollMaxY() <= 0;
+    if (first) drawReadout(context, cache.readout, true);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = std::min(ImGui::GetContentRegionAvail().x, em() * 20);
     // What is left out keeps its place: the rest stays where it is.
@@ -112,7 +118,7 @@ void drawNumbers(ViewContext& context, const std::string& pane, const SlicesView
         ImGui::TextUnformatted(note.c_str());
         ImGui::PopTextWrapPos();
     }
-    if (readout && (!compact || context.figure)) drawReadout(context, cache.readout, compact);
+    if (readout && !first) drawReadout(context, cache.readout, compact);
 }
 
 } // namespace
@@ -130,28 +136,25 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     }
     SlicesCache& cache = cacheOf<SlicesCache>(context, pane);
     std::string name = info.channel(*channel).name;
-    if (!context.figure) chooseShown(context, view, *channel, name);
+    if (!context.figure) {
+        ToolRow tools(context);
+        chooseShown(context, tools, view, cache.readout, *channel, name);
+    }
     DrawnContours lines;
     if (!view.contourOf.empty() || view.contourValues) lines.channel = contourChannel(info, view, *channel);
     if (lines.channel) lines.levels = contourLevels(context.session, info, *lines.channel, view.contours);
     drawStretch(context);
 
-    const ImVec2 min = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
-    if (room.x < em() * 10 || room.y < em() * 8) return;
-    const ImVec2 max{min.x + room.x, min.y + room.y};
-    const glm::dvec3 half = vis::worldFrame(info.bounds, context.session.stretch).halfSize;
-    const float columns = split(half.x, half.z, room.x, em() * 3.2f, 0.3);
-    // The head lines of both columns need some room.
-    const float x = min.x + std::clamp(columns, std::min(em() * 12.5f, room.x / 2), room.x - em() * 8),
-                y = min.y + split(half.y, half.z, room.y, em() * 2.8f, 0.4);
-    const float gap = em() * 0.3f;
-    drawSlicePlane(context, cache.planes, pane, view, name, lines, 0, min, {x - gap, y - gap});
-    drawSlicePlane(context, cache.planes, pane, view, name, lines, 1, {x + gap, min.y}, {max.x, y - gap});
-    drawSlicePlane(context, cache.planes, pane, view, name, lines, 2, {min.x, y + gap}, {x - gap, max.y});
-
-    ImGui::SetCursorScreenPos({x + gap * 2, y + gap});
-    ImGui::BeginChild("readout", {max.x - x - gap * 2, max.y - y - gap}, false,
-                      context.figure ? ImGuiWindowFlags_NoScrollbar : ImGuiWindowFlags_None);
+    const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 6)};
+    const SliceRooms rooms =
+        sliceRooms(ImGui::GetCursorScreenPos(), room, vis::worldFrame(info.bounds, context.session.stretch).halfSize,
+                   em(), context.figure);
+    ;
+    for (int i = 0; i < 3; ++i) drawSlicePlane(context, cache.planes, pane, view, name, lines, i, rooms);
+    const ImVec2 size = rooms.numbers.size();
+    if (size.x < em() || size.y < em()) return updateReadout(context, pane, cache.readout);
+    ImGui::SetCursorScreenPos(rooms.numbers.min);
+    ImGui::BeginChild("readout", size, false, context.figure ? ImGuiWindowFlags_NoScrollbar : ImGuiWindowFlags_None);
     drawNumbers(context, pane, view, cache, *channel, lines);
     ImGui::EndChild();
 }

@@ -69,7 +69,9 @@ void hover(const volume::Channel& channel, const StatisticsResult& result, const
 
 void drawPlot(ViewContext& context, HistogramCache& cache, const HistogramView& view, const volume::Channel& channel,
               Range range, const StatisticsResult* result) {
-    const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+    const ImVec2 origin = ImGui::GetCursorScreenPos(),
+                 room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 4.5f)};
+    const bool tall = room.y > em() * 8; // else without titles
     double most = 1;
     if (result)
         for (const std::uint64_t count : result->statistics.channels.front().histogram.count)
@@ -77,18 +79,18 @@ void drawPlot(ViewContext& context, HistogramCache& cache, const HistogramView& 
     const auto height = [&](double count) { return view.logCounts ? std::log10(1 + count) : count; };
     const Range up{0, height(most) * 1.04};
     const PlotFrame frame{
-        {origin.x + axisRoom(AxisSide::Left, up, true), origin.y + em() * 0.4f},
-        {origin.x + room.x - em() * 0.6f, origin.y + room.y - axisRoom(AxisSide::Bottom, range, true)},
+        {origin.x + axisRoom(AxisSide::Left, up, tall), origin.y + em() * 0.4f},
+        {origin.x + room.x - em() * 0.6f, origin.y + room.y - axisRoom(AxisSide::Bottom, range, tall)},
         range,
         up};
-    if (frame.width() < em() * 4 || frame.height() < em() * 2) {
-        drawHint("Not enough room", "Enlarge the pane to see the histogram.");
-        return;
-    }
+    if (frame.width() < em() * 4) return drawHint("Not enough room", "Enlarge the pane.");
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotColors colors = plotColors();
-    drawAxis(draw, frame, AxisSide::Left, view.logCounts ? "log10(1 + samples)" : "samples", "", frame.min.y,
-             frame.max.y + em() * 0.5f, {.grid = true});
+    drawAxis(draw, frame, AxisSide::Left,
+             !tall            ? ""
+             : view.logCounts ? "log10(1 + samples)"
+                              : "samples",
+             "", frame.min.y, frame.max.y + em() * 0.5f, {.grid = true});
     ImGui::SetCursorScreenPos(frame.min);
     ImGui::InvisibleButton("plot", {frame.width(), frame.height()},
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
@@ -113,23 +115,28 @@ void drawPlot(ViewContext& context, HistogramCache& cache, const HistogramView& 
     draw.PopClipRect();
     drawBrushes(draw, context.session.selection, frame, channels);
     draw.AddRect(frame.min, frame.max, colors.frame);
-    drawAxis(draw, frame, AxisSide::Bottom, channel.name, channel.unit, origin.x, origin.x + room.x);
+    drawAxis(draw, frame, AxisSide::Bottom, tall ? channel.name : "", tall ? channel.unit : "", origin.x,
+             origin.x + room.x);
     if (hovered && !cache.drag.active && result) hover(channel, *result, frame);
 }
 
 void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channel& channel,
                  const std::shared_ptr<const StatisticsResult>& result) {
     std::string name = channel.name;
-    ImGui::SetNextItemWidth(std::min(em() * 11, ImGui::GetContentRegionAvail().x * 0.4f));
-    if (chooseChannel("##channel", &context.numbers->info(), name)) view.channel = name;
-    if (ImGui::IsItemHovered()) tooltip("Parameter whose values are counted");
-    continueLine(em() * 3.5f);
-    ImGui::Checkbox("log", &view.logCounts);
-    if (ImGui::IsItemHovered()) tooltip("Logarithmic number of samples");
+    ToolRow tools(context);
+    const float width = std::min(em() * 11, tools.room() * 0.4f);
+    if (tools.next(width)) {
+        ImGui::SetNextItemWidth(width);
+        if (chooseChannel("##channel", &context.numbers->info(), name)) view.channel = name;
+        if (ImGui::IsItemHovered()) tooltip("Parameter whose values are counted");
+    }
+    if (tools.next(em() * 3.5f)) {
+        ImGui::Checkbox("log", &view.logCounts);
+        if (ImGui::IsItemHovered()) tooltip("Logarithmic number of samples");
+    }
     if (result) {
-        continueLine(buttonWidth("Export"));
         exportMenu(
-            context, channel.name + "-histogram",
+            context, tools, channel.name + "-histogram",
             [result, channel](const Progress&) {
                 return drawingOf(
                     {histogramFigure(channel, result->statistics.channels.front().histogram, result->brushed)}, 1);
@@ -138,11 +145,8 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
                 return histogramCsv(channel, result->statistics.channels.front().histogram, result->brushed);
             });
     }
-    if (result) drawOrigin(context, {result->query.channels.front()});
-    if (context.session.selection.brushes.empty()) {
-        continueLine(ImGui::CalcTextSize("drag to brush").x);
-        ImGui::TextDisabled("drag to brush");
-    }
+    if (result) drawOrigin(context, tools, {result->query.channels.front()});
+    if (context.session.selection.brushes.empty()) drawNote(tools, "drag to brush");
 }
 
 } // namespace

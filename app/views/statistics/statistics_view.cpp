@@ -230,8 +230,8 @@ void drawBalanceTable(const BalanceTable& table) {
 }
 
 /// Statistics, or the balance of a parameter.
-void chooseBalance(const volume::DatasetInfo& info, StatisticsView& view) {
-    continueLine(em() * 10);
+void chooseBalance(ToolRow& tools, const volume::DatasetInfo& info, StatisticsView& view) {
+    if (!tools.next(em() * 10)) return;
     ImGui::SetNextItemWidth(em() * 10);
     const std::string now = view.balance.empty() ? "statistics" : "balance of " + view.balance;
     if (ImGui::BeginCombo("##balance", now.c_str())) {
@@ -247,7 +247,8 @@ void chooseBalance(const volume::DatasetInfo& info, StatisticsView& view) {
                 "region");
 }
 
-void drawBalance(ViewContext& context, const std::string& pane, int channel, int label, StatisticsCache& cache) {
+void drawBalance(ViewContext& context, ToolRow& tools, const std::string& pane, int channel, int label,
+                 StatisticsCache& cache) {
     const volume::DatasetInfo& info = context.numbers->info();
     const RegionBalanceQuery query{channel, "", label, volume::timesAround(info.times, context.session.time)};
     const auto balance = cache.balance.get(
@@ -261,29 +262,30 @@ void drawBalance(ViewContext& context, const std::string& pane, int channel, int
         return failure.empty() ? ImGui::TextDisabled("Computing...") : drawHint("No balance", failure.c_str());
     }
     const auto table = std::make_shared<BalanceTable>(balanceTable(info, *balance));
-    continueLine(buttonWidth("Export"));
-    exportMenu(context, "balance", {}, [table](const Progress&) { return balanceCsv(*table, "", ""); });
-    drawOrigin(context, {channel});
+    exportMenu(context, tools, "balance", {}, [table](const Progress&) { return balanceCsv(*table, "", ""); });
+    drawOrigin(context, tools, {channel});
     drawBalanceTable(*table);
 }
 
 /// Shows the numbers of every region; false where the view shows those of the selection.
-bool drawRegions(ViewContext& context, const std::string& pane, StatisticsView& view, const std::vector<int>& shown,
-                 StatisticsCache& cache) {
+bool drawRegions(ViewContext& context, ToolRow& tools, const std::string& pane, StatisticsView& view,
+                 const std::vector<int>& shown, StatisticsCache& cache) {
     const volume::DatasetInfo& info = context.numbers->info();
     const auto label = volume::labelChannel(info);
     if (!label) return false;
     const std::string& name = volume::parameterOf(info, *label).name;
-    ImGui::Checkbox(("by " + name).c_str(), &view.byRegion);
-    if (ImGui::IsItemHovered()) tooltip(("Numbers of every " + name + ", independent of the brushes").c_str());
+    const std::string by = "by " + name;
+    if (tools.next(checkboxWidth(by.c_str()))) {
+        ImGui::Checkbox(by.c_str(), &view.byRegion);
+        if (ImGui::IsItemHovered()) tooltip(("Numbers of every " + name + ", independent of the brushes").c_str());
+    }
     if (!view.byRegion) return false;
-    chooseBalance(info, view);
+    chooseBalance(tools, info, view);
     if (const auto channel = view.balance.empty() ? std::nullopt : info.findChannel(view.balance)) {
-        drawBalance(context, pane, *channel, *label, cache);
+        drawBalance(context, tools, pane, *channel, *label, cache);
         return true;
     }
-    continueLine(em() * 8);
-    chooseChannels(info, view.channels, shown);
+    chooseChannels(tools, info, view.channels, shown);
     const RegionQuery query{shown, *label, volume::timesAround(info.times, context.session.time)};
     const auto numbers = cache.regions.get(
         context, context.numbers, {.key = "regions " + pane, .title = "Statistics by region", .quiet = true}, query,
@@ -296,10 +298,9 @@ bool drawRegions(ViewContext& context, const std::string& pane, StatisticsView& 
         return true;
     }
     const auto rows = std::make_shared<std::vector<RegionRow>>(regionRows(info, query, *numbers));
-    continueLine(buttonWidth("Export"));
-    exportMenu(context, "regions", {},
+    exportMenu(context, tools, "regions", {},
                [rows, unit = info.lengthUnit](const Progress&) { return regionCsv(*rows, unit, "", ""); });
-    drawOrigin(context, shown);
+    drawOrigin(context, tools, shown);
     drawRegionTable(context.session, info, volume::parameterOf(info, *label), *rows);
     return true;
 }
@@ -315,7 +316,8 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
     StatisticsCache& cache = cacheOf<StatisticsCache>(context, pane);
     const std::vector<int> shown = chosenChannels(info, view.channels, 64);
     if (shown.empty()) return drawHint("No parameters", "This data set has only labels.");
-    if (drawRegions(context, pane, view, shown, cache)) return;
+    ToolRow tools(context);
+    if (drawRegions(context, tools, pane, view, shown, cache)) return;
     const std::vector<volume::Channel> channels = info.channels();
     std::vector<Range> ranges;
     std::size_t with = 0;
@@ -329,21 +331,21 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
         if (i != with) query.pairs.push_back({static_cast<int>(with), static_cast<int>(i)});
     const auto result = cache.answers.get(context, "statistics " + pane, query);
 
-    if (volume::labelChannel(info)) continueLine(em() * 8);
-    chooseChannels(info, view.channels, shown);
-    continueLine(em() * 9);
-    ImGui::SetNextItemWidth(em() * 9);
+    chooseChannels(tools, info, view.channels, shown);
     const std::string current = channels[static_cast<std::size_t>(shown[with])].name;
-    if (ImGui::BeginCombo("##with", ("r with " + current).c_str())) {
-        for (const int channel : shown) {
-            const std::string& name = channels[static_cast<std::size_t>(channel)].name;
-            if (ImGui::Selectable(name.c_str(), name == current)) view.correlateWith = name;
+    if (tools.next(em() * 9)) {
+        ImGui::SetNextItemWidth(em() * 9);
+        if (ImGui::BeginCombo("##with", ("r with " + current).c_str())) {
+            for (const int channel : shown) {
+                const std::string& name = channels[static_cast<std::size_t>(channel)].name;
+                if (ImGui::Selectable(name.c_str(), name == current)) view.correlateWith = name;
+            }
+            ImGui::EndCombo();
         }
-        ImGui::EndCombo();
+        if (ImGui::IsItemHovered())
+            tooltip("Parameter with which the correlation of the others is shown (Pearson's r)");
     }
-    if (ImGui::IsItemHovered()) tooltip("Parameter with which the correlation of the others is shown (Pearson's r)");
-    continueLine(buttonWidth("Export"));
-    exportMenu(context, "statistics", {},
+    exportMenu(context, tools, "statistics", {},
                [source = context.numbers, query, count = shown.size()](const Progress& progress) {
                    return statisticsCsv(source, query, count, progress);
                });
@@ -354,9 +356,8 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
     const std::string state =
         std::string(result->brushed ? "weighted by the degree of interest" : "nothing is brushed") +
         (result->statistics.level > 0 ? ", first estimate" : "");
-    continueLine(ImGui::CalcTextSize(state.c_str()).x);
-    ImGui::TextDisabled("%s", state.c_str());
-    drawOrigin(context, shown);
+    drawNote(tools, state);
+    drawOrigin(context, tools, shown);
     drawTable(info, *result, std::min(shown.size(), result->statistics.channels.size()),
               std::min(with, result->query.channels.size() - 1));
 }

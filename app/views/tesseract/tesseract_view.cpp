@@ -83,22 +83,25 @@ std::array<std::string, 4> axisNames(const TesseractView& view) {
 void drawToolbar(ViewContext& context, TesseractCache& cache, TesseractView& view, const std::string& shown) {
     const volume::DatasetInfo& info = context.source->info();
     std::string channel = shown;
-    ImGui::SetNextItemWidth(std::min(em() * 7, ImGui::GetContentRegionAvail().x * 0.3f));
-    if (chooseChannel("##channel", &info, channel)) view.channel = channel;
-    if (ImGui::IsItemHovered()) tooltip("Parameter whose transfer function the points are drawn with");
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(std::min(em() * 7, ImGui::GetContentRegionAvail().x * 0.3f));
-    chooseChannel("##fourth", &info, view.fourth, "time");
-    if (ImGui::IsItemHovered()) tooltip("Along the fourth axis: time, or a parameter at the time shown");
-    ImGui::SameLine();
-    if (iconButton(context, "tour", view.tour ? icons::kPause : icons::kPlay,
-                   "Tour: keep turning in two planes at once", true, view.tour))
+    ToolRow tools(context);
+    const float list = std::min(em() * 7, tools.room() * 0.3f);
+    if (tools.next(list)) {
+        ImGui::SetNextItemWidth(list);
+        if (chooseChannel("##channel", &info, channel)) view.channel = channel;
+        if (ImGui::IsItemHovered()) tooltip("Parameter whose transfer function the points are drawn with");
+    }
+    if (tools.next(list)) {
+        ImGui::SetNextItemWidth(list);
+        chooseChannel("##fourth", &info, view.fourth, "time");
+        if (ImGui::IsItemHovered()) tooltip("Along the fourth axis: time, or a parameter at the time shown");
+    }
+    const auto button = [&](const char* id, Icon icon, const char* help, bool lit = false) {
+        return tools.next(iconButtonWidth(context, icon)) && iconButton(context, id, icon, help, true, lit);
+    };
+    if (button("tour", view.tour ? icons::kPause : icons::kPlay, "Tour: keep turning in two planes at once", view.tour))
         view.tour = !view.tour;
-    ImGui::SameLine();
-    if (iconButton(context, "reset", {icon::kHome, "reset"}, "Reset the rotation (R)")) reset(view, cache);
-    ImGui::SameLine();
-    if (iconButton(context, "options", {icon::kGear, "..."}, "Settings: eye distance, splats, lattice"))
-        ImGui::OpenPopup("options");
+    if (button("reset", {icon::kHome, "reset"}, "Reset the rotation (R)")) reset(view, cache);
+    if (button("options", {icon::kGear, "..."}, "Settings: eye distance, splats, lattice")) ImGui::OpenPopup("options");
     if (ImGui::BeginPopup("options")) {
         ImGui::Dummy({em() * 20, 0});
         drawDescribed(view, WidgetContext{.info = &info});
@@ -309,7 +312,7 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
     }
     entries.push_back(along);
     if (view.colorBy == TesseractColor::Value) entries.push_back(legendOf(session, info, channel));
-    drawLegends(draw, entries, frame.min, max);
+    drawLegends(draw, entries, frame.min, max, LegendCorner::Bottom, context.figure);
 }
 
 } // namespace

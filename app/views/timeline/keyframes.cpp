@@ -125,7 +125,7 @@ void addVariant(ViewContext& context, const std::string& path) {
 
 } // namespace
 
-void drawKeyframeButtons(ViewContext& context) {
+void drawKeyframeButtons(ViewContext& context, ToolRow& tools) {
     Session& session = context.session;
     Animation& animation = session.animation;
     const std::string pane = volumePane(session);
@@ -133,15 +133,18 @@ void drawKeyframeButtons(ViewContext& context) {
     const bool own = view && view->camera;
     const std::string owner = own ? detail::joinPointer("/views", pane) : std::string();
     const std::string whose = own ? " of " + paneTitle(session, pane) : std::string();
-    if (ImGui::Button("Set camera key"))
-        for (const char* path : kCameraPaths) setKey(session, owner + path);
-    if (ImGui::IsItemHovered())
-        tooltip(("Set keyframes for the camera" + whose + " at the current time of the animation").c_str());
-    ImGui::SameLine(0, em() * 0.2f);
-    if (ImGui::Button("Set time key")) setKey(session, "/time");
-    if (ImGui::IsItemHovered()) tooltip("Set a keyframe for the time shown; for other settings right-click their name");
-    if (animation.tracks.empty()) return;
-    ImGui::SameLine(0, em() * 0.8f);
+    if (tools.next(buttonWidth("Set camera key"), em() * 1.5f)) {
+        if (ImGui::Button("Set camera key"))
+            for (const char* path : kCameraPaths) setKey(session, owner + path);
+        if (ImGui::IsItemHovered())
+            tooltip(("Set keyframes for the camera" + whose + " at the current time of the animation").c_str());
+    }
+    if (tools.next(buttonWidth("Set time key"), em() * 0.2f)) {
+        if (ImGui::Button("Set time key")) setKey(session, "/time");
+        if (ImGui::IsItemHovered())
+            tooltip("Set a keyframe for the time shown; for other settings right-click their name");
+    }
+    if (animation.tracks.empty() || !tools.next(em() * 10.2f, em() * 0.8f)) return;
     ImGui::SetNextItemWidth(em() * 5);
     float position = static_cast<float>(animation.position), duration = static_cast<float>(animation.duration);
     if (ImGui::DragFloat("##position", &position, 0.02f, 0, duration, "at %.2f s")) moveTo(session, double(position));

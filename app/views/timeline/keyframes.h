@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/pane/view_context.h"
+#include "app/pane/tool_row.h"
 
 #include <functional>
 #include <string>
@@ -8,8 +8,8 @@
 /// Keyframes by hand: their rows in the timeline, and the menu that every parameter has.
 namespace tessera::app {
 
-/// Buttons that set keys for the camera and the time, and the place in the animation.
-void drawKeyframeButtons(ViewContext& context);
+/// Tools that set keys for the camera and the time, and the place in the animation.
+void drawKeyframeButtons(ViewContext& context, ToolRow& tools);
 
 /// A ruler to drag the position along and a row per parameter with its keys: drag a key to move it, right-click it for
 /// its easing. Fills the width and `height` pixels, with a scroll bar where that is too little.

@@ -1,5 +1,6 @@
 #include "app/pane/plot.h"
 #include "app/pane/view_parts.h"
+#include "app/ui/fitted_text.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "app/views/timeline/keyframes.h"
@@ -13,46 +14,52 @@ namespace tessera::app {
 
 namespace {
 
+constexpr float kNumbersFrom = 2.6f; ///< em: height of the track that has room for numbers
+
 struct TimelineCache : ViewCache {
     Playback playback;
     bool dragging = false;
 };
 
-void drawButtons(ViewContext& context, const std::vector<double>& times, int index) {
+void drawButtons(ViewContext& context, ToolRow& tools, const std::vector<double>& times, int index) {
     Session& session = context.session;
     const int last = static_cast<int>(times.size()) - 1;
     const bool many = last > 0;
+    const float near = em() * 0.15f;
     const auto go = [&](int to) { session.time = times[static_cast<std::size_t>(std::clamp(to, 0, last))]; };
-    const auto next = [] { ImGui::SameLine(0, em() * 0.15f); };
-    if (iconButton(context, "first", icons::kFirst, "First time (Home)", many)) go(0);
-    next();
-    if (iconButton(context, "back", icons::kStepBack, "One step back (Left)", many)) go(index - 1);
-    next();
+    const auto button = [&](const char* id, Icon icon, const char* help, bool enabled, bool lit = false,
+                            float gap = 0) {
+        return tools.next(iconButtonWidth(context, icon), gap) && iconButton(context, id, icon, help, enabled, lit);
+    };
+    if (button("first", icons::kFirst, "First time (Home)", many)) go(0);
+    if (button("back", icons::kStepBack, "One step back (Left)", many, false, near)) go(index - 1);
     const bool playable = many || !session.animation.tracks.empty();
     const bool playing = session.animation.playing && playable;
-    if (iconButton(context, "play", playing ? icons::kPause : icons::kPlay, playing ? "Pause (Space)" : "Play (Space)",
-                   playable, playing)) {
+    if (button("play", playing ? icons::kPause : icons::kPlay, playing ? "Pause (Space)" : "Play (Space)", playable,
+               playing, near)) {
         session.animation.playing = !playing;
         // Play at the end of a single run starts it again.
         if (!playing && session.animation.loop == Loop::Once && index == last) go(0);
     }
-    next();
-    if (iconButton(context, "forward", icons::kStepForward, "One step forward (Right)", many)) go(index + 1);
-    next();
-    if (iconButton(context, "last", icons::kLast, "Last time (End)", many)) go(last);
-    ImGui::SameLine(0, em() * 0.8f);
+    if (button("forward", icons::kStepForward, "One step forward (Right)", many, false, near)) go(index + 1);
+    if (button("last", icons::kLast, "Last time (End)", many, false, near)) go(last);
+}
 
+/// Whether playing repeats, and how fast it is.
+void drawPlaying(ViewContext& context, ToolRow& tools, bool many) {
+    Animation& animation = context.session.animation;
     static constexpr Icon kLoopIcons[] = {icons::kOnce, icons::kRepeat, icons::kPingPong};
     static constexpr const char* kLoopHelp[] = {"Stops at the last time. Click to repeat.",
                                                 "Repeats from the first time. Click to play back and forth.",
                                                 "Plays back and forth. Click to stop at the last time."};
-    const auto loop = static_cast<std::size_t>(session.animation.loop);
-    if (iconButton(context, "loop", kLoopIcons[loop], kLoopHelp[loop], many))
-        session.animation.loop = static_cast<Loop>((loop + 1) % 3);
-    next();
+    const auto loop = static_cast<std::size_t>(animation.loop);
+    if (tools.next(iconButtonWidth(context, kLoopIcons[loop]), em() * 0.8f) &&
+        iconButton(context, "loop", kLoopIcons[loop], kLoopHelp[loop], many))
+        animation.loop = static_cast<Loop>((loop + 1) % 3);
+    if (!tools.next(em() * 7, em() * 0.15f)) return;
     ImGui::BeginDisabled(!many);
     ImGui::SetNextItemWidth(em() * 7);
-    ImGui::SliderFloat("##speed", &session.animation.speed, 0.1f, 60, "%.3g steps/s", ImGuiSliderFlags_Logarithmic);
+    ImGui::SliderFloat("##speed", &animation.speed, 0.1f, 60, "%.3g steps/s", ImGuiSliderFlags_Logarithmic);
     ImGui::EndDisabled();
     if (ImGui::IsItemHovered()) tooltip("Stored times shown per second while playing");
 }
@@ -74,10 +81,10 @@ std::string placeText(const std::vector<double>& times, double time) {
 }
 
 /// Chooses the time axis: that of the data, or a quantity over time.
-void chooseAxis(ViewContext& context, const volume::DatasetInfo& info) {
+void chooseAxis(ViewContext& context, ToolRow& tools, const volume::DatasetInfo& info) {
     std::string& axis = context.session.data.axis;
     if (info.quantities.empty() && axis.empty()) return;
-    ImGui::SameLine(0, em());
+    if (!tools.next(em() * 7, em())) return;
     ImGui::SetNextItemWidth(em() * 7);
     if (ImGui::BeginCombo("##axis", axis.empty() ? "by time" : ("by " + axis).c_str())) {
         if (ImGui::Selectable(axis.empty() ? ("by " + info.timeName).c_str() : "as stored", axis.empty())) axis.clear();
@@ -90,7 +97,8 @@ void chooseAxis(ViewContext& context, const volume::DatasetInfo& info) {
 }
 
 /// Where the plane lies whose times run along an axis.
-void drawPlace(Session& session) {
+void drawPlace(Session& session, ToolRow& tools) {
+    if (!tools.next(em() * 11, em())) return;
     volume::TimeAxis& along = *session.data.timeAxis;
     const char* const axis = volume::kSpaceAxisNames[std::size_t(along.axis)].data();
     auto place = static_cast<float>(along.place * 100);
@@ -143,11 +151,38 @@ void drawTrack(ViewContext& context, TimelineCache& cache, const volume::Dataset
         previous = x;
     }
     draw.AddCircleFilled({knob, y}, em() * (hovered || held ? 0.48f : 0.4f), colors.cursor, 24);
-    drawAxis(draw, frame, AxisSide::Bottom, "", "", origin.x, origin.x + width);
+    if (height >= em() * kNumbersFrom) drawAxis(draw, frame, AxisSide::Bottom, "", "", origin.x, origin.x + width);
     if (hovered && !held) {
         const double under = timeUnder(frame, times, ImGui::GetIO().MousePos);
         ImGui::SetTooltip("%s  (%s)", stateText(info, under, session.data.axis).c_str(),
                           placeText(times, under).c_str());
+    }
+}
+
+/// A text among the tools.
+void drawText(ToolRow& tools, const std::string& text, bool faint) {
+    const float whole = ImGui::CalcTextSize(text.c_str()).x, least = std::min(whole, em() * 8);
+    if (!tools.next(least, em())) return;
+    ImGui::AlignTextToFramePadding();
+    if (faint) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    fittedText(text, tools.grow(least, whole) + 1);
+    if (faint) ImGui::PopStyleColor();
+}
+
+/// The time shown, with quantities at that time.
+void drawNow(Session& session, const volume::DatasetInfo& info, ToolRow& tools) {
+    if (info.times.size() > 1) {
+        const double now = std::clamp(session.time, info.times.front(), info.times.back());
+        drawText(tools, timeText(info, now), false);
+        if (const std::string quantities = quantitiesText(info, now, session.data.axis); !quantities.empty())
+            drawText(tools, quantities, false);
+        drawText(tools, placeText(info.times, now), true);
+    } else if (const auto& along = session.data.timeAxis) {
+        drawText(tools, "Time runs along " + std::string(volume::kSpaceAxisNames[std::size_t(along->axis)]) + ".",
+                 true);
+        drawPlace(session, tools);
+    } else {
+        drawText(tools, "These data have only one time.", true);
     }
 }
 
@@ -167,29 +202,16 @@ void drawTimelineView(ViewContext& context, const std::string& pane, TimelineVie
         playOn(cache.playback, session, info.times, double(ImGui::GetIO().DeltaTime));
         context.busy = true;
     }
-    const int index = info.nearestTime(session.time);
-    drawButtons(context, info.times, index);
-    ImGui::SameLine(0, em());
-    ImGui::AlignTextToFramePadding();
-    if (many) {
-        const double now = std::clamp(session.time, info.times.front(), info.times.back());
-        ImGui::TextUnformatted(timeText(info, now).c_str());
-        if (const std::string quantities = quantitiesText(info, now, session.data.axis); !quantities.empty()) {
-            ImGui::SameLine(0, em());
-            ImGui::TextUnformatted(quantities.c_str());
-        }
-        ImGui::SameLine(0, em());
-        ImGui::TextDisabled("%s", placeText(info.times, now).c_str());
-        chooseAxis(context, info);
-    } else if (const auto& along = session.data.timeAxis) {
-        ImGui::TextDisabled("Time runs along %s.", volume::kSpaceAxisNames[std::size_t(along->axis)].data());
-        ImGui::SameLine(0, em());
-        drawPlace(session);
-    } else {
-        ImGui::TextDisabled("These data have only one time.");
+    {
+        ToolRow tools(context);
+        drawButtons(context, tools, info.times, info.nearestTime(session.time));
+        const bool scarce = tools.room() < em() * 48; // then the time comes before what is rarely changed
+        if (scarce) drawNow(session, info, tools);
+        drawPlaying(context, tools, many);
+        if (!scarce) drawNow(session, info, tools);
+        if (many) chooseAxis(context, tools, info);
+        drawKeyframeButtons(context, tools);
     }
-    ImGui::SameLine(0, em() * 1.5f);
-    drawKeyframeButtons(context);
     // Rows of keys come before the numbers below the track; what has no room scrolls.
     const float rows = keyed ? keyframesHeight(session) : 0;
     if (many)

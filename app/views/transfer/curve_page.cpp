@@ -167,16 +167,15 @@ void drawCurvePage(ViewContext& context, CurvePage& page, const TransferView& vi
     const BrushedQuery query = brushedQuery(context.session, info, {index}, {span}, page.bins.count, false);
     const auto result = page.answers.get(context, "histogram " + pane, query);
 
-    const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
-    const bool tall = room.y > em() * 10;
-    const float left = axisRoom(AxisSide::Left, {0, 1}, tall), bottom = axisRoom(AxisSide::Bottom, span, true),
+    const ImVec2 origin = ImGui::GetCursorScreenPos(), room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 5)};
+    const bool tall = room.y > em() * 10, titled = room.y > em() * 8;
+    const float left = axisRoom(AxisSide::Left, {0, 1}, tall), bottom = axisRoom(AxisSide::Bottom, span, titled),
                 strip = std::round(em() * 0.9f), stops = function.colors.empty() ? 0 : std::round(em() * 0.8f);
     const PlotFrame frame{{origin.x + left, origin.y + em() * 0.4f},
                           {origin.x + room.x - em() * 0.6f, origin.y + room.y - bottom - strip - stops - em() * 0.35f},
                           span,
                           {0, 1}};
-    if (frame.width() < em() * 4 || frame.height() < em() * 1.5f)
-        return drawHint("Not enough room", "Enlarge the pane to edit the curve.");
+    if (frame.width() < em() * 4) return drawHint("Not enough room", "Enlarge the pane to edit the curve.");
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotColors colors = plotColors();
     drawAxis(draw, frame, AxisSide::Left, tall ? "opacity" : "", "", frame.min.y - em() * 0.5f,
@@ -194,7 +193,8 @@ void drawCurvePage(ViewContext& context, CurvePage& page, const TransferView& vi
     drawColors(context, page, function, frame, range, strip, stops);
     PlotFrame axis = frame;
     axis.max.y += em() * 0.35f + strip + stops;
-    drawAxis(draw, axis, AxisSide::Bottom, channel.name, channel.unit, origin.x, origin.x + room.x);
+    drawAxis(draw, axis, AxisSide::Bottom, titled ? channel.name : "", titled ? channel.unit : "", origin.x,
+             origin.x + room.x);
 }
 
 } // namespace tessera::app

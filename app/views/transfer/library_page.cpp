@@ -117,6 +117,12 @@ void drawOwnMenu(ViewContext& context, LibraryPage& page, const std::string& nam
     ImGui::EndPopup();
 }
 
+/// Side of a picture: two of them have room beside each other unless they would show nothing.
+float librarySide(float room) {
+    const float half = (room - em() * 0.5f) / 2;
+    return std::clamp(half < em() * 4 ? room : half, em(), em() * 6.5f);
+}
+
 } // namespace
 
 void drawLibraryPage(ViewContext& context, LibraryPage& page, const std::string& function, int index) {
@@ -137,7 +143,7 @@ void drawLibraryPage(ViewContext& context, LibraryPage& page, const std::string&
     if (!values) return drawHint("Reading values");
 
     ImGui::BeginChild("library", {0, 0}, false);
-    const float room = ImGui::GetContentRegionAvail().x, side = std::round(std::min(em() * 6.5f, std::max(room, em())));
+    const float room = ImGui::GetContentRegionAvail().x, side = std::round(librarySide(room));
     page.pictures.begin(context, index, int(side));
     const auto cell = [&](Grid& grid, const vis::TransferRecipe& recipe) {
         grid.place();

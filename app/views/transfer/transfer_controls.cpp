@@ -1,6 +1,7 @@
 #include "app/views/transfer/transfer_controls.h"
 
 #include "app/described/describe_json.h"
+#include "app/pane/tool_row.h"
 #include "app/pane/view_parts.h"
 #include "app/session/shown_scene.h"
 #include "app/ui/ticks.h"
@@ -58,44 +59,83 @@ void drawRange(vis::TransferFunction& function, Range data, float width) {
     ImGui::EndDisabled();
 }
 
-/// What is edited: the curve over values, regions, or the emphasis of boundaries that makes the curve; or the library.
-void drawPages(const FindingPages& pages, TransferView& view, vis::TransferFunction& function) {
-    const auto page = [&](const char* name, bool chosen, const char* help) {
-        continueLine(buttonWidth(name));
-        if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
-        const bool pressed = ImGui::Button(name);
-        if (chosen) ImGui::PopStyleColor();
-        if (ImGui::IsItemHovered()) tooltip(help);
-        return pressed && !chosen;
+/// What is edited.
+enum class TransferPage { Library, Curve, Regions, Boundary };
+constexpr const char* kTransferPages[] = {"library", "curve", "regions", "boundary"};
+constexpr const char* kTransferPageHelp[] = {
+    "Transfer functions by name, as pictures of these data", "Opacity from the value, by a curve that you draw",
+    "Opacity from value and gradient magnitude, by areas of their plane",
+    "Opacity from the distance to a boundary between materials; computes a new curve"};
+
+TransferPage pageOf(const TransferView& view, const vis::TransferFunction& function) {
+    if (view.library) return TransferPage::Library;
+    if (function.kind == vis::TransferKind::Regions) return TransferPage::Regions;
+    return view.boundaries ? TransferPage::Boundary : TransferPage::Curve;
+}
+
+void goTo(TransferPage page, const FindingPages& pages, TransferView& view, vis::TransferFunction& function) {
+    view.library = page == TransferPage::Library;
+    if (view.library) return;
+    function.kind = page == TransferPage::Regions ? vis::TransferKind::Regions : vis::TransferKind::Curve;
+    view.boundaries = page == TransferPage::Boundary;
+    if (page == TransferPage::Regions) pages.regions.fit = function.regions.empty();
+    if (page != TransferPage::Boundary) return;
+    pages.boundaries.apply = true;
+    pages.boundaries.from.reset();
+}
+
+bool litButton(const char* name, bool lit) {
+    if (lit) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
+    const bool pressed = ImGui::Button(name);
+    if (lit) ImGui::PopStyleColor();
+    return pressed;
+}
+
+/// Buttons for the pages, or in narrow rows of tools a list of them.
+void drawPages(ToolRow& tools, const FindingPages& pages, TransferView& view, vis::TransferFunction& function) {
+    const TransferPage now = pageOf(view, function);
+    TransferPage chosen = now;
+    const auto offer = [&](std::size_t i, const auto& draw) {
+        const auto page = static_cast<TransferPage>(i);
+        if (draw(kTransferPages[i], page == now)) chosen = page;
+        if (ImGui::IsItemHovered()) tooltip(kTransferPageHelp[i]);
     };
-    const auto choose = [&](vis::TransferKind kind, bool boundary) {
-        function.kind = kind;
-        view.boundaries = boundary;
-        view.library = false;
-    };
-    const bool curve = function.kind == vis::TransferKind::Curve, editor = !view.library;
-    if (page("library", view.library, "Transfer functions by name, as pictures of these data")) view.library = true;
-    if (page("curve", editor && curve && !view.boundaries, "Opacity from the value, by a curve that you draw"))
-        choose(vis::TransferKind::Curve, false);
-    if (page("regions", editor && !curve, "Opacity from value and gradient magnitude, by areas of their plane")) {
-        choose(vis::TransferKind::Regions, false);
-        pages.regions.fit = function.regions.empty();
+    const float width = em() * 5.8f;
+    if (!tools.narrow()) {
+        for (std::size_t i = 0; i < std::size(kTransferPages); ++i)
+            if (tools.next(buttonWidth(kTransferPages[i]))) offer(i, litButton);
+    } else if (tools.next(width)) {
+        ImGui::SetNextItemWidth(width);
+        if (ImGui::BeginCombo("##page", kTransferPages[static_cast<std::size_t>(now)])) {
+            for (std::size_t i = 0; i < std::size(kTransferPages); ++i)
+                offer(i, [](const char* name, bool lit) { return ImGui::Selectable(name, lit); });
+            ImGui::EndCombo();
+        }
     }
-    if (page("boundary", editor && curve && view.boundaries,
-             "Opacity from the distance to a boundary between materials; computes a new curve")) {
-        choose(vis::TransferKind::Curve, true);
-        pages.boundaries.apply = true;
-        pages.boundaries.from.reset();
-    }
+    if (chosen != now) goTo(chosen, pages, view, function);
+}
+
+/// Opens the settings of the selected region.
+void drawRegionTool(ViewContext& context, ToolRow& tools, RegionPage& page, vis::TransferFunction& function,
+                    const volume::DatasetInfo& info) {
+    if (!tools.next(buttonWidth("region"))) return;
+    if (ImGui::Button("region")) ImGui::OpenPopup("region");
+    if (ImGui::IsItemHovered()) tooltip("Add, remove or change a region: click on one to select it");
+    if (!ImGui::BeginPopup("region")) return;
+    ImGui::Dummy({em() * 20, 0});
+    drawRegionSettings(context, page, function, info);
+    ImGui::EndPopup();
 }
 
 /// Gradient magnitude at the top of the plane.
-void drawGradientTop(vis::TransferFunction& function, RegionPage& page) {
-    continueLine(buttonWidth("fit"));
-    if (ImGui::Button("fit")) page.fit = true;
-    if (ImGui::IsItemHovered()) tooltip("Make the plane as high as the gradients of the data; regions stay in place");
-    const float width = std::min(em() * 9, ImGui::GetContentRegionAvail().x - em() * 2);
-    continueLine(width + em() * 2);
+void drawGradientTop(ToolRow& tools, vis::TransferFunction& function, RegionPage& page) {
+    if (tools.next(buttonWidth("fit"))) {
+        if (ImGui::Button("fit")) page.fit = true;
+        if (ImGui::IsItemHovered())
+            tooltip("Make the plane as high as the gradients of the data; regions stay in place");
+    }
+    const float width = std::min(em() * 9, tools.room() - em() * 2);
+    if (!tools.next(width + em() * 2)) return;
     ImGui::SetNextItemWidth(width);
     ImGui::SliderFloat("top", &function.gradientTop, 1e-3f, 2, "%.3g ranges/cell",
                        ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
@@ -104,15 +144,14 @@ void drawGradientTop(vis::TransferFunction& function, RegionPage& page) {
 }
 
 /// Curves to begin with, and what is shown behind the curve.
-void drawCurveControls(TransferView& view, vis::TransferFunction& function) {
+void drawCurveControls(ToolRow& tools, TransferView& view, vis::TransferFunction& function) {
     const float square = ImGui::GetFrameHeight();
     for (std::size_t i = 0; i < std::size(kOpacityPresetNames); ++i) {
-        continueLine(square * 1.25f);
         const auto preset = static_cast<OpacityPreset>(i);
-        if (presetButton(preset)) function.opacity = opacityPreset(preset);
+        if (tools.next(square * 1.25f) && presetButton(preset)) function.opacity = opacityPreset(preset);
     }
     const auto check = [&](const char* name, bool& on, const char* help) {
-        continueLine(square + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize(name).x);
+        if (!tools.next(checkboxWidth(name))) return;
         ImGui::Checkbox(name, &on);
         if (ImGui::IsItemHovered()) tooltip(help);
     };
@@ -170,6 +209,22 @@ void drawOwnColors(ViewContext& context, vis::TransferFunction& function, const 
     ImGui::EndPopup();
 }
 
+/// The colour map in a list of this width, which way round it runs, and colours of one's own.
+void drawColorTools(ViewContext& context, vis::TransferFunction& function, const std::string& name, float width) {
+    ImGui::SetNextItemWidth(width);
+    if (chooseColormap("##colormap", function.colormap, function.reversed)) function.colors.clear();
+    if (ImGui::IsItemHovered()) tooltip("Colour map; type to search, perceptually uniform ones are listed first");
+    ImGui::SameLine();
+    if (iconButton(context, "reverse", icons::kReverse, "Reverse the colour map", true, function.reversed)) {
+        if (function.colors.empty())
+            function.reversed = !function.reversed;
+        else
+            reverseColors(function.colors);
+    }
+    ImGui::SameLine(0, em() * 0.2f);
+    drawOwnColors(context, function, name);
+}
+
 } // namespace
 
 const vis::Layer* layerOfFunction(const Session& session, const std::string& name) {
@@ -186,47 +241,36 @@ std::string functionName(const Session& session, const TransferView& view, const
 
 void drawTransferControls(ViewContext& context, TransferView& view, const FindingPages& pages,
                           const volume::DatasetInfo& info, std::string channel) {
-    const float room = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.x;
-    const float reverse = ImGui::GetFrameHeight() + em() * 0.4f;
-    const float combo = std::min(em() * 11, (room - 2 * reverse - 3 * gap) / 2);
-    ImGui::SetNextItemWidth(combo);
-    if (chooseChannel("##channel", &info, channel)) view.channel = channel;
-    if (ImGui::IsItemHovered()) tooltip("Parameter whose colours and opacity are edited");
-    const bool choice = !ownFunctions(context.session).empty();
-    if (choice) {
-        ImGui::SameLine();
+    ToolRow tools(context);
+    const float gap = ImGui::GetStyle().ItemSpacing.x, reverse = ImGui::GetFrameHeight() + em() * 0.4f;
+    const float combo = std::min(em() * 11, (tools.room() - 2 * reverse - 3 * gap) / 2);
+    if (tools.next(combo)) {
+        ImGui::SetNextItemWidth(combo);
+        if (chooseChannel("##channel", &info, channel)) view.channel = channel;
+        if (ImGui::IsItemHovered()) tooltip("Parameter whose colours and opacity are edited");
+    }
+    if (!ownFunctions(context.session).empty() && tools.next(combo)) {
         ImGui::SetNextItemWidth(combo);
         chooseFunction(context.session, view, channel);
         if (ImGui::IsItemHovered()) tooltip("Transfer function of all layers, or of one layer that has its own");
     }
-    vis::TransferFunction& function = transferOf(context.session, functionName(context.session, view, channel));
-    if (choice && room < em() * 34) ImGui::NewLine();
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(combo);
-    if (chooseColormap("##colormap", function.colormap, function.reversed)) function.colors.clear();
-    if (ImGui::IsItemHovered()) tooltip("Colour map; type to search, perceptually uniform ones are listed first");
-    ImGui::SameLine();
-    if (iconButton(context, "reverse", icons::kReverse, "Reverse the colour map", true, function.reversed)) {
-        if (function.colors.empty())
-            function.reversed = !function.reversed;
-        else
-            reverseColors(function.colors);
+    const std::string name = functionName(context.session, view, channel);
+    vis::TransferFunction& function = transferOf(context.session, name);
+    if (tools.narrow()) drawPages(tools, pages, view, function);
+    const float beside = tools.widest() - 2 * reverse - gap;
+    const float map = tools.narrow() ? std::clamp(beside, em() * 5, em() * 9) : combo;
+    if (tools.next(map + gap + 2 * reverse)) drawColorTools(context, function, name, map);
+    const float ends = std::min(em() * 16, tools.narrow() ? tools.widest() : tools.room());
+    if (tools.next(ends))
+        drawRange(function, info.channelRange(info.channel(*info.findChannel(channel))),
+                  tools.inMenu() ? em() * 16 : ends);
+    if (!tools.narrow()) drawPages(tools, pages, view, function);
+    const TransferPage page = pageOf(view, function);
+    if (page == TransferPage::Regions) {
+        if (!regionSettingsBeside(tools.room())) drawRegionTool(context, tools, pages.regions, function, info);
+        drawGradientTop(tools, function, pages.regions);
     }
-    ImGui::SameLine(0, em() * 0.2f);
-    drawOwnColors(context, function, functionName(context.session, view, channel));
-
-    const Range data = info.channelRange(info.channel(*info.findChannel(channel)));
-    const float ends = std::min(em() * 16, room);
-    continueLine(ends);
-    drawRange(function, data, ends);
-    drawPages(pages, view, function);
-    if (view.library) return;
-    if (function.kind == vis::TransferKind::Regions) {
-        drawGradientTop(function, pages.regions);
-        return;
-    }
-    if (view.boundaries) return;
-    drawCurveControls(view, function);
+    if (page == TransferPage::Curve) drawCurveControls(tools, view, function);
 }
 
 } // namespace tessera::app

@@ -58,9 +58,15 @@ void drawWaiting(ImDrawList& draw, const PlotFrame& frame, const char* text) {
                         plotColors().text, text);
 }
 
-/// The settings of the selected region, and how one comes and goes.
-void drawRegionSettings(ViewContext& context, RegionDrag& drag, vis::TransferFunction& function,
+} // namespace
+
+bool regionSettingsBeside(float room) {
+    return room > em() * 34;
+}
+
+void drawRegionSettings(ViewContext& context, RegionPage& page, vis::TransferFunction& function,
                         const volume::DatasetInfo& info) {
+    RegionDrag& drag = page.drag;
     if (iconButton(context, "add", icons::kPlus, "Add a region; or drag on an empty area of the plane")) {
         drag = {};
         drag.selected = static_cast<int>(function.regions.size());
@@ -87,8 +93,6 @@ void drawRegionSettings(ViewContext& context, RegionDrag& drag, vis::TransferFun
     }
 }
 
-} // namespace
-
 void fitRegions(RegionPage& page, vis::TransferFunction& function,
                 const std::shared_ptr<const DerivativeResult>& everything) {
     if (!page.fit || !everything) return;
@@ -106,8 +110,8 @@ void drawRegionPage(ViewContext& context, RegionPage& page, vis::TransferFunctio
                     const volume::DatasetInfo& info, int index, const std::shared_ptr<const DerivativeResult>& result) {
     const volume::Channel channel = info.channel(index);
     const Range data = info.channelRange(channel), range = vis::effectiveRange(function, data);
-    const ImVec2 min = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
-    const float side = room.x > em() * 34 ? em() * 17 : 0;
+    const ImVec2 min = ImGui::GetCursorScreenPos(), room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 5)};
+    const float side = regionSettingsBeside(room.x) ? em() * 17 : 0;
     const Area area{min, {min.x + room.x - side, min.y + room.y}};
     const double top = double(function.gradientTop) * (range.hi - range.lo);
     const PlotFrame frame = framed(area, paddedRange(range), paddedRange({0, top}));
@@ -141,7 +145,7 @@ void drawRegionPage(ViewContext& context, RegionPage& page, vis::TransferFunctio
     if (side > 0) {
         ImGui::SetCursorScreenPos({area.max.x, min.y});
         ImGui::BeginChild("settings", {side, room.y});
-        drawRegionSettings(context, page.drag, function, info);
+        drawRegionSettings(context, page, function, info);
         ImGui::EndChild();
     }
 }
@@ -289,7 +293,7 @@ void drawBoundaryPage(ViewContext& context, BoundaryPage& page, vis::TransferFun
                       const std::shared_ptr<const DerivativeResult>& result) {
     const volume::Channel channel = info.channel(index);
     const Range data = info.channelRange(channel), range = vis::effectiveRange(function, data);
-    const ImVec2 min = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+    const ImVec2 min = ImGui::GetCursorScreenPos(), room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 5)};
     const BoundaryRooms rooms = boundaryRooms(min, room);
     const double blur = result && result->curves.thickness > 0 ? result->curves.thickness : 1;
     const Range cells{-2 * blur, 2 * blur}; // what the emphasis covers

@@ -24,6 +24,11 @@ struct RegionPage {
 /// there.
 void fitRegions(RegionPage& page, vis::TransferFunction& function,
                 const std::shared_ptr<const DerivativeResult>& everything);
+/// Whether a page of this width has the settings of the selected region beside the plane; else a tool opens them.
+bool regionSettingsBeside(float room);
+/// The settings of the selected region, and how one comes and goes.
+void drawRegionSettings(ViewContext& context, RegionPage& page, vis::TransferFunction& function,
+                        const volume::DatasetInfo& info);
 void drawRegionPage(ViewContext& context, RegionPage& page, vis::TransferFunction& function,
                     const volume::DatasetInfo& info, int channel,
                     const std::shared_ptr<const DerivativeResult>& result);

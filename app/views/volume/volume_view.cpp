@@ -187,7 +187,8 @@ private:
         if (!showsLegend()) return;
         const std::vector<LegendEntry> entries = sceneLegends(session_, info_, view_.drawingLegend);
         if (view_.multiple && entries.size() == 1 && drawUprightLegend(entries.front())) return;
-        const LegendArea area = drawLegends(*list_, entries, picture_.min, max());
+        const LegendArea area =
+            drawLegends(*list_, entries, picture_.min, max(), LegendCorner::Bottom, context_.figure);
         taken_.push_back({area.min, area.max});
     }
 

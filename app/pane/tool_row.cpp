@@ -1,0 +1,69 @@
+#include "app/pane/tool_row.h"
+
+#include "app/pane/controls.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr Icon kMoreTools{"\uf141", "..."};
+constexpr float kToolShare = 0.35f; ///< of the height, at most
+
+} // namespace
+
+int toolRows(float height, float row) {
+    return std::max(1, static_cast<int>(std::floor(height * kToolShare / row)));
+}
+
+ToolPlace ToolPlaces::next(float width, float gap) {
+    if (fits(width, gap)) {
+        used_ += gap + width;
+        return ToolPlace::SameRow;
+    }
+    // The last row keeps room for the button of the menu.
+    if (left_ <= 0 || (left_ == 1 && used_ > 0 && width > room_ - menu_)) full_ = true;
+    if (full_) return ToolPlace::Menu;
+    --left_;
+    used_ = width;
+    return ToolPlace::NextRow;
+}
+
+float ToolPlaces::grow(float by) {
+    const float more = std::clamp(by, 0.0f, std::max(0.0f, roomNow() - used_));
+    used_ += more;
+    return more;
+}
+
+ToolRow::ToolRow(const ViewContext& context)
+    : context_(context), menuPlaces_(ImGui::GetFontSize() * 18, 0, 1000), room_(ImGui::GetContentRegionAvail().x),
+      rows_(toolRows(ImGui::GetContentRegionAvail().y - ImGui::GetScrollY(), ImGui::GetFrameHeightWithSpacing())),
+      places_(room_, iconButtonWidth(context, kMoreTools) + ImGui::GetStyle().ItemSpacing.x, rows_) {}
+
+ToolRow::~ToolRow() {
+    if (menu_ == Menu::Open) ImGui::EndPopup();
+}
+
+bool ToolRow::fits(float width) const {
+    return places_.fits(width, ImGui::GetStyle().ItemSpacing.x);
+}
+
+bool ToolRow::next(float width, float gap) {
+    const float space = gap < 0 ? ImGui::GetStyle().ItemSpacing.x : gap;
+    const ToolPlace place = places_.next(width, space);
+    if (place == ToolPlace::SameRow) ImGui::SameLine(0, space);
+    if (place != ToolPlace::Menu) return true;
+    const bool first = menu_ == Menu::None;
+    if (first) {
+        if (places_.menuBeside()) ImGui::SameLine();
+        if (iconButton(context_, "more tools", kMoreTools, "More tools")) ImGui::OpenPopup("more tools");
+        menu_ = ImGui::BeginPopup("more tools") ? Menu::Open : Menu::Closed;
+    }
+    // In rows of its own.
+    if (menuPlaces_.next(width, space) == ToolPlace::SameRow && menu_ == Menu::Open) ImGui::SameLine(0, space);
+    return menu_ == Menu::Open;
+}
+
+} // namespace tessera::app

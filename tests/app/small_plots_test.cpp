@@ -1,0 +1,86 @@
+#include "app/pane/legend.h"
+#include "app/ui/theme.h"
+#include "tests/app/drawn_text.h"
+#include "tests/app/fed_imgui.h"
+
+#include <algorithm>
+
+/// What plots and legends leave out where there is little room.
+namespace tessera::app {
+namespace {
+
+class SmallPlots : public FedImGui {
+protected:
+    SmallPlots() : FedImGui({800, 600}) {}
+    void SetUp() override {
+        loadFonts(1);
+        applyTheme(Theme::Dark, 1);
+    }
+    static LegendEntry bar(const std::string& title) {
+        LegendEntry entry;
+        entry.title = title;
+        entry.unit = "K";
+        entry.range = entry.data = {300, 350};
+        return entry;
+    }
+};
+
+TEST_F(SmallPlots, PlotsBelowEachOtherGiveUpTheLineOfTheTitleThenScroll) {
+    feedWindow([&] {
+        for (const std::size_t plots : {1u, 4u, 8u}) {
+            SCOPED_TRACE(plots);
+            const auto count = static_cast<float>(plots);
+            bool titled = false, scrolls = true;
+            for (float room = 10; room < 900; ++room) {
+                const ColumnHeights heights = columnHeights(room, plots);
+                EXPECT_NEAR(heights.each * count + heights.bottom + em() * 0.4f, heights.all, 0.01f) << room;
+                EXPECT_GE(heights.each, em() * 1.7f - 0.01f) << room;
+                EXPECT_GE(heights.all, room);
+                EXPECT_LE(titled, heights.titled) << "more room never takes the title away: " << room;
+                EXPECT_GE(scrolls, heights.all > room) << room;
+                EXPECT_TRUE(!heights.titled || heights.all == room) << "what scrolls has no line for a title: " << room;
+                EXPECT_EQ(heights.bottom, axisRoom(AxisSide::Bottom, {0, 1}, heights.titled)) << room;
+                titled = heights.titled;
+                scrolls = heights.all > room;
+            }
+            EXPECT_TRUE(titled);
+            EXPECT_FALSE(scrolls);
+        }
+    });
+}
+
+TEST_F(SmallPlots, LegendsOfASmallPictureAreOneLineEach) {
+    const std::vector<LegendEntry> entries{bar("T"), bar("density")};
+    const auto drawn = [&](ImVec2 size, bool whole) {
+        LegendArea area{};
+        feedWindow([&] {
+            area = drawLegends(*ImGui::GetWindowDrawList(), entries, {0, 0}, size, LegendCorner::Bottom, whole);
+        });
+        return area.max.y - area.min.y;
+    };
+    const float large = drawn({700, 560}, false), small = drawn({320, 200}, false);
+    const std::vector<std::string> words = drawnWords();
+    EXPECT_LT(small, large * 0.6f);
+    for (const char* word : {"T [K]", "density [K]", "300", "350"})
+        EXPECT_NE(std::ranges::find(words, word), words.end()) << word;
+    EXPECT_EQ(drawn({320, 230}, true), large) << "a figure has whole legends";
+    feedWindow([&] {
+        EXPECT_FALSE(legendsAsLines(em() * 1.25f, em() * 10)) << "a swatch is one line already";
+        EXPECT_TRUE(legendsAsLines(em() * 3.4f, em() * 20));
+        EXPECT_FALSE(legendsAsLines(em() * 3.4f, em() * 30));
+        EXPECT_TRUE(legendsAsLines(em() * 13, em() * 30));
+    });
+}
+
+TEST_F(SmallPlots, ATextGivesUpWordsBeforeLetters) {
+    feedWindow([&] {
+        const auto width = [](const char* text) { return ImGui::CalcTextSize(text).x; };
+        EXPECT_EQ(firstThatFits({"z = 20.0 mm", "20.0 mm", "20"}, width("z = 20.0 mm")), "z = 20.0 mm");
+        EXPECT_EQ(firstThatFits({"z = 20.0 mm", "20.0 mm", "20"}, width("z = 20.0 mm") - 1), "20.0 mm");
+        EXPECT_EQ(firstThatFits({"z = 20.0 mm", "20.0 mm", "20"}, width("20.0 mm") - 1), "20");
+        EXPECT_EQ(firstThatFits({"z = 20.0 mm", "20.0 mm of all"}, width("20.0 m...")), "20.0 m...");
+    });
+}
+
+} // namespace
+} // namespace tessera::app
