@@ -1,0 +1,59 @@
+#pragma once
+
+#include "codec/remote/connection.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <span>
+#include <thread>
+#include <vector>
+
+namespace tessera::codec {
+
+/// Requests to one remote file over a few connections, each with a thread that is started when it is first needed.
+/// A request that fails for the moment is sent again after a pause, which doubles each time, for `patience`; with a
+/// connection of its own each time.
+class FetchQueue {
+public:
+    using Connect = std::function<std::unique_ptr<Connection>()>;
+    FetchQueue(Connect connect, int connections, std::chrono::duration<double> patience);
+    /// Ends requests that are underway; their fetch() throws Cancelled.
+    ~FetchQueue();
+    FetchQueue(const FetchQueue&) = delete;
+    FetchQueue& operator=(const FetchQueue&) = delete;
+
+    /// The bytes of ranges, requested at the same time as far as connections suffice. Throws the first Error of any
+    /// when all have ended. Thread-safe.
+    std::vector<Reply> fetch(std::span<const FileRange> ranges);
+
+private:
+    /// Ranges of one call of fetch().
+    struct Call {
+        std::vector<Reply> replies;
+        std::size_t left = 0;
+        std::exception_ptr failure;
+    };
+    struct Job {
+        FileRange range;
+        Call* call;
+        std::size_t number; ///< of its reply
+    };
+    void work(const std::stop_token& stop);
+    Reply readPatiently(FileRange range, std::unique_ptr<Connection>& connection, const std::stop_token& stop);
+
+    Connect connect_;
+    std::size_t connections_;
+    std::chrono::duration<double> patience_;
+    std::mutex mutex_;
+    std::condition_variable_any wanted_;
+    std::condition_variable done_;
+    std::deque<Job> jobs_;
+    std::size_t idle_ = 0;              ///< threads that wait for a job
+    std::vector<std::jthread> threads_; ///< last: they end before what they use
+};
+
+} // namespace tessera::codec
