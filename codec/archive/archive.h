@@ -100,7 +100,7 @@ volume::Field readField(const Archive& archive, int parameter, int component, in
 /// The same for the slices of the brick layers [layer, end).
 volume::Field readLayers(const Archive& archive, int parameter, int component, int time, int layer, int end);
 
-/// Computes every checksum and decodes every brick at every level, on all cores. Throws Cancelled.
+/// Computes every checksum and decodes every brick at every level, on all cores. Throws Cancelled, ReadError.
 VerifyReport verifyArchive(const Archive& archive, const Progress& progress = {});
 
 } // namespace tessera::codec

@@ -17,8 +17,8 @@ void damaged(const std::string& path, std::uint64_t offset, const std::string& w
 }
 
 FilePart checkedPart(const FileBytes& file, const Block& block, const std::string& path, const char* what) {
-    std::optional<FilePart> part = wholePart(file, block);
-    if (!part) damaged(path, block.offset, damageOf(file, what));
+    std::optional<FilePart> part = wholePart(file, block, path);
+    if (!part) damaged(path, block.offset, std::string(what) + " is damaged (checksum)");
     return std::move(*part);
 }
 
@@ -85,6 +85,7 @@ Archive::Archive(const std::string& path, const RemoteOptions& remote) {
     impl.bytes->readAhead(ahead);
     impl.metadata =
         parseMetadata(checkedPart(*impl.bytes, header.metadata, path, "the metadata").bytes(), header.features, path);
+    impl.metadata.info.remote = isRemote(path);
     impl.channels = impl.metadata.info.channels();
     impl.components = componentCount(impl.metadata.info);
     const std::uint64_t bricks = checkedBrickCount(impl.metadata.grid, path);

@@ -19,11 +19,13 @@ struct Verifier {
         if (report.damage.size() < 100) report.damage.push_back(what);
     }
 
-    /// Runs `body`; if it throws Error, reports it and returns false.
+    /// Runs `body`; if it throws Error, reports it and returns false. Throws ReadError.
     template <class Body> bool guarded(const std::string& what, Body&& body) {
         try {
             body();
             return true;
+        } catch (const ReadError&) {
+            throw; // not read, so not known to be damaged
         } catch (const Error& error) {
             note(what + ": " + error.place() + ": " + error.reason());
             return false;

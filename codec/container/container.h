@@ -47,10 +47,8 @@ struct Block {
 };
 
 /// The bytes of a block. If their checksum is wrong and they came from a cache, they are fetched once more. Nothing if
-/// it is wrong then. Throws Error when the file cannot be read.
-std::optional<FilePart> wholePart(const FileBytes& file, const Block& block);
-/// What to say of a part with a wrong checksum, e.g. "the metadata": damaged, or the file has changed.
-std::string damageOf(const FileBytes& file, const std::string& what);
+/// it is wrong then. Throws ReadError naming `path` when the file cannot be read or has been replaced.
+std::optional<FilePart> wholePart(const FileBytes& file, const Block& block, const std::string& path);
 
 struct Header {
     std::uint32_t version = kFormatVersion;

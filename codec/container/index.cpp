@@ -172,8 +172,8 @@ std::vector<IndexPage> readPages(const FileBytes& bytes, const Header& header, c
     Header upTo = header;
     pageBytes = 0;
     for (Block at = header.index;;) {
-        const std::optional<FilePart> read = wholePart(bytes, at);
-        if (!read) throw Error(damageOf(bytes, "the index"), file, "index");
+        const std::optional<FilePart> read = wholePart(bytes, at, file);
+        require(read.has_value(), "the index is damaged (checksum)", file);
         const auto part = read->bytes();
         upTo.index = at; // a page may only refer to bytes before it
         Bytes records;

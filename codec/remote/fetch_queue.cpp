@@ -1,7 +1,6 @@
 #include "codec/remote/fetch_queue.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tessera::codec {
 
@@ -57,15 +56,16 @@ Reply FetchQueue::readPatiently(FileRange range, std::unique_ptr<Connection>& co
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();
     std::chrono::duration<double> pause(0.1);
-    for (;;) {
+    for (int tries = 1;; ++tries) {
         try {
             if (!connection) connection = connect_();
             return connection->read(range, stop);
         } catch (const PassingError& error) {
             connection.reset();
             if (Clock::now() - begin + pause > patience_)
-                throw Error(error.reason() + "; tried for " + std::to_string(std::lround(patience_.count())) + " s",
-                            error.file());
+                throw ReadError(error.reason() + "; tried " + std::to_string(tries) + " times", error.file());
+        } catch (const Error& error) {
+            throw ReadError(error.reason(), error.file());
         }
         std::mutex own;
         std::unique_lock lock(own);

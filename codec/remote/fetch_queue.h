@@ -26,8 +26,8 @@ public:
     FetchQueue(const FetchQueue&) = delete;
     FetchQueue& operator=(const FetchQueue&) = delete;
 
-    /// The bytes of ranges, requested at the same time as far as connections suffice. Throws the first Error of any
-    /// when all have ended. Thread-safe.
+    /// The bytes of ranges, requested at the same time as far as connections suffice. Throws the first ReadError of
+    /// any when all have ended. Thread-safe.
     std::vector<Reply> fetch(std::span<const FileRange> ranges);
 
 private:

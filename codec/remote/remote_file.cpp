@@ -62,7 +62,8 @@ template <class Take> void RemoteFile::fetch(const Blocks& blocks, Take&& take) 
     for (std::size_t r = 0; r < ranges.size(); ++r) {
         note(replies[r]);
         if (replies[r].bytes.size() != ranges[r].length)
-            throw Error("the file on the server is shorter than it was when it was opened: open it again", address_);
+            throw ReadError("the file on the server is shorter than it was when it was opened: open it again",
+                            address_);
         for (std::uint64_t at = 0; at < ranges[r].length; at += kBlockBytes) {
             const std::uint64_t block = (ranges[r].offset + at) / kBlockBytes;
             take(block, std::span(replies[r].bytes).subspan(at, blockBytes(block)));

@@ -18,7 +18,7 @@ namespace tessera::codec {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 using Runs = std::vector<BlockRun>;
 
@@ -66,7 +66,7 @@ TEST(Addresses, ThatCannotBeOpenedAreRefused) {
     EXPECT_THAT(refusal("sftp://-oX@host/a"), HasSubstr("no valid host"));
     const std::string said = refusal("https://me:secret@host/a.tsr");
     EXPECT_THAT(said, HasSubstr("~/.netrc"));
-    EXPECT_THAT(said, testing::Not(HasSubstr("secret"))); // neither shown nor logged
+    EXPECT_THAT(said, ::testing::Not(HasSubstr("secret"))); // neither shown nor logged
 }
 
 TEST(Addresses, AreTakenForArchives) {
@@ -79,9 +79,9 @@ TEST(Addresses, AreTakenForArchives) {
     EXPECT_FALSE(namesArchive("run.vti"));
 }
 
-class BlockCacheTest : public testing::Test {
+class BlockCacheTest : public ::testing::Test {
 protected:
-    const std::string folder = testing::TempDir() + "tessera_blocks_" + std::to_string(::getpid());
+    const std::string folder = ::testing::TempDir() + "tessera_blocks_" + std::to_string(::getpid());
     void SetUp() override { fs::create_directories(folder); }
     void TearDown() override { fs::remove_all(folder); }
 

@@ -65,16 +65,9 @@ sent "all" $((big - 1200000)) $((big * 105 / 100))
 check "all again" 0 "$tessera" verify $at/big.tsr
 sent "all again" 160 1000
 
-forget
-draw() { "$tessera" render "$1" --view volume --size 200x150 -o "$2" > /dev/null 2> err; }
-draw $at/big.tsr remote.png
-status=$?
-[ $status = 3 ] && grep -q OpenGL err || {
-    [ $status = 0 ] || die "render"
-    sent "a small picture" 10000 $((big / 10))
-    draw served/big.tsr local.png || die "render, local"
-    python3 - <<'PY' || fail "another picture"
-import struct
+alike() { # two PNGs have the same pixels; the sessions in them may differ
+    python3 - "$@" <<'PY'
+import struct, sys
 def pixels(name):
     data, at, found = open(name, "rb").read(), 8, b""
     while at < len(data):
@@ -82,13 +75,23 @@ def pixels(name):
         found += data[at + 8:at + 8 + length] if kind == b"IDAT" else b""
         at += 12 + length
     return found
-assert pixels("local.png") == pixels("remote.png") != b""
+sys.exit(not (pixels(sys.argv[1]) == pixels(sys.argv[2]) != b""))
 PY
+}
+forget
+draw() { "$tessera" render "$1" --view volume --size 200x150 --set /render/engine=gl -o "$2" > /dev/null 2> err; }
+draw $at/big.tsr remote.png
+status=$?
+[ $status = 3 ] && grep -q OpenGL err || {
+    [ $status = 0 ] || die "render"
+    sent "a small picture" 10000 $((big / 7)) # every second sample along each axis
+    draw served/big.tsr local.png || die "render, local"
+    alike local.png remote.png || fail "another picture"
     # A session that names the address, saved by a picture and opened again.
     check "session of the picture" 0 "$tessera" info remote.png --json
     say "\"$at/big.tsr\"" out.txt
-    check "drawn from the session" 0 "$tessera" render remote.png --view volume --size 200x150 -o again.png
-    cmp remote.png again.png || fail "the session draws another picture"
+    draw remote.png again.png || die "render the session"
+    alike remote.png again.png || fail "the session draws another picture"
 }
 
 # The cache: damage is noticed and mended, and the limit holds.
@@ -132,11 +135,11 @@ way cut=2
 check "cut off" 0 "$tessera" verify $at/cell.tsr
 way busy=1000
 check "busy for long" 2 "$tessera" info $at/cell.tsr --remote.patience 0.5
-say "$at/cell.tsr: the server cannot answer now (HTTP 503); tried for" err.txt
+say "$at/cell.tsr: the server cannot answer now (HTTP 503); tried [2-9] times" err.txt
 [ "$(wc -l < err.txt)" = 1 ] || fail "not one line"
 way busy=0
 check "nobody there" 2 "$tessera" info http://127.0.0.1:1/a.tsr --remote.patience 0.2
-say "127.0.0.1:1/a.tsr: .*tried for" err.txt
+say "127.0.0.1:1/a.tsr: .*tried [2-9] times" err.txt
 forget
 check "no such file" 2 "$tessera" info $at/gone.tsr
 say "$at/gone.tsr: no such file (HTTP 404)" err.txt
@@ -161,15 +164,16 @@ say "opened by itself" err.txt
 
 # A file that is replaced while it is read: seen to be another one, not said to be damaged.
 forget
-way delay=0.3
+"$tessera" generate fuel-cell -o new.tsr --size 19x21x20 --times 3 > /dev/null 2>&1
+way delay=1
 "$tessera" verify $at/cell.tsr > out.txt 2> err.txt &
 reader=$!
-sleep 0.5
-"$tessera" generate fuel-cell -o new.tsr --size 19x21x20 --times 3 > /dev/null 2>&1
+sleep 1.5 # the headers are read, the rest is asked for
 mv new.tsr served/cell.tsr
 wait $reader
 [ $? = 2 ] || fail "read from a file that was replaced"
-say "changed since it was opened" err.txt
+say "cell.tsr: the file has changed since it was opened" err.txt
+[ "$(wc -l < err.txt)" = 1 ] || fail "not one line"
 way delay=0
 same "info of the new one" cell.tsr info FILE
 
@@ -198,4 +202,50 @@ say 'run "ssh -p 2022 me@cluster" in a terminal and compare the fingerprint' err
 check "not let in" 2 env FAKE_SSH_SAYS="me@cluster: Permission denied (publickey)." PATH="$work/bin:$PATH" "$tessera" info $ssh_at/cell.tsr
 say "ssh-add" err.txt
 
+# sftp by ssh itself, where sshd is installed (or named), by a name of its configuration.
+sshd=${TESSERA_SSHD:-$(PATH=$PATH:/usr/sbin command -v sshd)}
+if [ -z "$sshd" ]; then
+    echo "not tried: sftp by ssh itself, since no sshd is installed"
+    finish
+fi
+for key in host mine; do ssh-keygen -q -t ed25519 -N "" -f $key || die "ssh-keygen"; done
+free=$(python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
+cat > sshd.conf <<CONF
+ListenAddress 127.0.0.1:$free
+HostKey $work/host
+AuthorizedKeysFile $work/mine.pub
+StrictModes no
+UsePAM no
+PidFile none
+PermitRootLogin yes
+Subsystem sftp internal-sftp
+CONF
+cat > ssh.conf <<CONF
+Host somewhere
+    HostName 127.0.0.1
+    Port $free
+    User $(id -un)
+    IdentityFile $work/mine
+    IdentitiesOnly yes
+    UserKnownHostsFile $work/known
+    GlobalKnownHostsFile none
+CONF
+printf '#!/bin/sh\nexec %s -F "%s" "$@"\n' "$(command -v ssh)" "$work/ssh.conf" > bin/ssh
+echo "sftp by ssh itself, with $sshd"
+: > sshd.log
+"$sshd" -D -e -f sshd.conf 2> sshd.log &
+trap 'kill $server $!; rm -rf "$work"' EXIT
+for ((i = 0; i < 50; ++i)); do grep -q "Server listening" sshd.log && break; sleep 0.1; done
+rm -rf cache
+check "unknown host" 2 fake "$tessera" info sftp://somewhere$work/served/cell.tsr
+say 'run "ssh somewhere" in a terminal' err.txt
+echo "[127.0.0.1]:$free $(cat host.pub)" > known
+check "info by ssh" 0 fake "$tessera" info sftp://somewhere$work/served/cell.tsr
+cmp local.txt out.txt || fail "info by ssh differs"
+check "verify by ssh" 0 fake "$tessera" verify sftp://somewhere$work/served/big.tsr
+check "no such file" 2 fake "$tessera" info sftp://somewhere$work/served/gone.tsr
+say "no such file" err.txt
+rm mine
+check "not let in" 2 fake "$tessera" info sftp://somewhere$work/served/cell.tsr
+say "ssh-add" err.txt
 finish

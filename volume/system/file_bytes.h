@@ -1,5 +1,7 @@
 #pragma once
 
+#include "volume/base/error.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -8,6 +10,12 @@
 #include <vector>
 
 namespace tessera {
+
+/// A file cannot be read now, which says nothing of its contents: a network fails, or the file has been replaced.
+class ReadError : public Error {
+public:
+    using Error::Error;
+};
 
 /// A range of a file.
 struct FileRange {
@@ -34,11 +42,11 @@ class FileBytes {
 public:
     virtual ~FileBytes() = default;
     virtual std::uint64_t size() const = 0;
-    /// The bytes of a range that lies inside the file. Throws Error when they cannot be read.
+    /// The bytes of a range that lies inside the file. Throws ReadError.
     virtual FilePart part(FileRange range) const = 0;
     /// The same, not from a cache: for bytes that turned out to be damaged. Nothing if there is no cache.
     virtual std::optional<FilePart> freshPart(FileRange) const { return std::nullopt; }
-    /// Reads ranges ahead, together, for calls of part() that follow. Throws Error.
+    /// Reads ranges ahead, together, for calls of part() that follow. Throws ReadError.
     virtual void readAhead(std::span<const FileRange>) const {}
     /// True if the file is known to have been replaced or appended to since it was opened, without asking again.
     virtual bool hasChanged() const { return false; }
