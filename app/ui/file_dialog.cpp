@@ -212,6 +212,8 @@ void FileDialog::drawPreview(float height) {
     if (const std::vector<std::string> paths = filesNamed(); paths.empty()) {
         ImGui::TextDisabled("Choose a file to see its contents.");
         ImGui::TextDisabled("Ctrl+click for several.");
+    } else if (codec::isRemote(paths.front())) {
+        ImGui::TextDisabled("An archive on another machine, which is asked when you open it.");
     } else if (const FilePreview seen = preview(paths.back()); seen.text.empty()) {
         ImGui::TextDisabled("Reading the header...");
     } else {
@@ -248,7 +250,7 @@ void FileDialog::drawName(std::optional<Answer>& answer, bool& open) {
     }
     bool refused = false;
     if (mode_ == FileMode::Open && preview)
-        if (const std::vector<std::string> paths = filesNamed(); paths.size() == 1)
+        if (const std::vector<std::string> paths = filesNamed(); paths.size() == 1 && !codec::isRemote(paths.front()))
             refused = preview(paths.front()).failed;
     if (!refused && problem_ == kRefused) problem_.clear(); // the options entered meanwhile have fixed it
     ImGui::SameLine();

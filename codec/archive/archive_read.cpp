@@ -115,7 +115,7 @@ std::shared_ptr<const BandDecoder> Archive::Impl::decoder(const FrameRecord& fra
 /// Asks another machine for the mask, the model and the first segments of a brick at once. Coarse levels of a frame lie
 /// together: where they are small, they are asked for as a whole, as other bricks need theirs soon.
 void Archive::Impl::fetchBrick(const FrameRecord& frame, std::size_t brick, int segments) const {
-    constexpr std::uint64_t kWhole = std::uint64_t(1) << 18;
+    constexpr std::uint64_t kWhole = std::uint64_t(1) << 20;
     std::vector<FileRange> ranges;
     const auto add = [&](const auto& part) { ranges.push_back({part.offset, part.length}); };
     add(index.models[std::size_t(frame.model)]);

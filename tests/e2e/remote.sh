@@ -65,17 +65,36 @@ sent "all" $((big - 1200000)) $((big * 105 / 100))
 check "all again" 0 "$tessera" verify $at/big.tsr
 sent "all again" 160 1000
 
-alike() { # two PNGs have the same pixels; the sessions in them may differ
+alike() { # two PNGs of 8 bits a channel; two runs may draw the last passes in another order, a few pixels differ by one
     python3 - "$@" <<'PY'
-import struct, sys
+import struct, sys, zlib
 def pixels(name):
     data, at, found = open(name, "rb").read(), 8, b""
     while at < len(data):
         length, kind = struct.unpack(">I4s", data[at:at + 8])
+        if kind == b"IHDR":
+            width, height, depth, color = struct.unpack(">IIBB", data[at + 8:at + 18])
         found += data[at + 8:at + 8 + length] if kind == b"IDAT" else b""
         at += 12 + length
-    return found
-sys.exit(not (pixels(sys.argv[1]) == pixels(sys.argv[2]) != b""))
+    assert depth == 8
+    step = {2: 3, 6: 4}[color]
+    raw, row, rows = zlib.decompress(found), bytearray(width * step), []
+    for y in range(height):
+        begin = y * (width * step + 1)
+        kind, above, row = raw[begin], row, bytearray(raw[begin + 1:begin + 1 + width * step])
+        for x in range(len(row)):
+            a, b = row[x - step] if x >= step else 0, above[x]
+            c = above[x - step] if x >= step else 0
+            p = a + b - c
+            paeth = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+            row[x] = (row[x] + (0, a, b, (a + b) // 2, paeth)[kind]) % 256
+        rows.append(row)
+    return rows
+one, two = (pixels(name) for name in sys.argv[1:])
+apart = [abs(a - b) for r, s in zip(one, two, strict=True) for a, b in zip(r, s, strict=True)]
+seen = len({bytes(row) for row in one})
+print("pictures: mean difference", sum(apart) / len(apart), "largest", max(apart))
+sys.exit(seen < 20 or sum(apart) / len(apart) > 0.1)
 PY
 }
 forget
