@@ -2,6 +2,7 @@
 #include "app/data/format.h"
 #include "app/data/import_options.h"
 #include "codec/archive/archive.h"
+#include "codec/remote/remote_file.h"
 
 #include <cstdio>
 #include <memory>
@@ -30,6 +31,7 @@ struct VerifyRequest {
 
 void run(const VerifyRequest& request) {
     const auto& [path, remote, json] = request;
+    codec::forgetRemote(path, remote); // the bytes there are checked, not those that were read before
     const codec::Archive archive(path, remote);
     const codec::VerifyReport report = codec::verifyArchive(archive, terminalProgress("verify"));
     // A crash may damage one of the two headers; the data are intact then.

@@ -52,6 +52,11 @@ std::string BlockCache::pathOf(std::uint64_t block) const {
     return files_ + "/" + std::to_string(block);
 }
 
+void BlockCache::clear() {
+    std::error_code ignored;
+    fs::remove_all(files_, ignored);
+}
+
 bool BlockCache::has(std::uint64_t block, std::size_t bytes) const {
     struct stat state {};
     return ::stat(pathOf(block).c_str(), &state) == 0 && state.st_size == static_cast<off_t>(bytes);

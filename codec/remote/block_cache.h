@@ -27,6 +27,8 @@ public:
     bool has(std::uint64_t block, std::size_t bytes) const;
     /// Fills `bytes`, the whole block; false if there is none of exactly this size.
     bool read(std::uint64_t block, std::span<std::byte> bytes) const;
+    /// Removes all blocks of this file.
+    void clear();
     void write(std::uint64_t block, std::span<const std::byte> bytes);
 
 private:

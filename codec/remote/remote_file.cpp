@@ -28,7 +28,6 @@ RemoteFile::RemoteFile(const std::string& address, const RemoteOptions& options)
     size_ = reply.fileBytes;
     state_ = reply.state;
     head_ = std::move(reply.bytes);
-    received_ = head_.size();
     char name[40];
     std::snprintf(name, sizeof name, "%016llx-%llx", static_cast<unsigned long long>(checksum(head_)),
                   static_cast<unsigned long long>(size_));
@@ -48,7 +47,6 @@ RemoteFile::Blocks RemoteFile::blocksOf(FileRange range) const {
 }
 
 void RemoteFile::note(const Reply& reply) const {
-    received_ += reply.bytes.size();
     if (reply.fileBytes != size_ || reply.state != state_) changed_ = true;
 }
 
@@ -144,6 +142,10 @@ std::optional<FilePart> RemoteFile::freshPart(FileRange range) const {
         copyBlock(range, block, bytes, out);
     });
     return FilePart(std::move(out));
+}
+
+void forgetRemote(const std::string& path, const RemoteOptions& options) {
+    if (isRemote(path)) RemoteFile(path, options).forget();
 }
 
 std::unique_ptr<FileBytes> openBytes(const std::string& path, const RemoteOptions& options) {

@@ -30,8 +30,8 @@ public:
     std::optional<FilePart> freshPart(FileRange range) const override;
     void readAhead(std::span<const FileRange> ranges) const override;
     bool hasChanged() const override { return changed_; }
-    /// Bytes of the file received so far, the headers included.
-    std::uint64_t received() const { return received_; }
+    /// Removes what the cache holds of it.
+    void forget() { cache_->clear(); }
 
 private:
     using Blocks = std::vector<std::uint64_t>;
@@ -52,13 +52,16 @@ private:
     std::string state_;
     std::vector<std::byte> head_;
     mutable std::atomic<bool> changed_ = false;
-    mutable std::atomic<std::uint64_t> received_ = 0;
     mutable std::unique_ptr<BlockCache> cache_;
     mutable std::mutex mutex_;
     mutable std::condition_variable released_;
     mutable std::set<std::uint64_t> underway_; ///< blocks that a thread fetches
     mutable FetchQueue queue_;                 ///< last: its threads end first
 };
+
+/// Removes what the cache holds of an archive on another machine, so that all of it is read from there again; does
+/// nothing for other files. Throws Error.
+void forgetRemote(const std::string& path, const RemoteOptions& options);
 
 /// The bytes of a file by path or address. Throws Error.
 std::unique_ptr<FileBytes> openBytes(const std::string& path, const RemoteOptions& options);

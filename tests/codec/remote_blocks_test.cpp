@@ -118,6 +118,10 @@ TEST_F(BlockCacheTest, KeepsBlocksForTheNextRunAndOtherPrograms) {
     EXPECT_FALSE(second.has(3, 1000));
     second.write(3, block(8));
     EXPECT_TRUE(holds(first, 3, 8));
+    other.write(3, block(9));
+    second.clear();
+    EXPECT_FALSE(holds(first, 3, 8));
+    EXPECT_TRUE(holds(other, 3, 9));
 }
 
 TEST_F(BlockCacheTest, RemovesWhatWasUsedLeastRecently) {
