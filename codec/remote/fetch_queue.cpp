@@ -4,12 +4,40 @@
 
 namespace tessera::codec {
 
-FetchQueue::FetchQueue(Connect connect, int connections, std::chrono::duration<double> patience)
+namespace {
+
+std::stop_source& ofAllRequests() {
+    static std::stop_source source;
+    return source;
+}
+
+} // namespace
+
+void endRequests() {
+    ofAllRequests().request_stop();
+}
+
+std::stop_token endOfRequests() {
+    return ofAllRequests().get_token();
+}
+
+FetchQueue::FetchQueue(Connect connect, int connections, std::chrono::duration<double> patience,
+                       const std::stop_token& ending)
     : connect_(std::move(connect)), connections_(static_cast<std::size_t>(std::max(connections, 1))),
-      patience_(patience) {}
+      patience_(patience), ending_(ending, [this] { end(); }) {}
 
 FetchQueue::~FetchQueue() {
-    for (std::jthread& thread : threads_) thread.request_stop(); // all of them, before the first is waited for
+    end(); // all threads, before the first is waited for
+}
+
+void FetchQueue::end() {
+    std::vector<std::stop_source> stops;
+    {
+        const std::lock_guard lock(mutex_);
+        ended_ = true;
+        for (std::jthread& thread : threads_) stops.push_back(thread.get_stop_source());
+    }
+    for (std::stop_source& stop : stops) stop.request_stop();
 }
 
 std::vector<Reply> FetchQueue::fetch(std::span<const FileRange> ranges) {
@@ -17,6 +45,7 @@ std::vector<Reply> FetchQueue::fetch(std::span<const FileRange> ranges) {
     call.replies.resize(ranges.size());
     call.left = ranges.size();
     std::unique_lock lock(mutex_);
+    if (ended_) throw Cancelled();
     for (std::size_t i = 0; i < ranges.size(); ++i) jobs_.push_back({ranges[i], &call, i});
     while (idle_ < jobs_.size() && threads_.size() < connections_) {
         threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
@@ -57,13 +86,15 @@ Reply FetchQueue::readPatiently(FileRange range, std::unique_ptr<Connection>& co
     const auto begin = Clock::now();
     std::chrono::duration<double> pause(0.1);
     for (int tries = 1;; ++tries) {
+        if (stop.stop_requested()) throw Cancelled();
         try {
             if (!connection) connection = connect_();
             return connection->read(range, stop);
         } catch (const PassingError& error) {
             connection.reset();
             if (Clock::now() - begin + pause > patience_)
-                throw ReadError(error.reason() + "; tried " + std::to_string(tries) + " times", error.file());
+                throw ReadError(error.reason() + (tries > 1 ? "; tried " + std::to_string(tries) + " times" : ""),
+                                error.file());
         } catch (const Error& error) {
             throw ReadError(error.reason(), error.file());
         }
@@ -71,7 +102,6 @@ Reply FetchQueue::readPatiently(FileRange range, std::unique_ptr<Connection>& co
         std::unique_lock lock(own);
         std::condition_variable_any pausing;
         pausing.wait_for(lock, stop, pause, [] { return false; });
-        if (stop.stop_requested()) throw Cancelled();
         pause *= 2;
     }
 }

@@ -109,5 +109,36 @@ TEST(FetchQueue, WhatIsRefusedIsNotTriedAgain) {
     EXPECT_EQ(server.asked, 2) << "the other range was read";
 }
 
+// A program that quits waits for nobody.
+TEST(FetchQueue, EndsWhatIsUnderwayAndWaits) {
+    struct Silent final : Connection {
+        Reply read(FileRange, const std::stop_token& stop) override {
+            while (!stop.stop_requested()) std::this_thread::sleep_for(1ms);
+            throw Cancelled();
+        }
+    };
+    std::stop_source ending;
+    FetchQueue queue([] { return std::make_unique<Silent>(); }, 2, 60s, ending.get_token());
+    std::atomic<int> cancelled = 0;
+    {
+        std::vector<std::jthread> callers;
+        for (int i = 0; i < 4; ++i) // two are asked for, two wait
+            callers.emplace_back([&] {
+                const FileRange range{0, 1};
+                try {
+                    (void)queue.fetch({&range, 1});
+                } catch (const Cancelled&) {
+                    ++cancelled;
+                }
+            });
+        std::this_thread::sleep_for(50ms);
+        EXPECT_EQ(cancelled, 0);
+        ending.request_stop();
+    }
+    EXPECT_EQ(cancelled, 4);
+    const FileRange range{0, 1};
+    EXPECT_THROW((void)queue.fetch({&range, 1}), Cancelled);
+}
+
 } // namespace
 } // namespace tessera::codec
