@@ -11,6 +11,7 @@ packages=(
     libimgui-dev libstb-dev libfreetype-dev libglfw3-dev libepoxy-dev libegl-dev # the window
     libgl1-mesa-dri libegl1 libgl1 libglx-mesa0                      # GL without a GPU
     libcairo2-dev                                                    # figures as PDF
+    libcurl4-openssl-dev                                             # archives on web servers
     fonts-roboto-unhinted fonts-font-awesome                         # text and icons
     libvtk9-dev libtiff-dev zlib1g-dev                               # tessera-import: readers of foreign formats
 )
@@ -29,7 +30,7 @@ esac
 if ! command -v apt-get >/dev/null; then
     echo "setup: no apt-get here. What the build needs has these names on Fedora (not tried):" >&2
     echo "    gcc-c++ cmake ninja-build pkgconf glm-devel json-devel cli11-devel tbb-devel libzstd-devel xz-devel" >&2
-    echo "    xxhash-devel libpng-devel muParser-devel imgui-devel stb-devel freetype-devel cairo-devel glfw-devel libepoxy-devel" >&2
+    echo "    xxhash-devel libpng-devel libcurl-devel muParser-devel imgui-devel stb-devel freetype-devel cairo-devel glfw-devel libepoxy-devel" >&2
     echo "    mesa-libEGL-devel mesa-dri-drivers google-roboto-fonts fontawesome4-fonts vtk-devel libtiff-devel" >&2
     echo "    zlib-devel; for tests: gtest-devel gmock-devel clang-tools-extra xorg-x11-server-Xvfb xdotool; for the Python" >&2
     echo "    package: pybind11-devel python3-devel python3-numpy python3-xarray" >&2

@@ -8,6 +8,7 @@
 #include "codec/archive/archive.h"
 #include "codec/container/exactness.h"
 #include "codec/pack/error_bound.h"
+#include "codec/remote/address.h"
 #include "vis/image/image_io.h"
 #include "volume/import/find_parts.h"
 
@@ -282,11 +283,12 @@ struct InfoRequest {
     std::vector<std::string> paths;
     volume::ImportOptions import;
     volume::MergeOptions merging;
+    codec::RemoteOptions remote;
     bool json = false, bricks = false, merge = false;
 };
 
 void describeArchive(const InfoRequest& request) {
-    const codec::Archive archive(request.paths[0]);
+    const codec::Archive archive(request.paths[0], request.remote);
     std::vector<MergeLayout> layouts;
     if (request.merge) layouts = mergeLayouts(archive, request.merging, terminalProgress("info"));
     if (request.json) {
@@ -304,7 +306,7 @@ void describeArchive(const InfoRequest& request) {
 void describe(const InfoRequest& request) {
     const std::vector<std::string>& paths = request.paths;
     const bool asJson = request.json;
-    if (paths.size() == 1 && hasEnding(paths[0], ".tsr")) {
+    if (paths.size() == 1 && codec::namesArchive(paths[0])) {
         describeArchive(request);
     } else if (request.bricks || request.merge) {
         throw Error("only archives (.tsr) have bricks", paths[0]);
@@ -337,6 +339,7 @@ void addInfoCommand(CLI::App& app) {
         "Of an archive, list how its bricks could be merged into larger ones, and the bytes these would take");
     addDescribed(*command, request->merging, "merge.");
     addImportOptions(*command, request->import);
+    addRemoteOptions(*command, request->remote);
     command->callback([request] { describe(*request); });
 }
 

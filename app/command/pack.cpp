@@ -7,6 +7,7 @@
 #include "app/user_files/import_memory.h"
 #include "codec/container/exactness.h"
 #include "codec/pack/unpack.h"
+#include "codec/remote/address.h"
 
 #include <algorithm>
 #include <cmath>
@@ -69,7 +70,7 @@ struct PackInput {
 };
 
 PackInput open(const PackRequest& request, const Progress& progress) {
-    if (request.inputs.size() == 1 && hasEnding(request.inputs[0], ".tsr")) {
+    if (request.inputs.size() == 1 && codec::namesArchive(request.inputs[0])) {
         const auto archive = std::make_shared<const codec::Archive>(request.inputs[0]);
         const bool asGrid = latticeOf(request) != codec::StoredLattice::BCC || archive->metadata().alternating;
         const bool asStored =
@@ -248,7 +249,7 @@ void addConvertCommand(CLI::App& app) {
     command->add_flag("--progress-json", request->progressJson, "Print progress and summary as JSON lines");
     addDescribed(*command, request->options);
     command->callback([request, command] {
-        if (!hasEnding(request->inputs[0], ".tsr")) throw Error("not an archive (.tsr)", request->inputs[0]);
+        if (!codec::namesArchive(request->inputs[0])) throw Error("not an archive (.tsr)", request->inputs[0]);
         const CLI::Option& preset = *command->get_option("--preset");
         request->keepsLattice = command->count("--lattice") == 0 &&
                                 (preset.count() == 0 || !codec::PackOptions::presetHasLattice(preset.results().back()));

@@ -6,6 +6,7 @@
 #include "app/history/parameter_path.h"
 #include "app/user_files/own_functions.h"
 #include "app/user_files/state_dir.h"
+#include "codec/remote/address.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -149,6 +150,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options) {
         ->take_all();
     addTransferOption(command, options.transfer);
     addImportOptions(command, options.import);
+    addRemoteOptions(command, options.remote);
 }
 
 Opened openForPicture(const PictureOptions& options, const Progress& progress) {
@@ -156,8 +158,9 @@ Opened openForPicture(const PictureOptions& options, const Progress& progress) {
     request.paths = options.inputs;
     request.layout = options.layout;
     if (!(options.import == volume::ImportOptions{})) request.import = options.import;
-    if (!request.paths.empty() && request.layout.empty() && !std::filesystem::exists(request.paths[0]) &&
-        request.paths[0].find('.') == std::string::npos) {
+    if (!(options.remote == codec::RemoteOptions{})) request.remote = options.remote;
+    if (!request.paths.empty() && request.layout.empty() && !codec::isRemote(request.paths[0]) &&
+        !std::filesystem::exists(request.paths[0]) && request.paths[0].find('.') == std::string::npos) {
         request.layout = request.paths[0];          // the name of a layout
         request.paths.erase(request.paths.begin()); // the remaining paths are data
     }

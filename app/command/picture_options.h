@@ -22,6 +22,7 @@ struct PictureOptions {
     std::vector<std::string> settings; ///< "/json/pointer=value"
     std::vector<std::string> transfer; ///< "NAME" or "PARAMETER=NAME" of the library
     volume::ImportOptions import;
+    codec::RemoteOptions remote;
 };
 
 /// The option --layout, whose help names the layouts that ship; `layout` must outlive the parsing.

@@ -21,6 +21,7 @@ Sources openInput(const StatsRequest& request, const Progress& progress) {
     DataRef data = dataNamed(request.inputs, request.import, progress.part(0, 0.2));
     data.lattice = PictureLattice::Grid; // nothing is drawn, so no resampling for pictures
     data.derived = request.derived;
+    data.remote = request.remote;
     std::vector<std::string> messages;
     Sources sources = openSources(data, messages, progress.part(0.2, 1));
     checkDerived(request.derived, volume::underived(sources.numbers)->info());
@@ -102,6 +103,7 @@ void addStatsCommand(CLI::App& app) {
     addDescribed(*command, request->options);
     addDeriveOption(*command, request->derived);
     addImportOptions(*command, request->import);
+    addRemoteOptions(*command, request->remote);
     command->callback([request] { run(*request); });
 }
 

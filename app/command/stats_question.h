@@ -72,6 +72,7 @@ struct StatsRequest {
     StatsOptions options;
     std::vector<volume::DerivedParameter> derived;
     volume::ImportOptions import;
+    codec::RemoteOptions remote;
 };
 
 /// The request with names resolved to indices of the data set.

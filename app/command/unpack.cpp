@@ -2,6 +2,7 @@
 #include "app/command/command.h"
 #include "app/command/derive_option.h"
 #include "app/data/format.h"
+#include "app/data/import_options.h"
 #include "volume/export/export.h"
 #include "volume/resample/hyperplane.h"
 
@@ -21,6 +22,7 @@ struct UnpackRequest {
     std::vector<volume::DerivedParameter> derived;
     int level = 0;
     volume::TimeFilter timeFilter = volume::TimeFilter::Cubic;
+    codec::RemoteOptions remote;
 };
 
 /// `values`: the samples are computed ones, so the scaling of the source does not apply.
@@ -86,7 +88,7 @@ volume::Dataset planeDataset(const std::shared_ptr<const codec::Archive>& archiv
 }
 
 void run(const UnpackRequest& request) {
-    const auto archive = std::make_shared<const codec::Archive>(request.input);
+    const auto archive = std::make_shared<const codec::Archive>(request.input, request.remote);
     const Progress progress = terminalProgress("unpack");
     const bool derives = !request.derived.empty();
     const volume::Dataset dataset = request.plane.empty()
@@ -104,7 +106,7 @@ void run(const UnpackRequest& request) {
 void addUnpackCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("unpack", "Write an archive as a regular grid: .raw, .vti, .pvd or .nrrd");
     const auto request = std::make_shared<UnpackRequest>();
-    command->add_option("IN", request->input, "Archive (.tsr)")->required();
+    command->add_option("IN", request->input, "Archive (.tsr), also by its address on another machine")->required();
     command->add_option("-o,--output", request->output, "File to write; its ending chooses the format")->required();
     command
         ->add_option("-p,--parameters", request->parameters,
@@ -121,6 +123,7 @@ void addUnpackCommand(CLI::App& app) {
         ->delimiter(',')
         ->expected(5);
     addDeriveOption(*command, request->derived);
+    addRemoteOptions(*command, request->remote);
     command->get_option("--derive")->excludes("--plane");
     command
         ->add_option_function<std::string>(

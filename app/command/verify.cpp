@@ -1,6 +1,8 @@
 #include "app/command/command.h"
 #include "app/data/format.h"
+#include "app/data/import_options.h"
 #include "codec/archive/archive.h"
+#include "codec/remote/remote_file.h"
 
 #include <cstdio>
 #include <memory>
@@ -21,8 +23,16 @@ std::string verdictOf(const codec::VerifyReport& report) {
            " cannot be read, the rest can; " + places;
 }
 
-void run(const std::string& path, bool json) {
-    const codec::Archive archive(path);
+struct VerifyRequest {
+    std::string path;
+    codec::RemoteOptions remote;
+    bool json = false;
+};
+
+void run(const VerifyRequest& request) {
+    const auto& [path, remote, json] = request;
+    codec::forgetRemote(path, remote); // the bytes there are checked, not those that were read before
+    const codec::Archive archive(path, remote);
     const codec::VerifyReport report = codec::verifyArchive(archive, terminalProgress("verify"));
     // A crash may damage one of the two headers; the data are intact then.
     const bool whole = report.damaged == (report.damagedHeader ? 1 : 0);
@@ -53,11 +63,11 @@ void addVerifyCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("verify", "Check every byte of an archive and decode every brick");
     command->footer("The exit status is 0 if the archive is intact or only one of its two header copies is damaged (a "
                     "crash can leave it so; nothing is lost), and 2 for any other damage.");
-    const auto path = std::make_shared<std::string>();
-    const auto json = std::make_shared<bool>(false);
-    command->add_option("IN", *path, "Archive (.tsr)")->required();
-    command->add_flag("--json", *json, "Print the result as JSON");
-    command->callback([path, json] { run(*path, *json); });
+    const auto request = std::make_shared<VerifyRequest>();
+    command->add_option("IN", request->path, "Archive (.tsr), also by its address on another machine")->required();
+    command->add_flag("--json", request->json, "Print the result as JSON");
+    addRemoteOptions(*command, request->remote);
+    command->callback([request] { run(*request); });
 }
 
 } // namespace tessera::app

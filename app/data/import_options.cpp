@@ -1,5 +1,6 @@
 #include "app/data/import_options.h"
 
+#include "app/described/describe_cli.h"
 #include "volume/base/error.h"
 #include "volume/import/find_parts.h"
 
@@ -74,6 +75,10 @@ std::vector<std::string> importArguments(const volume::ImportOptions& options) {
     add("--times", times);
     add("--parameters", parameters);
     return out;
+}
+
+void addRemoteOptions(CLI::App& command, codec::RemoteOptions& options) {
+    addDescribed(command, options, "remote.");
 }
 
 void addImportOptions(CLI::App& command, volume::ImportOptions& options) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/remote/remote_options.h"
 #include "volume/import/import.h"
 
 #include <CLI/CLI.hpp>
@@ -12,6 +13,9 @@ namespace tessera::app {
 /// Adds the options of every command that opens foreign files: --grid, --raw, --absent, --no-auto-absent, --rename,
 /// --unit, --length-unit, --times, --parameters. `options` must outlive the parsing.
 void addImportOptions(CLI::App& command, volume::ImportOptions& options);
+
+/// Adds the options of every command that opens archives: --remote.cache and so on. `options` must outlive the parsing.
+void addRemoteOptions(CLI::App& command, codec::RemoteOptions& options);
 
 /// What `tessera info DATAFILE` prints: dims, spacing, parameters with type and unit, times, bytes, notes.
 std::string describePreview(const volume::ImportPreview& preview);

@@ -5,6 +5,7 @@
 #include "app/session/shown_scene.h"
 #include "app/user_files/import_memory.h"
 
+#include "codec/remote/address.h"
 #include "vis/image/image_io.h"
 #include "volume/base/error.h"
 #include "volume/field/quantities.h"
@@ -40,6 +41,7 @@ bool endsWith(const std::string& path, std::string_view suffix) {
 enum class Kind { Session, Picture, Data };
 
 Kind kindOf(const std::string& path) {
+    if (codec::isRemote(path)) return Kind::Data;
     if (endsWith(path, ".png")) return Kind::Picture;
     if (!endsWith(path, ".json")) return Kind::Data;
     if (endsWith(path, ".tessera.json")) return Kind::Session;
@@ -84,6 +86,7 @@ Opened openDocument(SessionDocument document, const std::string& folder, const O
     }
     DataRef data = found.data;
     if (request.import) data.import = *request.import;
+    if (request.remote) data.remote = *request.remote;
     return openWith(std::move(opened), data, progress);
 }
 
@@ -124,7 +127,11 @@ DataRef dataOf(const std::vector<std::string>& paths, const volume::ImportOption
     data.import = options;
     for (const std::string& path : paths) {
         std::error_code problem;
-        if (!fs::exists(path, problem)) throw Error("no such file", path);
+        if (codec::isRemote(path)) {
+            if (paths.size() > 1) throw Error("an archive on another machine is opened by itself", path);
+        } else if (!fs::exists(path, problem)) {
+            throw Error("no such file", path);
+        }
         data.files.push_back(describeFile(path));
     }
     return data;
@@ -319,7 +326,7 @@ Opened open(const OpenRequest& request, const Progress& progress) {
     if (request.paths.size() == 1) {
         const std::string& path = request.paths[0];
         std::error_code problem;
-        if (!fs::exists(path, problem)) throw Error("no such file", path);
+        if (!codec::isRemote(path) && !fs::exists(path, problem)) throw Error("no such file", path);
         const Kind kind = kindOf(path);
         if (kind != Kind::Data) {
             SessionDocument document =
@@ -336,10 +343,11 @@ Opened open(const OpenRequest& request, const Progress& progress) {
                 // A session's data shown in another layout.
                 const ResolvedData found = resolveData(document.session.data, folder);
                 if (!found.missing.empty()) throw Error("data file is missing", found.missing[0].wanted.path, path);
-                OpenRequest inner{{}, request.layout, found.data, request.import, {}};
+                OpenRequest inner{{}, request.layout, found.data, request.import, {}, request.remote};
                 return open(inner, progress);
             }
-            OpenRequest inner{{}, path, request.data, request.import, request.lattice}; // a layout without data
+            OpenRequest inner{
+                {}, path, request.data, request.import, request.lattice, request.remote}; // a layout without data
             return open(inner, progress);
         }
     }
@@ -365,6 +373,7 @@ Opened open(const OpenRequest& request, const Progress& progress) {
         data.model = "fuel-cell";
         if (request.lattice) data.lattice = *request.lattice;
     }
+    if (request.remote) data.remote = *request.remote;
     if (layout && data.derived.empty()) data.derived = layout->session.data.derived;
     Sources sources = openSources(data, opened.messages, progress);
     opened.source = std::move(sources.pictures);

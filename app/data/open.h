@@ -14,11 +14,12 @@
 namespace tessera::app {
 
 struct OpenRequest {
-    std::vector<std::string> paths;              ///< one session or picture, or data files that belong together
-    std::string layout;                          ///< name or file of a layout; "" = none
-    std::optional<DataRef> data;                 ///< instead of paths, or instead of the data of a session
-    std::optional<volume::ImportOptions> import; ///< for data files
-    std::optional<PictureLattice> lattice = {};  ///< of pictures of data that are opened anew
+    std::vector<std::string> paths;                  ///< one session or picture, or data files that belong together
+    std::string layout;                              ///< name or file of a layout; "" = none
+    std::optional<DataRef> data;                     ///< instead of paths, or instead of the data of a session
+    std::optional<volume::ImportOptions> import;     ///< for data files
+    std::optional<PictureLattice> lattice = {};      ///< of pictures of data that are opened anew
+    std::optional<codec::RemoteOptions> remote = {}; ///< for archives on other machines
 };
 
 struct Opened {

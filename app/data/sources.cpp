@@ -4,6 +4,7 @@
 
 #include "codec/archive/archive.h"
 #include "codec/pack/unpack.h"
+#include "codec/remote/address.h"
 #include "volume/base/error.h"
 #include "volume/derived/other_source.h"
 #include "volume/field/quantities.h"
@@ -30,10 +31,7 @@ bool hasData(const DataRef& data) {
 }
 
 bool isArchive(const DataRef& data) {
-    if (data.files.size() != 1) return false;
-    std::string suffix = fs::path(data.files[0].absolutePath).extension().string();
-    for (char& c : suffix) c = char(std::tolower(static_cast<unsigned char>(c)));
-    return suffix == ".tsr";
+    return data.files.size() == 1 && codec::namesArchive(data.files[0].absolutePath);
 }
 
 namespace {
@@ -119,10 +117,10 @@ volume::OtherAxis axisOf(const volume::DatasetInfo& given, const DataRef& data, 
 
 Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
     const std::string& path = data.files[0].absolutePath;
-    auto source = codec::openArchive(path);
+    auto source = codec::openArchive(path, data.remote);
     const auto* archive = dynamic_cast<const codec::Archive*>(source.get());
     // D4* frames are shown on another lattice, so the file is asked how it was packed.
-    NumberOrigin origin = storedOrigin(archive ? archive->metadata() : codec::Archive(path).metadata());
+    NumberOrigin origin = storedOrigin(archive ? archive->metadata() : codec::Archive(path, data.remote).metadata());
     volume::OtherAxis axis = axisOf(source->info(), data, messages);
     if (axis.info.times != source->info().times || axis.info.timeName != source->info().timeName ||
         axis.info.timeUnit != source->info().timeUnit || !data.import.overTime.empty() || !data.import.units.empty())
@@ -187,6 +185,7 @@ Sources openOther(const DataRef& data, std::vector<std::string>& messages, const
     wanted.settings = data.other->settings;
     wanted.import = data.other->import;
     wanted.lattice = data.lattice;
+    wanted.remote = data.remote;
     for (DataFile& file : wanted.files)
         if (file.absolutePath.empty()) file = describeFile(file.path);
     return openWhole(wanted, messages, progress);

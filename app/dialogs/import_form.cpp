@@ -3,6 +3,7 @@
 #include "app/data/open.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "codec/remote/address.h"
 #include "volume/base/error.h"
 #include "volume/import/files/raw.h"
 #include "volume/import/import.h"
@@ -111,7 +112,7 @@ std::string summary(const std::string& path, const volume::ImportOptions& stated
         return "A picture that contains its session.";
     }
     if (name.ends_with(".json") && looksLikeSession(readText(path))) return sessionSummary(path);
-    if (name.ends_with(".tsr")) return archiveSummary(path, progress);
+    if (codec::namesArchive(path)) return archiveSummary(path, progress);
     return dataSummary(path, stated, progress);
 }
 

@@ -1,6 +1,7 @@
 #include "app/document/archive_growth.h"
 
 #include "codec/archive/archive.h"
+#include "codec/remote/address.h"
 #include "volume/base/error.h"
 #include "volume/derived/derived.h"
 #include "volume/derived/other_source.h"
@@ -50,6 +51,7 @@ struct Both {
 /// The second data set of a session as a DataRef of its own.
 DataRef otherData(const DataRef& data) {
     DataRef other;
+    other.remote = data.remote;
     if (data.other) {
         other.files = data.other->files;
         other.import = data.other->import;
@@ -57,9 +59,9 @@ DataRef otherData(const DataRef& data) {
     return other;
 }
 
-/// Path of the archive that holds the data; "" if they are not an archive.
+/// Path of the archive on this machine that holds the data; "" if there is none.
 std::string archivePath(const DataRef& data) {
-    return isArchive(data) ? data.files[0].absolutePath : "";
+    return isArchive(data) && !codec::isRemote(data.files[0].absolutePath) ? data.files[0].absolutePath : "";
 }
 
 /// The data shown, with archives read again and without derived parameters. Other files are not read again. Throws

@@ -28,7 +28,7 @@ DataFollower::DataFollower(Document& document, Jobs& jobs, Messages& messages, O
 
 bool showsDataFiles(const Document& document) {
     const auto& files = document.session().data.files;
-    return document.loaded() && !files.empty() && !(files.size() == 1 && files[0].absolutePath.ends_with(".tsr"));
+    return document.loaded() && !files.empty() && !isArchive(document.session().data);
 }
 
 OpenRequest DataFollower::withChoices(OpenRequest request) const {

@@ -3,6 +3,7 @@
 #include "app/history/edit_titles.h"
 #include "app/history/parameter_path.h"
 #include "app/session/session_json.h"
+#include "codec/remote/address.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -94,7 +95,7 @@ std::string settingText(const Json& value) {
 std::vector<std::string> variantPaths(const Session& session) {
     std::vector<std::string> paths = parameterPaths(session);
     const std::vector<DataFile>& files = session.data.files;
-    if (files.size() == 1 && files[0].absolutePath.ends_with(".tsr")) return paths;
+    if (files.size() == 1 && codec::namesArchive(files[0].absolutePath)) return paths;
     const Session whole = withOptionalData(session);
     for (const char* place : {kPackedPath, kTimeAxisPath})
         for (const std::string& path : parameterPathsBelow(whole, place)) paths.push_back(path);

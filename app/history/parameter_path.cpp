@@ -1,6 +1,7 @@
 #include "app/history/parameter_path.h"
 
 #include "app/session/session.h"
+#include "codec/remote/address.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -71,7 +72,8 @@ std::vector<std::string> parameterPaths(const Session& session) {
             continue;
         out.push_back(path);
     }
-    if (session.data.files.empty() || !session.data.files[0].path.ends_with(".tsr")) out.emplace_back("/data/lattice");
+    if (session.data.files.empty() || !codec::namesArchive(session.data.files[0].path))
+        out.emplace_back("/data/lattice");
     return out;
 }
 

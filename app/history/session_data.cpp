@@ -1,4 +1,5 @@
 #include "app/history/session_file.h"
+#include "codec/remote/address.h"
 #include "volume/import/files/named_files.h"
 
 #include <algorithm>
@@ -103,6 +104,10 @@ fs::path absolutePath(const std::string& path) {
 
 DataFile describeFile(const std::string& path) {
     DataFile file;
+    if (codec::isRemote(path)) { // its machine is asked only when it is opened
+        file.path = file.absolutePath = path;
+        return file;
+    }
     std::string plain = absolutePath(path).generic_string();
     if (plain.size() > 1 && plain.ends_with('/')) plain.pop_back(); // of a folder
     file.path = file.absolutePath = plain;
@@ -177,6 +182,11 @@ ResolvedData resolveData(const DataRef& data, const std::string& folder) {
     const auto in = [&base](const fs::path& path) { return path.empty() ? path : base / path; };
     const auto find = [&](DataFile& file) {
         const DataFile wanted = file;
+        for (const std::string& address : {wanted.absolutePath, wanted.path})
+            if (codec::isRemote(address)) {
+                file = describeFile(address);
+                return true;
+            }
         const fs::path candidates[] = {in(wanted.path), fs::path(wanted.absolutePath),
                                        in(fs::path(wanted.path).filename())};
         for (const fs::path& candidate : candidates) {

@@ -1,5 +1,6 @@
 #include "app/history/session_file.h"
 
+#include "codec/remote/address.h"
 #include "volume/base/error.h"
 #include "volume/system/part_file.h"
 
@@ -183,7 +184,12 @@ std::string printSession(const SessionDocument& document, const std::string& pat
     }
     for (DataFile* each : files) {
         DataFile& file = *each;
-        const fs::path where = absolutePath(file.absolutePath.empty() ? file.path : file.absolutePath);
+        const std::string& named = file.absolutePath.empty() ? file.path : file.absolutePath;
+        if (codec::isRemote(named)) {
+            file = describeFile(named);
+            continue;
+        }
+        const fs::path where = absolutePath(named);
         file.absolutePath = where.generic_string();
         const fs::path relative = where.lexically_relative(folder);
         file.path = relative.empty() ? where.generic_string() : relative.generic_string();

@@ -5,6 +5,7 @@
 #include "app/platform/input_queue.h"
 #include "app/ui/keys.h"
 #include "app/workbench/workbench.h"
+#include "codec/remote/fetch_queue.h"
 #include "vis/gl/requirements.h"
 #include "volume/base/error.h"
 
@@ -240,6 +241,7 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
             glfwSetWindowTitle(window.handle, title.c_str());
         }
     }
+    codec::endRequests(); // jobs that wait for another machine would hold the window open
     window.workbench = nullptr;
 }
 

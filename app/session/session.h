@@ -4,6 +4,7 @@
 #include "app/session/dock_tree.h"
 #include "app/session/view_state.h"
 #include "codec/pack/pack.h"
+#include "codec/remote/remote_options.h"
 #include "vis/scene/scene.h"
 #include "volume/derived/derived.h"
 #include "volume/field/dataset.h"
@@ -72,6 +73,7 @@ struct DataRef {
     std::string axis;                              ///< quantity that replaces the times, "" = none
     std::optional<volume::TimeAxis> timeAxis;      ///< shows a plane at all times instead of the data
     std::optional<OtherData> other = {};           ///< its parameters are added as "T (other)"
+    codec::RemoteOptions remote = {};              ///< how archives on other machines are read
     std::optional<DataFile> table = {};            ///< import.overTime when saved: found again as the files are
     bool operator==(const DataRef&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -106,6 +108,7 @@ struct DataRef {
                   .key = "other",
                   .unit = "",
                   .doc = "Another data set; its parameters are added as \"T (other)\", interpolated onto this grid"});
+        visit(self.remote, FieldInfo{.key = "remote", .unit = "", .doc = "How archives on other machines are read"});
         visit(self.table,
               FieldInfo{.key = "table", .unit = "", .doc = "File of quantities over time, as it was when saved"});
     }

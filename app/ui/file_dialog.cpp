@@ -4,6 +4,7 @@
 #include "app/ui/keys.h"
 #include "app/ui/theme.h"
 #include "app/ui/widgets.h"
+#include "codec/remote/address.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -83,6 +84,7 @@ void FileDialog::enter(const std::string& folder) {
 std::vector<std::string> FileDialog::filesNamed() const {
     std::vector<std::string> paths;
     for (const std::string& name : chosen_) paths.push_back((fs::path(folder_) / name).string());
+    if (paths.empty() && codec::isRemote(name_)) return {name_};
     std::error_code problem;
     if (const fs::path typed = fs::path(folder_) / name_;
         paths.empty() && !name_.empty() && fs::exists(typed, problem) && !fs::is_directory(typed, problem))
@@ -93,7 +95,8 @@ std::vector<std::string> FileDialog::filesNamed() const {
 void FileDialog::noticeChoice() {
     if (mode_ != FileMode::Open) return;
     std::vector<std::string> paths = filesNamed();
-    if (paths.empty() || paths == noticed_) return;
+    // Another machine is not asked for each letter of an address.
+    if (paths.empty() || paths == noticed_ || codec::isRemote(paths.front())) return;
     noticed_ = std::move(paths);
     problem_.clear();
     deciding_ = false;
@@ -122,7 +125,7 @@ void FileDialog::answerWith(std::optional<Answer>& answer) {
         }
         result.paths = {path};
     } else {
-        if (chosen_.empty() && !name_.empty()) {
+        if (chosen_.empty() && !name_.empty() && !codec::isRemote(name_)) {
             const fs::path typed = fs::path(folder_) / name_; // which is name_ alone if it is absolute
             std::error_code problem;
             if (fs::is_directory(typed, problem)) {
@@ -139,7 +142,7 @@ void FileDialog::answerWith(std::optional<Answer>& answer) {
         result.paths = filesNamed();
         if (result.paths.empty()) return;
         // Preview several files together: one alone may not show what they are.
-        if (preview && result.paths.size() == 1) {
+        if (preview && result.paths.size() == 1 && !codec::isRemote(result.paths.front())) {
             const FilePreview seen = preview(result.paths.front());
             deciding_ = seen.text.empty() && !seen.failed;
             if (seen.failed) problem_ = kRefused;
@@ -209,6 +212,8 @@ void FileDialog::drawPreview(float height) {
     if (const std::vector<std::string> paths = filesNamed(); paths.empty()) {
         ImGui::TextDisabled("Choose a file to see its contents.");
         ImGui::TextDisabled("Ctrl+click for several.");
+    } else if (codec::isRemote(paths.front())) {
+        ImGui::TextDisabled("An archive on another machine, which is asked when you open it.");
     } else if (const FilePreview seen = preview(paths.back()); seen.text.empty()) {
         ImGui::TextDisabled("Reading the header...");
     } else {
@@ -245,7 +250,7 @@ void FileDialog::drawName(std::optional<Answer>& answer, bool& open) {
     }
     bool refused = false;
     if (mode_ == FileMode::Open && preview)
-        if (const std::vector<std::string> paths = filesNamed(); paths.size() == 1)
+        if (const std::vector<std::string> paths = filesNamed(); paths.size() == 1 && !codec::isRemote(paths.front()))
             refused = preview(paths.front()).failed;
     if (!refused && problem_ == kRefused) problem_.clear(); // the options entered meanwhile have fixed it
     ImGui::SameLine();

@@ -2,6 +2,7 @@
 
 #include "app/described/describe_json.h"
 #include "codec/archive/archive.h"
+#include "codec/remote/address.h"
 #include "volume/base/error.h"
 #include "volume/field/labels.h"
 #include "volume/import/absent.h"
@@ -163,7 +164,7 @@ volume::ImportOptions withMemory(volume::ImportOptions options, const ImportMemo
 volume::ImportOptions recallOptions(const std::vector<std::string>& paths, const volume::ImportOptions& stated,
                                     const Progress& progress) {
     const ImportMemory memory = loadImportMemory();
-    if (paths.size() == 1 && paths[0].ends_with(".tsr")) {
+    if (paths.size() == 1 && codec::namesArchive(paths[0])) {
         volume::ImportOptions options = stated;
         if (!memory.labels.empty()) options.labels = withMemory(stated, memory, codec::Archive(paths[0]).info()).labels;
         return options;

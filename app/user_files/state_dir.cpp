@@ -1,11 +1,12 @@
 #include "app/user_files/state_dir.h"
 
 #include "app/history/session_file.h"
+#include "codec/remote/address.h"
 #include "volume/base/error.h"
+#include "volume/system/user_folder.h"
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <ctime>
 #include <fcntl.h>
 #include <filesystem>
@@ -39,18 +40,7 @@ int lockFile(const std::string& path) {
 } // namespace
 
 std::string stateFolder() {
-    const char* state = std::getenv("XDG_STATE_HOME");
-    const char* home = std::getenv("HOME");
-    fs::path folder;
-    if (state && *state == '/')
-        folder = fs::path(state) / "tessera";
-    else if (home && *home)
-        folder = fs::path(home) / ".local/state/tessera";
-    else
-        return {};
-    std::error_code problem;
-    fs::create_directories(folder, problem);
-    return fs::is_directory(folder, problem) ? folder.string() : std::string();
+    return userFolder("XDG_STATE_HOME", ".local/state");
 }
 
 std::vector<std::string> recentFiles(const std::string& folder) {
@@ -70,7 +60,7 @@ std::vector<std::string> recentFiles(const std::string& folder) {
 void addRecentFile(const std::string& folder, const std::string& path) {
     if (folder.empty()) return;
     std::error_code problem;
-    const std::string absolute = fs::absolute(path, problem).lexically_normal().string();
+    const std::string absolute = codec::isRemote(path) ? path : fs::absolute(path, problem).lexically_normal().string();
     std::vector<std::string> files = recentFiles(folder);
     std::erase(files, absolute);
     files.insert(files.begin(), absolute);

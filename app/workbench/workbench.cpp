@@ -3,6 +3,7 @@
 #include "app/user_files/import_memory.h"
 #include "app/workbench/status_bar.h"
 #include "app/workbench/workbench_commands.h"
+#include "codec/remote/address.h"
 #include "volume/base/background.h"
 #include "volume/base/error.h"
 #include "volume/import/over_time.h"
@@ -60,7 +61,8 @@ void Workbench::open(OpenRequest request) {
     for (const std::string& path : request.paths) {
         const bool pattern = path.find_first_of("*?[") != std::string::npos;
         std::error_code unknown;
-        if (!options_.headless && !pattern && !fs::exists(path, unknown)) return message(path + ": no such file", true);
+        if (!options_.headless && !pattern && !codec::isRemote(path) && !fs::exists(path, unknown))
+            return message(path + ": no such file", true);
     }
     if (document_.loaded() && !options_.headless && request.paths.size() == 1 && !request.import &&
         volume::isTimeTable(request.paths.front()))
@@ -134,7 +136,7 @@ void Workbench::install(Opened opened) {
     const std::vector<std::string> said = std::move(opened.messages);
     document_.install(std::move(opened));
     data_.reset();
-    if (const auto& files = session().data.files; !files.empty())
+    if (const auto& files = session().data.files; !files.empty() && !codec::isRemote(files.front().absolutePath))
         files_.startIn(fs::absolute(files.front().absolutePath).parent_path().string());
     for (const std::string& text : said) message(text);
     if (autosaver_) autosaver_->clear(document_);
@@ -306,7 +308,7 @@ void Workbench::drawRecentFiles() {
     if (recent.empty()) ImGui::TextDisabled("No recent files");
     for (const std::string& path : recent) {
         std::error_code problem;
-        if (ImGui::MenuItem(path.c_str(), nullptr, false, fs::exists(path, problem)))
+        if (ImGui::MenuItem(path.c_str(), nullptr, false, codec::isRemote(path) || fs::exists(path, problem)))
             chosen_ = [this, path] {
                 OpenRequest request;
                 request.paths = {path};

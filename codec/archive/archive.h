@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/container/metadata.h"
+#include "codec/remote/remote_options.h"
 #include "volume/base/error.h"
 #include "volume/base/progress.h"
 #include "volume/bricks/brick_source.h"
@@ -29,15 +30,17 @@ struct VerifyReport {
     bool damagedHeader = false; ///< one of the two copies, possibly by a crash during a commit; included in `damaged`
 };
 
-/// An open .tsr archive: a source of bricks that reads a memory-mapped file. Thread-safe. Nothing in the file is
-/// trusted: header, metadata and index are checked on opening, each segment of a brick before it is decoded.
+/// An open .tsr archive: a source of bricks that reads a memory-mapped file, or a file on another machine in ranges.
+/// Thread-safe. Nothing in the file is trusted: header, metadata and index are checked on opening, each segment of a
+/// brick before it is decoded.
 ///
 /// It has the contents of the file at the time of opening, even while the file grows; reopen it to see more.
 class Archive final : public volume::BrickSource {
 public:
     /// Throws Error with file, position and reason when the file is not an archive, has another version, or is
-    /// truncated or damaged.
-    explicit Archive(const std::string& path);
+    /// truncated or damaged, or when another machine does not answer. `path` may be an address
+    /// (codec/remote/address.h).
+    explicit Archive(const std::string& path, const RemoteOptions& remote = {});
     ~Archive() override;
 
     const volume::DatasetInfo& info() const override;
@@ -89,7 +92,7 @@ private:
 
 /// Opens an archive as a source of bricks; a D4* archive provides BCC fields (volume/sources/alternating_source.h).
 /// Throws Error.
-std::shared_ptr<const volume::BrickSource> openArchive(const std::string& path);
+std::shared_ptr<const volume::BrickSource> openArchive(const std::string& path, const RemoteOptions& remote = {});
 
 /// Decodes the stored samples of one component of a parameter at a time index in their type: bit for bit as packed if
 /// the archive is lossless. An odd frame of D4* lies on its shifted grid. Throws Error when the data is damaged.
@@ -97,7 +100,7 @@ volume::Field readField(const Archive& archive, int parameter, int component, in
 /// The same for the slices of the brick layers [layer, end).
 volume::Field readLayers(const Archive& archive, int parameter, int component, int time, int layer, int end);
 
-/// Computes every checksum and decodes every brick at every level, on all cores. Throws Cancelled.
+/// Computes every checksum and decodes every brick at every level, on all cores. Throws Cancelled, ReadError.
 VerifyReport verifyArchive(const Archive& archive, const Progress& progress = {});
 
 } // namespace tessera::codec

@@ -3,8 +3,9 @@
 #include "codec/archive/archive.h"
 #include "codec/archive/brick_access.h"
 #include "codec/container/index.h"
-#include "volume/system/mapped_file.h"
+#include "codec/remote/remote_file.h"
 
+#include <algorithm>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -19,7 +20,8 @@ namespace tessera::codec {
 
 struct Archive::Impl {
     std::string path;
-    MappedFile file;
+    RemoteOptions remote;
+    std::unique_ptr<FileBytes> bytes;
     HeaderState header;
     Metadata metadata;
     Index index;
@@ -33,8 +35,10 @@ struct Archive::Impl {
     mutable std::vector<std::unique_ptr<DecodedBrick>> idle;
     mutable std::mutex idleMutex;
 
-    explicit Impl(const std::string& name) : path(name), file(name) {
-        header = parseHeaders(file.bytes(), file.bytes().size(), path);
+    Impl(const std::string& name, const RemoteOptions& options)
+        : path(name), remote(options), bytes(openBytes(name, options)) {
+        const std::uint64_t size = bytes->size();
+        header = parseHeaders(bytes->part({0, std::min(size, kFirstChunk)}).bytes(), size, path);
     }
 
     const FrameRecord& frame(int parameter, int component, int time) const {
@@ -71,13 +75,14 @@ struct Archive::Impl {
         return frame(channel.parameter, channel.component, key.time);
     }
     const volume::Parameter& parameter(int number) const { return metadata.info.parameters[std::size_t(number)]; }
-    std::span<const std::byte> segment(const Segment& segment) const;
+    FilePart segment(const Segment& segment) const;
     std::vector<std::uint8_t> flags(const FrameRecord& frame, std::size_t brick) const;
     /// The model of a frame; throws Error when it is damaged. Stepped frames have the one for frames without bands.
     Model model(const FrameRecord& frame) const;
     /// The steps of a frame with numbers of kind Stepped; throws Error when they are damaged.
     StepChoice steps(const FrameRecord& frame) const;
     std::shared_ptr<const BandDecoder> decoder(const FrameRecord& frame) const;
+    void fetchBrick(const FrameRecord& frame, std::size_t brick, int segments) const;
     void decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
                 std::span<const std::uint8_t> present, DecodedBrick& out) const;
     /// Converts a brick decoded at full resolution to stored numbers; undefined for absent samples.
@@ -121,8 +126,7 @@ private:
 /// Throws Error for damage at a byte offset of an archive.
 [[noreturn]] void damaged(const std::string& path, std::uint64_t offset, const std::string& what);
 
-/// A range of the bytes; throws Error when its checksum is not `sum`.
-std::span<const std::byte> checkedPart(std::span<const std::byte> bytes, std::uint64_t offset, std::uint64_t length,
-                                       std::uint64_t sum, const std::string& path, const char* what);
+/// The bytes of a block; throws Error when its checksum is wrong.
+FilePart checkedPart(const FileBytes& file, const Block& block, const std::string& path, const char* what);
 
 } // namespace tessera::codec

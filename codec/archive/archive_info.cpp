@@ -16,11 +16,10 @@ void damaged(const std::string& path, std::uint64_t offset, const std::string& w
     throw Error(what, path, "byte " + std::to_string(offset));
 }
 
-std::span<const std::byte> checkedPart(std::span<const std::byte> bytes, std::uint64_t offset, std::uint64_t length,
-                                       std::uint64_t sum, const std::string& path, const char* what) {
-    const auto part = bytes.subspan(offset, length);
-    if (checksum(part) != sum) damaged(path, offset, std::string(what) + " is damaged (checksum)");
-    return part;
+FilePart checkedPart(const FileBytes& file, const Block& block, const std::string& path, const char* what) {
+    std::optional<FilePart> part = wholePart(file, block, path);
+    if (!part) damaged(path, block.offset, std::string(what) + " is damaged (checksum)");
+    return std::move(*part);
 }
 
 namespace {
@@ -67,28 +66,30 @@ std::optional<volume::BrickChange> Archive::Impl::changeOf(int number, int compo
     return sum;
 }
 
-Archive::Archive(const std::string& path) {
+Archive::Archive(const std::string& path, const RemoteOptions& remote) {
     // The header of a growing file can name an end beyond the part that was mapped: try again.
     for (int attempt = 0; !impl_; ++attempt) {
         std::error_code failed;
         const std::uint64_t before = std::filesystem::file_size(path, failed);
         try {
-            impl_ = std::make_unique<Impl>(path);
+            impl_ = std::make_unique<Impl>(path, remote);
         } catch (const Error&) {
             constexpr int kAttempts = 8;
             if (failed || attempt == kAttempts || std::filesystem::file_size(path, failed) == before) throw;
         }
     }
     Impl& impl = *impl_;
-    const auto bytes = impl.file.bytes();
     const Header& header = impl.header.header;
-    const auto block = checkedPart(bytes, header.metadata.offset, header.metadata.length, header.metadata.checksum,
-                                   path, "the metadata");
-    impl.metadata = parseMetadata(block, header.features, path);
+    const FileRange ahead[] = {{header.metadata.offset, header.metadata.length},
+                               {header.index.offset, header.index.length}};
+    impl.bytes->readAhead(ahead);
+    impl.metadata =
+        parseMetadata(checkedPart(*impl.bytes, header.metadata, path, "the metadata").bytes(), header.features, path);
+    impl.metadata.info.remote = isRemote(path);
     impl.channels = impl.metadata.info.channels();
     impl.components = componentCount(impl.metadata.info);
     const std::uint64_t bricks = checkedBrickCount(impl.metadata.grid, path);
-    impl.index = readIndex(bytes, header, {impl.components, bricks, impl.metadata.grid}, path);
+    impl.index = readIndex(*impl.bytes, header, {impl.components, bricks, impl.metadata.grid}, path);
     impl.metadata.info.times = impl.index.times;
     // The numbers of times in metadata and index can differ in a growing archive.
     const auto fit = [](std::vector<volume::Quantity>& quantities, std::size_t times) {
@@ -142,8 +143,7 @@ int Archive::commits() const {
 }
 bool Archive::outdated() const {
     try {
-        const MappedFile now(impl_->path);
-        return parseHeaders(now.bytes(), now.bytes().size(), impl_->path).header != impl_->header.header;
+        return Impl(impl_->path, impl_->remote).header.header != impl_->header.header;
     } catch (const Error&) {
         return false; // removed or being replaced: the open archive remains valid
     }
@@ -230,8 +230,8 @@ std::uint64_t Archive::brickBytes(const volume::BrickKey& key) const {
     return impl_->bytesOf(impl_->storedFrame(key), impl_->metadata.grid.numberOf(key.index));
 }
 
-std::shared_ptr<const volume::BrickSource> openArchive(const std::string& path) {
-    auto archive = std::make_shared<const Archive>(path);
+std::shared_ptr<const volume::BrickSource> openArchive(const std::string& path, const RemoteOptions& remote) {
+    auto archive = std::make_shared<const Archive>(path, remote);
     if (archive->metadata().alternating) return volume::makeAlternatingSource(std::move(archive));
     return archive;
 }

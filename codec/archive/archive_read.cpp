@@ -40,8 +40,8 @@ void leaveOutInfinite(volume::BrickSamples& brick) {
 } // namespace
 
 /// The bytes of a segment; throws Error when their checksum is wrong.
-std::span<const std::byte> Archive::Impl::segment(const Segment& segment) const {
-    return checkedPart(file.bytes(), segment.offset, segment.length, segment.checksum, path, "a brick");
+FilePart Archive::Impl::segment(const Segment& segment) const {
+    return checkedPart(*bytes, {segment.offset, segment.length, segment.checksum}, path, "a brick");
 }
 
 /// Presence flags of a brick at full resolution; empty if all samples are present.
@@ -52,14 +52,15 @@ std::vector<std::uint8_t> Archive::Impl::flags(const FrameRecord& frame, std::si
     const std::size_t count = std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
     const std::uint64_t offset = record.segment.offset;
     if (record.present > count) damaged(path, offset, "a mask has more samples than its brick");
-    const auto bytes = segment(record.segment);
+    const FilePart part = segment(record.segment);
+    const auto stored = part.bytes();
     if (record.present == 0 || record.present == count) {
-        if (!bytes.empty()) damaged(path, offset, "a uniform mask has bytes");
+        if (!stored.empty()) damaged(path, offset, "a uniform mask has bytes");
         return record.present == 0 ? std::vector<std::uint8_t>(count, 0) : std::vector<std::uint8_t>();
     }
-    if (bytes.empty()) damaged(path, offset, "a mask is missing");
-    const auto mode = static_cast<std::uint8_t>(bytes[0]);
-    const auto body = bytes.subspan(1);
+    if (stored.empty()) damaged(path, offset, "a mask is missing");
+    const auto mode = static_cast<std::uint8_t>(stored[0]);
+    const auto body = stored.subspan(1);
     Bytes bits((count + 7) / 8);
     if (mode == 0 && body.size() == bits.size())
         std::copy(body.begin(), body.end(), bits.begin());
@@ -77,9 +78,9 @@ std::vector<std::uint8_t> Archive::Impl::flags(const FrameRecord& frame, std::si
 
 StepChoice Archive::Impl::steps(const FrameRecord& frame) const {
     const Block& record = index.models[std::size_t(frame.model)];
-    const auto bytes = checkedPart(file.bytes(), record.offset, record.length, record.checksum, path, "a model");
+    const FilePart part = checkedPart(*bytes, record, path, "a model");
     StepChoice parsed;
-    if (const DecodeStatus status = parseSteps(bytes, parsed); status != DecodeStatus::Ok)
+    if (const DecodeStatus status = parseSteps(part.bytes(), parsed); status != DecodeStatus::Ok)
         damaged(path, record.offset, std::string("steps cannot be read: ") + reason(status));
     return parsed;
 }
@@ -87,9 +88,9 @@ StepChoice Archive::Impl::steps(const FrameRecord& frame) const {
 Model Archive::Impl::model(const FrameRecord& frame) const {
     if (frame.numbers.kind == NumberKind::Stepped) return makeModel(Histogram(metadata.grid.levels, {}), 1);
     const Block& record = index.models[std::size_t(frame.model)];
-    const auto bytes = checkedPart(file.bytes(), record.offset, record.length, record.checksum, path, "a model");
+    const FilePart part = checkedPart(*bytes, record, path, "a model");
     Model parsed;
-    if (const DecodeStatus status = parseModel(bytes, metadata.grid.levels, parsed); status != DecodeStatus::Ok)
+    if (const DecodeStatus status = parseModel(part.bytes(), metadata.grid.levels, parsed); status != DecodeStatus::Ok)
         damaged(path, record.offset, std::string("a model cannot be read: ") + reason(status));
     if (parsed.contexts.byBand && (header.header.features & kBandContexts) == 0)
         damaged(path, record.offset, "a model has contexts that the archive does not declare");
@@ -111,11 +112,37 @@ std::shared_ptr<const BandDecoder> Archive::Impl::decoder(const FrameRecord& fra
     return decoders.front().second;
 }
 
+/// Asks another machine for the mask, the model and the first segments of a brick at once. Coarse levels of a frame lie
+/// together: where they are small, they are asked for as a whole, as other bricks need theirs soon.
+void Archive::Impl::fetchBrick(const FrameRecord& frame, std::size_t brick, int segments) const {
+    constexpr std::uint64_t kWhole = std::uint64_t(1) << 20;
+    std::vector<FileRange> ranges;
+    const auto add = [&](const auto& part) { ranges.push_back({part.offset, part.length}); };
+    add(index.models[std::size_t(frame.model)]);
+    if (frame.mask >= 0) {
+        const MaskRecord& mask = index.masks[std::size_t(frame.mask)];
+        mask.length <= kWhole ? add(mask) : add(mask.bricks[brick].segment);
+    }
+    for (int s = 0; s < segments; ++s) {
+        const auto first = frame.segments.begin() + std::ptrdiff_t(std::size_t(s) * bricks);
+        const Segment& last = first[std::ptrdiff_t(bricks) - 1];
+        const std::uint64_t level = last.offset + last.length - first->offset;
+        if (level <= kWhole)
+            ranges.push_back({first->offset, level});
+        else
+            add(first[std::ptrdiff_t(brick)]);
+    }
+    bytes->readAhead(ranges);
+}
+
 void Archive::Impl::decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
                            std::span<const std::uint8_t> present, DecodedBrick& out) const {
+    std::vector<FilePart> parts; // which the segments are views of
     std::vector<std::span<const std::byte>> segments;
-    for (int s = 0; s < format.levels - level; ++s)
-        segments.push_back(segment(frame.segments[std::size_t(s) * bricks + brick]));
+    for (int s = 0; s < format.levels - level; ++s) {
+        parts.push_back(segment(frame.segments[std::size_t(s) * bricks + brick]));
+        segments.push_back(parts.back().bytes());
+    }
     BrickFormat whole = format;
     if (format.isStepped()) whole.steps = steps(frame);
     const DecodeStatus status = decodeBrick(whole, segments, level, present, *decoder(frame), out);
@@ -138,6 +165,7 @@ volume::BrickSamples Archive::Impl::readComponent(int number, int component, con
     const std::size_t brick = metadata.grid.numberOf(key.index);
     const FrameRecord& record = holding(frame(number, component, key.time), brick);
     const BrickFormat format = brickFormat(metadata.grid, key.index, parameter(number).type, record);
+    fetchBrick(record, brick, metadata.grid.levels - key.level);
     const std::vector<std::uint8_t> fine = flags(record, brick);
     const PooledBrick decoded(*this);
     decode(record, format, brick, key.level, fine, *decoded);
@@ -218,6 +246,7 @@ volume::Field readLayers(const Archive& archive, int parameter, int component, i
         const FrameRecord& frame = impl.holding(shown, brick);
         const glm::ivec3 index = own.indexOf(number);
         const BrickFormat format = brickFormat(own, index, field.type, frame);
+        impl.fetchBrick(frame, brick, own.levels);
         const std::vector<std::uint8_t> fine = impl.flags(frame, brick);
         const PooledBrick decoded(impl);
         impl.decode(frame, format, brick, 0, fine, *decoded);

@@ -19,11 +19,13 @@ struct Verifier {
         if (report.damage.size() < 100) report.damage.push_back(what);
     }
 
-    /// Runs `body`; if it throws Error, reports it and returns false.
+    /// Runs `body`; if it throws Error, reports it and returns false. Throws ReadError.
     template <class Body> bool guarded(const std::string& what, Body&& body) {
         try {
             body();
             return true;
+        } catch (const ReadError&) {
+            throw; // not read, so not known to be damaged
         } catch (const Error& error) {
             note(what + ": " + error.place() + ": " + error.reason());
             return false;
@@ -43,6 +45,7 @@ struct Verifier {
     std::uint64_t brick(const FrameRecord& record, const volume::Parameter& parameter, std::size_t brick) {
         const glm::ivec3 at = impl.metadata.grid.indexOf(brick);
         const BrickFormat format = brickFormat(impl.metadata.grid, at, parameter.type, record);
+        impl.fetchBrick(record, brick, impl.metadata.grid.levels);
         const std::vector<std::uint8_t> fine = impl.flags(record, brick);
         const PooledBrick decoded(impl);
         std::uint64_t bytes = 0;
@@ -100,9 +103,7 @@ struct Verifier {
 
     void formerMetadata() {
         for (const Block& block : impl.index.retired) {
-            guarded("former metadata", [&] {
-                (void)checkedPart(impl.file.bytes(), block.offset, block.length, block.checksum, impl.path, "it");
-            });
+            guarded("former metadata", [&] { (void)checkedPart(*impl.bytes, block, impl.path, "it"); });
             report.bytes += block.length;
         }
     }

@@ -61,6 +61,16 @@ std::uint64_t checksum(std::span<const std::byte> bytes) {
     return XXH3_64bits(bytes.data(), bytes.size());
 }
 
+std::optional<FilePart> wholePart(const FileBytes& file, const Block& block, const std::string& path) {
+    const FileRange range{block.offset, block.length};
+    std::optional<FilePart> part = file.part(range);
+    if (checksum(part->bytes()) == block.checksum) return part;
+    part = file.freshPart(range);
+    if (part && checksum(part->bytes()) == block.checksum) return part;
+    if (file.hasChanged()) throw ReadError("the file has changed since it was opened: open it again", path);
+    return std::nullopt;
+}
+
 Bytes serialise(const Header& header) {
     ByteWriter out;
     for (const std::uint8_t byte : kMagic) out.put(byte);

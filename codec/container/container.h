@@ -1,10 +1,12 @@
 #pragma once
 
 #include "codec/bytes/entropy.h"
+#include "volume/system/file_bytes.h"
 
 #include <bit>
 #include <concepts>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -43,6 +45,10 @@ struct Block {
     std::uint64_t offset = 0, length = 0, checksum = 0;
     bool operator==(const Block&) const = default;
 };
+
+/// The bytes of a block. If their checksum is wrong and they came from a cache, they are fetched once more. Nothing if
+/// it is wrong then. Throws ReadError naming `path` when the file cannot be read or has been replaced.
+std::optional<FilePart> wholePart(const FileBytes& file, const Block& block, const std::string& path);
 
 struct Header {
     std::uint32_t version = kFormatVersion;

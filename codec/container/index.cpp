@@ -166,14 +166,15 @@ private:
 };
 
 /// Reads the pages from the last, which the header names, to the first; returned in file order.
-std::vector<IndexPage> readPages(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
+std::vector<IndexPage> readPages(const FileBytes& bytes, const Header& header, const IndexShape& shape,
                                  const std::string& file, std::vector<Block>& places, std::uint64_t& pageBytes) {
     std::vector<IndexPage> pages;
     Header upTo = header;
     pageBytes = 0;
     for (Block at = header.index;;) {
-        const auto part = bytes.subspan(at.offset, at.length);
-        require(checksum(part) == at.checksum, "the index is damaged (checksum)", file);
+        const std::optional<FilePart> read = wholePart(bytes, at, file);
+        require(read.has_value(), "the index is damaged (checksum)", file);
+        const auto part = read->bytes();
         upTo.index = at; // a page may only refer to bytes before it
         Bytes records;
         const bool compact = (header.features & kCompact) != 0;
@@ -321,8 +322,7 @@ Bytes serialise(const IndexPage& page, std::uint32_t features) {
     return out.bytes;
 }
 
-Index readIndex(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
-                const std::string& file) {
+Index readIndex(const FileBytes& bytes, const Header& header, const IndexShape& shape, const std::string& file) {
     Index index;
     std::vector<FrameRecord> frames;
     for (IndexPage& page : readPages(bytes, header, shape, file, index.pages, index.pageBytes)) {

@@ -99,7 +99,6 @@ Bytes serialise(const IndexPage& page, std::uint32_t features);
 
 /// Reads and checks the index that a header names. Throws Error naming `file` when a checksum or a length is wrong,
 /// frames are missing, or chunks, pages and metadata do not fill the file up to header.fileSize exactly, in any order.
-Index readIndex(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
-                const std::string& file);
+Index readIndex(const FileBytes& bytes, const Header& header, const IndexShape& shape, const std::string& file);
 
 } // namespace tessera::codec

@@ -115,5 +115,20 @@ TEST_F(FileDialogTest, OneFileIsLookedAtBeforeItIsOpened) {
     EXPECT_EQ(chosen.size(), 4u) << "told again when shown again";
 }
 
+// Another machine is not asked for a preview of each address that is typed.
+TEST_F(FileDialogTest, AnAddressIsOpenedAsItIsTyped) {
+    int asked = 0, noticed = 0;
+    dialog.preview = [&](const std::string&) { return ++asked, FilePreview{}; };
+    dialog.filesChosen = [&](const std::vector<std::string>& paths) { noticed += paths.empty() ? 0 : 1; };
+    const std::string address = "https://data.example.org/runs//run.tsr?key=1";
+    show(FileMode::Open);
+    type(address);
+    press(key::kEnter);
+    ASSERT_EQ(answers.size(), 1u);
+    EXPECT_EQ(answers[0].paths, std::vector<std::string>{address});
+    EXPECT_EQ(asked, 0);
+    EXPECT_EQ(noticed, 0);
+}
+
 } // namespace
 } // namespace tessera::app

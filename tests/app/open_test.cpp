@@ -337,6 +337,8 @@ TEST_F(OpenTest, RecentFilesAndAutosave) {
     addRecentFile(state, "/data/15;odd name.tsr");
     ASSERT_EQ(recentFiles(state).size(), 12u);
     EXPECT_EQ(recentFiles(state)[0], "/data/15;odd name.tsr");
+    addRecentFile(state, "https://host//a/../b.tsr");
+    EXPECT_EQ(recentFiles(state)[0], "https://host//a/../b.tsr") << "an address stays as it is";
 
     // Left by a run that is gone, and by one that still lives (holds its lock).
     std::ofstream(folder / "autosave-1.tessera.json") << "{}";

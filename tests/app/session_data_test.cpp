@@ -56,6 +56,31 @@ TEST_F(SessionDataTest, EveryFileOfASeriesIsCovered) {
     EXPECT_TRUE(resolve("two").missing.empty());
 }
 
+// The file may be moved anywhere: an address is the same from everywhere, and is not asked for what lies there.
+TEST_F(SessionDataTest, AddressesStayAsTheyAre) {
+    const std::string address = "sftp://me@no-such-host.invalid:2022/scratch/a//b/../run.tsr";
+    SessionDocument document;
+    document.session.data.files = {describeFile(address)};
+    document.session.data.other =
+        OtherData{.files = {describeFile(address)}, .model = {}, .settings = {}, .import = {}};
+    document.session.data.remote.cache = 77;
+    EXPECT_EQ(document.session.data.files[0].absolutePath, address);
+    saveSession(document, in("one/a.tessera.json"));
+    fs::rename(folder_ / "one", folder_ / "two");
+    ResolvedData found = resolve("two");
+    EXPECT_TRUE(found.missing.empty());
+    EXPECT_THAT(found.warnings, IsEmpty());
+    ASSERT_EQ(found.data.files.size(), 1u);
+    EXPECT_EQ(found.data.files[0].path, address);
+    EXPECT_EQ(found.data.files[0].absolutePath, address);
+    EXPECT_EQ(found.data.other->files[0].absolutePath, address);
+    EXPECT_EQ(found.data.remote.cache, 77);
+    EXPECT_EQ(found.data.files, document.session.data.files);
+    // Written by hand: only the path is there.
+    found.data.files[0].absolutePath.clear();
+    EXPECT_EQ(resolveData(found.data, in("two")).data.files[0].absolutePath, address);
+}
+
 TEST_F(SessionDataTest, TablesOverTimeAreFoundAgainAsFilesAre) {
     fs::create_directories(folder_ / "one/more");
     write("one/a.tsr", "12345"), write("one/b.tsr", "123");

@@ -27,6 +27,21 @@ TEST(JobQueue, TheMostUrgentRunsFirst) {
 }
 
 // Threads that load bricks go behind those of the window; those that compile what it waits for do not.
+TEST(JobQueue, GrowsToMoreThreads) {
+    std::atomic<int> together = 0;
+    JobQueue queue(1, JobThreads::Equal);
+    queue.grow(3);
+    queue.grow(2);
+    for (int i = 0; i < 3; ++i)
+        queue.add(0, [&](std::stop_token) {
+            ++together;
+            for (int wait = 0; wait < 2000 && together < 3; ++wait)
+                std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        });
+    for (int wait = 0; wait < 2000 && together < 3; ++wait) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_EQ(together, 3);
+}
+
 TEST(JobQueue, ThreadsInTheBackgroundGoBehind) {
     const int own = getpriority(PRIO_PROCESS, id_t(gettid()));
     if (own >= 10) GTEST_SKIP() << "all of it runs in the background already";

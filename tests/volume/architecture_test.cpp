@@ -209,6 +209,7 @@ TEST(Architecture, OutsideLibrariesStayInTheirRooms) {
                     EXPECT_FALSE(startsWithAny(include, kJson)) << file << " includes " << include;
                 }
                 EXPECT_FALSE(startsWithAny(include, kGui)) << file << " includes " << include;
+                EXPECT_FALSE(include.starts_with("curl/") && !file.starts_with("codec/remote/")) << file;
             }
 }
 

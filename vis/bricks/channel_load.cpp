@@ -2,6 +2,7 @@
 
 #include "volume/base/error.h"
 #include "volume/bricks/parts_bricks.h"
+#include "volume/system/file_bytes.h"
 
 #include <cmath>
 #include <glm/common.hpp>
@@ -110,6 +111,8 @@ void load(LoadExchange& exchange, const LoadRequest& request, LoadedTexels& out,
             const SharedBrick samples = exchange.bricks->get(brick);
             return share == OnePart::Share::All ? samples
                                                 : part->only(samples, *exchange.bricks->get(part->label(brick)));
+        } catch (const ReadError&) {
+            throw; // it is not damaged: what is drawn stays as it is
         } catch (const Error& error) {
             exchange.say(channel.name + ": a brick cannot be read and is not drawn: " + error.what());
             damaged = true;
@@ -147,6 +150,10 @@ void loadTexels(LoadExchange& exchange, const LoadRequest& request, std::stop_to
         load(exchange, request, out, stop);
     } catch (const Cancelled&) {
         return;
+    } catch (const ReadError& error) {
+        exchange.say(exchange.source->info().channel(request.key.channel).name +
+                     " is drawn coarser until the view changes, since a part cannot be read: " + error.what());
+        out.failed = true;
     } catch (const std::exception& error) {
         exchange.say(exchange.source->info().channel(request.key.channel).name + " cannot be shown: " + error.what());
         out.failed = true;

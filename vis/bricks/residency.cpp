@@ -35,6 +35,8 @@ void Residency::setSource(std::shared_ptr<const volume::BrickSource> source, Sam
     if (source) {
         exchange_ = std::make_shared<LoadExchange>();
         exchange_->source = source;
+        constexpr int kUnderway = 6; // bricks whose bytes are waited for
+        if (source->info().remote) jobs_.grow(std::max(options_.decodeThreads, kUnderway));
         exchange_->bricks = std::make_unique<volume::BrickCache>(source, options_.memoryBudget);
     }
     if (former && source && same.channels > 0 && same.times > 0 && source->grid() == former->source->grid()) {
@@ -52,14 +54,18 @@ void Residency::setBudgets(std::size_t texture, std::size_t memory) {
     channels_.setBudget(texture);
 }
 
-/// The finest level at which a channel fits into one texture.
+/// The finest level at which a channel fits into one texture. Of data on another machine that is more often a coarse
+/// one: bricks are read as finely as they are seen, a whole texture at full resolution.
 int Residency::textureLevel() const {
+    constexpr std::size_t kRemoteTexels = std::size_t(1) << 21;
     const volume::BrickGrid& grid = exchange_->source->grid();
+    const std::size_t dense =
+        exchange_->source->info().remote ? std::min(options_.denseTexels, kRemoteTexels) : options_.denseTexels;
     const std::size_t components = grid.lattice.kind == volume::LatticeKind::BCC ? 4 : 2; // with coverage
     const std::size_t texelBytes = components * (options_.exactTextures ? 4 : 2);
     for (int level = 0; level < grid.levels; ++level) {
         const glm::ivec3 size = levelTexels(grid, level) + 2 * kHalo;
-        if (std::max({size.x, size.y, size.z}) <= driver_.texture3DEdge && texelCount(size) <= options_.denseTexels &&
+        if (std::max({size.x, size.y, size.z}) <= driver_.texture3DEdge && texelCount(size) <= dense &&
             texelCount(size) * texelBytes <= driver_.textureBytes)
             return level;
     }

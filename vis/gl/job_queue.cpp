@@ -15,10 +15,14 @@ constexpr auto later = [](const auto& a, const auto& b) {
 
 } // namespace
 
-JobQueue::JobQueue(int count, JobThreads threads) {
-    for (int i = 0; i < std::max(count, 1); ++i)
-        threads_.emplace_back([this, threads](std::stop_token ending) {
-            if (threads == JobThreads::Background) workInBackground();
+JobQueue::JobQueue(int count, JobThreads threads) : priority_(threads) {
+    grow(std::max(count, 1));
+}
+
+void JobQueue::grow(int count) {
+    while (int(threads_.size()) < count)
+        threads_.emplace_back([this](std::stop_token ending) {
+            if (priority_ == JobThreads::Background) workInBackground();
             run(ending);
         });
 }

@@ -18,6 +18,8 @@ public:
     using Work = std::function<void(std::stop_token)>;
 
     JobQueue(int count, JobThreads threads);
+    /// Makes it at least so many threads; for work that waits more than it computes.
+    void grow(int count);
     ~JobQueue(); ///< requests running jobs to stop, drops queued ones and waits
 
     /// Smaller priorities run first, equal ones in the order of insertion.
@@ -42,6 +44,7 @@ private:
     std::size_t added_ = 0, finished_ = 0;
     int running_ = 0;
     std::stop_source stop_;
+    JobThreads priority_;
     std::vector<std::jthread> threads_;
 };
 

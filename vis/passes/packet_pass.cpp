@@ -42,6 +42,8 @@ bool Renderer::Impl::chooseEngine(ViewTarget& target, const RenderCall& call, Fr
     const bool possible = wanted && !call.plan.empty() && !options.countSamples;
     EngineUse& use = status.engine;
     if (possible) use.refusal = refusalOfPackets(target, call);
+    if (asked == Engine::Automatic && call.info().remote && use.refusal.empty())
+        use.refusal = "data on another machine as they come";
     target.byProcessor = use.byProcessor = possible && use.refusal.empty();
     if (use.byProcessor)
         use.instructions = packet::kInstructionSetNames[std::size_t(target.packets.renderer.instructions())];

@@ -68,6 +68,7 @@ struct DatasetInfo {
     std::string timeUnit = "s";       ///< of `times`, "" where there is none
     std::vector<Quantity> quantities; ///< over the times
     std::string provenance;           ///< where it came from, free text
+    bool remote = false;              ///< on another machine: reading a sample costs far more than decoding it
     bool operator==(const DatasetInfo&) const = default;
 
     /// Every channel: parameters in order, for vectors the components, then the magnitude.

@@ -2,6 +2,7 @@
 
 #include "app/described/describe_json.h"
 #include "app/ui/ticks.h"
+#include "codec/remote/address.h"
 
 #include <algorithm>
 
@@ -85,7 +86,7 @@ CompareOffers otherStyles(const Session& session) {
 /// How data that are not packed look when they are, lossless or with a bounded error.
 CompareOffers compressions(const Session& session) {
     const DataRef& data = session.data;
-    if (data.files.size() == 1 && data.files[0].absolutePath.ends_with(".tsr")) return {};
+    if (data.files.size() == 1 && codec::namesArchive(data.files[0].absolutePath)) return {};
     std::vector<CompareVariant> variants;
     if (data.packed) variants.push_back(changed("as computed", "/data/packed", "null"));
     const auto packed = [&](const char* name, const char* options) {
@@ -119,7 +120,7 @@ std::vector<CompareOffers> compareOffers(const Session& session, const volume::D
         technique(oneByOne("Another proxy geometry", "Every proxy geometry",
                            ofNames("/render/proxy", vis::kProxyNames, std::size_t(session.render.proxy)))));
     const DataRef& data = session.data;
-    if (data.files.size() != 1 || !data.files[0].absolutePath.ends_with(".tsr")) {
+    if (data.files.size() != 1 || !codec::namesArchive(data.files[0].absolutePath)) {
         const bool grid = data.lattice == PictureLattice::Grid;
         const char* name = grid ? "BCC" : "CC";
         groups.push_back(

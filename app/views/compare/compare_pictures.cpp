@@ -2,6 +2,7 @@
 
 #include "app/data/open.h"
 #include "codec/archive/archive.h"
+#include "codec/remote/address.h"
 #include "vis/transfer/transfer_function.h"
 #include "volume/base/error.h"
 #include "volume/bricks/source_at_time.h"
@@ -31,7 +32,7 @@ DataRef located(DataRef data, const DataRef& session) {
 std::string whyNot(const DataRef& wanted, const DataRef& session) {
     if (wanted.files.empty() || wanted.files != session.files) return {};
     if (wanted.settings != session.settings) return "only built-in models can have another size";
-    if (wanted.files.size() != 1 || !wanted.files[0].absolutePath.ends_with(".tsr")) return {};
+    if (wanted.files.size() != 1 || !codec::namesArchive(wanted.files[0].absolutePath)) return {};
     if (wanted.lattice != session.lattice)
         return "the lattice of an archive cannot be changed; open the data that it was packed from";
     if (wanted.packed != session.packed)

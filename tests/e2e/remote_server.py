@@ -1,0 +1,101 @@
+"""A web server for tests/e2e/remote.sh that answers ranges of the files of a folder: remote_server.py FOLDER PORT_FILE.
+It misbehaves as /set?NAME=VALUE tells it; /told says what it has sent, as "bytes requests", and forgets it."""
+import email.utils, http.server, os, sys, threading, time, urllib.parse
+
+folder, port_file = sys.argv[1:]
+lock = threading.Lock()
+told = {"bytes": 0, "requests": 0, "most": 0, "now": 0}
+# delay: seconds before each answer; busy: answers that are 503; cut: answers that end after half of their bytes;
+# ranges: 0 = whole files only; damage: answers whose first byte is wrong; password: "user:word", base 64
+ways = {"delay": 0.0, "busy": 0, "cut": 0, "ranges": 1, "damage": 0, "password": ""}
+
+
+def once(name):
+    with lock:
+        if ways[name] <= 0:
+            return False
+        ways[name] -= 1
+        return True
+
+
+class Handler(http.server.BaseHTTPRequestHandler):
+    protocol_version = "HTTP/1.1"
+
+    def log_message(self, *_):
+        pass
+
+    def say(self, status, body=b"", **headers):
+        self.send_response(status)
+        for name, value in headers.items():
+            self.send_header(name.replace("_", "-"), value)
+        self.send_header("Content-Length", str(len(body)))
+        self.end_headers()
+        self.wfile.write(body)
+
+    def do_GET(self):
+        where = urllib.parse.urlsplit(self.path)
+        if where.path == "/set":
+            ways.update({name: type(ways[name])(value) for name, value in urllib.parse.parse_qsl(where.query, True)})
+            return self.say(200)
+        if where.path == "/told":
+            with lock:
+                text = "%d %d %d\n" % (told["bytes"], told["requests"], told["most"])
+                told.update({"bytes": 0, "requests": 0, "most": 0})
+            return self.say(200, text.encode())
+        with lock:
+            told["requests"] += 1
+            told["now"] += 1
+            told["most"] = max(told["most"], told["now"])
+        try:
+            time.sleep(ways["delay"])
+            self.give(folder + urllib.parse.unquote(where.path))
+        finally:
+            with lock:
+                told["now"] -= 1
+
+    def give(self, path):
+        if once("busy"):
+            return self.say(503)
+        if path.endswith("/elsewhere.tsr"):
+            return self.say(302, Location="/big.tsr")
+        if ways["password"] and self.headers.get("Authorization") != "Basic " + ways["password"]:
+            return self.say(401, WWW_Authenticate='Basic realm="x"')
+        try:
+            with open(path, "rb") as file:
+                size, changed = os.fstat(file.fileno()).st_size, os.fstat(file.fileno()).st_mtime_ns
+                first, last = 0, size - 1
+                wanted = self.headers.get("Range") if ways["ranges"] else None
+                if wanted:
+                    first, last = (int(number) for number in wanted.removeprefix("bytes=").split("-"))
+                    if first >= size:
+                        return self.say(416, Content_Range="bytes */%d" % size)
+                    last = min(last, size - 1)
+                file.seek(first)
+                body = file.read(last + 1 - first)
+        except FileNotFoundError:
+            return self.say(404, b"nothing here")
+        if once("damage"):
+            body = bytes([body[0] ^ 255]) + body[1:]
+        self.send_response(206 if wanted else 200)
+        if wanted:
+            self.send_header("Content-Range", "bytes %d-%d/%d" % (first, last, size))
+        self.send_header("ETag", '"%x-%x"' % (size, changed))
+        self.send_header("Last-Modified", email.utils.formatdate(changed // 10**9, usegmt=True))
+        self.send_header("Content-Length", str(len(body)))
+        self.end_headers()
+        if once("cut"):
+            body = body[:len(body) // 2]
+            self.close_connection = True
+        with lock:
+            told["bytes"] += len(body)
+        try:
+            self.wfile.write(body)
+        except OSError:
+            self.close_connection = True
+
+
+server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+with open(port_file + ".new", "w") as file:
+    file.write(str(server.server_port))
+os.rename(port_file + ".new", port_file)
+server.serve_forever()

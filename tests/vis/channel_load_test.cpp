@@ -1,0 +1,65 @@
+#include "vis/bricks/channel_load.h"
+
+#include "tests/vis/function_source.h"
+#include "volume/base/error.h"
+#include "volume/system/file_bytes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <memory>
+#include <string>
+
+namespace tessera::vis {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// Waves of which no brick can be read.
+class Unread final : public FunctionSource {
+public:
+    explicit Unread(bool damaged)
+        : FunctionSource(volume::LatticeKind::CC, {20, 20, 20}, glm::dvec3(1),
+                         {{"v", [](glm::dvec3 p) { return 0.5 + 0.01 * p.x; }}}),
+          damaged_(damaged) {}
+    volume::BrickStats stats(const volume::BrickKey&) const override { return {0, 1, 1}; }
+    volume::BrickSamples read(const volume::BrickKey&) const override {
+        if (damaged_) throw Error("damaged", "a.tsr");
+        throw ReadError("no answer", "http://there/a.tsr");
+    }
+
+private:
+    bool damaged_;
+};
+
+struct Outcome {
+    LoadedTexels texels;
+    std::vector<std::string> messages;
+};
+
+Outcome outcomeOf(bool damaged) {
+    LoadExchange exchange;
+    exchange.source = std::make_shared<const Unread>(damaged);
+    exchange.bricks = std::make_unique<volume::BrickCache>(exchange.source, 1 << 20);
+    loadTexels(exchange, {.key = {}, .level = 0, .brick = glm::ivec3(0), .summary = nullptr, .encoding = {}}, {});
+    return {std::move(exchange.loaded.at(0)), exchange.messages};
+}
+
+TEST(ChannelLoad, ADamagedBrickIsDrawnAsAbsent) {
+    const Outcome outcome = outcomeOf(true);
+    EXPECT_FALSE(outcome.texels.failed);
+    EXPECT_TRUE(outcome.texels.damaged);
+    EXPECT_THAT(outcome.messages, ElementsAre(HasSubstr("a brick cannot be read and is not drawn: a.tsr: damaged")));
+}
+
+// A network that fails makes no holes: what is drawn stays.
+TEST(ChannelLoad, ABrickThatCannotBeReadNowStaysCoarser) {
+    const Outcome outcome = outcomeOf(false);
+    EXPECT_TRUE(outcome.texels.failed);
+    EXPECT_FALSE(outcome.texels.damaged);
+    EXPECT_THAT(outcome.messages, ElementsAre("v is drawn coarser until the view changes, since a part cannot be read: "
+                                              "http://there/a.tsr: no answer"));
+}
+
+} // namespace
+} // namespace tessera::vis

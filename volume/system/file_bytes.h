@@ -1,0 +1,55 @@
+#pragma once
+
+#include "volume/base/error.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace tessera {
+
+/// A file cannot be read now, which says nothing of its contents: a network fails, or the file has been replaced.
+class ReadError : public Error {
+public:
+    using Error::Error;
+};
+
+/// A range of a file.
+struct FileRange {
+    std::uint64_t offset = 0, length = 0;
+    bool operator==(const FileRange&) const = default;
+};
+
+/// Bytes of a file: a view of a mapping, or a copy of its own. The view lasts as long as this value and the file.
+class FilePart {
+public:
+    FilePart() = default;
+    explicit FilePart(std::span<const std::byte> mapped) : bytes_(mapped) {}
+    explicit FilePart(std::vector<std::byte> read)
+        : own_(std::make_shared<const std::vector<std::byte>>(std::move(read))), bytes_(*own_) {}
+    std::span<const std::byte> bytes() const { return bytes_; }
+
+private:
+    std::shared_ptr<const std::vector<std::byte>> own_;
+    std::span<const std::byte> bytes_;
+};
+
+/// The bytes of a file that is read in parts, on this machine or on another one. Thread-safe.
+class FileBytes {
+public:
+    virtual ~FileBytes() = default;
+    virtual std::uint64_t size() const = 0;
+    /// The bytes of a range that lies inside the file. Throws ReadError.
+    virtual FilePart part(FileRange range) const = 0;
+    /// The same, not from a cache: for bytes that turned out to be damaged. Nothing if there is no cache.
+    virtual std::optional<FilePart> freshPart(FileRange) const { return std::nullopt; }
+    /// Reads ranges ahead, together, for calls of part() that follow. Throws ReadError.
+    virtual void readAhead(std::span<const FileRange>) const {}
+    /// True if the file is known to have been replaced or appended to since it was opened, without asking again.
+    virtual bool hasChanged() const { return false; }
+};
+
+} // namespace tessera
