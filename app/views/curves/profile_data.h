@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/drawing/drawing.h"
 #include "app/session/session.h"
 #include "volume/base/progress.h"
 #include "volume/bricks/brick_source.h"
