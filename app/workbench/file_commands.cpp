@@ -97,7 +97,7 @@ std::vector<Command> fileCommands(Workbench& workbench) {
              .checked = [&workbench] { return workbench.session().data.other.has_value(); }},
             {.menu = "File",
              .name = "-Save picture...",
-             .help = "Save the window or one view as a PNG of any size, which contains the session",
+             .help = "Save the window, one view, or several as a figure: PNG, which contains the session, SVG or PDF",
              .words = "screenshot image png export figure print capture",
              .shortcut = {.key = key::kF12},
              .run = [&workbench] { workbench.pictureDialog().show(workbench.panes().current(workbench.session())); },
