@@ -147,6 +147,15 @@ PictureForm rememberedForm(const std::string& stateFolder) {
 
 } // namespace
 
+std::vector<std::string> panesForPictures(const Session& session) {
+    std::vector<std::string> panes = paneKeys(session);
+    std::ranges::stable_partition(panes, [&](const std::string& pane) {
+        const ViewTraits& traits = traitsOf(session.views.at(pane));
+        return traits.inSpace || traits.figure;
+    });
+    return panes;
+}
+
 PictureRequest PictureDialog::request() const {
     PictureRequest wanted = pictureRequest(*form_, several_ ? "" : pane_);
     if (!several_) return wanted;
@@ -172,7 +181,7 @@ void PictureDialog::drawWhat(const Session& session, const volume::DatasetInfo& 
         if (ImGui::Selectable(whole, !several_ && pane_.empty())) choose(false, "");
         if (ImGui::Selectable(several, several_)) choose(true, pane_);
         ImGui::Separator();
-        for (const std::string& pane : paneKeys(session))
+        for (const std::string& pane : panesForPictures(session))
             if (ImGui::Selectable(shownTitle(session, pane, info).c_str(), !several_ && pane == pane_))
                 choose(false, pane);
         ImGui::EndCombo();
@@ -185,7 +194,7 @@ void PictureDialog::drawPanels(const Session& session, const volume::DatasetInfo
     const WidgetContext widgets{nullptr, 0.3f};
     drawLabel(widgets, "Panels", "In the order in which they are chosen");
     if (ImGui::BeginChild("panels", {0, ImGui::GetFrameHeightWithSpacing() * 5}, true))
-        for (const std::string& pane : paneKeys(session)) {
+        for (const std::string& pane : panesForPictures(session)) {
             const auto at = std::find(panels_.begin(), panels_.end(), pane);
             bool chosen = at != panels_.end();
             const std::string letter = chosen ? panelLetter(int(at - panels_.begin())) + "   " : "";
@@ -197,7 +206,7 @@ void PictureDialog::drawPanels(const Session& session, const volume::DatasetInfo
         }
     ImGui::EndChild();
     drawLabel(widgets, "Columns", "Panels side by side; 0: as many as suit");
-    ImGui::SliderInt("##columns", &columns_, 0, std::max(1, int(panels_.size())),
+    ImGui::SliderInt("##columns", &columns_, 0, std::max(2, int(panels_.size())),
                      columns_ == 0 ? "as many as suit" : "%d");
 }
 

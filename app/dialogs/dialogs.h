@@ -46,6 +46,9 @@ private:
     std::vector<Recovery> recoveries_; ///< newest first
 };
 
+/// All panes, those that show data first.
+std::vector<std::string> panesForPictures(const Session& session);
+
 /// Asks what is to be saved as a picture, and in what form; the form chosen last is remembered.
 class PictureDialog {
 public:
