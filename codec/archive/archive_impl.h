@@ -95,7 +95,7 @@ struct Archive::Impl {
     volume::BrickStats statsOf(int parameter, int component, const volume::BrickKey& key) const;
     std::optional<volume::BrickChange> changeOf(int parameter, int component, const volume::BrickKey& key,
                                                 int toTime) const;
-    bool hasTallies() const { return (header.header.features & kBrickTallies) != 0; }
+    bool hasStatistics() const { return (header.header.features & kBrickStatistics) != 0; }
     bool hasNotes() const { return (header.header.features & kBrickNotes) != 0; }
 };
 

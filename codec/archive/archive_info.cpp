@@ -177,7 +177,7 @@ volume::BrickStats Archive::stats(const volume::BrickKey& key) const {
 
 std::optional<volume::BrickDistribution> Archive::distribution(const volume::BrickKey& key) const {
     const volume::Channel& channel = impl_->channelOf(key);
-    if (!impl_->hasTallies() || channel.magnitude) return std::nullopt;
+    if (!impl_->hasStatistics() || channel.magnitude) return std::nullopt;
     const std::size_t brick = impl_->metadata.grid.numberOf(key.index);
     const FrameRecord& frame = impl_->holding(impl_->frame(channel.parameter, channel.component, key.time), brick);
     const bool isFloat = frame.numbers.kind != NumberKind::Integer;

@@ -54,10 +54,10 @@ struct Verifier {
             const std::size_t s = std::size_t(format.levels - 1 - level);
             bytes += record.segments[s * impl.bricks + brick].length;
         }
-        if (!impl.hasTallies()) return bytes;
+        if (!impl.hasStatistics()) return bytes;
         const FrameBrick& noted = record.bricks[brick];
-        const TalliedBrick found = tallied(parameter.type, record.valueOffset, record.valueScale,
-                                           impl.numbersOf(record, parameter.type, *decoded), fine, true);
+        const BrickSummary found = summaryOf(parameter.type, record.valueOffset, record.valueScale,
+                                             impl.numbersOf(record, parameter.type, *decoded), fine, true);
         if (!agree(found, noted.min, noted.max, noted.histogram))
             throw Error("its statistics differ from those of its samples", impl.path, "index");
         return bytes;

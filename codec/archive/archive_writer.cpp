@@ -53,9 +53,9 @@ struct FrameCoding {
     std::vector<volume::BrickImportance> importance;
     Taken taken;
     Model model;
-    int step = 1;         ///< times since `before`
-    bool tallies = false; ///< store statistics of bricks
-    bool keeps = false;   ///< keep samples and sizes for later frames
+    int step = 1;            ///< times since `before`
+    bool statistics = false; ///< store statistics of bricks
+    bool keeps = false;      ///< keep samples and sizes for later frames
     SeenFrame seen;
 
     explicit FrameCoding(const volume::BrickGrid& of) : grid(of) {}
@@ -87,7 +87,7 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
         segments = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
         for (const Bytes& segment : segments) seen.bytes[b] += segment.size();
         roundAsDecoded(format, maxError, taken.bricks[b]->decoded, input);
-        about = statisticsOf(part, input, tallies);
+        about = statisticsOf(part, input, statistics);
     }
     taken.bricks[b].reset();
     about.notes.importance = importance[b];
@@ -233,7 +233,7 @@ ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata, 
     impl_->metadata = metadata;
     impl_->keepsFrames = keepsFrames;
     // A volume of one brick is read as quickly as its statistics would be, and they would be a large part of its size.
-    if (metadata.grid.count() == glm::ivec3(1)) impl_->header.features &= ~kBrickTallies;
+    if (metadata.grid.count() == glm::ivec3(1)) impl_->header.features &= ~kBrickStatistics;
 }
 
 ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, bool keepsFrames) {
@@ -295,7 +295,7 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
         coding.taken.bricks.clear();
     }
     coding.step = step();
-    coding.tallies = (header.features & kBrickTallies) != 0;
+    coding.statistics = (header.features & kBrickStatistics) != 0;
     // The last frame only needs its change, not to be kept.
     const bool isLast = std::size_t(time + step()) >= metadata.info.times.size();
     coding.keeps = keepsFrames && (coding.before || !isLast);

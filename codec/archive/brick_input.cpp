@@ -70,8 +70,8 @@ void roundAsDecoded(const BrickFormat& format, double maxError, std::span<const 
 }
 
 FrameBrick statisticsOf(const volume::Field& field, const BrickInput& decoded, bool withHistogram) {
-    const TalliedBrick brick =
-        tallied(field.type, field.offset, field.scale, decoded.samples, decoded.present, withHistogram);
+    const BrickSummary brick =
+        summaryOf(field.type, field.offset, field.scale, decoded.samples, decoded.present, withHistogram);
     return {brick.min, brick.max, brick.histogram, {}};
 }
 

@@ -160,10 +160,10 @@ bool hasSpread(float min, float max) {
     return min < max && std::isfinite(min) && std::isfinite(max);
 }
 
-TalliedBrick tallied(volume::ScalarType type, double offset, double scale, std::span<const std::byte> samples,
-                     std::span<const std::uint8_t> present, bool withHistogram) {
+BrickSummary summaryOf(volume::ScalarType type, double offset, double scale, std::span<const std::byte> samples,
+                       std::span<const std::uint8_t> present, bool withHistogram) {
     return volume::dispatch(type, [&]<class T>(T) {
-        TalliedBrick brick;
+        BrickSummary brick;
         const std::span all(reinterpret_cast<const T*>(samples.data()), samples.size() / sizeof(T));
         std::vector<T> kept;
         const std::span<const T> numbers = counting(all, present, kept);
@@ -215,7 +215,7 @@ TalliedBrick tallied(volume::ScalarType type, double offset, double scale, std::
     });
 }
 
-bool agree(const TalliedBrick& brick, float min, float max, const BrickHistogram& noted) {
+bool agree(const BrickSummary& brick, float min, float max, const BrickHistogram& noted) {
     constexpr std::int64_t kRounding = 2; // tolerance for sums added in another order
     if (!(brick.min <= brick.max)) return !(min <= max);
     return brick.min == min && brick.max == max && brick.histogram.samples == noted.samples &&

@@ -29,18 +29,18 @@ int binsOf(std::uint32_t samples);
 /// Whether a brick with this range has a mean and a histogram; a constant or empty brick needs neither.
 bool hasSpread(float min, float max);
 
-struct TalliedBrick {
+struct BrickSummary {
     float min = 0, max = -1; ///< physical values; min > max: no present, finite sample
     BrickHistogram histogram;
 };
 
 /// Computes the statistics of a brick from stored numbers, whose physical values are offset + scale * number.
 /// `present`: one flag each, or empty: all present. Without `withHistogram`: only the range.
-TalliedBrick tallied(volume::ScalarType type, double offset, double scale, std::span<const std::byte> samples,
-                     std::span<const std::uint8_t> present, bool withHistogram);
+BrickSummary summaryOf(volume::ScalarType type, double offset, double scale, std::span<const std::byte> samples,
+                       std::span<const std::uint8_t> present, bool withHistogram);
 
 /// Whether the statistics of a brick equal stored ones, up to rounding of the mean.
-bool agree(const TalliedBrick& brick, float min, float max, const BrickHistogram& noted);
+bool agree(const BrickSummary& brick, float min, float max, const BrickHistogram& noted);
 
 /// Writes the statistics of a brick with this range. `isFloat`: samples can be present but not finite.
 void put(BitWriter& out, float min, float max, bool isFloat, const BrickHistogram& histogram);

@@ -31,10 +31,10 @@ inline constexpr std::uint32_t kCompact = 2;
 /// Feature: models can have contexts by band.
 inline constexpr std::uint32_t kBandContexts = 4;
 /// Feature: the index has mean and histogram of each brick.
-inline constexpr std::uint32_t kBrickTallies = 8;
+inline constexpr std::uint32_t kBrickStatistics = 8;
 /// Feature: numbers of frames can be of kind Stepped. Only set once one is.
 inline constexpr std::uint32_t kSteppedBricks = 16;
-inline constexpr std::uint32_t kUsualFeatures = kBrickNotes | kCompact | kBandContexts | kBrickTallies,
+inline constexpr std::uint32_t kUsualFeatures = kBrickNotes | kCompact | kBandContexts | kBrickStatistics,
                                kKnownFeatures = kUsualFeatures | kSteppedBricks;
 
 /// xxh3, 64 bits, seed 0.

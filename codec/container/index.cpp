@@ -40,8 +40,9 @@ class RecordReader {
 public:
     RecordReader(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
                  const std::string& file)
-        : in_(bytes), notes_((header.features & kBrickNotes) != 0), tallies_((header.features & kBrickTallies) != 0),
-          stepped_((header.features & kSteppedBricks) != 0), end_(header.index.offset), shape_(shape), file_(file) {}
+        : in_(bytes), notes_((header.features & kBrickNotes) != 0),
+          statistics_((header.features & kBrickStatistics) != 0), stepped_((header.features & kSteppedBricks) != 0),
+          end_(header.index.offset), shape_(shape), file_(file) {}
 
     IndexPage page() {
         IndexPage page;
@@ -64,7 +65,7 @@ public:
                 "the index has the wrong length", file_);
         const std::uint64_t records =
             kPageHeadBytes + 8 * times + models * kModelBytes + masks * maskBytes + frames * frameBytes;
-        require(tallies_ ? records <= room : records == room, "the index has the wrong length", file_);
+        require(statistics_ ? records <= room : records == room, "the index has the wrong length", file_);
         for (std::uint64_t t = 0; t < times; ++t) page.times.push_back(in_.get<double>());
         for (std::uint64_t m = 0; m < models; ++m) {
             page.models.push_back(in_.get<Block>());
@@ -72,7 +73,7 @@ public:
         }
         for (std::uint64_t m = 0; m < masks; ++m) page.masks.push_back(mask());
         for (std::uint64_t f = 0; f < frames; ++f) page.frames.push_back(frame());
-        page.tallies.assign(in_.rest().begin(), in_.rest().end());
+        page.statistics.assign(in_.rest().begin(), in_.rest().end());
         return page;
     }
 
@@ -159,7 +160,7 @@ private:
     }
 
     ByteReader in_;
-    bool notes_, tallies_, stepped_;
+    bool notes_, statistics_, stepped_;
     std::uint64_t end_; ///< of the part of the file that may contain chunks
     const IndexShape& shape_;
     const std::string& file_;
@@ -197,8 +198,8 @@ std::vector<IndexPage> readPages(const FileBytes& bytes, const Header& header, c
 }
 
 /// Reads the statistics of a page; the index already has its masks and those of older pages.
-void takeTallies(const Index& index, const IndexShape& shape, IndexPage& page, const std::string& file) {
-    BitReader in(page.tallies);
+void takeStatistics(const Index& index, const IndexShape& shape, IndexPage& page, const std::string& file) {
+    BitReader in(page.statistics);
     for (FrameRecord& frame : page.frames)
         for (std::size_t b = 0; b < frame.bricks.size(); ++b) {
             FrameBrick& brick = frame.bricks[b];
@@ -313,12 +314,13 @@ Bytes serialise(const IndexPage& page, std::uint32_t features) {
             out.put(segment.checksum);
         }
     }
-    BitWriter tallies;
+    BitWriter statistics;
     for (const FrameRecord& frame : page.frames)
         for (const FrameBrick& brick : frame.bricks)
             if (brick.notes.repeats == 0)
-                put(tallies, brick.min, brick.max, frame.numbers.kind != NumberKind::Integer, brick.histogram);
-    if ((features & kBrickTallies) != 0) out.bytes.insert(out.bytes.end(), tallies.bytes.begin(), tallies.bytes.end());
+                put(statistics, brick.min, brick.max, frame.numbers.kind != NumberKind::Integer, brick.histogram);
+    if ((features & kBrickStatistics) != 0)
+        out.bytes.insert(out.bytes.end(), statistics.bytes.begin(), statistics.bytes.end());
     return out.bytes;
 }
 
@@ -334,7 +336,7 @@ Index readIndex(const FileBytes& bytes, const Header& header, const IndexShape& 
             require(frame.mask >= -1 && frame.mask < std::ssize(index.masks), "a mask is missing", file);
             require(frame.model >= 0 && frame.model < std::ssize(index.models), "a model is missing", file);
         }
-        if ((header.features & kBrickTallies) != 0) takeTallies(index, shape, page, file);
+        if ((header.features & kBrickStatistics) != 0) takeStatistics(index, shape, page, file);
         std::move(page.frames.begin(), page.frames.end(), std::back_inserter(frames));
     }
     for (std::size_t t = 0; t < index.times.size(); ++t)

@@ -32,7 +32,7 @@ struct MaskRecord {
 
 struct FrameBrick {
     float min = 0, max = -1;  ///< physical values of present samples; min > max: none
-    BrickHistogram histogram; ///< with kBrickTallies only, and not for repeats
+    BrickHistogram histogram; ///< with kBrickStatistics only, and not for repeats
     /// Properties that archives without kBrickNotes lack.
     struct Notes {
         volume::BrickImportance importance;             ///< stored with 16 bits each
@@ -70,7 +70,7 @@ struct IndexPage {
     std::vector<Block> models;
     std::vector<MaskRecord> masks;
     std::vector<FrameRecord> frames;
-    Bytes tallies; ///< undecoded bit stream of all frames' statistics
+    Bytes statistics; ///< undecoded bit stream of all frames' statistics
 };
 
 struct Index {

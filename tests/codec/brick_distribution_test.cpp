@@ -64,7 +64,7 @@ void expectTrueDistributions(const Archive& archive) {
     EXPECT_GT(known, 0);
 }
 
-PackOptions tallyOptions(StoredLattice lattice, double maxError = 0) {
+PackOptions statisticsOptions(StoredLattice lattice, double maxError = 0) {
     PackOptions options;
     options.lattice = lattice;
     options.brickSize = 16;
@@ -77,7 +77,7 @@ TEST(BrickDistribution, ArchivesSayWhatIsInTheirBricks) {
     for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC, StoredLattice::D4})
         for (const double maxError : {0.0, 1e-3}) {
             volume::Dataset made = makeDataset({35, 18, 37}, everyKind(), lattice == StoredLattice::D4 ? 3 : 1);
-            pack(made, tallyOptions(lattice, maxError), folder / "a.tsr");
+            pack(made, statisticsOptions(lattice, maxError), folder / "a.tsr");
             const Archive archive(folder / "a.tsr");
             expectTrueDistributions(archive);
             EXPECT_EQ(verifyArchive(archive).damaged, 0u);
@@ -103,8 +103,8 @@ TEST(BrickDistribution, GrowingArchivesToo) {
         return some;
     };
     volume::Dataset whole = part(0, 4, 0, 3), begin = part(0, 2, 0, 2), end = part(2, 2, 0, 2), more = part(0, 4, 2, 1);
-    pack(whole, tallyOptions(StoredLattice::CC), folder / "whole.tsr");
-    pack(begin, tallyOptions(StoredLattice::CC), folder / "grown.tsr");
+    pack(whole, statisticsOptions(StoredLattice::CC), folder / "whole.tsr");
+    pack(begin, statisticsOptions(StoredLattice::CC), folder / "grown.tsr");
     append(end, folder / "grown.tsr");
     append(more, folder / "grown.tsr");
     const Archive once(folder / "whole.tsr"), grown(folder / "grown.tsr");
@@ -140,9 +140,9 @@ TEST(BrickDistribution, UntrueOnesAreFound) {
                                        {{"a", ScalarType::U8, 1, Texture::Noise, true, false},
                                         {"g", ScalarType::F32, 1, Texture::Nasty, false, false}},
                                        1);
-    pack(made, tallyOptions(StoredLattice::CC), folder / "a.tsr");
+    pack(made, statisticsOptions(StoredLattice::CC), folder / "a.tsr");
     const std::vector<char> file = readFile(folder / "a.tsr");
-    std::size_t bytes = 0; // of the tallies
+    std::size_t bytes = 0; // of the statistics
     for (const int channel : {0, 1}) {
         BitWriter out;
         const Archive archive(folder / "a.tsr");
@@ -188,7 +188,7 @@ TEST(BrickDistribution, ThePlainReaderAgrees) {
     for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC}) {
         std::vector<MadeParameter> kinds = everyKind();
         volume::Dataset made = makeDataset({35, 18, 37}, kinds, 1);
-        pack(made, tallyOptions(lattice), folder / "a.tsr");
+        pack(made, statisticsOptions(lattice), folder / "a.tsr");
         volume::Dataset more = makeDataset({35, 18, 37}, kinds, 1);
         more.info.times = {7};
         append(more, folder / "a.tsr");

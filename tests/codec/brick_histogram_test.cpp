@@ -30,7 +30,7 @@ TEST(BrickHistogram, KnownAnswers) {
     std::fill_n(numbers.begin(), 1000, std::uint8_t(20));
     std::fill_n(numbers.begin(), 500, std::uint8_t(50));
     std::vector<std::uint8_t> present(3000, 1);
-    const TalliedBrick all = tallied(ScalarType::U8, 0, 1, bytesOf(numbers), present, true);
+    const BrickSummary all = summaryOf(ScalarType::U8, 0, 1, bytesOf(numbers), present, true);
     EXPECT_EQ(all.min, 10);
     EXPECT_EQ(all.max, 50);
     EXPECT_EQ(all.histogram.samples, 3000u);
@@ -38,25 +38,25 @@ TEST(BrickHistogram, KnownAnswers) {
     EXPECT_NEAR(10 + 40.0 * all.histogram.mean / kMeanParts, (20000 + 10000 + 25000) / 3000.0, 40.0 / kMeanParts);
     // What is absent does not count; values go down as numbers go up.
     std::fill_n(present.begin(), 500, std::uint8_t(0));
-    const TalliedBrick some = tallied(ScalarType::U8, 5, -2, bytesOf(numbers), present, true);
+    const BrickSummary some = summaryOf(ScalarType::U8, 5, -2, bytesOf(numbers), present, true);
     EXPECT_EQ(some.min, -35);
     EXPECT_EQ(some.max, -15);
     EXPECT_EQ(some.histogram.counts, (std::vector<std::uint32_t>{500, 0, 0, 2000}));
     EXPECT_EQ(some.histogram.infinite, 0u);
     // One value needs no histogram.
-    const TalliedBrick one = tallied(ScalarType::U8, 0, 1, bytesOf(std::vector<std::uint8_t>(3000, 7)), {}, true);
+    const BrickSummary one = summaryOf(ScalarType::U8, 0, 1, bytesOf(std::vector<std::uint8_t>(3000, 7)), {}, true);
     EXPECT_EQ(one.min, 7);
     EXPECT_EQ(one.max, 7);
     EXPECT_EQ(one.histogram.samples, 3000u);
     EXPECT_TRUE(one.histogram.counts.empty());
     const std::vector<float> mixed{1, NAN, 3, INFINITY, 2, 9};
-    const TalliedBrick floats =
-        tallied(ScalarType::F32, 0, 1, bytesOf(mixed), std::vector<std::uint8_t>{1, 1, 1, 1, 1, 0}, true);
+    const BrickSummary floats =
+        summaryOf(ScalarType::F32, 0, 1, bytesOf(mixed), std::vector<std::uint8_t>{1, 1, 1, 1, 1, 0}, true);
     EXPECT_EQ(floats.min, 1);
     EXPECT_EQ(floats.max, 3);
     EXPECT_EQ(floats.histogram.samples, 3u);
     EXPECT_EQ(floats.histogram.infinite, 2u);
-    const TalliedBrick nothing = tallied(ScalarType::F32, 0, 1, bytesOf(std::vector<float>{NAN, NAN}), {}, true);
+    const BrickSummary nothing = summaryOf(ScalarType::F32, 0, 1, bytesOf(std::vector<float>{NAN, NAN}), {}, true);
     EXPECT_GT(nothing.min, nothing.max);
 }
 
@@ -77,7 +77,7 @@ TEST(BrickHistogram, CountsEverySampleWhereItBelongs) {
                     number = random() % 50 == 0 ? NAN : float(int(random())) * 1e-3f;
                 else
                     number = static_cast<T>(random() % spread);
-            const TalliedBrick brick = tallied(type, offset, scale, bytesOf(numbers), present, true);
+            const BrickSummary brick = summaryOf(type, offset, scale, bytesOf(numbers), present, true);
             std::vector<double> values;
             for (std::size_t i = 0; i < count; ++i)
                 if ((present.empty() || present[i] != 0) && std::isfinite(double(numbers[i])))
@@ -107,7 +107,7 @@ std::uint32_t pickBelow(std::mt19937& random, std::uint32_t below) {
 
 TEST(BrickHistogram, ComesBackFromItsBits) {
     std::mt19937 random(7);
-    std::vector<BrickHistogram> tallies;
+    std::vector<BrickHistogram> statistics;
     std::vector<std::uint32_t> present;
     BitWriter out;
     for (int n = 0; n < 200; ++n) {
@@ -123,13 +123,13 @@ TEST(BrickHistogram, ComesBackFromItsBits) {
         if (bins > 1) histogram.counts[random() % histogram.counts.size()] += left;
         put(out, -1, 1, true, histogram);
         present.push_back(histogram.samples + histogram.infinite);
-        tallies.push_back(std::move(histogram));
+        statistics.push_back(std::move(histogram));
     }
     BitReader in(out.bytes);
-    for (std::size_t n = 0; n < tallies.size(); ++n) {
+    for (std::size_t n = 0; n < statistics.size(); ++n) {
         BrickHistogram histogram;
         ASSERT_TRUE(take(in, -1, 1, true, present[n], histogram));
-        ASSERT_EQ(histogram, tallies[n]);
+        ASSERT_EQ(histogram, statistics[n]);
     }
     EXPECT_TRUE(in.atEnd());
     // Of one value, or none, nothing is written; of one among floats that are not finite only how many those are.

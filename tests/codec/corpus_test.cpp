@@ -28,7 +28,7 @@ volume::Dataset corpusDataset() {
 // Archives of every set of features stay readable: these files were written once.
 TEST(Corpus, StoredArchivesStillDecode) {
     const volume::Dataset made = corpusDataset();
-    for (const char* features : {"-3", "-3-compact", "-3-bands", "-3-tallies"}) {
+    for (const char* features : {"-3", "-3-compact", "-3-bands", "-3-statistics"}) {
         const Archive archive(corpus() + "fuzz_archive/cc-exact" + features + ".tsr");
         for (int p = 0; p < 3; ++p)
             for (int c = 0; c < made.info.parameters[std::size_t(p)].components; ++c) {
@@ -36,11 +36,11 @@ TEST(Corpus, StoredArchivesStillDecode) {
                 EXPECT_EQ(expected.samples, stored.samples);
                 EXPECT_EQ(expected.mask ? *expected.mask : volume::Mask(), stored.mask ? *stored.mask : volume::Mask());
             }
-        EXPECT_EQ(archive.distribution({0, 0, 0, {0, 0, 0}}).has_value(), std::string(features) == "-3-tallies");
+        EXPECT_EQ(archive.distribution({0, 0, 0, {0, 0, 0}}).has_value(), std::string(features) == "-3-statistics");
         for (const char* name : {"bcc-exact", "bcc-bounded", "cc-bounded"})
             EXPECT_EQ(verifyArchive(Archive(corpus() + "fuzz_archive/" + name + features + ".tsr")).damaged, 0u);
     }
-    for (const char* name : {"grown-3", "grown-3-compact", "grown-3-bands", "grown-3-tallies"}) {
+    for (const char* name : {"grown-3", "grown-3-compact", "grown-3-bands", "grown-3-statistics"}) {
         const Archive grown(corpus() + "fuzz_archive/" + name + ".tsr");
         EXPECT_EQ(grown.commits(), 3);
         EXPECT_EQ(grown.info().times, (std::vector<double>{0, 1.5}));
@@ -60,10 +60,10 @@ TEST(Corpus, DISABLED_WriteSeeds) {
             options.maxError = maxError;
             pack(made, options,
                  corpus() + "fuzz_archive/" + std::string(kStoredLatticeNames[std::size_t(lattice)]) +
-                     (maxError > 0 ? "-bounded-3-tallies.tsr" : "-exact-3-tallies.tsr"));
+                     (maxError > 0 ? "-bounded-3-statistics.tsr" : "-exact-3-statistics.tsr"));
         }
     // One that has grown twice.
-    const std::string grown = corpus() + "fuzz_archive/grown-3-tallies.tsr";
+    const std::string grown = corpus() + "fuzz_archive/grown-3-statistics.tsr";
     for (int step = 0; step < 3; ++step) {
         const char* const name = step == 1 ? "p" : "T";
         volume::Dataset made = makeDataset({5, 4, 6}, {{name, ScalarType::F32, 1, Texture::Smooth, true, false}}, 1);
