@@ -160,7 +160,7 @@ template <class Visit> void forCrashes(const Recorder& recorder, const Visit& vi
             if (const std::size_t most = wanted(i)) disk.apply(*pending[i], most);
         return disk;
     };
-    constexpr std::size_t kAll = std::size_t(-1);
+    static constexpr std::size_t kAll = std::size_t(-1);
     for (std::size_t done = 0; done <= recorder.steps().size(); ++done) {
         visit(done, synced, true);
         const std::size_t count = pending.size(), last = count - 1;
