@@ -151,7 +151,8 @@ Sources openWhole(const DataRef& data, std::vector<std::string>& messages, const
                                        [](const volume::Parameter& parameter) { return !parameter.ranges.empty(); });
         if (!known) volume::scanRanges(dataset, progress.part(0.3, 0.95));
     }
-    dataset = volume::onAxis(std::move(dataset), axisOf(dataset.info, data, messages));
+    const auto axis = axisOf(dataset.info, data, messages); // before it is moved: arguments have no order
+    dataset = volume::onAxis(std::move(dataset), axis);
     for (const volume::Parameter& parameter : dataset.info.parameters)
         for (const Range& range : parameter.ranges)
             if (!(range.hi >= range.lo)) {
