@@ -4,6 +4,7 @@
 #include "codec/archive/brick_access.h"
 #include "codec/archive/brick_input.h"
 #include "codec/archive/coded_bricks.h"
+#include "codec/archive/coded_mask.h"
 #include "codec/archive/frame_model.h"
 #include "codec/archive/frame_steps.h"
 #include "codec/brick/whole_brick.h"
@@ -20,28 +21,6 @@
 namespace tessera::codec {
 
 namespace {
-
-struct CodedMaskBrick {
-    Bytes bytes;
-    std::uint32_t present = 0;
-};
-
-/// The presence flags of a brick as bits, LSB first, raw or compressed by zstd; empty if all are equal.
-CodedMaskBrick encodeMask(std::span<const std::uint8_t> flags, Compressor& compressor) {
-    CodedMaskBrick coded;
-    Bytes bits((flags.size() + 7) / 8);
-    for (std::size_t i = 0; i < flags.size(); ++i)
-        if (flags[i] != 0) {
-            bits[i / 8] |= static_cast<std::byte>(1u << (i % 8));
-            ++coded.present;
-        }
-    if (coded.present == 0 || coded.present == flags.size()) return coded;
-    const Bytes packed = compressor.compress(bits);
-    coded.bytes.push_back(packed.empty() ? std::byte{0} : std::byte{1});
-    const Bytes& body = packed.empty() ? bits : packed;
-    coded.bytes.insert(coded.bytes.end(), body.begin(), body.end());
-    return coded;
-}
 
 /// A frame being coded: the coding parameters of its bricks, and their statistics.
 struct FrameCoding {
