@@ -1,4 +1,4 @@
-#include "vis/passes/renderer_impl.h"
+#include "vis/passes/render_stages.h"
 
 #include "vis/demand/lens_pixels.h"
 #include "vis/demand/tile_order.h"
@@ -38,20 +38,20 @@ Tile reducedTile(const Tile& tile, glm::ivec2 reduced, glm::ivec2 whole) {
 } // namespace
 
 /// Keeps the former picture while a program variant is being compiled.
-void Renderer::Impl::postpone(ViewTarget& target, const Scene& scene) {
+void RenderStages::postpone(ViewTarget& target, const Scene& scene) {
     if (!target.state.presented()) blank(target, scene);
     target.state.setDone(PictureState::Done::Nothing);
 }
 
 /// Keeps the former picture if a program variant does not compile.
-void Renderer::Impl::giveUp(ViewTarget& target, const RenderCall& call) {
+void RenderStages::giveUp(ViewTarget& target, const RenderCall& call) {
     target.shown.compiling = false;
     if (!target.state.presented() || call.request.wait) nothing(target, call.scene);
     target.state.setDone(PictureState::Done::Converged);
 }
 
 /// Reports once which lights, clips, lenses or channel parts exceed a limit.
-void Renderer::Impl::sayLimits(const RenderCall& call) {
+void RenderStages::sayLimits(const RenderCall& call) {
     const Scene& scene = call.scene;
     const auto enabled = [](const auto& all) {
         return std::count_if(all.begin(), all.end(), [](const auto& each) { return each.enabled; });
@@ -69,7 +69,7 @@ void Renderer::Impl::sayLimits(const RenderCall& call) {
 }
 
 /// Binds the textures of a plan's fields, and its tables.
-void Renderer::Impl::bindPlan(const ViewTarget& target, const RenderCall& call) {
+void RenderStages::bindPlan(const ViewTarget& target, const RenderCall& call) {
     const RayPlan& plan = call.plan;
     const RayUnits units = rayUnits(plan);
     for (std::size_t i = 0; i < plan.fields.size(); ++i) {
@@ -87,8 +87,8 @@ void Renderer::Impl::bindPlan(const ViewTarget& target, const RenderCall& call) 
 }
 
 /// Prepares the program of `own`, which is all or part of the call, for drawing; false while it is not ready.
-bool Renderer::Impl::ready(ViewTarget& target, const RenderCall& call, const RenderCall& own,
-                           const ProgramAnswer& answer, const ProgramRecipe& recipe) {
+bool RenderStages::ready(ViewTarget& target, const RenderCall& call, const RenderCall& own, const ProgramAnswer& answer,
+                         const ProgramRecipe& recipe) {
     if (!answer.program) return false;
     const bool linked = answer.stage == ProgramStage::Linked;
     if (!tools.driver.compilesAtFirstDraw) return true;
@@ -110,7 +110,7 @@ bool Renderer::Impl::ready(ViewTarget& target, const RenderCall& call, const Ren
 }
 
 /// Adds a program without lenses for pixels outside all lenses, once it is ready.
-void Renderer::Impl::addBeyond(RayPrograms& programs, ViewTarget& target, const RenderCall& call) {
+void RenderStages::addBeyond(RayPrograms& programs, ViewTarget& target, const RenderCall& call) {
     programs.beyondPlan = beyondLenses(call.plan);
     if (programs.beyondPlan.empty() || drawnByProxy(call.scene) ||
         lensTiles(call.plan.lenses, call.scene, target.buffers.size).value_or(std::vector<Tile>()).empty())
@@ -125,8 +125,8 @@ void Renderer::Impl::addBeyond(RayPrograms& programs, ViewTarget& target, const 
 }
 
 /// Step lengths scale with the cells of the finest level wanted: there is no detail between coarser samples.
-void Renderer::Impl::setUniforms(const RayPrograms& programs, const ViewTarget& target, const RenderCall& call,
-                                 double stepFactor) {
+void RenderStages::setUniforms(const RayPrograms& programs, const ViewTarget& target, const RenderCall& call,
+                               double stepFactor) {
     if (programs.packets) return;
     const double factor = stepFactor * target.demand.cell();
     const auto set = [&](const Program* program, const RayPlan& plan, const Scene& scene) {
@@ -137,8 +137,8 @@ void Renderer::Impl::setUniforms(const RayPrograms& programs, const ViewTarget& 
 }
 
 /// Draws the changed pixels at reduced resolution with longer steps, and presents them.
-void Renderer::Impl::drawReduced(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
-                                 Pace::Reduction how) {
+void RenderStages::drawReduced(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
+                               Pace::Reduction how) {
     PictureBuffers& buffers = target.buffers;
     const Tile changed = target.state.changed();
     RayBuffer& reduced = buffers.reduced;
@@ -161,8 +161,8 @@ void Renderer::Impl::drawReduced(ViewTarget& target, const RenderCall& call, con
 
 /// Draws the stale area at half resolution, tile by tile within the budget; it is presented as it comes, and takes a
 /// quarter of the time of the pass at full resolution.
-void Renderer::Impl::drawHalf(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
-                              Clock::time_point start) {
+void RenderStages::drawHalf(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
+                            Clock::time_point start) {
     PictureState& state = target.state;
     const RayBuffer& half = target.buffers.half;
     if (state.halfTilesDone() == 0) target.pace().beginPass(false, call.request.budgetMs);
@@ -192,8 +192,8 @@ void Renderer::Impl::drawHalf(ViewTarget& target, const RenderCall& call, const 
 }
 
 /// Draws one tile of a pass into the full buffer and presents it.
-void Renderer::Impl::drawTile(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const Tile& tile,
-                              int pass) {
+void RenderStages::drawTile(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const Tile& tile,
+                            int pass) {
     const glm::ivec2 size = target.buffers.size;
     geometry(target, call, target.buffers.full, target.state.stale(), pass);
     const RayTile what{.size = size,
@@ -215,8 +215,8 @@ void Renderer::Impl::drawTile(ViewTarget& target, const RenderCall& call, const 
 
 /// Draws the stale area tile by tile within the budget: a first pass, then passes with jittered rays for the
 /// supersampled frame.
-void Renderer::Impl::drawTiles(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
-                               Clock::time_point start, bool lit) {
+void RenderStages::drawTiles(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
+                             Clock::time_point start, bool lit) {
     const FrameRequest& request = call.request;
     PictureState& state = target.state;
     if (state.tilesDone() == 0) target.pace().beginPass(request.wait, request.budgetMs);
@@ -243,8 +243,8 @@ void Renderer::Impl::drawTiles(ViewTarget& target, const RenderCall& call, const
 
 /// Draws a reduced picture if the whole does not fit the budget; at rest then the whole at half resolution, and tiles
 /// at full resolution from the middle outwards. `lit`: its light is final.
-void Renderer::Impl::drawWithin(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
-                                Clock::time_point start, bool lit) {
+void RenderStages::drawWithin(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
+                              Clock::time_point start, bool lit) {
     const FrameRequest& request = call.request;
     const PictureState& state = target.state;
     const double left = request.budgetMs - millisecondsSince(start);
@@ -261,7 +261,7 @@ void Renderer::Impl::drawWithin(ViewTarget& target, const RenderCall& call, cons
 }
 
 /// Draws the bound plan as far as the budget allows.
-void Renderer::Impl::refine(ViewTarget& target, const RenderCall& call, Clock::time_point start) {
+void RenderStages::refine(ViewTarget& target, const RenderCall& call, Clock::time_point start) {
     const Scene& scene = call.scene;
     const FrameRequest& request = call.request;
     const PictureState& state = target.state;

@@ -1,4 +1,4 @@
-#include "vis/passes/renderer_impl.h"
+#include "vis/passes/render_stages.h"
 
 #include "volume/base/error.h"
 #include "volume/field/time_pair.h"
@@ -25,7 +25,7 @@ double packetBytes(const Scene& scene, const volume::DatasetInfo& info, const vo
 } // namespace
 
 /// Why OpenGL must cast the rays, in words for users; empty: the processor can.
-std::string Renderer::Impl::refusalOfPackets(const ViewTarget& target, const RenderCall& call) const {
+std::string RenderStages::refusalOfPackets(const ViewTarget& target, const RenderCall& call) const {
     if (target.packets.failed) return "damaged samples";
     if (std::string why = packet::packetRefusal(call.scene, call.info(), call.grid().lattice); !why.empty()) return why;
     const double most = double(std::min(options.memoryBudget, std::size_t(call.scene.render.limits.brickMemory) << 20));
@@ -34,7 +34,7 @@ std::string Renderer::Impl::refusalOfPackets(const ViewTarget& target, const Ren
 }
 
 /// Whether the processor casts the rays of a call.
-bool Renderer::Impl::chooseEngine(ViewTarget& target, const RenderCall& call, FrameStatus& status) {
+bool RenderStages::chooseEngine(ViewTarget& target, const RenderCall& call, FrameStatus& status) {
     const Engine asked = call.scene.render.engine;
     const bool wanted = asked == Engine::Processor || (asked == Engine::Automatic && options.packets);
     if (target.packets.renderer.setVolumes(volumes)) target.packets.failed = false;
@@ -51,8 +51,8 @@ bool Renderer::Impl::chooseEngine(ViewTarget& target, const RenderCall& call, Fr
 }
 
 /// Draws a call, or keeps the former picture while its samples are being read; false if they cannot be read.
-bool Renderer::Impl::drawByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start,
-                                   FrameStatus& status) {
+bool RenderStages::drawByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start,
+                                 FrameStatus& status) {
     packet::PacketRenderer& renderer = target.packets.renderer;
     try {
         const bool here = call.request.wait || renderer.request(call.scene);
@@ -80,7 +80,7 @@ bool Renderer::Impl::drawByPackets(ViewTarget& target, const RenderCall& call, C
 }
 
 /// While an animation runs, the samples of the next stored time are read in the background.
-void Renderer::Impl::prefetchTime(PacketView& packets, const RenderCall& call) {
+void RenderStages::prefetchTime(PacketView& packets, const RenderCall& call) {
     const std::vector<double>& times = call.info().times;
     const int now = volume::timesAround(times, call.scene.time).earlier;
     if (now != packets.time) packets.step = packets.time < 0 ? 0 : now - packets.time;
@@ -92,7 +92,7 @@ void Renderer::Impl::prefetchTime(PacketView& packets, const RenderCall& call) {
     packets.renderer.prefetch(coming);
 }
 
-void Renderer::Impl::refineByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start) {
+void RenderStages::refineByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start) {
     const PictureState& state = target.state;
     const bool moving = call.request.moving;
     if (state.full() ? state.converged() || moving : state.reduced() && moving) return;
@@ -101,8 +101,8 @@ void Renderer::Impl::refineByPackets(ViewTarget& target, const RenderCall& call,
 }
 
 /// Draws a tile with the rays of one pass; the buffer there is cleared.
-void Renderer::Impl::castPackets(PacketView& packets, const RenderCall& call, const RayBuffer& buffer,
-                                 const RayTile& what) {
+void RenderStages::castPackets(PacketView& packets, const RenderCall& call, const RayBuffer& buffer,
+                               const RayTile& what) {
     const Tile& tile = what.tile;
     packet::PacketPicture& picture = packets.picture;
     picture.begin(what.size, {tile.begin, tile.end}, what.pass == 0);

@@ -1,4 +1,4 @@
-#include "vis/passes/renderer_impl.h"
+#include "vis/passes/render_stages.h"
 
 #include "vis/demand/box_lines.h"
 #include "vis/optics/context_blur.h"
@@ -34,8 +34,8 @@ ProgramRecipe resolveRecipe(const Scene& scene, bool lines) {
 } // namespace
 
 /// Sets all uniforms and textures of the presenting program, except its viewport.
-void Renderer::Impl::setPresented(const Program& resolve, const ViewTarget& target, const Scene& scene,
-                                  const BoxLines& lines, const RayBuffer& from) {
+void RenderStages::setPresented(const Program& resolve, const ViewTarget& target, const Scene& scene,
+                                const BoxLines& lines, const RayBuffer& from) {
     const std::optional<Paper> paper = paperOf(scene);
     const glm::vec2 used(from.used), whole(from.size), first(from.first);
     resolve.set("source", 0);
@@ -62,12 +62,12 @@ void Renderer::Impl::setPresented(const Program& resolve, const ViewTarget& targ
     glBindTextureUnit(0, from.color.name());
 }
 
-BoxLines Renderer::Impl::box(const ViewTarget& target, const Scene& scene) const {
+BoxLines RenderStages::box(const ViewTarget& target, const Scene& scene) const {
     if (!scene.showBox || !source) return {};
     return boxLines(scene.camera, worldFrame(source->info().bounds, scene.stretch).halfSize, target.buffers.size);
 }
 
-void Renderer::Impl::present(ViewTarget& target, const Scene& scene, const RayBuffer& from, const Tile& tile) {
+void RenderStages::present(ViewTarget& target, const Scene& scene, const RayBuffer& from, const Tile& tile) {
     const BoxLines lines = box(target, scene);
     const Program* resolve = tools.programs.find(resolveRecipe(scene, !lines.edges.empty()));
     if (!resolve) throw Error("the shader that presents pictures does not compile");
@@ -83,7 +83,7 @@ void Renderer::Impl::present(ViewTarget& target, const Scene& scene, const RayBu
 }
 
 /// Whether the program that presents the scene is ready; starts its compilation otherwise.
-bool Renderer::Impl::presentable(const ViewTarget& target, const Scene& scene) {
+bool RenderStages::presentable(const ViewTarget& target, const Scene& scene) {
     const BoxLines lines = box(target, scene);
     const ProgramRecipe recipe = resolveRecipe(scene, !lines.edges.empty());
     const ProgramAnswer answer = tools.programs.request(recipe, 0);
@@ -95,7 +95,7 @@ bool Renderer::Impl::presentable(const ViewTarget& target, const Scene& scene) {
 }
 
 /// Shows the background, and the box once that can be drawn, until the first picture is ready.
-void Renderer::Impl::blank(ViewTarget& target, const Scene& scene) {
+void RenderStages::blank(ViewTarget& target, const Scene& scene) {
     if (presentable(target, scene)) return nothing(target, scene);
     const glm::vec4 ground(groundColor(scene), scene.showGround ? 1 : 0);
     glDisable(GL_SCISSOR_TEST);
@@ -103,7 +103,7 @@ void Renderer::Impl::blank(ViewTarget& target, const Scene& scene) {
 }
 
 /// Shows only the background: nothing is loaded, or the program does not compile.
-void Renderer::Impl::nothing(ViewTarget& target, const Scene& scene) {
+void RenderStages::nothing(ViewTarget& target, const Scene& scene) {
     target.buffers.full.clear();
     present(target, scene, target.buffers.full, target.buffers.everything());
     target.state.setDone(PictureState::Done::Converged);

@@ -1,4 +1,4 @@
-#include "vis/passes/renderer_impl.h"
+#include "vis/passes/render_stages.h"
 
 #include "vis/demand/lens_pixels.h"
 #include "vis/optics/jitter.h"
@@ -12,7 +12,7 @@
 namespace tessera::vis {
 
 /// The program variant for a bound plan.
-ProgramRecipe Renderer::Impl::variant(const ViewTarget& target, const Scene& scene, const RayPlan& plan) const {
+ProgramRecipe RenderStages::variant(const ViewTarget& target, const Scene& scene, const RayPlan& plan) const {
     const TablesContent& tables = target.tables.content();
     ProgramRecipe made = rayRecipe(plan, scene, source->grid(), tables.skip && !lensesBend(scene));
     if (options.countSamples) made.defines.emplace_back("COUNT_SAMPLES", "1");
@@ -23,8 +23,8 @@ ProgramRecipe Renderer::Impl::variant(const ViewTarget& target, const Scene& sce
 
 /// Rasterises the geometry for a tile of the picture of a buffer, unless the target already has it. The
 /// reduced picture has the two nearest surfaces only.
-void Renderer::Impl::geometry(ViewTarget& target, const RenderCall& call, const RayBuffer& rays, const Tile& tile,
-                              int pass) {
+void RenderStages::geometry(ViewTarget& target, const RenderCall& call, const RayBuffer& rays, const Tile& tile,
+                            int pass) {
     const int peels = peelsOf(call.scene);
     if (peels == 0) return;
     const glm::ivec2 whole = target.buffers.size, size = rays.used;
@@ -50,8 +50,7 @@ void Renderer::Impl::geometry(ViewTarget& target, const RenderCall& call, const 
 }
 
 /// Blends the proxy surfaces front to back into the cleared part of the buffer inside the scissor rectangle.
-void Renderer::Impl::proxies(const Program& program, const RenderCall& call, const RayBuffer& buffer,
-                             double stepFactor) {
+void RenderStages::proxies(const Program& program, const RenderCall& call, const RayBuffer& buffer, double stepFactor) {
     const ProxySurfaces surfaces = proxySurfaces(call.scene, call.grid().lattice, call.frame(), stepFactor);
     program.set("proxyShells", surfaces.shells ? 1 : 0);
     program.set("proxyNormal", glm::vec3(surfaces.normal));
@@ -69,8 +68,8 @@ void Renderer::Impl::proxies(const Program& program, const RenderCall& call, con
 }
 
 /// Draws a tile with the rays of one pass.
-void Renderer::Impl::rays(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer,
-                          const RayTile& what) {
+void RenderStages::rays(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer,
+                        const RayTile& what) {
     const Scene& scene = call.scene;
     const glm::ivec2 size = what.size;
     const Tile& tile = what.tile;
@@ -123,8 +122,8 @@ void Renderer::Impl::rays(const RayPrograms& programs, const RenderCall& call, c
 /// Draws pass n > 0 of a supersampled frame into a second buffer and blends it into the first with weight 1 / (n + 1).
 /// (Blending in the ray-casting program itself would make software GL compile it again. Picking keeps the pixel
 /// centre's result.)
-void Renderer::Impl::accumulate(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
-                                const RayTile& what) {
+void RenderStages::accumulate(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
+                              const RayTile& what) {
     const Tile& tile = what.tile;
     RayBuffer& beside = target.buffers.reduced;
     const Program* average = tools.programs.find({"screen.vert.glsl", "accumulate.frag.glsl", {}, {}});

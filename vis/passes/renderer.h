@@ -31,6 +31,8 @@ struct ViewTargetDeleter {
 };
 using ViewTargetPtr = std::unique_ptr<ViewTarget, ViewTargetDeleter>;
 
+struct RenderStages;
+
 class Renderer {
 public:
     explicit Renderer(const RendererOptions& options = {});
@@ -63,8 +65,7 @@ public:
     std::vector<std::string> takeMessages();
 
 private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    std::unique_ptr<RenderStages> stages_;
 };
 
 } // namespace tessera::vis

@@ -3,12 +3,12 @@
 #include "vis/bricks/residency.h"
 #include "vis/demand/box_lines.h"
 #include "vis/passes/render_tools.h"
-#include "vis/passes/renderer.h"
 #include "vis/passes/view_target.h"
 
-/// Implementation of the renderer: renderer.cpp has the public functions, frame.cpp schedules drawing within the
-/// budget, ray_pass.cpp draws tiles, packet_pass.cpp those that the processor draws, present.cpp presents them. The
-/// earlier stages (ViewDemand, ViewTables, ViewLight, ViewHidden) have their own files.
+/// The stages of drawing a picture, for the renderer alone: render_stages.cpp asks for data and says what changed,
+/// frame.cpp schedules drawing within the budget, ray_pass.cpp draws tiles, packet_pass.cpp those that the processor
+/// draws, present.cpp presents them. Stages with a state of their own for each view (ViewDemand, ViewTables, ViewLight,
+/// ViewHidden) have their own files.
 namespace tessera::vis {
 
 /// What casts the rays of one picture: program variants, or packets.
@@ -29,7 +29,8 @@ struct RayTile {
     int pass = 0; ///< of a supersampled frame
 };
 
-struct Renderer::Impl {
+/// What all pictures of a renderer share, and the stages that draw them.
+struct RenderStages {
     RendererOptions options;
     Residency residency;
     std::shared_ptr<const volume::BrickSource> source;
@@ -41,10 +42,10 @@ struct Renderer::Impl {
     std::string limits;  ///< last message about exceeded limits
     std::string refusal; ///< last message about refused memory
 
-    explicit Impl(const RendererOptions& given, const Driver& driver)
+    RenderStages(const RendererOptions& given, const Driver& driver)
         : options(given), residency(given, driver), tools(driver) {}
 
-    // renderer.cpp
+    // render_stages.cpp
     bool resize(ViewTarget& target, const FrameRequest& request);
     void beginFrame(ViewTarget& target, const Scene& scene, const FrameRequest& request);
     bool bind(ViewTarget& target, const RenderCall& call, FrameStatus& status);
