@@ -13,18 +13,18 @@ namespace tessera::app {
 ArrivingFiles::ArrivingFiles(std::string pattern, ArrivalTimes times)
     : pattern_(std::move(pattern)), times_(times), event_(Clock::now()) {}
 
-std::vector<ArrivingFiles::Piece> ArrivingFiles::piecesOf(const std::string& path) {
+std::vector<ArrivingFiles::FileOnDisk> ArrivingFiles::filesOf(const std::string& path) {
     std::vector<std::string> paths = volume::filesNamedBy(path);
     paths.push_back(path);
-    std::vector<Piece> pieces;
+    std::vector<FileOnDisk> files;
     for (const std::string& each : paths) {
         struct stat about {};
         if (::stat(each.c_str(), &about) != 0) continue;
         constexpr std::int64_t kNano = 1'000'000'000;
-        pieces.push_back({each, static_cast<std::uint64_t>(about.st_size),
-                          std::int64_t(about.st_mtim.tv_sec) * kNano + std::int64_t(about.st_mtim.tv_nsec)});
+        files.push_back({each, static_cast<std::uint64_t>(about.st_size),
+                         std::int64_t(about.st_mtim.tv_sec) * kNano + std::int64_t(about.st_mtim.tv_nsec)});
     }
-    return pieces;
+    return files;
 }
 
 void ArrivingFiles::leaveOut(const std::string& path, const std::string& why) {
@@ -64,9 +64,9 @@ void ArrivingFiles::look(Clock::time_point now) {
     int left = kMost;
     for (auto& [number, file] : waiting_) {
         if (left-- == 0) break;
-        std::vector<Piece> pieces = piecesOf(file.path);
-        if (pieces == file.pieces) continue;
-        file = {file.path, std::move(pieces), now, {}, {}, {}, false};
+        std::vector<FileOnDisk> files = filesOf(file.path);
+        if (files == file.files) continue;
+        file = {file.path, std::move(files), now, {}, {}, {}, false};
         event_ = now;
     }
 }
@@ -83,7 +83,7 @@ std::vector<std::string> ArrivingFiles::waiting() const {
 
 std::optional<std::string> ArrivingFiles::ready(Clock::time_point now) const {
     for (const auto& [number, file] : waiting_) {
-        if (!file.pieces.empty() && now - file.since >= times_.settle && now >= file.next) return file.path;
+        if (!file.files.empty() && now - file.since >= times_.settle && now >= file.next) return file.path;
         if (!isGivenUp(file, now)) return std::nullopt; // later ones wait for it
     }
     return std::nullopt;

@@ -51,22 +51,22 @@ public:
     std::size_t missed() const { return missed_; }
 
 private:
-    struct Piece {
+    struct FileOnDisk {
         std::string path;
         std::uint64_t size = 0;
         std::int64_t changed = 0;
-        bool operator==(const Piece&) const = default;
+        bool operator==(const FileOnDisk&) const = default;
     };
     struct Waiting {
         std::string path;
-        std::vector<Piece> pieces;                ///< as they were
+        std::vector<FileOnDisk> files;            ///< as they were
         Clock::time_point since;                  ///< unchanged
         std::optional<Clock::time_point> failure; ///< the first one since it changed
         Clock::time_point next{};                 ///< when it is tried again
         std::string reason;
         bool reported = false;
     };
-    static std::vector<Piece> piecesOf(const std::string& path);
+    static std::vector<FileOnDisk> filesOf(const std::string& path);
     void add(const std::string& path, Clock::time_point now);
     void leaveOut(const std::string& path, const std::string& why);
     bool isGivenUp(const Waiting& file, Clock::time_point now) const;

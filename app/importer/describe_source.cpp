@@ -67,7 +67,7 @@ bool isHelper(const std::string& name) {
            name == "vtkOriginalPointIds" || name == "vtkOriginalCellIds";
 }
 
-void addArray(PieceRef& ref, const std::string& name, int vtkType, int components, bool ofCells) {
+void addArray(BlockRef& ref, const std::string& name, int vtkType, int components, bool ofCells) {
     if (isHelper(name) || components < 1 || components > 16) return;
     for (const ArrayRef& other : ref.arrays)
         if (other.vtkName == name) return;
@@ -104,7 +104,7 @@ std::string unlisted(const std::string& text) {
 
 /// Units, labels and the unit of lengths from the field data, in the form exportDataset writes:
 /// "O2,H2 mol/m3; T K; region -" and "region 1 air side; ...".
-void readWords(vtkFieldData* data, volume::Piece& piece, std::vector<ArrayRef>& arrays) {
+void readWords(vtkFieldData* data, volume::FileBlock& block, std::vector<ArrayRef>& arrays) {
     const auto text = [&](const char* name) -> std::string {
         auto* words = data != nullptr ? vtkStringArray::SafeDownCast(data->GetAbstractArray(name)) : nullptr;
         return words != nullptr && words->GetNumberOfValues() > 0 ? std::string(words->GetValue(0)) : std::string();
@@ -124,9 +124,9 @@ void readWords(vtkFieldData* data, volume::Piece& piece, std::vector<ArrayRef>& 
             const std::string name = unlisted(listed);
             for (ArrayRef& array : arrays)
                 if (array.form.name == name && unit != "-") array.form.unit = unit;
-            for (volume::Quantity& quantity : piece.quantities)
+            for (volume::Quantity& quantity : block.quantities)
                 if (quantity.name == name && unit != "-") quantity.unit = unit;
-            if (isTimeName(name) && unit != "-") piece.timeUnit = unit;
+            if (isTimeName(name) && unit != "-") block.timeUnit = unit;
         });
     });
     each(text("labels"), ';', [&](const std::string& item) {
@@ -137,44 +137,44 @@ void readWords(vtkFieldData* data, volume::Piece& piece, std::vector<ArrayRef>& 
         for (ArrayRef& array : arrays)
             if (array.form.name == unlisted(name)) array.form.labels.push_back({value, words});
     });
-    piece.lengthUnit = text("length_unit");
-    piece.timeName = text("time_name");
-    if (const std::string unit = text("time_unit"); !unit.empty()) piece.timeUnit = unit;
+    block.lengthUnit = text("length_unit");
+    block.timeName = text("time_name");
+    if (const std::string unit = text("time_unit"); !unit.empty()) block.timeUnit = unit;
 }
 
-void setLattice(PieceRef& ref, const int extent[6], const double spacing[3], const double origin[3], bool cells) {
+void setLattice(BlockRef& ref, const int extent[6], const double spacing[3], const double origin[3], bool cells) {
     for (int axis = 0; axis < 3; ++axis) {
         const int points = extent[2 * axis + 1] - extent[2 * axis] + 1;
         const double step = spacing[axis] != 0 && std::isfinite(spacing[axis]) ? std::abs(spacing[axis]) : 1;
         const bool shift = cells && points > 1;
-        ref.piece.lattice.size[axis] = shift ? points - 1 : points;
-        ref.piece.lattice.spacing[axis] = step;
-        ref.piece.lattice.origin[axis] =
+        ref.block.lattice.size[axis] = shift ? points - 1 : points;
+        ref.block.lattice.spacing[axis] = step;
+        ref.block.lattice.origin[axis] =
             (std::isfinite(origin[axis]) ? origin[axis] : 0) + step * (extent[2 * axis] + (shift ? 0.5 : 0.0));
         if (points < 1) throw std::runtime_error("has an empty extent");
     }
 }
 
-void finish(Source& source, PieceRef& ref) {
-    ref.piece.times = source.times;
-    if (source.format == "OpenFOAM") ref.piece.timeUnit = "s";
+void finish(Source& source, BlockRef& ref) {
+    ref.block.times = source.times;
+    if (source.format == "OpenFOAM") ref.block.timeUnit = "s";
     for (ArrayRef& array : ref.arrays)
         if (const auto unit = source.units.find(array.vtkName); unit != source.units.end())
             array.form.unit = unit->second;
-    if (!source.lengthUnit.empty()) ref.piece.lengthUnit = source.lengthUnit;
-    if (!source.timeUnit.empty()) ref.piece.timeUnit = source.timeUnit;
-    ref.piece.note = source.note;
+    if (!source.lengthUnit.empty()) ref.block.lengthUnit = source.lengthUnit;
+    if (!source.timeUnit.empty()) ref.block.timeUnit = source.timeUnit;
+    ref.block.note = source.note;
     if (auto* nifti = vtkNIFTIImageReader::SafeDownCast(source.reader)) {
         ref.scale = nifti->GetRescaleSlope();
         ref.offset = nifti->GetRescaleIntercept();
         if (ref.scale == 0) ref.scale = 1;
-        ref.piece.lengthUnit = "mm";
+        ref.block.lengthUnit = "mm";
         if (ref.scale != 1 || ref.offset != 0)
             for (ArrayRef& array : ref.arrays) array.form.type = ScalarType::F32;
     }
     if (auto* netCdf = vtkNetCDFReader::SafeDownCast(source.reader)) {
         for (ArrayRef& array : ref.arrays) array.form.unit = netCdf->QueryArrayUnits(array.vtkName.c_str());
-        if (netCdf->GetTimeUnits() != nullptr) ref.piece.timeUnit = netCdf->GetTimeUnits();
+        if (netCdf->GetTimeUnits() != nullptr) ref.block.timeUnit = netCdf->GetTimeUnits();
     }
 }
 
@@ -196,7 +196,7 @@ glm::dvec3 meanCellSize(vtkDataSet* mesh) {
 
 } // namespace
 
-std::vector<PieceRef> describeImageHeader(Source& source) {
+std::vector<BlockRef> describeImageHeader(Source& source) {
     auto* xml = vtkXMLReader::SafeDownCast(source.reader);
     if (xml == nullptr || source.format != "vti") return {};
     vtkInformation* information = source.reader->GetOutputInformation(0);
@@ -205,7 +205,7 @@ std::vector<PieceRef> describeImageHeader(Source& source) {
     information->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
     if (information->Has(vtkDataObject::SPACING()) != 0) information->Get(vtkDataObject::SPACING(), spacing);
     if (information->Has(vtkDataObject::ORIGIN()) != 0) information->Get(vtkDataObject::ORIGIN(), origin);
-    PieceRef ref;
+    BlockRef ref;
     const auto add = [&](vtkInformationInformationVectorKey* key, bool ofCells) {
         vtkInformationVector* arrays = information->Get(key);
         for (int i = 0; arrays != nullptr && i < arrays->GetNumberOfInformationObjects(); ++i) {
@@ -230,7 +230,7 @@ std::vector<PieceRef> describeImageHeader(Source& source) {
     xml->Update();
     throwReported();
     vtkDataObject* output = xml->GetOutputDataObject(0);
-    describeFieldData(output->GetFieldData(), ref.piece, ref.arrays);
+    describeFieldData(output->GetFieldData(), ref.block, ref.arrays);
     if (source.times.empty()) findTime(output, source.times);
     xml->GetPointDataArraySelection()->EnableAllArrays();
     xml->GetCellDataArraySelection()->EnableAllArrays();
@@ -238,14 +238,14 @@ std::vector<PieceRef> describeImageHeader(Source& source) {
     return {ref};
 }
 
-std::vector<PieceRef> describeBlocks(const Source& given, const std::vector<Block>& blocks) {
+std::vector<BlockRef> describeBlocks(const Source& given, const std::vector<Block>& blocks) {
     Source source = given;
     if (source.times.empty()) findTime(blocks.front().data, source.times);
-    std::vector<PieceRef> pieces;
+    std::vector<BlockRef> described;
     for (const Block& block : blocks) {
         vtkDataSet* data = block.data;
-        PieceRef ref;
-        ref.piece.name = block.name;
+        BlockRef ref;
+        ref.block.name = block.name;
         for (int i = 0; i < data->GetPointData()->GetNumberOfArrays(); ++i)
             if (vtkDataArray* array = data->GetPointData()->GetArray(i))
                 addArray(ref, array->GetName() != nullptr ? array->GetName() : "value", array->GetDataType(),
@@ -261,31 +261,31 @@ std::vector<PieceRef> describeBlocks(const Source& given, const std::vector<Bloc
             if (pointData) // cell values would need another grid
                 std::erase_if(ref.arrays, [](const ArrayRef& array) { return array.ofCells; });
         } else {
-            ref.piece.mesh = true;
-            ref.piece.cellData = !pointData;
-            ref.piece.cells = double(data->GetNumberOfCells());
+            ref.block.mesh = true;
+            ref.block.cellData = !pointData;
+            ref.block.cells = double(data->GetNumberOfCells());
             const double* box = data->GetBounds();
-            ref.piece.box = {{box[0], box[2], box[4]}, {box[1], box[3], box[5]}};
-            ref.piece.cellSize = meanCellSize(data);
+            ref.block.box = {{box[0], box[2], box[4]}, {box[1], box[3], box[5]}};
+            ref.block.cellSize = meanCellSize(data);
         }
-        describeFieldData(data->GetFieldData(), ref.piece, ref.arrays);
-        if (source.times.size() > 1) ref.piece.quantities.clear(); // they belong to one time only
+        describeFieldData(data->GetFieldData(), ref.block, ref.arrays);
+        if (source.times.size() > 1) ref.block.quantities.clear(); // they belong to one time only
         finish(source, ref);
-        pieces.push_back(std::move(ref));
+        described.push_back(std::move(ref));
     }
-    return pieces;
+    return described;
 }
 
-void describeFieldData(vtkFieldData* data, volume::Piece& piece, std::vector<ArrayRef>& arrays) {
+void describeFieldData(vtkFieldData* data, volume::FileBlock& block, std::vector<ArrayRef>& arrays) {
     if (data == nullptr) return;
     for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
         vtkDataArray* array = data->GetArray(i);
         if (array == nullptr || array->GetName() == nullptr || array->GetNumberOfValues() != 1) continue;
         const std::string name = array->GetName();
         if (isHelper(name) || isTimeName(name)) continue;
-        piece.quantities.push_back({name, "", {meantTime(array->GetComponent(0, 0))}});
+        block.quantities.push_back({name, "", {meantTime(array->GetComponent(0, 0))}});
     }
-    readWords(data, piece, arrays);
+    readWords(data, block, arrays);
 }
 
 vtkSmartPointer<vtkFieldData> fieldDataAlone(const std::string& path) {
@@ -338,31 +338,31 @@ std::string rangesJson(vtkDataSet* data, vtkDataArray* values, const ArrayRef& a
     return nlohmann::json{{"ranges", ranges}}.dump();
 }
 
-std::string headerJson(const std::vector<PieceRef>& pieces) {
+std::string headerJson(const std::vector<BlockRef>& blocks) {
     using json = nlohmann::ordered_json;
     const auto triple = [](const auto& v) { return json::array({v.x, v.y, v.z}); };
     json out;
-    out["format"] = pieces.front().piece.format;
-    out["pieces"] = json::array();
-    for (const PieceRef& ref : pieces) {
-        const volume::Piece& piece = ref.piece;
+    out["format"] = blocks.front().block.format;
+    out["blocks"] = json::array();
+    for (const BlockRef& ref : blocks) {
+        const volume::FileBlock& block = ref.block;
         json entry;
-        entry["name"] = piece.name;
-        entry["mesh"] = piece.mesh;
-        entry["cellData"] = piece.cellData;
-        entry["dims"] = triple(piece.lattice.size);
-        entry["spacing"] = triple(piece.lattice.spacing);
-        entry["origin"] = triple(piece.lattice.origin);
-        entry["box"] = {piece.box.lo.x, piece.box.lo.y, piece.box.lo.z, piece.box.hi.x, piece.box.hi.y, piece.box.hi.z};
-        entry["cells"] = {piece.cells};
-        entry["cellSize"] = triple(piece.cellSize);
-        entry["lengthUnit"] = piece.lengthUnit;
-        entry["timeName"] = piece.timeName;
-        entry["timeUnit"] = piece.timeUnit;
-        if (!piece.note.empty()) entry["note"] = piece.note;
-        entry["times"] = piece.times;
+        entry["name"] = block.name;
+        entry["mesh"] = block.mesh;
+        entry["cellData"] = block.cellData;
+        entry["dims"] = triple(block.lattice.size);
+        entry["spacing"] = triple(block.lattice.spacing);
+        entry["origin"] = triple(block.lattice.origin);
+        entry["box"] = {block.box.lo.x, block.box.lo.y, block.box.lo.z, block.box.hi.x, block.box.hi.y, block.box.hi.z};
+        entry["cells"] = {block.cells};
+        entry["cellSize"] = triple(block.cellSize);
+        entry["lengthUnit"] = block.lengthUnit;
+        entry["timeName"] = block.timeName;
+        entry["timeUnit"] = block.timeUnit;
+        if (!block.note.empty()) entry["note"] = block.note;
+        entry["times"] = block.times;
         entry["quantities"] = json::array();
-        for (const volume::Quantity& quantity : piece.quantities) {
+        for (const volume::Quantity& quantity : block.quantities) {
             json values = json::array();
             for (const double value : quantity.values) values.push_back(std::isfinite(value) ? json(value) : json());
             entry["quantities"].push_back({{"name", quantity.name}, {"unit", quantity.unit}, {"values", values}});
@@ -378,7 +378,7 @@ std::string headerJson(const std::vector<PieceRef>& pieces) {
                 words["labels"][std::to_string(label.value)] = label.name;
             entry["arrays"].push_back(std::move(words));
         }
-        out["pieces"].push_back(std::move(entry));
+        out["blocks"].push_back(std::move(entry));
     }
     return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }

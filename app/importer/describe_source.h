@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/importer/open_source.h"
-#include "volume/import/files/piece.h"
+#include "volume/import/files/file_block.h"
 
 #include <vector>
 #include <vtkDataArray.h>
@@ -17,22 +17,22 @@ struct ArrayRef {
     int firstComponent = 0;
 };
 
-/// A piece and how its arrays are found in VTK's data.
-struct PieceRef {
-    volume::Piece piece;
+/// A block and how its arrays are found in VTK's data.
+struct BlockRef {
+    volume::FileBlock block;
     std::vector<ArrayRef> arrays;
     double scale = 1, offset = 0; ///< NIfTI scaling: physical = offset + scale * stored
 };
 
 /// Describes an image from its header, without reading samples; empty if the header does not suffice.
-std::vector<PieceRef> describeImageHeader(Source& source);
+std::vector<BlockRef> describeImageHeader(Source& source);
 
 /// Describes blocks that have been read.
-std::vector<PieceRef> describeBlocks(const Source& source, const std::vector<Block>& blocks);
+std::vector<BlockRef> describeBlocks(const Source& source, const std::vector<Block>& blocks);
 
 /// Takes over the field data of one time: numbers (a voltage) become quantities; texts state units, labels, and the
 /// name and unit of the times.
-void describeFieldData(vtkFieldData* data, volume::Piece& piece, std::vector<ArrayRef>& arrays);
+void describeFieldData(vtkFieldData* data, volume::FileBlock& block, std::vector<ArrayRef>& arrays);
 
 /// The field data of an unstructured grid, read without its points and cells.
 vtkSmartPointer<vtkFieldData> fieldDataAlone(const std::string& path);
@@ -44,6 +44,6 @@ vtkDataArray* findArray(vtkDataSet* data, const ArrayRef& array);
 std::string rangesJson(vtkDataSet* data, vtkDataArray* values, const ArrayRef& array);
 
 /// The JSON of a header message (volume/import/files/stream.h).
-std::string headerJson(const std::vector<PieceRef>& pieces);
+std::string headerJson(const std::vector<BlockRef>& blocks);
 
 } // namespace tessera::importer

@@ -41,7 +41,7 @@ constexpr std::size_t kMostSamplings = 64;
 struct OpenFile {
     std::vector<std::string> files; ///< one, or slices of one volume
     std::optional<Source> source;
-    std::vector<PieceRef> pieces;
+    std::vector<BlockRef> blocks;
 };
 
 /// The blocks of a file at one time.
@@ -111,30 +111,30 @@ OpenFile openFile(State& state, const std::vector<std::string>& files, bool like
     file.files = files;
     file.source = openSource(files);
     Source& source = *file.source;
-    file.pieces = describeImageHeader(source);
-    if (file.pieces.empty() && like && !source.times.empty() && !state.files.empty() &&
-        !state.files.back().pieces.empty() && source.format != "OpenFOAM" && source.format != "EnSight" &&
+    file.blocks = describeImageHeader(source);
+    if (file.blocks.empty() && like && !source.times.empty() && !state.files.empty() &&
+        !state.files.back().blocks.empty() && source.format != "OpenFOAM" && source.format != "EnSight" &&
         source.format != "NetCDF" &&
-        (source.format == "vtu" || state.files.back().pieces.front().piece.quantities.empty())) {
-        file.pieces = state.files.back().pieces;
-        for (PieceRef& ref : file.pieces) {
-            ref.piece.times = source.times;
-            ref.piece.quantities.clear();
+        (source.format == "vtu" || state.files.back().blocks.front().block.quantities.empty())) {
+        file.blocks = state.files.back().blocks;
+        for (BlockRef& ref : file.blocks) {
+            ref.block.times = source.times;
+            ref.block.quantities.clear();
             std::vector<ArrayRef> none; // arrays are described already
-            if (source.format == "vtu") describeFieldData(fieldDataAlone(path), ref.piece, none);
+            if (source.format == "vtu") describeFieldData(fieldDataAlone(path), ref.block, none);
         }
     }
-    if (file.pieces.empty()) {
+    if (file.blocks.empty()) {
         const std::vector<Block> blocks = readBlocks(source, 0);
-        file.pieces = describeBlocks(source, blocks);
+        file.blocks = describeBlocks(source, blocks);
         Loaded now{state.files.size(), 0, blocks, kilobytesOf(blocks), {}};
         while (!state.loaded.empty()) state.loaded.pop_back();
         state.loaded.push_front(std::move(now));
     }
     bool any = false;
-    for (PieceRef& ref : file.pieces) {
-        ref.piece.file = path;
-        ref.piece.format = source.format;
+    for (BlockRef& ref : file.blocks) {
+        ref.block.file = path;
+        ref.block.format = source.format;
         any = any || !ref.arrays.empty();
     }
     if (!any) throw std::runtime_error("holds no array of numbers");
@@ -174,7 +174,7 @@ std::shared_ptr<const Sampling> samplingOf(State& state, vtkDataSet* mesh, const
 }
 
 struct Request {
-    std::size_t file = 0, piece = 0;
+    std::size_t file = 0, block = 0;
     int array = 0, component = 0, time = 0;
     Lattice lattice;
 };
@@ -183,7 +183,7 @@ Request parseRequest(const std::string& line) {
     std::istringstream in(line);
     std::string word;
     Request r;
-    in >> word >> r.file >> r.piece >> r.array >> r.component >> r.time;
+    in >> word >> r.file >> r.block >> r.array >> r.component >> r.time;
     in >> r.lattice.size.x >> r.lattice.size.y >> r.lattice.size.z;
     in >> r.lattice.origin.x >> r.lattice.origin.y >> r.lattice.origin.z;
     in >> r.lattice.spacing.x >> r.lattice.spacing.y >> r.lattice.spacing.z;
@@ -224,15 +224,15 @@ std::vector<std::uint8_t> validMask(vtkDataSetAttributes* data, std::size_t coun
 void sendFrame(State& state, const Request& request) {
     if (request.file >= state.files.size()) throw std::runtime_error("no such file in the request");
     OpenFile& file = state.files[request.file];
-    if (request.piece >= file.pieces.size()) throw std::runtime_error("no such block in the request");
-    PieceRef& ref = file.pieces[request.piece];
+    if (request.block >= file.blocks.size()) throw std::runtime_error("no such block in the request");
+    BlockRef& ref = file.blocks[request.block];
     if (request.array < -1 || request.array >= int(ref.arrays.size()) || request.time < 0 ||
-        request.time >= std::max(1, int(ref.piece.times.size())))
+        request.time >= std::max(1, int(ref.block.times.size())))
         throw std::runtime_error("no such array or time in the request");
     Loaded& loaded = load(state, request.file, request.time);
-    if (request.piece >= loaded.blocks.size() || loaded.blocks[request.piece].name != ref.piece.name)
+    if (request.block >= loaded.blocks.size() || loaded.blocks[request.block].name != ref.block.name)
         throw std::runtime_error("has other blocks at this time or in this file of the series");
-    vtkDataSet* data = loaded.blocks[request.piece].data;
+    vtkDataSet* data = loaded.blocks[request.block].data;
     const ArrayRef* array = request.array < 0 ? nullptr : &ref.arrays[std::size_t(request.array)];
     vtkDataArray* from = nullptr;
     if (array != nullptr) {
@@ -246,7 +246,7 @@ void sendFrame(State& state, const Request& request) {
     std::vector<std::byte> samples(count * volume::byteSize(type));
     std::vector<std::uint8_t> mask;
 
-    const bool direct = !ref.piece.mesh && request.lattice == ref.piece.lattice;
+    const bool direct = !ref.block.mesh && request.lattice == ref.block.lattice;
     if (direct) {
         vtkDataSetAttributes* attributes = data->GetPointData();
         if (array != nullptr && array->ofCells) attributes = data->GetCellData();
@@ -265,7 +265,7 @@ void sendFrame(State& state, const Request& request) {
         if (from == nullptr) {
             std::fill(samples.begin(), samples.end(), std::byte{1});
         } else if (array->ofCells && type == ScalarType::F32) {
-            vtkSmartPointer<vtkDataSet>& smoothed = loaded.smoothed[request.piece];
+            vtkSmartPointer<vtkDataSet>& smoothed = loaded.smoothed[request.block];
             if (smoothed == nullptr) {
                 vtkNew<vtkCellDataToPointData> filter;
                 filter->SetInputData(data);
@@ -298,23 +298,23 @@ void sendFrame(State& state, const Request& request) {
 void sendRanges(State& state, const std::string& line) {
     std::istringstream in(line);
     std::string word;
-    std::size_t fileIndex = 0, piece = 0;
+    std::size_t fileIndex = 0, block = 0;
     int arrayIndex = 0, time = 0;
-    in >> word >> fileIndex >> piece >> arrayIndex >> time;
+    in >> word >> fileIndex >> block >> arrayIndex >> time;
     if (!in || fileIndex >= state.files.size()) throw std::runtime_error("bad request");
     OpenFile& file = state.files[fileIndex];
-    if (piece >= file.pieces.size() || arrayIndex < 0 || arrayIndex >= int(file.pieces[piece].arrays.size()) ||
-        time < 0 || time >= std::max(1, int(file.pieces[piece].piece.times.size())))
+    if (block >= file.blocks.size() || arrayIndex < 0 || arrayIndex >= int(file.blocks[block].arrays.size()) ||
+        time < 0 || time >= std::max(1, int(file.blocks[block].block.times.size())))
         throw std::runtime_error("bad request");
-    const PieceRef& ref = file.pieces[piece];
+    const BlockRef& ref = file.blocks[block];
     Loaded& loaded = load(state, fileIndex, time);
-    if (piece >= loaded.blocks.size() || loaded.blocks[piece].name != ref.piece.name)
+    if (block >= loaded.blocks.size() || loaded.blocks[block].name != ref.block.name)
         throw std::runtime_error("has other blocks at this time or in this file of the series");
     const ArrayRef& array = ref.arrays[std::size_t(arrayIndex)];
-    vtkDataArray* from = findArray(loaded.blocks[piece].data, array);
+    vtkDataArray* from = findArray(loaded.blocks[block].data, array);
     if (from == nullptr || from->GetNumberOfComponents() < array.firstComponent + array.form.components)
         throw std::runtime_error("array \"" + array.vtkName + "\" is missing in this file or at this time");
-    sendMessage(MessageKind::Header, rangesJson(loaded.blocks[piece].data, from, array));
+    sendMessage(MessageKind::Header, rangesJson(loaded.blocks[block].data, from, array));
 }
 
 int run(int argc, char** argv) {
@@ -343,7 +343,7 @@ int run(int argc, char** argv) {
         }
         try {
             state.files.push_back(openFile(state, files, like));
-            sendMessage(MessageKind::Header, headerJson(state.files.back().pieces));
+            sendMessage(MessageKind::Header, headerJson(state.files.back().blocks));
         } catch (const std::exception& error) {
             sendMessage(MessageKind::Failure, error.what());
             return 0;

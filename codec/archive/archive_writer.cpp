@@ -374,7 +374,7 @@ void ArchiveWriter::Impl::commit(const Metadata& now, std::size_t wholeTimes, bo
     }
     Bytes index = serialise(page, header.features);
     pageBytes += index.size();
-    if ((header.features & kCompact) != 0) index = encodePiece(index, pageBytes > mostPageBytes(file.position()));
+    if ((header.features & kCompact) != 0) index = encodeBlock(index, pageBytes > mostPageBytes(file.position()));
     header.index = {file.position(), index.size(), checksum(index)};
     file.append(index);
     header.fileSize = file.position();

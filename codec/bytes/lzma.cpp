@@ -82,25 +82,25 @@ DecodeStatus decodeLzma(std::span<const std::byte> in, int literalBits, std::spa
     return decode(in, literalBits, {}, out);
 }
 
-Bytes encodePiece(std::span<const std::byte> in, bool plain) {
+Bytes encodeBlock(std::span<const std::byte> in, bool plain) {
     Bytes out;
     appendLength(out, static_cast<std::uint32_t>(in.size()));
     Bytes packed;
-    if (in.size() <= kLongPiece && !plain) packed = encode(in, 0, dictionary());
+    if (in.size() <= kLongBlock && !plain) packed = encode(in, 0, dictionary());
     const bool shorter = !packed.empty() && packed.size() < in.size();
     const auto body = shorter ? std::span<const std::byte>(packed) : in;
     out.insert(out.end(), body.begin(), body.end());
     return out;
 }
 
-DecodeStatus decodePiece(std::span<const std::byte> in, Bytes& out) {
+DecodeStatus decodeBlock(std::span<const std::byte> in, Bytes& out) {
     std::uint64_t length = 0;
     if (const DecodeStatus status = takeLength(in, length); status != DecodeStatus::Ok) return status;
     if (length == in.size()) {
         out.assign(in.begin(), in.end());
         return DecodeStatus::Ok;
     }
-    if (length > kLongPiece) return DecodeStatus::BadLength;
+    if (length > kLongBlock) return DecodeStatus::BadLength;
     out.resize(length);
     return decode(in, 0, dictionary(), out);
 }

@@ -15,12 +15,12 @@ Bytes encodeLzma(std::span<const std::byte> in, int literalBits);
 DecodeStatus decodeLzma(std::span<const std::byte> in, int literalBits, std::span<std::byte> out) noexcept;
 
 /// Longer blocks are never LZMA, since decoding would be slow. Part of the format.
-inline constexpr std::size_t kLongPiece = 1 << 16;
+inline constexpr std::size_t kLongBlock = 1 << 16;
 
 /// Codes a text or an index page as an LZMA block: its length, then LZMA with a preset dictionary; or the bytes
 /// themselves if they are long, would not become shorter, or `plain` is set.
-Bytes encodePiece(std::span<const std::byte> in, bool plain = false);
-/// Decodes an LZMA block; allocates at most in.size() or kLongPiece bytes.
-DecodeStatus decodePiece(std::span<const std::byte> in, Bytes& out);
+Bytes encodeBlock(std::span<const std::byte> in, bool plain = false);
+/// Decodes an LZMA block; allocates at most in.size() or kLongBlock bytes.
+DecodeStatus decodeBlock(std::span<const std::byte> in, Bytes& out);
 
 } // namespace tessera::codec

@@ -179,7 +179,7 @@ std::vector<IndexPage> readPages(const FileBytes& bytes, const Header& header, c
         upTo.index = at; // a page may only refer to bytes before it
         Bytes records;
         const bool compact = (header.features & kCompact) != 0;
-        require(!compact || decodePiece(part, records) == DecodeStatus::Ok, "a page of the index cannot be decoded",
+        require(!compact || decodeBlock(part, records) == DecodeStatus::Ok, "a page of the index cannot be decoded",
                 file);
         pageBytes += compact ? records.size() : part.size();
         require(!compact || pageBytes <= mostPageBytes(header.fileSize), "the index is far too long for the file",

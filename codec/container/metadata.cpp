@@ -271,7 +271,7 @@ Metadata metadataFromJson(std::string_view text, const std::string& file) {
 Bytes serialise(const Metadata& metadata, std::uint32_t features) {
     const std::string text = toJson(metadata);
     const auto plain = std::as_bytes(std::span(text));
-    if ((features & kCompact) != 0) return encodePiece(plain);
+    if ((features & kCompact) != 0) return encodeBlock(plain);
     const Bytes packed = Compressor(kMostEffort).compress(plain);
     Bytes out;
     appendU32(out, static_cast<std::uint32_t>(text.size()));
@@ -288,7 +288,7 @@ Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t features,
     };
     if ((features & kCompact) != 0) {
         Bytes text;
-        if (decodePiece(block, text) != DecodeStatus::Ok)
+        if (decodeBlock(block, text) != DecodeStatus::Ok)
             throw Error("the metadata cannot be decoded", file, "metadata");
         return metadataFromJson(textOf(text), file);
     }

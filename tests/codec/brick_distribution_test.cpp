@@ -124,9 +124,9 @@ std::vector<char> withPage(const std::vector<char>& file, const std::function<vo
     const auto bytes = std::as_bytes(std::span(file));
     Header header = parseHeaders(bytes, file.size(), "test").header;
     Bytes page;
-    EXPECT_EQ(decodePiece(bytes.subspan(header.index.offset, header.index.length), page), DecodeStatus::Ok);
+    EXPECT_EQ(decodeBlock(bytes.subspan(header.index.offset, header.index.length), page), DecodeStatus::Ok);
     edit(page);
-    const Bytes packed = encodePiece(page);
+    const Bytes packed = encodeBlock(page);
     Bytes out(bytes.begin(), bytes.begin() + std::ptrdiff_t(header.index.offset));
     out.insert(out.end(), packed.begin(), packed.end());
     header.index = {header.index.offset, packed.size(), checksum(packed)};

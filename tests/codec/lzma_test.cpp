@@ -72,44 +72,44 @@ TEST(Lzma, StreamsTakeItWhereItIsShorterAndAllowed) {
     }
 }
 
-TEST(Pieces, ComeBackShortLongAndEmpty) {
+TEST(LzmaBlocks, ComeBackShortLongAndEmpty) {
     std::mt19937 random(33);
     for (const std::size_t count : {0u, 1u, 5u, 300u, 70000u}) {
         const Bytes in = repetitive(count, random);
         Bytes out;
-        const Bytes coded = encodePiece(in);
-        ASSERT_EQ(decodePiece(coded, out), DecodeStatus::Ok);
+        const Bytes coded = encodeBlock(in);
+        ASSERT_EQ(decodeBlock(coded, out), DecodeStatus::Ok);
         EXPECT_EQ(out, in);
         EXPECT_LE(coded.size(), in.size() + 3);
     }
 }
 
-TEST(Pieces, GoOnFromTheDictionary) {
+TEST(LzmaBlocks, GoOnFromTheDictionary) {
     const std::string text = R"("grid":{"brickSize":64,"levels":5,"phase":0.0},"lossless":true,"maxError":0.0)";
     const auto in = std::as_bytes(std::span(text));
-    const Bytes coded = encodePiece(in);
+    const Bytes coded = encodeBlock(in);
     EXPECT_LT(coded.size(), text.size() / 3);
     Bytes out;
     for (std::size_t cut = 0; cut < coded.size(); ++cut) {
         const Bytes shorter(coded.begin(), coded.begin() + std::ptrdiff_t(cut));
-        EXPECT_NE(decodePiece(shorter, out), DecodeStatus::Ok) << cut;
+        EXPECT_NE(decodeBlock(shorter, out), DecodeStatus::Ok) << cut;
     }
     // A length that nothing so short can have, and one beyond all bounds.
     Bytes lie{std::byte{0xff}, std::byte{0xff}, std::byte{0x7f}, std::byte{0}, std::byte{1}};
-    EXPECT_EQ(decodePiece(lie, out), DecodeStatus::BadLength);
+    EXPECT_EQ(decodeBlock(lie, out), DecodeStatus::BadLength);
     // One that it could have, but no writer makes.
-    for (const std::size_t count : {kLongPiece, kLongPiece + 1}) {
+    for (const std::size_t count : {kLongBlock, kLongBlock + 1}) {
         const Bytes zeros(count), body = encodeLzma(zeros, 0); // no use of the dictionary
         lie.clear();
         appendLength(lie, std::uint32_t(count));
         lie.insert(lie.end(), body.begin(), body.end());
-        EXPECT_EQ(decodePiece(lie, out), count == kLongPiece ? DecodeStatus::Ok : DecodeStatus::BadLength);
+        EXPECT_EQ(decodeBlock(lie, out), count == kLongBlock ? DecodeStatus::Ok : DecodeStatus::BadLength);
     }
     lie = Bytes(6, std::byte{0xff});
-    EXPECT_EQ(decodePiece(lie, out), DecodeStatus::BadLength);
+    EXPECT_EQ(decodeBlock(lie, out), DecodeStatus::BadLength);
 }
 
-TEST(Pieces, AModelOfNoBytesIsThatOfNoTokens) {
+TEST(LzmaBlocks, AModelOfNoBytesIsThatOfNoTokens) {
     Model model;
     ASSERT_EQ(parseModel({}, 3, model), DecodeStatus::Ok);
     EXPECT_EQ(model, makeModel(Histogram(3, {}), 1));

@@ -50,7 +50,7 @@ TEST(MemoryPlan, SlabsFitTheLimit) {
 TEST(MetadataText, MistakesAreNamedByPlaceAndReason) {
     const volume::DatasetInfo info = makeDataset({9, 8, 7}, {{"v", ScalarType::U8}}, 1).info;
     Bytes plain;
-    ASSERT_EQ(decodePiece(serialise(metadataOf(info, volume::LatticeKind::CC), kCompact), plain), DecodeStatus::Ok);
+    ASSERT_EQ(decodeBlock(serialise(metadataOf(info, volume::LatticeKind::CC), kCompact), plain), DecodeStatus::Ok);
     const std::string text(reinterpret_cast<const char*>(plain.data()), plain.size());
     const auto problem = [&](const std::string& from, const std::string& to) {
         std::string changed = text;
@@ -58,7 +58,7 @@ TEST(MetadataText, MistakesAreNamedByPlaceAndReason) {
         EXPECT_NE(at, std::string::npos) << from << " in " << text;
         changed.replace(at, from.size(), to);
         try {
-            parseMetadata(encodePiece(std::as_bytes(std::span(changed))), kCompact, "a.tsr");
+            parseMetadata(encodeBlock(std::as_bytes(std::span(changed))), kCompact, "a.tsr");
         } catch (const Error& error) {
             return std::string(error.what());
         }

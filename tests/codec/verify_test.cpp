@@ -46,9 +46,9 @@ template <class Change> std::vector<char> withIndex(const std::vector<char>& who
     Header header = parseHeaders(bytes, bytes.size(), "").header;
     EXPECT_EQ(header.index.offset + header.index.length, bytes.size());
     Bytes page;
-    EXPECT_EQ(decodePiece(std::span(bytes).subspan(header.index.offset), page), DecodeStatus::Ok);
+    EXPECT_EQ(decodeBlock(std::span(bytes).subspan(header.index.offset), page), DecodeStatus::Ok);
     change(page);
-    const Bytes piece = encodePiece(page);
+    const Bytes piece = encodeBlock(page);
     bytes.resize(header.index.offset);
     bytes.insert(bytes.end(), piece.begin(), piece.end());
     header.index = {header.index.offset, piece.size(), checksum(piece)};

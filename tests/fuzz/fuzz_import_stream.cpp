@@ -20,9 +20,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             const volume::Field field = volume::parseFrame(rest, lattice, volume::ScalarType::I16);
             if (field.count() != 12 || field.samples.size() != 24) std::abort();
         } else {
-            for (const volume::Piece& piece : volume::parseStreamHeader(
+            for (const volume::FileBlock& block : volume::parseStreamHeader(
                      std::string_view(reinterpret_cast<const char*>(rest.data()), rest.size()), "a"))
-                if (piece.lattice.size.x < 1) std::abort();
+                if (block.lattice.size.x < 1) std::abort();
         }
     } catch (const Error&) {
     }

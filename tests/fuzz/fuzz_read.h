@@ -43,10 +43,10 @@ inline void readAs(const std::uint8_t* data, std::size_t size, const std::string
         const std::size_t times = std::max<std::size_t>(1, std::min(kTimes, source.times.size()));
         for (std::size_t time = 0; time < times; ++time) {
             const std::vector<Block> blocks = readBlocks(source, static_cast<int>(time));
-            const std::vector<PieceRef> pieces = describeBlocks(source, blocks);
-            headerJson(pieces);
+            const std::vector<BlockRef> described = describeBlocks(source, blocks);
+            headerJson(described);
             for (std::size_t b = 0; b < blocks.size(); ++b)
-                for (const ArrayRef& array : pieces[b].arrays) {
+                for (const ArrayRef& array : described[b].arrays) {
                     vtkDataSet* grid = blocks[b].data;
                     vtkDataArray* values = findArray(grid, array);
                     const vtkIdType wanted = array.ofCells ? grid->GetNumberOfCells() : grid->GetNumberOfPoints();

@@ -40,7 +40,7 @@ std::vector<std::byte> frame(ScalarType type, std::uint32_t mask, glm::ivec3 siz
     return bytes;
 }
 
-const std::string kHeader = R"({"format":"vti","pieces":[{"name":"","mesh":false,"cellData":false,"dims":[2,1,3],
+const std::string kHeader = R"({"format":"vti","blocks":[{"name":"","mesh":false,"cellData":false,"dims":[2,1,3],
  "spacing":[1,1,1],"origin":[0,0,0],"times":[0.5],"arrays":[{"name":"T","unit":"K","components":1,"type":"float32"}]}]})";
 
 TEST(Stream, HeadsOfImpossibleMessagesAreRefused) {
@@ -180,7 +180,7 @@ TEST_F(FakeImporter, FailuresCostOneLine) {
     EXPECT_THAT(failure(), testing::EndsWith("a.vti: is damaged"));
     use(message(1, "{}"));
     EXPECT_THAT(failure(), testing::HasSubstr("bad header"));
-    use(message(1, R"({"format":"vti","pieces":[]})"));
+    use(message(1, R"({"format":"vti","blocks":[]})"));
     EXPECT_THAT(failure(), testing::HasSubstr("holds no data"));
     use(message(1, kHeader) + "exit 0");
     EXPECT_THAT(failure(), testing::HasSubstr("ended early"));

@@ -22,7 +22,7 @@ namespace {
 
 /// One array of one block that feeds a parameter.
 struct Contribution {
-    std::size_t group, piece;
+    std::size_t group, block;
     int array;
 };
 
@@ -78,7 +78,7 @@ struct Assembly {
     std::vector<std::uint8_t> label;              ///< samples of the generated label
     std::shared_ptr<const Mask> labelMask;
 
-    const Piece* pieceAt(const Contribution& from, double time, int& local) const {
+    const FileBlock* blockAt(const Contribution& from, double time, int& local) const {
         const FileGroup& group = groups[from.group];
         std::size_t at = 0;
         if (!group.times.empty()) {
@@ -91,14 +91,14 @@ struct Assembly {
         }
         const FileGroup::Frame frame = group.frames[at];
         local = frame.localTime;
-        return &group.files[frame.file]->pieces[from.piece];
+        return &group.files[frame.file]->blocks[from.block];
     }
 
     bool inParts() const {
         return std::ranges::none_of(feeds, [](const auto& feed) { return feed.empty(); }) &&
                std::ranges::all_of(files, [this](const OpenedFile& file) {
-                   return std::ranges::all_of(file.pieces, [this](const Piece& piece) {
-                       return piece.inParts && piece.lattice.size == lattice.size;
+                   return std::ranges::all_of(file.blocks, [this](const FileBlock& block) {
+                       return block.inParts && block.lattice.size == lattice.size;
                    });
                });
     }
@@ -117,9 +117,9 @@ struct Assembly {
         for (const Contribution& from : feeds[p]) {
             if (!merged.samples.empty() && !merged.mask) break;
             int local = 0;
-            const Piece* piece = pieceAt(from, times[static_cast<std::size_t>(timeIndex)], local);
-            if (piece == nullptr) continue;
-            Field field = inType(piece->read(from.array, component, local, lattice, slices), parameters[p].type);
+            const FileBlock* block = blockAt(from, times[static_cast<std::size_t>(timeIndex)], local);
+            if (block == nullptr) continue;
+            Field field = inType(block->read(from.array, component, local, lattice, slices), parameters[p].type);
             field.lattice = part;
             if (merged.samples.empty())
                 merged = std::move(field);
@@ -137,9 +137,9 @@ struct Assembly {
             const FileGroup& group = groups[from.group];
             for (const FileGroup::Frame& frame : group.frames) {
                 progress.advance(done++ / double(group.frames.size() * feeds.size()));
-                const Piece& piece = group.files[frame.file]->pieces[from.piece];
+                const FileBlock& block = group.files[frame.file]->blocks[from.block];
                 const std::vector<Range> own =
-                    piece.ranges ? piece.ranges(from.array, frame.localTime) : std::vector<Range>{};
+                    block.ranges ? block.ranges(from.array, frame.localTime) : std::vector<Range>{};
                 if (own.empty() || (!all.empty() && own.size() != all.size())) return {};
                 if (all.empty()) all = own;
                 for (std::size_t i = 0; i < own.size(); ++i)
@@ -160,14 +160,14 @@ struct Assembly {
         };
         std::vector<Block> blocks;
         std::size_t total = 0;
-        for (const FileGroup& group : groups) total += group.files.front()->pieces.size();
+        for (const FileGroup& group : groups) total += group.files.front()->blocks.size();
         std::vector<std::uint8_t> anywhere(lattice.count(), 0);
         for (const FileGroup& group : groups)
-            for (const Piece& piece : group.files.front()->pieces) {
+            for (const FileBlock& block : group.files.front()->blocks) {
                 progress.advance(double(blocks.size()) / double(total), "blocks");
-                Field cover = piece.read(-1, 0, 0, lattice, {});
+                Field cover = block.read(-1, 0, 0, lattice, {});
                 for (std::size_t i = 0; i < anywhere.size(); ++i) anywhere[i] = anywhere[i] != 0 || cover.present(i);
-                blocks.push_back({piece.name, std::move(cover)});
+                blocks.push_back({block.name, std::move(cover)});
             }
         std::erase_if(blocks, [&](const Block& block) {
             for (std::size_t i = 0; i < anywhere.size(); ++i)
@@ -201,9 +201,9 @@ struct Assembly {
 };
 
 /// Whether a block is a mesh, or one of several adjacent grids of a file, whose arrays of equal name are one parameter.
-bool isBlock(const OpenedFile& file, const Piece& piece) {
-    return piece.mesh || (file.pieces.size() > 1 && std::ranges::none_of(file.pieces, [&](const Piece& other) {
-                              return &other != &piece && other.lattice == piece.lattice;
+bool isBlock(const OpenedFile& file, const FileBlock& block) {
+    return block.mesh || (file.blocks.size() > 1 && std::ranges::none_of(file.blocks, [&](const FileBlock& other) {
+                              return &other != &block && other.lattice == block.lattice;
                           }));
 }
 
@@ -241,23 +241,23 @@ public:
     Parameters(Assembly& all, DatasetInfo& info) : all_(all), info_(info) {
         // Files on one grid all stay visible: arrays of equal name get the file's name added.
         for (const FileGroup& group : all.groups)
-            for (const Piece& piece : group.files.front()->pieces)
-                if (!isBlock(*group.files.front(), piece))
-                    for (const Array& array : piece.arrays) ++onGrids_[array.name];
+            for (const FileBlock& block : group.files.front()->blocks)
+                if (!isBlock(*group.files.front(), block))
+                    for (const Array& array : block.arrays) ++onGrids_[array.name];
     }
 
-    void add(std::size_t group, std::size_t block, std::size_t array) {
+    void add(std::size_t group, std::size_t number, std::size_t array) {
         const OpenedFile& file = *all_.groups[group].files.front();
-        const Piece& piece = file.pieces[block];
-        const Array& about = piece.arrays[array];
-        const bool joins = isBlock(file, piece);
-        const ScalarType type = typeInAll(all_.groups[group], block, array);
+        const FileBlock& block = file.blocks[number];
+        const Array& about = block.arrays[array];
+        const bool joins = isBlock(file, block);
+        const ScalarType type = typeInAll(all_.groups[group], number, array);
         std::string name = about.name;
         if (!joins && onGrids_[name] > 1) {
             const std::string stem = fs::path(file.entry.path).stem().string();
             name = about.name == "value" ? stem : stem + "." + about.name;
         }
-        const Contribution from{group, block, static_cast<int>(array)};
+        const Contribution from{group, number, static_cast<int>(array)};
         const auto known = byName_.find(name);
         if (known == byName_.end()) {
             byName_.emplace(name, info_.parameters.size());
@@ -265,12 +265,12 @@ public:
             all_.feeds.push_back({from});
             return;
         }
-        if (!joins) throw Error("array \"" + about.name + "\" is present twice", piece.file);
+        if (!joins) throw Error("array \"" + about.name + "\" is present twice", block.file);
         Parameter& parameter = info_.parameters[known->second];
         if (parameter.components != about.components)
             throw Error("array has " + std::to_string(about.components) + " components here and " +
                             std::to_string(parameter.components) + " in another block",
-                        piece.file, about.name);
+                        block.file, about.name);
         parameter.type = commonType(parameter.type, type);
         all_.feeds[known->second].push_back(from);
     }
@@ -288,17 +288,17 @@ Gathered gather(Assembly& all, bool numbers, DatasetInfo& info, std::vector<std:
     Parameters parameters(all, info);
     for (std::size_t g = 0; g < all.groups.size(); ++g) {
         const OpenedFile& file = *all.groups[g].files.front();
-        for (std::size_t b = 0; b < file.pieces.size(); ++b) {
-            const Piece& piece = file.pieces[b];
-            found.blocks += isBlock(file, piece) ? 1 : 0;
-            found.scattered = found.scattered || piece.note.starts_with("scattered points");
-            if (!piece.note.empty() && std::ranges::find(notes, piece.note) == notes.end()) notes.push_back(piece.note);
-            if (!piece.lengthUnit.empty()) info.lengthUnit = piece.lengthUnit;
-            if (!numbers && !piece.timeName.empty()) info.timeName = piece.timeName;
-            if (!numbers && !piece.timeUnit.empty()) info.timeUnit = piece.timeUnit;
-            if (info.provenance.empty()) info.provenance = piece.provenance;
-            for (std::size_t a = 0; a < piece.arrays.size(); ++a) {
-                found.anyLabel = found.anyLabel || piece.arrays[a].categorical;
+        for (std::size_t b = 0; b < file.blocks.size(); ++b) {
+            const FileBlock& block = file.blocks[b];
+            found.blocks += isBlock(file, block) ? 1 : 0;
+            found.scattered = found.scattered || block.note.starts_with("scattered points");
+            if (!block.note.empty() && std::ranges::find(notes, block.note) == notes.end()) notes.push_back(block.note);
+            if (!block.lengthUnit.empty()) info.lengthUnit = block.lengthUnit;
+            if (!numbers && !block.timeName.empty()) info.timeName = block.timeName;
+            if (!numbers && !block.timeUnit.empty()) info.timeUnit = block.timeUnit;
+            if (info.provenance.empty()) info.provenance = block.provenance;
+            for (std::size_t a = 0; a < block.arrays.size(); ++a) {
+                found.anyLabel = found.anyLabel || block.arrays[a].categorical;
                 parameters.add(g, b, a);
             }
         }
@@ -311,8 +311,8 @@ Gathered gather(Assembly& all, bool numbers, DatasetInfo& info, std::vector<std:
 std::optional<double> cellsOf(const std::vector<FileGroup>& groups) {
     std::optional<double> cells;
     for (const FileGroup& group : groups)
-        for (const Piece& piece : group.files.front()->pieces)
-            if (piece.mesh) cells = cells.value_or(0) + piece.cells;
+        for (const FileBlock& block : group.files.front()->blocks)
+            if (block.mesh) cells = cells.value_or(0) + block.cells;
     return cells;
 }
 
@@ -323,7 +323,7 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
     auto all = std::make_shared<Assembly>();
     all->files = std::move(files);
     for (const OpenedFile& file : all->files)
-        if (file.pieces.empty()) throw Error("holds no data", file.entry.path);
+        if (file.blocks.empty()) throw Error("holds no data", file.entry.path);
     all->groups = groupsInTime(all->files);
     DatasetInfo& info = result.dataset.info;
     all->lattice = chooseLattice(all->files, gridSize, info.bounds, result.notes);
@@ -331,7 +331,7 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
     info.lattice = all->lattice;
     info.times = all->times = timesOf(all->groups);
     // Voxel files of scanners and volume archives omit units; simulations use metres and seconds.
-    const std::string& format = all->groups.front().files.front()->pieces.front().format;
+    const std::string& format = all->groups.front().files.front()->blocks.front().format;
     const FileFormat* row = formatNamed(format);
     info.lengthUnit = row != nullptr ? row->lengthUnit : format == "raw" ? "" : "m";
     info.timeUnit = ""; // few files state it
@@ -344,7 +344,7 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
     if (const std::optional<double> cells = cellsOf(all->groups)) {
         origin = meshProvenance(*cells, all->lattice.size);
         result.ranges = [all](int parameter, const Progress& by) { return all->ranges(parameter, by); };
-    } else if (found.scattered || all->lattice != all->files.front().pieces.front().lattice) {
+    } else if (found.scattered || all->lattice != all->files.front().blocks.front().lattice) {
         origin = found.scattered ? kFromPoints : kFromGrids;
     }
     if (!origin.empty()) info.provenance += (info.provenance.empty() ? "" : "; ") + origin;

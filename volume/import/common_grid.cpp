@@ -64,12 +64,12 @@ Lattice gridForMesh(const Box& box, glm::dvec3 cellSize, bool cellData, glm::ive
 
 Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize, Box& bounds,
                       std::vector<std::string>& notes) {
-    const Piece& first = files.front().pieces.front();
+    const FileBlock& first = files.front().blocks.front();
     bool equalGrids = true, anyMesh = false;
     for (const OpenedFile& file : files)
-        for (const Piece& piece : file.pieces) {
-            anyMesh = anyMesh || piece.mesh;
-            equalGrids = equalGrids && !piece.mesh && !first.mesh && sameLattice(first.lattice, piece.lattice);
+        for (const FileBlock& block : file.blocks) {
+            anyMesh = anyMesh || block.mesh;
+            equalGrids = equalGrids && !block.mesh && !first.mesh && sameLattice(first.lattice, block.lattice);
         }
     if (equalGrids) {
         if (gridSize != glm::ivec3(0) && gridSize != first.lattice.size)
@@ -85,23 +85,23 @@ Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize,
     std::set<std::string> groups;
     for (const OpenedFile& file : files) {
         const bool firstOfGroup = groups.insert(file.entry.group).second;
-        for (const Piece& piece : file.pieces) {
-            if (!piece.resamples)
-                throw Error("does not lie on the grid of " + first.file + " (" + words(piece.lattice.size) +
+        for (const FileBlock& block : file.blocks) {
+            if (!block.resamples)
+                throw Error("does not lie on the grid of " + first.file + " (" + words(block.lattice.size) +
                                 " against " + words(first.lattice.size) + ")",
-                            piece.file);
-            const Lattice& own = piece.lattice;
-            const Box extent = piece.mesh ? piece.box : Box{own.origin, own.position(own.size - 1)};
+                            block.file);
+            const Lattice& own = block.lattice;
+            const Box extent = block.mesh ? block.box : Box{own.origin, own.position(own.size - 1)};
             box.lo = glm::min(box.lo, extent.lo);
             box.hi = glm::max(box.hi, extent.hi);
-            const double count = piece.mesh ? piece.cells : double(own.count());
+            const double count = block.mesh ? block.cells : double(own.count());
             all += count;
-            perLength += count / (piece.mesh ? piece.cellSize : own.spacing);
-            if (firstOfGroup && piece.mesh) {
-                cells += piece.cells;
+            perLength += count / (block.mesh ? block.cellSize : own.spacing);
+            if (firstOfGroup && block.mesh) {
+                cells += block.cells;
                 ++blocks;
             }
-            cellData = cellData && piece.cellData;
+            cellData = cellData && block.cellData;
         }
     }
     const Lattice grid = gridForMesh(box, all / perLength, cellData, gridSize);

@@ -13,8 +13,8 @@ namespace tessera::volume {
 namespace {
 
 bool sameForm(const OpenedFile& a, const OpenedFile& b) {
-    return std::equal(a.pieces.begin(), a.pieces.end(), b.pieces.begin(), b.pieces.end(),
-                      [single = a.pieces.size() == 1](const Piece& p, const Piece& q) {
+    return std::equal(a.blocks.begin(), a.blocks.end(), b.blocks.begin(), b.blocks.end(),
+                      [single = a.blocks.size() == 1](const FileBlock& p, const FileBlock& q) {
                           return (p.name == q.name || single) && p.mesh == q.mesh &&
                                  std::equal(p.arrays.begin(), p.arrays.end(), q.arrays.begin(), q.arrays.end(),
                                             [](const Array& x, const Array& y) {
@@ -36,7 +36,7 @@ void setTimes(FileGroup& group) {
     bool anyTime = false, allDistinct = true;
     std::set<double> seen;
     for (const OpenedFile* file : group.files) {
-        const auto& own = file->pieces.front().times;
+        const auto& own = file->blocks.front().times;
         if (file->entry.time || !own.empty()) anyTime = true;
         const double first = file->entry.time ? *file->entry.time : own.empty() ? 0 : own.front();
         if ((file->entry.time || !own.empty()) && !seen.insert(first).second) allDistinct = false;
@@ -44,7 +44,7 @@ void setTimes(FileGroup& group) {
     const bool several = group.files.size() > 1 || group.files.front()->entry.growing;
     for (std::size_t f = 0; f < group.files.size(); ++f) {
         const SeriesFile& entry = group.files[f]->entry;
-        const auto& own = group.files[f]->pieces.front().times;
+        const auto& own = group.files[f]->blocks.front().times;
         if (own.size() > 1 && (!several || allDistinct)) {
             for (std::size_t t = 0; t < own.size(); ++t) add(own[t], f, static_cast<int>(t));
         } else if (entry.time) {
@@ -78,9 +78,9 @@ std::vector<FileGroup> groupsInTime(const std::vector<OpenedFile>& files) {
     return groups;
 }
 
-ScalarType typeInAll(const FileGroup& group, std::size_t piece, std::size_t array) {
-    ScalarType type = group.files.front()->pieces[piece].arrays[array].type;
-    for (const OpenedFile* file : group.files) type = commonType(type, file->pieces[piece].arrays[array].type);
+ScalarType typeInAll(const FileGroup& group, std::size_t block, std::size_t array) {
+    ScalarType type = group.files.front()->blocks[block].arrays[array].type;
+    for (const OpenedFile* file : group.files) type = commonType(type, file->blocks[block].arrays[array].type);
     return type;
 }
 
@@ -100,12 +100,12 @@ void addQuantities(DatasetInfo& info, const FileGroup& group) {
             // A single frame beside a series is used at all times.
             if (group.times.size() > 1 && group.times[f] != info.times[t]) continue;
             for (const auto& [name, value] : file.entry.numbers) note(name, "", t, value);
-            for (const Piece& piece : file.pieces) {
-                for (const Quantity& quantity : piece.quantities)
+            for (const FileBlock& block : file.blocks) {
+                for (const Quantity& quantity : block.quantities)
                     if (local < quantity.values.size()) note(quantity.name, quantity.unit, t, quantity.values[local]);
                 // A time from a list or a file name that differs from the one in the file.
-                if (!group.times.empty() && local < piece.times.size() && piece.times[local] != group.times[f])
-                    note("time in the files", piece.timeUnit, t, piece.times[local]);
+                if (!group.times.empty() && local < block.times.size() && block.times[local] != group.times[f])
+                    note("time in the files", block.timeUnit, t, block.times[local]);
             }
         }
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/import/files/piece.h"
+#include "volume/import/files/file_block.h"
 #include "volume/import/files/series.h"
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace tessera::volume {
 /// A file of a series and the blocks a reader found in it.
 struct OpenedFile {
     SeriesFile entry;
-    std::vector<Piece> pieces;
+    std::vector<FileBlock> blocks;
 };
 
 /// Files of one group, consecutive in time: they differ only in their samples.
@@ -32,7 +32,7 @@ struct FileGroup {
 std::vector<FileGroup> groupsInTime(const std::vector<OpenedFile>& files);
 
 /// A type that holds an array's numbers in every file of its group.
-ScalarType typeInAll(const FileGroup& group, std::size_t piece, std::size_t array);
+ScalarType typeInAll(const FileGroup& group, std::size_t block, std::size_t array);
 
 /// Times and quantities that the files of a group, and the list file that names them, state. The first statement is
 /// used.

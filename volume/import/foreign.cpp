@@ -35,20 +35,20 @@ public:
         return {reinterpret_cast<const char*>(text.data()), text.size()};
     }
 
-    Field frame(std::size_t file, std::size_t piece, int array, int component, int time, const Lattice& target,
+    Field frame(std::size_t file, std::size_t block, int array, int component, int time, const Lattice& target,
                 ScalarType type) {
         char line[512];
         std::snprintf(line, sizeof line, "frame %zu %zu %d %d %d %d %d %d %.17g %.17g %.17g %.17g %.17g %.17g\n", file,
-                      piece, array, component, time, target.size.x, target.size.y, target.size.z, target.origin.x,
+                      block, array, component, time, target.size.x, target.size.y, target.size.z, target.origin.x,
                       target.origin.y, target.origin.z, target.spacing.x, target.spacing.y, target.spacing.z);
         const std::lock_guard lock(mutex_);
         child_.write(line);
         return parseFrame(answer(file, MessageKind::Frame, target, type, {}), target, type);
     }
 
-    std::vector<Range> ranges(std::size_t file, std::size_t piece, int array, int time) {
+    std::vector<Range> ranges(std::size_t file, std::size_t block, int array, int time) {
         char line[128];
-        std::snprintf(line, sizeof line, "ranges %zu %zu %d %d\n", file, piece, array, time);
+        std::snprintf(line, sizeof line, "ranges %zu %zu %d %d\n", file, block, array, time);
         const std::lock_guard lock(mutex_);
         child_.write(line);
         const auto text = answer(file, MessageKind::Header, Lattice{}, ScalarType::U8, {});
@@ -143,7 +143,7 @@ std::string findImporter() {
     return programBeside("tessera-import");
 }
 
-std::vector<std::vector<Piece>> openForeign(const std::vector<SeriesFile>& entries, const Progress& progress) {
+std::vector<std::vector<FileBlock>> openForeign(const std::vector<SeriesFile>& entries, const Progress& progress) {
     std::vector<std::string> paths;
     for (const SeriesFile& entry : entries) paths.push_back(entry.path);
     const std::string program = findImporter();
@@ -151,22 +151,22 @@ std::vector<std::vector<Piece>> openForeign(const std::vector<SeriesFile>& entri
         throw Error("reading this format needs the program tessera-import, which was not built (it needs VTK)",
                     paths.front());
     const auto importer = std::make_shared<Importer>(program, entries);
-    std::vector<std::vector<Piece>> files;
+    std::vector<std::vector<FileBlock>> files;
     for (std::size_t f = 0; f < paths.size(); ++f) {
         progress.advance(double(f) / double(paths.size()), fs::path(paths[f]).filename().string());
         files.push_back(parseStreamHeader(importer->header(f, progress), paths[f]));
         for (std::size_t p = 0; p < files[f].size(); ++p) {
-            Piece& piece = files[f][p];
-            const std::vector<Kept> kept = withoutPresence(piece.arrays);
-            piece.resamples = true;
+            FileBlock& block = files[f][p];
+            const std::vector<Kept> kept = withoutPresence(block.arrays);
+            block.resamples = true;
             std::vector<ScalarType> types;
-            for (const Array& array : piece.arrays) types.push_back(array.type);
-            piece.ranges = [importer, f, p, kept](int array, int time) {
+            for (const Array& array : block.arrays) types.push_back(array.type);
+            block.ranges = [importer, f, p, kept](int array, int time) {
                 const Kept from = kept[std::size_t(array)];
                 if (from.flags >= 0) return std::vector<Range>{}; // ranges of present samples are not known
                 return importer->ranges(f, p, from.index, time);
             };
-            piece.read = [importer, f, p, kept, types](int array, int component, int time, const Lattice& target,
+            block.read = [importer, f, p, kept, types](int array, int component, int time, const Lattice& target,
                                                        SliceRange) {
                 if (array < 0) return importer->frame(f, p, -1, 0, time, target, ScalarType::U8);
                 const Kept from = kept[std::size_t(array)];

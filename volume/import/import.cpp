@@ -162,7 +162,7 @@ double bytesOf(const DatasetInfo& info) {
 }
 
 /// A .nrrd file that needs no VTK.
-std::optional<Piece> openNrrd(const std::string& path) {
+std::optional<FileBlock> openNrrd(const std::string& path) {
     const std::filesystem::path file(path);
     if (file.extension() != ".nrrd" && file.extension() != ".nhdr") return std::nullopt;
     std::string head(std::size_t(1) << 20, '\0');
@@ -213,20 +213,20 @@ std::vector<OpenedFile> openEach(const std::vector<SeriesFile>& entries, const s
     for (std::size_t i = 0; i < entries.size(); ++i) {
         files[i].entry = entries[i];
         if (isRaw(entries[i].path, rawOption))
-            files[i].pieces.push_back(openRaw(entries[i].path, rawOption));
-        else if (std::optional<Piece> piece = openNrrd(entries[i].path))
-            files[i].pieces.push_back(std::move(*piece));
+            files[i].blocks.push_back(openRaw(entries[i].path, rawOption));
+        else if (std::optional<FileBlock> block = openNrrd(entries[i].path))
+            files[i].blocks.push_back(std::move(*block));
         else
             foreign.push_back(entries[i]);
     }
     if (foreign.empty()) return files;
-    std::vector<std::vector<Piece>> pieces = openForeign(foreign, progress);
+    std::vector<std::vector<FileBlock>> blocks = openForeign(foreign, progress);
     std::size_t next = 0;
     for (OpenedFile& file : files)
-        if (file.pieces.empty()) {
-            file.pieces = std::move(pieces[next++]);
-            for (Piece& piece : file.pieces)
-                if (!file.entry.part.empty() || piece.name.empty()) piece.name = blockName(file.entry);
+        if (file.blocks.empty()) {
+            file.blocks = std::move(blocks[next++]);
+            for (FileBlock& block : file.blocks)
+                if (!file.entry.part.empty() || block.name.empty()) block.name = blockName(file.entry);
         }
     return files;
 }
@@ -260,7 +260,7 @@ OpenedSeries openSeries(const std::vector<SeriesFile>& entries, const ImportOpti
 
     std::vector<OpenedFile> files = openEach(entries, options.raw, progress.part(0, 0.3));
     OpenedSeries opened;
-    opened.format = files.front().pieces.empty() ? "" : files.front().pieces.front().format;
+    opened.format = files.front().blocks.empty() ? "" : files.front().blocks.front().format;
     Assembled assembled = assemble(std::move(files), options.gridSize, readSamples, progress.part(0.3, 0.7));
     Dataset& dataset = opened.dataset;
     dataset = std::move(assembled.dataset);

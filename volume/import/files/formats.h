@@ -20,7 +20,7 @@ std::span<const FileFormat> fileFormats();
 /// The format by the suffix of a file name; null if no row has it.
 const FileFormat* formatOf(std::string_view path);
 
-/// The format by its name, as stored in Piece.
+/// The format by its name, as stored in FileBlock.
 const FileFormat* formatNamed(std::string_view name);
 
 /// The format of a file by its name, else by its first bytes (DICOM files need no suffix).

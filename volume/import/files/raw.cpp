@@ -149,7 +149,7 @@ bool hasSidecar(const std::string& path) {
     return fs::file_size(sidecar, unknown) > kMostSidecar || otherThanSidecar(readSidecar(sidecar)).empty();
 }
 
-Piece openRaw(const std::string& path, const std::string& rawOption) {
+FileBlock openRaw(const std::string& path, const std::string& rawOption) {
     RawForm form;
     fs::path data = path;
     if (!rawOption.empty()) {
@@ -183,7 +183,7 @@ Piece openRaw(const std::string& path, const std::string& rawOption) {
     return openForm(form, path, data.string(), "raw");
 }
 
-Piece openForm(const RawForm& form, const std::string& path, const std::string& data, const std::string& format) {
+FileBlock openForm(const RawForm& form, const std::string& path, const std::string& data, const std::string& format) {
     std::error_code failed;
     const auto size = fs::file_size(data, failed);
     if (failed) throw Error("no such file", data);
@@ -198,16 +198,16 @@ Piece openForm(const RawForm& form, const std::string& path, const std::string& 
                         counted(form.components.size(), "component") + ", " + counted(form.frames(), "time") + ")",
                     data);
 
-    Piece piece;
-    piece.file = path;
-    piece.format = format;
-    piece.lattice = form.lattice;
-    piece.times = form.times;
-    piece.lengthUnit = form.lengthUnit;
-    piece.timeName = form.timeName;
-    piece.timeUnit = form.timeUnit;
-    piece.quantities = form.quantities;
-    piece.provenance = form.provenance;
+    FileBlock block;
+    block.file = path;
+    block.format = format;
+    block.lattice = form.lattice;
+    block.times = form.times;
+    block.lengthUnit = form.lengthUnit;
+    block.timeName = form.timeName;
+    block.timeUnit = form.timeUnit;
+    block.quantities = form.quantities;
+    block.provenance = form.provenance;
     std::vector<std::size_t> firstComponent;
     std::vector<std::size_t> presence; // index + 1 of the component with the presence flags, 0 = none
     for (std::size_t c = 0; c < form.components.size();) {
@@ -225,14 +225,14 @@ Piece openForm(const RawForm& form, const std::string& path, const std::string& 
         std::size_t flags = 0;
         for (std::size_t other = 0; other < form.components.size(); ++other)
             if (form.components[other].presenceOf == array.name) flags = other + 1;
-        piece.arrays.push_back(std::move(array));
+        block.arrays.push_back(std::move(array));
         firstComponent.push_back(c);
         presence.push_back(flags);
         c += vector ? 3 : 1;
     }
-    if (piece.arrays.empty()) throw Error("holds no parameter", path);
-    piece.inParts = true;
-    piece.read = [form, firstComponent, presence, data](int array, int component, int time, const Lattice&,
+    if (block.arrays.empty()) throw Error("holds no parameter", path);
+    block.inParts = true;
+    block.read = [form, firstComponent, presence, data](int array, int component, int time, const Lattice&,
                                                         SliceRange slices) {
         const auto a = static_cast<std::size_t>(array), t = static_cast<std::size_t>(time);
         Field field = readComponent(data, form, firstComponent[a] + static_cast<std::size_t>(component), t, slices);
@@ -244,7 +244,7 @@ Piece openForm(const RawForm& form, const std::string& path, const std::string& 
         }
         return field;
     };
-    return piece;
+    return block;
 }
 
 } // namespace tessera::volume

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/import/files/piece.h"
+#include "volume/import/files/file_block.h"
 
 #include <span>
 #include <string>
@@ -58,11 +58,11 @@ bool hasSidecar(const std::string& path);
 
 /// Opens a raw file named by itself or by its sidecar; `rawOption` (may be empty) takes the place of the sidecar.
 /// Checks the size of the file against the form; samples are read on demand.
-Piece openRaw(const std::string& path, const std::string& rawOption);
+FileBlock openRaw(const std::string& path, const std::string& rawOption);
 
 /// Opens a file with a known layout; `named` is the name the user gave, `data` the file with the samples. Checks its
 /// size.
-Piece openForm(const RawForm& form, const std::string& named, const std::string& data, const std::string& format);
+FileBlock openForm(const RawForm& form, const std::string& named, const std::string& data, const std::string& format);
 
 /// True for paths openRaw takes: *.raw, *.bin, *.dat with a form, or a *.json that is a sidecar.
 bool isRaw(const std::string& path, const std::string& rawOption);

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostPieces = 100'000, kMostArrays = 10'000;
+constexpr std::size_t kMostBlocks = 100'000, kMostArrays = 10'000;
 
 template <class T> T take(std::span<const std::byte> bytes, std::size_t at) {
     T value;
@@ -110,54 +110,54 @@ Quantity parseQuantity(const json& entry, std::size_t times, const std::string& 
     return quantity;
 }
 
-Piece parsePiece(const json& entry, const std::string& file, const std::string& place) {
+FileBlock parseBlock(const json& entry, const std::string& file, const std::string& place) {
     const HeaderReader reader{entry, file, place + "."};
     if (!entry.is_object()) reader.fail("");
-    Piece piece;
-    piece.file = file;
-    piece.name = reader.text("name");
-    piece.lengthUnit = reader.text("lengthUnit");
-    piece.timeUnit = reader.text("timeUnit");
-    piece.timeName = reader.text("timeName");
-    piece.note = reader.text("note");
-    piece.mesh = reader.flag("mesh");
-    if (piece.mesh) {
-        piece.cellData = reader.flag("cellData");
+    FileBlock block;
+    block.file = file;
+    block.name = reader.text("name");
+    block.lengthUnit = reader.text("lengthUnit");
+    block.timeUnit = reader.text("timeUnit");
+    block.timeName = reader.text("timeName");
+    block.note = reader.text("note");
+    block.mesh = reader.flag("mesh");
+    if (block.mesh) {
+        block.cellData = reader.flag("cellData");
         const std::vector<double> box = reader.numbers("box", 6, 6);
-        piece.box = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
-        piece.cellSize = reader.triple("cellSize");
-        piece.cells = reader.numbers("cells", 1, 1)[0];
+        block.box = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
+        block.cellSize = reader.triple("cellSize");
+        block.cells = reader.numbers("cells", 1, 1)[0];
         for (int axis = 0; axis < 3; ++axis)
-            if (piece.box.lo[axis] > piece.box.hi[axis] || piece.cellSize[axis] < 0) reader.fail("box");
-        if (!(piece.cells >= 1)) reader.fail("cells");
+            if (block.box.lo[axis] > block.box.hi[axis] || block.cellSize[axis] < 0) reader.fail("box");
+        if (!(block.cells >= 1)) reader.fail("cells");
     } else {
         const std::vector<double> dims = reader.numbers("dims", 3, 3);
-        piece.lattice.spacing = reader.triple("spacing");
-        piece.lattice.origin = reader.triple("origin");
+        block.lattice.spacing = reader.triple("spacing");
+        block.lattice.origin = reader.triple("origin");
         double samples = 1;
         for (int axis = 0; axis < 3; ++axis) {
             const double n = dims[std::size_t(axis)];
             if (!(n >= 1 && n <= kMostSamplesPerAxis) || n != std::floor(n)) reader.fail("dims");
-            if (!(piece.lattice.spacing[axis] > 0)) reader.fail("spacing");
-            piece.lattice.size[axis] = static_cast<int>(n);
+            if (!(block.lattice.spacing[axis] > 0)) reader.fail("spacing");
+            block.lattice.size[axis] = static_cast<int>(n);
             samples *= n;
         }
         if (samples > 1e12) reader.fail("dims");
     }
-    piece.times = reader.numbers("times", 0, kMostTimes);
-    for (std::size_t t = 1; t < piece.times.size(); ++t)
-        if (piece.times[t] <= piece.times[t - 1]) reader.fail("times");
+    block.times = reader.numbers("times", 0, kMostTimes);
+    for (std::size_t t = 1; t < block.times.size(); ++t)
+        if (block.times[t] <= block.times[t - 1]) reader.fail("times");
     if (const auto list = entry.find("quantities"); list != entry.end()) {
         if (!list->is_array() || list->size() > kMostArrays) reader.fail("quantities");
         for (std::size_t q = 0; q < list->size(); ++q)
-            piece.quantities.push_back(
-                parseQuantity((*list)[q], piece.times.size(), file, place + ".quantities[" + std::to_string(q) + "]"));
+            block.quantities.push_back(
+                parseQuantity((*list)[q], block.times.size(), file, place + ".quantities[" + std::to_string(q) + "]"));
     }
     const json& arrays = reader.get("arrays");
     if (!arrays.is_array() || arrays.size() > kMostArrays) reader.fail("arrays");
     for (std::size_t a = 0; a < arrays.size(); ++a)
-        piece.arrays.push_back(parseArray(arrays[a], file, place + ".arrays[" + std::to_string(a) + "]"));
-    return piece;
+        block.arrays.push_back(parseArray(arrays[a], file, place + ".arrays[" + std::to_string(a) + "]"));
+    return block;
 }
 
 } // namespace
@@ -180,19 +180,19 @@ MessageHead parseMessageHead(std::span<const std::byte> bytes, const Lattice& la
     return head;
 }
 
-std::vector<Piece> parseStreamHeader(std::string_view text, const std::string& file) {
+std::vector<FileBlock> parseStreamHeader(std::string_view text, const std::string& file) {
     const json document = json::parse(text, nullptr, false);
     if (!document.is_object()) // nor is what cannot be parsed
         throw Error("tessera-import sent a header that is not JSON", file);
     const HeaderReader reader{document, file, ""};
-    const json& list = reader.get("pieces");
-    if (!list.is_array() || list.size() > kMostPieces) reader.fail("pieces");
-    std::vector<Piece> pieces;
+    const json& list = reader.get("blocks");
+    if (!list.is_array() || list.size() > kMostBlocks) reader.fail("blocks");
+    std::vector<FileBlock> blocks;
     for (std::size_t p = 0; p < list.size(); ++p) {
-        pieces.push_back(parsePiece(list[p], file, "pieces[" + std::to_string(p) + "]"));
-        pieces.back().format = reader.text("format");
+        blocks.push_back(parseBlock(list[p], file, "blocks[" + std::to_string(p) + "]"));
+        blocks.back().format = reader.text("format");
     }
-    return pieces;
+    return blocks;
 }
 
 std::vector<Range> parseRanges(std::string_view text, const std::string& file) {

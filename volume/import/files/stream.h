@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/import/files/piece.h"
+#include "volume/import/files/file_block.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +18,7 @@
 ///
 /// kind 1, header: JSON text; one for each FILE, in order, before any request. A FILE after `--like` is expected to
 /// have the layout of the one before it; N files after `--slices` are slices of one volume and count as one. Keys:
-/// "format", "pieces": [{"name", "mesh", "cellData", "dims", "spacing", "origin", "box" (6 numbers, x first), "cells",
+/// "format", "blocks": [{"name", "mesh", "cellData", "dims", "spacing", "origin", "box" (6 numbers, x first), "cells",
 /// "cellSize", "lengthUnit", "timeName", "timeUnit", "note", "times", "quantities": [{"name", "unit", "values": [a
 /// number or null for each time]}], "arrays": [{"name", "unit", "components", "type", "labels": {"1": "air"}}]}].
 /// "timeName", "note" and "quantities" are optional.
@@ -26,14 +26,14 @@
 /// kind 2, frame: u32 type (ScalarType), u32 mask (0 or 1), i32 nx, ny, nz, then nx*ny*nz samples, x fastest, then, if
 /// mask is 1, as many bytes (1 present, 0 absent). It answers the line
 ///
-///     frame FILE PIECE ARRAY COMPONENT TIME NX NY NZ OX OY OZ SX SY SZ
+///     frame FILE BLOCK ARRAY COMPONENT TIME NX NY NZ OX OY OZ SX SY SZ
 ///
 /// with the indices of the headers, and the size, origin and spacing of the grid to sample on. ARRAY -1 requests the
-/// cover of the piece: ones of uint8, absent outside.
+/// cover of the block: ones of uint8, absent outside.
 ///
 /// The line
 ///
-///     ranges FILE PIECE ARRAY TIME
+///     ranges FILE BLOCK ARRAY TIME
 ///
 /// is answered with kind 1: {"ranges": [[lo, hi], ...]}, of the array's own values at points or cells (without NaN),
 /// one per component, then for a vector that of its magnitude; null instead of a pair if there is no value.
@@ -59,8 +59,8 @@ std::uint64_t frameBytes(const Lattice& lattice, ScalarType type, bool mask);
 /// 64 MiB, or a frame of one of the two lengths that fit `lattice` and `type`.
 MessageHead parseMessageHead(std::span<const std::byte> bytes, const Lattice& lattice, ScalarType type);
 
-/// Pieces of a header message, without `read`. Throws Error for malformed messages.
-std::vector<Piece> parseStreamHeader(std::string_view json, const std::string& file);
+/// Blocks of a header message, without `read`. Throws Error for malformed messages.
+std::vector<FileBlock> parseStreamHeader(std::string_view json, const std::string& file);
 
 /// Ranges of an answer to "ranges". Throws Error for malformed messages.
 std::vector<Range> parseRanges(std::string_view json, const std::string& file);

@@ -21,7 +21,7 @@ struct Array {
 };
 
 /// One block of one file: a raw file, an image, a mesh, a region of a multi-block file.
-struct Piece {
+struct FileBlock {
     std::string file;       ///< as the user named it
     std::string format;     ///< "raw", "vti", "OpenFOAM", ...
     std::string name;       ///< of the block, "" where the file is one block
@@ -38,7 +38,7 @@ struct Piece {
     std::vector<Array> arrays;
     std::vector<double> times;        ///< empty: one frame whose time is not stated
     std::vector<Quantity> quantities; ///< one value for each time, or one for the only frame
-    /// Slices of one component of one array at the piece's own time index, sampled on `target` (equal to `lattice` for
+    /// Slices of one component of one array at the block's own time index, sampled on `target` (equal to `lattice` for
     /// grids; samples outside a mesh are absent).
     std::function<Field(int array, int component, int time, const Lattice& target, SliceRange slices)> read;
     bool inParts = false; ///< `read` gives any slices, of the grid alone; else only all of them
