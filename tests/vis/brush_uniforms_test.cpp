@@ -33,6 +33,15 @@ TEST(BrushTests, OnlyWholeBrushesAreDroppedAndCounted) {
     }
 }
 
+TEST(BrushTests, LabelsHaveRoomForRounding) {
+    volume::DatasetInfo info = twoChannels();
+    info.parameters[1].categorical = true;
+    const BrushTests tests = planRays(sceneOf({rangeBrush({{"a", 2, 3, 0}, {"b", 2, 3, 0}})}), info).brushes;
+    ASSERT_EQ(tests.tests.size(), 2u);
+    EXPECT_EQ(glm::vec2(tests.tests[0].place), glm::vec2(2, 3));
+    EXPECT_EQ(glm::vec2(tests.tests[1].place), glm::vec2(2 - kLabelRoom, 3 + kLabelRoom));
+}
+
 TEST(BrushTests, SayWhatTheProgramNeeds) {
     std::vector<Brush> brushes(4);
     brushes[0].region = EllipseRegion{"a", "nowhere", {0, 0}, {1, 1}, 0.5, 0};

@@ -139,6 +139,8 @@ TEST(Camera, ZoomRollAndFit) {
     EXPECT_FLOAT_EQ(camera.distance, 0.01f);
     zoom(camera, 0);
     EXPECT_FLOAT_EQ(camera.distance, 0.01f);
+    zoom(camera, 1e-9f);
+    EXPECT_FLOAT_EQ(camera.distance, 100) << "as far as a session may state";
     camera = Camera{};
     camera.orientation = standardOrientation(StandardView::Front);
     roll(camera, glm::radians(90.0f));

@@ -91,5 +91,26 @@ TEST(ContextBlurReference, KeepsEvenPicturesAndSpreadsNoFocus) {
     EXPECT_LT(light, 1.5);
 }
 
+// What is out of focus is spread as far to either side, up to the edges of a picture of any shape.
+TEST(ContextBlurReference, SpreadsAlikeInPicturesOfAnyShape) {
+    const auto spread = [](glm::ivec2 size, glm::ivec2 at) {
+        const std::size_t count = std::size_t(size.x) * std::size_t(size.y);
+        reference::Image image{size, std::vector<glm::dvec4>(count, glm::dvec4(0)), std::vector<double>(count, 0)};
+        image.pixels[std::size_t(at.y * size.x + at.x)] = glm::dvec4(1);
+        return reference::outOfFocus(image, 3).pixels;
+    };
+    const std::vector<glm::dvec4> square = spread({40, 40}, {20, 20}), wide = spread({40, 9}, {20, 4}),
+                                  tall = spread({9, 40}, {4, 20});
+    double seen = 0;
+    for (int across = 2; across < 7; ++across) // the rest reads beyond the narrow edges
+        for (int along = 0; along < 40; ++along) {
+            const auto at = [&](int x, int y) { return square[std::size_t(y * 40 + x)].r; };
+            EXPECT_NEAR(wide[std::size_t(across * 40 + along)].r, at(along, across + 16), 1e-12);
+            EXPECT_NEAR(tall[std::size_t(along * 9 + across)].r, at(across + 16, along), 1e-12);
+            seen += at(along, across + 16);
+        }
+    EXPECT_GT(seen, 0.5);
+}
+
 } // namespace
 } // namespace tessera::vis

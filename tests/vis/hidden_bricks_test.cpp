@@ -1,5 +1,6 @@
 #include "vis/demand/hidden_bricks.h"
 
+#include <algorithm>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <random>
@@ -100,6 +101,37 @@ TEST(HiddenBricks, AWallHidesWhatIsFarther) {
         const std::vector<std::uint8_t> all = hiddenBricks(near, grid);
         EXPECT_EQ(all[std::size_t((count.z / 2 * count.y + count.y / 2) * count.x + count.x / 2)], 1);
         EXPECT_EQ(all[std::size_t((count.z / 2 * count.y) * count.x)], 0);
+    }
+}
+
+/// Depth at which a ray enters the box of half edges `half` around the origin; 0 if it passes by.
+double entryOf(const vis::Ray& ray, glm::dvec3 half) {
+    const glm::dvec3 a = (-half - ray.origin) / ray.direction, b = (half - ray.origin) / ray.direction;
+    const glm::dvec3 in = glm::min(a, b), out = glm::max(a, b);
+    const double enter = std::max({in.x, in.y, in.z}), leave = std::min({out.x, out.y, out.z});
+    return enter < leave ? enter : 0;
+}
+
+// A wall just before slanted faces hides whole bricks, although their nearest corners are closer than its far parts:
+// parts of a brick are tried one by one. So does a wall before bricks that extend beyond the picture.
+TEST(HiddenBricks, ASlantedWallHidesWhatIsJustBehindIt) {
+    volume::BrickGrid grid;
+    grid.lattice.size = {64, 64, 64};
+    grid.brickSize = 32;
+    for (const auto& [distance, apart] : {std::pair{2.5f, 0.35}, {1.6f, 0.3}}) {
+        Camera camera;
+        camera.projection = vis::Projection::Orthographic;
+        camera.distance = distance;
+        const glm::ivec2 size(160, 160);
+        TerminationMap map = reachOf(camera, size, 0);
+        map.frame = vis::worldFrame({glm::dvec3(0), glm::dvec3(63)}, glm::dvec3(1));
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) {
+                const vis::Ray ray = vis::cameraRay(camera, 1, (glm::dvec2(x, y) + 0.5) / glm::dvec2(size) * 2.0 - 1.0);
+                float& end = map.farthest[std::size_t(y / kTerminationTile * map.tiles().x + x / kTerminationTile)];
+                end = std::max(end, float(entryOf(ray, map.frame.halfSize) - apart));
+            }
+        EXPECT_EQ(hiddenBricks(map, grid), std::vector<std::uint8_t>(8, 1)) << distance;
     }
 }
 

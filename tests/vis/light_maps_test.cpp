@@ -102,6 +102,22 @@ TEST(LightMaps, SurroundingsDoNotGlare) {
     }
 }
 
+TEST(LightMaps, SkiesAndStudiosAreBrightWhereTheirLightsAre) {
+    const auto bluer = [](glm::dvec3 light) { return light.b / light.r; };
+    const auto sky = [](glm::dvec3 to) { return surroundings(Environment::Sky, glm::normalize(to)); };
+    EXPECT_GT(bluer(sky({0, 1, 0})), 2) << "overhead";
+    EXPECT_LT(bluer(sky({1, 0.1, 0})), bluer(sky({1, 0.6, 0}))) << "paler towards the horizon";
+    EXPECT_LT(bluer(sky({1, -0.5, 0})), 0.9) << "the ground";
+    for (const double down : {-1.0, -0.3, -0.05, 0.0}) EXPECT_GT(sky({1, down, 0}).g, 0.1) << "a number everywhere";
+    EXPECT_GT(sky({-0.5, 0.7, 0.5}).g, 5) << "the sun";
+    const auto studio = [](glm::dvec3 to) { return surroundings(Environment::Studio, glm::normalize(to)); };
+    const double between = studio({-0.3, -0.8, 0.2}).g;
+    EXPECT_GT(studio({-0.8, 0.7, 0.8}).g, between + 2) << "the key light";
+    EXPECT_GT(studio({1, 0.2, 0.5}).g, between + 0.5) << "the fill light";
+    EXPECT_GT(bluer(studio({1, 0.2, 0.5})), bluer(studio({-0.8, 0.7, 0.8})));
+    EXPECT_GT(studio({0.3, 0.6, -1}).g, between + 1.5) << "the light from behind";
+}
+
 TEST(LightMaps, SurroundingsThatFollowTurnWithTheViewer) {
     Lighting lighting;
     lighting.environment = {.kind = Environment::Studio, .follows = true};

@@ -148,6 +148,34 @@ TEST(LightPicture, PngIsDecodedToLinearLight) {
     EXPECT_NEAR(picture.rgb[0].b, linearFromSrgb(128 / 255.0), 1e-6);
 }
 
+TEST(LightPicture, PngsAreNoLargerThanOtherPictures) {
+    Image image{{8200, 4100}, {}};
+    image.rgba.assign(std::size_t(image.size.x) * std::size_t(image.size.y) * 4, 255);
+    try {
+        decodeLightPicture(encodePng(image), "large.png");
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("2^25 pixels"), std::string::npos) << error.what();
+    }
+}
+
+// Noise of pixels averages out over the pixels that a texel of the surroundings covers, since each is sampled.
+TEST(LightPicture, EveryPixelCounts) {
+    LightPicture picture{{1024, 512}, {}};
+    picture.rgb.resize(1024 * 512);
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> unit(0, 1);
+    for (glm::vec3& pixel : picture.rgb) pixel = glm::vec3(unit(random));
+    const CubeMap map = surroundingsOf(picture, "noise");
+    double sum = 0, squares = 0;
+    for (const glm::dvec3& texel : map.texels) sum += texel.x, squares += texel.x * texel.x;
+    const double mean = sum / double(map.texels.size()), variance = squares / double(map.texels.size()) - mean * mean;
+    EXPECT_NEAR(mean, 0.5, 0.01);
+    // A pixel's variance is 1/12. At the poles of the picture, pixels are narrow and some are left out.
+    const double pixels = 1024.0 * 512 / double(map.texels.size());
+    EXPECT_LT(variance, 2.0 / 12 / pixels);
+}
+
 /// Even light from all around makes a white surface exactly as bright; one bright half lights the side that faces it.
 TEST(LightPicture, LightsAsTheFormulasSay) {
     Lighting lighting;

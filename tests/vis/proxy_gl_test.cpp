@@ -99,6 +99,11 @@ TEST(ProxySurfacesTest, MeetTheWholeBoxFrontToBack) {
     EXPECT_EQ(stack.count, 17);                    // every slice of samples
     EXPECT_NEAR(stack.first, -0.5, 1e-9);
     EXPECT_NEAR(stack.spacing, 1.0 / 16, 1e-9);
+    volume::Lattice bcc = lattice;
+    bcc.kind = volume::LatticeKind::BCC;
+    const ProxySurfaces halves = proxySurfaces(scene, bcc, frame, 1);
+    EXPECT_EQ(halves.count, 33); // slices of both sublattices
+    EXPECT_NEAR(halves.spacing, 1.0 / 32, 1e-9);
     scene.render.proxy = Proxy::Shells;
     EXPECT_FALSE(proxySurfaces(scene, lattice, frame, 1).shells); // the eye of parallel rays is far away
     scene.camera.projection = Projection::Perspective;

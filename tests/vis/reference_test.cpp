@@ -2,6 +2,7 @@
 #include "vis/optics/ray_setup.h"
 #include "vis/reference/raycast.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -172,6 +173,22 @@ TEST(Reference, BrushDimsAndGraysWhatIsOutside) {
     expectPixel(reference::render(scene, ramp(LatticeKind::CC), {3, 3}), {1, 1}, {color, 1}, 1e-6);
     scene.selection.brushes = {rangeBrush({{"no such channel", 0, 1, 0}})};
     expectPixel(reference::render(scene, ramp(LatticeKind::CC), {3, 3}), {1, 1}, {gray, gray, gray, 0.25}, 1e-6);
+}
+
+// How much of a pixel is in focus is that of the ray through its middle, and 0 where there is nothing.
+TEST(Reference, InterestIsOfTheFirstRay) {
+    Scene scene = frontal(VolumeLayer{.channel = "c", .shaded = false});
+    scene.camera.distance *= 2;
+    scene.transfer["c"].opacity = {{0, 0}, {0.3f, 0}, {1, 0.5f}};
+    scene.selection.brushes = {rangeBrush({{"c", 0.5, 0.8, 0.1}})};
+    const glm::ivec2 size(11, 9);
+    const Image once = reference::render(scene, ramp(LatticeKind::CC), size);
+    scene.render.samples = 4;
+    const Image often = reference::render(scene, ramp(LatticeKind::CC), size);
+    EXPECT_EQ(often.interest, once.interest);
+    EXPECT_NE(often.pixels, once.pixels);
+    EXPECT_EQ(once.interest[0], 0) << "beside the box";
+    EXPECT_GT(*std::ranges::max_element(once.interest), 0.1);
 }
 
 TEST(Reference, LatticesAgreeOnASmoothField) {

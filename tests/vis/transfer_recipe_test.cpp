@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <random>
 #include <set>
+#include <stdexcept>
 
 /// Transfer functions that fit other data.
 namespace tessera::vis {
@@ -37,6 +38,19 @@ TEST(ValueDistribution, PlacesAreQuantilesAboveTheBackground) {
     for (double place = -1; place <= 1; place += 1.0 / 64)
         EXPECT_NEAR(placeOfValue(values, valueAtPlace(values, place)), place, 1e-9);
     EXPECT_EQ(valueAtPlace({.range = {2, 4}, .count = {}}, 0.5), 3) << "no samples";
+}
+
+TEST(ValueDistribution, MagnitudesAreCountedByBothSigns) {
+    ValueDistribution values; // bins of width 1 from -4 to 8
+    values.range = {-4, 8};
+    values.count = {1, 2, 3, 4, 10, 20, 30, 40, 50, 60, 70, 80};
+    const ValueDistribution sizes = magnitudesOf(values); // bins of width 2/3 from 0
+    EXPECT_EQ(sizes.range, (Range{0, 8}));
+    std::vector<std::uint64_t> expected(12, 0);
+    for (int bin = 0; bin < 12; ++bin)
+        expected[std::size_t(std::abs(bin - 3.5) * 1.5)] += values.count[std::size_t(bin)];
+    EXPECT_EQ(sizes.count, expected);
+    EXPECT_EQ(magnitudesOf({.range = {0, 0}, .count = {5}}).range, (Range{0, 1})) << "zeros alone";
 }
 
 TEST(ValueDistribution, OneValueAroundTheObjectIsItsBackground) {
@@ -162,6 +176,66 @@ TEST(TransferLibrary, NamesAreUniqueAndPointsInOrder) {
     EXPECT_TRUE(sameName("CT bone", "ct-bone"));
     EXPECT_FALSE(sameName("CT bone", "CT skin"));
     EXPECT_FALSE(sameName("", "CT skin"));
+}
+
+/// Opacity of a function of the library at a value of a channel whose samples are spread evenly over `range`.
+double libraryOpacity(const std::string& name, Range range, const std::string& unit, double value) {
+    ValueDistribution even;
+    even.range = range;
+    even.count.assign(1000, 10);
+    const auto library = transferLibrary();
+    const auto found = std::ranges::find(library, name, &TransferRecipe::name);
+    if (found == library.end()) throw std::runtime_error(name);
+    const TransferFunction made = madeFrom(*found, even, unit);
+    return evaluate(made, effectiveRange(made, range), value).a;
+}
+
+TEST(TransferLibrary, FunctionsShowWhatTheirHelpSays) {
+    const auto at = [](const std::string& name, double share) { return libraryOpacity(name, {0, 1}, "", share); };
+    for (const double share : {0.21, 0.5, 0.99}) EXPECT_EQ(at("Low values", share), 0) << "the lowest fifth";
+    EXPECT_GT(at("Low values", 0.15), 0);
+    for (const double share : {0.11, 0.5, 0.89}) EXPECT_EQ(at("Extremes", share), 0) << "a tenth at either end";
+    for (const double share : {0.05, 0.95}) EXPECT_GT(at("Extremes", share), 0.05);
+    for (const double share : {0.2, 0.5, 0.8, 0.97}) EXPECT_GT(at("Layers", share), 0.1);
+    for (const double share : {0.1, 0.35, 0.65, 0.9}) EXPECT_EQ(at("Layers", share), 0) << "between four shells";
+    EXPECT_EQ(at("Water", 0.6), 0) << "the highest third";
+    EXPECT_GT(at("Water", 0.7), 0);
+    EXPECT_EQ(at("MR vessels", 0.94), 0) << "the brightest few percent alone";
+    EXPECT_EQ(at("CT lung", 0.3), 0);
+    for (double share = 0.05; share < 1; share += 0.05) {
+        EXPECT_GE(at("Gas", share), at("Gas", share - 0.05));
+        EXPECT_GT(at("Radiograph", share), 0) << "everything";
+        EXPECT_LT(at("Radiograph", share), 0.11) << "a little";
+    }
+}
+
+TEST(TransferLibrary, TissuesOfComputedTomographyAreWhereTheyAre) {
+    const auto at = [](const std::string& name, double hounsfield) {
+        return libraryOpacity(name, {-1000, 2000}, "HU", hounsfield);
+    };
+    const double air = -1000, lung = -750, skin = -350, muscle = 50, bone = 700;
+    EXPECT_GT(at("CT bone", bone), 0.4);
+    EXPECT_EQ(at("CT bone", muscle), 0);
+    EXPECT_GT(at("CT skin, bone", skin), 0.02);
+    EXPECT_LT(at("CT skin, bone", muscle), 0.005) << "clear between skin and bone";
+    EXPECT_GT(at("CT skin, bone", bone), 0.4);
+    EXPECT_GT(at("CT lung", lung), 0.04);
+    EXPECT_EQ(at("CT lung", muscle - 300), 0);
+    for (const std::string name : {"CT bone", "CT skin", "CT skin, bone", "CT vessels", "CT lung"})
+        EXPECT_EQ(at(name, air), 0) << name;
+}
+
+TEST(TransferLibrary, ColoursLieWhereSomethingIsSeen) {
+    for (const TransferRecipe& recipe : transferLibrary()) {
+        const auto& curve = recipe.opacity;
+        std::size_t first = 0, last = curve.size() - 1; // clear up to the first point and from the last on
+        while (curve[first + 1].opacity == 0) ++first;
+        while (curve[last - 1].opacity == 0) --last;
+        for (const RecipeColor& color : recipe.colors) {
+            EXPECT_GE(color.at.place, curve[first].at.place) << recipe.name;
+            EXPECT_LE(color.at.place, curve[last].at.place) << recipe.name;
+        }
+    }
 }
 
 } // namespace

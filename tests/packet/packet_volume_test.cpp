@@ -1,0 +1,60 @@
+#include "tests/vis/function_source.h"
+#include "vis/packet/packet_volume.h"
+
+#include <cmath>
+#include <glm/common.hpp>
+#include <gtest/gtest.h>
+
+/// What empty space is skipped by: bounds of blocks, and distances between them.
+namespace tessera::vis::packet {
+namespace {
+
+using volume::LatticeKind;
+
+std::shared_ptr<FunctionSource> waves(LatticeKind kind, bool masked) {
+    const auto value = [masked](glm::dvec3 p) -> std::optional<double> {
+        if (masked && std::abs(p.x - p.z * 0.5 - 2.2) < 1.7) return std::nullopt;
+        return std::sin(0.9 * p.x) * std::cos(0.8 * p.y) + std::sin(1.1 * p.z + 0.1 * p.x);
+    };
+    return std::make_shared<FunctionSource>(kind, glm::ivec3(19, 17, 25), glm::dvec3(1),
+                                            std::vector<FunctionSource::Channel>{{"a", value, {-2, 2}}}, 8);
+}
+
+/// Everything that interpolation between samples reads in the cells of a block lies within the block's bounds. In a
+/// cell that are the samples at its corners; of the odd sublattice of BCC, which lies half a cell further, also those
+/// before them.
+TEST(PacketBlocks, BoundsHoldAllThatIsRead) {
+    for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC})
+        for (const bool masked : {false, true}) {
+            const PacketVolume volume = readPacketVolume(*waves(kind, masked), {.filter = Filter::Average});
+            ASSERT_EQ(volume.bcc, kind == LatticeKind::BCC);
+            int read = 0;
+            for (int n = 0; n < volume.cells.x * volume.cells.y * volume.cells.z; ++n) {
+                const glm::ivec3 cell(n % volume.cells.x, n / volume.cells.x % volume.cells.y,
+                                      n / volume.cells.x / volume.cells.y);
+                const glm::ivec3 block = cell / kFine;
+                const std::size_t own =
+                    (std::size_t(block.z) * std::size_t(volume.blocks.y) + std::size_t(block.y)) *
+                        std::size_t(volume.blocks.x) +
+                    std::size_t(block.x);
+                for (int odd = 0; odd < (volume.bcc ? 2 : 1); ++odd)
+                    for (int corner = 0; corner < (odd == 1 ? 27 : 8); ++corner) {
+                        const glm::ivec3 by = odd == 1
+                                                  ? glm::ivec3(corner % 3, corner / 3 % 3, corner / 9) - 1
+                                                  : glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+                        const std::size_t at = volume.at(glm::max(cell + by, glm::ivec3(0)), odd);
+                        if (!volume.present.empty() && volume.present[at] == 0) {
+                            ASSERT_EQ(volume.absent[own], 1);
+                            continue;
+                        }
+                        ++read;
+                        ASSERT_GE(float(volume.shorts[at]), volume.lo[own] - 0.51f) << n << ' ' << odd << ' ' << corner;
+                        ASSERT_LE(float(volume.shorts[at]), volume.hi[own] + 0.51f) << n << ' ' << odd << ' ' << corner;
+                    }
+            }
+            EXPECT_GT(read, 50000);
+        }
+}
+
+} // namespace
+} // namespace tessera::vis::packet
