@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vis/packet/cast_packet.h"
+#include "vis/packet/cast_skip.h"
 
 /// Brushes and lenses at packets of samples: focus and context. Only for cast_*.cpp.
 namespace tessera::vis::packet::TESSERA_LANES {

@@ -78,11 +78,11 @@ struct FocusView {
     std::span<const PlacedLens> lenses;
 };
 
-/// Distances of blocks, and what leaps need.
+/// Blocks, and what leaps over them need.
 struct SkipView {
-    const std::uint8_t* distance = nullptr; ///< null: nothing is known to be empty
-    const std::uint8_t* absent = nullptr;   ///< of blocks of kFine^3 cells: some of their samples are absent
-    const std::uint8_t* bound = nullptr;    ///< of a single maximum or minimum: largest score of a block, 255 = 1
+    const std::uint8_t* alike = nullptr;  ///< of a SkipMap
+    const std::uint8_t* absent = nullptr; ///< of blocks of kFine^3 cells: some of their samples are absent
+    const std::uint8_t* bound = nullptr;  ///< of a single maximum or minimum: largest score of a block, 255 = 1
     glm::ivec3 count{1}, fine{1};
     int edge = 8;
 };

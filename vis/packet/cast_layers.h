@@ -5,12 +5,11 @@
 /// Packets of rays through the layers of a scene, sample by sample as vis/optics/ray_setup.h says. Only for cast_*.cpp.
 namespace tessera::vis::packet::TESSERA_LANES {
 
-inline constexpr int kRun = 8; ///< samples between two looks at the map of empty blocks
-
 /// What all layers of a packet share.
 template <bool Bcc, bool Exact> struct Caster {
     const CastJob& job;
     Packet& packet;
+    const Skip skip{job, packet};
     std::uint64_t taken = 0; ///< samples
 
     using Read = Reader<Bcc, Exact>;
@@ -35,10 +34,6 @@ template <bool Bcc, bool Exact> struct Caster {
     void count(Mask lanes, int reads = 1) {
         if (job.samples != nullptr) taken += std::uint64_t(__builtin_popcount(bitsOf(lanes)) * reads);
     }
-
-    /// Samples until blocks are looked up again; short where steps are long, because blocks next to one with absent
-    /// samples count as such only up to kFine * 2 cells away.
-    int run() const { return job.stepVoxels > 1 ? (job.stepVoxels > 4 ? 1 : int(float(kRun) / job.stepVoxels)) : kRun; }
 
     /// Gradient in world axes, of samples.
     Vec gradient(const Read& read, const Vec& cells, Mask lanes) {
@@ -167,11 +162,9 @@ template <bool Bcc, bool Exact> struct Caster {
         for (int i = 0; i < layers; ++i) before[i] = {Floats(0), maskOf(0)};
         Floats k(0), last(-2); // `last`: the sample that `before` holds
         Mask live = packet.meets;
-        const int most = run();
         while (anyOf(live)) {
-            const Mask full = skipEmpty(job, packet, k, live);
-            live &= k < packet.count;
-            if (!anyOf(full & live)) continue;
+            const Skip::Look look = skip(k, live);
+            if (!anyOf(look.full)) continue;
             const bool masked = someAbsent(job, packet, k, live);
             // What rays that leapt would have read at the sample before.
             const Mask leapt = live & (k > last + Floats(1)) & (k > Floats(0));
@@ -182,7 +175,7 @@ template <bool Bcc, bool Exact> struct Caster {
                     before[i].value = choose(leapt, own.value, before[i].value);
                     before[i].present = (before[i].present & !leapt) | own.present;
                 }
-            for (int n = 0; n < most && anyOf(live); ++n) {
+            for (int n = 0; n < look.run && anyOf(live); ++n) {
                 for (int i = 0; i < layers; ++i) {
                     count(live);
                     now[i] = reader(job.layers[i], masked)(packet.cells(k), live);

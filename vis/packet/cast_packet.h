@@ -16,7 +16,6 @@ struct Packet {
     Mask meets;
     Floats count, step, enter, phase;
     Vec first, advance;                 ///< of sample 0, and from one to the next, in cells of the volumes
-    Vec samplesPerCell, way;            ///< 1 / advance, not infinite; its signs
     SegmentOf<Floats> holes[kMaxClips]; ///< in samples
     int holeCount = 0;
 
@@ -82,11 +81,6 @@ inline Packet beginPacket(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) 
     packet.phase = Floats::load(phase);
     const Vec scale = spreadOut<Floats>(job.cellsPerWorld);
     packet.advance = packet.ray.direction * packet.step * scale;
-    for (int axis = 0; axis < 3; ++axis) {
-        const Floats own = packet.advance[axis];
-        packet.way[axis] = choose(own > Floats(0), Floats(1), Floats(-1));
-        packet.samplesPerCell[axis] = packet.way[axis] / larger(magnitude(own), Floats(1e-9));
-    }
     packet.first = packet.world(Floats(0)) * scale + spreadOut<Floats>(job.cellsOffset);
     for (const PlacedClip& clip : job.clips) {
         if (!clip.hole) continue;
@@ -125,52 +119,6 @@ inline void storePacket(const CastJob& job, const Packet& packet, glm::ivec2 beg
         if (column >= end.x || row >= end.y) continue;
         job.pick[placeOf(job, {column, row})] = out[0][i];
     }
-}
-
-/// Index of the block of `edge`^3 cells (1 / edge exact) around positions within the volume.
-struct Block {
-    Vec at; ///< its number along each axis
-    Ints index;
-};
-inline Block blockAt(const Vec& cells, int edge, const glm::ivec3& count) {
-    const Floats scale(1.0f / float(edge));
-    Block out{{roundDown(cells.x * scale), roundDown(cells.y * scale), roundDown(cells.z * scale)}, Ints(0)};
-    const Floats wide(count.x), high(count.y); // numbers of blocks are exact in single precision
-    out.index = toInts(multiplyAdd(multiplyAdd(out.at.z, high, out.at.y), wide, out.at.x));
-    return out;
-}
-inline Ints byteAt(const std::uint8_t* bytes, Ints index, Mask lanes) {
-    return gather<1>(bytes, index, lanes) & Ints(255);
-}
-
-/// Number of samples from one at `cells` until the first beyond the blocks that lie less than `distance` blocks away.
-inline Floats leap(const Packet& packet, const Vec& cells, const Vec& block, Floats distance, int edge) {
-    const Floats beyond = distance - Floats(0.5);
-    const auto along = [&](int axis) {
-        const Floats wall = multiplyAdd(packet.way[axis], beyond, block[axis] + Floats(0.5)) * Floats(edge);
-        return (wall - cells[axis]) * packet.samplesPerCell[axis];
-    };
-    const Floats inside = smaller(smaller(along(0), along(1)), along(2));
-    return larger(Floats(1), roundDown(inside - Floats(1e-3)) + Floats(1));
-}
-
-/// Moves rays in empty blocks on. Returns those of `lanes` where something may be to draw.
-inline Mask skipEmpty(const CastJob& job, const Packet& packet, Floats& k, Mask lanes) {
-    if (job.skip.distance == nullptr) return lanes;
-    const Vec cells = packet.cells(k);
-    const Block block = blockAt(cells, job.skip.edge, job.skip.count);
-    const Ints distance = byteAt(job.skip.distance, block.index, lanes);
-    const Mask empty = lanes & (Ints(0) < distance);
-    if (!anyOf(empty)) return lanes;
-    k = choose(empty, k + leap(packet, cells, block.at, toFloats(distance), job.skip.edge), k);
-    return lanes & !empty;
-}
-
-/// Whether a packet's samples may be absent around k.
-inline bool someAbsent(const CastJob& job, const Packet& packet, Floats k, Mask live) {
-    if (job.skip.absent == nullptr) return false;
-    const Block block = blockAt(packet.cells(k), kFine, job.skip.fine);
-    return anyOf(live & (Ints(0) < byteAt(job.skip.absent, block.index, live)));
 }
 
 } // namespace tessera::vis::packet::TESSERA_LANES

@@ -39,7 +39,8 @@ inline Fixed oddOf(const Fixed& at) {
 /// Where the samples around a position of one sublattice lie (pairs), and the fractions times 2^15, those of x and z
 /// in both halves of a lane, of y with one minus it.
 struct Corner {
-    Ints place, x, y, z;
+    Spread place;
+    Ints x, y, z;
 };
 /// Weights of two neighbours in 15 bits, in one lane.
 inline Ints pairWeights(Floats f) {
@@ -47,15 +48,15 @@ inline Ints pairWeights(Floats f) {
     return (high << 16) - high + Ints(kQuantum);
 }
 
-[[gnu::always_inline]] inline Corner cornerAt(const VolumeView& volume, const Fixed& at) {
+/// Index of the pair of a cell of the volume.
+[[gnu::always_inline]] inline Ints pairAt(const VolumeView& volume, const Fixed& at) {
     const auto times = [](Ints p, int factor) { return dotPairs(p, Ints(factor << 16)); }; // of cells
-    Corner out;
-    out.place = (at.x >> 16) + times(at.y, kRow) + times(at.z, kSlice) + (at.x >> 20) * Ints(volume.perBrick.x) +
-                (at.y >> 20) * Ints(volume.perBrick.y) + (at.z >> 20) * Ints(volume.perBrick.z);
-    out.x = lowHalves(at.x);
-    out.y = lowHalves(at.y) ^ Ints(kQuantum);
-    out.z = lowHalves(at.z);
-    return out;
+    return (at.x >> 16) + times(at.y, kRow) + times(at.z, kSlice) + (at.x >> 20) * Ints(volume.perBrick.x) +
+           (at.y >> 20) * Ints(volume.perBrick.y) + (at.z >> 20) * Ints(volume.perBrick.z);
+}
+
+[[gnu::always_inline]] inline Corner cornerAt(const VolumeView& volume, const Fixed& at, Mask lanes) {
+    return {spread(pairAt(volume, at), lanes), lowHalves(at.x), lowHalves(at.y) ^ Ints(kQuantum), lowHalves(at.z)};
 }
 
 /// The interpolated 15-bit samples, times kQuantum.
@@ -86,7 +87,40 @@ template <bool Bcc, bool Exact> struct Reader {
 
     [[gnu::noinline]] Found operator()(const Vec& cells, Mask lanes) const { return next(fixedOf(cells), lanes); }
     /// The same within loops over samples.
-    [[gnu::always_inline]] Found next(const Fixed& at, Mask lanes) const {
+    [[gnu::always_inline]] Found next(const Fixed& at, Mask lanes) const { return valueOf(around(at, lanes), lanes); }
+    /// The same of `Count` samples, `way` apart; `at` moves beyond them. First come the places of all, then their
+    /// values: so the reads of several samples overlap (1.3 times as fast as one sample after another).
+    template <int Count>
+    [[gnu::always_inline]] void row(Fixed& at, const Fixed& way, const Mask* lanes, Found* found) const {
+        Around places[Count];
+        for (int i = 0; i < Count; ++i) {
+            places[i] = around(at, lanes[i]);
+            at += way;
+        }
+        for (int i = 0; i < Count; ++i) found[i] = valueOf(places[i], lanes[i]);
+    }
+    /// The value as far as samples have any weight, see reference::Samples::continued; present where they have.
+    [[gnu::noinline]] Found continued(const Vec& cells, Mask lanes) const {
+        if (!masked) return (*this)(cells, lanes);
+        Floats sum(0), coverage(0);
+        add(around(fixedOf(cells), lanes), lanes, sum, coverage);
+        const Floats weight = coverage * Floats(1.0f / kQuantum / kQuantum);
+        return {sum * Floats(Exact ? 1.0f : 1.0f / kQuantum) / larger(weight, Floats(1e-9)),
+                lanes & (weight > Floats(0))};
+    }
+
+private:
+    /// A position in each sublattice.
+    struct Around {
+        Corner grids[Bcc ? 2 : 1];
+    };
+    [[gnu::always_inline]] Around around(const Fixed& at, Mask lanes) const {
+        Around out;
+        out.grids[0] = cornerAt(volume, at, lanes);
+        if constexpr (Bcc) out.grids[1] = cornerAt(volume, oddOf(at), lanes);
+        return out;
+    }
+    [[gnu::always_inline]] Found valueOf(const Around& at, Mask lanes) const {
         Floats sum(0), coverage(0);
         add(at, lanes, sum, coverage);
         if (!masked) return {sum * Floats(kUnit), lanes};
@@ -94,23 +128,11 @@ template <bool Bcc, bool Exact> struct Reader {
         const Mask present = lanes & (covered >= Floats(volume::kPresentCoverage));
         return {sum * Floats(kUnit) / larger(covered, Floats(1e-9)), present};
     }
-    /// The value as far as samples have any weight, see reference::Samples::continued; present where they have.
-    [[gnu::noinline]] Found continued(const Vec& cells, Mask lanes) const {
-        if (!masked) return (*this)(cells, lanes);
-        Floats sum(0), coverage(0);
-        add(fixedOf(cells), lanes, sum, coverage);
-        const Floats weight = coverage * Floats(1.0f / kQuantum / kQuantum);
-        return {sum * Floats(Exact ? 1.0f : 1.0f / kQuantum) / larger(weight, Floats(1e-9)),
-                lanes & (weight > Floats(0))};
+    [[gnu::always_inline]] void add(const Around& at, Mask lanes, Floats& sum, Floats& coverage) const {
+        add(at.grids[0], 0, lanes, sum, coverage);
+        if constexpr (Bcc) add(at.grids[1], volume.oddOffset, lanes, sum, coverage);
     }
-
-private:
-    [[gnu::always_inline]] void add(const Fixed& at, Mask lanes, Floats& sum, Floats& coverage) const {
-        add(at, 0, lanes, sum, coverage);
-        if constexpr (Bcc) add(oddOf(at), volume.oddOffset, lanes, sum, coverage);
-    }
-    [[gnu::always_inline]] void add(const Fixed& at, int offset, Mask lanes, Floats& sum, Floats& coverage) const {
-        const Corner corner = cornerAt(volume, at);
+    [[gnu::always_inline]] void add(const Corner& corner, int offset, Mask lanes, Floats& sum, Floats& coverage) const {
         if constexpr (Exact)
             sum += trilinear(volume.floats + 2 * offset, corner, lanes);
         else

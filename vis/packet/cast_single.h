@@ -9,7 +9,7 @@ namespace tessera::vis::packet::TESSERA_LANES {
 
 template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
     using Base = Caster<Bcc, Exact>;
-    using Base::job, Base::packet, Base::count, Base::run, Base::reader;
+    using Base::job, Base::packet, Base::count, Base::skip, Base::reader;
     using typename Base::Read;
 
     static constexpr int kAhead = 4; ///< samples taken together, because each waits long for its reads
@@ -23,14 +23,15 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         return multiplyAdd(value, Floats(layer.placeScale), Floats(layer.placeOffset));
     }
 
-    /// Reads `number` samples of rays from k on; `at`, the position of the first, moves beyond the last.
-    [[gnu::always_inline]] void readAhead(const Read& read, Fixed& at, Floats k, Mask rays, int number, Found* found) {
-        for (int i = 0; i < number; ++i) {
-            const Mask own = rays & (k + Floats(i) < packet.count);
-            count(own);
-            found[i] = read.next(at, own);
-            at += advance;
+    /// Reads samples of rays from k on; `at`, the position of the first, moves beyond the last.
+    template <int Count>
+    [[gnu::always_inline]] void readAhead(const Read& read, Fixed& at, Floats k, Mask rays, Found* found) {
+        Mask lanes[Count];
+        for (int i = 0; i < Count; ++i) {
+            lanes[i] = rays & (k + Floats(i) < packet.count);
+            count(lanes[i]);
         }
+        read.template row<Count>(at, advance, lanes, found);
     }
 
     /// A composite layer without light, brushes, lenses and holes. The sum of colours is in kQuantum until the end.
@@ -41,27 +42,23 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         Vec color(Floats(0), Floats(0), Floats(0));
         Floats opacity(0), pick(kNoPick), k(0);
         Mask live = packet.meets;
-        const int most = run();
         while (anyOf(live)) {
-            Mask full = skipEmpty(job, packet, k, live);
-            live &= k < samples;
-            full &= live;
+            const Skip::Look look = skip(k, live);
+            Mask full = look.full;
             if (!anyOf(full)) continue;
             const Read read = reader(layer, someAbsent(job, packet, k, full));
             Fixed at = fixedOf(packet.cells(k));
-            for (int n = 0; n < most; n += kAhead) {
+            for (int n = 0; n < look.run; n += kAhead) {
                 Mask lanes[kAhead];
-                Floats entry[kAhead];
+                Found found[kAhead];
                 for (int i = 0; i < kAhead; ++i) {
                     lanes[i] = full & (k + Floats(i) < samples);
                     count(lanes[i]);
-                    const Found found = read.next(at, lanes[i]);
-                    entry[i] = multiplyAdd(found.value, perEntry, firstEntry);
-                    lanes[i] = found.present;
-                    at += advance;
                 }
+                read.template row<kAhead>(at, advance, lanes, found);
                 for (int i = 0; i < kAhead; ++i) {
-                    const Medium medium = mediumAt(layer, entry[i], lanes[i]);
+                    const Floats entry = multiplyAdd(found[i].value, perEntry, firstEntry);
+                    const Medium medium = mediumAt(layer, entry, found[i].present);
                     const Floats alpha = correctedOpacityOf(medium.extinction, length, Floats(1));
                     const Floats weight = choose(opacity < Floats(kOpaque), (Floats(1) - opacity) * alpha, Floats(0));
                     for (int c = 0; c < 3; ++c) color[c] = multiplyAdd(medium.color[c], weight, color[c]);
@@ -87,9 +84,9 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         for (;;) {
             Mask open = live & !met;
             if (anyOf(open)) {
-                const Mask full = skipEmpty(job, packet, k, open);
-                open = full & (k < packet.count);
-                if (anyOf(open)) march<kPair>(open, k, met, place, opacity, run());
+                const Skip::Look look = skip(k, open);
+                open = look.full;
+                if (anyOf(open)) march<kPair>(open, k, met, place, opacity, look.run);
                 live &= met | (k < packet.count);
                 continue;
             }
@@ -109,7 +106,7 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         Fixed at = fixedOf(packet.cells(k));
         for (int n = 0; n < most; n += Ahead) {
             Found found[Ahead];
-            readAhead(read, at, k, open, Ahead, found);
+            readAhead<Ahead>(read, at, k, open, found);
             for (const Found& each : found) {
                 const Floats along = placeOf(each.value);
                 Mask hit = open & each.present & mayShow(layer, along);
@@ -136,23 +133,26 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         Floats best(-1e30), bestAt(0);
         if (job.skip.bound != nullptr)
             for (Floats k(kSeed / 2); anyOf(packet.meets & (k < packet.count)); k += Floats(kSeed))
-                takeExtremum(sign, 1, k, packet.meets & (k < packet.count), best, bestAt);
+                takeExtremum<1>(sign, k, packet.meets & (k < packet.count), best, bestAt);
         Floats k(0);
         Mask live = packet.meets;
         const int most = job.stepVoxels > 1 ? 1 : kAhead;
+        const Blocks blocks(packet, job.skip.edge, job.skip.count);
         while (anyOf(live)) {
             Mask useful = live;
             if (job.skip.bound != nullptr) {
-                const Vec cells = packet.cells(k);
-                const Block block = blockAt(cells, job.skip.edge, job.skip.count);
+                const Blocks::Place block = blocks.at(k);
                 const Floats bound = toFloats(byteAt(job.skip.bound, block.index, live)) * Floats(1.0f / 255);
                 const Mask useless = live & (best > Floats(-1e30)) & (bound <= scoreOf(best * sign));
-                k = choose(useless, k + leap(packet, cells, block.at, Floats(1), job.skip.edge), k);
+                k = choose(useless, k + blocks.leap(block, Floats(1)), k);
                 live &= k < packet.count;
                 useful = live & !useless;
                 if (!anyOf(useful)) continue;
             }
-            takeExtremum(sign, most, k, useful, best, bestAt);
+            if (most == 1)
+                takeExtremum<1>(sign, k, useful, best, bestAt);
+            else
+                takeExtremum<kAhead>(sign, k, useful, best, bestAt);
             k = choose(useful, k + Floats(most), k);
             live &= k < packet.count;
         }
@@ -168,21 +168,18 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         return layer.style == RayStyle::Minimum ? Floats(1) - x : x;
     }
 
-    /// Takes samples from k on, kAhead at a time.
-    void takeExtremum(Floats sign, int most, Floats k, Mask lanes, Floats& best, Floats& bestAt) {
+    /// Takes samples from k on.
+    template <int Count> void takeExtremum(Floats sign, Floats k, Mask lanes, Floats& best, Floats& bestAt) {
         const Read read = reader(layer, someAbsent(job, packet, k, lanes));
         Fixed at = fixedOf(packet.cells(k));
-        for (int n = 0; n < most; n += kAhead) {
-            Found found[kAhead];
-            readAhead(read, at, k, lanes, std::min(most, kAhead), found);
-            for (int i = 0; i < kAhead && i < most; ++i) {
-                const Floats value = found[i].value * sign;
-                Mask better = found[i].present & (value > best);
-                if (packet.holeCount > 0) better &= packet.shows(k + Floats(i));
-                best = choose(better, value, best);
-                bestAt = choose(better, k + Floats(i), bestAt);
-            }
-            k += Floats(kAhead);
+        Found found[Count];
+        readAhead<Count>(read, at, k, lanes, found);
+        for (int i = 0; i < Count; ++i) {
+            const Floats value = found[i].value * sign;
+            Mask better = found[i].present & (value > best);
+            if (packet.holeCount > 0) better &= packet.shows(k + Floats(i));
+            best = choose(better, value, best);
+            bestAt = choose(better, k + Floats(i), bestAt);
         }
     }
 
@@ -194,9 +191,9 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         for (;;) {
             Mask open = live & !met;
             if (anyOf(open)) {
-                const Mask full = skipEmpty(job, packet, k, open);
-                open = full & (k < packet.count);
-                if (anyOf(open)) cross(open, k, last, met, before, now);
+                const Skip::Look look = skip(k, open);
+                open = look.full;
+                if (anyOf(open)) cross(open, k, last, met, before, now, look.run);
                 live &= met | (k < packet.count);
                 continue;
             }
@@ -214,7 +211,7 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
     }
 
     /// Takes samples until every open ray has crossed the surface or the run is over.
-    void cross(Mask open, Floats& k, Floats& last, Mask& met, Found& before, Found& now) {
+    void cross(Mask open, Floats& k, Floats& last, Mask& met, Found& before, Found& now, int most) {
         const Read read = reader(layer, someAbsent(job, packet, k, open));
         const Mask leapt = open & (k > last + Floats(1)) & (k > Floats(0));
         if (anyOf(leapt)) { // what these would have read at the sample before
@@ -222,12 +219,11 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
             before.value = choose(leapt, own.value, before.value);
             before.present = (before.present & !leapt) | own.present;
         }
-        const int most = run();
         const Floats value(layer.isoValue);
         Fixed at = fixedOf(packet.cells(k));
         for (int n = 0; n < most; n += kPair) {
             Found found[kPair];
-            readAhead(read, at, k, open, kPair, found);
+            readAhead<kPair>(read, at, k, open, found);
             for (const Found& each : found) {
                 const Mask above = before.value >= value, over = each.value >= value;
                 const Mask hit = open & before.present & each.present & ((above & !over) | (over & !above));

@@ -108,6 +108,10 @@ inline Floats smaller(Floats a, Floats b) {
 inline Floats larger(Floats a, Floats b) {
     return Floats(raw::larger(a.v, b.v));
 }
+/// Of all lanes.
+inline float least(Floats a) {
+    return raw::least(a.v);
+}
 inline Floats squareRoot(Floats a) {
     return Floats(raw::root(a.v));
 }
@@ -154,10 +158,16 @@ template <int Scale> [[gnu::always_inline]] inline IntPair gatherPairs(const voi
     raw::gatherPairs<Scale>(base, index.v, m.v, out.low.v, out.high.v);
     return out;
 }
-/// The same, for large data: faster where the first cache misses often, slower where it does not.
-template <int Scale> [[gnu::always_inline]] inline IntPair loadPairs(const void* base, Ints index, Mask m) {
+/// Indices of loadPairs(), which are best made long before it; they may be anything in lanes that are not asked for.
+using Spread = raw::Spread;
+[[gnu::always_inline]] inline Spread spread(Ints index, Mask m) {
+    return raw::spread(index.v, m.v);
+}
+/// As gatherPairs(), for large data: faster where the first cache misses often, slower where it does not. Lanes that
+/// are not asked for may be anything.
+template <int Scale> [[gnu::always_inline]] inline IntPair loadPairs(const void* base, const Spread& index, Mask m) {
     IntPair out;
-    raw::loadPairs<Scale>(base, index.v, m.v, out.low.v, out.high.v);
+    raw::loadPairs<Scale>(base, index, m.v, out.low.v, out.high.v);
     return out;
 }
 /// Bit `index` (0..255) of 8 words.

@@ -44,6 +44,11 @@ inline F smaller(F a, F b) {
 inline F larger(F a, F b) {
     return _mm256_max_ps(a, b);
 }
+inline float least(F a) {
+    const __m128 four = _mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1));
+    const __m128 two = _mm_min_ps(four, _mm_movehl_ps(four, four));
+    return _mm_cvtss_f32(_mm_min_ss(two, _mm_movehdup_ps(two)));
+}
 inline F root(F a) {
     return _mm256_sqrt_ps(a);
 }
@@ -71,7 +76,12 @@ template <int Scale> [[gnu::always_inline]] inline void gatherPairs(const void* 
     low = inOrder(_mm256_shuffle_ps(a, b, 0x88));
     high = inOrder(_mm256_shuffle_ps(a, b, 0xdd));
 }
-template <int Scale> [[gnu::always_inline]] inline void loadPairs(const void* base, I index, M m, I& low, I& high) {
+using Spread = I;
+[[gnu::always_inline]] inline Spread spread(I index, M) {
+    return index;
+}
+template <int Scale>
+[[gnu::always_inline]] inline void loadPairs(const void* base, Spread index, M m, I& low, I& high) {
     gatherPairs<Scale>(base, index, m, low, high);
 }
 inline M bitAt(const std::uint32_t* words, I index) {

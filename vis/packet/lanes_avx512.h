@@ -43,6 +43,9 @@ inline F smaller(F a, F b) {
 inline F larger(F a, F b) {
     return _mm512_max_ps(a, b);
 }
+inline float least(F a) {
+    return _mm512_reduce_min_ps(a);
+}
 inline F root(F a) {
     return _mm512_sqrt_ps(a);
 }
@@ -69,9 +72,18 @@ template <int Scale> [[gnu::always_inline]] inline void gatherPairs(const void* 
     high = I(_mm512_permutex2var_epi32(a, _mm512_or_si512(even, _mm512_set1_epi32(1)), b));
 }
 // Loads of single lanes: on Zen 4 gather instructions take 1.6 times as long where the first cache misses.
-template <int Scale> [[gnu::always_inline]] inline void loadPairs(const void* base, I index, M m, I& low, I& high) {
+struct Spread {
     alignas(64) std::int32_t at[kLanes];
-    _mm512_store_si512(at, _mm512_maskz_mov_epi32(m, __m512i(index)));
+};
+[[gnu::always_inline]] inline Spread spread(I index, M m) {
+    Spread out;
+    _mm512_store_si512(out.at, _mm512_maskz_mov_epi32(m, __m512i(index)));
+    asm volatile("" : "+m"(out.at)); // else the compiler takes the lanes out of the register, by two operations each
+    return out;
+}
+template <int Scale>
+[[gnu::always_inline]] inline void loadPairs(const void* base, const Spread& index, M, I& low, I& high) {
+    const std::int32_t* at = index.at;
     const auto place = [&](int i) __attribute__((always_inline)) {
         return static_cast<const char*>(base) + std::ptrdiff_t(at[i]) * Scale;
     };

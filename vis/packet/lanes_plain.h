@@ -44,6 +44,11 @@ inline F smaller(F a, F b) {
 inline F larger(F a, F b) {
     return choose(a > b, a, b);
 }
+inline float least(F a) {
+    float out = a[0];
+    for (int i = 1; i < kLanes; ++i) out = a[i] < out ? a[i] : out;
+    return out;
+}
 inline F root(F a) {
     for (int i = 0; i < kLanes; ++i) a[i] = __builtin_sqrtf(a[i]);
     return a;
@@ -78,7 +83,12 @@ template <int Scale> [[gnu::always_inline]] inline void gatherPairs(const void* 
         high[i] = values[1];
     }
 }
-template <int Scale> [[gnu::always_inline]] inline void loadPairs(const void* base, I index, M m, I& low, I& high) {
+using Spread = I;
+[[gnu::always_inline]] inline Spread spread(I index, M) {
+    return index;
+}
+template <int Scale>
+[[gnu::always_inline]] inline void loadPairs(const void* base, Spread index, M m, I& low, I& high) {
     gatherPairs<Scale>(base, index, m, low, high);
 }
 inline M bitAt(const std::uint32_t* words, I index) {

@@ -208,14 +208,14 @@ void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, 
             };
     }
     layers_.push_back(out);
-    skip_ = nearer(std::move(skip_), skipMap(volume, edge, shows));
+    skip_ = united(std::move(skip_), fullBlocks(volume, edge, shows));
 }
 
 namespace {
 
 /// Largest score of each block of a maximum or minimum, rounded up.
 std::vector<std::uint8_t> scoreBounds(const PacketVolume& volume, const LayerView& layer, const SkipMap& map) {
-    std::vector<std::uint8_t> out(map.distance.size());
+    std::vector<std::uint8_t> out(map.blocks() + 3); // they are read four at a time
     std::size_t i = 0;
     const int factor = map.edge / kFine;
     for (int z = 0; z < map.count.z; ++z)
@@ -301,6 +301,7 @@ PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, st
     });
     skip_.edge = surfaces ? kFine : 2 * kFine;
     for (std::size_t i = 0; i < drawn.size(); ++i) addLayer(scene, info, drawn[i], &views_[i]);
+    if (!layers_.empty()) countAlike(skip_);
     for (const SharedVolume& volume : volumes_) {
         if (volume->absent.empty()) continue;
         absent_.resize(volume->absent.size());
@@ -349,7 +350,7 @@ CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, co
     job.lights = lights_;
     job.jitterStarts = scene.render.jitter;
     if (layers_.empty()) return job;
-    job.skip.distance = skip_.distance.data();
+    job.skip.alike = skip_.alike.data();
     job.skip.count = skip_.count;
     job.skip.edge = skip_.edge;
     job.skip.absent = absent_.empty() ? nullptr : absent_.data();

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vis/packet/cast_job.h"
-#include "vis/packet/packet_volume.h"
+#include "vis/packet/skip_map.h"
 #include "vis/scene/scene.h"
 
 #include <memory>
@@ -39,7 +39,6 @@ public:
     /// and the places of its lenses.
     CastJob job(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice, glm::ivec2 size,
                 double stepFactor);
-    double occupied() const { return skip_.occupied; }
 
 private:
     void addBrushes(const Scene& scene, const volume::DatasetInfo& info);

@@ -1,6 +1,5 @@
 #include "vis/packet/packet_volume.h"
 
-#include "vis/transfer/block_distance.h"
 #include "volume/base/parallel.h"
 #include "volume/reconstruct/reconstruct.h"
 
@@ -302,49 +301,6 @@ PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketCha
     if (out.bcc) spreadOdd(out);
     if (!out.absent.empty()) spreadAbsent(out);
     return out;
-}
-
-SkipMap skipMap(const PacketVolume& volume, int edge, const std::function<bool(float, float)>& shows) {
-    SkipMap out;
-    out.edge = edge;
-    const int factor = edge / kFine;
-    out.count = (volume.blocks + factor - 1) / factor;
-    const std::size_t total = std::size_t(out.count.x) * std::size_t(out.count.y) * std::size_t(out.count.z);
-    out.distance.assign(total, 255);
-    parallelRanges(
-        total,
-        [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const glm::ivec3 at(int(i % std::size_t(out.count.x)),
-                                    int(i / std::size_t(out.count.x) % std::size_t(out.count.y)),
-                                    int(i / std::size_t(out.count.x) / std::size_t(out.count.y)));
-                float lo = std::numeric_limits<float>::infinity(), hi = -lo;
-                const glm::ivec3 first = at * factor, last = glm::min(first + factor, volume.blocks);
-                for (int z = first.z; z < last.z; ++z)
-                    for (int y = first.y; y < last.y; ++y)
-                        for (int x = first.x; x < last.x; ++x) {
-                            const std::size_t block = (std::size_t(z) * std::size_t(volume.blocks.y) + std::size_t(y)) *
-                                                          std::size_t(volume.blocks.x) +
-                                                      std::size_t(x);
-                            lo = std::min(lo, volume.lo[block]);
-                            hi = std::max(hi, volume.hi[block]);
-                        }
-                if (lo <= hi && shows(lo, hi)) out.distance[i] = 0;
-            }
-        },
-        1024);
-    const auto occupied = std::ranges::count(out.distance, std::uint8_t(0));
-    out.occupied = double(occupied) / double(total);
-    spreadDistance(out.distance, out.count);
-    out.distance.resize(total + 3);
-    return out;
-}
-
-SkipMap nearer(SkipMap a, const SkipMap& b) {
-    if (a.distance.empty()) return b;
-    for (std::size_t i = 0; i < a.distance.size(); ++i) a.distance[i] = std::min(a.distance[i], b.distance[i]);
-    a.occupied = std::max(a.occupied, b.occupied);
-    return a;
 }
 
 } // namespace tessera::vis::packet

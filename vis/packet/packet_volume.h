@@ -4,7 +4,6 @@
 #include "volume/bricks/brick_source.h"
 
 #include <cstdint>
-#include <functional>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -56,17 +55,5 @@ struct PacketChannel {
 
 /// Throws Error when the source does.
 PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketChannel& what);
-
-/// Chebyshev distances of blocks of edge^3 cells to the nearest one with something to draw, for leaps over empty space.
-struct SkipMap {
-    int edge = 8; ///< a multiple of kFine
-    glm::ivec3 count{1};
-    std::vector<std::uint8_t> distance; ///< with 3 bytes more, because they are read four at a time
-    double occupied = 1;                ///< share of blocks
-};
-/// `shows(lo, hi)`: whether a block whose samples lie in that interval can show something.
-SkipMap skipMap(const PacketVolume& volume, int edge, const std::function<bool(float, float)>& shows);
-/// The smaller distance of both, of equal maps; a map without blocks gives the other.
-SkipMap nearer(SkipMap a, const SkipMap& b);
 
 } // namespace tessera::vis::packet

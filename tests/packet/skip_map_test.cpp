@@ -1,0 +1,69 @@
+#include "vis/packet/skip_map.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <random>
+
+namespace tessera::vis::packet {
+namespace {
+
+/// Whether the cube of n^3 blocks from `at` on in the directions of an octant is of one kind, as far as there are
+/// blocks.
+bool isAlike(const SkipMap& map, glm::ivec3 at, int octant, int n) {
+    const auto fullAt = [&](glm::ivec3 block) {
+        return map.full[std::size_t((block.z * map.count.y + block.y) * map.count.x + block.x)];
+    };
+    const int edge = std::min(n, std::max({map.count.x, map.count.y, map.count.z}));
+    for (int z = 0; z < edge; ++z)
+        for (int y = 0; y < edge; ++y)
+            for (int x = 0; x < edge; ++x) {
+                glm::ivec3 block(x, y, z);
+                bool within = true;
+                for (int axis = 0; axis < 3; ++axis) {
+                    block[axis] = at[axis] + ((octant >> axis & 1) != 0 ? block[axis] : -block[axis]);
+                    within = within && block[axis] >= 0 && block[axis] < map.count[axis];
+                }
+                if (within && fullAt(block) != fullAt(at)) return false;
+            }
+    return true;
+}
+
+/// In every octant the count of each block is the edge of the largest cube of its kind.
+TEST(SkipMaps, CountTheLargestCubes) {
+    for (const double share : {0.02, 0.3, 0.97}) {
+        SkipMap map;
+        map.count = {7, 5, 6};
+        std::mt19937 random(5);
+        for (std::size_t i = 0; i < map.blocks(); ++i)
+            map.full.push_back(std::uint8_t(std::bernoulli_distribution(share)(random)));
+        countAlike(map);
+        int larger = 0;
+        for (int octant = 0; octant < 8; ++octant)
+            for (std::size_t i = 0; i < map.blocks(); ++i) {
+                const int block = int(i);
+                const glm::ivec3 at(block % 7, block / 7 % 5, block / 35);
+                const int value = map.alike[std::size_t(octant) * map.blocks() + i];
+                const int n = value & SkipMap::kMost;
+                ASSERT_EQ(value >= SkipMap::kFull, map.full[i] != 0);
+                ASSERT_GE(n, 1);
+                ASSERT_TRUE(isAlike(map, at, octant, n)) << "octant " << octant << ", block " << block;
+                ASSERT_TRUE(n == SkipMap::kMost || !isAlike(map, at, octant, n + 1))
+                    << "octant " << octant << ", block " << block;
+                larger += n > 1;
+            }
+        EXPECT_GT(larger, 20);
+    }
+}
+
+/// Blocks of two maps are full where they are in either.
+TEST(SkipMaps, AreUnited) {
+    SkipMap a, b;
+    a.count = b.count = {4, 1, 1};
+    a.full = {0, 1, 0, 1};
+    b.full = {0, 0, 1, 1};
+    EXPECT_EQ(united(a, b).full, (std::vector<std::uint8_t>{0, 1, 1, 1}));
+    EXPECT_EQ(united({}, b).full, b.full);
+}
+
+} // namespace
+} // namespace tessera::vis::packet

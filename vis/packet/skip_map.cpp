@@ -1,0 +1,116 @@
+#include "vis/packet/skip_map.h"
+
+#include "volume/base/parallel.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace tessera::vis::packet {
+
+namespace {
+
+bool blockShows(const PacketVolume& volume, glm::ivec3 first, glm::ivec3 last,
+                const std::function<bool(float, float)>& shows) {
+    float lo = std::numeric_limits<float>::infinity(), hi = -lo;
+    for (int z = first.z; z < last.z; ++z)
+        for (int y = first.y; y < last.y; ++y)
+            for (int x = first.x; x < last.x; ++x) {
+                const std::size_t block =
+                    (std::size_t(z) * std::size_t(volume.blocks.y) + std::size_t(y)) * std::size_t(volume.blocks.x) +
+                    std::size_t(x);
+                lo = std::min(lo, volume.lo[block]);
+                hi = std::max(hi, volume.hi[block]);
+            }
+    return lo <= hi && shows(lo, hi);
+}
+
+/// Edges of the cubes of equal blocks of one octant, found from those of the seven neighbours further on.
+class OctantCounts {
+public:
+    OctantCounts(const SkipMap& map, int octant, std::uint8_t* out)
+        : map_(map), octant_(octant), out_(out), row_(std::size_t(map.count.x)) {}
+
+    void run() {
+        for (int n = 0; n < map_.count.z; ++n)
+            for (int m = 0; m < map_.count.y; ++m)
+                row(forwards(1) ? map_.count.y - 1 - m : m, forwards(2) ? map_.count.z - 1 - n : n);
+    }
+
+private:
+    bool forwards(int axis) const { return (octant_ >> axis & 1) != 0; }
+    std::size_t start(int y, int z) const {
+        return (std::size_t(z) * std::size_t(map_.count.y) + std::size_t(y)) * std::size_t(map_.count.x);
+    }
+    /// What a block of one kind may add to the count of one that is of the kind `full` (0 or kFull).
+    static std::uint8_t share(std::uint8_t other, std::uint8_t full) {
+        return (other & SkipMap::kFull) == full ? std::uint8_t(other & SkipMap::kMost) : std::uint8_t(0);
+    }
+
+    void row(int y, int z) {
+        const std::uint8_t* const full = map_.full.data() + start(y, z);
+        std::uint8_t* const out = out_ + start(y, z);
+        const int count = map_.count.x, way = forwards(0) ? 1 : -1;
+        std::ranges::fill(row_, std::uint8_t(SkipMap::kMost));
+        for (const glm::ivec2 step : {glm::ivec2(1, 0), glm::ivec2(0, 1), glm::ivec2(1, 1)}) {
+            const int nearY = y + (forwards(1) ? step.x : -step.x), nearZ = z + (forwards(2) ? step.y : -step.y);
+            if (nearY < 0 || nearY >= map_.count.y || nearZ < 0 || nearZ >= map_.count.z) continue;
+            const std::uint8_t* const other = out_ + start(nearY, nearZ);
+            for (int x = 0; x < count; ++x) {
+                const std::uint8_t own = full[x] != 0 ? SkipMap::kFull : 0;
+                const int beyond = std::clamp(x + way, 0, count - 1);
+                row_[std::size_t(x)] =
+                    std::min({row_[std::size_t(x)], share(other[x], own), share(other[beyond], own)});
+            }
+        }
+        for (int n = 0; n < count; ++n) {
+            const int x = way > 0 ? count - 1 - n : n;
+            const std::uint8_t own = full[x] != 0 ? SkipMap::kFull : 0;
+            std::uint8_t least = row_[std::size_t(x)];
+            if (n > 0) least = std::min(least, share(out[x + way], own));
+            out[x] = std::uint8_t(own + std::min(least + 1, SkipMap::kMost));
+        }
+    }
+
+    const SkipMap& map_;
+    int octant_;
+    std::uint8_t* out_;
+    std::vector<std::uint8_t> row_; ///< least shares of the rows further on
+};
+
+} // namespace
+
+SkipMap fullBlocks(const PacketVolume& volume, int edge, const std::function<bool(float, float)>& shows) {
+    SkipMap out;
+    out.edge = edge;
+    const int factor = edge / kFine;
+    out.count = (volume.blocks + factor - 1) / factor;
+    out.full.resize(out.blocks());
+    parallelRanges(
+        out.blocks(),
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const glm::ivec3 at(int(i % std::size_t(out.count.x)),
+                                    int(i / std::size_t(out.count.x) % std::size_t(out.count.y)),
+                                    int(i / std::size_t(out.count.x) / std::size_t(out.count.y)));
+                const glm::ivec3 first = at * factor, last = glm::min(first + factor, volume.blocks);
+                out.full[i] = blockShows(volume, first, last, shows);
+            }
+        },
+        1024);
+    return out;
+}
+
+SkipMap united(SkipMap a, const SkipMap& b) {
+    if (a.full.empty()) return b;
+    for (std::size_t i = 0; i < a.full.size(); ++i) a.full[i] = std::uint8_t(a.full[i] | b.full[i]);
+    return a;
+}
+
+void countAlike(SkipMap& map) {
+    const std::size_t blocks = map.blocks();
+    map.alike.assign(blocks * 8 + 3, 0);
+    parallelFor(8,
+                [&](std::size_t octant) { OctantCounts(map, int(octant), map.alike.data() + octant * blocks).run(); });
+}
+
+} // namespace tessera::vis::packet

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "vis/packet/packet_volume.h"
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+/// Which blocks of a volume can show something, for leaps over empty space and long runs through full space.
+namespace tessera::vis::packet {
+
+/// The number of blocks that look alike from each block on, for each octant of ray directions: those of a ray that goes
+/// there are known further than those all around (A. Deakin, M. Knoll: Fast ray casting of discrete volumes with
+/// anisotropic Chebyshev distances, 2020).
+struct SkipMap {
+    static constexpr int kMost = 127; ///< blocks that are counted
+    static constexpr int kFull = 128; ///< added where a block can show something
+
+    int edge = 8; ///< cells of a block, a multiple of kFine
+    glm::ivec3 count{1};
+    std::vector<std::uint8_t> full; ///< 1: a block can show something
+    /// n, or kFull + n: the cube of n^3 blocks from this one on in the directions of the octant is as empty or as full.
+    /// Block i of octant o (bit axis: forwards) at o * blocks() + i; with 3 bytes more, because they are read four at a
+    /// time. Beyond the volume everything is alike.
+    std::vector<std::uint8_t> alike;
+
+    std::size_t blocks() const { return std::size_t(count.x) * std::size_t(count.y) * std::size_t(count.z); }
+};
+
+/// Without `alike`. `shows(lo, hi)`: whether a block whose samples lie in that interval can show something.
+SkipMap fullBlocks(const PacketVolume& volume, int edge, const std::function<bool(float, float)>& shows);
+/// Blocks that are full in either of two maps of the same blocks; a map without blocks gives the other.
+SkipMap united(SkipMap a, const SkipMap& b);
+/// Makes `alike`.
+void countAlike(SkipMap& map);
+
+} // namespace tessera::vis::packet
