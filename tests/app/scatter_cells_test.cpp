@@ -136,5 +136,31 @@ TEST_F(ScatterCells, MeansHaveTheirColoursInTheirPlaces) {
     EXPECT_EQ(rgba[4], meanColor(function, range, 14.0 / 25) >> IM_COL32_R_SHIFT & 255) << "weighted by samples";
 }
 
+TEST_F(ScatterCells, ATitleThatIsWiderThanItsColumnStandsUprightBelowItsNumbers) {
+    matrix.infos[0].name = "mean temperature";
+    matrix.infos[1].name = "b";
+    matrix.infos[0].unit = matrix.infos[1].unit = "K";
+    matrix.min = {150, 20};
+    matrix.cellX = matrix.cellY = 60;
+    matrix.gap = 4;
+    MatrixTitles titles;
+    for (int i = 0; i < 2; ++i)
+        feedWindow([&] {
+            titles = matrixTitles(matrix, matrix.cellX, matrix.cellY);
+            drawMatrixAxes(*ImGui::GetWindowDrawList(), matrix, titles);
+        });
+    ASSERT_TRUE(titles.upright);
+    const PlotFrame last = matrix.cell(0, 1);
+    int found = 0;
+    for (const DrawnText& text : drawnTexts()) {
+        if (text.text != "mean temperature" || text.max.x - text.min.x > text.max.y - text.min.y) continue;
+        ++found;
+        EXPECT_NEAR(text.middle().x, (last.min.x + last.max.x) / 2, 2);
+        EXPECT_GT(text.min.y, last.max.y + em()) << "below the numbers";
+        EXPECT_LT(text.max.y, last.max.y + titles.bottom + 2) << "within the room that was asked for";
+    }
+    EXPECT_EQ(found, 1);
+}
+
 } // namespace
 } // namespace tessera::app

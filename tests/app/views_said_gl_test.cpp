@@ -145,5 +145,33 @@ TEST_F(SaidViews, TheTimelineSaysAlongWhichAxisTimeRuns) {
     EXPECT_THAT(of("timeline", timelineView, drawTimelineView), HasSubstr("Time runs along y."));
 }
 
+TEST_F(SaidViews, AnEditorOfOpacityWithoutRoomSaysSo) {
+    show(fuelCell(volume::LatticeKind::CC));
+    for (const vis::TransferKind kind : {vis::TransferKind::Curve, vis::TransferKind::Regions}) {
+        for (auto& [name, function] : session.transfer) function.kind = kind;
+        const auto at = [&](ImVec2 size) {
+            const auto body = [&] { draw("transfer", transferView, drawTransferView, size); };
+            for (int i = 0; i < 3; ++i) frame(body);
+            return said(body);
+        };
+        EXPECT_THAT(at({720, 560}), Not(HasSubstr("Not enough room")));
+        EXPECT_THAT(at({70, 560}), HasSubstr("Not enough room")) << int(kind);
+    }
+}
+
+TEST_F(SaidViews, AMatrixOfScatterplotsHasTheCorrelationsAboveItsDiagonal) {
+    show(fuelCell(volume::LatticeKind::CC));
+    scatterView.channels = {"T", "O2"};
+    of("scatterMatrix", scatterView, drawScatterMatrixView);
+    int numbers = 0;
+    for (const DrawnText& text : drawnTexts())
+        if (text.text.size() == 5 && (text.text[0] == '+' || text.text[0] == '-') && text.text[2] == '.') {
+            ++numbers;
+            EXPECT_GT(text.middle().x, 360);
+            EXPECT_LT(text.middle().y, 300);
+        }
+    EXPECT_EQ(numbers, 1);
+}
+
 } // namespace
 } // namespace tessera::app

@@ -153,5 +153,66 @@ TEST_F(Widgets, AFloatingPaneStaysWhereItIsPut) {
     EXPECT_EQ(at.y, 90);
 }
 
+TEST_F(Widgets, PanesAreClosedMaximisedFloatedAndDockedByTheirTitles) {
+    DockTree tree;
+    repair(tree, {"a", "b", "c"});
+    DockHand hand;
+    DockPanes panes;
+    std::vector<std::string> closed;
+    panes.title = [](const std::string& pane) { return "pane " + pane; };
+    panes.draw = [](const std::string&) {};
+    panes.close = [&](const std::string& pane) {
+        closed.push_back(pane);
+        removePane(tree, pane);
+    };
+    const auto draw = [&] { drawDock(tree, hand, panes, {0, 0}, {800, 600}, 1); };
+    frames(3, draw);
+    const auto clickOn = [&](ImVec2 at, int button = 0, int times = 1) {
+        mouse = at;
+        frames(2, draw);
+        for (int i = 0; i < times; ++i)
+            for (const bool down : {true, false}) {
+                ImGui::GetIO().MouseDown[button] = down;
+                feed(draw);
+            }
+        frames(3, draw);
+        mouse = {700, 500};
+        feed(draw, 1); // the next click is none of a double click
+        frames(2, draw);
+    };
+    const auto choose = [&](const std::string& title, const std::string& item) {
+        mouse = placeOf(title);
+        frames(2, draw);
+        for (const bool down : {true, false}) {
+            ImGui::GetIO().MouseDown[1] = down;
+            feed(draw);
+        }
+        frames(3, draw);
+        clickOn(placeOf(item));
+    };
+    clickOn(placeOf("pane b"));
+    EXPECT_EQ(tree.root.active, 1) << "a click brings it to the front";
+    clickOn(placeOf("pane b"), 0, 2);
+    EXPECT_EQ(tree.maximised, "b");
+    clickOn(placeOf("pane b"), 0, 2);
+    EXPECT_EQ(tree.maximised, "");
+    choose("pane b", "Maximise");
+    EXPECT_EQ(tree.maximised, "b");
+    choose("pane b", "Restore");
+    EXPECT_EQ(tree.maximised, "");
+    choose("pane b", "Float");
+    ASSERT_EQ(tree.floating.size(), 1u);
+    EXPECT_EQ(tree.floating[0].pane, "b");
+    clickOn(placeOf("pane b"), 0, 2);
+    EXPECT_TRUE(tree.floating.empty()) << "a double click docks it";
+    EXPECT_EQ(panesOf(tree).size(), 3u);
+    choose("pane b", "Float");
+    choose("pane b", "Dock");
+    EXPECT_TRUE(tree.floating.empty());
+    choose("pane c", "Close");
+    EXPECT_EQ(closed, std::vector<std::string>{"c"});
+    EXPECT_EQ(panesOf(tree).size(), 2u);
+}
+
 } // namespace
 } // namespace tessera::app
