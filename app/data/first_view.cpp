@@ -116,8 +116,7 @@ void chooseCurve(Session& session, const volume::BrickSource& source, int channe
 
 void aimAtSamples(Session& session, const volume::BrickSource& source, int channel, const std::string& name, int time) {
     const volume::ProbeValue here = volume::probeChannel(source, channel, session.cursor, time);
-    if (!here.interpolated || !here.nearest)
-        session.cursor = middleOfSamples(source, channel, time).value_or(session.cursor);
+    if (!here.interpolated) session.cursor = middleOfSamples(source, channel, time).value_or(session.cursor);
     chooseCurve(session, source, channel, name, time);
 }
 

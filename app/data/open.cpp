@@ -388,7 +388,6 @@ Opened open(const OpenRequest& request, const Progress& progress) {
         fitSurfaces(opened.document.session, *opened.source, layout->session, opened.messages);
     } else {
         opened.document.session = defaultSession(info, data);
-        fitSession(opened.document.session, info, opened.messages);
         aimFirstView(opened.document.session, *opened.source, firstAspect(info));
     }
     opened.document.history.reset(opened.document.session);

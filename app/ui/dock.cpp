@@ -212,13 +212,15 @@ void drawFloating(Drawing& drawing, const DockRect& whole) {
     const float w = whole.hi.x - whole.lo.x, h = whole.hi.y - whole.lo.y;
     for (FloatingPane& floating : drawing.tree.floating) {
         const std::string pane = floating.pane;
-        ImGui::SetNextWindowPos({std::round(whole.lo.x + floating.x * w), std::round(whole.lo.y + floating.y * h)});
+        const std::string name = drawing.panes.title(pane) + "###pane." + pane;
+        const ImGuiWindow* held = GImGui->MovingWindow ? GImGui->MovingWindow->RootWindow : nullptr;
+        if (!held || held != ImGui::FindWindowByName(name.c_str())) // what the mouse moves has its place already
+            ImGui::SetNextWindowPos({std::round(whole.lo.x + floating.x * w), std::round(whole.lo.y + floating.y * h)});
         ImGui::SetNextWindowSize({std::round(floating.width * w), std::round(floating.height * h)});
         const bool padded = !drawing.panes.padded || drawing.panes.padded(pane);
         bool open = true;
         ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(160 * drawing.scale, 110 * drawing.scale));
         if (!padded) ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
-        const std::string name = drawing.panes.title(pane) + "###pane." + pane;
         const bool visible =
             ImGui::Begin(name.c_str(), &open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
         ImGui::PopStyleVar(padded ? 1 : 2);

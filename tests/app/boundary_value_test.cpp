@@ -61,6 +61,8 @@ TEST(BoundaryValue, NothingOfTheBackgroundCounts) {
     });
     ASSERT_TRUE(backgroundShare(*scan, 0, 0));
     ASSERT_TRUE(boundaryValue(*scan, 0, 0));
+    EXPECT_GT(*backgroundShare(*scan, 0, 0), 60.0 / 200) << "all of the noise is background";
+    EXPECT_LT(*backgroundShare(*scan, 0, 0), 0.5);
     EXPECT_GT(*boundaryValue(*scan, 0, 0), 200 * *backgroundShare(*scan, 0, 0));
 }
 

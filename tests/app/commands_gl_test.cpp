@@ -75,14 +75,24 @@ TEST(CommandsTable, HasEveryOptionThatChoosesAState) {
 }
 
 TEST(CommandsTable, HelpOfEachCommandIsItsOwn) {
-    for (const char* name : {"bench", "compare", "convert", "diff", "generate", "info", "mesh", "pack", "plot",
-                             "render", "replay", "stats", "unpack", "verify"}) {
+    for (const char* name : {"compare", "convert", "diff", "generate", "info", "mesh", "pack", "plot", "render",
+                             "replay", "stats", "unpack", "verify"}) {
         const char* words[] = {"tessera", name, "--help"};
         testing::internal::CaptureStdout();
         EXPECT_EQ(runCommandLine(3, words), 0);
         EXPECT_NE(testing::internal::GetCapturedStdout().find("tessera " + std::string(name)), std::string::npos)
             << name;
     }
+}
+
+TEST(CommandsTable, HelpListsThemAll) {
+    const char* words[] = {"tessera", "--help"};
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(runCommandLine(2, words), 0);
+    const std::string said = testing::internal::GetCapturedStdout();
+    for (const char* name : {"bench", "compare", "convert", "diff", "generate", "info", "mesh", "pack", "plot",
+                             "render", "replay", "stats", "unpack", "verify"})
+        EXPECT_NE(said.find("\n  " + std::string(name) + " "), std::string::npos) << name;
 }
 
 TEST_F(Commands, InfoSaysTheBytesOfEachLevel) {

@@ -125,6 +125,12 @@ TEST(DrawnPageGl, AFigureHasThePanelsOfItsViewsInTheirOrder) {
         }
         EXPECT_EQ(differing(alone, part, 1), 0) << i << ": panels are pictures of their views, pixel by pixel";
     }
+    // Between the panels there is the ground that was asked for.
+    ASSERT_EQ(opened.document.session.appearance.theme, Theme::Dark);
+    EXPECT_EQ(both.rgba[0], 255);
+    PictureRequest shown = request;
+    shown.ground = PictureGround::Shown;
+    EXPECT_LT(maker.render(opened.document, opened.sources(), shown).rgba[0], 64);
     const std::string path = testing::TempDir() + "figure_of_panels.svg";
     maker.write(opened.document, opened.sources(), request, path);
     std::string svg(std::filesystem::file_size(path), ' ');

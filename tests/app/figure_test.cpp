@@ -54,6 +54,52 @@ TEST(Figure, HoldsLinesBarsCellsAndTexts) {
     EXPECT_NE(pdf.find("/MediaBox [ 0 0 600 240 ]"), std::string::npos);
 }
 
+TEST(Figure, TitlesAndTheListOfSeriesStandWhereTheyAreLookedFor) {
+    FigurePanel panel;
+    panel.title = "title";
+    panel.x = {"across", {0, 10}};
+    panel.y = {"up", {0, 4}};
+    panel.series = {{"first", {{0, 0}, {10, 1}}, {1, 0, 0}}, {"second", {{0, 1}, {10, 4}}, {0, 0, 1}}};
+    const VectorPage page = drawingOf({panel}, 1);
+    const auto words = [&](const std::string& text) {
+        for (const shapes::Mark& mark : page.marks)
+            if (const auto* found = std::get_if<shapes::Words>(&mark.shape); found && found->text == text)
+                return *found;
+        ADD_FAILURE() << "not written: " << text;
+        return shapes::Words{};
+    };
+    const shapes::PageBox plot = [&] { // the rectangle with an edge
+        for (const shapes::Mark& mark : page.marks)
+            if (const auto* rect = std::get_if<shapes::Rect>(&mark.shape); rect && rect->line > 0) return rect->box;
+        return shapes::PageBox{};
+    }();
+    EXPECT_EQ(plot.hi - plot.lo, kFigurePlot);
+    EXPECT_EQ(words("across").angle, 0);
+    EXPECT_EQ(words("across").anchor, 0.5);
+    EXPECT_DOUBLE_EQ(words("across").at.x, (plot.lo.x + plot.hi.x) / 2);
+    EXPECT_GT(words("across").at.y, plot.hi.y);
+    EXPECT_EQ(words("up").angle, -90) << "read from below";
+    EXPECT_EQ(words("up").anchor, 0.5);
+    EXPECT_DOUBLE_EQ(words("up").at.y, (plot.lo.y + plot.hi.y) / 2);
+    EXPECT_LT(words("up").at.x, plot.lo.x);
+    EXPECT_LT(words("title").at.y, plot.lo.y);
+    for (const auto& series : panel.series) {
+        const shapes::Words name = words(series.name);
+        EXPECT_EQ(name.anchor, 1);
+        int swatches = 0;
+        for (const shapes::Mark& mark : page.marks) {
+            const auto* rect = std::get_if<shapes::Rect>(&mark.shape);
+            if (!rect || rect->color != glm::vec4(series.color, 1)) continue;
+            ++swatches;
+            EXPECT_GE(rect->box.lo.x, name.at.x) << "behind its name";
+            EXPECT_GT(rect->box.hi.x, rect->box.lo.x);
+            EXPECT_LE(rect->box.hi.x, plot.hi.x);
+            EXPECT_LE(std::abs((rect->box.lo.y + rect->box.hi.y) / 2 - name.at.y), 5) << "on its line";
+        }
+        EXPECT_EQ(swatches, 1);
+    }
+}
+
 TEST(Figure, CsvFieldsAreQuotedWhereNeeded) {
     EXPECT_EQ(csvField("T [K]"), "T [K]");
     EXPECT_EQ(csvField("a,b \"c\""), "\"a,b \"\"c\"\"\"");

@@ -3,6 +3,7 @@
 #include "app/session/session.h"
 #include "volume/sources/memory_source.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 
 /// What a data file is first shown as.
@@ -119,6 +120,56 @@ TEST(FirstView, AnOpacityThatSomebodyMadeStays) {
     const auto before = session.transfer;
     aimFirstView(session, *source, 1.5);
     EXPECT_EQ(session.transfer, before);
+}
+
+/// Two parameters at two times on the cube: "all" everywhere, "some" where `present` says so.
+std::shared_ptr<const volume::BrickSource> partly(bool (*present)(int x, int y, int z)) {
+    volume::Dataset data;
+    volume::DatasetInfo& info = data.info;
+    info.lattice.size = glm::ivec3(kSide);
+    info.lattice.spacing = glm::dvec3(1);
+    info.bounds = {glm::dvec3(0), glm::dvec3(kSide - 1)};
+    info.times = {0, 1};
+    for (const char* name : {"all", "some"}) {
+        volume::Parameter& parameter = info.parameters.emplace_back();
+        parameter.name = name;
+        parameter.ranges = {{0, 1}};
+    }
+    data.read = [lattice = info.lattice, present](int parameter, int, int) {
+        volume::Field field = volume::makeField(lattice, volume::ScalarType::F32);
+        auto mask = std::make_shared<volume::Mask>(field.count(), std::uint8_t(1));
+        std::size_t i = 0;
+        for (int z = 0; z < kSide; ++z)
+            for (int y = 0; y < kSide; ++y)
+                for (int x = 0; x < kSide; ++x, ++i) {
+                    field.as<float>()[i] = float(x) / kSide;
+                    if (parameter == 1 && !present(x, y, z)) (*mask)[i] = 0;
+                }
+        field.mask = mask;
+        return field;
+    };
+    return volume::makeMemorySource(std::move(data), {});
+}
+
+TEST(FirstView, TheCursorIsWhereTheFirstLayerHasAValue) {
+    const auto aimed = [](const volume::BrickSource& source, glm::dvec3 from) {
+        Session session = defaultSession(source.info(), {});
+        session.layers = {{"some", true, vis::VolumeLayer{.channel = "some"}}};
+        session.cursor = from;
+        aimFirstView(session, source, 1.5);
+        return session.cursor;
+    };
+    // A tube, whose middle is empty: the cursor is in its wall, half way up.
+    const auto tube = partly([](int x, int y, int z) { return z > 6 && std::hypot(x - 5.5, y - 5.5) > 3; });
+    const glm::dvec3 inWall = aimed(*tube, glm::dvec3(5.5));
+    EXPECT_EQ(inWall.z, 9);
+    EXPECT_GT(std::hypot(inWall.x - 5.5, inWall.y - 5.5), 3);
+    EXPECT_LT(std::hypot(inWall.x - 5.5, inWall.y - 5.5), 4);
+    const glm::dvec3 there(1, 1, 9);
+    EXPECT_EQ(aimed(*tube, there), there) << "it stays where there is a value";
+    // Close to a sample by itself nothing can be interpolated.
+    const auto lonely = partly([](int x, int y, int z) { return (x == 3 && y == 3 && z == 3) || z > 8; });
+    EXPECT_GE(aimed(*lonely, glm::dvec3(3.45)).z, 9);
 }
 
 } // namespace

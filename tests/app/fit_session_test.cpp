@@ -1,7 +1,9 @@
 #include "app/history/session_file.h"
 #include "app/session/session.h"
 #include "cell_info.h"
+#include "formula_cell.h"
 #include "vis/scene/camera.h"
+#include "volume/synthetic/models.h"
 
 #include <algorithm>
 #include <cmath>
@@ -125,6 +127,27 @@ TEST(SessionTest, FitGivesTheFacesOfTheCubeOneStandInForOneName) {
     EXPECT_EQ(std::get<StatisticsView>(session.views.at("statistics")).balance, "") << "another balance is no stand-in";
     ASSERT_EQ(messages.size(), 1u);
     EXPECT_EQ(messages[0], "parameter salt is not in the data; showing O2 instead");
+}
+
+// Data that are opened without a session are shown as they are: nothing of the default is missing in them.
+TEST(SessionTest, DefaultFitsItsData) {
+    const volume::DatasetInfo whole = formula::makeCell().info;
+    std::vector<volume::DatasetInfo> infos{whole, cellInfo()};
+    for (const char* model : {"fuel-cell", "marschner-lobb", "casting"})
+        infos.push_back(volume::makeModel(model, {{"nx", 9}, {"ny", 9}, {"nz", 21}}).info);
+    for (const std::size_t parameter : {0, 2, 3}) // a scalar, a vector, or a label alone
+        infos.emplace_back(whole).parameters = {whole.parameters[parameter]};
+    infos.emplace_back(whole).parameters.clear();
+    infos.emplace_back(whole).times = {0};
+    infos.emplace_back(whole).bounds.hi.z = whole.bounds.lo.z;
+    for (std::size_t i = 0; i < infos.size(); ++i) {
+        const Session made = defaultSession(infos[i], {});
+        Session fitted = made;
+        std::vector<std::string> messages;
+        fitSession(fitted, infos[i], messages);
+        EXPECT_TRUE(fitted == made) << i << Json::diff(toJson(made), toJson(fitted)).dump();
+        EXPECT_TRUE(messages.empty()) << i;
+    }
 }
 
 TEST(SessionTest, DefaultStretchesThinCells) {

@@ -86,6 +86,27 @@ TEST_F(ListHands, LayersAreSelectedHiddenCopiedAndRemoved) {
     EXPECT_TRUE(std::holds_alternative<vis::IsoLayer>(session().layers[0].technique));
 }
 
+TEST_F(ListHands, EveryKindOfLayerIsAdded) {
+    showLists();
+    const auto added = [&](const char* kind) {
+        click(at({"##add"}));
+        EXPECT_TRUE(popup());
+        click(item(popup(), {kind}).GetCenter());
+        return session().layers.back().technique;
+    };
+    const std::string channel = std::get<vis::VolumeLayer>(added("Volume")).channel;
+    EXPECT_EQ(channel, "T");
+    const vis::Technique surface = added("Iso-surface");
+    EXPECT_EQ(std::get<vis::IsoLayer>(surface).channel, channel);
+    const Range range = formula::rangeOf(channel);
+    EXPECT_NEAR(std::get<vis::IsoLayer>(surface).value, (range.lo + range.hi) / 2, 1e-3);
+    EXPECT_EQ(std::get<vis::SliceLayer>(added("Slice")).channel, channel);
+    const vis::Technique flow = added("Flow");
+    EXPECT_EQ(std::get<vis::FlowLayer>(flow).vector, "U");
+    EXPECT_EQ(std::get<vis::FlowLayer>(flow).channel, "|U|");
+    EXPECT_EQ(session().layers.size(), 8u);
+}
+
 TEST_F(ListHands, ALayerIsNamedAfterWhatItShowsUntilTheUserNamesIt) {
     showLists();
     const auto title = [&] { return layerTitle(session().layers.back(), workbench.numbers()->info()); };

@@ -1,4 +1,5 @@
 #include "app/pane/plot.h"
+#include "tests/app/drawn_text.h"
 #include "tests/app/hands_fixture.h"
 
 #include <algorithm>
@@ -64,6 +65,23 @@ TEST_F(TimelineHands, TheKnobFollowsTheMouseAndKeepsToStoredTimes) {
     EXPECT_EQ(steps(), 1u);
     undo();
     EXPECT_TRUE(session() == before) << apart(before);
+}
+
+TEST_F(TimelineHands, EveryStoredTimeHasItsMark) {
+    showTimeline();
+    const auto [first, last] = ends();
+    const ImRect track = inked(plotColors().cursor);
+    const auto marked = [&](double share) {
+        const float x = float(first + (last - first) * share);
+        bool above = false, below = false;
+        for (const ImVec2& corner : drawnIn(plotColors().faint)) {
+            if (std::abs(corner.x - x) > 2 || std::abs(corner.y - track.GetCenter().y) > 12) continue;
+            (corner.y < track.GetCenter().y ? above : below) = true;
+        }
+        return above && below;
+    };
+    for (const double time : formula::kTimes) EXPECT_TRUE(marked(time / formula::kTimes[2])) << time;
+    for (const double share : {0.1, 0.5, 0.9}) EXPECT_FALSE(marked(share)) << share;
 }
 
 TEST_F(TimelineHands, TheWheelGoesFromTimeToTime) {

@@ -51,6 +51,11 @@ TEST(PictureForm, TheCommandLineAndJsonMeanTheSame) {
     EXPECT_EQ(requested("--preset oneColumn --size 300x200").size, glm::ivec2(300, 200));
     EXPECT_THROW(requested("--width-mm 85 --size 300x200"), CLI::ValidationError);
     EXPECT_THROW(requested("--size 300"), CLI::ValidationError);
+    EXPECT_EQ(requested("--size 16x16").size, glm::ivec2(16, 16)) << "the least";
+    EXPECT_THROW(requested("--size 15x16"), CLI::ValidationError);
+    EXPECT_THROW(requested("--size 16x15"), CLI::ValidationError);
+    EXPECT_EQ(requested("--size 16384x16").size, glm::ivec2(16384, 16)) << "the most";
+    EXPECT_THROW(requested("--size 16385x16"), CLI::ValidationError);
     EXPECT_THROW(requested("--width-mm 1900 --dpi 300"), Error);
 
     PictureForm form;

@@ -195,6 +195,25 @@ TEST(RegionData, BalancesFollowTheUnitOfLength) {
     EXPECT_GT(moved, 0);
 }
 
+TEST(RegionData, BalancesSayWhatCarriesAndInWhichUnit) {
+    volume::Dataset data = cell();
+    const auto notes = [&] {
+        const auto source = cellSource(data);
+        return balanceTable(source->info(), readBalance(source, {0, "", 1, {}})).notes;
+    };
+    const std::vector<std::string> stated = notes();
+    EXPECT_EQ(stated.front(), "carried by U (convection only, without diffusion)");
+    for (volume::Parameter& parameter : data.info.parameters)
+        if (parameter.name == "U") parameter.unit.clear();
+    data.info.timeUnit = "s";
+    data.info.lengthUnit = "mm";
+    std::vector<std::string> taken = notes();
+    ASSERT_EQ(taken.size(), stated.size() + 1);
+    EXPECT_EQ(taken.back(), "U has no unit: taken as mm/s");
+    taken.pop_back();
+    EXPECT_EQ(taken, stated);
+}
+
 TEST(RegionData, CellsOfABalanceStandUnderTheirHeads) {
     const std::vector<std::string> cells =
         balanceCells({"air", "total: reacts", 1.5, 2.5, 3.5, 4.5, 5.5, true, 0.25, 7.5});

@@ -38,7 +38,9 @@ TEST(SliceRooms, ARoomyPaneHasQuartersWithNumbers) {
 TEST(SliceRooms, ASmallPaneHasARowOrAColumn) {
     const SliceRooms wide = sliceRooms({0, 0}, {460, 150}, {1, 1, 1}, kEm);
     EXPECT_EQ(wide.order, SliceOrder::Row);
-    EXPECT_GT(wide.numbers.size().x, kEm * 7) << "there is room for numbers";
+    EXPECT_EQ(wide.numbers.size().x, kEm * 8) << "there is room for numbers";
+    EXPECT_EQ(sliceRooms({0, 0}, {600, 150}, {1, 1, 1}, kEm).numbers.size().x, 150) << "a quarter";
+    EXPECT_EQ(sliceRooms({0, 0}, {900, 150}, {1, 1, 1}, kEm).numbers.size().x, kEm * 14) << "no more than they need";
     const SliceRooms narrow = sliceRooms({0, 0}, {290, 128}, {1, 1, 1}, kEm);
     EXPECT_EQ(narrow.order, SliceOrder::Row);
     EXPECT_EQ(narrow.numbers.size().x, 0) << "and here is none";

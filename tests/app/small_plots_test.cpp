@@ -72,6 +72,47 @@ TEST_F(SmallPlots, LegendsOfASmallPictureAreOneLineEach) {
     });
 }
 
+TEST_F(SmallPlots, ALegendOfOpacityIsFilledInByIt) {
+    vis::TransferFunction function;
+    function.opacity = {{0, 0}, {1, 0.5f}};
+    feedWindow([&] { drawOpacityStrip(*ImGui::GetWindowDrawList(), {100, 100}, {228, 110}, function); });
+    const ImU32 ink = plotColors().text & ~IM_COL32_A_MASK;
+    std::map<int, int> alpha; // by pixel from the left
+    const ImDrawData& data = *ImGui::GetDrawData();
+    for (int list = 0; list < data.CmdListsCount; ++list)
+        for (const ImDrawVert& corner : data.CmdLists[list]->VtxBuffer)
+            if ((corner.col & ~IM_COL32_A_MASK) == ink && corner.pos.y == 100)
+                alpha[int(corner.pos.x) - 100] = int(corner.col >> IM_COL32_A_SHIFT & 255);
+    for (const int x : {0, 32, 64, 96, 128}) {
+        ASSERT_TRUE(alpha.contains(x)) << x;
+        EXPECT_NEAR(alpha[x], 255 * x / 128, 1) << "full where it is most opaque";
+    }
+}
+
+TEST_F(SmallPlots, AnUprightLegendHasTheLargestValueOnTop) {
+    LegendEntry entry = bar("T");
+    entry.function.colormap = "greys";
+    const auto drawn = [&](float height) {
+        feedWindow([&] { drawLegendColumn(*ImGui::GetWindowDrawList(), {50, 60}, height, entry); });
+        return drawnTexts();
+    };
+    const std::vector<DrawnText> texts = drawn(100);
+    ASSERT_EQ(texts.size(), 2u);
+    EXPECT_EQ(texts[0].text, "350.0");
+    EXPECT_NEAR(texts[0].middle().y, 60, 12);
+    EXPECT_EQ(texts[1].text, "300.0");
+    EXPECT_NEAR(texts[1].middle().y, 160, 12);
+    const auto rows = [&](double share) { // where the colour of a share of the range is
+        const glm::dvec4 c = vis::evaluate(entry.function, {0, 1}, share);
+        return drawnIn(toColor({c.r, c.g, c.b}));
+    };
+    ASSERT_FALSE(rows(0.995).empty());
+    EXPECT_NEAR(rows(0.995)[0].y, 60, 1);
+    ASSERT_FALSE(rows(0.005).empty());
+    EXPECT_NEAR(rows(0.005)[0].y, 159, 1);
+    EXPECT_TRUE(drawn(20).empty()) << "no room for both values";
+}
+
 TEST_F(SmallPlots, ATextGivesUpWordsBeforeLetters) {
     feedWindow([&] {
         const auto width = [](const char* text) { return ImGui::CalcTextSize(text).x; };

@@ -2,7 +2,7 @@
 #include "app/queries/derivative_query.h"
 #include "app/ui/theme.h"
 #include "app/views/transfer/color_edit.h"
-#include "app/views/transfer/transfer_pages.h"
+#include "app/views/transfer/transfer_controls.h"
 #include "tests/app/fed_imgui.h"
 #include "vis/gl/headless.h"
 #include "vis/transfer/boundary_opacity.h"
@@ -76,6 +76,18 @@ TEST(ColorEdit, OwnColorsBeginAsTheMapThatWasInUse) {
     vis::TransferFunction gray;
     gray.colormap = "gray";
     EXPECT_EQ(ownColors(gray).size(), 2u) << "as few as do";
+}
+
+TEST(FunctionName, IsTheOwnOneOfALayerThatHasIt) {
+    Session session;
+    session.layers = {{"a", true, vis::VolumeLayer{.channel = "T"}},
+                      {"b", true, vis::VolumeLayer{.channel = "T"}, "", "own"}};
+    EXPECT_EQ(functionName(session, {.channel = "own"}, "T"), "own");
+    EXPECT_EQ(layerOfFunction(session, "own"), &session.layers[1]);
+    EXPECT_EQ(functionName(session, {.channel = "O2"}, "T"), "T") << "a channel, or nothing that is there";
+    EXPECT_EQ(functionName(session, {}, "T"), "T");
+    EXPECT_EQ(layerOfFunction(session, "O2"), nullptr);
+    EXPECT_EQ(layerOfFunction(session, ""), nullptr);
 }
 
 /// The transfer function view in a window of its own, without a window system.
@@ -216,6 +228,9 @@ TEST_F(TransferPages, StopsOfOwnColorsAreAddedMovedAndRemoved) {
     press(0, {300, 48}, {580, 48});
     EXPECT_EQ(stops[1].position, 1.0f) << "no further than its neighbour";
     press(0, {498, 48}, {300, 48});
+    const float place = stops[1].position;
+    press(0, {300, 80}, {450, 80});
+    EXPECT_EQ(stops[1].position, place) << "a drag below them moves none";
     press(1, {300, 48}, {300, 48});
     EXPECT_EQ(stops.size(), 2u);
     press(1, {100, 48}, {100, 48});

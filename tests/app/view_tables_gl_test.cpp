@@ -81,6 +81,7 @@ TEST_F(ViewTables, StatisticsAreThoseOfTheSamples) {
             EXPECT_NEAR(*table.number(row, "min"), sum.least, 2e-4);
             EXPECT_NEAR(*table.number(row, "max"), sum.most, 2e-4);
             if (part == "all" && name == "T") {
+                EXPECT_NEAR(*table.number(row, "volume [m3]"), 7e-3 * 12e-3 * 4e-3, 1e-12) << "of the whole box";
                 EXPECT_NEAR(*table.number(row, "correlation with c"), correlation("T", "c", of.time), 1e-3);
             }
         }

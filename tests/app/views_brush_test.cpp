@@ -1,5 +1,6 @@
 #include "app/tools/brush_edit.h"
 #include "app/tools/brush_list.h"
+#include "tests/app/drawn_text.h"
 #include "tests/app/fed_imgui.h"
 
 #include "app/tools/lens_list.h"
@@ -363,6 +364,28 @@ TEST(BrushList, SaysHowBrushesMeet) {
     EXPECT_TRUE(combinationText(selection).starts_with("not 1 and 2;"));
     selection.brushes[1].enabled = false;
     EXPECT_EQ(combinationText(selection), "");
+}
+
+// An axis without limits has no edges: lines along the border of the plot would look like a range.
+TEST_F(BrushEdit, ABrushOfOneParameterIsABandThroughThePlot) {
+    for (const bool upright : {true, false}) {
+        selection.brushes = {vis::rangeBrush({upright ? vis::BrushInterval{.channel = "T", .lo = 3, .hi = 6}
+                                                      : vis::BrushInterval{.channel = "O2", .lo = 0.3, .hi = 0.6}})};
+        frame();
+        int edges = 0;
+        ASSERT_EQ(drawnTexts().size(), 1u);
+        const DrawnText number = drawnTexts()[0]; // of the brush, in its colour
+        const auto isIn = [](float at, float lo, float hi) { return at > lo + 1 && at < hi - 1; };
+        for (const ImVec2& corner : drawnIn(brushColor(selection.brushes[0]))) {
+            if (corner.x < number.max.x + 1 && corner.x > number.min.x - 1 && corner.y < number.max.y + 1) continue;
+            ++edges;
+            if (upright)
+                EXPECT_FALSE(isIn(corner.y, plot.min.y, plot.max.y)) << corner.x << ' ' << corner.y;
+            else
+                EXPECT_FALSE(isIn(corner.x, plot.min.x, plot.max.x)) << corner.x << ' ' << corner.y;
+        }
+        EXPECT_GT(edges, 0);
+    }
 }
 
 } // namespace

@@ -1,7 +1,10 @@
+#include "app/ui/theme.h"
 #include "app/views/timeline/playback.h"
 #include "app/views/transfer/opacity_edit.h"
+#include "tests/app/drawn_text.h"
 #include "tests/app/fed_imgui.h"
 
+#include <cmath>
 #include <gmock/gmock.h>
 
 namespace tessera::app {
@@ -122,6 +125,23 @@ TEST(OpacityPresets, AreSortedAndWithinBounds) {
         EXPECT_EQ(curve.front().x, 0);
         EXPECT_EQ(curve.back().x, 1);
     }
+}
+
+TEST_F(OpacityEdit, EveryPointHasARim) {
+    loadFonts(1);
+    applyTheme(Theme::Dark, 1);
+    curve = {{0.1f, 0.2f}, {0.5f, 0.9f}, {0.8f, 0.4f}};
+    feedWindow([&] { drawOpacity(*ImGui::GetWindowDrawList(), curve, plot, {0, 10}, 1); });
+    const auto around = [&](ImU32 color, ImVec2 at) {
+        return std::ranges::any_of(
+            drawnIn(color), [&](ImVec2 corner) { return std::hypot(corner.x - at.x, corner.y - at.y) < 0.6f * em(); });
+    };
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+        const ImVec2 at = plot.pixel(10 * double(curve[i].x), double(curve[i].y));
+        EXPECT_TRUE(around(plotColors().backdrop, at)) << i;
+        EXPECT_TRUE(around(i == 1 ? plotColors().focus : plotColors().text, at)) << i;
+    }
+    for (const ImVec2& corner : drawnIn(plotColors().backdrop)) EXPECT_GT(corner.x, plot.min.x - em());
 }
 
 } // namespace

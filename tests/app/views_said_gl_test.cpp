@@ -1,4 +1,5 @@
 #include "app/ui/ticks.h"
+#include "tests/app/drawn_text.h"
 #include "tests/app/views_fixture.h"
 
 #include <gmock/gmock.h>
@@ -109,6 +110,67 @@ TEST_F(SaidViews, FluxIsShownWhereThereIsAVelocity) {
     EXPECT_THAT(sections(SectionMeasure::Mean), Not(HasSubstr("No flux")));
     EXPECT_THAT(sections(SectionMeasure::Flux), HasSubstr("No flux"));
     EXPECT_THAT(sections(SectionMeasure::Flow), HasSubstr("No flux"));
+}
+
+TEST_F(SaidViews, AnEyeSaysWhetherItsLayerIsShown) {
+    show(fuelCell(volume::LatticeKind::CC));
+    fonts.icons = nullptr; // words in place of glyphs
+    session.layers = {{"seen", true, vis::VolumeLayer{.channel = "T"}},
+                      {"hidden", false, vis::VolumeLayer{.channel = "T"}}};
+    of("layers", layersView, drawLayersView);
+    const auto eyeOf = [](const std::string& layer) { // the word before it in its line
+        const std::vector<DrawnText> texts = drawnTexts();
+        for (std::size_t i = 1; i < texts.size(); ++i)
+            if (texts[i].text.ends_with(layer)) return texts[i - 1].text;
+        return std::string();
+    };
+    EXPECT_EQ(eyeOf(" seen"), "on");
+    EXPECT_EQ(eyeOf(" hidden"), "off");
+}
+
+TEST_F(SaidViews, AHintIsAHeadingAndWhatToDo) {
+    show(volume::makeMemorySource(volume::makeModel("marschner-lobb", {{"nx", 12}, {"ny", 12}, {"nz", 12}}), {}));
+    profileView.over = ProfileOver::Sections;
+    profileView.sections.measure = SectionMeasure::Flux;
+    const std::string text = of("profile", profileView, drawProfileView);
+    const auto heading = text.find("No flux"), reason = text.find("The data have no vector");
+    ASSERT_NE(reason, std::string::npos) << text;
+    EXPECT_LT(heading, reason);
+}
+
+TEST_F(SaidViews, TheTimelineSaysAlongWhichAxisTimeRuns) {
+    show(volume::makeMemorySource(volume::makeModel("marschner-lobb", {{"nx", 12}, {"ny", 12}, {"nz", 12}}), {}));
+    EXPECT_THAT(of("timeline", timelineView, drawTimelineView), HasSubstr("These data have only one time."));
+    session.data.timeAxis = volume::TimeAxis{.axis = volume::SpaceAxis::Y};
+    EXPECT_THAT(of("timeline", timelineView, drawTimelineView), HasSubstr("Time runs along y."));
+}
+
+TEST_F(SaidViews, AnEditorOfOpacityWithoutRoomSaysSo) {
+    show(fuelCell(volume::LatticeKind::CC));
+    for (const vis::TransferKind kind : {vis::TransferKind::Curve, vis::TransferKind::Regions}) {
+        for (auto& [name, function] : session.transfer) function.kind = kind;
+        const auto at = [&](ImVec2 size) {
+            const auto body = [&] { draw("transfer", transferView, drawTransferView, size); };
+            for (int i = 0; i < 3; ++i) frame(body);
+            return said(body);
+        };
+        EXPECT_THAT(at({720, 560}), Not(HasSubstr("Not enough room")));
+        EXPECT_THAT(at({70, 560}), HasSubstr("Not enough room")) << int(kind);
+    }
+}
+
+TEST_F(SaidViews, AMatrixOfScatterplotsHasTheCorrelationsAboveItsDiagonal) {
+    show(fuelCell(volume::LatticeKind::CC));
+    scatterView.channels = {"T", "O2"};
+    of("scatterMatrix", scatterView, drawScatterMatrixView);
+    int numbers = 0;
+    for (const DrawnText& text : drawnTexts())
+        if (text.text.size() == 5 && (text.text[0] == '+' || text.text[0] == '-') && text.text[2] == '.') {
+            ++numbers;
+            EXPECT_GT(text.middle().x, 360);
+            EXPECT_LT(text.middle().y, 300);
+        }
+    EXPECT_EQ(numbers, 1);
 }
 
 } // namespace

@@ -203,6 +203,13 @@ TEST(HistoryWords, CallThingsByTheirNames) {
     EXPECT_EQ(said("/transfer/O2/opacity/1/0"), "transfer function of O2: opacity");
     EXPECT_EQ(said("/stretch/2"), "proportions");
     EXPECT_EQ(said("/time"), "time");
+    const auto both = [&](const char* one, const char* other) {
+        return editTitle(Json::array({{{"op", "replace"}, {"path", one}}, {{"op", "replace"}, {"path", other}}}),
+                         before, after);
+    };
+    EXPECT_EQ(both("/transfer/O2/range/0", "/transfer/O2/range/1"), "transfer function of O2: range");
+    EXPECT_EQ(both("/transfer/O2/range/0", "/transfer/T/range/0"), "transfer") << "of several";
+    EXPECT_EQ(both("/lenses/0/center/2", "/lenses/1/center/2"), "lenses");
     after.layers.pop_back();
     EXPECT_EQ(said("/layers/1", "remove"), "O2 surface removed") << "as it was called";
 }

@@ -62,7 +62,7 @@ vis::Layer newLayer(const Session& session, const volume::DatasetInfo& info, std
 
 void drawList(ViewContext& context, const volume::DatasetInfo& info, int& selected) {
     std::vector<vis::Layer>& layers = context.session.layers;
-    int moveFrom = -1, moveTo = -1;
+    int moveFrom = -1, moveTo = 0;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         vis::Layer& layer = layers[i];
         ImGui::PushID(static_cast<int>(i));
@@ -109,7 +109,7 @@ void drawList(ViewContext& context, const volume::DatasetInfo& info, int& select
         ImGui::TextDisabled("%s", channel.c_str());
         ImGui::PopID();
     }
-    if (moveFrom >= 0 && moveTo >= 0 && moveFrom != moveTo) {
+    if (moveFrom >= 0 && moveFrom != moveTo) {
         const vis::Layer moved = layers[static_cast<std::size_t>(moveFrom)];
         layers.erase(layers.begin() + moveFrom);
         layers.insert(layers.begin() + moveTo, moved);

@@ -1,0 +1,120 @@
+#include "app/pane/axes3d.h"
+#include "app/ui/theme.h"
+#include "tests/app/drawn_text.h"
+#include "tests/app/fed_imgui.h"
+
+#include <algorithm>
+
+/// Axes and the triad of pictures in space, and the lines of the cross-hair.
+namespace tessera::app {
+namespace {
+
+const volume::Box kBox{{0, 0, 0}, {4, 4, 4}};
+const AxisLabels kLabels{AxisLabel{"x", {"mm", 1}}, AxisLabel{"y", {"mm", 1}}, AxisLabel{"z", {"mm", 1}}};
+
+class AxesTest : public FedImGui {
+protected:
+    AxesTest() : FedImGui({800, 600}) {}
+    void SetUp() override {
+        loadFonts(1);
+        applyTheme(Theme::Dark, 1);
+    }
+    static std::vector<DrawnText> called(const std::string& text) {
+        std::vector<DrawnText> out = drawnTexts();
+        std::erase_if(out, [&](const DrawnText& each) { return each.text != text; });
+        return out;
+    }
+};
+
+TEST_F(AxesTest, AnAxisWithoutRoomBesideItHasItsTitleBeyondItsEnd) {
+    vis::Camera camera = vis::planeCamera(0, 1, vis::worldFrame(kBox, glm::dvec3(1)));
+    camera.distance *= 1.08f; // it nearly fills the height
+    const auto draw = [&](ImVec2 max, const std::vector<std::pair<ImVec2, ImVec2>>& taken) {
+        feedWindow([&] {
+            const SpaceFrame frame = spaceFrame({0, 0}, max, camera, kBox, glm::dvec3(1));
+            drawAxes3d(*ImGui::GetWindowDrawList(), frame, camera, kLabels, taken);
+        });
+    };
+    const float em = ImGui::GetIO().Fonts->Fonts[0]->FontSize;
+    draw({800, 500}, {}); // the box from 169 to 631 and 19 to 481: nothing below, room at both sides
+    const auto titles = called("x [mm]");
+    ASSERT_EQ(titles.size(), 1u);
+    EXPECT_GT(titles[0].min.x, 631);
+    EXPECT_LT(titles[0].min.x, 631 + 2 * em);
+    EXPECT_NEAR(titles[0].middle().y, 481, em / 2);
+    const auto upright = called("y [mm]");
+    ASSERT_EQ(upright.size(), 1u);
+    EXPECT_LT(upright[0].max.x, 169) << "there is room beside it";
+    EXPECT_NEAR(upright[0].middle().y, 250, em);
+    camera.distance *= 1.08f;                  // from 186 to 614 and 36 to 464
+    draw({800, 500}, {{{0, 40}, {185, 500}}}); // none beside it
+    const auto above = called("y [mm]");
+    ASSERT_EQ(above.size(), 1u);
+    EXPECT_LT(above[0].max.y, 36) << "beyond its end";
+    EXPECT_NEAR(above[0].middle().x, 186, em / 2);
+}
+
+TEST_F(AxesTest, TheTriadNamesTheEndsAndAClickLooksAgainstThem) {
+    const ImVec2 center{300, 300};
+    const float radius = 80;
+    vis::Camera camera;
+    std::optional<vis::StandardView> chosen;
+    const auto draw = [&](const ImVec2* at, bool clicked) {
+        feedWindow(
+            [&] { chosen = drawTriad(*ImGui::GetWindowDrawList(), center, radius, camera, kLabels, at, clicked); });
+    };
+    const auto place = [&](int axis, float sign) {
+        glm::vec3 direction(0);
+        direction[axis] = sign;
+        const glm::vec3 eye = camera.orientation * direction;
+        return ImVec2{center.x + eye.x * radius * 0.9f, center.y - eye.y * radius * 0.9f};
+    };
+    for (const vis::StandardView from :
+         {vis::StandardView::Isometric, vis::StandardView::Front, vis::StandardView::Top, vis::StandardView::Left}) {
+        camera.orientation = vis::standardOrientation(from);
+        draw(nullptr, false);
+        EXPECT_FALSE(chosen);
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto names = called(kLabels[std::size_t(axis)].name);
+            ASSERT_EQ(names.size(), 1u);
+            const ImVec2 at = place(axis, 1);
+            EXPECT_NEAR(names[0].middle().x, at.x, 5) << axis;
+            EXPECT_NEAR(names[0].middle().y, at.y, 5) << axis;
+        }
+    }
+    camera.orientation = glm::quat(0.9f, 0.25f, 0.3f, 0.1f);
+    camera.orientation = glm::normalize(camera.orientation);
+    for (int axis = 0; axis < 3; ++axis)
+        for (const float sign : {1.0f, -1.0f}) {
+            const ImVec2 at = place(axis, sign);
+            draw(&at, false);
+            EXPECT_FALSE(chosen) << "only under the mouse";
+            draw(&at, true);
+            ASSERT_TRUE(chosen);
+            const glm::vec3 toViewer = glm::inverse(vis::standardOrientation(*chosen)) * glm::vec3(0, 0, 1);
+            EXPECT_NEAR(toViewer[axis], sign, 1e-5) << "the end that was clicked points to the viewer";
+        }
+    const ImVec2 away{center.x + 2 * radius, center.y};
+    draw(&away, true);
+    EXPECT_FALSE(chosen);
+}
+
+TEST_F(AxesTest, TheCrossHairHasNoLineThatEndsBehindTheEye) {
+    const ImU32 ink = (plotColors().cursor & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 90);
+    vis::Camera camera;
+    camera.orientation = vis::standardOrientation(vis::StandardView::Front);
+    const auto lines = [&](float distance) {
+        camera.distance = distance;
+        feedWindow([&] {
+            drawCursor3d(*ImGui::GetWindowDrawList(), spaceFrame({0, 0}, {600, 600}, camera, kBox, glm::dvec3(1)),
+                         {1, 1.5, 0.5});
+        });
+        return drawnIn(ink).size();
+    };
+    const std::size_t all = lines(3), within = lines(0.2f);
+    ASSERT_GT(all, 0u);
+    EXPECT_EQ(within * 3, all * 2) << "one of three leads past the eye";
+}
+
+} // namespace
+} // namespace tessera::app

@@ -1,0 +1,65 @@
+#include "app/command/command.h"
+#include "app/command/derive_option.h"
+
+#include <filesystem>
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+/// What the command line says to words that it cannot use.
+namespace tessera::app {
+namespace {
+
+using testing::HasSubstr;
+
+struct Said {
+    int status;
+    std::string text; ///< on stderr
+};
+Said said(std::vector<std::string> words) {
+    words.insert(words.begin(), "tessera");
+    std::vector<const char*> arguments;
+    for (const std::string& word : words) arguments.push_back(word.c_str());
+    testing::internal::CaptureStderr();
+    const int status = runCommandLine(int(arguments.size()), arguments.data());
+    return {status, testing::internal::GetCapturedStderr()};
+}
+
+TEST(CommandWords, AWrongValueIsSaidWithItsOption) {
+    const std::string file = (std::filesystem::path(testing::TempDir()) / "words.png").string();
+    const std::string data = (std::filesystem::path(testing::TempDir()) / "signal.tsr").string();
+    ASSERT_EQ(said({"generate", "marschner-lobb", "--size", "8x8x8", "-o", data}).status, 0);
+    const auto refused = [&](const std::vector<std::string>& words, const std::string& text) {
+        SCOPED_TRACE(text);
+        const Said answer = said(words);
+        EXPECT_EQ(answer.status, 1);
+        EXPECT_THAT(answer.text, HasSubstr(text));
+        EXPECT_FALSE(std::filesystem::exists(file));
+    };
+    refused({"generate", "fuel-cell", "--size", "8x8", "-o", file}, "--size: expected NXxNYxNZ, not \"8x8\"");
+    refused({"generate", "fuel-cell", "--size", "8xx8", "-o", file}, "--size: expected NXxNYxNZ, not \"8xx8\"");
+    refused({"generate", "fuel-cell", "--set", "nx", "-o", file}, "--set: expected KEY=NUMBER, not \"nx\"");
+    refused({"pack", "nothing.vti", "--grid", "8x8", "-o", file}, "--grid: needs XxYxZ, not \"8x8\"");
+    for (const char* grid : {"0x8x8", "8x4097x8", "8x8x-1"})
+        refused({"pack", "nothing.vti", "--grid", grid, "-o", file}, "--grid: each size must be 1..4096");
+    for (const char* variant : {"later: /time", "later: time=1", "later: /time=1; time=2"})
+        refused({"compare", data, "--variant", variant, "-o", file},
+                "--variant: needs NAME: /json/pointer=value; ..., not \"" + std::string(variant) + "\"");
+    for (const char* formula : {"T + 1", " = T + 1", "[K] = T"})
+        refused({"stats", "nothing.tsr", "--derive", formula, "-o", file},
+                "--derive: needs NAME [UNIT] = FORMULA, not \"" + std::string(formula) + "\"");
+}
+
+TEST(CommandWords, BlanksAroundTheWordsOfAFormulaAreNoPartOfThem) {
+    for (const char* text :
+         {"dT [K] = T - 300", "dT[K]=T - 300", "  dT  [ K ]  =  T - 300  ", "\tdT [K]\t=\tT - 300\t"}) {
+        SCOPED_TRACE(text);
+        const volume::DerivedParameter parsed = parseDerived(text);
+        EXPECT_EQ(parsed.name, "dT");
+        EXPECT_EQ(parsed.unit, "K");
+        EXPECT_EQ(std::get<volume::ExpressionRecipe>(parsed.recipe).formula, "T - 300");
+    }
+    EXPECT_EQ(parseDerived("a = b").unit, "");
+}
+
+} // namespace
+} // namespace tessera::app

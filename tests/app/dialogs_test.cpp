@@ -1,0 +1,130 @@
+#include "app/dialogs/dialogs.h"
+#include "app/dialogs/file_questions.h"
+#include "app/ui/theme.h"
+#include "codec/pack/pack.h"
+#include "tests/app/drawn_text.h"
+#include "tests/app/fed_imgui.h"
+#include "tests/app/formula_cell.h"
+
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+/// What dialogs say, and that they close.
+namespace tessera::app {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+class Dialogs : public FedImGui {
+protected:
+    Dialogs() : FedImGui({900, 700}) {}
+    void SetUp() override {
+        fonts = loadFonts(1);
+        applyTheme(Theme::Dark, 1);
+        fs::create_directories(folder);
+    }
+    void TearDown() override { fs::remove_all(folder); }
+    template <class Body> void frames(int count, const Body& body) {
+        for (int i = 0; i < count; ++i) feed(body);
+    }
+    template <class Body> void click(ImVec2 at, const Body& body) {
+        mouse = at;
+        frames(2, body);
+        for (const bool down : {true, false}) {
+            ImGui::GetIO().MouseDown[0] = down;
+            feed(body);
+        }
+        frames(3, body);
+    }
+    static DrawnText find(const std::string& text) {
+        for (const DrawnText& each : drawnTexts())
+            if (each.text == text) return each;
+        ADD_FAILURE() << "not drawn: " << text;
+        return {};
+    }
+
+    Fonts fonts;
+    fs::path folder = fs::path(testing::TempDir()) / ("dialogs_" + std::to_string(::getpid()));
+};
+
+TEST_F(Dialogs, AboutIsClosedByItsButtonAndItsCross) {
+    HelpDialogs dialogs;
+    const auto draw = [&] { dialogs.draw({}, fonts, {}); };
+    for (const bool byButton : {true, false}) {
+        dialogs.showAbout();
+        frames(4, draw);
+        EXPECT_THAT(drawnWords(), Contains("A workbench for simulations with many values per point."));
+        const DrawnText title = find("About Tessera"), button = find("Close");
+        click(byButton ? button.middle() : ImVec2{button.max.x + 24, title.middle().y},
+              draw); // the cross is at the end
+        EXPECT_THAT(drawnWords(), Not(Contains("About Tessera"))) << byButton;
+    }
+}
+
+TEST_F(Dialogs, APictureSaysWhetherItHoldsItsSession) {
+    Session session;
+    addView(session, *viewOfKind("volume"));
+    PictureDialog dialog;
+    dialog.show("volume");
+    const auto draw = [&] { dialog.draw(session, {}, ""); };
+    frames(4, draw);
+    const auto holds = HasSubstr("The picture contains the session"),
+               vectors = HasSubstr("Texts and lines are vectors");
+    EXPECT_THAT(drawnWords(), Contains(holds));
+    EXPECT_THAT(drawnWords(), Not(Contains(vectors)));
+    click(find("Png").middle(), draw);
+    click(find("Pdf").middle(), draw);
+    EXPECT_THAT(drawnWords(), Contains(vectors));
+    EXPECT_THAT(drawnWords(), Not(Contains(holds)));
+}
+
+TEST_F(Dialogs, AQuestionForAFileHasItsTitle) {
+    Jobs jobs;
+    FileQuestions questions(jobs);
+    const auto draw = [&] { questions.draw(); };
+    questions.startIn(folder.string());
+    questions.askSave("Save the table", "t.csv", ".csv", [](const std::string&) {});
+    frames(4, draw);
+    EXPECT_THAT(drawnWords(), Contains("Save the table"));
+    ImGui::GetIO().DisplaySize = {900, 700};
+    FileQuestions others(jobs);
+    others.startIn(folder.string());
+    others.askOpen("Open a colour map", [](const std::vector<std::string>&) {});
+    frames(4, [&] { others.draw(); });
+    EXPECT_THAT(drawnWords(), Contains("Open a colour map"));
+}
+
+TEST_F(Dialogs, APreviewListsParametersOrSaysWhatIsWrongWhere) {
+    Jobs jobs;
+    ImportForm form(jobs);
+    const auto previewOf = [&](const std::string& name) {
+        const std::string path = (folder / name).string();
+        form.previewOf(path);
+        jobs.wait();
+        jobs.collect();
+        return form.previewOf(path);
+    };
+    volume::Dataset cell = formula::makeCell();
+    codec::pack(cell, {}, (folder / "cell.tsr").string());
+    const FilePreview good = previewOf("cell.tsr");
+    EXPECT_FALSE(good.failed);
+    for (const char* line : {"\nT [K]  ", "\nc [mol/m3]  ", "\nU (vector) [m/s]  ", "\nregion  "})
+        EXPECT_THAT(good.text, HasSubstr(line));
+    std::ofstream(folder / "broken.tsr") << "no archive";
+    std::ofstream(folder / "broken.tessera.json") << R"({"app": {"name": "tessera", "schema": 3}, "session": )";
+    for (const char* name : {"broken.tsr", "broken.tessera.json"}) {
+        const FilePreview bad = previewOf(name);
+        EXPECT_TRUE(bad.failed) << name;
+        EXPECT_THAT(bad.text, HasSubstr(name));
+        EXPECT_THAT(bad.text, Not(HasSubstr(folder.string()))) << "the list shows the folder";
+        EXPECT_GT(bad.text.size(), std::string(name).size() + 10) << "and the reason";
+    }
+}
+
+} // namespace
+} // namespace tessera::app

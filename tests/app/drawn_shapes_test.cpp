@@ -1,0 +1,152 @@
+#include "app/tools/lens_edit.h"
+#include "app/ui/theme.h"
+#include "app/views/tesseract/tesseract_wire.h"
+#include "app/views/transfer/region_edit.h"
+#include "tests/app/drawn_text.h"
+#include "tests/app/fed_imgui.h"
+
+#include <cmath>
+
+/// Shapes that views draw over their pictures, read back from the triangles of ImGui.
+namespace tessera::app {
+namespace {
+
+class DrawnShapes : public FedImGui {
+protected:
+    DrawnShapes() : FedImGui({600, 500}) {}
+    void SetUp() override {
+        loadFonts(1);
+        applyTheme(Theme::Dark, 1);
+    }
+    struct Box {
+        ImVec2 min{1e9f, 1e9f}, max{-1e9f, -1e9f};
+    };
+    static Box around(const std::vector<ImVec2>& places) {
+        Box box;
+        for (const ImVec2& at : places) {
+            box.min = {std::min(box.min.x, at.x), std::min(box.min.y, at.y)};
+            box.max = {std::max(box.max.x, at.x), std::max(box.max.y, at.y)};
+        }
+        return box;
+    }
+};
+
+TEST_F(DrawnShapes, RegionsHaveTheirOutlineAndTheSelectedOneItsCorners) {
+    const PlotFrame plane{{50, 50}, {450, 350}, {0, 1}, {0, 1}};
+    vis::TransferFunction function;
+    vis::TransferRegion& region = function.regions.emplace_back();
+    region.centre = {0.6f, 0.3f};
+    region.size = {0.5f, 0.2f};
+    region.ownColor = true;
+    region.color = {1, 0, 0};
+    const ImVec2 a = plane.pixel(0.35, 0.4), b = plane.pixel(0.85, 0.2), middle = plane.pixel(0.6, 0.3);
+    const ImU32 line = toColor({1, 0, 0});
+    const auto outline = [&](int selected) {
+        feedWindow([&] { drawRegions(*ImGui::GetWindowDrawList(), function, plane, selected); });
+        return drawnIn(line);
+    };
+    for (const vis::RegionShape shape :
+         {vis::RegionShape::Rectangle, vis::RegionShape::Triangle, vis::RegionShape::Gaussian}) {
+        SCOPED_TRACE(int(shape));
+        region.shape = shape;
+        const std::vector<ImVec2> corners = outline(-1);
+        const Box box = around(corners);
+        const float pen = 8; // pointed corners are wider than the line
+        EXPECT_NEAR(box.min.x, a.x, pen);
+        EXPECT_NEAR(box.max.x, b.x, pen);
+        EXPECT_NEAR(box.min.y, a.y, pen);
+        EXPECT_NEAR(box.max.y, b.y, pen);
+        EXPECT_TRUE(drawnIn(plotColors().text).empty()) << "none is selected";
+        for (const ImVec2& at : corners) {
+            const double u = (at.x - middle.x) / (b.x - middle.x), v = (at.y - middle.y) / (b.y - middle.y);
+            if (shape == vis::RegionShape::Gaussian) {
+                EXPECT_NEAR(std::hypot(u, v), 1, 0.15) << at.x << ' ' << at.y;
+            } else if (shape == vis::RegionShape::Triangle && v > 0.7) {
+                EXPECT_LT(std::abs(u), 0.4) << "it stands on its tip";
+            }
+        }
+        if (shape == vis::RegionShape::Gaussian) {
+            EXPECT_GE(corners.size(), 2 * 48u) << "round";
+        }
+    }
+    outline(0);
+    std::vector<ImVec2> handles = drawnIn(plotColors().text);
+    ASSERT_EQ(handles.size(), 16u) << "four squares";
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Box square =
+            around({handles.begin() + std::ptrdiff_t(4 * i), handles.begin() + std::ptrdiff_t(4 * i + 4)});
+        EXPECT_NEAR((square.min.x + square.max.x) / 2, i == 0 || i == 3 ? a.x : b.x, 0.1);
+        EXPECT_NEAR((square.min.y + square.max.y) / 2, i < 2 ? a.y : b.y, 0.1);
+        EXPECT_LT(square.max.x - square.min.x, 12);
+    }
+}
+
+TEST_F(DrawnShapes, CornersOfATesseractAreColouredByTheFourthAxis) {
+    TesseractFrame frame;
+    frame.min = {100, 50};
+    frame.max = {500, 450};
+    frame.fourth = fourthColors();
+    feedWindow([&] { drawWire(*ImGui::GetWindowDrawList(), frame); });
+    const auto nearest = [&](ImVec2 place) { // the colour of what is drawn last there
+        ImU32 color = 0;
+        const ImDrawData& data = *ImGui::GetDrawData();
+        for (int list = 0; list < data.CmdListsCount; ++list)
+            for (const ImDrawVert& corner : data.CmdLists[list]->VtxBuffer)
+                if (std::hypot(corner.pos.x - place.x, corner.pos.y - place.y) < 5 &&
+                    (corner.col >> IM_COL32_A_SHIFT & 255) > 0)
+                    color = corner.col;
+        return color & ~IM_COL32_A_MASK;
+    };
+    const auto end = [&](double share) {
+        const glm::dvec4 c = vis::evaluate(frame.fourth, {0, 1}, share);
+        return toColor({c.r, c.g, c.b}) & ~IM_COL32_A_MASK;
+    };
+    int seen = 0;
+    for (int i = 0; i < vis::kCorners4; ++i) {
+        const glm::dvec4 corner = vis::corner4(i, frame.half);
+        const ImVec2 at = frame.pixel(frame.project(corner).at);
+        bool alone = true; // no other corner of the picture at the same place
+        for (int j = 0; j < vis::kCorners4; ++j) {
+            const ImVec2 other = frame.pixel(frame.project(vis::corner4(j, frame.half)).at);
+            if (j != i && std::hypot(other.x - at.x, other.y - at.y) < 12) alone = false;
+        }
+        if (!alone) continue;
+        ++seen;
+        EXPECT_EQ(nearest(at), end(corner.w > 0 ? 1 : 0)) << i;
+    }
+    EXPECT_GE(seen, 4);
+}
+
+TEST_F(DrawnShapes, TheNameOfALensStandsAboveIt) {
+    Session session;
+    session.camera.orientation = glm::quat(1, 0, 0, 0);
+    session.camera.projection = vis::Projection::Orthographic;
+    session.lenses = {{.name = "inlet", .center = {1, 0.5, 0.5}, .size = {0.2f, 0.1f, 0.15f}}};
+    LensDrag drag;
+    const SpaceFrame space =
+        spaceFrame({50, 50}, {450, 350}, session.camera, {glm::dvec3(0), {2, 1, 1}}, glm::dvec3(1));
+    for (const bool narrow : {false, true}) {
+        if (narrow) session.lenses[0].size = glm::vec3(0.01f); // without a handle to turn it by
+        const vis::PlacedLens placed =
+            vis::placeLenses(session.lenses, space.world, session.camera, session.cursor).back();
+        const LensHandles handles = lensHandles(space, placed);
+        ASSERT_TRUE(handles.middle);
+        mouse = *handles.middle;
+        for (int i = 0; i < 2; ++i)
+            feedWindow([&] {
+                surface({50, 50}, {450, 350});
+                editLenses(drag, session, space, ImGui::IsItemHovered());
+                drawLensHandles(*ImGui::GetWindowDrawList(), drag, space, session);
+            });
+        const std::vector<DrawnText> texts = drawnTexts();
+        ASSERT_EQ(texts.size(), 1u);
+        EXPECT_EQ(texts[0].text, "inlet");
+        const ImVec2 below = handles.turn ? *handles.turn : *handles.middle;
+        EXPECT_NEAR(texts[0].middle().x, below.x, 2);
+        EXPECT_LT(texts[0].max.y, below.y);
+        EXPECT_GT(texts[0].max.y, below.y - 40);
+    }
+}
+
+} // namespace
+} // namespace tessera::app

@@ -1,0 +1,218 @@
+#include "app/ui/commands.h"
+#include "app/ui/dock.h"
+#include "app/ui/theme.h"
+#include "app/ui/widgets.h"
+#include "tests/app/cell_info.h"
+#include "tests/app/drawn_text.h"
+#include "tests/app/fed_imgui.h"
+
+#include <gmock/gmock.h>
+
+/// Parts of the window under the mouse: the palette of commands, lists of parameters, floating panes.
+namespace tessera::app {
+namespace {
+
+using testing::Contains;
+using testing::Not;
+
+class Widgets : public FedImGui {
+protected:
+    Widgets() : FedImGui({800, 600}) {}
+    void SetUp() override {
+        loadFonts(1);
+        applyTheme(Theme::Dark, 1);
+    }
+    template <class Body> void frames(int count, const Body& body) {
+        for (int i = 0; i < count; ++i) feed(body);
+    }
+    template <class Body> void click(ImVec2 at, const Body& body) {
+        mouse = at;
+        frames(2, body);
+        for (const bool down : {true, false}) {
+            ImGui::GetIO().MouseDown[0] = down;
+            feed(body);
+        }
+        frames(2, body);
+    }
+    static ImVec2 placeOf(const std::string& text) {
+        for (const DrawnText& each : drawnTexts())
+            if (each.text == text) return each.middle();
+        ADD_FAILURE() << "not drawn: " << text;
+        return {};
+    }
+};
+
+TEST_F(Widgets, ThePaletteSaysWhatACommandDoesAndWhatItNeeds) {
+    std::vector<Command> commands(3);
+    commands[0] = {.menu = "File", .name = "Open", .help = "Open a file", .shortcut = {.key = 'O', .ctrl = true}};
+    commands[1] = {.menu = "File", .name = "Export", .help = "Write a table"};
+    commands[2] = {.menu = "File", .name = "Clear", .help = "Remove brushes"};
+    for (Command& command : commands) command.run = [] {};
+    for (const std::size_t i : {1, 2}) commands[i].enabled = [] { return false; };
+    commands[1].needs = "data";
+    CommandPalette palette;
+    palette.open = true;
+    const Command* chosen = nullptr;
+    const auto draw = [&] { chosen = drawPalette(palette, commands); };
+    const auto told = [&](const std::string& text) {
+        mouse = placeOf(text);
+        frames(3, draw);
+        return drawnWords();
+    };
+    frames(4, draw);
+    EXPECT_THAT(told("File: Open"), Contains("Open a file"));
+    EXPECT_THAT(drawnWords(), Contains("Ctrl+O"));
+    const auto needing = told("File: Export");
+    EXPECT_THAT(needing, Contains("Write a table"));
+    EXPECT_THAT(needing, Contains("Not now: it needs data"));
+    EXPECT_THAT(told("File: Clear"), Contains("Remove brushes (not possible now)"));
+    EXPECT_EQ(chosen, nullptr);
+    mouse = placeOf("File: Open");
+    feed(draw);
+    for (const bool down : {true, false}) {
+        ImGui::GetIO().MouseDown[0] = down;
+        feed(draw);
+        if (chosen) break;
+    }
+    EXPECT_EQ(chosen, &commands[0]);
+}
+
+TEST_F(Widgets, AListOfParametersIsReadAndChosenFrom) {
+    const volume::DatasetInfo info = cellInfo();
+    std::vector<std::string> values;
+    const FieldInfo channels{.key = "channels", .unit = "", .doc = "help", .refersTo = "channel"};
+    const FieldInfo others{.key = "others", .unit = "", .doc = "help"};
+    const FieldInfo* field = &channels;
+    bool changed = false;
+    const auto draw = [&] {
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({400, 300});
+        ImGui::Begin("test", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+        changed = drawTexts({.info = &info}, *field, values) || changed;
+        ImGui::End();
+    };
+    frames(3, draw);
+    EXPECT_THAT(drawnWords(), Contains("all"));
+    click(placeOf("all"), draw);
+    click(placeOf("H2"), draw);
+    EXPECT_TRUE(changed);
+    EXPECT_EQ(values, std::vector<std::string>{"H2"});
+    click(placeOf("T"), draw);
+    EXPECT_EQ(values, (std::vector<std::string>{"H2", "T"}));
+    EXPECT_THAT(drawnWords(), Contains("H2, T"));
+    click(placeOf("all"), draw);
+    EXPECT_TRUE(values.empty());
+    values = {"a", "b"};
+    field = &others;
+    frames(2, draw);
+    EXPECT_THAT(drawnWords(), Contains("2")) << "what cannot be chosen from is counted";
+    EXPECT_THAT(drawnWords(), Not(Contains("a, b")));
+}
+
+TEST_F(Widgets, AFloatingPaneStaysWhereItIsPut) {
+    DockTree tree;
+    repair(tree, {"a", "b"});
+    floatPane(tree, "b", {"b", 0.25f, 0.25f, 0.5f, 0.5f});
+    DockHand hand;
+    DockPanes panes;
+    ImVec2 at, size, padding;
+    panes.title = [](const std::string& pane) { return "pane " + pane; };
+    panes.padded = [](const std::string& pane) { return pane != "b"; };
+    panes.draw = [&](const std::string& pane) {
+        if (pane != "b") return;
+        at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+        padding = {ImGui::GetCursorScreenPos().x - at.x, ImGui::GetCursorScreenPos().y - at.y};
+    };
+    panes.close = [&](const std::string& pane) { removePane(tree, pane); };
+    const ImGuiStyle style = ImGui::GetStyle();
+    const auto draw = [&] {
+        drawDock(tree, hand, panes, {0, 0}, {800, 600}, 1);
+        EXPECT_EQ(ImGui::GetStyle().WindowMinSize.x, style.WindowMinSize.x) << "nothing else is styled by it";
+        EXPECT_EQ(ImGui::GetStyle().WindowPadding.x, style.WindowPadding.x);
+    };
+    frames(3, draw);
+    EXPECT_EQ(at.x, 200);
+    EXPECT_EQ(at.y, 150);
+    EXPECT_EQ(size.x, 400);
+    EXPECT_EQ(size.y, 300);
+    EXPECT_EQ(padding.x, 0) << "a picture fills its pane";
+    const ImVec2 title = placeOf("pane b");
+    mouse = title;
+    frames(2, draw);
+    ImGui::GetIO().MouseDown[0] = true;
+    feed(draw);
+    mouse = {title.x + 80, title.y - 60};
+    frames(3, draw);
+    ImGui::GetIO().MouseDown[0] = false;
+    frames(2, draw);
+    ASSERT_EQ(tree.floating.size(), 1u);
+    EXPECT_NEAR(tree.floating[0].x, 0.35f, 1e-3f);
+    EXPECT_NEAR(tree.floating[0].y, 0.15f, 1e-3f);
+    EXPECT_NEAR(tree.floating[0].width, 0.5f, 1e-3f);
+    EXPECT_EQ(at.x, 280);
+    EXPECT_EQ(at.y, 90);
+}
+
+TEST_F(Widgets, PanesAreClosedMaximisedFloatedAndDockedByTheirTitles) {
+    DockTree tree;
+    repair(tree, {"a", "b", "c"});
+    DockHand hand;
+    DockPanes panes;
+    std::vector<std::string> closed;
+    panes.title = [](const std::string& pane) { return "pane " + pane; };
+    panes.draw = [](const std::string&) {};
+    panes.close = [&](const std::string& pane) {
+        closed.push_back(pane);
+        removePane(tree, pane);
+    };
+    const auto draw = [&] { drawDock(tree, hand, panes, {0, 0}, {800, 600}, 1); };
+    frames(3, draw);
+    const auto clickOn = [&](ImVec2 at, int button = 0, int times = 1) {
+        mouse = at;
+        frames(2, draw);
+        for (int i = 0; i < times; ++i)
+            for (const bool down : {true, false}) {
+                ImGui::GetIO().MouseDown[button] = down;
+                feed(draw);
+            }
+        frames(3, draw);
+        mouse = {700, 500};
+        feed(draw, 1); // the next click is none of a double click
+        frames(2, draw);
+    };
+    const auto choose = [&](const std::string& title, const std::string& item) {
+        mouse = placeOf(title);
+        frames(2, draw);
+        for (const bool down : {true, false}) {
+            ImGui::GetIO().MouseDown[1] = down;
+            feed(draw);
+        }
+        frames(3, draw);
+        clickOn(placeOf(item));
+    };
+    clickOn(placeOf("pane b"));
+    EXPECT_EQ(tree.root.active, 1) << "a click brings it to the front";
+    clickOn(placeOf("pane b"), 0, 2);
+    EXPECT_EQ(tree.maximised, "b");
+    clickOn(placeOf("pane b"), 0, 2);
+    EXPECT_EQ(tree.maximised, "");
+    choose("pane b", "Maximise");
+    EXPECT_EQ(tree.maximised, "b");
+    choose("pane b", "Restore");
+    EXPECT_EQ(tree.maximised, "");
+    choose("pane b", "Float");
+    ASSERT_EQ(tree.floating.size(), 1u);
+    EXPECT_EQ(tree.floating[0].pane, "b");
+    clickOn(placeOf("pane b"), 0, 2);
+    EXPECT_TRUE(tree.floating.empty()) << "a double click docks it";
+    EXPECT_EQ(panesOf(tree).size(), 3u);
+    choose("pane b", "Float");
+    choose("pane b", "Dock");
+    EXPECT_TRUE(tree.floating.empty());
+    choose("pane c", "Close");
+    EXPECT_EQ(closed, std::vector<std::string>{"c"});
+    EXPECT_EQ(panesOf(tree).size(), 2u);
+}
+
+} // namespace
+} // namespace tessera::app
