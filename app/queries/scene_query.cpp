@@ -1,11 +1,31 @@
 #include "app/queries/scene_query.h"
 
+#include "app/pane/axis_label.h"
+#include "app/pane/oblique_plane.h"
 #include "app/pane/view_parts.h"
 
 namespace tessera::app {
 
+namespace {
+
+/// The slices of oblique views that are to be seen in space.
+void addObliqueSlices(vis::Scene& scene, const Session& session, const volume::DatasetInfo& info) {
+    if (timeAxisOf(session, info)) return;
+    for (const auto& [pane, state] : session.views) {
+        const auto* view = std::get_if<ObliqueView>(&state);
+        const auto channel = view && view->inSpace ? resolveChannel(info, session, view->channel) : std::nullopt;
+        if (!channel) continue;
+        vis::SliceLayer slice =
+            obliqueLayer(*view, info.channel(*channel).name, vis::worldFrame(info.bounds, session.stretch));
+        scene.layers.push_back({.name = pane, .visible = true, .technique = slice});
+    }
+}
+
+} // namespace
+
 vis::Scene AsyncScene::get(ViewContext& context, const std::string& pane, bool moving) {
     vis::Scene scene = sceneWithLimits(context);
+    addObliqueSlices(scene, context.session, context.source->info());
     scene.geometry = surfaces_.get(context, pane, moving);
     for (vis::GeometryLayer& flow : flow_.get(context, pane)) scene.geometry.push_back(std::move(flow));
     return scene;

@@ -180,4 +180,30 @@ struct SliceMatrixView {
 };
 DrawView<SliceMatrixView> drawSliceMatrixView;
 
+/// A plane through the cross-hair, tilted in any way, seen flat.
+struct ObliqueView {
+    static constexpr std::string_view kType = "oblique";
+    std::string channel;         ///< "" = the channel of the first layer
+    glm::dvec3 normal{-1, 0, 1}; ///< in true proportions, of any length
+    int contours = 0;
+    bool inSpace = true;
+    bool showReadout = true;
+    bool operator==(const ObliqueView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.normal, FieldInfo{.key = "normal",
+                                     .unit = "",
+                                     .doc = "Normal of the plane through the cross-hair, in true proportions; the "
+                                            "plane is seen from the side that it points to",
+                                     .range = Range{-1, 1}});
+        visit(self.contours,
+              FieldInfo{
+                  .key = "contours", .unit = "", .doc = "Number of contour lines, 0 = none", .range = Range{0, 50}});
+        visit(self.inSpace, FieldInfo{.key = "inSpace", .unit = "", .doc = "Draw the slice in the volume views too"});
+        visit(self.showReadout,
+              FieldInfo{.key = "readout", .unit = "", .doc = "List the value of every parameter at the cross-hair"});
+    }
+};
+DrawView<ObliqueView> drawObliqueView;
+
 } // namespace tessera::app

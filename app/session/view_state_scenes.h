@@ -17,7 +17,7 @@ namespace tessera::app {
 struct VolumeView {
     static constexpr std::string_view kType = "volume";
     bool showBox = true, showAxes = true, showLegend = true, showCursor = true, showGizmo = true, showScaleBar = true,
-         showLenses = true;
+         showLenses = true, showLights = false;
     bool drawingLegend = false, drawingBox = false;
     bool inSpace = false; ///< where time runs along an axis: the data that are cut
     // Of its own, in place of the session's; see ShownScene.
@@ -45,9 +45,11 @@ struct VolumeView {
               FieldInfo{.key = "gizmo", .unit = "", .doc = "Draw the axis triad; a click on an axis looks along it"});
         visit(self.showScaleBar, FieldInfo{.key = "scaleBar", .unit = "", .doc = "Draw a scale bar"});
         visit(self.showLenses,
-              FieldInfo{.key = "lenses",
-                        .unit = "",
-                        .doc = "Draw outlines of lenses, and the handles of the object under the mouse"});
+              FieldInfo{.key = "lenses", .unit = "", .doc = "Draw outlines of lenses and planes, and handles"});
+        visit(self.showLights, FieldInfo{.key = "lights",
+                                         .unit = "",
+                                         .doc = "Draw lights as arrows and points that can be dragged",
+                                         .applies = self.showLenses});
         visit(self.inSpace, FieldInfo{.key = "inSpace",
                                       .unit = "",
                                       .doc = "With time along an axis: show the data in space, at the time of the "

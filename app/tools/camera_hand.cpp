@@ -19,6 +19,8 @@ void lookAlong(vis::Camera& camera, vis::StandardView view, const vis::WorldFram
 
 namespace {
 
+constexpr float kFirstAperture = 0.08f;
+
 /// A point of the picture in -1..1, y up.
 glm::vec2 toNdc(ImVec2 at, ImVec2 min, ImVec2 size) {
     return {(at.x - min.x) / size.x * 2 - 1, 1 - (at.y - min.y) / size.y * 2};
@@ -71,6 +73,15 @@ void handleKeys(vis::Camera& camera, const vis::WorldFrame& world, double aspect
 }
 
 } // namespace
+
+void setDepthOfField(vis::Camera& camera, bool on) {
+    camera.aperture = on ? (camera.aperture > 0 ? camera.aperture : kFirstAperture) : 0;
+}
+
+void focusOn(vis::Camera& camera, glm::dvec3 place) {
+    setDepthOfField(camera, true);
+    camera.focus = glm::vec3(place);
+}
 
 bool handleMouse(ViewContext& context, CameraHand& hand, vis::ViewTarget* target, const PictureBox& picture,
                  const vis::WorldFrame& world, const char* menu) {

@@ -31,6 +31,11 @@ struct PictureBox {
 void resetCamera(vis::Camera& camera, const vis::WorldFrame& world, double aspect);
 void lookAlong(vis::Camera& camera, vis::StandardView view, const vis::WorldFrame& world, double aspect);
 
+/// Turns depth of field on, with an aperture that shows it, or off.
+void setDepthOfField(vis::Camera& camera, bool on);
+/// Puts a world place into focus; turns depth of field on.
+void focusOn(vis::Camera& camera, glm::dvec3 place);
+
 /// Turns mouse and keys over the picture into camera, cursor and menu; the picture's InvisibleButton is the last item.
 /// `target`: what was drawn there last, for picking; may be null. Returns true while something moves.
 bool handleMouse(ViewContext& context, CameraHand& hand, vis::ViewTarget* target, const PictureBox& picture,

@@ -1,4 +1,6 @@
 #include "app/tools/brush_edit.h"
+#include "app/tools/handled_lights.h"
+#include "app/tools/handled_planes.h"
 #include "app/tools/profile_line.h"
 #include "app/tools/space_handles.h"
 
@@ -173,7 +175,9 @@ void addCut(std::vector<HandledObject>& objects, const Session& session, const v
     object.outlined = true;
     glm::dvec3 middle = info.bounds.center();
     middle[axis] = lo[axis] + cut->place * size[axis];
-    object.handles = {{.at = middle, .axis = axis}};
+    glm::dvec3 across(0);
+    across[axis] = 1;
+    object.handles = {{.at = middle, .axis = axis, .how = HandleWay::Along, .way = across}};
     const auto corner = [&](int n) { // around the plane
         glm::dvec3 at = middle;
         at[right] = n % 4 == 1 || n % 4 == 2 ? info.bounds.hi[right] : lo[right];
@@ -189,12 +193,15 @@ void addCut(std::vector<HandledObject>& objects, const Session& session, const v
 
 } // namespace
 
-std::vector<HandledObject> handledObjects(const Session& session, const volume::DatasetInfo& info) {
+std::vector<HandledObject> handledObjects(const Session& session, const volume::DatasetInfo& info, bool lights) {
     std::vector<HandledObject> objects;
     for (std::size_t i = 0; i < session.layers.size(); ++i) addRake(objects, session, info, i);
     for (std::size_t i = 0; i < session.selection.brushes.size(); ++i) addBrush(objects, session, info, i);
     for (const auto& [pane, view] : session.views) addProfile(objects, session, info, pane);
     addCut(objects, session, info);
+    addPlanes(objects, session, info);
+    addFocus(objects, session, info);
+    if (lights) addLights(objects, session, info);
     return objects;
 }
 

@@ -1,5 +1,6 @@
 #include "app/tools/space_handles.h"
 
+#include "app/tools/handled_planes.h"
 #include "app/ui/keys.h"
 
 #include <algorithm>
@@ -14,6 +15,7 @@ namespace tessera::app {
 namespace {
 
 constexpr int kCircleParts = 48; ///< of a circle
+constexpr double kSteep = 0.03;  ///< squared sine of a line to the view, below which it points at the viewer
 
 using PixelOf = std::function<std::optional<ImVec2>(const SpaceHandle& handle)>;
 
@@ -45,10 +47,10 @@ void findHandle(HandleDrag& drag, const std::vector<HandledObject>& objects, con
 }
 
 /// Mouse handling common to 3D pictures and slices; `dragged` gives the new position of the held dot.
-bool editWith(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, bool hovered, const PixelOf& pixel,
-              const std::function<glm::dvec3(glm::dvec3 from, ImVec2 mouse)>& dragged) {
+bool editWith(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, bool hovered, bool lights,
+              const PixelOf& pixel, const std::function<glm::dvec3(const SpaceHandle& from, ImVec2 mouse)>& dragged) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const std::vector<HandledObject> objects = handledObjects(session, info);
+    const std::vector<HandledObject> objects = handledObjects(session, info, lights);
     if (drag.active) {
         const HandledObject* object = findObject(objects, drag.object);
         if (!object || drag.handle >= object->handles.size()) {
@@ -56,11 +58,13 @@ bool editWith(HandleDrag& drag, Session& session, const volume::DatasetInfo& inf
             return false;
         }
         if (pressed({.key = key::kEscape})) {
-            object->move(session, drag.handle, drag.before);
+            object->move(session, drag.handle, drag.before.at);
             drag.active = false;
             return true;
         }
-        object->move(session, drag.handle, glm::clamp(dragged(drag.before, mouse), info.bounds.lo, info.bounds.hi));
+        const glm::dvec3 to = dragged(drag.before, mouse);
+        const bool inBox = drag.before.how == HandleWay::Anywhere;
+        object->move(session, drag.handle, inBox ? glm::clamp(to, info.bounds.lo, info.bounds.hi) : to);
         if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) drag.active = false;
         return true;
     }
@@ -72,7 +76,7 @@ bool editWith(HandleDrag& drag, Session& session, const volume::DatasetInfo& inf
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
         drag.active = true;
         drag.start = mouse;
-        drag.before = findObject(objects, drag.object)->handles[drag.handle].at;
+        drag.before = findObject(objects, drag.object)->handles[drag.handle];
     }
     return drag.active;
 }
@@ -176,38 +180,82 @@ glm::dvec3 draggedPlace(const SpaceFrame& frame, const vis::Camera& camera, glm:
     return from + forward * glm::length(up) * double(start.y - mouse.y);
 }
 
+glm::dvec3 draggedAlong(const SpaceFrame& frame, const vis::Camera& camera, glm::dvec3 from, glm::dvec3 way,
+                        ImVec2 start, ImVec2 mouse) {
+    // Where along the line it is nearest to the ray of a pixel.
+    const auto along = [&](ImVec2 at) {
+        const vis::Ray ray = rayThrough(frame, camera, at);
+        const double slant = glm::dot(way, ray.direction), across = 1 - slant * slant;
+        const glm::dvec3 to = ray.origin - from;
+        return across < kSteep ? std::optional<double>()
+                               : (glm::dot(to, way) - slant * glm::dot(to, ray.direction)) / across;
+    };
+    const auto then = along(start), now = along(mouse);
+    if (then && now) return from + way * (*now - *then);
+    return from + way * glm::dot(draggedPlace(frame, camera, from, start, mouse, true) - from, way);
+}
+
+glm::dvec3 draggedAround(const SpaceFrame& frame, const vis::Camera& camera, glm::dvec3 from, glm::dvec3 middle,
+                         ImVec2 start, ImVec2 mouse) {
+    const glm::dvec3 back = glm::transpose(glm::mat3_cast(glm::normalize(glm::dquat(camera.orientation))))[2];
+    const double radius = glm::length(from - middle), before = glm::dot(from - middle, back);
+    if (!(radius > 0)) return from;
+    // On the ball as it is seen: the way across the picture, folded back at its outline.
+    glm::dvec3 across = from - middle - back * before;
+    across += draggedPlace(frame, camera, middle, start, mouse, false) - middle;
+    const double reach = glm::length(across);
+    double side = before < 0 ? -1 : 1;
+    if (reach > radius) {
+        across *= std::max(0.0, 2 * radius - reach) / reach;
+        side = -side;
+    }
+    const double depth = std::sqrt(std::max(0.0, radius * radius - glm::dot(across, across)));
+    return middle + across + back * (side * depth);
+}
+
 bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const SpaceFrame& frame,
-                 bool hovered) {
-    return editWith(drag, session, info, hovered, inSpace(frame), [&](glm::dvec3 from, ImVec2 mouse) {
-        return frame.world.toPhysical(
-            draggedPlace(frame, session.camera, frame.world.toWorld(from), drag.start, mouse, ImGui::GetIO().KeyShift));
+                 bool hovered, bool lights) {
+    return editWith(drag, session, info, hovered, lights, inSpace(frame), [&](const SpaceHandle& handle, ImVec2 mouse) {
+        const glm::dvec3 from = frame.world.toWorld(handle.at);
+        const vis::Camera& camera = session.camera;
+        glm::dvec3 to;
+        if (handle.how == HandleWay::Along)
+            to = draggedAlong(frame, camera, from, glm::normalize(handle.way * frame.world.scale), drag.start, mouse);
+        else if (handle.how == HandleWay::Around)
+            to = draggedAround(frame, camera, from, frame.world.toWorld(handle.way), drag.start, mouse);
+        else
+            to = draggedPlace(frame, camera, from, drag.start, mouse, ImGui::GetIO().KeyShift);
+        return frame.world.toPhysical(to);
     });
 }
 
 bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const PlotFrame& frame, int right,
                  int up, glm::dvec2 perUnit, bool hovered) {
-    return editWith(drag, session, info, hovered, inSlice(frame, right, up, perUnit),
-                    [&](glm::dvec3 from, ImVec2 mouse) {
+    return editWith(drag, session, info, hovered, false, inSlice(frame, right, up, perUnit),
+                    [&](const SpaceHandle& handle, ImVec2 mouse) {
                         const glm::dvec2 now = frame.data(mouse), then = frame.data(drag.start);
-                        from[right] += (now.x - then.x) / perUnit.x;
-                        from[up] += (now.y - then.y) / perUnit.y;
-                        return from;
+                        glm::dvec3 to = handle.at;
+                        to[right] += (now.x - then.x) / perUnit.x;
+                        to[up] += (now.y - then.y) / perUnit.y;
+                        return to;
                     });
 }
 
 void drawHandles(ImDrawList& draw, const HandleDrag& drag, const SpaceFrame& frame, const Session& session,
-                 const volume::DatasetInfo& info) {
-    for (const HandledObject& object : handledObjects(session, info))
+                 const volume::DatasetInfo& info, bool lights) {
+    for (const HandledObject& object : handledObjects(session, info, lights))
         drawObject(draw, drag, object, !object.outlined || covers(object, info.bounds), inSpace(frame),
                    [&](glm::dvec3 at) { return frame.pixel(at); });
 }
 
 void drawHandles(ImDrawList& draw, const HandleDrag& drag, const PlotFrame& frame, const Session& session,
                  const volume::DatasetInfo& info, int right, int up, glm::dvec2 perUnit) {
-    for (const HandledObject& object : handledObjects(session, info))
-        drawObject(draw, drag, object, true, inSlice(frame, right, up, perUnit), [&](glm::dvec3 at) {
+    for (HandledObject& object : handledObjects(session, info)) {
+        if (object.plane) object.lines = planeCrossing(object, info.bounds, 3 - right - up, session.cursor);
+        drawObject(draw, drag, object, !object.plane, inSlice(frame, right, up, perUnit), [&](glm::dvec3 at) {
             return std::optional(frame.pixel(at[right] * perUnit.x, at[up] * perUnit.y));
         });
+    }
 }
 
 } // namespace tessera::app

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/pane/axes3d.h"
+#include "app/pane/oblique_plane.h"
 #include "app/pane/view_context.h"
 
 #include <functional>
@@ -8,8 +9,9 @@
 #include <vector>
 
 /// Objects in space that are edited by dots: seed points of flow (line, plane, ball or box), brushes in space, the
-/// corners of profile lines. A dot moves in the plane that faces the viewer, with Shift nearer or farther; Escape
-/// cancels a drag. In slices the same dots move along the slice. Lenses have further handles (lens_edit.h).
+/// corners of profile lines, planes, lights, the point in focus. A dot moves in the plane that faces the viewer, with
+/// Shift nearer or farther, along a line, or around a middle; Escape cancels a drag. In slices the same dots move along
+/// the slice. Lenses have further handles (lens_edit.h).
 namespace tessera::app {
 
 /// The ray through a pixel of the picture.
@@ -26,11 +28,31 @@ using SpaceLine = std::pair<glm::dvec3, glm::dvec3>;
 std::vector<SpaceLine> boxWires(glm::dvec3 lo, glm::dvec3 hi);
 std::vector<SpaceLine> ballWires(glm::dvec3 center, glm::dvec3 radius);
 
+/// The world place on the line through `from` along `way` (length 1) that follows the mouse; where the line points at
+/// the viewer, upwards is farther along it.
+glm::dvec3 draggedAlong(const SpaceFrame& frame, const vis::Camera& camera, glm::dvec3 from, glm::dvec3 way,
+                        ImVec2 start, ImVec2 mouse);
+
+/// The world place `from` turned around `middle` as if a ball were rolled by the mouse: beyond its outline the place
+/// goes on behind it, and before it where it was behind.
+glm::dvec3 draggedAround(const SpaceFrame& frame, const vis::Camera& camera, glm::dvec3 from, glm::dvec3 middle,
+                         ImVec2 start, ImVec2 mouse);
+
+/// How a dot of a 3D picture moves.
+enum class HandleWay {
+    Anywhere, ///< in the box of the data
+    Along,    ///< on the line through it along `way`, physical
+    Around,   ///< at its distance in the world from `way`, a physical place
+    Beyond    ///< also outside of the box
+};
+
 /// A dot. `axis`: along which it alone moves something, -1: any; slices across that axis leave it out.
 struct SpaceHandle {
     glm::dvec3 at{0}; ///< physical
     int axis = -1;
     bool whole = false; ///< moves the object as it is
+    HandleWay how = HandleWay::Anywhere;
+    glm::dvec3 way{0};
 };
 
 /// An object with its dots and the lines that show it.
@@ -41,22 +63,25 @@ struct HandledObject {
     bool outlined = false; ///< `lines` are to be drawn here, not elsewhere
     std::vector<SpaceHandle> handles;
     std::vector<SpaceLine> lines;
-    /// Puts a dot at a place (physical, in the box of the data) of a session that has the object.
+    std::optional<SpacePlane> plane = {}; ///< the object is one: in slices it is drawn where it crosses them
+    /// Puts a dot at a place (physical; of HandleWay::Anywhere in the box of the data) of a session that has the
+    /// object.
     std::function<void(Session& session, std::size_t handle, glm::dvec3 to)> move;
 };
-std::vector<HandledObject> handledObjects(const Session& session, const volume::DatasetInfo& info);
+/// `lights`: those of the scene too.
+std::vector<HandledObject> handledObjects(const Session& session, const volume::DatasetInfo& info, bool lights = false);
 
 struct HandleDrag {
     std::string object; ///< under the mouse or held
     std::size_t handle = 0;
     bool active = false;
     ImVec2 start{0, 0};
-    glm::dvec3 before{0}; ///< the dot's place, physical
+    SpaceHandle before; ///< the dot as it was
 };
 
 /// Handles the mouse over a 3D picture (its InvisibleButton is the last item); true while it uses the mouse.
 bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const SpaceFrame& frame,
-                 bool hovered);
+                 bool hovered, bool lights = false);
 
 /// The same in a slice: values of the frame are positions along the axes `right` and `up` times the factors.
 bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const PlotFrame& frame, int right,
@@ -64,7 +89,7 @@ bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& 
 
 /// Dots, lines of what is not drawn elsewhere, and the name of what is under the mouse.
 void drawHandles(ImDrawList& draw, const HandleDrag& drag, const SpaceFrame& frame, const Session& session,
-                 const volume::DatasetInfo& info);
+                 const volume::DatasetInfo& info, bool lights = false);
 void drawHandles(ImDrawList& draw, const HandleDrag& drag, const PlotFrame& frame, const Session& session,
                  const volume::DatasetInfo& info, int right, int up, glm::dvec2 perUnit);
 

@@ -1,6 +1,8 @@
 #include "app/session/shown_scene.h"
 #include "app/tools/brush_list.h"
+#include "app/tools/camera_hand.h"
 #include "app/tools/lens_list.h"
+#include "app/tools/oblique_tilt.h"
 #include "app/views/data/layers_view.h"
 #include "app/workbench/workbench.h"
 #include "app/workbench/workbench_commands.h"
@@ -62,6 +64,20 @@ std::vector<Command> addingCommands(Workbench& workbench) {
             box ? "Brush a box at the cross-hair" : "Brush a sphere at the cross-hair",
             "Select what lies around the cross-hair", "new add selection region",
             [box](Session& session, const volume::DatasetInfo& info) { addSpaceBrush(session, info, box); }, loaded);
+    commands.push_back({.menu = "",
+                        .name = "Face oblique slices to the viewer",
+                        .help = "Tilt the plane of an oblique slice to face the viewer; without one, open one",
+                        .words = "tilt plane normal camera angle cut section align",
+                        .run =
+                            [&workbench] {
+                                Session& session = workbench.session();
+                                const volume::DatasetInfo& info = workbench.document().info();
+                                if (faceObliqueSlices(session, info)) return;
+                                ObliqueView view;
+                                view.normal = facingNormal(session, info);
+                                workbench.panes().open(session, view, workbench.look().scale());
+                            },
+                        .enabled = loaded});
     return commands;
 }
 
@@ -75,6 +91,34 @@ VolumeView* volumeOf(Workbench& workbench) {
     return nullptr;
 }
 
+/// Depth of field of the volume view used last.
+std::vector<Command> focusCommands(Workbench& workbench) {
+    const auto loaded = [&workbench] { return workbench.document().loaded() && volumeOf(workbench); };
+    const auto camera = [&workbench]() -> vis::Camera& {
+        VolumeView* const view = volumeOf(workbench);
+        return view && view->camera ? *view->camera : workbench.session().camera;
+    };
+    return {{.menu = "",
+             .name = "Depth of field",
+             .help = "Blur what lies before and behind the point in focus, in pictures at rest",
+             .words = "focus blur aperture lens focal bokeh sharp camera dof",
+             .run = [camera] { setDepthOfField(camera(), camera().aperture <= 0); },
+             .enabled = loaded,
+             .checked = [loaded, camera] { return loaded() && camera().aperture > 0; }},
+            {.menu = "",
+             .name = "Focus on the cross-hair",
+             .help = "Depth of field: what is as deep in the picture as the cross-hair is sharp",
+             .words = "depth of field blur aperture focal distance camera",
+             .run =
+                 [&workbench, camera] {
+                     const Session& session = workbench.session();
+                     focusOn(
+                         camera(),
+                         vis::worldFrame(workbench.document().info().bounds, session.stretch).toWorld(session.cursor));
+                 },
+             .enabled = loaded}};
+}
+
 /// What a volume view draws beside the data.
 std::vector<Command> decorationCommands(Workbench& workbench) {
     std::vector<Command> commands;
@@ -85,7 +129,8 @@ std::vector<Command> decorationCommands(Workbench& workbench) {
           {"Show cross-hair", &VolumeView::showCursor, "cursor hide"},
           {"Show direction gizmo", &VolumeView::showGizmo, "triad orientation xyz hide"},
           {"Show scale bar", &VolumeView::showScaleBar, "length ruler hide"},
-          {"Show outlines and handles", &VolumeView::showLenses, "lenses seeds brushes hide"}})
+          {"Show outlines and handles", &VolumeView::showLenses, "lenses seeds brushes planes hide"},
+          {"Show handles of lights", &VolumeView::showLights, "drag light direction lamp arrows hide"}})
         commands.push_back({.menu = "",
                             .name = name,
                             .help = "Draw it in the volume view used last, or leave it out",
@@ -107,6 +152,7 @@ std::vector<Command> decorationCommands(Workbench& workbench) {
 
 std::vector<Command> sceneCommands(Workbench& workbench) {
     std::vector<Command> commands = addingCommands(workbench);
+    std::ranges::move(focusCommands(workbench), std::back_inserter(commands));
     std::ranges::move(decorationCommands(workbench), std::back_inserter(commands));
     return commands;
 }

@@ -71,7 +71,7 @@ TEST_F(PictureDialogTest, SeveralViewsArePanelsInTheOrderOfChoice) {
 
 TEST_F(PictureDialogTest, AFormatIsProposed) {
     frames(3);
-    click("Png");
+    click("PNG");
     click("Pdf");
     const std::optional<PictureRequest> request = click("Save...");
     ASSERT_TRUE(request);

@@ -321,11 +321,12 @@ CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, co
     const Ray middle = cameraRay(scene.camera, aspect, {0, 0});
     const Ray right = cameraRay(scene.camera, aspect, {1, 0}), up = cameraRay(scene.camera, aspect, {0, 1});
     // Ray directions scaled to reach the same plane are linear in the picture.
-    const auto onPlane = [&](glm::dvec3 d) { return d / glm::dot(d, middle.direction) - middle.direction; };
+    const glm::dvec3 forward = forwardOf(scene.camera), ahead = middle.direction / glm::dot(middle.direction, forward);
+    const auto onPlane = [&](glm::dvec3 d) { return d / glm::dot(d, forward) - ahead; };
     job.origin = middle.origin;
     job.originX = right.origin - middle.origin;
     job.originY = up.origin - middle.origin;
-    job.direction = middle.direction;
+    job.direction = ahead;
     job.directionX = onPlane(right.direction);
     job.directionY = onPlane(up.direction);
     job.begin = scene.camera.projection == Projection::Perspective ? 0.0f : -1e6f;

@@ -191,8 +191,8 @@ void RenderStages::drawHalf(ViewTarget& target, const RenderCall& call, const Ra
     target.pace().finishPass(area, target.buffers.everything().area());
 }
 
-/// Draws one tile of a pass into the full buffer and presents it.
-void RenderStages::drawTile(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const Tile& tile,
+/// Casts the rays of a tile of a pass into the full buffer.
+void RenderStages::castTile(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const Tile& tile,
                             int pass) {
     const glm::ivec2 size = target.buffers.size;
     geometry(target, call, target.buffers.full, target.state.stale(), pass);
@@ -208,6 +208,22 @@ void RenderStages::drawTile(ViewTarget& target, const RenderCall& call, const Ra
             accumulate(target, call, programs, what);
     };
     target.pace().timeTile(draw, tile.area(), pass == 0);
+}
+
+/// Draws one tile of a pass, with depth of field from the pass's place on the lens, and presents it.
+void RenderStages::drawTile(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const Tile& tile,
+                            int pass) {
+    if (pass > 0 && call.scene.camera.aperture > 0) {
+        Scene seen = call.scene;
+        seen.camera = lensCamera(seen.camera, pass, raysPerPixel(seen));
+        const RenderCall own{seen, call.request, call.source, call.plan};
+        const RayPrograms all{
+            .packets = programs.packets, .program = programs.program, .beyondPlan = {}, .beyondScene = {}};
+        setUniforms(all, target, own, 1);
+        castTile(target, own, all, tile, pass);
+    } else {
+        castTile(target, call, programs, tile, pass);
+    }
     present(target, call.scene, target.buffers.full, tile);
     glBindTextureUnit(0, call.plan.fields[0].texture);
     target.state.drewTile();
@@ -222,7 +238,7 @@ void RenderStages::drawTiles(ViewTarget& target, const RenderCall& call, const R
     if (state.tilesDone() == 0) target.pace().beginPass(request.wait, request.budgetMs);
     const std::vector<Tile> tiles = tilesFromMiddle(state.stale(), target.pace().tileEdge());
     setUniforms(programs, target, call, 1);
-    const int perPass = int(tiles.size()), wanted = perPass * std::max(call.scene.render.samples, 1);
+    const int perPass = int(tiles.size()), wanted = perPass * raysPerPixel(call.scene);
     for (bool first = true; state.tilesDone() < wanted; first = false) {
         const Tile& tile = tiles[std::size_t(state.tilesDone() % perPass)];
         const double left = request.budgetMs - millisecondsSince(start);

@@ -41,10 +41,10 @@ void RenderStages::beginFrame(ViewTarget& target, const Scene& scene, const Fram
 }
 
 /// Whether pictures of the scene tell which bricks are occluded. With a magnifying lens, rays sample other positions
-/// than those they pass.
+/// than those they pass; with depth of field, those of a pixel pass different ones.
 bool RenderStages::findsHidden(const Scene& scene) const {
     return scene.render.cullHidden && residency.bricked() && !lensesBend(scene) && !drawnByProxy(scene) &&
-           !options.countSamples;
+           !options.countSamples && scene.camera.aperture <= 0;
 }
 
 /// The bricks that the last picture of these data occluded; null if they cannot be used for a scene.

@@ -72,6 +72,7 @@ struct RenderStages {
     void setUniforms(const RayPrograms& programs, const ViewTarget& target, const RenderCall& call, double stepFactor);
     void drawReduced(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, Pace::Reduction how);
     void drawHalf(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, Clock::time_point start);
+    void castTile(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const Tile& tile, int pass);
     void drawTile(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const Tile& tile, int pass);
     void drawTiles(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, Clock::time_point start,
                    bool lit);

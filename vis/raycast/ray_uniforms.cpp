@@ -18,11 +18,12 @@ void setCamera(const Program& program, const Scene& scene, double aspect) {
     const Ray middle = cameraRay(scene.camera, aspect, {0, 0});
     const Ray right = cameraRay(scene.camera, aspect, {1, 0}), up = cameraRay(scene.camera, aspect, {0, 1});
     // Ray directions scaled to reach the same plane are linear in the picture.
-    const auto onPlane = [&](glm::dvec3 d) { return d / glm::dot(d, middle.direction) - middle.direction; };
+    const glm::dvec3 forward = forwardOf(scene.camera), ahead = middle.direction / glm::dot(middle.direction, forward);
+    const auto onPlane = [&](glm::dvec3 d) { return d / glm::dot(d, forward) - ahead; };
     program.set("rayOrigin", glm::vec3(middle.origin));
     program.set("rayOriginX", glm::vec3(right.origin - middle.origin));
     program.set("rayOriginY", glm::vec3(up.origin - middle.origin));
-    program.set("rayDirection", glm::vec3(middle.direction));
+    program.set("rayDirection", glm::vec3(ahead));
     program.set("rayDirectionX", glm::vec3(onPlane(right.direction)));
     program.set("rayDirectionY", glm::vec3(onPlane(up.direction)));
     program.set("rayBegin", scene.camera.projection == Projection::Perspective ? 0.0f : -1e6f);

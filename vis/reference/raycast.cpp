@@ -327,20 +327,22 @@ template <class Number> struct Caster {
 template <class Number>
 Image renderWith(const Scene& scene, const volume::BrickSource& source, glm::ivec2 size, const Options& options) {
     const Prepared prepared(scene, source, size, options);
+    const int passes = raysPerPixel(scene);
     const bool perspective = scene.camera.projection == Projection::Perspective;
     const std::size_t count = std::size_t(size.x) * std::size_t(size.y);
     Image image{size, std::vector<glm::dvec4>(count), std::vector<double>(count)};
     parallelFor(std::size_t(size.y), [&](std::size_t y) {
         for (int x = 0; x < size.x; ++x)
-            for (int pass = 0; pass < std::max(scene.render.samples, 1); ++pass) {
+            for (int pass = 0; pass < passes; ++pass) {
                 // The shader counts pixel rows from the bottom.
                 const glm::ivec2 pixel(x, size.y - 1 - int(y));
                 const glm::dvec2 ndc = (glm::dvec2(pixel) + 0.5 + pixelJitter(pass)) / glm::dvec2(size) * 2.0 - 1.0;
-                Caster<Number> caster{prepared, cameraRay(scene.camera, double(size.x) / size.y, ndc), {}, {}};
+                const Camera camera = lensCamera(scene.camera, pass, passes);
+                Caster<Number> caster{prepared, cameraRay(camera, double(size.x) / size.y, ndc), {}, {}};
                 if (!caster.begin(perspective, pixel, pass)) continue;
                 caster.cast();
                 glm::dvec4& out = image.pixels[y * std::size_t(size.x) + std::size_t(x)];
-                out += glm::dvec4(caster.out) / double(std::max(scene.render.samples, 1));
+                out += glm::dvec4(caster.out) / double(passes);
                 if (pass == 0 && caster.out.a > 0)
                     image.interest[y * std::size_t(size.x) + std::size_t(x)] = caster.interest / double(caster.out.a);
             }

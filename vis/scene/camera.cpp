@@ -12,6 +12,8 @@ namespace {
 
 constexpr glm::dvec3 kBoxHalf{0.5}; // the world box lies within -1/2..1/2 on every axis
 constexpr glm::vec3 kX{1, 0, 0}, kY{0, 1, 0}, kZ{0, 0, 1};
+constexpr double kNearestFocus = 1e-3;             // world units from the eye
+constexpr double kGoldenAngle = 2.399963229728653; // pi (3 - sqrt 5)
 
 glm::dquat orientation(const Camera& camera) {
     const glm::dquat turn(camera.orientation);
@@ -58,7 +60,52 @@ glm::dmat4 viewMatrix(const Camera& camera) {
     return glm::translate(toTarget * glm::mat4_cast(orientation(camera)), -glm::dvec3(camera.target));
 }
 
-glm::dmat4 projectionMatrix(const Camera& camera, double aspect) {
+double focalDistance(const Camera& camera) {
+    const double distance = camera.distance + glm::dot(glm::dvec3(camera.focus - camera.target), forwardOf(camera));
+    return std::max(distance, kNearestFocus);
+}
+
+namespace {
+
+/// The distance over which a ray crosses the picture by its place on the lens.
+double lensReach(const Camera& camera) {
+    return camera.projection == Projection::Perspective ? focalDistance(camera) : camera.distance;
+}
+
+/// How far a ray moves aside per unit of depth, to the right and up: those of one pixel meet in the focal plane.
+glm::dvec3 lensSlope(const Camera& camera) {
+    return glm::dvec3(camera.lens, 0) / lensReach(camera);
+}
+
+} // namespace
+
+double blurRadius(const Camera& camera, double depth) {
+    const double inFocus = camera.aperture / 2 * std::abs(depth - focalDistance(camera)) / lensReach(camera);
+    const double scale = camera.projection == Projection::Perspective ? camera.distance / depth : 1;
+    return inFocus * scale / (2 * halfHeight(camera));
+}
+
+Camera lensCamera(Camera camera, int pass, int count) {
+    const double radius = camera.aperture / 2 * std::sqrt(pass / std::max(count - 1.0, 1.0)),
+                 angle = pass * kGoldenAngle;
+    camera.lens = glm::vec2(radius * std::cos(angle), radius * std::sin(angle));
+    return camera;
+}
+
+namespace {
+
+/// Moves what is not in the focal plane aside, as an eye elsewhere on the lens sees it; in eye coordinates.
+glm::dmat4 throughLens(const Camera& camera) {
+    glm::dmat4 matrix(1);
+    const glm::dvec3 slope = lensSlope(camera);
+    for (int axis = 0; axis < 2; ++axis) {
+        matrix[2][axis] = -slope[axis];
+        matrix[3][axis] = -slope[axis] * focalDistance(camera);
+    }
+    return matrix;
+}
+
+glm::dmat4 pinholeMatrix(const Camera& camera, double aspect) {
     const Range depth = boxDepth(camera);
     const double margin = 0.01; // for lines and slices on the faces of the box
     const double height = halfHeight(camera), width = height * aspect;
@@ -70,17 +117,34 @@ glm::dmat4 projectionMatrix(const Camera& camera, double aspect) {
     return glm::perspective(glm::radians(static_cast<double>(camera.fieldOfView)), aspect, near, far);
 }
 
+} // namespace
+
+glm::dmat4 projectionMatrix(const Camera& camera, double aspect) {
+    const glm::dmat4 pinhole = pinholeMatrix(camera, aspect);
+    return camera.lens == glm::vec2(0) ? pinhole : pinhole * throughLens(camera);
+}
+
+glm::dvec3 forwardOf(const Camera& camera) {
+    return glm::conjugate(orientation(camera)) * glm::dvec3(0, 0, -1);
+}
+
 Ray cameraRay(const Camera& camera, double aspect, glm::dvec2 ndc) {
     const glm::dquat toWorld = glm::conjugate(orientation(camera));
     const double height = halfHeight(camera);
     const glm::dvec3 onPicture(ndc.x * height * aspect, ndc.y * height, 0), target(camera.target);
+    const glm::dvec3 slope = lensSlope(camera);
     if (camera.projection == Projection::Perspective) {
         const glm::dvec3 eye(0, 0, camera.distance);
-        return {target + toWorld * eye, glm::normalize(toWorld * (onPicture - eye))};
+        const glm::dvec3 direction = (onPicture - eye) / static_cast<double>(camera.distance) - slope;
+        return {target + toWorld * (eye + glm::dvec3(camera.lens, 0)), glm::normalize(toWorld * direction)};
     }
     // Rays of a parallel camera start in front of the box, however close the camera is.
     const double before = std::max<double>(camera.distance, glm::length(target) + glm::length(kBoxHalf));
-    return {target + toWorld * (onPicture + glm::dvec3(0, 0, before)), toWorld * glm::dvec3(0, 0, -1)};
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(0, 0, -1) - slope);
+    const double beyondFocus = camera.distance - before - focalDistance(camera);
+    glm::dvec3 origin = onPicture + glm::dvec3(0, 0, before) - slope * beyondFocus;
+    origin -= direction * glm::dot(onPicture, direction); // all in one plane across the rays
+    return {target + toWorld * origin, toWorld * direction};
 }
 
 void orbit(Camera& camera, glm::vec2 from, glm::vec2 to) {

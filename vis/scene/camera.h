@@ -25,6 +25,11 @@ struct Camera {
     glm::vec3 target{0};    ///< world point at the centre of the picture
     float distance = 2.2f;  ///< world units from eye to target
     float fieldOfView = 35; ///< degrees, vertical; orthographic height = 2 distance tan(fov / 2)
+    float aperture = 0;     ///< world diameter of the lens; 0: everything is sharp
+    glm::vec3 focus{0};     ///< world point in the focal plane, which faces the viewer
+    /// Where on the lens the eye is, world units to the right and up: 0 in sessions; of the pictures of which one with
+    /// an aperture is the mean, that of lensCamera().
+    glm::vec2 lens{0};
 
     bool operator==(const Camera&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -46,6 +51,18 @@ struct Camera {
                                        .logScale = true});
         visit(self.fieldOfView,
               FieldInfo{.key = "fieldOfView", .unit = "deg", .doc = "Vertical field of view", .range = Range{5, 120}});
+        visit(self.aperture,
+              FieldInfo{.key = "aperture",
+                        .unit = "",
+                        .doc = "Depth of field: diameter of the lens, longest edge = 1; pictures at rest are blurred "
+                               "before and behind the point in focus; 0 = everything is sharp",
+                        .range = Range{0, 0.5}});
+        visit(self.focus,
+              FieldInfo{.key = "focus",
+                        .unit = "",
+                        .doc = "World point in focus, centre of the data = 0: what is as deep in the picture is sharp",
+                        .range = Range{-1, 1},
+                        .applies = self.aperture > 0});
     }
 };
 
@@ -70,6 +87,18 @@ struct Ray {
     glm::dvec3 origin, direction; ///< direction has length 1
 };
 Ray cameraRay(const Camera& camera, double aspect, glm::dvec2 ndc);
+/// The direction in which the camera looks, perpendicular to the focal plane; length 1.
+glm::dvec3 forwardOf(const Camera& camera);
+
+/// Distance of the focal plane from the eye, along the view; at least 0.001 in perspective.
+double focalDistance(const Camera& camera);
+/// Radius of the disc that a point at `depth` from the eye, along the view, is blurred to by a thin lens, in heights of
+/// the picture: aperture / 2 |depth - f| / depth in the focal plane at distance f. In parallel projection
+/// aperture / 2 |depth - f| / distance of the target.
+double blurRadius(const Camera& camera, double depth);
+/// The camera with its eye at place `pass` of `count` on the lens: evenly over it, from its middle (pass 0) to its rim,
+/// by the golden angle (H. Vogel: A better way to construct the sunflower head, 1979).
+Camera lensCamera(Camera camera, int pass, int count);
 
 /// Rotates the camera as if the object under the mouse were dragged between two points of the picture (ndc, y up).
 void orbit(Camera& camera, glm::vec2 from, glm::vec2 to);

@@ -4,6 +4,10 @@
 
 namespace tessera::vis {
 
+int raysPerPixel(const Scene& scene) {
+    return std::max(scene.render.samples, scene.camera.aperture > 0 ? kLensPlaces : 1);
+}
+
 const TransferFunction& transferFor(const Scene& scene, const std::string& name) {
     static const TransferFunction fallback;
     const auto found = scene.transfer.find(name);

@@ -103,7 +103,7 @@ struct RenderParams {
                         .doc = "Shift the samples of each ray at random: fine noise instead of wood-grain artefacts"});
         visit(self.samples, FieldInfo{.key = "samples",
                                       .unit = "",
-                                      .doc = "Rays per pixel when the picture is at rest",
+                                      .doc = "Rays per pixel when the picture is at rest; with depth of field 64",
                                       .range = Range{1, 64}});
         visit(self.cullHidden, FieldInfo{.key = "cullHidden",
                                          .unit = "",
@@ -139,6 +139,11 @@ struct Scene {
     glm::vec3 boxColor{0.6f};
     bool operator==(const Scene&) const = default;
 };
+
+/// Rays per pixel of the scene's picture at rest: with depth of field at least kLensPlaces, each through its own place
+/// on the lens.
+int raysPerPixel(const Scene& scene);
+inline constexpr int kLensPlaces = 64;
 
 /// The transfer function of a channel (or of a layer with its own), a default one if the scene has none.
 const TransferFunction& transferFor(const Scene& scene, const std::string& name);

@@ -16,17 +16,12 @@
 #include <algorithm>
 #include <cmath>
 #include <imgui_stdlib.h>
-#include <numeric>
 
 namespace tessera::app {
 
 namespace {
 
 constexpr std::size_t kMostVariants = 16;
-constexpr const char* kRowHelp =
-    "Click: swipe this variant over the reference. Ctrl+click: make it the reference. Errors are of the 8-bit colours "
-    "on screen; samples and bytes are of the parameters shown. \"Differ\" counts stored samples of the first layer's "
-    "parameter that are not equal to those of the reference, where both are on the same lattice.";
 
 void keepIndices(CompareView& view) {
     const int last = std::max(0, static_cast<int>(view.variants.size()) - 1);
@@ -208,122 +203,6 @@ void drawVariantMenu(ViewContext& context, const char* id, CompareView& view, st
         keepIndices(view);
     }
     ImGui::EndPopup();
-}
-
-float compareTableHeight(std::size_t rows) {
-    return ImGui::GetTextLineHeightWithSpacing() * (static_cast<float>(rows) + 1.6f);
-}
-
-namespace {
-
-/// Which columns a comparison has besides variant and changes.
-struct CompareColumns {
-    bool pictures = false, stored = false, compared = false;
-
-    CompareColumns(const CompareView& view, const std::vector<CompareRow>& rows) : pictures(view.shows.empty()) {
-        for (const CompareRow& row : rows) {
-            stored = stored || row.storedBytes > 0;
-            compared = compared || row.data.has_value();
-        }
-    }
-    std::vector<const char*> names() const {
-        std::vector<const char*> names{"Variant", "Changes"};
-        if (pictures) names.insert(names.end(), {"ms", "Samples", "Texture"});
-        if (stored) names.push_back("File");
-        if (compared) names.push_back("Differ");
-        if (pictures) names.insert(names.end(), {"Max.", "RMSE", "PSNR [dB]", "SSIM"});
-        return names;
-    }
-};
-
-/// Begins the table and draws its head. Where there is room numbers take what they need and names are whole; what
-/// differs has the rest. Else the table scrolls: a number cut off would be wrong.
-bool beginCompareTable(const std::vector<const char*>& names, const std::vector<CompareRow>& rows) {
-    const auto [room, below] = ImGui::GetContentRegionAvail();
-    const float height = std::min(compareTableHeight(rows.size()), below);
-    std::vector<float> widths(names.size(), em() * 4.5f);
-    widths[0] = em() * 4, widths[1] = em() * 12;
-    for (const CompareRow& row : rows) widths[0] = std::max(widths[0], ImGui::CalcTextSize(row.name.c_str()).x);
-    const bool fits = std::accumulate(widths.begin(), widths.end(), 0.0f) + em() * 0.6f * float(names.size()) < room;
-    const ImGuiTableFlags flags =
-        ImGuiTableFlags_RowBg | ImGuiTableFlags_PadOuterX | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerV |
-        (fits ? ImGuiTableFlags_SizingStretchProp : ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX);
-    if (!fits) widths[0] = std::min(widths[0], std::max(em() * 4, room * 0.3f));
-    // ImGui stores the widths per table, so each layout has an id of its own.
-    if (!ImGui::BeginTable(fits ? "compare" : "compare scrolled", static_cast<int>(names.size()), flags, {0, height}))
-        return false;
-    ImGui::TableSetupScrollFreeze(1, 1);
-    for (std::size_t i = 0; i < names.size(); ++i)
-        ImGui::TableSetupColumn(names[i],
-                                fits && i == 1 ? ImGuiTableColumnFlags_WidthStretch : ImGuiTableColumnFlags_WidthFixed,
-                                widths[i]);
-    ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        ImGui::TableNextColumn();
-        if (i < 2)
-            ImGui::TextDisabled("%s", names[i]);
-        else
-            textRight(names[i], true);
-    }
-    return true;
-}
-
-/// The name of a variant, which a click compares with the reference, or with Ctrl makes the reference.
-void drawCompareName(CompareView& view, const CompareRow& row, int index) {
-    const bool other = modeOf(view) == CompareMode::Swipe && index == view.other;
-    const std::string name = fitText(row.name, ImGui::GetContentRegionAvail().x);
-    if (ImGui::Selectable((name + "##row").c_str(), other, ImGuiSelectableFlags_SpanAllColumns))
-        (ImGui::GetIO().KeyCtrl ? view.reference : view.other) = index;
-    if (ImGui::IsItemHovered()) tooltip((row.name + ": " + row.changes + "\n\n" + kRowHelp).c_str());
-}
-
-/// The numbers of a row, a cell each.
-void drawCompareNumbers(const CompareRow& row, const CompareColumns& columns) {
-    const auto bytes = [](double value) {
-        return value <= 0 ? std::string("-") : formatNumber(value / (1 << 20), 0.01) + " MiB";
-    };
-    const auto cell = [](const std::string& text, bool faint = false) {
-        ImGui::TableNextColumn();
-        textRight(text, faint);
-    };
-    if (columns.pictures) {
-        cell(row.milliseconds > 0 ? formatNumber(row.milliseconds, row.milliseconds < 10 ? 0.1 : 1) : "-");
-        cell(row.samples > 0 ? formatCount(row.samples) : "-");
-        cell(bytes(row.bytes));
-    }
-    if (columns.stored) cell(bytes(row.storedBytes));
-    if (columns.compared) cell(row.data ? formatCount(double(row.data->differing)) : "-", row.reference);
-    if (!columns.pictures) return;
-    if (row.reference) {
-        cell("reference", true);
-        for (int k = 0; k < 3; ++k) cell("");
-        return;
-    }
-    const bool known = row.measured;
-    cell(known ? formatNumber(row.maximum, 1) : "-");
-    cell(known ? formatNumber(row.rmse, 0.01) : "-");
-    cell(!known ? "-" : std::isfinite(row.psnr) ? formatNumber(row.psnr, 0.1) : "equal");
-    cell(known ? formatNumber(row.ssim, 0.0001) : "-");
-}
-
-} // namespace
-
-void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows) {
-    const CompareColumns columns(view, rows);
-    if (!beginCompareTable(columns.names(), rows)) return;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        const CompareRow& row = rows[i];
-        ImGui::PushID(static_cast<int>(i));
-        ImGui::TableNextRow();
-        ImGui::TableNextColumn();
-        drawCompareName(view, row, static_cast<int>(i));
-        ImGui::TableNextColumn();
-        const std::string& differs = row.failure.empty() ? row.changes : row.failure;
-        ImGui::TextDisabled("%s", fitText(differs, ImGui::GetContentRegionAvail().x).c_str());
-        drawCompareNumbers(row, columns);
-        ImGui::PopID();
-    }
-    ImGui::EndTable();
 }
 
 } // namespace tessera::app

@@ -19,9 +19,4 @@ void drawCompareToolbar(ViewContext& context, ToolRow& tools, CompareView& view,
 void drawVariantMenu(ViewContext& context, const char* id, CompareView& view, std::vector<CompareVariant> variants,
                      std::size_t index, const CompareCell* cell, CompareMenuState& state);
 
-/// The table under the pictures; a click on a row makes it the one swiped or, with Ctrl, the reference.
-void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows);
-/// Its height in pixels.
-float compareTableHeight(std::size_t rows);
-
 } // namespace tessera::app

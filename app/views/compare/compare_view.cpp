@@ -12,6 +12,7 @@
 #include "app/views/compare/compare_offers.h"
 #include "app/views/compare/compare_panes.h"
 #include "app/views/compare/compare_questions.h"
+#include "app/views/compare/compare_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -352,7 +353,7 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
     cache.rows = cache.pictures.rows(context, frame.reference);
     if (table > 0) {
         ImGui::SetCursorScreenPos({at.x, at.y + area.y});
-        drawCompareTable(view, cache.rows);
+        drawCompareTable(view, cache.rows, context.figure);
     }
     if (context.figure) return;
     ImGui::SetCursorScreenPos({at.x, at.y + area.y + table});

@@ -196,6 +196,14 @@ void drawContextStyles(ViewContext& context, const WidgetContext& widgets, const
     ImGui::PopID();
 }
 
+/// The camera of a volume view, its own or the shared one.
+void drawCamera(Session& session, const std::string& pane, const WidgetContext& widgets) {
+    VolumeView* const view = volumeView(session, pane);
+    const bool own = view && view->camera;
+    drawDescribed(own ? *view->camera : session.camera,
+                  widgets.at(own ? detail::joinPointer("/views", pane) + "/camera" : "/camera"));
+}
+
 /// How much longer than true each axis is drawn.
 void drawProportions(Session& session, const WidgetContext& widgets) {
     double stretch[] = {session.stretch.x, session.stretch.y, session.stretch.z};
@@ -300,6 +308,7 @@ void drawLayersView(ViewContext& context, const std::string& pane, LayersView& v
         drawBrushList(context);
         drawContextStyles(context, widgets, path);
     }
+    if (ImGui::CollapsingHeader("Camera")) drawCamera(session, of, widgets);
     if (ImGui::CollapsingHeader("Light")) {
         const std::function<void()> browse = [&] {
             context.askFile("Picture of the surroundings", [](Session& now, const std::string& file) {

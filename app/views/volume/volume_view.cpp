@@ -38,8 +38,27 @@ struct SpaceCache : ViewCache {
     int renderers() const override { return renderer ? 1 : 0; }
 };
 
-void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis::WorldFrame& world, double aspect) {
+/// Depth of field, and what is in focus: what is under the mouse where the menu was opened, or the cross-hair.
+void drawFocusMenu(ViewContext& context, vis::ViewTarget* target, const PictureBox& picture,
+                   const vis::WorldFrame& world) {
+    vis::Camera& camera = context.session.camera;
+    bool blurs = camera.aperture > 0;
+    if (ImGui::MenuItem("Depth of field", "", &blurs)) setDepthOfField(camera, blurs);
+    if (ImGui::MenuItem("Focus here", nullptr, false, target != nullptr)) {
+        const ImVec2 at = ImGui::GetMousePosOnOpeningCurrentPopup();
+        const auto pick = context.renderer.pick(*target, {at.x - picture.min.x, at.y - picture.min.y});
+        if (pick)
+            focusOn(camera, world.toWorld(pick->position));
+        else
+            context.messages.emplace_back("Nothing is seen there that could be in focus.");
+    }
+    if (ImGui::MenuItem("Focus on the cross-hair")) focusOn(camera, world.toWorld(context.session.cursor));
+}
+
+void drawMenu(ViewContext& context, const char* id, VolumeView& view, vis::ViewTarget* target,
+              const PictureBox& picture, const vis::WorldFrame& world) {
     if (!ImGui::BeginPopup(id)) return;
+    const double aspect = picture.aspect();
     if (escapePressed()) ImGui::CloseCurrentPopup();
     vis::Camera& camera = context.session.camera;
     if (ImGui::MenuItem("Reset view", "R")) resetCamera(camera, world, aspect);
@@ -54,6 +73,7 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis:
     bool parallel = camera.projection == vis::Projection::Orthographic;
     if (ImGui::MenuItem("Parallel projection", "5", &parallel))
         camera.projection = parallel ? vis::Projection::Orthographic : vis::Projection::Perspective;
+    drawFocusMenu(context, target, picture, world);
     ImGui::Separator();
     const bool along = timeAxisOf(context.session, context.source->info()) != nullptr;
     if (along || !context.session.data.timeAxis) { // positions in a plane over time are not positions in space
@@ -72,6 +92,7 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis:
     ImGui::MenuItem("Direction gizmo", "", &view.showGizmo);
     ImGui::MenuItem("Scale bar", "", &view.showScaleBar);
     ImGui::MenuItem("Outlines and handles", "", &view.showLenses);
+    ImGui::MenuItem("Handles of lights", "", &view.showLights, view.showLenses);
     if (context.runCommand) {
         ImGui::Separator();
         if (ImGui::MenuItem("Save picture...", "F12")) context.runCommand("Save picture...");
@@ -159,14 +180,14 @@ private:
             hasTriad_ && hovered && std::hypot(mouse.x - triadAt_.x, mouse.y - triadAt_.y) < triad_ + em() * 0.5f;
         const SpaceFrame before = spaceFrame(picture_.min, max(), session_.camera, info_.bounds, session_.stretch);
         const bool free = hovered && !cache_.hand.dragging() && !cache_.hand.blocked, lenses = view_.showLenses;
-        const bool onHandle =
-            lenses && !cache_.lens.active && editHandles(cache_.handles, session_, info_, before, free);
+        const bool onHandle = lenses && !cache_.lens.active &&
+                              editHandles(cache_.handles, session_, info_, before, free, view_.showLights);
         const bool onLens =
             lenses && !onHandle && cache_.handles.object.empty() && editLenses(cache_.lens, session_, before, free);
         const bool follows = lenses && followPointer(session_, before, free);
         const bool moving = onHandle || onLens || follows ||
                             handleMouse(context_, cache_.hand, cache_.target.get(), picture_, world_, "menu");
-        drawMenu(context_, "menu", view_, world_, picture_.aspect());
+        drawMenu(context_, "menu", view_, cache_.target.get(), picture_, world_);
         if (cache_.hand.dragging() || cache_.lens.active || cache_.handles.active) context_.interacting = true;
         return moving;
     }
@@ -179,8 +200,9 @@ private:
         drawProfileLines(*list_, space, session_);
         if (!view_.showLenses) return;
         drawLenses(*list_, space, session_, cache_.lens.lens);
+        if (context_.figure) return; // nobody can drag there
         drawLensHandles(*list_, cache_.lens, space, session_);
-        drawHandles(*list_, cache_.handles, space, session_, info_);
+        drawHandles(*list_, cache_.handles, space, session_, info_, view_.showLights);
     }
 
     void drawLegend() {

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "app/session/session.h"
+#include "vis/scene/camera.h"
+#include "volume/field/lattice.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+/// Planes that are tilted against the axes of the data: where they cut the box, and their flat picture. Places and
+/// directions are physical unless they are said to be of the world (vis/scene/camera.h).
+namespace tessera::app {
+
+/// A direction of length 1, +z for one without length.
+glm::dvec3 unitNormal(glm::dvec3 normal);
+
+/// The normal, in the stretched world, of the plane that has `physical` for its normal, and the reverse; length 1.
+glm::dvec3 worldNormal(glm::dvec3 physical, const vis::WorldFrame& world);
+glm::dvec3 physicalNormal(glm::dvec3 ofWorld, const vis::WorldFrame& world);
+
+/// A plane through a place.
+struct SpacePlane {
+    glm::dvec3 normal{0, 0, 1}; ///< length 1
+    glm::dvec3 at{0};
+
+    double distance(glm::dvec3 place) const; ///< positive on the side of the normal
+};
+
+/// Corners of the part of the plane in the box, in order around it; empty where the plane misses the box.
+std::vector<glm::dvec3> planeSection(const SpacePlane& plane, const volume::Box& box);
+
+/// The place of the plane in the box that is nearest to a place. Where the plane misses the box: the nearest place of
+/// the box.
+glm::dvec3 nearestInPlane(const SpacePlane& plane, const volume::Box& box, glm::dvec3 place);
+
+/// Directions to the right and up in the flat picture of a plane, seen from the side that its normal points to. They
+/// are at right angles in true proportions and in the stretched world; without stretch, `up` is as close as it can be
+/// to +y (for planes nearly across y: to +z).
+struct FlatAxes {
+    glm::dvec3 right{1, 0, 0}, up{0, 1, 0}; ///< length 1
+    glm::dvec2 scale{1};                    ///< world lengths of them
+};
+FlatAxes flatAxes(glm::dvec3 normal, const vis::WorldFrame& world);
+
+/// Looks against the normal of a plane, in parallel: `middle` (physical) in the middle of the picture, whose height is
+/// `height` physical lengths along `up`.
+vis::Camera flatCamera(const FlatAxes& axes, glm::dvec3 middle, double height, const vis::WorldFrame& world);
+
+/// The slice layer that draws the plane of a view through the cursor.
+vis::SliceLayer obliqueLayer(const ObliqueView& view, const std::string& channel, const vis::WorldFrame& world);
+
+/// "x", "-z", or a sum such as "0.71 x - 0.71 z".
+std::string directionText(glm::dvec3 direction);
+
+} // namespace tessera::app

@@ -1,0 +1,153 @@
+#include "app/tools/handled_planes.h"
+
+#include "vis/optics/ray_setup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr double kArrow = 0.1; ///< length of an arrow, in distances of the camera from its target
+
+/// A plane's object without what moves it. Planes that cannot be tilted have no arrow.
+HandledObject planeObject(const Session& session, const volume::DatasetInfo& info, const SpacePlane& plane,
+                          bool tilts) {
+    HandledObject object;
+    object.color = plotColors().text;
+    object.outlined = true;
+    object.plane = plane;
+    // Upright on the plane as it is seen, in the stretched world.
+    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    const double length = kArrow * static_cast<double>(session.camera.distance);
+    const glm::dvec3 tip = world.toPhysical(world.toWorld(plane.at) + worldNormal(plane.normal, world) * length);
+    object.handles = {{.at = plane.at, .whole = true, .how = HandleWay::Along, .way = tip - plane.at}};
+    const std::vector<glm::dvec3> corners = planeSection(plane, info.bounds);
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        object.lines.emplace_back(corners[i], corners[(i + 1) % corners.size()]);
+    if (!tilts) return object;
+    object.handles.push_back({.at = tip, .how = HandleWay::Around, .way = plane.at});
+    object.lines.emplace_back(plane.at, tip);
+    return object;
+}
+
+/// The normal of the plane through `middle` that an arrow to `tip` stands on, in the world.
+glm::dvec3 normalTo(const vis::WorldFrame& world, glm::dvec3 middle, glm::dvec3 tip) {
+    return unitNormal(world.toWorld(tip) - world.toWorld(middle));
+}
+
+void addView(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info,
+             const std::string& pane) {
+    const auto* view = std::get_if<ObliqueView>(&session.views.at(pane));
+    if (!view) return;
+    HandledObject object = planeObject(session, info, {unitNormal(view->normal), session.cursor}, true);
+    object.key = "oblique " + pane;
+    object.name = "oblique slice";
+    object.move = [pane, bounds = info.bounds](Session& edited, std::size_t handle, glm::dvec3 place) {
+        glm::dvec3& normal = std::get<ObliqueView>(edited.views.at(pane)).normal;
+        const vis::WorldFrame world = vis::worldFrame(bounds, edited.stretch);
+        if (handle == 0)
+            edited.cursor = nearestInPlane({unitNormal(normal), place}, bounds, place);
+        else
+            normal = physicalNormal(normalTo(world, edited.cursor, place), world);
+    };
+    objects.push_back(std::move(object));
+}
+
+/// Puts a slice layer through a place.
+void putSlice(vis::SliceLayer& slice, Session& session, const volume::Box& bounds, const vis::WorldFrame& world,
+              glm::dvec3 place) {
+    const glm::dvec3 normal = vis::slicePlane(slice, world, session.cursor).normal;
+    if (slice.atCursor) {
+        session.cursor = nearestInPlane({physicalNormal(normal, world), place}, bounds, place);
+        return;
+    }
+    const double reach = glm::dot(glm::abs(normal), world.halfSize);
+    const double offset = glm::dot(normal, world.toWorld(place));
+    if (reach > 0) slice.position = std::clamp((offset / reach + 1) / 2, 0.0, 1.0);
+}
+
+void addSlice(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info,
+              std::size_t index) {
+    const vis::Layer& layer = session.layers[index];
+    const auto* slice = std::get_if<vis::SliceLayer>(&layer.technique);
+    const bool tilts = slice && slice->orientation == vis::SliceOrientation::Oblique;
+    if (!slice || !layer.visible || (slice->atCursor && !tilts)) return;
+    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    const vis::Plane placed = vis::slicePlane(*slice, world, session.cursor);
+    const glm::dvec3 normal = physicalNormal(placed.normal, world);
+    glm::dvec3 middle = session.cursor;
+    if (!slice->atCursor) { // in the middle of what is seen of it
+        const std::vector<glm::dvec3> corners =
+            planeSection({normal, world.toPhysical(placed.normal * placed.offset)}, info.bounds);
+        if (corners.empty()) return;
+        middle = glm::dvec3(0);
+        for (const glm::dvec3& corner : corners) middle += corner / static_cast<double>(corners.size());
+    }
+    HandledObject object = planeObject(session, info, {normal, middle}, tilts);
+    object.key = "slice " + std::to_string(index);
+    object.name = layerName(layer);
+    object.move = [index, middle, bounds = info.bounds](Session& edited, std::size_t handle, glm::dvec3 place) {
+        auto& own = std::get<vis::SliceLayer>(edited.layers[index].technique);
+        const vis::WorldFrame frame = vis::worldFrame(bounds, edited.stretch);
+        if (handle == 0) return putSlice(own, edited, bounds, frame, place);
+        const glm::dvec3 around = own.atCursor ? edited.cursor : middle;
+        own.normal = glm::vec3(normalTo(frame, around, place));
+        if (!own.atCursor) putSlice(own, edited, bounds, frame, around);
+    };
+    objects.push_back(std::move(object));
+}
+
+void addClip(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info,
+             std::size_t index) {
+    const vis::Clip& clip = session.clips[index];
+    const glm::dvec3 lo = info.bounds.lo, size = info.bounds.size();
+    if (!clip.enabled || clip.kind != vis::ClipKind::Plane || !(std::min({size.x, size.y, size.z}) > 0)) return;
+    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    const glm::dvec3 axis = glm::length(glm::dvec3(clip.axis)) > 1e-9 ? glm::dvec3(clip.axis) : glm::dvec3(1, 0, 0);
+    HandledObject object =
+        planeObject(session, info, {physicalNormal(axis, world), lo + glm::dvec3(clip.center) * size}, true);
+    object.key = "clip " + std::to_string(index);
+    object.name = "clip " + std::to_string(index + 1);
+    object.move = [index, lo, size, bounds = info.bounds,
+                   normal = object.plane->normal](Session& edited, std::size_t handle, glm::dvec3 place) {
+        vis::Clip& own = edited.clips[index];
+        const glm::dvec3 middle = lo + glm::dvec3(own.center) * size;
+        const vis::WorldFrame frame = vis::worldFrame(bounds, edited.stretch);
+        if (handle == 0)
+            own.center = glm::vec3((nearestInPlane({normal, place}, bounds, place) - lo) / size);
+        else
+            own.axis = glm::vec3(normalTo(frame, middle, place));
+    };
+    objects.push_back(std::move(object));
+}
+
+} // namespace
+
+void addPlanes(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info) {
+    if (timeAxisOf(session, info)) return; // no directions between lengths and times
+    for (const auto& [pane, view] : session.views) addView(objects, session, info, pane);
+    for (std::size_t i = 0; i < session.layers.size(); ++i) addSlice(objects, session, info, i);
+    for (std::size_t i = 0; i < session.clips.size(); ++i) addClip(objects, session, info, i);
+}
+
+std::vector<SpaceLine> planeCrossing(const HandledObject& object, const volume::Box& box, int normal,
+                                     glm::dvec3 cursor) {
+    std::vector<SpaceLine> lines;
+    if (!object.plane) return lines;
+    const std::vector<glm::dvec3> corners = planeSection(*object.plane, box);
+    std::vector<glm::dvec3> ends;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const glm::dvec3 from = corners[i], to = corners[(i + 1) % corners.size()];
+        const double a = from[normal] - cursor[normal], b = to[normal] - cursor[normal];
+        if ((a < 0) != (b < 0)) ends.push_back(glm::mix(from, to, a / (a - b)));
+    }
+    if (ends.size() == 2) lines.emplace_back(ends[0], ends[1]);
+    if (object.handles.size() > 1) lines.emplace_back(object.handles[0].at, object.handles[1].at);
+    return lines;
+}
+
+} // namespace tessera::app

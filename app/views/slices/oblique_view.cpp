@@ -1,0 +1,262 @@
+#include "app/pane/axes3d.h"
+#include "app/pane/view_parts.h"
+#include "app/queries/readout.h"
+#include "app/session/shown_scene.h"
+#include "app/tools/oblique_tilt.h"
+#include "app/ui/widgets.h"
+#include "app/views/slices/flat_slice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr float kBeside = 17; ///< em: least width of the numbers beside the picture
+constexpr float kBelow = 8;   ///< em: their height below it
+
+struct ObliqueCache : ViewCache {
+    vis::ViewTargetPtr target;
+    Readout readout;
+    bool dragging = false;
+};
+
+/// Where picture and numbers lie; numbers without extent where there is no room.
+struct ObliqueRooms {
+    ImVec2 picture, pictureEnd, numbers, numbersEnd;
+};
+
+/// Numbers beside the picture or below it, whichever leaves the larger picture. `aspect`: width of the plane by height.
+ObliqueRooms roomsOf(ImVec2 min, ImVec2 room, double aspect, bool numbers) {
+    const ImVec2 max{min.x + room.x, min.y + room.y};
+    if (!numbers || room.x < em() * 14 || room.y < em() * 8) return {min, max, max, max};
+    const auto height = [&](float wide, float high) {
+        return std::min(static_cast<double>(high - em() * 4), static_cast<double>(wide - em() * 4) / aspect);
+    };
+    const float beside = std::min(em() * kBeside, room.x * 0.42f), below = std::min(em() * kBelow, room.y * 0.45f);
+    if (height(room.x - beside, room.y) >= height(room.x, room.y - below))
+        return {min, {max.x - beside, max.y}, {max.x - beside + em() * 0.6f, min.y}, max};
+    return {min, {max.x, max.y - below}, {min.x, max.y - below + em() * 0.4f}, max};
+}
+
+/// The parameter, lines, tilt and export.
+void drawTools(ViewContext& context, ToolRow& tools, ObliqueView& view, const FlatSlice& flat, const Readout& readout,
+               int channel) {
+    const volume::DatasetInfo& info = context.source->info();
+    std::string name = info.channel(channel).name;
+    const float width = std::min(em() * 11, tools.room() * 0.4f);
+    if (tools.next(width)) {
+        ImGui::SetNextItemWidth(width);
+        if (chooseChannel("##channel", &info, name)) view.channel = name;
+        if (ImGui::IsItemHovered()) tooltip("Parameter that colours the slice");
+    }
+    if (tools.next(buttonWidth("Tilt"))) {
+        if (ImGui::Button("Tilt")) ImGui::OpenPopup("tilt");
+        if (ImGui::IsItemHovered()) tooltip("Across an axis, facing the viewer, or by numbers");
+        if (ImGui::BeginPopup("tilt")) {
+            drawTiltMenu(context.session, info, view);
+            ImGui::Separator();
+            ImGui::SetNextItemWidth(em() * 14);
+            ImGui::DragScalarN("normal", ImGuiDataType_Double, &view.normal.x, 3, 0.01f, nullptr, nullptr, "%.3g");
+            ImGui::EndPopup();
+        }
+    }
+    if (tools.next(em() * 8)) {
+        ImGui::SetNextItemWidth(em() * 8);
+        ImGui::SliderInt("##contours", &view.contours, 0, 50, view.contours == 0 ? "no contours" : "%d contours");
+        if (ImGui::IsItemHovered()) tooltip("Number of contour lines over the colour range");
+    }
+    if (tools.next(checkboxWidth("in 3D"))) {
+        ImGui::Checkbox("in 3D", &view.inSpace);
+        if (ImGui::IsItemHovered()) tooltip("Draw the slice in the volume views too");
+    }
+    exportMenu(
+        context, tools, "oblique",
+        [source = context.numbers, session = context.session, flat, channel](const Progress& progress) {
+            return flatDrawing(*source, session, flat, channel, progress);
+        },
+        [source = context.numbers, session = context.session, flat, channels = comparedChannels(info)](
+            const Progress& progress) { return flatCsv(*source, session, flat, channels, progress); });
+    if (!view.showReadout || !tools.next(iconButtonWidth(context, icons::kCopy))) return;
+    if (iconButton(context, "copy", icons::kCopy, "Copy the values at the cross-hair as CSV"))
+        ImGui::SetClipboardText((originLine(context.origin, context.numbers->info()) +
+                                 readoutCsv(context.session, context.numbers->info(), readout))
+                                    .c_str());
+}
+
+/// The largest picture with the proportions of the plane in the stretched box; nothing where there is no room.
+std::optional<PlotFrame> placePicture(const ObliqueRooms& rooms, const FlatSlice& flat, bool axes) {
+    const glm::dvec2 unit = flat.perUnit();
+    const Range x{flat.x.lo * unit.x, flat.x.hi * unit.x}, y{flat.y.lo * unit.y, flat.y.hi * unit.y};
+    ImVec2 lo{rooms.picture.x, rooms.picture.y + em() * 1.35f}, hi = rooms.pictureEnd;
+    if (axes) {
+        lo.x += axisRoom(AxisSide::Left, y, false);
+        hi = {hi.x - em() * 0.8f, hi.y - axisRoom(AxisSide::Bottom, x, false)};
+    }
+    if (hi.x - lo.x < em() * 2 || hi.y - lo.y < em() * 2) return std::nullopt;
+    const double wide = (flat.x.hi - flat.x.lo) * flat.axes.scale.x, high = (flat.y.hi - flat.y.lo) * flat.axes.scale.y;
+    const double scale = std::min((hi.x - lo.x) / wide, (hi.y - lo.y) / high);
+    const ImVec2 corner{std::floor(lo.x), std::floor(lo.y)};
+    const auto pixels = [&](double edge) { return static_cast<float>(std::max(1.0, std::floor(edge * scale))); };
+    return PlotFrame{corner, {corner.x + pixels(wide), corner.y + pixels(high)}, x, y};
+}
+
+/// A drag moves the cross-hair in the plane, the wheel moves the plane along its normal by samples.
+void useMouse(ViewContext& context, ObliqueCache& cache, ObliqueView& view, const FlatSlice& flat,
+              const PlotFrame& plot) {
+    const volume::DatasetInfo& info = context.source->info();
+    Session& session = context.session;
+    ImGui::SetCursorScreenPos(plot.min);
+    ImGui::InvisibleButton("plane", {plot.width(), plot.height()});
+    if (ImGui::BeginPopupContextItem("menu")) {
+        drawTiltMenu(session, info, view);
+        ImGui::EndPopup();
+    }
+    const ImGuiIO& io = ImGui::GetIO();
+    if (ImGui::IsItemActivated()) cache.dragging = true;
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) cache.dragging = false;
+    if (cache.dragging) {
+        const glm::dvec3 place = flat.placeAt(plot.data(io.MousePos) / flat.perUnit());
+        session.cursor = nearestInPlane(flat.plane, info.bounds, place);
+        context.interacting = true;
+    }
+    if (!ImGui::IsItemHovered()) return;
+    ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    if (io.MouseWheel == 0) return;
+    const double cell = info.lattice.kind == volume::LatticeKind::BCC ? 0.5 : 1;
+    const double step = cell / glm::length(flat.plane.normal / info.lattice.spacing);
+    const glm::dvec3 to =
+        session.cursor + flat.plane.normal * (step * static_cast<double>(io.MouseWheel * (io.KeyShift ? 10.0f : 1.0f)));
+    session.cursor = nearestInPlane({flat.plane.normal, to}, info.bounds, to);
+}
+
+void drawPicture(ViewContext& context, vis::ViewTargetPtr& target, const ObliqueView& view, const FlatSlice& flat,
+                 const std::string& channel, const PlotFrame& plot) {
+    const vis::WorldFrame world = vis::worldFrame(context.source->info().bounds, context.session.stretch);
+    vis::Scene scene = sceneWithLimits(context);
+    scene.paper.reset();
+    scene.showBox = false;
+    const glm::dvec2 middle((flat.x.lo + flat.x.hi) / 2, (flat.y.lo + flat.y.hi) / 2);
+    scene.camera = flatCamera(flat.axes, flat.placeAt(middle), flat.y.hi - flat.y.lo, world);
+    vis::SliceLayer layer = obliqueLayer(view, channel, world);
+    layer.contours = view.contours;
+    // Only the place along the normal matters: dragging within the plane leaves its picture as it is.
+    layer.atCursor = false;
+    const glm::dvec3 normal = worldNormal(flat.plane.normal, world);
+    const double reach = glm::dot(glm::abs(normal), world.halfSize);
+    layer.position = reach > 0 ? (glm::dot(normal, world.toWorld(flat.plane.at)) / reach + 1) / 2 : 0.5;
+    scene.layers = {vis::Layer{"slice", true, layer}};
+    scene.lenses.clear();
+    if (!target) target = context.renderer.makeTarget();
+    vis::FrameRequest request;
+    request.size = {plot.width(), plot.height()};
+    request.moving = !context.headless && (context.interacting || context.session.animation.playing);
+    request.budgetMs = scene.render.limits.frameTime / (request.moving ? 3.0 : 1.5);
+    request.wait = context.headless;
+    const vis::FrameStatus status = context.renderer.render(*target, scene, request);
+    context.follow(status);
+    addPicture(*ImGui::GetWindowDrawList(), status.texture, plot.min, plot.max);
+}
+
+/// Where the plane lies above the picture, its axes, the edge of the data, and the cross-hair.
+void drawOver(ViewContext& context, const ObliqueRooms& rooms, const FlatSlice& flat, const PlotFrame& plot,
+              bool axes) {
+    const Decoration& shown = context.decoration;
+    const PlotColors colors = plotColors();
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const glm::dvec2 unit = flat.perUnit();
+    if (shown.title) {
+        const std::string whole = placeText(flat, context.source->info());
+        const float room = rooms.pictureEnd.x - rooms.picture.x - em() * 4;
+        const std::string text = firstThatFits({whole, whole.substr(whole.find(" at ") + 4)}, room);
+        const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+        const float least = rooms.picture.x + em() * 4; // the title of the vertical axis stands before it
+        const ImVec2 at{std::round(std::max(plot.max.x - size.x, least)), rooms.picture.y};
+        draw.AddText(at, colors.text, text.c_str());
+        tellWhole(at, {at.x + size.x, at.y + size.y}, whole, text);
+    }
+    if (shown.axes && axes) {
+        drawAxis(draw, plot, AxisSide::Bottom, flat.nameX, flat.unitX.name, rooms.picture.x,
+                 std::min(rooms.pictureEnd.x, plot.max.x + em() * 4), {.inlineTitle = true});
+        drawAxis(draw, plot, AxisSide::Left, flat.nameY, flat.unitY.name, rooms.picture.y, rooms.pictureEnd.y,
+                 {.inlineTitle = true, .room = plot.min.x - rooms.picture.x});
+    }
+    draw.PushClipRect(plot.min, plot.max, true);
+    const auto pixel = [&](glm::dvec3 place) {
+        const glm::dvec2 at = flat.along(place) * unit;
+        return plot.pixel(at.x, at.y);
+    };
+    if (shown.box)
+        for (std::size_t i = 0; i < flat.corners.size(); ++i)
+            draw.AddLine(pixel(flat.corners[i]), pixel(flat.corners[(i + 1) % flat.corners.size()]), colors.frame,
+                         std::max(1.0f, em() * 0.08f));
+    const glm::dvec2 cursor = flat.along(context.session.cursor) * unit;
+    if (shown.cursor) drawCrosshair(draw, plot, cursor.x, cursor.y, true);
+    draw.PopClipRect();
+}
+
+/// Legend, axes in words, and the values at the cross-hair.
+void drawNumbersOf(ViewContext& context, const ObliqueView& view, ObliqueCache& cache, const FlatSlice& flat,
+                   int channel) {
+    const volume::DatasetInfo& info = context.source->info();
+    LegendEntry legend = legendOf(context.session, info, channel);
+    if (const auto value = cache.readout.value(info.channel(channel).name); value && context.decoration.cursor)
+        legend.marker = *value;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = std::min(ImGui::GetContentRegionAvail().x, em() * 20);
+    const bool legendShown = context.decoration.legend;
+    ImGui::Dummy(
+        {width, (legendShown ? drawLegendBar(*ImGui::GetWindowDrawList(), at, width, legend) : legendBarHeight()) +
+                    em() * 0.3f});
+    if (const std::string axes = axesText(flat); !axes.empty() && context.decoration.title) {
+        ImGui::PushTextWrapPos(0);
+        ImGui::TextDisabled("%s", axes.c_str());
+        ImGui::PopTextWrapPos();
+    }
+    if (!view.showReadout || !context.decoration.cursor) return;
+    drawReadout(context, cache.readout, readoutHeight(cache.readout) > ImGui::GetContentRegionAvail().y);
+}
+
+} // namespace
+
+void drawObliqueView(ViewContext& context, const std::string& pane, ObliqueView& view) {
+    if (!context.source) {
+        drawHint("No data", "Shows a tilted slice through the cross-hair.");
+        return;
+    }
+    const volume::DatasetInfo& info = context.source->info();
+    const auto channel = resolveChannel(info, context.session, view.channel);
+    if (!channel) return drawHint("No parameters", "This data set has no parameter to show.");
+    if (timeAxisOf(context.session, info))
+        return drawHint("No tilted slices over time", "An axis is time here, and lengths and times have no angle.");
+    const glm::dvec3 size = info.bounds.size();
+    if (!(std::min({size.x, size.y, size.z}) > 0))
+        return drawHint("No extent", "The data are flat: there is nothing to tilt a plane in.");
+    ObliqueCache& cache = cacheOf<ObliqueCache>(context, pane);
+    updateReadout(context, pane, cache.readout);
+    if (!context.figure) {
+        ToolRow tools(context);
+        drawTools(context, tools, view, flatSlice(context.session, info, view.normal), cache.readout, *channel);
+    }
+    const FlatSlice flat = flatSlice(context.session, info, view.normal);
+    const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 6)};
+    const double aspect = (flat.x.hi - flat.x.lo) * flat.axes.scale.x / ((flat.y.hi - flat.y.lo) * flat.axes.scale.y);
+    ObliqueRooms rooms = roomsOf(ImGui::GetCursorScreenPos(), room, aspect, true);
+    const bool axes = context.figure || (room.x > em() * 12 && room.y > em() * 9);
+    if (const auto plot = placePicture(rooms, flat, axes)) {
+        useMouse(context, cache, view, flat, *plot);
+        drawPicture(context, cache.target, view, flat, info.channel(*channel).name, *plot);
+        drawOver(context, rooms, flat, *plot, axes);
+        if (rooms.numbers.y < plot->max.y) rooms.numbers.x = std::min(rooms.numbers.x, plot->max.x + em() * 4);
+    }
+    if (rooms.numbersEnd.x - rooms.numbers.x < em() || rooms.numbersEnd.y - rooms.numbers.y < em()) return;
+    ImGui::SetCursorScreenPos(rooms.numbers);
+    ImGui::BeginChild("readout", {rooms.numbersEnd.x - rooms.numbers.x, rooms.numbersEnd.y - rooms.numbers.y}, false,
+                      context.figure ? ImGuiWindowFlags_NoScrollbar : ImGuiWindowFlags_None);
+    drawNumbersOf(context, view, cache, flat, *channel);
+    ImGui::EndChild();
+}
+
+} // namespace tessera::app

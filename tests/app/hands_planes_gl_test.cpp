@@ -1,0 +1,311 @@
+#include "app/pane/axes3d.h"
+#include "app/pane/oblique_plane.h"
+#include "app/tools/camera_hand.h"
+#include "tests/app/hands_fixture.h"
+#include "vis/optics/surface_light.h"
+
+#include <glm/geometric.hpp>
+
+/// The mouse on tilted planes, lights and the point in focus: in volume views, slices and the flat view.
+namespace tessera::app {
+namespace {
+
+const volume::Box& planesBox() {
+    static const glm::dvec3 lo(formula::kOrigin[0], formula::kOrigin[1], formula::kOrigin[2]);
+    static const volume::Box box{
+        lo, lo + glm::dvec3(formula::kSpacing[0] * 7, formula::kSpacing[1] * 6, formula::kSpacing[2] * 8)};
+    return box;
+}
+
+ObliqueView tiltedBy(glm::dvec3 normal) {
+    ObliqueView view;
+    view.normal = normal;
+    return view;
+}
+
+class PlaneHands : public Hands {
+protected:
+    /// A volume view from the front without perspective, with an oblique view beside it that is not drawn.
+    void showVolume(const std::function<void(Session&)>& prepare) {
+        VolumeView volume;
+        volume.showGizmo = volume.showLegend = volume.showAxes = false;
+        show(volume, {400, 300}, [&](Session& edited) {
+            edited.layers.clear();
+            edited.camera = {};
+            edited.camera.orientation = glm::quat(1, 0, 0, 0);
+            edited.camera.projection = vis::Projection::Orthographic;
+            prepare(edited);
+        });
+        ASSERT_FALSE(pictures().empty());
+        picture = pictures().back();
+    }
+    vis::WorldFrame world() { return vis::worldFrame(planesBox(), session().stretch); }
+    SpaceFrame space() {
+        return spaceFrame(picture.Min, picture.Max, session().camera, planesBox(), session().stretch);
+    }
+    ImVec2 pixel(glm::dvec3 physical) { return *space().pixel(physical); }
+    ImVec2 worldPixel(glm::dvec3 place) { return pixel(world().toPhysical(place)); }
+    glm::dvec3 normal() { return unitNormal(std::get<ObliqueView>(session().views.at("oblique")).normal); }
+    /// The tip of an arrow a tenth of the camera's distance long on a plane at a place.
+    glm::dvec3 tip(glm::dvec3 at, glm::dvec3 upright) {
+        return world().toWorld(at) + upright * (0.1 * double(session().camera.distance));
+    }
+    ImRect picture;
+};
+
+TEST_F(PlaneHands, TheDotMovesAPlaneAlongItsNormalAndTheArrowTiltsIt) {
+    for (const glm::dvec3 stretch : {glm::dvec3(1), glm::dvec3(1, 0.5, 1.5)}) {
+        showVolume([&](Session& edited) {
+            edited.stretch = stretch;
+            edited.views["oblique"] = tiltedBy({0.6, 0.8, 0});
+        });
+        const Session before = session();
+        const glm::dvec3 upright = worldNormal(normal(), world());
+        const ImVec2 from = pixel(session().cursor);
+        // Up and to the right, as the normal points: the dot stays on its line, below the mouse.
+        const float way = 30;
+        const ImVec2 to{from.x + way * float(upright.x), from.y - way * float(upright.y)};
+        drag(from, to);
+        EXPECT_NEAR(pixel(session().cursor).x, to.x, 1.5);
+        EXPECT_NEAR(pixel(session().cursor).y, to.y, 1.5);
+        const glm::dvec3 moved = world().toWorld(session().cursor) - world().toWorld(before.cursor);
+        EXPECT_LT(glm::length(moved - upright * glm::dot(moved, upright)), 1e-9) << "along the normal alone";
+        EXPECT_GT(glm::dot(moved, upright), 0.01);
+        EXPECT_TRUE(session().views == before.views);
+        settle();
+        EXPECT_EQ(steps(), 1u);
+        undo();
+        EXPECT_TRUE(session() == before) << apart(before);
+
+        const glm::dvec3 end = tip(session().cursor, upright);
+        const ImVec2 grip = worldPixel(end), aim{grip.x + 14, grip.y + 9};
+        drag(grip, aim);
+        EXPECT_EQ(session().cursor, before.cursor);
+        EXPECT_NEAR(worldPixel(tip(session().cursor, worldNormal(normal(), world()))).x, aim.x, 1.5);
+        EXPECT_NEAR(worldPixel(tip(session().cursor, worldNormal(normal(), world()))).y, aim.y, 1.5);
+        EXPECT_LT(glm::dot(worldNormal(normal(), world()), upright), 0.99);
+        settle();
+        EXPECT_EQ(steps(), 1u);
+        undo();
+        EXPECT_TRUE(session() == before) << apart(before);
+        moveTo(grip);
+        button(0, true);
+        moveTo(aim);
+        press(key::kEscape);
+        button(0, false);
+        EXPECT_TRUE(session() == before) << "Esc gives up" << apart(before);
+    }
+}
+
+TEST_F(PlaneHands, ThePlaneStaysInTheBox) {
+    showVolume([](Session& edited) { edited.views["oblique"] = tiltedBy({0.6, 0.8, 0}); });
+    drag(pixel(session().cursor), {picture.Max.x + 400, picture.Min.y - 400});
+    EXPECT_FALSE(planeSection({normal(), session().cursor}, planesBox()).empty());
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_GE(session().cursor[axis], planesBox().lo[axis]);
+        EXPECT_LE(session().cursor[axis], planesBox().hi[axis]);
+    }
+    EXPECT_GT(session().cursor.x, 0.016);
+}
+
+TEST_F(PlaneHands, ClipPlanesAndSliceLayersAreDraggedToo) {
+    showVolume([](Session& edited) {
+        edited.clips = {{.center = {0.5f, 0.5f, 0.5f}, .axis = {1, 0, 0}}};
+        edited.layers = {
+            {.name = "",
+             .visible = true,
+             .technique = vis::SliceLayer{
+                 .channel = "T", .orientation = vis::SliceOrientation::Y, .atCursor = false, .position = 0.25}}};
+    });
+    const Session before = session();
+    const glm::dvec3 size = planesBox().size(), middle = planesBox().center();
+    drag(pixel(middle), {pixel(middle).x + 30, pixel(middle).y + 7});
+    const auto& clip = [this]() -> const vis::Clip& { return session().clips[0]; };
+    glm::dvec3 to = planesBox().lo + glm::dvec3(clip().center) * size;
+    EXPECT_NEAR(pixel(to).x, pixel(middle).x + 30, 1.5) << "along its normal, x";
+    EXPECT_NEAR(clip().center.y, 0.5, 1e-6);
+    session() = before;
+    frame();
+    // A slice across y: its dot lies in its middle, and moves with the mouse upwards.
+    const glm::dvec3 own{middle.x, planesBox().lo.y + 0.25 * size.y, middle.z};
+    drag(pixel(own), {pixel(own).x + 11, pixel(own).y - 25});
+    const double position = std::get<vis::SliceLayer>(session().layers[0].technique).position;
+    to = {middle.x, planesBox().lo.y + position * size.y, middle.z};
+    EXPECT_NEAR(pixel(to).y, pixel(own).y - 25, 1.5);
+    EXPECT_TRUE(session().clips == before.clips);
+    session() = before;
+    frame();
+    const ImVec2 grip = worldPixel(tip(middle, {1, 0, 0}));
+    drag(grip, {grip.x - 6, grip.y - 12});
+    EXPECT_GT(clip().axis.y, 0.2f) << "the arrow of a clip tilts it";
+    EXPECT_EQ(clip().center, before.clips[0].center);
+}
+
+TEST_F(PlaneHands, ArrowsOfLightsTurnThemAndPointsMove) {
+    showVolume([](Session& edited) {
+        edited.camera.orientation = glm::normalize(glm::quat(0.9f, 0.1f, 0.3f, 0.05f));
+        edited.lighting.lights = {{.kind = vis::LightKind::Viewer, .azimuth = -30, .elevation = 40},
+                                  {.kind = vis::LightKind::World, .azimuth = 60, .elevation = -20},
+                                  {.kind = vis::LightKind::Point, .position = {0.2f, -0.3f, 0.1f}}};
+    });
+    const Session before = session();
+    const double radius =
+        0.72 * double(session().camera.distance) * std::tan(glm::radians(double(session().camera.fieldOfView)) / 2);
+    const auto at = [&](std::size_t i) {
+        const vis::Light& light = session().lighting.lights[i];
+        return i == 2 ? glm::dvec3(light.position) : vis::lightDirection(light, session().camera) * radius;
+    };
+    const ImVec2 hidden = worldPixel(at(0));
+    drag(hidden, {hidden.x + 20, hidden.y});
+    EXPECT_TRUE(session().lighting == before.lighting) << "without its handles a light stays";
+    session() = before;
+    view<VolumeView>().showLights = true;
+    settle();
+    const vis::Lighting lighting = session().lighting;
+    for (std::size_t i = 0; i < 3; ++i) {
+        SCOPED_TRACE(i);
+        const ImVec2 from = worldPixel(at(i)), to{std::floor(from.x) - 14, std::floor(from.y) + 10};
+        drag(from, to);
+        EXPECT_NEAR(worldPixel(at(i)).x, to.x, 1.5);
+        EXPECT_NEAR(worldPixel(at(i)).y, to.y, 1.5);
+        for (std::size_t k = 0; k < 3; ++k)
+            EXPECT_EQ(session().lighting.lights[k] == lighting.lights[k], k != i) << "one light alone";
+        settle();
+        undo();
+        EXPECT_TRUE(session().lighting == lighting);
+    }
+    // Past the outline of the ball a light goes behind the data, and shines from there.
+    const ImVec2 from = worldPixel(at(0)), middle = worldPixel(glm::dvec3(0));
+    const glm::dvec2 out = glm::normalize(glm::dvec2(from.x - middle.x, from.y - middle.y));
+    const float far = 1.3f *
+                      float(radius / (double(session().camera.distance) *
+                                      std::tan(glm::radians(double(session().camera.fieldOfView)) / 2))) *
+                      picture.GetHeight() / 2;
+    drag(from, {middle.x + far * float(out.x), middle.y + far * float(out.y)});
+    EXPECT_GT(std::abs(session().lighting.lights[0].azimuth), 90.0f);
+}
+
+TEST_F(PlaneHands, InSlicesAPlaneIsALineWithAnArrow) {
+    SlicesView slices;
+    slices.channel = "T";
+    slices.showReadout = false;
+    show(slices, {460, 420}, [](Session& edited) {
+        edited.views["oblique"] = tiltedBy({0.6, 0.8, 0});
+        edited.stretch = {1, 0.5, 1};
+    });
+    const ImRect plane = pictures()[0]; // x to the right, y up
+    const Session before = session();
+    const glm::dvec3 upright = worldNormal(normal(), world());
+    const glm::dvec3 end = world().toPhysical(tip(session().cursor, upright));
+    const auto place = [&](glm::dvec3 at) {
+        return within(plane, (at.x - extent(0).lo) / (extent(0).hi - extent(0).lo),
+                      1 - (at.y - extent(1).lo) / (extent(1).hi - extent(1).lo));
+    };
+    const ImVec2 grip = place(end);
+    drag(grip, {grip.x + 12, grip.y + 18});
+    EXPECT_EQ(session().cursor, before.cursor);
+    const glm::dvec3 now = worldNormal(normal(), world());
+    EXPECT_NEAR(now.z, 0, 1e-6) << "turned within the slice";
+    const ImVec2 tipNow = place(world().toPhysical(tip(session().cursor, now))), middle = place(session().cursor);
+    EXPECT_NEAR(std::atan2(tipNow.y - middle.y, tipNow.x - middle.x),
+                std::atan2(grip.y + 18 - middle.y, grip.x + 12 - middle.x), 0.06);
+    settle();
+    EXPECT_EQ(steps(), 1u);
+}
+
+TEST_F(PlaneHands, InTheFlatViewTheCrossHairStaysInThePlaneAndTheWheelMovesIt) {
+    ObliqueView view;
+    view.channel = "T";
+    view.showReadout = false;
+    view.normal = {-0.8, 0, 0.6};
+    show(view, {420, 380});
+    const ImRect flat = pictures().back();
+    const Session before = session();
+    const glm::dvec3 n = unitNormal(view.normal), right{0.6, 0, 0.8}, up{0, 1, 0};
+    const glm::dvec3 start = session().cursor;
+    // The plane runs through the whole of y; a margin of two per cent is added on either side.
+    const double perPixel = 1.04 * (extent(1).hi - extent(1).lo) / double(flat.GetHeight());
+    moveTo(within(flat, 0.5, 0.5));
+    button(0, true);
+    const glm::dvec3 first = session().cursor;
+    moveTo({mouse.x + 20, mouse.y - 30});
+    button(0, false);
+    const glm::dvec3 moved = session().cursor - first;
+    EXPECT_NEAR(glm::dot(session().cursor - start, n), 0, 1e-12);
+    EXPECT_NEAR(glm::dot(moved, up), 30 * perPixel, 2 * perPixel);
+    EXPECT_NEAR(glm::dot(moved, right), 20 * perPixel, 2 * perPixel);
+    settle();
+    EXPECT_EQ(steps(), 1u);
+    undo();
+    EXPECT_TRUE(session() == before) << apart(before);
+    moveTo(within(flat, 0.5, 0.5));
+    turnWheel(1);
+    const double step =
+        1 / glm::length(n / glm::dvec3(formula::kSpacing[0], formula::kSpacing[1], formula::kSpacing[2]));
+    EXPECT_NEAR(glm::dot(session().cursor - start, n), step, 1e-9) << "by one sample";
+    EXPECT_LT(glm::length(session().cursor - start - n * step), 1e-9);
+    for (int i = 0; i < 40; ++i) turnWheel(3);
+    EXPECT_FALSE(planeSection({n, session().cursor}, planesBox()).empty()) << "not out of the box";
+}
+
+TEST_F(PlaneHands, TheCommandTiltsEveryObliqueSliceToTheViewer) {
+    showVolume([](Session& edited) {
+        edited.camera.orientation = glm::normalize(glm::quat(0.9f, 0.2f, 0.3f, 0.1f));
+        edited.stretch = {1, 0.5, 1.5};
+        edited.views["oblique"] = ObliqueView{};
+    });
+    const auto run = [&](const std::string& name) {
+        for (const Command& command : workbench.commands())
+            if (command.title() == name) {
+                ASSERT_TRUE(command.available()) << name;
+                command.run();
+                return settle();
+            }
+        ADD_FAILURE() << name;
+    };
+    run("Face oblique slices to the viewer");
+    EXPECT_LT(glm::length(worldNormal(normal(), world()) + vis::forwardOf(session().camera)), 1e-6);
+    run("Show handles of lights");
+    EXPECT_TRUE(view<VolumeView>().showLights);
+    EXPECT_EQ(session().camera.aperture, 0);
+    run("Focus on the cross-hair");
+    EXPECT_GT(session().camera.aperture, 0);
+    EXPECT_LT(glm::length(world().toPhysical(glm::dvec3(session().camera.focus)) - session().cursor), 1e-8);
+    run("Depth of field");
+    EXPECT_EQ(session().camera.aperture, 0) << "off again";
+    session().views.erase("oblique");
+    run("Face oblique slices to the viewer");
+    EXPECT_TRUE(session().views.contains("oblique")) << "opened where there was none";
+}
+
+TEST_F(PlaneHands, AClickInTheMenuFocusesOnWhatIsSeenThere) {
+    showVolume([](Session& edited) {
+        edited.layers = {
+            {.name = "",
+             .visible = true,
+             .technique = vis::SliceLayer{
+                 .channel = "T", .orientation = vis::SliceOrientation::Z, .atCursor = false, .position = 0.75}}};
+    });
+    const glm::dvec3 size = planesBox().size(), lo = planesBox().lo;
+    const ImVec2 at = within(picture, 0.4, 0.45);
+    click(at, 1);
+    ASSERT_TRUE(popup());
+    const ImRect focus = item(popup(), {std::string("Focus here")});
+    click(within(focus, 0.3, 0.5));
+    settle();
+    EXPECT_GT(session().camera.aperture, 0);
+    const glm::dvec3 place = world().toPhysical(glm::dvec3(session().camera.focus));
+    EXPECT_NEAR(place.z, lo.z + 0.75 * size.z, 1e-3 * size.z) << "on the slice";
+    EXPECT_NEAR(pixel(place).x, at.x, 1.5);
+    EXPECT_NEAR(pixel(place).y, at.y, 1.5);
+    EXPECT_EQ(steps(), 1u);
+    // The point in focus has a dot.
+    const ImVec2 from = pixel(place);
+    drag(from, {from.x + 25, from.y - 10});
+    const glm::dvec3 moved = world().toPhysical(glm::dvec3(session().camera.focus));
+    EXPECT_NEAR(pixel(moved).x, from.x + 25, 1.5);
+    EXPECT_NEAR(pixel(moved).y, from.y - 10, 1.5);
+}
+
+} // namespace
+} // namespace tessera::app
