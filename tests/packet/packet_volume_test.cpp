@@ -1,5 +1,5 @@
 #include "tests/vis/function_source.h"
-#include "vis/packet/packet_volume.h"
+#include "vis/packet/packet_scene.h"
 
 #include <cmath>
 #include <glm/common.hpp>
@@ -54,6 +54,42 @@ TEST(PacketBlocks, BoundsHoldAllThatIsRead) {
             }
             EXPECT_GT(read, 50000);
         }
+}
+
+TEST(PacketJobs, HaveTheStepsAskedFor) {
+    const auto data = waves(LatticeKind::CC, false);
+    Scene scene;
+    scene.render.stepVoxels = 0.4f;
+    PacketScene drawn(scene, data->info(), {});
+    EXPECT_TRUE(drawn.empty());
+    const volume::Lattice& lattice = data->grid().lattice;
+    EXPECT_FLOAT_EQ(drawn.job(scene, data->info(), lattice, {8, 6}, 1).stepVoxels, 0.4f);
+    EXPECT_FLOAT_EQ(drawn.job(scene, data->info(), lattice, {8, 6}, 3).stepVoxels, 1.2f) << "coarser in motion";
+}
+
+// Floats take twice the memory: they are for functions over a small part of the data's range.
+TEST(PacketChannels, AreExactWhereTheFunctionIsNarrow) {
+    volume::DatasetInfo info;
+    info.lattice.size = {4, 4, 4};
+    info.parameters.resize(2);
+    info.parameters[0].name = "a";
+    info.parameters[1].name = "b";
+    for (volume::Parameter& parameter : info.parameters) parameter.ranges = {{0, 16}};
+    Scene scene;
+    scene.layers = {{"", true, VolumeLayer{.channel = "a"}}, {"", true, IsoLayer{.channel = "b"}},
+                    {"", false, VolumeLayer{.channel = "b"}}};
+    const auto exact = [&] {
+        const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
+        EXPECT_EQ(drawn.size(), 2u) << "hidden layers need nothing";
+        EXPECT_EQ(drawn.at(0).channel.exact, drawn.at(1).channel.exact) << "all alike";
+        return drawn.at(0).channel.exact;
+    };
+    EXPECT_FALSE(exact());
+    scene.transfer["b"].autoRange = false;
+    scene.transfer["b"].range = {3, 5.5};
+    EXPECT_FALSE(exact());
+    scene.transfer["b"].range = {3, 4.5};
+    EXPECT_TRUE(exact()) << "less than an eighth";
 }
 
 } // namespace
