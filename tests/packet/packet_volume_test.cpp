@@ -33,15 +33,13 @@ TEST(PacketBlocks, BoundsHoldAllThatIsRead) {
                 const glm::ivec3 cell(n % volume.cells.x, n / volume.cells.x % volume.cells.y,
                                       n / volume.cells.x / volume.cells.y);
                 const glm::ivec3 block = cell / kFine;
-                const std::size_t own =
-                    (std::size_t(block.z) * std::size_t(volume.blocks.y) + std::size_t(block.y)) *
-                        std::size_t(volume.blocks.x) +
-                    std::size_t(block.x);
+                const std::size_t own = (std::size_t(block.z) * std::size_t(volume.blocks.y) + std::size_t(block.y)) *
+                                            std::size_t(volume.blocks.x) +
+                                        std::size_t(block.x);
                 for (int odd = 0; odd < (volume.bcc ? 2 : 1); ++odd)
                     for (int corner = 0; corner < (odd == 1 ? 27 : 8); ++corner) {
-                        const glm::ivec3 by = odd == 1
-                                                  ? glm::ivec3(corner % 3, corner / 3 % 3, corner / 9) - 1
-                                                  : glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+                        const glm::ivec3 by = odd == 1 ? glm::ivec3(corner % 3, corner / 3 % 3, corner / 9) - 1
+                                                       : glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
                         const std::size_t at = volume.at(glm::max(cell + by, glm::ivec3(0)), odd);
                         if (!volume.present.empty() && volume.present[at] == 0) {
                             ASSERT_EQ(volume.absent[own], 1);
@@ -76,7 +74,8 @@ TEST(PacketChannels, AreExactWhereTheFunctionIsNarrow) {
     info.parameters[1].name = "b";
     for (volume::Parameter& parameter : info.parameters) parameter.ranges = {{0, 16}};
     Scene scene;
-    scene.layers = {{"", true, VolumeLayer{.channel = "a"}}, {"", true, IsoLayer{.channel = "b"}},
+    scene.layers = {{"", true, VolumeLayer{.channel = "a"}},
+                    {"", true, IsoLayer{.channel = "b"}},
                     {"", false, VolumeLayer{.channel = "b"}}};
     const auto exact = [&] {
         const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);

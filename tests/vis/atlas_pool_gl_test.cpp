@@ -12,7 +12,8 @@ using vis::AtlasPool;
 using vis::BrickAtlas;
 
 constexpr int kSamples = 8; ///< along the edge of a brick
-constexpr std::size_t kTexels = std::size_t(kSamples + 2 * vis::kHalo) * (kSamples + 2 * vis::kHalo) * (kSamples + 2 * vis::kHalo);
+constexpr std::size_t kTexels =
+    std::size_t(kSamples + 2 * vis::kHalo) * (kSamples + 2 * vis::kHalo) * (kSamples + 2 * vis::kHalo);
 
 struct AtlasPoolTest : GlTest {
     vis::RendererOptions options;
@@ -92,7 +93,9 @@ TEST_F(AtlasPoolTest, ATextureThatIsRefusedIsNamedWithItsSize) {
 TEST_F(AtlasPoolTest, RangesOfBricksHoldTheirNeighbours) {
     const vis::FunctionSource source(
         volume::LatticeKind::CC, glm::ivec3(32, 16, 16), glm::dvec3(1),
-        {{"a", [](glm::dvec3 p) { return p.x < 7.5 ? 0.9 : p.x < 23.5 ? 0.2 : 0.6; }, {0, 1}}}, kSamples);
+        {{"a", [](glm::dvec3 p) { return p.x < 7.5    ? 0.9
+                                         : p.x < 23.5 ? 0.2
+                                                      : 0.6; }, {0, 1}}}, kSamples);
     vis::ChannelSummary summary;
     for (int z = 0; z < 2; ++z)
         for (int y = 0; y < 2; ++y)

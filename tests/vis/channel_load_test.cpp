@@ -62,9 +62,9 @@ TEST(ChannelLoad, LabelsAreReadAsSuchInAnyParameter) {
         std::vector<FunctionSource::Channel>{{"v", value, {0, 1}}, {"label", label, {0, 9}, true}});
     exchange.bricks = std::make_unique<volume::BrickCache>(exchange.source, 1 << 20);
     for (const int channel : {0, 1})
-        loadTexels(exchange,
-                   {.key = {.channel = channel}, .level = 0, .brick = glm::ivec3(0), .summary = nullptr, .encoding = {}},
-                   {});
+        loadTexels(
+            exchange,
+            {.key = {.channel = channel}, .level = 0, .brick = glm::ivec3(0), .summary = nullptr, .encoding = {}}, {});
     const ChannelStats stats{.min = 3, .max = 7};
     const LoadedTexels &values = exchange.loaded.at(0), &labels = exchange.loaded.at(1);
     EXPECT_EQ(labels.encoding, makeEncoding(stats, true, false, labels.key.prefiltered));

@@ -1,7 +1,6 @@
 #include "tests/vis/renderer_scenes.h"
 
 #include "vis/optics/ray_setup.h"
-#include "vis/reference/raycast.h"
 #include "vis/scene/tone.h"
 #include "volume/base/error.h"
 
@@ -70,34 +69,11 @@ TEST_F(RendererTest, LightIsMappedToTheScreenByItsCurve) {
             glm::ivec2 size;
             const std::vector<std::uint8_t> shown = renderer.readPixels(*target, size);
             for (int c = 0; c < 3; ++c)
-                EXPECT_NEAR(shown[std::size_t(4 * (8 * 17 + 8) + c)],
-                            255 * vis::srgbFromLinear(glm::clamp(vis::toneMap(glm::dvec3(light), scene.tone)[c], 0.0, 1.0)), 1)
+                EXPECT_NEAR(
+                    shown[std::size_t(4 * (8 * 17 + 8) + c)],
+                    255 * vis::srgbFromLinear(glm::clamp(vis::toneMap(glm::dvec3(light), scene.tone)[c], 0.0, 1.0)), 1)
                     << int(curve) << ' ' << exposure << ' ' << c;
         }
-}
-
-// Every pass, and every part of a picture, reads every channel.
-TEST_F(RendererTest, PassesReadAllChannels) {
-    const auto wave = [](double x, double y) {
-        return [=](glm::dvec3 p) { return 0.5 + 0.4 * std::sin(x * p.x) * std::cos(y * p.y + 0.3 * p.z); };
-    };
-    const auto source = std::make_shared<vis::FunctionSource>(
-        volume::LatticeKind::CC, glm::ivec3(15), glm::dvec3(1),
-        std::vector<vis::FunctionSource::Channel>{{"v", wave(0.7, 0.2)}, {"w", wave(0.1, 0.9)}}, 8,
-        glm::dvec3(0.137, 0.211, 0.173));
-    Scene scene = flatScene(0.1f);
-    scene.layers.push_back(scene.layers[0]);
-    std::get<vis::VolumeLayer>(scene.layers[1].technique).channel = "w";
-    scene.transfer["v"].opacity = {{0, 0}, {1, 0.1f}};
-    scene.transfer["w"] = scene.transfer["v"];
-    scene.transfer["w"].colormap = "inferno";
-    scene.render.samples = 4;
-    const glm::ivec2 size(40, 30);
-    const vis::reference::Image truth = vis::reference::render(scene, *source, size);
-    const std::vector<glm::vec4> pixels = picture(source, exact(), scene, size);
-    vis::reference::Image drawn{size, {}, {}};
-    for (const glm::vec4& pixel : pixels) drawn.pixels.emplace_back(pixel);
-    EXPECT_GT(vis::reference::compare(drawn, truth, 0.02).psnr, 55);
 }
 
 // Bricks of 8 texels in an atlas and one texture of the whole give the same picture: no seams, right page table.
