@@ -12,13 +12,13 @@ namespace {
 using Levels = std::vector<std::uint8_t>;
 
 /// 8 x 8 x 8 bricks of an even channel.
-struct Bricks {
+struct EvenBricks {
     FunctionSource source{
         volume::LatticeKind::CC, glm::ivec3(64), glm::dvec3(1), {{"a", [](glm::dvec3) { return 0.5; }, {0, 1}}}, 8};
     Scene scene;
     BlockRanges ranges;
 
-    Bricks() {
+    EvenBricks() {
         scene.layers = {{"", true, VolumeLayer{.channel = "a"}}};
         scene.transfer["a"].opacity = {{0, 1}, {1, 1}};
         scene.camera.projection = Projection::Orthographic;
@@ -35,7 +35,7 @@ struct Bricks {
 };
 
 TEST(BrickDemands, AreOfWhatThePictureShows) {
-    Bricks bricks;
+    EvenBricks bricks;
     for (const Projection kind : {Projection::Orthographic, Projection::Perspective}) {
         bricks.scene.camera.projection = kind;
         bricks.scene.camera.distance = 0.6f;
@@ -66,7 +66,7 @@ TEST(BrickDemands, AreOfWhatThePictureShows) {
 }
 
 TEST(BrickDemands, HiddenBricksAreForShadowsAlone) {
-    Bricks bricks;
+    EvenBricks bricks;
     Levels hidden(512, 0);
     hidden[100] = hidden[200] = 1;
     const DemandSettings fine{.size = {512, 512}, .detail = 0};
@@ -85,7 +85,7 @@ TEST(BrickDemands, HiddenBricksAreForShadowsAlone) {
 }
 
 TEST(BrickDemands, AShareIsTheMostUrgentOnes) {
-    Bricks bricks;
+    EvenBricks bricks;
     bricks.scene.camera.projection = Projection::Perspective;
     bricks.scene.camera.distance = 3;
     const auto all = bricks.demand({.size = {64, 64}}), part = bricks.demand({.size = {64, 64}, .share = 0.25});
