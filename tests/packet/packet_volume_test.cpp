@@ -1,5 +1,5 @@
 #include "tests/vis/function_source.h"
-#include "vis/packet/packet_volume.h"
+#include "vis/packet/packet_scene.h"
 
 #include <cmath>
 #include <glm/common.hpp>
@@ -33,15 +33,13 @@ TEST(PacketBlocks, BoundsHoldAllThatIsRead) {
                 const glm::ivec3 cell(n % volume.cells.x, n / volume.cells.x % volume.cells.y,
                                       n / volume.cells.x / volume.cells.y);
                 const glm::ivec3 block = cell / kFine;
-                const std::size_t own =
-                    (std::size_t(block.z) * std::size_t(volume.blocks.y) + std::size_t(block.y)) *
-                        std::size_t(volume.blocks.x) +
-                    std::size_t(block.x);
+                const std::size_t own = (std::size_t(block.z) * std::size_t(volume.blocks.y) + std::size_t(block.y)) *
+                                            std::size_t(volume.blocks.x) +
+                                        std::size_t(block.x);
                 for (int odd = 0; odd < (volume.bcc ? 2 : 1); ++odd)
                     for (int corner = 0; corner < (odd == 1 ? 27 : 8); ++corner) {
-                        const glm::ivec3 by = odd == 1
-                                                  ? glm::ivec3(corner % 3, corner / 3 % 3, corner / 9) - 1
-                                                  : glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+                        const glm::ivec3 by = odd == 1 ? glm::ivec3(corner % 3, corner / 3 % 3, corner / 9) - 1
+                                                       : glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
                         const std::size_t at = volume.at(glm::max(cell + by, glm::ivec3(0)), odd);
                         if (!volume.present.empty() && volume.present[at] == 0) {
                             ASSERT_EQ(volume.absent[own], 1);
@@ -54,6 +52,43 @@ TEST(PacketBlocks, BoundsHoldAllThatIsRead) {
             }
             EXPECT_GT(read, 50000);
         }
+}
+
+TEST(PacketJobs, HaveTheStepsAskedFor) {
+    const auto data = waves(LatticeKind::CC, false);
+    Scene scene;
+    scene.render.stepVoxels = 0.4f;
+    PacketScene drawn(scene, data->info(), {});
+    EXPECT_TRUE(drawn.empty());
+    const volume::Lattice& lattice = data->grid().lattice;
+    EXPECT_FLOAT_EQ(drawn.job(scene, data->info(), lattice, {8, 6}, 1).stepVoxels, 0.4f);
+    EXPECT_FLOAT_EQ(drawn.job(scene, data->info(), lattice, {8, 6}, 3).stepVoxels, 1.2f) << "coarser in motion";
+}
+
+// Floats take twice the memory: they are for functions over a small part of the data's range.
+TEST(PacketChannels, AreExactWhereTheFunctionIsNarrow) {
+    volume::DatasetInfo info;
+    info.lattice.size = {4, 4, 4};
+    info.parameters.resize(2);
+    info.parameters[0].name = "a";
+    info.parameters[1].name = "b";
+    for (volume::Parameter& parameter : info.parameters) parameter.ranges = {{0, 16}};
+    Scene scene;
+    scene.layers = {{"", true, VolumeLayer{.channel = "a"}},
+                    {"", true, IsoLayer{.channel = "b"}},
+                    {"", false, VolumeLayer{.channel = "b"}}};
+    const auto exact = [&] {
+        const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
+        EXPECT_EQ(drawn.size(), 2u) << "hidden layers need nothing";
+        EXPECT_EQ(drawn.at(0).channel.exact, drawn.at(1).channel.exact) << "all alike";
+        return drawn.at(0).channel.exact;
+    };
+    EXPECT_FALSE(exact());
+    scene.transfer["b"].autoRange = false;
+    scene.transfer["b"].range = {3, 5.5};
+    EXPECT_FALSE(exact());
+    scene.transfer["b"].range = {3, 4.5};
+    EXPECT_TRUE(exact()) << "less than an eighth";
 }
 
 } // namespace

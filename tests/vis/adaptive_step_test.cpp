@@ -26,6 +26,17 @@ glm::dvec4 matterOf(const TransferFunction& function, double place, double densi
     return {vis::linearFromSrgb(glm::dvec3(at)) * t, t};
 }
 
+// Steps are stored in units that are short along every axis, in eighths of powers of two.
+TEST(AdaptiveStep, CodesAreFineEnough) {
+    EXPECT_EQ(vis::stepUnit({0.4, 0.2, 0.8}), 0.2 / 16);
+    const double unit = 0.01;
+    for (double step = unit; step < 100 * unit; step *= 1.03) {
+        const double stored = vis::stepOfCode(vis::stepCode(step, unit), unit);
+        EXPECT_LE(stored, step * (1 + 1e-9));
+        EXPECT_GT(stored, step / std::exp2(1 / 7.9));
+    }
+}
+
 // Bounds hold every value between two places, and are no wider than these and a little more.
 TEST(AdaptiveStep, BoundsHoldAllValues) {
     const TransferFunction function = bumpyCurve();

@@ -11,8 +11,9 @@ namespace {
 using vis::AtlasPool;
 using vis::BrickAtlas;
 
-constexpr int kSamples = 8; ///< along the edge of a brick
-constexpr std::size_t kTexels = std::size_t(kSamples + 2 * vis::kHalo) * (kSamples + 2 * vis::kHalo) * (kSamples + 2 * vis::kHalo);
+constexpr int kBrickEdge = 8; ///< along the edge of a brick
+constexpr std::size_t kBrickTexels =
+    std::size_t(kBrickEdge + 2 * vis::kHalo) * (kBrickEdge + 2 * vis::kHalo) * (kBrickEdge + 2 * vis::kHalo);
 
 struct AtlasPoolTest : GlTest {
     vis::RendererOptions options;
@@ -28,7 +29,7 @@ struct AtlasPoolTest : GlTest {
                 if (refuse) throw MachineError("no memory", {}, "a test");
             },
             [this](const std::string&) { ++said; });
-        made.clear(kSamples, {4, 4, 4});
+        made.clear(kBrickEdge, {4, 4, 4});
         return made;
     }
 };
@@ -40,8 +41,8 @@ TEST_F(AtlasPoolTest, KnowsItsBytes) {
         AtlasPool pool = this->pool();
         const BrickAtlas &one = pool.atlasFor(1), &four = pool.atlasFor(4);
         EXPECT_GE(one.capacity(), 64u);
-        EXPECT_EQ(one.bytes(), one.capacity() * kTexels * (exact ? 4 : 2));
-        EXPECT_EQ(four.bytes(), four.capacity() * kTexels * 4 * (exact ? 4 : 2));
+        EXPECT_EQ(one.bytes(), one.capacity() * kBrickTexels * (exact ? 4 : 2));
+        EXPECT_EQ(four.bytes(), four.capacity() * kBrickTexels * 4 * (exact ? 4 : 2));
         EXPECT_EQ(pool.bytes(), one.bytes() + four.bytes());
     }
 }
@@ -53,9 +54,9 @@ TEST_F(AtlasPoolTest, GrowsTheAtlasAskedFor) {
     const std::size_t ones = one.bytes(), slots = four.capacity();
     std::size_t moved = 0;
     EXPECT_TRUE(pool.grow(&four, false, [&](BrickAtlas& larger) { moved = larger.bytes() / larger.capacity(); }));
-    EXPECT_EQ(moved, kTexels * 4 * 2) << "of four components";
+    EXPECT_EQ(moved, kBrickTexels * 4 * 2) << "of four components";
     EXPECT_EQ(one.bytes(), ones);
-    EXPECT_GE(pool.bytes(), ones + 2 * slots * kTexels * 4 * 2);
+    EXPECT_GE(pool.bytes(), ones + 2 * slots * kBrickTexels * 4 * 2);
     EXPECT_FALSE(pool.grow(nullptr, false, [](BrickAtlas&) { FAIL(); })) << "unknown";
 }
 
@@ -70,11 +71,11 @@ TEST_F(AtlasPoolTest, StaysAsItIsWithoutMemory) {
 }
 
 TEST_F(AtlasPoolTest, TriesHalfAsMuchDownToAFewBricks) {
-    options.textureBudget = 2 * 64 * kTexels * 2; // of which half is for the first kind of bricks
+    options.textureBudget = 2 * 64 * kBrickTexels * 2; // of which half is for the first kind of bricks
     AtlasPool pool = this->pool();
     refuse = true;
     EXPECT_THROW(pool.atlasFor(1), MachineError);
-    EXPECT_EQ(asked, (std::vector<std::size_t>{64 * kTexels * 2, 32 * kTexels * 2, 16 * kTexels * 2}));
+    EXPECT_EQ(asked, (std::vector<std::size_t>{64 * kBrickTexels * 2, 32 * kBrickTexels * 2, 16 * kBrickTexels * 2}));
     EXPECT_EQ(said, 2);
 }
 
@@ -92,7 +93,9 @@ TEST_F(AtlasPoolTest, ATextureThatIsRefusedIsNamedWithItsSize) {
 TEST_F(AtlasPoolTest, RangesOfBricksHoldTheirNeighbours) {
     const vis::FunctionSource source(
         volume::LatticeKind::CC, glm::ivec3(32, 16, 16), glm::dvec3(1),
-        {{"a", [](glm::dvec3 p) { return p.x < 7.5 ? 0.9 : p.x < 23.5 ? 0.2 : 0.6; }, {0, 1}}}, kSamples);
+        {{"a", [](glm::dvec3 p) { return p.x < 7.5    ? 0.9
+                                         : p.x < 23.5 ? 0.2
+                                                      : 0.6; }, {0, 1}}}, kBrickEdge);
     vis::ChannelSummary summary;
     for (int z = 0; z < 2; ++z)
         for (int y = 0; y < 2; ++y)

@@ -12,8 +12,8 @@ using Ends = std::array<long, 4>;
 
 /// The ends of a line, to a thousandth of a pixel, whichever comes first.
 Ends endsOf(glm::dvec2 a, glm::dvec2 b) {
-    std::array<std::array<long, 2>, 2> ends{{{std::lround(a.x * 1000), std::lround(a.y * 1000)},
-                                             {std::lround(b.x * 1000), std::lround(b.y * 1000)}}};
+    std::array<std::array<long, 2>, 2> ends{
+        {{std::lround(a.x * 1000), std::lround(a.y * 1000)}, {std::lround(b.x * 1000), std::lround(b.y * 1000)}}};
     std::ranges::sort(ends);
     return {ends[0][0], ends[0][1], ends[1][0], ends[1][1]};
 }

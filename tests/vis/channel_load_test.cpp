@@ -52,6 +52,27 @@ TEST(ChannelLoad, ADamagedBrickIsDrawnAsAbsent) {
     EXPECT_THAT(outcome.messages, ElementsAre(HasSubstr("a brick cannot be read and is not drawn: a.tsr: damaged")));
 }
 
+// Labels keep their numbers: they are neither filtered nor scaled by a range that is not theirs.
+TEST(ChannelLoad, LabelsAreReadAsSuchInAnyParameter) {
+    LoadExchange exchange;
+    const auto label = [](glm::dvec3 p) -> std::optional<double> { return p.x < 9.5 ? 3 : 7; };
+    const auto value = [](glm::dvec3 p) -> std::optional<double> { return 0.3 + 0.01 * p.x; };
+    exchange.source = std::make_shared<const FunctionSource>(
+        volume::LatticeKind::CC, glm::ivec3(20), glm::dvec3(1),
+        std::vector<FunctionSource::Channel>{{"v", value, {0, 1}}, {"label", label, {0, 9}, true}});
+    exchange.bricks = std::make_unique<volume::BrickCache>(exchange.source, 1 << 20);
+    for (const int channel : {0, 1})
+        loadTexels(
+            exchange,
+            {.key = {.channel = channel}, .level = 0, .brick = glm::ivec3(0), .summary = nullptr, .encoding = {}}, {});
+    const ChannelStats stats{.min = 3, .max = 7};
+    const LoadedTexels &values = exchange.loaded.at(0), &labels = exchange.loaded.at(1);
+    EXPECT_EQ(labels.encoding, makeEncoding(stats, true, false, labels.key.prefiltered));
+    EXPECT_NE(labels.encoding, makeEncoding(stats, false, false, labels.key.prefiltered));
+    EXPECT_EQ(values.encoding, makeEncoding(values.summary->all, false, false, values.key.prefiltered));
+    EXPECT_NE(values.encoding, makeEncoding(values.summary->all, true, false, values.key.prefiltered));
+}
+
 // A network that fails makes no holes: what is drawn stays.
 TEST(ChannelLoad, ABrickThatCannotBeReadNowStaysCoarser) {
     const Outcome outcome = outcomeOf(false);

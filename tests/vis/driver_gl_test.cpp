@@ -30,6 +30,15 @@ TEST_F(DriverTest, SaysWhatTheContextOffers) {
     EXPECT_NE(driver.software, driver.timerQueries) << "one of the two tells how long a picture takes";
 }
 
+TEST(DriverNames, TellSoftwareFromHardware) {
+    for (const char* name : {"llvmpipe (LLVM 15.0.6, 256 bits)", "softpipe", "zink Vulkan 1.3(llvmpipe (LLVM 15.0.6))",
+                             "ANGLE (Google, Vulkan 1.3.0 (SwiftShader Device), SwiftShader driver)"})
+        EXPECT_TRUE(vis::isSoftware(name)) << name;
+    for (const char* name : {"NVIDIA GeForce RTX 3080/PCIe/SSE2", "Mesa Intel(R) UHD Graphics 620 (KBL GT2)",
+                             "AMD Radeon RX 6700 XT (radeonsi, navi22)", ""})
+        EXPECT_FALSE(vis::isSoftware(name)) << name;
+}
+
 TEST_F(DriverTest, TimesComeBackInTheirOrderWithoutWaiting) {
     const vis::Texture texture = vis::makeTexture2D({512, 512}, GL_RGBA8, GL_NEAREST, "timed");
     for (const bool queries : {false, true}) {

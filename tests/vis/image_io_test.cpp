@@ -143,6 +143,22 @@ TEST_F(ImageIo, EveryTruncationAndEveryFlippedByteIsAnError) {
         }
 }
 
+TEST_F(ImageIo, SaysWhatIsWrongWithAFile) {
+    writePng(path("a.png"), randomImage({7, 5}, false, 9));
+    std::vector<char> bad = slurp(path("a.png"));
+    bad[bad.size() - 20] = static_cast<char>(bad[bad.size() - 20] ^ 1); // in the last chunk of pixels
+    spill(path("b.png"), bad);
+    try {
+        readPng(path("b.png"));
+        FAIL();
+    } catch (const Error& error) {
+        const std::string text = error.what();
+        const std::size_t after = text.find("damaged PNG: ");
+        ASSERT_NE(after, std::string::npos) << text;
+        EXPECT_NE(text.find("IDAT", after), std::string::npos) << "what libpng says of it: " << text;
+    }
+}
+
 TEST_F(ImageIo, NamesTheFileThatCannotBeUsed) {
     const Image image = randomImage({2, 2}, true, 1);
     try {

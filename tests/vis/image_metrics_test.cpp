@@ -103,7 +103,8 @@ TEST(ImageMetrics, SmallPicturesAreOneWindowAndSizesMustAgree) {
         difference(noise({3, 2}, 1), noise({4, 5}, 1));
         FAIL();
     } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("same size; they have 3x2 and 4x5"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("same size; they have 3x2 and 4x5"), std::string::npos)
+            << error.what();
     }
     EXPECT_THROW(difference(Image{}, Image{}), Error);
 }

@@ -17,7 +17,8 @@ LightGrid cube(int edge) {
 TEST(LightGrid, CellsAreAsFineAsAskedForAlongEveryEdge) {
     const WorldFrame frame = worldFrame({glm::dvec3(0), glm::dvec3(4, 2, 1)}, glm::dvec3(1));
     EXPECT_EQ(lightGrid(frame, {.resolution = 64}).size, glm::ivec3(64, 32, 16));
-    const LightGrid flat = lightGrid(worldFrame({glm::dvec3(0), glm::dvec3(4, 2, 0)}, glm::dvec3(1)), {.resolution = 8});
+    const LightGrid flat =
+        lightGrid(worldFrame({glm::dvec3(0), glm::dvec3(4, 2, 0)}, glm::dvec3(1)), {.resolution = 8});
     EXPECT_EQ(flat.size, glm::ivec3(8, 4, 1));
     EXPECT_GT(flat.cell().z, 0);
 }

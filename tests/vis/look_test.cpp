@@ -22,7 +22,8 @@ TEST(LookPresets, EachHasWhatItsNameSays) {
     EXPECT_TRUE(Look::preset("distance")->distance);
     EXPECT_TRUE(Look::preset("cartoon")->cartoon);
     EXPECT_TRUE(Look::preset("wire")->wire);
-    for (const auto name : {"charcoal", "sanguine", "softpencil", "pencil", "hardpencil", "hatching", "stipple", "chalk"})
+    for (const auto name :
+         {"charcoal", "sanguine", "softpencil", "pencil", "hardpencil", "hatching", "stipple", "chalk"})
         EXPECT_TRUE(Look::preset(name)->charcoal) << name;
 }
 

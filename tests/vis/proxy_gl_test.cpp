@@ -110,6 +110,19 @@ TEST(ProxySurfacesTest, MeetTheWholeBoxFrontToBack) {
     const ProxySurfaces shells = proxySurfaces(scene, lattice, frame, 1);
     EXPECT_TRUE(shells.shells);
     EXPECT_NEAR(shells.first, scene.camera.distance - 0.5 + 0.5 * shells.spacing, 1e-6);
+    // From any side, slices begin at the nearest corner and end at the furthest one.
+    scene.render.proxy = Proxy::Slices;
+    scene.camera.projection = Projection::Orthographic;
+    for (int octant = 0; octant < 8; ++octant) {
+        const glm::vec3 way(octant & 1 ? 0.5f : -0.5f, octant & 2 ? 0.3f : -0.3f, octant & 4 ? 0.8f : -0.8f);
+        scene.camera.orientation = glm::conjugate(glm::quatLookAt(glm::normalize(way), glm::vec3(0, 1, 0)));
+        const ProxySurfaces slices = proxySurfaces(scene, lattice, frame, 1);
+        const glm::dvec3 normal = glm::normalize(glm::dvec3(way));
+        EXPECT_LT(glm::length(slices.normal - normal), 1e-6) << octant;
+        const double reach = glm::dot(glm::abs(normal), frame.halfSize);
+        EXPECT_NEAR(slices.first, -reach + 0.5 * slices.spacing, 1e-6) << octant;
+        EXPECT_NEAR(slices.first + (slices.count - 1) * slices.spacing, reach, 1.01 * slices.spacing) << octant;
+    }
     // Anything but composite volumes needs rays.
     EXPECT_TRUE(drawnByProxy(scene));
     scene.layers.push_back({"", true, IsoLayer{.channel = "f"}});

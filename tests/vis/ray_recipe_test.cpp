@@ -9,7 +9,7 @@
 namespace tessera::vis {
 namespace {
 
-using Defines = std::map<std::string, std::string>;
+using RecipeDefines = std::map<std::string, std::string>;
 
 volume::DatasetInfo aAndB() {
     volume::DatasetInfo info;
@@ -20,15 +20,15 @@ volume::DatasetInfo aAndB() {
     return info;
 }
 
-Defines definesOf(const Scene& scene) {
+RecipeDefines recipeDefines(const Scene& scene) {
     const ProgramRecipe recipe = rayRecipe(planRays(scene, aAndB()), scene, {}, false);
-    Defines out(recipe.defines.begin(), recipe.defines.end());
+    RecipeDefines out(recipe.defines.begin(), recipe.defines.end());
     EXPECT_EQ(out.size(), recipe.defines.size()) << "each once";
     return out;
 }
 
 /// What choice() makes of some numbers.
-std::string chosen(const std::vector<int>& numbers) {
+std::string choiceOf(const std::vector<int>& numbers) {
     return choice(numbers, [](int number) { return number; });
 }
 
@@ -37,13 +37,13 @@ TEST(RayRecipe, LightVolumesAreCompiledWhereLightIsHeldBack) {
     scene.layers = {{"", true, VolumeLayer{.channel = "a"}}};
     Shadows& shadows = scene.lighting.shadows;
     shadows.strength = shadows.occlusion = shadows.translucency = 0;
-    EXPECT_EQ(definesOf(scene).at("LIGHT_VOLUME"), "0");
+    EXPECT_EQ(recipeDefines(scene).at("LIGHT_VOLUME"), "0");
     shadows.strength = 0.5f;
-    EXPECT_EQ(definesOf(scene).at("LIGHT_VOLUME"), "1");
+    EXPECT_EQ(recipeDefines(scene).at("LIGHT_VOLUME"), "1");
     shadows = {.strength = 0, .occlusion = 0.5f};
-    EXPECT_EQ(definesOf(scene).at("LIGHT_VOLUME"), "1");
+    EXPECT_EQ(recipeDefines(scene).at("LIGHT_VOLUME"), "1");
     shadows = {.strength = 0, .occlusion = 0, .translucency = 0.5f};
-    EXPECT_EQ(definesOf(scene).at("LIGHT_VOLUME"), "2");
+    EXPECT_EQ(recipeDefines(scene).at("LIGHT_VOLUME"), "2");
 }
 
 TEST(RayRecipe, SaysWhatEachLayerIs) {
@@ -51,27 +51,27 @@ TEST(RayRecipe, SaysWhatEachLayerIs) {
     scene.layers = {{"", true, IsoLayer{.channel = "b"}},
                     {"", true, VolumeLayer{.channel = "a", .shaded = true}},
                     {"", true, VolumeLayer{.channel = "a", .style = RayStyle::Maximum, .shaded = false}}};
-    const Defines defines = definesOf(scene);
+    const RecipeDefines defines = recipeDefines(scene);
     EXPECT_EQ(defines.at("LAYERS"), "3");
     EXPECT_EQ(defines.at("ISOS"), "1");
-    EXPECT_EQ(defines.at("ISO_LAYER(i)"), chosen({0}));
+    EXPECT_EQ(defines.at("ISO_LAYER(i)"), choiceOf({0}));
     EXPECT_EQ(defines.at("LAYER_STYLE(i)"),
-              chosen({int(RayStyle::Iso), int(RayStyle::Composite), int(RayStyle::Maximum)}));
-    EXPECT_EQ(defines.at("LAYER_FIELD(i)"), chosen({0, 1, 1}));
+              choiceOf({int(RayStyle::Iso), int(RayStyle::Composite), int(RayStyle::Maximum)}));
+    EXPECT_EQ(defines.at("LAYER_FIELD(i)"), choiceOf({0, 1, 1}));
     EXPECT_EQ(defines.at("COLORED"), "0");
     // Rows of colours without another channel are never read, but must exist.
-    EXPECT_EQ(defines.at("LAYER_COLOR(i)"), chosen({0, 0, 0}));
-    EXPECT_EQ(defines.at("LAYER_COLOR_ROW(i)"), chosen({0, 0, 0}));
+    EXPECT_EQ(defines.at("LAYER_COLOR(i)"), choiceOf({0, 0, 0}));
+    EXPECT_EQ(defines.at("LAYER_COLOR_ROW(i)"), choiceOf({0, 0, 0}));
 }
 
 TEST(RayRecipe, ColoursOfOtherChannelsHaveRowsOfTheirOwn) {
     Scene scene;
     scene.layers = {{"", true, IsoLayer{.channel = "a"}}, {"", true, IsoLayer{.channel = "a", .colorBy = "b"}}};
-    const Defines defines = definesOf(scene);
+    const RecipeDefines defines = recipeDefines(scene);
     EXPECT_EQ(defines.at("COLORED"), "1");
-    EXPECT_EQ(defines.at("LAYER_COLORED(i)"), chosen({0, 1}));
-    EXPECT_EQ(defines.at("LAYER_COLOR(i)"), chosen({0, 1}));
-    EXPECT_EQ(defines.at("LAYER_COLOR_ROW(i)"), chosen({0, 2})) << "after the rows of the layers";
+    EXPECT_EQ(defines.at("LAYER_COLORED(i)"), choiceOf({0, 1}));
+    EXPECT_EQ(defines.at("LAYER_COLOR(i)"), choiceOf({0, 1}));
+    EXPECT_EQ(defines.at("LAYER_COLOR_ROW(i)"), choiceOf({0, 2})) << "after the rows of the layers";
 }
 
 } // namespace

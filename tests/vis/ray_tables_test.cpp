@@ -9,12 +9,12 @@ namespace tessera::vis {
 namespace {
 
 /// A row of blocks of a channel "a" with values in 0..1, which are the texels.
-struct Row {
+struct BlockRow {
     volume::DatasetInfo info;
     Scene scene;
     BlockRanges blocks;
 
-    explicit Row(std::vector<Range> ranges) {
+    explicit BlockRow(std::vector<Range> ranges) {
         info.lattice.size = {4, 4, 4};
         info.parameters.resize(1);
         info.parameters[0].name = "a";
@@ -40,7 +40,7 @@ struct Row {
 constexpr double kRounding = 5e-5; // of texels
 
 TEST(BlockDistances, AnIsosurfaceIsWhereItsValueLies) {
-    Row row({{0.1, 0.2}, {0.2, 0.5 - kRounding}, {0.3, 0.6}, {0.5 + kRounding, 0.7}, {0.51, 0.9}, {0.6, 0.9}});
+    BlockRow row({{0.1, 0.2}, {0.2, 0.5 - kRounding}, {0.3, 0.6}, {0.5 + kRounding, 0.7}, {0.51, 0.9}, {0.6, 0.9}});
     row.scene.layers = {{"", true, IsoLayer{.channel = "a", .value = 0.5}}};
     EXPECT_EQ(row.distances(), (std::vector<int>{1, 0, 0, 0, 1, 2}));
     const auto found = blockDistances(row.plan(), row.scene, row.info);
@@ -50,7 +50,7 @@ TEST(BlockDistances, AnIsosurfaceIsWhereItsValueLies) {
 }
 
 TEST(BlockDistances, AVolumeIsWhereItIsNotClear) {
-    Row row({{0, 0.1}, {0, 0.55}, {0.4, 0.6}, {0, 1}, {0.7, 1}, {0.8, 0.9}, {1, -1}});
+    BlockRow row({{0, 0.1}, {0, 0.55}, {0.4, 0.6}, {0, 1}, {0.7, 1}, {0.8, 0.9}, {1, -1}});
     row.scene.layers = {{"", true, VolumeLayer{.channel = "a"}}};
     row.scene.transfer["a"].opacity = {{0, 0}, {0.5f, 0}, {0.55f, 1}, {0.6f, 0}, {1, 0}};
     EXPECT_EQ(row.distances(), (std::vector<int>{1, 0, 0, 0, 1, 2, 3}));
@@ -59,7 +59,7 @@ TEST(BlockDistances, AVolumeIsWhereItIsNotClear) {
 }
 
 TEST(BlockDistances, RegionsOfValueAndGradientCountAtTheirValues) {
-    Row row({{0, 0.3}, {0.35, 0.6}, {0.7, 0.8}, {0.95, 1}});
+    BlockRow row({{0, 0.3}, {0.35, 0.6}, {0.7, 0.8}, {0.95, 1}});
     row.scene.layers = {{"", true, VolumeLayer{.channel = "a"}}};
     TransferFunction& function = row.scene.transfer["a"];
     function.kind = TransferKind::Regions;
@@ -72,7 +72,8 @@ TEST(BlockDistances, RegionsOfValueAndGradientCountAtTheirValues) {
 // What no brush holds is left out where the context is not drawn, and nowhere else.
 TEST(BlockDistances, WhatIsHiddenByBrushesDoesNotCount) {
     const auto distances = [](float contextOpacity, BrushEffect effect) {
-        Row row({{0.1, 0.15}, {0.1, 0.2 - kRounding}, {0.25, 0.3}, {0.4 + kRounding, 0.9}, {0.41, 0.9}, {0.7, 0.8}});
+        BlockRow row(
+            {{0.1, 0.15}, {0.1, 0.2 - kRounding}, {0.25, 0.3}, {0.4 + kRounding, 0.9}, {0.41, 0.9}, {0.7, 0.8}});
         row.scene.layers = {{"", true, VolumeLayer{.channel = "a"}}};
         row.scene.layers[0].brushes = effect;
         row.scene.transfer["a"].opacity = {{0, 1}, {1, 1}};
@@ -88,7 +89,7 @@ TEST(BlockDistances, WhatIsHiddenByBrushesDoesNotCount) {
 }
 
 TEST(OpaqueIntervals, BeginAndEndWhereTheTableDoes) {
-    Row row({{0, 1}});
+    BlockRow row({{0, 1}});
     row.scene.layers = {{"", true, VolumeLayer{.channel = "a"}}};
     const auto intervalOf = [&](std::vector<glm::vec2> curve) {
         row.scene.transfer["a"].opacity = std::move(curve);
@@ -109,7 +110,7 @@ TEST(OpaqueIntervals, BeginAndEndWhereTheTableDoes) {
 
 // The pages of such functions have fewer columns than tables; interpolation reaches to the next column.
 TEST(OpaqueIntervals, OfRegionsReachToTheNextColumn) {
-    Row row({{0, 1}});
+    BlockRow row({{0, 1}});
     row.scene.layers = {{"", true, VolumeLayer{.channel = "a"}}};
     TransferFunction& function = row.scene.transfer["a"];
     function.kind = TransferKind::Regions;

@@ -1,6 +1,7 @@
 #include "tests/vis/function_source.h"
 #include "vis/optics/ray_setup.h"
 #include "vis/reference/raycast.h"
+#include "vis/reference/samples.h"
 
 #include <algorithm>
 #include <cmath>
@@ -173,6 +174,33 @@ TEST(Reference, BrushDimsAndGraysWhatIsOutside) {
     expectPixel(reference::render(scene, ramp(LatticeKind::CC), {3, 3}), {1, 1}, {color, 1}, 1e-6);
     scene.selection.brushes = {rangeBrush({{"no such channel", 0, 1, 0}})};
     expectPixel(reference::render(scene, ramp(LatticeKind::CC), {3, 3}), {1, 1}, {gray, gray, gray, 0.25}, 1e-6);
+}
+
+// Beyond the lattice the last samples go on, on BCC those of either sublattice: no slice comes in another's place.
+TEST(Reference, SamplesGoOnBeyondTheLattice) {
+    for (const int size : {9, 10}) {
+        const FunctionSource whole(LatticeKind::CC, glm::ivec3(size), glm::dvec3(1),
+                                   {{"c", [](glm::dvec3 p) { return p.z; }, {0, 10}}});
+        const reference::Samples cubic(whole, 0, {0, 0, 0}, Filter::Average, {});
+        for (const double beyond : {0.0, 0.3, 0.8, 5.3}) {
+            EXPECT_NEAR(*cubic.value({4, 4, size - 1 + beyond}), size - 1, 1e-5) << size;
+            EXPECT_NEAR(*cubic.value({4, 4, -beyond}), 0, 1e-5) << size;
+        }
+        // Even slices hold 0, odd ones 1: anywhere the mean of both sublattices.
+        FunctionSource halves(LatticeKind::BCC, glm::ivec3(size), glm::dvec3(1), {{"c", {}, {0, 1}}});
+        const volume::Lattice lattice = halves.grid().lattice;
+        const FunctionSource mixed(LatticeKind::BCC, glm::ivec3(size), glm::dvec3(1),
+                                   {{"c",
+                                     [lattice](glm::dvec3 p) {
+                                         const double slice = (p.z - lattice.origin.z) / lattice.spacing.z * 2;
+                                         return std::abs(std::fmod(slice + 0.25, 2.0)) < 1 ? 0.0 : 1.0;
+                                     },
+                                     {0, 1}}});
+        const reference::Samples bcc(mixed, 0, {0, 0, 0}, Filter::Average, {});
+        const double last = lattice.texels().z - 1;
+        for (const double z : {-5.3, 0.0, 0.2, 2.5, last - 0.5, last, last + 0.7, last + 5.2})
+            EXPECT_NEAR(*bcc.value({3, 3, z}), 0.5, 1e-5) << size << ' ' << z;
+    }
 }
 
 // How much of a pixel is in focus is that of the ray through its middle, and 0 where there is nothing.

@@ -1,6 +1,7 @@
 #include "tests/vis/renderer_scenes.h"
 
 #include "vis/optics/ray_setup.h"
+#include "vis/scene/tone.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -50,6 +51,29 @@ TEST_F(RendererTest, FurnaceOpacityIsExponential) {
         }
         EXPECT_TRUE(renderer.takeMessages().empty());
     }
+}
+
+TEST_F(RendererTest, LightIsMappedToTheScreenByItsCurve) {
+    vis::Renderer renderer(exact());
+    renderer.setSource(std::make_shared<vis::FunctionSource>(
+        volume::LatticeKind::CC, glm::ivec3(9), glm::dvec3(1),
+        std::vector<vis::FunctionSource::Channel>{{"v", [](glm::dvec3) { return 0.5; }}}));
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    Scene scene = flatScene(0.9f);
+    for (const vis::ToneCurve curve : {vis::ToneCurve::None, vis::ToneCurve::Reinhard, vis::ToneCurve::Filmic})
+        for (const float exposure : {-1.5f, 0.0f, 1.0f}) {
+            scene.tone = {.curve = curve, .exposure = exposure, .white = 2};
+            test::renderAll(renderer, *target, scene, {17, 17});
+            const glm::dvec4 light(renderer.readLinear(*target)[8 * 17 + 8]);
+            ASSERT_GT(light.a, 0.999);
+            glm::ivec2 size;
+            const std::vector<std::uint8_t> shown = renderer.readPixels(*target, size);
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(
+                    shown[std::size_t(4 * (8 * 17 + 8) + c)],
+                    255 * vis::srgbFromLinear(glm::clamp(vis::toneMap(glm::dvec3(light), scene.tone)[c], 0.0, 1.0)), 1)
+                    << int(curve) << ' ' << exposure << ' ' << c;
+        }
 }
 
 // Bricks of 8 texels in an atlas and one texture of the whole give the same picture: no seams, right page table.

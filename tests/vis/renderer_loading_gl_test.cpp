@@ -124,19 +124,51 @@ TEST_F(RendererLoading, FormerTimeStaysUntilTheNextIsThere) {
 }
 
 // A channel that cannot be loaded shows nothing, the others go on, also to another time.
-TEST_F(RendererLoading, ChannelThatFailsIsLeftOut) {
-    class Failing : public CheckedSource {
-    public:
-        using CheckedSource::CheckedSource;
-        volume::BrickStats stats(const volume::BrickKey& key) const override {
-            if (key.channel == 1) throw Error("no such frame", "cell.pvd");
-            return CheckedSource::stats(key);
+/// A source whose second channel cannot be read at all.
+class WithoutTheSecond : public CheckedSource {
+public:
+    WithoutTheSecond() : CheckedSource(brickedSource(volume::LatticeKind::CC), [](const volume::BrickKey&) {}) {}
+    volume::BrickStats stats(const volume::BrickKey& key) const override {
+        if (key.channel == 1) throw Error("no such frame", "cell.pvd");
+        return CheckedSource::stats(key);
+    }
+};
+
+// What was shown gives way to the background where nothing is to be shown, or it fails, also where nobody waits.
+TEST_F(RendererLoading, AFormerPictureGoesWhereNothingComes) {
+    for (const bool fails : {false, true}) {
+        vis::Renderer renderer;
+        renderer.setSource(std::make_shared<WithoutTheSecond>());
+        const vis::ViewTargetPtr target = renderer.makeTarget();
+        Scene scene = test::flatScene(0.5f);
+        const glm::ivec2 size(24, 20);
+        test::renderAll(renderer, *target, scene, size);
+        const auto background = [&] {
+            glm::ivec2 got;
+            const std::vector<std::uint8_t> shown = renderer.readPixels(*target, got);
+            const std::size_t middle = 4 * (10 * 24 + 12);
+            for (int c = 0; c < 3; ++c)
+                if (std::abs(shown[middle + std::size_t(c)] - 255 * double(scene.background[c])) > 1) return false;
+            return true;
+        };
+        EXPECT_FALSE(background());
+        if (fails)
+            std::get<vis::VolumeLayer>(scene.layers[0].technique).channel = "w";
+        else
+            scene.layers.clear();
+        vis::FrameRequest request;
+        request.size = size;
+        for (int frame = 0; frame < 500 && !background(); ++frame) {
+            renderer.render(*target, scene, request);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
-    };
-    const auto source =
-        std::make_shared<Failing>(brickedSource(volume::LatticeKind::CC), [](const volume::BrickKey&) {});
+        EXPECT_TRUE(background()) << fails;
+    }
+}
+
+TEST_F(RendererLoading, ChannelThatFailsIsLeftOut) {
     vis::Renderer renderer;
-    renderer.setSource(source);
+    renderer.setSource(std::make_shared<WithoutTheSecond>());
     const vis::ViewTargetPtr target = renderer.makeTarget();
     test::renderAll(renderer, *target, richScene(), {32, 32});
     EXPECT_GT(renderer.readLinear(*target)[16 * 32 + 16].a, 0.01);

@@ -29,6 +29,30 @@ TEST_F(ResidencyTest, NextTimeIsPrefetched) {
     }
 }
 
+// Between stored times, that is the one after both that are shown, or the one before them.
+TEST_F(ResidencyTest, NextTimeIsPrefetchedBetweenTimes) {
+    for (const bool back : {false, true}) {
+        const auto source = waves(5);
+        vis::Renderer renderer;
+        renderer.setSource(source);
+        const vis::ViewTargetPtr target = renderer.makeTarget();
+        Scene scene = volumeScene();
+        vis::FrameRequest request;
+        request.size = {16, 16};
+        for (const double time : back ? std::vector{3.5, 2.5} : std::vector{0.5, 1.5}) {
+            scene.time = time;
+            refine(renderer, *target, scene, request.size);
+        }
+        const int next = back ? 1 : 3;
+        const auto coming = [&] { return source->count(next, 0) + source->count(next, 1) + source->count(next, 2); };
+        for (int frame = 0; frame < 2000 && coming() == 0; ++frame) {
+            renderer.render(*target, scene, request);
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+        EXPECT_GT(coming(), 0) << next;
+    }
+}
+
 /// Waves of which one half of the box rises with time; every change is known.
 class Rising : public volume::BrickSource {
 public:

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <epoxy/gl.h>
-#include <string_view>
 
 namespace tessera::vis {
 
@@ -22,13 +21,17 @@ int glNumber(GLenum name) {
 
 } // namespace
 
-Driver currentDriver() {
+bool isSoftware(std::string_view renderer) {
     static constexpr std::array<std::string_view, 5> kSoftware{"llvmpipe", "softpipe", "swrast", "SwiftShader",
                                                                "lavapipe"};
+    return std::ranges::any_of(kSoftware,
+                               [&](std::string_view name) { return renderer.find(name) != std::string_view::npos; });
+}
+
+Driver currentDriver() {
     Driver driver;
     driver.renderer = glText(GL_RENDERER);
-    driver.software = std::ranges::any_of(
-        kSoftware, [&](std::string_view name) { return driver.renderer.find(name) != std::string::npos; });
+    driver.software = isSoftware(driver.renderer);
     driver.fragmentSamplers = glNumber(GL_MAX_TEXTURE_IMAGE_UNITS);
     driver.texture3DEdge = glNumber(GL_MAX_3D_TEXTURE_SIZE);
     if (driver.software) {

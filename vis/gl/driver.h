@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 namespace tessera::vis {
 
@@ -23,6 +24,9 @@ struct Driver {
     int texture3DEdge = 2048;                   ///< maximum in texels
     std::size_t textureBytes = ~std::size_t(0); ///< maximum of one texture
 };
+
+/// Whether GL_RENDERER names a driver that draws on the CPU.
+bool isSoftware(std::string_view renderer);
 
 /// Queries the driver of the current context.
 Driver currentDriver();

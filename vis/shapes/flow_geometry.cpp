@@ -376,11 +376,10 @@ std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, cons
     for (const glm::dvec3& seed : seeds) greatest = std::max(greatest, glm::length(*field(seed)));
     std::vector<Glyph> glyphs;
     for (std::size_t i = 0; i < seeds.size(); ++i) {
-        const glm::dvec3 vector = *field(seeds[i]), direction = vector * stretch;
-        if (!(glm::length(direction) > 0)) continue;
+        const glm::dvec3 vector = *field(seeds[i]); // not zero: seeds lie where it flows
         const double share = layer.scaled ? glm::length(vector) / greatest : 1;
         glyphs.push_back(
-            {seeds[i], glm::normalize(direction) * (share * double(layer.size) * longestDrawn), scalars[i]});
+            {seeds[i], glm::normalize(vector * stretch) * (share * double(layer.size) * longestDrawn), scalars[i]});
     }
     if (layer.kind == FlowKind::Arrows) out->mesh = arrows(glyphs, stretch);
     if (layer.kind == FlowKind::Cones) out->mesh = cones(glyphs, stretch);
