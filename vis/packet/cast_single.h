@@ -128,6 +128,7 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
     /// A maximum or minimum without brushes and lenses: blocks that cannot exceed what a ray has found are passed over.
     void castExtremum() {
         constexpr int kSeed = 16; // samples apart that are taken first, so that more blocks can be passed over
+        constexpr int kTogether = 2 * kAhead; // samples between two looks at the bounds of blocks
         const bool least = (layer.style == RayStyle::Minimum) != (layer.placeScale < 0);
         const Floats sign(least ? -1 : 1);
         Floats best(-1e30), bestAt(0);
@@ -136,23 +137,27 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
                 takeExtremum<1>(sign, k, packet.meets & (k < packet.count), best, bestAt);
         Floats k(0);
         Mask live = packet.meets;
-        const int most = job.stepVoxels > 1 ? 1 : kAhead;
+        const int most = job.stepVoxels > 1 ? 1 : kTogether;
         const Blocks blocks(packet, job.skip.edge, job.skip.count);
         while (anyOf(live)) {
             Mask useful = live;
             if (job.skip.bound != nullptr) {
-                const Blocks::Place block = blocks.at(k);
-                const Floats bound = toFloats(byteAt(job.skip.bound, block.index, live)) * Floats(1.0f / 255);
-                const Mask useless = live & (best > Floats(-1e30)) & (bound <= scoreOf(best * sign));
-                k = choose(useless, k + blocks.leap(block, Floats(1)), k);
-                live &= k < packet.count;
-                useful = live & !useless;
+                const Floats score = choose(best > Floats(-1e30), scoreOf(best * sign), Floats(-1));
+                for (int i = 0; i < kLeaps; ++i) {
+                    const Blocks::Place block = blocks.at(k);
+                    const Floats bound = toFloats(byteAt(job.skip.bound, block.index, live)) * Floats(1.0f / 255);
+                    const Mask useless = live & (bound <= score);
+                    k = choose(useless, k + blocks.leap(block, Floats(1)), k);
+                    live &= k < packet.count;
+                    useful = live & !useless;
+                    if (!anyOf(live & useless)) break;
+                }
                 if (!anyOf(useful)) continue;
             }
             if (most == 1)
                 takeExtremum<1>(sign, k, useful, best, bestAt);
             else
-                takeExtremum<kAhead>(sign, k, useful, best, bestAt);
+                takeExtremum<kTogether>(sign, k, useful, best, bestAt);
             k = choose(useful, k + Floats(most), k);
             live &= k < packet.count;
         }

@@ -293,11 +293,10 @@ PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, st
     lenses_ = placeLenses(scene, worldFrame(info.bounds, scene.stretch));
     addBrushes(scene, info);
     tables_.reserve(drawn.size());
-    // Small blocks pay where rays soon end at surfaces, and where few of them hold an extremum.
+    // Small blocks pay where rays soon end at surfaces.
     const bool surfaces = std::ranges::all_of(drawn, [&](const DrawnChannel& each) {
         const auto* volume = std::get_if<VolumeLayer>(&scene.layers[std::size_t(each.layer)].technique);
-        return !volume || (volume->style == RayStyle::Composite && volume->shaded) ||
-               volume->style == RayStyle::Maximum || volume->style == RayStyle::Minimum;
+        return !volume || (volume->style == RayStyle::Composite && volume->shaded);
     });
     skip_.edge = surfaces ? kFine : 2 * kFine;
     for (std::size_t i = 0; i < drawn.size(); ++i) addLayer(scene, info, drawn[i], &views_[i]);
