@@ -36,7 +36,8 @@ TEST(SkipMaps, CountTheLargestCubes) {
         std::mt19937 random(5);
         for (std::size_t i = 0; i < map.blocks(); ++i)
             map.full.push_back(std::uint8_t(std::bernoulli_distribution(share)(random)));
-        countAlike(map);
+        countAlike(map, 0b11);
+        countAlike(map, 0xff);
         int larger = 0;
         for (int octant = 0; octant < 8; ++octant)
             for (std::size_t i = 0; i < map.blocks(); ++i) {

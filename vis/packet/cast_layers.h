@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vis/packet/cast_focus.h"
+#include "vis/packet/cast_gradient.h"
 
 /// Packets of rays through the layers of a scene, sample by sample as vis/optics/ray_setup.h says. Only for cast_*.cpp.
 namespace tessera::vis::packet::TESSERA_LANES {
@@ -41,6 +42,8 @@ template <bool Bcc, bool Exact> struct Caster {
             return read.next(fixedOf(at), lanes);
         };
         count(lanes, 2 * job.stencil.count);
+        if (!Exact && !read.masked && sharesReads(job.stencil, Bcc))
+            return sharedGradient<Bcc>(read.volume, cells, job.stencil.reach, lanes) / spreadOut<Floats>(job.edges);
         return volume::gradientOf<Floats>(value, cells, job.stencil) / spreadOut<Floats>(job.edges);
     }
 

@@ -76,32 +76,32 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         packet.pick = pick;
     }
 
-    /// A composite layer: rays march to their next sample with opacity and wait there until all have met one or left
-    /// the volume; then these are shaded together.
+    /// A composite layer: rays march to their next sample with opacity and wait there until half of them have met one;
+    /// then these are shaded together. (If all waited for the last ones, those would march with most lanes empty.)
     void castComposite() {
         Floats k(0), place(0), opacity(0);
         Mask live = packet.meets, met = maskOf(0);
-        for (;;) {
-            Mask open = live & !met;
-            if (anyOf(open)) {
+        while (anyOf(live)) {
+            if (!enough(met, live)) {
+                Mask open = live & !met;
                 const Skip::Look look = skip(k, open);
-                open = look.full;
-                if (anyOf(open)) march<kPair>(open, k, met, place, opacity, look.run);
+                if (anyOf(look.full)) march<kPair>(look.full, live, k, met, place, opacity, look.run);
                 live &= met | (k < packet.count);
                 continue;
             }
-            if (!anyOf(met)) return;
             this->drawSample(layer, someAbsent(job, packet, k, met), place, opacity, k, met);
             k = choose(met, k + Floats(1), k);
             live &= (k < packet.count) & packet.seeThrough();
             met = maskOf(0);
-            if (anyOf(live)) march<1>(live, k, met, place, opacity, 1); // the next sample often has opacity, too
+            if (anyOf(live)) march<1>(live, live, k, met, place, opacity, 1); // the next sample often has opacity, too
             live &= met | (k < packet.count);
         }
     }
+    static bool enough(Mask met, Mask live) { return 2 * countOf(met) >= countOf(live); }
 
-    /// Takes samples until every open ray has met opacity or `most` are over.
-    template <int Ahead> void march(Mask open, Floats& k, Mask& met, Floats& place, Floats& opacity, int most) {
+    /// Takes samples of open rays until enough of the live ones have met opacity or `most` are over.
+    template <int Ahead>
+    void march(Mask open, Mask live, Floats& k, Mask& met, Floats& place, Floats& opacity, int most) {
         const Read read = reader(layer, someAbsent(job, packet, k, open));
         Fixed at = fixedOf(packet.cells(k));
         for (int n = 0; n < most; n += Ahead) {
@@ -121,13 +121,14 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
                 k = choose(open, k + Floats(1), k);
                 open &= k < packet.count;
             }
-            if (!anyOf(open)) return;
+            if (!anyOf(open) || enough(met, live)) return;
         }
     }
 
     /// A maximum or minimum without brushes and lenses: blocks that cannot exceed what a ray has found are passed over.
     void castExtremum() {
         constexpr int kSeed = 16; // samples apart that are taken first, so that more blocks can be passed over
+        constexpr int kTogether = 2 * kAhead; // samples between two looks at the bounds of blocks
         const bool least = (layer.style == RayStyle::Minimum) != (layer.placeScale < 0);
         const Floats sign(least ? -1 : 1);
         Floats best(-1e30), bestAt(0);
@@ -136,23 +137,27 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
                 takeExtremum<1>(sign, k, packet.meets & (k < packet.count), best, bestAt);
         Floats k(0);
         Mask live = packet.meets;
-        const int most = job.stepVoxels > 1 ? 1 : kAhead;
+        const int most = job.stepVoxels > 1 ? 1 : kTogether;
         const Blocks blocks(packet, job.skip.edge, job.skip.count);
         while (anyOf(live)) {
             Mask useful = live;
             if (job.skip.bound != nullptr) {
-                const Blocks::Place block = blocks.at(k);
-                const Floats bound = toFloats(byteAt(job.skip.bound, block.index, live)) * Floats(1.0f / 255);
-                const Mask useless = live & (best > Floats(-1e30)) & (bound <= scoreOf(best * sign));
-                k = choose(useless, k + blocks.leap(block, Floats(1)), k);
-                live &= k < packet.count;
-                useful = live & !useless;
+                const Floats score = choose(best > Floats(-1e30), scoreOf(best * sign), Floats(-1));
+                for (int i = 0; i < kLeaps; ++i) {
+                    const Blocks::Place block = blocks.at(k);
+                    const Floats bound = toFloats(byteAt(job.skip.bound, block.index, live)) * Floats(1.0f / 255);
+                    const Mask useless = live & (bound <= score);
+                    k = choose(useless, k + blocks.leap(block, Floats(1)), k);
+                    live &= k < packet.count;
+                    useful = live & !useless;
+                    if (!anyOf(live & useless)) break;
+                }
                 if (!anyOf(useful)) continue;
             }
             if (most == 1)
                 takeExtremum<1>(sign, k, useful, best, bestAt);
             else
-                takeExtremum<kAhead>(sign, k, useful, best, bestAt);
+                takeExtremum<kTogether>(sign, k, useful, best, bestAt);
             k = choose(useful, k + Floats(most), k);
             live &= k < packet.count;
         }

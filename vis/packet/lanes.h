@@ -48,6 +48,9 @@ inline unsigned bitsOf(Mask m) {
 inline Mask maskOf(unsigned bits) {
     return {raw::maskOf(bits)};
 }
+inline int countOf(Mask m) {
+    return __builtin_popcount(bitsOf(m));
+}
 inline bool anyOf(Mask m) {
     return bitsOf(m) != 0;
 }
@@ -169,6 +172,16 @@ template <int Scale> [[gnu::always_inline]] inline IntPair loadPairs(const void*
     IntPair out;
     raw::loadPairs<Scale>(base, index, m.v, out.low.v, out.high.v);
     return out;
+}
+/// Three times 32 bits from base + index * Scale bytes on. A fourth is read, too.
+struct IntTriple {
+    Ints each[3];
+};
+template <int Scale>
+[[gnu::always_inline]] inline IntTriple loadTriples(const void* base, const Spread& index, Mask m) {
+    raw::I each[3];
+    raw::loadTriples<Scale>(base, index, m.v, each);
+    return {{Ints(each[0]), Ints(each[1]), Ints(each[2])}};
 }
 /// Bit `index` (0..255) of 8 words.
 inline Mask bitAt(const std::uint32_t* words, Ints index) {

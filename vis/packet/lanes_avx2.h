@@ -84,6 +84,23 @@ template <int Scale>
 [[gnu::always_inline]] inline void loadPairs(const void* base, Spread index, M m, I& low, I& high) {
     gatherPairs<Scale>(base, index, m, low, high);
 }
+template <int Scale>
+[[gnu::always_inline]] inline void loadTriples(const void* base, const Spread& index, M m, I* each) {
+    alignas(32) std::int32_t at[kLanes];
+    _mm256_store_si256(reinterpret_cast<__m256i*>(at), __m256i(index & m));
+    const auto two = [&](int i) __attribute__((always_inline)) { // of lanes i and i + 4
+        const auto one = [&](int lane) __attribute__((always_inline)) {
+            const char* place = static_cast<const char*>(base) + std::ptrdiff_t(at[lane]) * Scale;
+            return _mm_loadu_si128(reinterpret_cast<const __m128i*>(place));
+        };
+        return _mm256_inserti128_si256(_mm256_castsi128_si256(one(i)), one(i + 4), 1);
+    };
+    const __m256i a = two(0), b = two(1), c = two(2), d = two(3);
+    const __m256i ab = _mm256_unpacklo_epi32(a, b), cd = _mm256_unpacklo_epi32(c, d);
+    each[0] = I(_mm256_unpacklo_epi64(ab, cd));
+    each[1] = I(_mm256_unpackhi_epi64(ab, cd));
+    each[2] = I(_mm256_unpacklo_epi64(_mm256_unpackhi_epi32(a, b), _mm256_unpackhi_epi32(c, d)));
+}
 inline M bitAt(const std::uint32_t* words, I index) {
     const __m256i all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(words));
     const __m256i word = _mm256_permutevar8x32_epi32(all, __m256i(index >> 5));

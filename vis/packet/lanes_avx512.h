@@ -101,6 +101,23 @@ template <int Scale>
     low = I(_mm512_shuffle_ps(a, b, 0x88));
     high = I(_mm512_shuffle_ps(a, b, 0xdd));
 }
+template <int Scale> [[gnu::always_inline]] inline void loadTriples(const void* base, const Spread& index, M, I* each) {
+    const auto four = [&](int i) __attribute__((always_inline)) { // of lanes i, i + 4, i + 8, i + 12
+        const auto one = [&](int lane) __attribute__((always_inline)) {
+            const char* place = static_cast<const char*>(base) + std::ptrdiff_t(index.at[lane]) * Scale;
+            return _mm_loadu_si128(reinterpret_cast<const __m128i*>(place));
+        };
+        __m512i out = _mm512_castsi128_si512(one(i));
+        out = _mm512_inserti32x4(out, one(i + 4), 1);
+        out = _mm512_inserti32x4(out, one(i + 8), 2);
+        return _mm512_inserti32x4(out, one(i + 12), 3);
+    };
+    const __m512i a = four(0), b = four(1), c = four(2), d = four(3);
+    const __m512i ab = _mm512_unpacklo_epi32(a, b), cd = _mm512_unpacklo_epi32(c, d);
+    each[0] = I(_mm512_unpacklo_epi64(ab, cd));
+    each[1] = I(_mm512_unpackhi_epi64(ab, cd));
+    each[2] = I(_mm512_unpacklo_epi64(_mm512_unpackhi_epi32(a, b), _mm512_unpackhi_epi32(c, d)));
+}
 inline M bitAt(const std::uint32_t* words, I index) {
     const __m512i all = _mm512_broadcast_i64x4(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(words)));
     const __m512i word = _mm512_permutexvar_epi32(__m512i(index >> 5), all);

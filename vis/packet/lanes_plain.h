@@ -91,6 +91,13 @@ template <int Scale>
 [[gnu::always_inline]] inline void loadPairs(const void* base, Spread index, M m, I& low, I& high) {
     gatherPairs<Scale>(base, index, m, low, high);
 }
+template <int Scale> [[gnu::always_inline]] inline void loadTriples(const void* base, Spread index, M m, I* each) {
+    for (int i = 0; i < kLanes; ++i) {
+        std::int32_t values[3] = {0, 0, 0};
+        if (m[i]) __builtin_memcpy(values, static_cast<const char*>(base) + std::ptrdiff_t(index[i]) * Scale, 12);
+        for (int n = 0; n < 3; ++n) each[n][i] = values[n];
+    }
+}
 inline M bitAt(const std::uint32_t* words, I index) {
     M out{};
     for (int i = 0; i < kLanes; ++i) out[i] = -std::int32_t(words[index[i] >> 5] >> (index[i] & 31) & 1);

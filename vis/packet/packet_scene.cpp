@@ -293,15 +293,13 @@ PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, st
     lenses_ = placeLenses(scene, worldFrame(info.bounds, scene.stretch));
     addBrushes(scene, info);
     tables_.reserve(drawn.size());
-    // Small blocks pay where rays soon end at surfaces, and where few of them hold an extremum.
+    // Small blocks pay where rays soon end at surfaces.
     const bool surfaces = std::ranges::all_of(drawn, [&](const DrawnChannel& each) {
         const auto* volume = std::get_if<VolumeLayer>(&scene.layers[std::size_t(each.layer)].technique);
-        return !volume || (volume->style == RayStyle::Composite && volume->shaded) ||
-               volume->style == RayStyle::Maximum || volume->style == RayStyle::Minimum;
+        return !volume || (volume->style == RayStyle::Composite && volume->shaded);
     });
     skip_.edge = surfaces ? kFine : 2 * kFine;
     for (std::size_t i = 0; i < drawn.size(); ++i) addLayer(scene, info, drawn[i], &views_[i]);
-    if (!layers_.empty()) countAlike(skip_);
     for (const SharedVolume& volume : volumes_) {
         if (volume->absent.empty()) continue;
         absent_.resize(volume->absent.size());
@@ -311,6 +309,26 @@ PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, st
     if (layers_.size() == 1 && (layers_[0].style == RayStyle::Maximum || layers_[0].style == RayStyle::Minimum))
         bound_ = scoreBounds(*volumes_[0], layers_[0], skip_);
 }
+
+namespace {
+
+/// The octants that rays go into, a bit each; a little beyond the picture, because rays are moved within their pixels.
+unsigned octantsOf(const CastJob& job) {
+    const glm::dvec3 spread = 1.1 * (glm::abs(job.directionX) + glm::abs(job.directionY));
+    const glm::dvec3 cells = glm::sign(job.cellsPerWorld);
+    unsigned out = 0;
+    for (unsigned octant = 0; octant < 8; ++octant) {
+        bool some = true;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double way = (octant >> axis & 1) != 0 ? cells[axis] : -cells[axis];
+            some = some && job.direction[axis] * way + spread[axis] >= 0;
+        }
+        out |= unsigned(some) << octant;
+    }
+    return out;
+}
+
+} // namespace
 
 CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice,
                          glm::ivec2 size, double stepFactor) {
@@ -351,6 +369,7 @@ CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, co
     job.lights = lights_;
     job.jitterStarts = scene.render.jitter;
     if (layers_.empty()) return job;
+    countAlike(skip_, octantsOf(job));
     job.skip.alike = skip_.alike.data();
     job.skip.count = skip_.count;
     job.skip.edge = skip_.edge;

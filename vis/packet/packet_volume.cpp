@@ -271,7 +271,7 @@ PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketCha
     out.bricks = (out.cells + kBrick - 1) / kBrick;
     out.blocks = out.bricks * (kBrick / kFine);
     const std::size_t bricks = std::size_t(out.bricks.x) * std::size_t(out.bricks.y) * std::size_t(out.bricks.z);
-    const std::size_t samples = bricks * std::size_t(out.stride()) * 2, blocks = bricks * 64;
+    const std::size_t samples = (bricks * std::size_t(out.stride()) + 1) * 2, blocks = bricks * 64;
     if (out.exact)
         out.floats.resize(samples);
     else

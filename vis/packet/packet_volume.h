@@ -10,18 +10,18 @@
 /// The samples of one channel at one time, laid out for packets of rays.
 namespace tessera::vis::packet {
 
-inline constexpr int kMargin = 2;            ///< samples of each sublattice beyond the lattice, for gradients
-inline constexpr int kBrick = 16;            ///< cells along the edge of a brick
-inline constexpr int kRow = 17;              ///< samples along its edge: the next brick's first ones belong to it, too
-inline constexpr int kSlice = kRow * kBrick; ///< pairs of a slice of a brick
-inline constexpr int kFine = 4;              ///< cells along the edge of the smallest block with known bounds
+inline constexpr int kMargin = 2;       ///< samples of each sublattice beyond the lattice, for gradients
+inline constexpr int kBrick = 16;       ///< cells along the edge of a brick
+inline constexpr int kRow = kBrick + 2; ///< samples along its edge: the next brick's first ones belong to it, too
+inline constexpr int kSlice = kRow * (kRow - 1); ///< pairs of a slice of a brick
+inline constexpr int kFine = 4;                  ///< cells along the edge of the smallest block with known bounds
 inline constexpr int kQuantum = 32767;
 
 /// Samples (filtered where the scene asks for it) in bricks of 16^3 cells, x fastest in a brick and over the bricks; a
-/// trilinear sample reads only one brick. Each sample is followed by its neighbour along y: so two reads of two pairs
-/// give all eight samples around a position. A brick has kRow pairs along x, kBrick along y, kRow along z. On BCC the
-/// odd sublattice of a brick follows the even one. Positions are cells of a sublattice plus kMargin. An absent sample
-/// is 0.
+/// trilinear sample and a gradient read only one brick. Each sample is followed by its neighbour along y: so two reads
+/// of two pairs give all eight samples around a position. A brick has kRow pairs along x, kRow - 1 along y, kRow along
+/// z, and one more may be read behind the last. On BCC the odd sublattice of a brick follows the even one. Positions
+/// are cells of a sublattice plus kMargin. An absent sample is 0.
 struct PacketVolume {
     bool bcc = false;
     bool exact = false;  ///< `floats` hold the samples, else `shorts`

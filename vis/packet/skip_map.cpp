@@ -28,7 +28,7 @@ bool blockShows(const PacketVolume& volume, glm::ivec3 first, glm::ivec3 last,
 class OctantCounts {
 public:
     OctantCounts(const SkipMap& map, int octant, std::uint8_t* out)
-        : map_(map), octant_(octant), out_(out), row_(std::size_t(map.count.x)) {}
+        : map_(map), octant_(octant), out_(out), kind_(std::size_t(map.count.x)), least_(std::size_t(map.count.x)) {}
 
     void run() {
         for (int n = 0; n < map_.count.z; ++n)
@@ -41,40 +41,42 @@ private:
     std::size_t start(int y, int z) const {
         return (std::size_t(z) * std::size_t(map_.count.y) + std::size_t(y)) * std::size_t(map_.count.x);
     }
-    /// What a block of one kind may add to the count of one that is of the kind `full` (0 or kFull).
-    static std::uint8_t share(std::uint8_t other, std::uint8_t full) {
-        return (other & SkipMap::kFull) == full ? std::uint8_t(other & SkipMap::kMost) : std::uint8_t(0);
+    /// What a block adds to the count of one of the kind `own` (0 or kFull): its count if it is of the same kind, else
+    /// 0.
+    static std::uint8_t share(std::uint8_t other, std::uint8_t own) {
+        const auto same = std::uint8_t(other ^ own);
+        return same < SkipMap::kFull ? same : std::uint8_t(0);
     }
 
     void row(int y, int z) {
         const std::uint8_t* const full = map_.full.data() + start(y, z);
         std::uint8_t* const out = out_ + start(y, z);
         const int count = map_.count.x, way = forwards(0) ? 1 : -1;
-        std::ranges::fill(row_, std::uint8_t(SkipMap::kMost));
+        std::uint8_t *const kind = kind_.data(), *const least = least_.data();
+        for (int x = 0; x < count; ++x) kind[x] = full[x] != 0 ? SkipMap::kFull : 0;
+        std::ranges::fill(least_, std::uint8_t(SkipMap::kMost));
+        const auto lower = [&](const std::uint8_t* other, int begin, int end) { // without branches: by vector units
+            for (int x = begin; x < end; ++x) least[x] = std::min(least[x], share(other[x], kind[x]));
+        };
         for (const glm::ivec2 step : {glm::ivec2(1, 0), glm::ivec2(0, 1), glm::ivec2(1, 1)}) {
             const int nearY = y + (forwards(1) ? step.x : -step.x), nearZ = z + (forwards(2) ? step.y : -step.y);
             if (nearY < 0 || nearY >= map_.count.y || nearZ < 0 || nearZ >= map_.count.z) continue;
             const std::uint8_t* const other = out_ + start(nearY, nearZ);
-            for (int x = 0; x < count; ++x) {
-                const std::uint8_t own = full[x] != 0 ? SkipMap::kFull : 0;
-                const int beyond = std::clamp(x + way, 0, count - 1);
-                row_[std::size_t(x)] =
-                    std::min({row_[std::size_t(x)], share(other[x], own), share(other[beyond], own)});
-            }
+            lower(other, 0, count);
+            lower(other + way, way > 0 ? 0 : 1, way > 0 ? count - 1 : count);
         }
+        int ahead = SkipMap::kMost; // beyond the volume
         for (int n = 0; n < count; ++n) {
             const int x = way > 0 ? count - 1 - n : n;
-            const std::uint8_t own = full[x] != 0 ? SkipMap::kFull : 0;
-            std::uint8_t least = row_[std::size_t(x)];
-            if (n > 0) least = std::min(least, share(out[x + way], own));
-            out[x] = std::uint8_t(own + std::min(least + 1, SkipMap::kMost));
+            if (n > 0) ahead = share(out[x + way], kind[x]);
+            out[x] = std::uint8_t(kind[x] + std::min(std::min(int(least[x]), ahead) + 1, SkipMap::kMost));
         }
     }
 
     const SkipMap& map_;
     int octant_;
     std::uint8_t* out_;
-    std::vector<std::uint8_t> row_; ///< least shares of the rows further on
+    std::vector<std::uint8_t> kind_, least_; ///< of a row: 0 or kFull, and the least shares of the rows further on
 };
 
 } // namespace
@@ -106,11 +108,16 @@ SkipMap united(SkipMap a, const SkipMap& b) {
     return a;
 }
 
-void countAlike(SkipMap& map) {
+void countAlike(SkipMap& map, unsigned octants) {
     const std::size_t blocks = map.blocks();
-    map.alike.assign(blocks * 8 + 3, 0);
-    parallelFor(8,
-                [&](std::size_t octant) { OctantCounts(map, int(octant), map.alike.data() + octant * blocks).run(); });
+    map.alike.resize(blocks * 8 + 3);
+    std::vector<int> missing;
+    for (int octant = 0; octant < 8; ++octant)
+        if ((octants & ~map.counted) >> octant & 1) missing.push_back(octant);
+    parallelFor(missing.size(), [&](std::size_t i) {
+        OctantCounts(map, missing[i], map.alike.data() + std::size_t(missing[i]) * blocks).run();
+    });
+    map.counted |= octants;
 }
 
 } // namespace tessera::vis::packet

@@ -23,6 +23,7 @@ struct SkipMap {
     /// Block i of octant o (bit axis: forwards) at o * blocks() + i; with 3 bytes more, because they are read four at a
     /// time. Beyond the volume everything is alike.
     std::vector<std::uint8_t> alike;
+    unsigned counted = 0; ///< octants whose counts are there, a bit each
 
     std::size_t blocks() const { return std::size_t(count.x) * std::size_t(count.y) * std::size_t(count.z); }
 };
@@ -31,7 +32,7 @@ struct SkipMap {
 SkipMap fullBlocks(const PacketVolume& volume, int edge, const std::function<bool(float, float)>& shows);
 /// Blocks that are full in either of two maps of the same blocks; a map without blocks gives the other.
 SkipMap united(SkipMap a, const SkipMap& b);
-/// Makes `alike`.
-void countAlike(SkipMap& map);
+/// Counts alike blocks in these octants (a bit each), where that is not done.
+void countAlike(SkipMap& map, unsigned octants);
 
 } // namespace tessera::vis::packet

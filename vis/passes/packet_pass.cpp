@@ -12,7 +12,7 @@ namespace {
 
 /// Bytes that the samples of a scene take, as PacketVolume lays them out.
 double packetBytes(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
-    constexpr double kShared = 2.26; // pairs, and samples that several bricks hold
+    constexpr double kShared = 2.69; // pairs, and samples that several bricks hold
     std::vector<packet::PacketChannel> channels;
     for (const packet::PacketChannel& channel : packet::packetChannels(scene, info))
         if (std::ranges::find(channels, channel) == channels.end()) channels.push_back(channel);

@@ -19,13 +19,15 @@ bool isRough(const std::optional<Paper>& paper) {
     return paper && paper->tooth > 0;
 }
 
-ProgramRecipe resolveRecipe(const Scene& scene, bool lines) {
+/// `whole`: every pixel of the picture has one of its own in the source.
+ProgramRecipe resolveRecipe(const Scene& scene, bool lines, bool whole) {
     const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
     return {"screen.vert.glsl",
             "resolve.frag.glsl",
             {},
             {{"BLUR", flag(blursContext(scene))},
              {"LINES", flag(lines)},
+             {"WHOLE", flag(whole)},
              {"TONE", flag(scene.tone.curve != ToneCurve::None)},
              {"PAPER", flag(isRough(paperOf(scene)))},
              {"GROUND", flag(scene.showGround)}}};
@@ -69,7 +71,8 @@ BoxLines RenderStages::box(const ViewTarget& target, const Scene& scene) const {
 
 void RenderStages::present(ViewTarget& target, const Scene& scene, const RayBuffer& from, const Tile& tile) {
     const BoxLines lines = box(target, scene);
-    const Program* resolve = tools.programs.find(resolveRecipe(scene, !lines.edges.empty()));
+    const bool whole = from.first == glm::ivec2(0) && from.used == target.buffers.size;
+    const Program* resolve = tools.programs.find(resolveRecipe(scene, !lines.edges.empty(), whole));
     if (!resolve) throw Error("the shader that presents pictures does not compile");
     setPresented(*resolve, target, scene, lines, from);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.buffers.outputFramebuffer.name());
@@ -82,16 +85,21 @@ void RenderStages::present(ViewTarget& target, const Scene& scene, const RayBuff
     target.state.setPresented(true);
 }
 
-/// Whether the program that presents the scene is ready; starts its compilation otherwise.
+/// Whether the programs that present the scene, whole and enlarged, are ready; starts their compilation otherwise.
 bool RenderStages::presentable(const ViewTarget& target, const Scene& scene) {
     const BoxLines lines = box(target, scene);
-    const ProgramRecipe recipe = resolveRecipe(scene, !lines.edges.empty());
-    const ProgramAnswer answer = tools.programs.request(recipe, 0);
-    if (answer.stage == ProgramStage::Linked) {
-        setPresented(*answer.program, target, scene, lines, target.buffers.full);
-        tools.programs.warmUp(recipe, target.buffers.outputFramebuffer);
+    bool ready = true;
+    for (const bool whole : {true, false}) {
+        const ProgramRecipe recipe = resolveRecipe(scene, !lines.edges.empty(), whole);
+        const ProgramAnswer answer = tools.programs.request(recipe, 0);
+        if (answer.stage == ProgramStage::Linked) {
+            setPresented(*answer.program, target, scene, lines, target.buffers.full);
+            tools.programs.warmUp(recipe, target.buffers.outputFramebuffer);
+        }
+        // present() handles both
+        ready = (answer.stage == ProgramStage::Ready || answer.stage == ProgramStage::Failed) && ready;
     }
-    return answer.stage == ProgramStage::Ready || answer.stage == ProgramStage::Failed; // present() handles both
+    return ready;
 }
 
 /// Shows the background, and the box once that can be drawn, until the first picture is ready.
