@@ -2,6 +2,7 @@
 #include "app/pane/view_parts.h"
 #include "app/user_files/own_functions.h"
 #include "app/views/transfer/library_page.h"
+#include "tests/app/formula_cell.h"
 #include "tests/app/hands_fixture.h"
 #include "tests/app/views_fixture.h"
 #include "volume/base/error.h"
@@ -45,6 +46,20 @@ TEST(Library, AppliesByNameToTheFirstLayerOrAParameter) {
     } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find("CT skin"), std::string::npos) << error.what();
         EXPECT_NE(std::string(error.what()).find("gaz"), std::string::npos);
+    }
+}
+
+TEST(Library, ADistributionIsThatOfItsChannel) {
+    const auto source = volume::makeMemorySource(formula::makeCell(), {});
+    const volume::DatasetInfo& info = source->info();
+    for (const char* name : {"T", "c", "|U|"}) {
+        const vis::ValueDistribution values = readDistribution(*source, *info.findChannel(name), 1);
+        EXPECT_FLOAT_EQ(float(values.range.lo), float(formula::rangeOf(name).lo)) << name;
+        EXPECT_FLOAT_EQ(float(values.range.hi), float(formula::rangeOf(name).hi)) << name;
+        double samples = 0, wanted = 0;
+        for (const auto count : values.count) samples += double(count);
+        formula::forEachPlace([&](formula::Place at) { wanted += formula::value(name, at, 1).has_value(); });
+        EXPECT_EQ(samples, wanted) << name;
     }
 }
 

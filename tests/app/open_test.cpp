@@ -44,14 +44,17 @@ TEST_F(OpenTest, ProgressRunsFromNoughtToOne) {
     request.data.emplace();
     request.data->model = "fuel-cell";
     request.data->settings = {{"nx", 9}, {"ny", 9}, {"nz", 21}, {"times", 2}};
-    std::vector<double> told;
-    Progress progress;
-    progress.report = [&](double fraction, const std::string&) { told.push_back(fraction); };
-    open(request, progress);
-    ASSERT_GT(told.size(), 2u);
-    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
-    EXPECT_GE(told.front(), 0);
-    EXPECT_LE(told.back(), 1);
+    for (const bool packed : {false, true}) {
+        if (packed) request.data->packed.emplace();
+        std::vector<double> told;
+        Progress progress;
+        progress.report = [&](double fraction, const std::string&) { told.push_back(fraction); };
+        open(request, progress);
+        ASSERT_GT(told.size(), 2u);
+        EXPECT_TRUE(std::is_sorted(told.begin(), told.end())) << packed;
+        EXPECT_GE(told.front(), 0);
+        EXPECT_LE(told.back(), 1);
+    }
 }
 
 TEST_F(OpenTest, ADataFileGetsTheDefaultSession) {
