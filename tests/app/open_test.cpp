@@ -164,6 +164,8 @@ TEST_F(OpenTest, TimeAlongAnAxisTakesTheTimeWithItAndBack) {
     const double seconds = volume::timePerLength(along.source->info(), *data.timeAxis);
     EXPECT_NEAR(along.document.session.cursor.z * seconds, info.times[2], 1e-12);
     EXPECT_EQ(along.document.session.cursor.y, before.cursor.y);
+    const auto origin = [](const Opened& of) { return originText(of.origin, of.numbers->info()); };
+    EXPECT_EQ(origin(along), origin(opened) + ", interpolated along time") << "its numbers say so";
 
     const Opened back = openWith(along, before.data);
     EXPECT_EQ(back.document.session.time, before.time);
