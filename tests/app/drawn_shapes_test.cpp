@@ -170,5 +170,21 @@ TEST_F(DrawnShapes, AFaceOfTheShadowCubeCoversItsCorners) {
     }
 }
 
+TEST(WallScene, HasTheWallAlone) {
+    vis::Scene scene;
+    scene.showBox = scene.showGround = true;
+    scene.layers.resize(3);
+    scene.lenses.resize(1);
+    for (const WallKind kind : {WallKind::Mean, WallKind::Maximum, WallKind::Shadow, WallKind::Slice})
+        for (const CubeFace& face : kCubeFaces) {
+            const vis::Scene wall =
+                wallScene(scene, "T", kind, face, vis::worldFrame({glm::dvec3(0), {2, 1, 1}}, glm::dvec3(1)), {});
+            EXPECT_FALSE(wall.showBox);
+            EXPECT_FALSE(wall.showGround);
+            EXPECT_EQ(wall.layers.size(), 1u);
+            EXPECT_TRUE(wall.lenses.empty());
+        }
+}
+
 } // namespace
 } // namespace tessera::app

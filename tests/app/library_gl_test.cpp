@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <unistd.h>
 
 /// The library of transfer functions: applied by name, and as pictures that the mouse picks from.
@@ -115,14 +116,14 @@ protected:
     }
     void TearDown() override { fs::remove_all(folder); }
     /// One frame; `idle`: nothing else is to be drawn.
-    void drawPage(bool idle = true) {
+    void drawPage(bool idle = true, float width = 600) {
         frame([&] {
             ViewContext context{session, source, renderer, jobs, caches};
             context.headless = headless;
             context.stateFolder = folder;
             context.idle = idle;
             ImGui::SetNextWindowPos({0, 0});
-            ImGui::SetNextWindowSize({600, 1000});
+            ImGui::SetNextWindowSize({width, 1000});
             ImGui::Begin("page", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
             drawLibraryPage(context, page, "T", *source->info().findChannel("T"));
             ImGui::End();
@@ -183,6 +184,36 @@ TEST_F(LibraryPageTest, OnesOwnAreShownAndSaidWhenBroken) {
     EXPECT_NE(said[0].find("transfer-functions.json"), std::string::npos);
     drawPage();
     EXPECT_TRUE(said.empty()) << "once";
+}
+
+TEST_F(LibraryPageTest, PicturesWaitWhileTheHandMoves) {
+    headless = false;
+    for (int i = 0; i < 6; ++i) {
+        mouse = {100 + 10.0f * float(i), 100};
+        drawPage();
+        EXPECT_EQ(pictures(), 0u) << i;
+    }
+    EXPECT_TRUE(waiting);
+    for (int i = 0; i < 2000 && pictures() == 0; ++i) drawPage();
+    EXPECT_GT(pictures(), 0u) << "it rests";
+}
+
+TEST_F(LibraryPageTest, TwoPicturesStandBesideEachOtherWhereTheyShowSomething) {
+    const auto columns = [&](float width) {
+        for (int i = 0; i < 3; ++i) drawPage(true, width);
+        std::set<int> lefts;
+        const ImDrawData& data = *ImGui::GetDrawData();
+        for (int l = 0; l < data.CmdListsCount; ++l)
+            for (const ImDrawCmd& command : data.CmdLists[l]->CmdBuffer) {
+                if (command.TextureId == ImGui::GetIO().Fonts->TexID) continue;
+                const auto first = data.CmdLists[l]->IdxBuffer[int(command.IdxOffset)];
+                lefts.insert(int(data.CmdLists[l]->VtxBuffer[int(command.VtxOffset) + int(first)].pos.x));
+            }
+        return lefts.size();
+    };
+    const float em = fonts.text->FontSize;
+    EXPECT_EQ(columns(12 * em), 2u);
+    EXPECT_EQ(columns(7 * em), 1u) << "else one that can be seen";
 }
 
 } // namespace
