@@ -143,9 +143,6 @@ bool handleMouse(ViewContext& context, CameraHand& hand, vis::ViewTarget* target
                     camera.target = glm::vec3(world.toWorld(pick->position));
             }
             hand.drag = CameraDrag::None;
-        } else {
-            // Also while the mouse rests with the button held: the next move must have no delay.
-            moving = moving || io.MouseDelta.x != 0 || io.MouseDelta.y != 0;
         }
     }
     if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && target) {

@@ -155,6 +155,23 @@ TEST_F(CameraHandGl, TheNearSideOfTheObjectGoesWithTheMouse) {
         }
 }
 
+// While it moves the picture is drawn coarsely.
+TEST_F(CameraHandGl, ADragIsToldWhileItMoves) {
+    for (const int which : {ImGuiMouseButton_Left, ImGuiMouseButton_Middle, ImGuiMouseButton_Right}) {
+        park();
+        EXPECT_FALSE(moving);
+        moveTo(middle());
+        EXPECT_FALSE(moving);
+        button(which, true);
+        moveTo(fromMiddle(40, 30));
+        moveTo(fromMiddle(60, 30));
+        EXPECT_TRUE(moving) << which;
+        button(which, false);
+        frame();
+        EXPECT_FALSE(moving) << which;
+    }
+}
+
 TEST_F(CameraHandGl, ADragAtTheEdgeTurnsAboutTheViewersAxis) {
     const glm::dvec3 edge = under(fromMiddle(195, 0));
     drag(fromMiddle(195, -40), fromMiddle(195, 40));

@@ -106,6 +106,7 @@ TEST_F(Commands, InfoSaysTheBytesOfEachLevel) {
         levels += " " + bytesText(double(archive.levelBytes(level)));
     }
     EXPECT_NE(said.find(levels + "\n"), std::string::npos) << said;
+    EXPECT_NE(said.find("  samples    8 x 7 x 9 on CC, from a grid of 8 x 7 x 9\n"), std::string::npos) << said;
 }
 
 TEST_F(Commands, StatsAreOfTheTimeAndRegions) {
@@ -131,10 +132,17 @@ TEST_F(Commands, StatsAreOfTheTimeAndRegions) {
     std::set<double> times;
     for (std::size_t row = 0; row < table.rows.size(); ++row) {
         EXPECT_EQ(table.text(row, "parameter"), "T");
+        EXPECT_NE(table.text(row, "region"), "west") << "one region was asked for";
         times.insert(*table.number(row, "time [s]"));
         if (table.text(row, "region") == "east") check(table, row, *table.number(row, "time [s]"));
     }
     EXPECT_EQ(times, (std::set<double>{0, 0.5, 2}));
+    // Planes of all times are a table; a figure has room for one time.
+    EXPECT_EQ(run({"stats", in("cell.tsr"), "--along", "z", "--of", "T", "--all-times", "-o", in("s.csv")}), 0);
+    EXPECT_GT(tableOf(text("s.csv")).rows.size(), 9u);
+    EXPECT_EQ(run({"stats", in("cell.tsr"), "--along", "z", "--of", "T", "--all-times", "-o", in("s.svg")}), 2);
+    EXPECT_EQ(run({"stats", in("cell.tsr"), "--along", "z", "--of", "T", "-o", in("s.svg")}), 0);
+    EXPECT_EQ(run({"stats", in("cell.tsr"), "--of", "T", "--all-times", "-o", in("s.svg")}), 0);
 }
 
 TEST_F(Commands, PlotMarksTheState) {

@@ -140,9 +140,9 @@ protected:
         entry.range = entry.data = {0, 1};
         return entry;
     }
-    CompareLayout layout(const CompareLegends& legends, int count) {
+    CompareLayout layout(const CompareLegends& legends, int count, ImVec2 area = {700, 500}) {
         CompareLayout made;
-        feedWindow([&] { made = compareLayout(legends, count, {10, 20}, {700, 500}); });
+        feedWindow([&] { made = compareLayout(legends, count, {10, 20}, area); });
         return made;
     }
 };
@@ -195,6 +195,15 @@ TEST_F(CompareLayouts, WithoutLegendsPicturesHaveAllTheRoom) {
     float lowest = 0;
     for (const PictureBox& picture : made.pictures) lowest = std::max(lowest, picture.max().y);
     EXPECT_GT(lowest, 515);
+}
+
+TEST_F(CompareLayouts, LegendsLeaveHalfOfEachPicture) {
+    const std::vector<LegendEntry> many(12, bar("T"));
+    std::vector<LegendEntry> others = many;
+    others[0] = bar("O2");
+    const CompareLayout made = layout({many, others}, 2, {780, 180});
+    ASSERT_EQ(made.places.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_GE(made.pictures[i].size.y, made.places[i].size.y - em());
 }
 
 } // namespace

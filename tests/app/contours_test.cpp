@@ -90,6 +90,16 @@ TEST(ContourLabels, AreTheValueOfTheFieldWhereTheyLie) {
     }
 }
 
+TEST(ContourLabels, TheLabelOfAStraightLineStandsInItsMiddle) {
+    const LabelPage page{{0, 0}, {600, 450}, 13, [](const std::string& text) { return 7.0 * double(text.size()); }};
+    for (const glm::dvec2 end : {glm::dvec2(320, 60), glm::dvec2(100, 210), glm::dvec2(220, 160)}) {
+        const glm::dvec2 begin(100, 60);
+        const std::vector<LineLabel> labels = placeLabels({{"340", {begin, end}}}, page);
+        ASSERT_EQ(labels.size(), 1u);
+        EXPECT_LT(glm::distance(labels[0].at, (begin + end) / 2.0), page.height / 2 + 1e-9) << end.x << ' ' << end.y;
+    }
+}
+
 TEST(ContourLabels, NeitherMeetEachOtherNorOtherLinesNorLeaveThePage) {
     const Page page;
     for (const LineLabel& label : page.labels) {
@@ -178,7 +188,12 @@ TEST(Contours, AreInTheSvgWithTheirValuesAndBothNames) {
     EXPECT_EQ(plain.find("paint-order"), std::string::npos);
     EXPECT_NE(plain.find("<path"), std::string::npos);
     view.contourValues = true;
-    const std::string svg = svgOf(slicesDrawing(*source, session, view, 0));
+    std::vector<double> told;
+    Progress progress;
+    progress.report = [&](double fraction, const std::string&) { told.push_back(fraction); };
+    const std::string svg = svgOf(slicesDrawing(*source, session, view, 0, progress));
+    EXPECT_GT(told.size(), 3u);
+    EXPECT_TRUE(std::ranges::is_sorted(told)) << "progress never goes back";
     EXPECT_NE(svg.find("lines: B [K], 20 apart"), std::string::npos);
     EXPECT_NE(svg.find(", A "), std::string::npos) << "the parameter of the colours";
     const std::regex text("<text x=\"([0-9.]+)\" y=\"([0-9.]+)\"[^>]*paint-order[^>]*>([0-9.]+)</text>");

@@ -141,6 +141,10 @@ TEST(Differences, OtherDataStandBesideInPicturesAndNumbers) {
             EXPECT_EQ(moved.numbers, sources.numbers);
             expectDifference(samplesOf(*moved.pictures, "d", 2), samplesOf(*moved.pictures, "T", 2),
                              samplesOf(*moved.pictures, "T (other)", 2));
+            if (same) {
+                alone.lattice = to;
+                expectSame(samplesOf(*moved.pictures, "O2 (other)", 1), samplesOf(*opened(alone).pictures, "O2", 1));
+            }
         }
 }
 

@@ -4,6 +4,7 @@
 #include "tests/app/fed_imgui.h"
 
 #include <cmath>
+#include <glm/geometric.hpp>
 
 namespace tessera::app {
 namespace {
@@ -125,7 +126,9 @@ TEST_F(DrawnPage, TextsAreWholeWithTheirPlaceSizeAndFont) {
     EXPECT_NEAR(words[0].size, 2 * textPixels(1), 0.1);
     EXPECT_NEAR(words[0].at.x, 60, 0.5);
     EXPECT_NEAR(words[0].at.y, 2 * (40 + std::round(double(fonts.text->Ascent))), 0.5);
+    EXPECT_EQ(words[0].color, glm::vec4(1, 0, 0, 1));
     EXPECT_EQ(words[1].text, "Bold");
+    EXPECT_LT(glm::distance(words[1].color, glm::vec4(0, 0, 1, 128 / 255.0f)), 1e-3f) << "each in its own colour";
     EXPECT_EQ(words[1].face, fonts.bold == fonts.text ? Face::Text : Face::Bold);
     EXPECT_NEAR(words[1].size, 2 * words[0].size, 0.2);
     EXPECT_EQ(words[2].text, "upwards");

@@ -1,5 +1,6 @@
 #include "app/tools/lens_edit.h"
 #include "app/ui/theme.h"
+#include "app/views/shadow_cube/cube_faces.h"
 #include "app/views/tesseract/tesseract_wire.h"
 #include "app/views/transfer/region_edit.h"
 #include "tests/app/drawn_text.h"
@@ -146,6 +147,43 @@ TEST_F(DrawnShapes, TheNameOfALensStandsAboveIt) {
         EXPECT_LT(texts[0].max.y, below.y);
         EXPECT_GT(texts[0].max.y, below.y - 40);
     }
+}
+
+TEST_F(DrawnShapes, AFaceOfTheShadowCubeCoversItsCorners) {
+    volume::DatasetInfo info;
+    info.bounds = {glm::dvec3(0), {2, 1, 1}};
+    vis::Camera camera;
+    CubeFrame frame{info,   {50, 50}, {400, 400}, vis::worldFrame(info.bounds, glm::dvec3(1)), glm::dvec3(0.5),
+                    camera, {}};
+    frame.space = spaceFrame(frame.min, frame.max(), camera, info.bounds, glm::dvec3(1));
+    for (const CubeFace& face : kCubeFaces) {
+        feedWindow([&] { drawFace(*ImGui::GetWindowDrawList(), frame, face, 0); });
+        const std::vector<ImVec2> ground = drawnIn(IM_COL32(36, 39, 45, 255));
+        for (const double s : {-1.0, 1.0})
+            for (const double t : {-1.0, 1.0}) {
+                const auto at = frame.pixel(face.at(s * 0.5, t * 0.5, frame.half));
+                ASSERT_TRUE(at);
+                EXPECT_TRUE(std::ranges::any_of(
+                    ground, [&](ImVec2 corner) { return std::hypot(corner.x - at->x, corner.y - at->y) < 6; }))
+                    << face.axis << face.upper << ' ' << s << ' ' << t;
+            }
+    }
+}
+
+TEST(WallScene, HasTheWallAlone) {
+    vis::Scene scene;
+    scene.showBox = scene.showGround = true;
+    scene.layers.resize(3);
+    scene.lenses.resize(1);
+    for (const WallKind kind : {WallKind::Mean, WallKind::Maximum, WallKind::Shadow, WallKind::Slice})
+        for (const CubeFace& face : kCubeFaces) {
+            const vis::Scene wall =
+                wallScene(scene, "T", kind, face, vis::worldFrame({glm::dvec3(0), {2, 1, 1}}, glm::dvec3(1)), {});
+            EXPECT_FALSE(wall.showBox);
+            EXPECT_FALSE(wall.showGround);
+            EXPECT_EQ(wall.layers.size(), 1u);
+            EXPECT_TRUE(wall.lenses.empty());
+        }
 }
 
 } // namespace

@@ -60,5 +60,59 @@ TEST_F(ToolHands, TheMenuOfAVolumeShowsAndHidesWhatItNames) {
     }
 }
 
+TEST_F(ToolHands, WaysToCompareSayWhatTheyDoAndTheSecondOfASwipeIsLit) {
+    CompareView compare;
+    compare.variants = {{"first", {{"/time", "0"}}}, {"second", {{"/time", "2"}}}};
+    compare.other = 1;
+    show(compare, {900, 700});
+    const auto placeOf = [](const std::string& text) {
+        std::optional<ImVec2> at;
+        for (const DrawnText& each : drawnTexts())
+            if (each.text == text) at = each.middle();
+        EXPECT_TRUE(at) << text;
+        return at.value_or(ImVec2{});
+    };
+    const auto lit = [&](const std::string& row) { // in the table, below the pictures
+        const float y = placeOf(row).y;
+        const auto corners = drawnIn(ImGui::GetColorU32(ImGuiCol_Header));
+        return std::ranges::any_of(corners, [&](ImVec2 at) { return at.y < y; }) &&
+               std::ranges::any_of(corners, [&](ImVec2 at) { return at.y > y && at.y < y + ImGui::GetFontSize() * 2; });
+    };
+    for (const auto& [name, help] : {std::pair{"Swipe", "Two variants on either side"},
+                                     {"Blink", "One after the other in the same place"},
+                                     {"Grid", "Side by side"}}) {
+        moveTo(placeOf(name));
+        for (int i = 0; i < 3; ++i) frame();
+        EXPECT_TRUE(std::ranges::any_of(drawnWords(), [&](const std::string& text) { return text.starts_with(help); }))
+            << name;
+        click(placeOf(name));
+        moveTo({-1000, -1000});
+        settle();
+        EXPECT_EQ(lit("second"), std::string(name) == "Swipe") << name;
+        EXPECT_FALSE(lit("first")) << name;
+    }
+}
+
+TEST_F(ToolHands, OneParameterIsNotShownParameterByParameter) {
+    const auto offered = [&] {
+        for (const Command& command : workbench.commands())
+            if (command.title() == "One view per parameter") return command.available();
+        ADD_FAILURE() << "no such command";
+        return false;
+    };
+    show(VolumeView{}, {400, 300});
+    EXPECT_TRUE(offered());
+    Opened opened;
+    volume::Dataset cell = formula::makeCell();
+    cell.info.parameters.resize(1);
+    opened.source = opened.numbers = volume::makeMemorySource(std::move(cell), {});
+    DataRef data;
+    data.model = "fuel-cell";
+    opened.document.session = defaultSession(opened.source->info(), data);
+    opened.document.history.reset(opened.document.session);
+    workbench.install(std::move(opened));
+    EXPECT_FALSE(offered());
+}
+
 } // namespace
 } // namespace tessera::app

@@ -2,6 +2,7 @@
 #include "app/pane/view_parts.h"
 #include "app/user_files/own_functions.h"
 #include "app/views/transfer/library_page.h"
+#include "tests/app/formula_cell.h"
 #include "tests/app/hands_fixture.h"
 #include "tests/app/views_fixture.h"
 #include "volume/base/error.h"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <unistd.h>
 
 /// The library of transfer functions: applied by name, and as pictures that the mouse picks from.
@@ -45,6 +47,20 @@ TEST(Library, AppliesByNameToTheFirstLayerOrAParameter) {
     } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find("CT skin"), std::string::npos) << error.what();
         EXPECT_NE(std::string(error.what()).find("gaz"), std::string::npos);
+    }
+}
+
+TEST(Library, ADistributionIsThatOfItsChannel) {
+    const auto source = volume::makeMemorySource(formula::makeCell(), {});
+    const volume::DatasetInfo& info = source->info();
+    for (const char* name : {"T", "c", "|U|"}) {
+        const vis::ValueDistribution values = readDistribution(*source, *info.findChannel(name), 1);
+        EXPECT_FLOAT_EQ(float(values.range.lo), float(formula::rangeOf(name).lo)) << name;
+        EXPECT_FLOAT_EQ(float(values.range.hi), float(formula::rangeOf(name).hi)) << name;
+        double samples = 0, wanted = 0;
+        for (const auto count : values.count) samples += double(count);
+        formula::forEachPlace([&](formula::Place at) { wanted += formula::value(name, at, 1).has_value(); });
+        EXPECT_EQ(samples, wanted) << name;
     }
 }
 
@@ -100,14 +116,14 @@ protected:
     }
     void TearDown() override { fs::remove_all(folder); }
     /// One frame; `idle`: nothing else is to be drawn.
-    void drawPage(bool idle = true) {
+    void drawPage(bool idle = true, float width = 600) {
         frame([&] {
             ViewContext context{session, source, renderer, jobs, caches};
             context.headless = headless;
             context.stateFolder = folder;
             context.idle = idle;
             ImGui::SetNextWindowPos({0, 0});
-            ImGui::SetNextWindowSize({600, 1000});
+            ImGui::SetNextWindowSize({width, 1000});
             ImGui::Begin("page", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
             drawLibraryPage(context, page, "T", *source->info().findChannel("T"));
             ImGui::End();
@@ -168,6 +184,43 @@ TEST_F(LibraryPageTest, OnesOwnAreShownAndSaidWhenBroken) {
     EXPECT_NE(said[0].find("transfer-functions.json"), std::string::npos);
     drawPage();
     EXPECT_TRUE(said.empty()) << "once";
+}
+
+TEST_F(LibraryPageTest, PicturesWaitWhileTheHandMoves) {
+    headless = false;
+    drawPage();
+    for (int i = 0; i < 2000 && pictures() == 0; ++i) drawPage();
+    ASSERT_GT(pictures(), 0u) << "it rests";
+    drawPage();
+    mouse = {100, 100};
+    drawPage();
+    const std::size_t made = pictures();
+    for (int i = 0; i < 30; ++i) {
+        mouse.x += 5;
+        drawPage();
+    }
+    EXPECT_TRUE(waiting);
+    EXPECT_LE(pictures(), made + 1) << "what was made before it moved";
+    for (int i = 0; i < 2000 && pictures() <= made + 1; ++i) drawPage();
+    EXPECT_GT(pictures(), made + 1);
+}
+
+TEST_F(LibraryPageTest, TwoPicturesStandBesideEachOtherWhereTheyShowSomething) {
+    const auto columns = [&](float width) {
+        for (int i = 0; i < 3; ++i) drawPage(true, width);
+        std::set<int> lefts;
+        const ImDrawData& data = *ImGui::GetDrawData();
+        for (int l = 0; l < data.CmdListsCount; ++l)
+            for (const ImDrawCmd& command : data.CmdLists[l]->CmdBuffer) {
+                if (command.TextureId == ImGui::GetIO().Fonts->TexID) continue;
+                const auto first = data.CmdLists[l]->IdxBuffer[int(command.IdxOffset)];
+                lefts.insert(int(data.CmdLists[l]->VtxBuffer[int(command.VtxOffset) + int(first)].pos.x));
+            }
+        return lefts.size();
+    };
+    const float em = fonts.text->FontSize;
+    EXPECT_EQ(columns(12 * em), 2u);
+    EXPECT_EQ(columns(7 * em), 1u) << "else one that can be seen";
 }
 
 } // namespace

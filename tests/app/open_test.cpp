@@ -44,14 +44,17 @@ TEST_F(OpenTest, ProgressRunsFromNoughtToOne) {
     request.data.emplace();
     request.data->model = "fuel-cell";
     request.data->settings = {{"nx", 9}, {"ny", 9}, {"nz", 21}, {"times", 2}};
-    std::vector<double> told;
-    Progress progress;
-    progress.report = [&](double fraction, const std::string&) { told.push_back(fraction); };
-    open(request, progress);
-    ASSERT_GT(told.size(), 2u);
-    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
-    EXPECT_GE(told.front(), 0);
-    EXPECT_LE(told.back(), 1);
+    for (const bool packed : {false, true}) {
+        if (packed) request.data->packed.emplace();
+        std::vector<double> told;
+        Progress progress;
+        progress.report = [&](double fraction, const std::string&) { told.push_back(fraction); };
+        open(request, progress);
+        ASSERT_GT(told.size(), 2u);
+        EXPECT_TRUE(std::is_sorted(told.begin(), told.end())) << packed;
+        EXPECT_GE(told.front(), 0);
+        EXPECT_LE(told.back(), 1);
+    }
 }
 
 TEST_F(OpenTest, ADataFileGetsTheDefaultSession) {
@@ -161,6 +164,8 @@ TEST_F(OpenTest, TimeAlongAnAxisTakesTheTimeWithItAndBack) {
     const double seconds = volume::timePerLength(along.source->info(), *data.timeAxis);
     EXPECT_NEAR(along.document.session.cursor.z * seconds, info.times[2], 1e-12);
     EXPECT_EQ(along.document.session.cursor.y, before.cursor.y);
+    const auto origin = [](const Opened& of) { return originText(of.origin, of.numbers->info()); };
+    EXPECT_EQ(origin(along), origin(opened) + ", interpolated along time") << "its numbers say so";
 
     const Opened back = openWith(along, before.data);
     EXPECT_EQ(back.document.session.time, before.time);

@@ -1,4 +1,5 @@
 #include "app/queries/flow_query.h"
+#include "app/views/tesseract/tesseract_wire.h"
 #include "tests/app/drawn_text.h"
 #include "tests/app/views_fixture.h"
 #include "volume/base/error.h"
@@ -207,6 +208,32 @@ TEST_F(Views, DamagedDataIsTriedOnce) {
     }
     EXPECT_GE(reported, 1);
     EXPECT_LE(reported, 2) << "once for the plots, once for the values at the cursor";
+}
+
+TEST_F(Views, ATesseractHasTheProportionsOfTheDataUnlessItIsACube) {
+    show(fuelCell(volume::LatticeKind::CC)); // a long box
+    const auto lines = [&](bool cube) {
+        tesseractView.cube = cube;
+        for (int i = 0; i < 2; ++i) frame([&] { draw("tesseract", tesseractView, drawTesseractView, {700, 700}); });
+        const vis::TransferFunction colors = fourthColors();
+        ImVec2 min{1e9f, 1e9f}, max{-1e9f, -1e9f};
+        const ImDrawData& data = *ImGui::GetDrawData();
+        for (int list = 0; list < data.CmdListsCount; ++list)
+            for (const ImDrawVert& corner : data.CmdLists[list]->VtxBuffer)
+                for (const vis::ColorStop& stop : colors.colors)
+                    if ((corner.col & ~IM_COL32_A_MASK) ==
+                        (toColor({double(stop.color.r), double(stop.color.g), double(stop.color.b)}) &
+                         ~IM_COL32_A_MASK)) {
+                        min = {std::min(min.x, corner.pos.x), std::min(min.y, corner.pos.y)};
+                        max = {std::max(max.x, corner.pos.x), std::max(max.y, corner.pos.y)};
+                    }
+        EXPECT_GT(max.x, min.x);
+        const float wide = max.x - min.x, high = max.y - min.y;
+        return std::max(wide, high) / std::min(wide, high);
+    };
+    const float cube = lines(true), data = lines(false);
+    EXPECT_LT(cube, 1.4f);
+    EXPECT_GT(data, 1.15f * cube);
 }
 
 } // namespace

@@ -271,5 +271,18 @@ TEST(LensOrder, ALensTakesThePlaceItIsDroppedOn) {
     EXPECT_EQ(order(), "dbca");
 }
 
+TEST_F(LensEdit, ALensThatIsGoneIsDraggedNoFurther) {
+    moveTo(*handles().middle);
+    button(0, true);
+    moveTo({mouse.x + 10, mouse.y});
+    EXPECT_TRUE(taken);
+    session.lenses.clear(); // undone meanwhile
+    moveTo({mouse.x + 10, mouse.y});
+    EXPECT_FALSE(taken);
+    EXPECT_FALSE(drag.active);
+    button(0, false);
+    EXPECT_TRUE(session.lenses.empty());
+}
+
 } // namespace
 } // namespace tessera::app

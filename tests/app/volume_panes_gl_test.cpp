@@ -299,6 +299,26 @@ TEST_F(Multiples, ShowTimesWithOneLegend) {
     EXPECT_FALSE(volume(multiples()[1]).camera);
 }
 
+TEST_F(Multiples, StandBesideEachOtherInAWideWindowAndBelowEachOtherInAHighOne) {
+    for (const glm::ivec2 size : {glm::ivec2(1800, 420), glm::ivec2(420, 1800)}) {
+        begin();
+        frames.emplace(size);
+        session().dock = {};
+        repair(session().dock, {"volume"});
+        settle();
+        ASSERT_TRUE(run("One view per time"));
+        std::set<float> columns, rows;
+        for (const std::string& pane : multiples()) {
+            const ImGuiWindow* in = ImGui::FindWindowByName(("###pane." + pane).c_str());
+            ASSERT_TRUE(in);
+            columns.insert(in->Pos.x);
+            rows.insert(in->Pos.y);
+        }
+        EXPECT_EQ(columns.size(), size.x > size.y ? 3u : 1u);
+        EXPECT_EQ(rows.size(), size.x > size.y ? 1u : 3u);
+    }
+}
+
 /// A window that draws on in frames, as users have it, not one that waits for its pictures.
 class MultiplesInWindow : public DrawnWorkbench {
 protected:

@@ -1,3 +1,4 @@
+#include "app/pane/view_parts.h"
 #include "app/ui/commands.h"
 #include "app/ui/dock.h"
 #include "app/ui/theme.h"
@@ -212,6 +213,36 @@ TEST_F(Widgets, PanesAreClosedMaximisedFloatedAndDockedByTheirTitles) {
     choose("pane c", "Close");
     EXPECT_EQ(closed, std::vector<std::string>{"c"});
     EXPECT_EQ(panesOf(tree).size(), 2u);
+}
+
+TEST_F(Widgets, HeadsOfNumbersEndWhereTheNumbersEnd) {
+    const auto draw = [&] {
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({500, 200});
+        ImGui::Begin("test", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+        if (ImGui::BeginTable("table", 3)) {
+            for (int i = 0; i < 3; ++i) ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 120);
+            tableHeader({"Name", "Mean", "Range"}, 1);
+            ImGui::TableNextRow();
+            for (const char* text : {"T", "300.25", "12"}) {
+                ImGui::TableNextColumn();
+                text[0] == 'T' ? ImGui::TextUnformatted(text) : textRight(text);
+            }
+            ImGui::EndTable();
+        }
+        ImGui::End();
+    };
+    frames(3, draw);
+    const auto find = [](const char* wanted) {
+        for (const DrawnText& each : drawnTexts())
+            if (each.text == wanted) return each;
+        ADD_FAILURE() << wanted;
+        return DrawnText{};
+    };
+    EXPECT_NEAR(find("Mean").max.x, find("300.25").max.x, 2);
+    EXPECT_NEAR(find("Range").max.x, find("12").max.x, 2);
+    EXPECT_NEAR(find("Name").min.x, find("T").min.x, 2) << "names are at the left";
+    EXPECT_GT(find("Mean").min.x, find("Name").min.x + 150);
 }
 
 } // namespace
