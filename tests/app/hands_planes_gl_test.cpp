@@ -26,10 +26,10 @@ ObliqueView tiltedBy(glm::dvec3 normal) {
 class PlaneHands : public Hands {
 protected:
     /// A volume view from the front without perspective, with an oblique view beside it that is not drawn.
-    void showVolume(const std::function<void(Session&)>& prepare) {
+    void showVolume(const std::function<void(Session&)>& prepare, glm::ivec2 size = {400, 300}) {
         VolumeView volume;
         volume.showGizmo = volume.showLegend = volume.showAxes = false;
-        show(volume, {400, 300}, [&](Session& edited) {
+        show(volume, size, [&](Session& edited) {
             edited.layers.clear();
             edited.camera = {};
             edited.camera.orientation = glm::quat(1, 0, 0, 0);
@@ -78,7 +78,7 @@ TEST_F(PlaneHands, TheDotMovesAPlaneAlongItsNormalAndTheArrowTiltsIt) {
         EXPECT_TRUE(session() == before) << apart(before);
 
         const glm::dvec3 end = tip(session().cursor, upright);
-        const ImVec2 grip = worldPixel(end), aim{grip.x + 14, grip.y + 9};
+        const ImVec2 grip = worldPixel(end), aim{grip.x - 14, grip.y + 9};
         drag(grip, aim);
         EXPECT_EQ(session().cursor, before.cursor);
         EXPECT_NEAR(worldPixel(tip(session().cursor, worldNormal(normal(), world()))).x, aim.x, 1.5);
@@ -100,7 +100,7 @@ TEST_F(PlaneHands, TheDotMovesAPlaneAlongItsNormalAndTheArrowTiltsIt) {
 TEST_F(PlaneHands, ThePlaneStaysInTheBox) {
     showVolume([](Session& edited) { edited.views["oblique"] = tiltedBy({0.6, 0.8, 0}); });
     drag(pixel(session().cursor), {picture.Max.x + 400, picture.Min.y - 400});
-    EXPECT_FALSE(planeSection({normal(), session().cursor}, planesBox()).empty());
+    EXPECT_FALSE(planeSection({normal(), session().cursor}, planesBox()).empty()) << "some of it is seen";
     for (int axis = 0; axis < 3; ++axis) {
         EXPECT_GE(session().cursor[axis], planesBox().lo[axis]);
         EXPECT_LE(session().cursor[axis], planesBox().hi[axis]);
@@ -231,7 +231,7 @@ TEST_F(PlaneHands, InTheFlatViewTheCrossHairStaysInThePlaneAndTheWheelMovesIt) {
     moveTo({mouse.x + 20, mouse.y - 30});
     button(0, false);
     const glm::dvec3 moved = session().cursor - first;
-    EXPECT_NEAR(glm::dot(session().cursor - start, n), 0, 1e-12);
+    EXPECT_NEAR(glm::dot(session().cursor - start, n), 0, 1e-10);
     EXPECT_NEAR(glm::dot(moved, up), 30 * perPixel, 2 * perPixel);
     EXPECT_NEAR(glm::dot(moved, right), 20 * perPixel, 2 * perPixel);
     settle();
@@ -279,19 +279,20 @@ TEST_F(PlaneHands, TheCommandTiltsEveryObliqueSliceToTheViewer) {
 }
 
 TEST_F(PlaneHands, AClickInTheMenuFocusesOnWhatIsSeenThere) {
-    showVolume([](Session& edited) {
-        edited.layers = {
-            {.name = "",
-             .visible = true,
-             .technique = vis::SliceLayer{
-                 .channel = "T", .orientation = vis::SliceOrientation::Z, .atCursor = false, .position = 0.75}}};
-    });
+    showVolume(
+        [](Session& edited) {
+            edited.layers = {
+                {.name = "",
+                 .visible = true,
+                 .technique = vis::SliceLayer{
+                     .channel = "T", .orientation = vis::SliceOrientation::Z, .atCursor = false, .position = 0.75}}};
+        },
+        {240, 640}); // the whole menu has room
     const glm::dvec3 size = planesBox().size(), lo = planesBox().lo;
     const ImVec2 at = within(picture, 0.4, 0.45);
     click(at, 1);
     ASSERT_TRUE(popup());
-    const ImRect focus = item(popup(), {std::string("Focus here")});
-    click(within(focus, 0.3, 0.5));
+    click(item(popup(), {"Focus here"}).GetCenter());
     settle();
     EXPECT_GT(session().camera.aperture, 0);
     const glm::dvec3 place = world().toPhysical(glm::dvec3(session().camera.focus));

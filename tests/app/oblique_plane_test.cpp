@@ -67,7 +67,12 @@ TEST(ObliquePlane, TheNearestPlaceIsNearerThanAnyOther) {
         const glm::dvec3 in = plane.at;
         EXPECT_LT(glm::length(nearestInPlane(plane, kPlaneBox, in) - in), 1e-12) << "what lies in it stays";
     }
-    EXPECT_TRUE(inPlaneBox(nearestInPlane({{0, 0, 1}, {0, 0, 99}}, kPlaneBox, {0, 0, 99}))) << "a plane beside the box";
+    const glm::dvec3 face = nearestInPlane({{0, 0, 1}, {0, 0, 99}}, kPlaneBox, {0, 0, 99});
+    EXPECT_EQ(face, glm::dvec3(0, 0.5, 5)) << "a plane beside the box comes back to its face";
+    const glm::dvec3 slant = unitNormal({1, 1, 1}),
+                     back = nearestInPlane({slant, {99, 99, 99}}, kPlaneBox, {99, 99, 99});
+    EXPECT_FALSE(planeSection({slant, back}, kPlaneBox).empty()) << "or just inside a corner";
+    EXPECT_LT(glm::length(back - kPlaneBox.hi), 0.05);
 }
 
 TEST(ObliquePlane, FlatAxesAreAtRightAnglesInBothSpaces) {
