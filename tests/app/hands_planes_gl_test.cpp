@@ -23,7 +23,7 @@ ObliqueView tiltedBy(glm::dvec3 normal) {
     return view;
 }
 
-class PlaneHands : public Hands {
+class TiltedPlaneHands : public Hands {
 protected:
     /// A volume view from the front without perspective, with an oblique view beside it that is not drawn.
     void showVolume(const std::function<void(Session&)>& prepare, glm::ivec2 size = {400, 300}) {
@@ -53,7 +53,7 @@ protected:
     ImRect picture;
 };
 
-TEST_F(PlaneHands, TheDotMovesAPlaneAlongItsNormalAndTheArrowTiltsIt) {
+TEST_F(TiltedPlaneHands, TheDotMovesAPlaneAlongItsNormalAndTheArrowTiltsIt) {
     for (const glm::dvec3 stretch : {glm::dvec3(1), glm::dvec3(1, 0.5, 1.5)}) {
         showVolume([&](Session& edited) {
             edited.stretch = stretch;
@@ -97,7 +97,7 @@ TEST_F(PlaneHands, TheDotMovesAPlaneAlongItsNormalAndTheArrowTiltsIt) {
     }
 }
 
-TEST_F(PlaneHands, ThePlaneStaysInTheBox) {
+TEST_F(TiltedPlaneHands, ThePlaneStaysInTheBox) {
     showVolume([](Session& edited) { edited.views["oblique"] = tiltedBy({0.6, 0.8, 0}); });
     drag(pixel(session().cursor), {picture.Max.x + 400, picture.Min.y - 400});
     EXPECT_FALSE(planeSection({normal(), session().cursor}, planesBox()).empty()) << "some of it is seen";
@@ -108,7 +108,7 @@ TEST_F(PlaneHands, ThePlaneStaysInTheBox) {
     EXPECT_GT(session().cursor.x, 0.016);
 }
 
-TEST_F(PlaneHands, ClipPlanesAndSliceLayersAreDraggedToo) {
+TEST_F(TiltedPlaneHands, ClipPlanesAndSliceLayersAreDraggedToo) {
     showVolume([](Session& edited) {
         edited.clips = {{.center = {0.5f, 0.5f, 0.5f}, .axis = {1, 0, 0}}};
         edited.layers = {
@@ -141,7 +141,7 @@ TEST_F(PlaneHands, ClipPlanesAndSliceLayersAreDraggedToo) {
     EXPECT_EQ(clip().center, before.clips[0].center);
 }
 
-TEST_F(PlaneHands, ArrowsOfLightsTurnThemAndPointsMove) {
+TEST_F(TiltedPlaneHands, ArrowsOfLightsTurnThemAndPointsMove) {
     showVolume([](Session& edited) {
         edited.camera.orientation = glm::normalize(glm::quat(0.9f, 0.1f, 0.3f, 0.05f));
         edited.lighting.lights = {{.kind = vis::LightKind::Viewer, .azimuth = -30, .elevation = 40},
@@ -185,7 +185,7 @@ TEST_F(PlaneHands, ArrowsOfLightsTurnThemAndPointsMove) {
     EXPECT_GT(std::abs(session().lighting.lights[0].azimuth), 90.0f);
 }
 
-TEST_F(PlaneHands, InSlicesAPlaneIsALineWithAnArrow) {
+TEST_F(TiltedPlaneHands, InSlicesAPlaneIsALineWithAnArrow) {
     SlicesView slices;
     slices.channel = "T";
     slices.showReadout = false;
@@ -213,7 +213,7 @@ TEST_F(PlaneHands, InSlicesAPlaneIsALineWithAnArrow) {
     EXPECT_EQ(steps(), 1u);
 }
 
-TEST_F(PlaneHands, InTheFlatViewTheCrossHairStaysInThePlaneAndTheWheelMovesIt) {
+TEST_F(TiltedPlaneHands, InTheFlatViewTheCrossHairStaysInThePlaneAndTheWheelMovesIt) {
     ObliqueView view;
     view.channel = "T";
     view.showReadout = false;
@@ -248,7 +248,7 @@ TEST_F(PlaneHands, InTheFlatViewTheCrossHairStaysInThePlaneAndTheWheelMovesIt) {
     EXPECT_FALSE(planeSection({n, session().cursor}, planesBox()).empty()) << "not out of the box";
 }
 
-TEST_F(PlaneHands, TheCommandTiltsEveryObliqueSliceToTheViewer) {
+TEST_F(TiltedPlaneHands, TheCommandTiltsEveryObliqueSliceToTheViewer) {
     showVolume([](Session& edited) {
         edited.camera.orientation = glm::normalize(glm::quat(0.9f, 0.2f, 0.3f, 0.1f));
         edited.stretch = {1, 0.5, 1.5};
@@ -278,7 +278,7 @@ TEST_F(PlaneHands, TheCommandTiltsEveryObliqueSliceToTheViewer) {
     EXPECT_TRUE(session().views.contains("oblique")) << "opened where there was none";
 }
 
-TEST_F(PlaneHands, AClickInTheMenuFocusesOnWhatIsSeenThere) {
+TEST_F(TiltedPlaneHands, AClickInTheMenuFocusesOnWhatIsSeenThere) {
     showVolume(
         [](Session& edited) {
             edited.layers = {

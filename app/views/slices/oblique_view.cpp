@@ -59,7 +59,9 @@ void drawTools(ViewContext& context, ToolRow& tools, ObliqueView& view, const Fl
             drawTiltMenu(context.session, info, view);
             ImGui::Separator();
             ImGui::SetNextItemWidth(em() * 14);
-            ImGui::DragScalarN("normal", ImGuiDataType_Double, &view.normal.x, 3, 0.01f, nullptr, nullptr, "%.3g");
+            constexpr double kLeast = -1, kMost = 1;
+            ImGui::DragScalarN("normal", ImGuiDataType_Double, &view.normal.x, 3, 0.01f, &kLeast, &kMost, "%.3g",
+                               ImGuiSliderFlags_AlwaysClamp);
             ImGui::EndPopup();
         }
     }
