@@ -287,13 +287,13 @@ TEST_F(TiltedPlaneHands, AClickInTheMenuFocusesOnWhatIsSeenThere) {
                  .technique = vis::SliceLayer{
                      .channel = "T", .orientation = vis::SliceOrientation::Z, .atCursor = false, .position = 0.75}}};
         },
-        {240, 640}); // the whole menu has room
+        {320, 800}); // the whole menu has room
     const glm::dvec3 size = planesBox().size(), lo = planesBox().lo;
     const ImVec2 at = within(picture, 0.4, 0.45);
     click(at, 1);
     ASSERT_TRUE(popup());
     click(item(popup(), {"Focus here"}).GetCenter());
-    settle();
+    for (int i = 0; i < 3; ++i) frame(); // its 64 pictures are not waited for
     EXPECT_GT(session().camera.aperture, 0);
     const glm::dvec3 place = world().toPhysical(glm::dvec3(session().camera.focus));
     EXPECT_NEAR(place.z, lo.z + 0.75 * size.z, 1e-3 * size.z) << "on the slice";
