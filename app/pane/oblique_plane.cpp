@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kAcross = 0.9;   ///< |normal.y| from which on a flat picture has +z upwards
 constexpr double kAligned = 5e-3; ///< what the text of a direction, of two digits, leaves out
+constexpr double kInside = 0.998; ///< of the way from the middle of the box to its end
 constexpr float kFlatView = 35;   ///< degrees; of no account in parallel projection
 
 } // namespace
@@ -65,8 +66,17 @@ std::vector<glm::dvec3> planeSection(const SpacePlane& plane, const volume::Box&
     return corners;
 }
 
-glm::dvec3 nearestInPlane(const SpacePlane& plane, const volume::Box& box, glm::dvec3 place) {
-    const std::vector<glm::dvec3> corners = planeSection(plane, box);
+glm::dvec3 nearestInPlane(const SpacePlane& wanted, const volume::Box& box, glm::dvec3 place) {
+    SpacePlane plane = wanted;
+    std::vector<glm::dvec3> corners = planeSection(plane, box);
+    // Back into the box: onto a face, or where only a corner is left just inside of it.
+    for (int attempt = 0; corners.empty() && attempt < 2; ++attempt) {
+        const double reach = glm::dot(glm::abs(plane.normal), box.size()) / 2 * (attempt == 0 ? 1 : kInside);
+        const double middle = glm::dot(plane.normal, box.center());
+        const double offset = glm::dot(plane.normal, plane.at);
+        plane.at = plane.normal * std::clamp(offset, middle - reach, middle + reach);
+        corners = planeSection(plane, box);
+    }
     if (corners.empty()) return glm::clamp(place, box.lo, box.hi);
     const glm::dvec3 flat = place - plane.normal * plane.distance(place);
     // Corners run around the normal: inside, each edge has the place on its left. Else an edge is nearest.

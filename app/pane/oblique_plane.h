@@ -31,8 +31,8 @@ struct SpacePlane {
 /// Corners of the part of the plane in the box, in order around it; empty where the plane misses the box.
 std::vector<glm::dvec3> planeSection(const SpacePlane& plane, const volume::Box& box);
 
-/// The place of the plane in the box that is nearest to a place. Where the plane misses the box: the nearest place of
-/// the box.
+/// The place of the plane in the box that is nearest to a place. For a plane that misses the box: of the nearest one
+/// that cuts it.
 glm::dvec3 nearestInPlane(const SpacePlane& plane, const volume::Box& box, glm::dvec3 place);
 
 /// Directions to the right and up in the flat picture of a plane, seen from the side that its normal points to. They

@@ -19,6 +19,12 @@ constexpr double kHeadWidth = 0.03;
 constexpr double kStar = 0.05;   ///< arms of a point light, in radii
 constexpr double kFarthest = 10; ///< of a point light, the range of its position
 
+/// The colour of a light, darker on a light window and lighter on a dark one: white light is to be seen on white.
+ImU32 handleColor(glm::vec3 color) {
+    const glm::vec3 seen = darkTheme() ? 0.7f * color + 0.3f : 0.5f * color;
+    return toColor({seen.r, seen.g, seen.b});
+}
+
 void addArrow(HandledObject& object, const vis::WorldFrame& world, glm::dvec3 target, glm::dvec3 toLight,
               double radius) {
     const auto at = [&](double along, glm::dvec3 aside) {
@@ -68,7 +74,7 @@ void addLights(std::vector<HandledObject>& objects, const Session& session, cons
         HandledObject object;
         object.key = "light " + std::to_string(i);
         object.name = "light " + std::to_string(i + 1);
-        object.color = toColor({light.color.r, light.color.g, light.color.b});
+        object.color = handleColor(light.color);
         object.outlined = true;
         if (light.kind == vis::LightKind::Point) {
             const glm::dvec3 at(light.position);

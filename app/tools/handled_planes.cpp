@@ -134,20 +134,4 @@ void addPlanes(std::vector<HandledObject>& objects, const Session& session, cons
     for (std::size_t i = 0; i < session.clips.size(); ++i) addClip(objects, session, info, i);
 }
 
-std::vector<SpaceLine> planeCrossing(const HandledObject& object, const volume::Box& box, int normal,
-                                     glm::dvec3 cursor) {
-    std::vector<SpaceLine> lines;
-    if (!object.plane) return lines;
-    const std::vector<glm::dvec3> corners = planeSection(*object.plane, box);
-    std::vector<glm::dvec3> ends;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        const glm::dvec3 from = corners[i], to = corners[(i + 1) % corners.size()];
-        const double a = from[normal] - cursor[normal], b = to[normal] - cursor[normal];
-        if ((a < 0) != (b < 0)) ends.push_back(glm::mix(from, to, a / (a - b)));
-    }
-    if (ends.size() == 2) lines.emplace_back(ends[0], ends[1]);
-    if (object.handles.size() > 1) lines.emplace_back(object.handles[0].at, object.handles[1].at);
-    return lines;
-}
-
 } // namespace tessera::app

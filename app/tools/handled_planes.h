@@ -8,9 +8,4 @@ namespace tessera::app {
 
 void addPlanes(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info);
 
-/// The plane as it crosses a slice through `cursor` across the axis `normal`: the line of both in the box, and the
-/// arrow.
-std::vector<SpaceLine> planeCrossing(const HandledObject& object, const volume::Box& box, int normal,
-                                     glm::dvec3 cursor);
-
 } // namespace tessera::app

@@ -1,6 +1,5 @@
 #include "app/tools/space_handles.h"
 
-#include "app/tools/handled_planes.h"
 #include "app/ui/keys.h"
 
 #include <algorithm>
@@ -127,6 +126,24 @@ PixelOf inSlice(const PlotFrame& frame, int right, int up, glm::dvec2 perUnit) {
         if (handle.axis >= 0 && handle.axis != right && handle.axis != up) return std::nullopt;
         return frame.pixel(handle.at[right] * perUnit.x, handle.at[up] * perUnit.y);
     };
+}
+
+/// The plane as it crosses a slice through `cursor` across the axis `normal`: the line of both in the box, and the
+/// arrow.
+std::vector<SpaceLine> planeCrossing(const HandledObject& object, const volume::Box& box, int normal,
+                                     glm::dvec3 cursor) {
+    std::vector<SpaceLine> lines;
+    if (!object.plane) return lines;
+    const std::vector<glm::dvec3> corners = planeSection(*object.plane, box);
+    std::vector<glm::dvec3> ends;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const glm::dvec3 from = corners[i], to = corners[(i + 1) % corners.size()];
+        const double a = from[normal] - cursor[normal], b = to[normal] - cursor[normal];
+        if ((a < 0) != (b < 0)) ends.push_back(glm::mix(from, to, a / (a - b)));
+    }
+    if (ends.size() == 2) lines.emplace_back(ends[0], ends[1]);
+    if (object.handles.size() > 1) lines.emplace_back(object.handles[0].at, object.handles[1].at);
+    return lines;
 }
 
 } // namespace

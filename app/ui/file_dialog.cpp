@@ -258,7 +258,10 @@ void FileDialog::drawName(std::optional<Answer>& answer, bool& open) {
     ImGui::BeginDisabled(refused);
     const bool button = ImGui::Button(verb, {em * 6, 0});
     ImGui::EndDisabled();
-    if (button || enterKey || deciding_) {
+    // After a click in the list Enter opens what is chosen; while the keyboard walks about it presses what is framed.
+    const bool enterChosen = mode_ == FileMode::Open && !chosen_.empty() && !refused && !typing() &&
+                             !ImGui::GetIO().NavVisible && pressed({.key = key::kEnter});
+    if (button || enterKey || enterChosen || deciding_) {
         answerWith(answer);
         focusName_ = shown_ && !confirm_; // a held Enter must not confirm replacing a file
     }

@@ -16,9 +16,10 @@ bool hasCamera(const Session& session, const std::string& pane) {
     return found != session.views.end() && traitsOf(found->second).camera;
 }
 
-/// The stack in which a new view opens: that of the active pane, unless it is too narrow; then the largest that shows
-/// no picture in space. 0: none.
-int stackFor(const Session& session, const std::string& beside, const std::map<int, DockRect>& rects, float scale) {
+/// The stack in which a new view opens: that of the active pane, unless it is too narrow or low; then the largest that
+/// shows no picture in space. `least`: height that the view keeps at least, design pixels. 0: none.
+int stackFor(const Session& session, const std::string& beside, const std::map<int, DockRect>& rects, float least,
+             float scale) {
     int chosen = 0;
     float largest = 0;
     const std::function<void(const DockNode&)> look = [&](const DockNode& node) {
@@ -32,11 +33,12 @@ int stackFor(const Session& session, const std::string& beside, const std::map<i
                 return view != session.views.end() && wanted(pane, view->second);
             });
         };
-        constexpr float kReadable = 400; // design pixels, the width of a tool bar
+        constexpr float kReadable = 400, kLow = 200; // design pixels: the width of a tool bar, a height for two plots
+        const bool roomy = size.x >= kReadable * scale && size.y >= std::max(kLow, least * 1.3f) * scale;
         const bool near = has([&](const std::string& pane, const ViewState&) { return pane == beside; });
         const bool space = has([](const std::string&, const ViewState& view) { return traitsOf(view).inSpace; });
         float worth = size.x * size.y;
-        if (near && size.x >= kReadable * scale) worth += 1e12f;
+        if (near && roomy) worth += 1e12f;
         if (space && !near) worth *= 1e-6f;
         if (worth <= largest) return;
         largest = worth;
@@ -154,7 +156,8 @@ void PaneHost::open(Session& session, const ViewState& view, float scale) {
     const std::string pane = addView(session, view);
     const std::map<int, DockRect> rects =
         layoutDock(session.dock, {{0, 0}, ImGui::GetMainViewport()->Size}, scale).rects;
-    if (const int id = stackFor(session, beside, rects, scale)) insertPane(session.dock, pane, id, DockSide::Center);
+    if (const int id = stackFor(session, beside, rects, traitsOf(view).leastHeight, scale))
+        insertPane(session.dock, pane, id, DockSide::Center);
     session.dock.maximised.clear();
     hand_.focus = pane;
 }

@@ -165,6 +165,19 @@ const std::map<std::string, Check>& checks() {
             {"Show direction gizmo", turned(&VolumeView::showGizmo)},
             {"Show scale bar", turned(&VolumeView::showScaleBar)},
             {"Show outlines and handles", turned(&VolumeView::showLenses)},
+            {"Show handles of lights", turned(&VolumeView::showLights)},
+            {"Depth of field",
+             [](const Session& before, const Session& after) {
+                 EXPECT_GT(after.camera.aperture, 0);
+                 EXPECT_EQ(after.camera.focus, before.camera.focus);
+             }},
+            {"Focus on the cross-hair",
+             [](const Session&, const Session& after) { EXPECT_GT(after.camera.aperture, 0); }}, // hands_planes_gl_test
+            {"Face oblique slices to the viewer",
+             [](const Session& before, const Session& after) {
+                 ASSERT_EQ(after.views.size(), before.views.size() + 1);
+                 EXPECT_TRUE(std::holds_alternative<ObliqueView>(after.views.at("oblique")));
+             }},
             {"Link camera", unlinked(Owned::Camera)},
             {"Link layers", unlinked(Owned::Layers)},
             {"Link time", unlinked(Owned::Time)},

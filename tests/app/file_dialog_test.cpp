@@ -66,6 +66,23 @@ TEST_F(FileDialogTest, TheStemOfTheNameIsSelectedEachTime) {
     EXPECT_EQ(answered(), "bone.ply");
 }
 
+TEST_F(FileDialogTest, EnterOpensWhatAClickChoseInTheList) {
+    std::ofstream(folder / "there.txt") << "x";
+    show(FileMode::Open);
+    for (float y = 215; y < 330 && answers.empty(); y += 6) {
+        mouse = {300, y};
+        frames(1);
+        for (const bool down : {true, false}) {
+            ImGui::GetIO().MouseDown[0] = down;
+            frames(1);
+        }
+        frames(40); // no double click
+        EXPECT_TRUE(answers.empty()) << "one click opens nothing";
+        press(key::kEnter);
+    }
+    EXPECT_EQ(answered(), "there.txt");
+}
+
 TEST_F(FileDialogTest, WhatIsWrongWithANameStandsUnderItUntilItChanges) {
     std::ofstream(folder / "there.txt") << "x";
     show(FileMode::Open);

@@ -23,13 +23,13 @@ ObliqueView tiltedBy(glm::dvec3 normal) {
     return view;
 }
 
-class PlaneHands : public Hands {
+class TiltedPlaneHands : public Hands {
 protected:
     /// A volume view from the front without perspective, with an oblique view beside it that is not drawn.
-    void showVolume(const std::function<void(Session&)>& prepare) {
+    void showVolume(const std::function<void(Session&)>& prepare, glm::ivec2 size = {400, 300}) {
         VolumeView volume;
         volume.showGizmo = volume.showLegend = volume.showAxes = false;
-        show(volume, {400, 300}, [&](Session& edited) {
+        show(volume, size, [&](Session& edited) {
             edited.layers.clear();
             edited.camera = {};
             edited.camera.orientation = glm::quat(1, 0, 0, 0);
@@ -53,7 +53,7 @@ protected:
     ImRect picture;
 };
 
-TEST_F(PlaneHands, TheDotMovesAPlaneAlongItsNormalAndTheArrowTiltsIt) {
+TEST_F(TiltedPlaneHands, TheDotMovesAPlaneAlongItsNormalAndTheArrowTiltsIt) {
     for (const glm::dvec3 stretch : {glm::dvec3(1), glm::dvec3(1, 0.5, 1.5)}) {
         showVolume([&](Session& edited) {
             edited.stretch = stretch;
@@ -78,7 +78,7 @@ TEST_F(PlaneHands, TheDotMovesAPlaneAlongItsNormalAndTheArrowTiltsIt) {
         EXPECT_TRUE(session() == before) << apart(before);
 
         const glm::dvec3 end = tip(session().cursor, upright);
-        const ImVec2 grip = worldPixel(end), aim{grip.x + 14, grip.y + 9};
+        const ImVec2 grip = worldPixel(end), aim{grip.x - 14, grip.y + 9};
         drag(grip, aim);
         EXPECT_EQ(session().cursor, before.cursor);
         EXPECT_NEAR(worldPixel(tip(session().cursor, worldNormal(normal(), world()))).x, aim.x, 1.5);
@@ -97,10 +97,10 @@ TEST_F(PlaneHands, TheDotMovesAPlaneAlongItsNormalAndTheArrowTiltsIt) {
     }
 }
 
-TEST_F(PlaneHands, ThePlaneStaysInTheBox) {
+TEST_F(TiltedPlaneHands, ThePlaneStaysInTheBox) {
     showVolume([](Session& edited) { edited.views["oblique"] = tiltedBy({0.6, 0.8, 0}); });
     drag(pixel(session().cursor), {picture.Max.x + 400, picture.Min.y - 400});
-    EXPECT_FALSE(planeSection({normal(), session().cursor}, planesBox()).empty());
+    EXPECT_FALSE(planeSection({normal(), session().cursor}, planesBox()).empty()) << "some of it is seen";
     for (int axis = 0; axis < 3; ++axis) {
         EXPECT_GE(session().cursor[axis], planesBox().lo[axis]);
         EXPECT_LE(session().cursor[axis], planesBox().hi[axis]);
@@ -108,7 +108,7 @@ TEST_F(PlaneHands, ThePlaneStaysInTheBox) {
     EXPECT_GT(session().cursor.x, 0.016);
 }
 
-TEST_F(PlaneHands, ClipPlanesAndSliceLayersAreDraggedToo) {
+TEST_F(TiltedPlaneHands, ClipPlanesAndSliceLayersAreDraggedToo) {
     showVolume([](Session& edited) {
         edited.clips = {{.center = {0.5f, 0.5f, 0.5f}, .axis = {1, 0, 0}}};
         edited.layers = {
@@ -141,7 +141,7 @@ TEST_F(PlaneHands, ClipPlanesAndSliceLayersAreDraggedToo) {
     EXPECT_EQ(clip().center, before.clips[0].center);
 }
 
-TEST_F(PlaneHands, ArrowsOfLightsTurnThemAndPointsMove) {
+TEST_F(TiltedPlaneHands, ArrowsOfLightsTurnThemAndPointsMove) {
     showVolume([](Session& edited) {
         edited.camera.orientation = glm::normalize(glm::quat(0.9f, 0.1f, 0.3f, 0.05f));
         edited.lighting.lights = {{.kind = vis::LightKind::Viewer, .azimuth = -30, .elevation = 40},
@@ -185,7 +185,7 @@ TEST_F(PlaneHands, ArrowsOfLightsTurnThemAndPointsMove) {
     EXPECT_GT(std::abs(session().lighting.lights[0].azimuth), 90.0f);
 }
 
-TEST_F(PlaneHands, InSlicesAPlaneIsALineWithAnArrow) {
+TEST_F(TiltedPlaneHands, InSlicesAPlaneIsALineWithAnArrow) {
     SlicesView slices;
     slices.channel = "T";
     slices.showReadout = false;
@@ -213,7 +213,7 @@ TEST_F(PlaneHands, InSlicesAPlaneIsALineWithAnArrow) {
     EXPECT_EQ(steps(), 1u);
 }
 
-TEST_F(PlaneHands, InTheFlatViewTheCrossHairStaysInThePlaneAndTheWheelMovesIt) {
+TEST_F(TiltedPlaneHands, InTheFlatViewTheCrossHairStaysInThePlaneAndTheWheelMovesIt) {
     ObliqueView view;
     view.channel = "T";
     view.showReadout = false;
@@ -231,7 +231,7 @@ TEST_F(PlaneHands, InTheFlatViewTheCrossHairStaysInThePlaneAndTheWheelMovesIt) {
     moveTo({mouse.x + 20, mouse.y - 30});
     button(0, false);
     const glm::dvec3 moved = session().cursor - first;
-    EXPECT_NEAR(glm::dot(session().cursor - start, n), 0, 1e-12);
+    EXPECT_NEAR(glm::dot(session().cursor - start, n), 0, 1e-10);
     EXPECT_NEAR(glm::dot(moved, up), 30 * perPixel, 2 * perPixel);
     EXPECT_NEAR(glm::dot(moved, right), 20 * perPixel, 2 * perPixel);
     settle();
@@ -248,7 +248,7 @@ TEST_F(PlaneHands, InTheFlatViewTheCrossHairStaysInThePlaneAndTheWheelMovesIt) {
     EXPECT_FALSE(planeSection({n, session().cursor}, planesBox()).empty()) << "not out of the box";
 }
 
-TEST_F(PlaneHands, TheCommandTiltsEveryObliqueSliceToTheViewer) {
+TEST_F(TiltedPlaneHands, TheCommandTiltsEveryObliqueSliceToTheViewer) {
     showVolume([](Session& edited) {
         edited.camera.orientation = glm::normalize(glm::quat(0.9f, 0.2f, 0.3f, 0.1f));
         edited.stretch = {1, 0.5, 1.5};
@@ -278,21 +278,22 @@ TEST_F(PlaneHands, TheCommandTiltsEveryObliqueSliceToTheViewer) {
     EXPECT_TRUE(session().views.contains("oblique")) << "opened where there was none";
 }
 
-TEST_F(PlaneHands, AClickInTheMenuFocusesOnWhatIsSeenThere) {
-    showVolume([](Session& edited) {
-        edited.layers = {
-            {.name = "",
-             .visible = true,
-             .technique = vis::SliceLayer{
-                 .channel = "T", .orientation = vis::SliceOrientation::Z, .atCursor = false, .position = 0.75}}};
-    });
+TEST_F(TiltedPlaneHands, AClickInTheMenuFocusesOnWhatIsSeenThere) {
+    showVolume(
+        [](Session& edited) {
+            edited.layers = {
+                {.name = "",
+                 .visible = true,
+                 .technique = vis::SliceLayer{
+                     .channel = "T", .orientation = vis::SliceOrientation::Z, .atCursor = false, .position = 0.75}}};
+        },
+        {320, 800}); // the whole menu has room
     const glm::dvec3 size = planesBox().size(), lo = planesBox().lo;
     const ImVec2 at = within(picture, 0.4, 0.45);
     click(at, 1);
     ASSERT_TRUE(popup());
-    const ImRect focus = item(popup(), {std::string("Focus here")});
-    click(within(focus, 0.3, 0.5));
-    settle();
+    click(item(popup(), {"Focus here"}).GetCenter());
+    for (int i = 0; i < 3; ++i) frame(); // its 64 pictures are not waited for
     EXPECT_GT(session().camera.aperture, 0);
     const glm::dvec3 place = world().toPhysical(glm::dvec3(session().camera.focus));
     EXPECT_NEAR(place.z, lo.z + 0.75 * size.z, 1e-3 * size.z) << "on the slice";

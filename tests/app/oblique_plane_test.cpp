@@ -1,10 +1,14 @@
 #include "app/pane/oblique_plane.h"
 #include "app/views/slices/flat_slice.h"
+#include "tests/app/formula_cell.h"
+#include "volume/sources/memory_source.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <random>
+#include <sstream>
 
 /// Tilted planes as geometry.
 namespace tessera::app {
@@ -67,7 +71,12 @@ TEST(ObliquePlane, TheNearestPlaceIsNearerThanAnyOther) {
         const glm::dvec3 in = plane.at;
         EXPECT_LT(glm::length(nearestInPlane(plane, kPlaneBox, in) - in), 1e-12) << "what lies in it stays";
     }
-    EXPECT_TRUE(inPlaneBox(nearestInPlane({{0, 0, 1}, {0, 0, 99}}, kPlaneBox, {0, 0, 99}))) << "a plane beside the box";
+    const glm::dvec3 face = nearestInPlane({{0, 0, 1}, {0, 0, 99}}, kPlaneBox, {0, 0, 99});
+    EXPECT_EQ(face, glm::dvec3(0, 0.5, 5)) << "a plane beside the box comes back to its face";
+    const glm::dvec3 slant = unitNormal({1, 1, 1}),
+                     back = nearestInPlane({slant, {99, 99, 99}}, kPlaneBox, {99, 99, 99});
+    EXPECT_FALSE(planeSection({slant, back}, kPlaneBox).empty()) << "or just inside a corner";
+    EXPECT_LT(glm::length(back - kPlaneBox.hi), 0.05);
 }
 
 TEST(ObliquePlane, FlatAxesAreAtRightAnglesInBothSpaces) {
@@ -151,6 +160,29 @@ TEST(FlatSlice, SpansThePartInTheBoxInTheDatasUnit) {
     const FlatSlice across = flatSlice(session, info, {0, 0, 1});
     EXPECT_EQ(across.nameX, "x");
     EXPECT_EQ(axesText(across), "");
+}
+
+/// U.x of the formula cell rises along x alone, by 1 over its extent: so do values between the samples.
+TEST(FlatSlice, ExportsInterpolatedValuesInThePlane) {
+    const auto source = volume::makeMemorySource(formula::makeCell(), {});
+    Session session;
+    session.cursor = {0.0123, 0.0041, -0.0009};
+    const glm::dvec3 normal = unitNormal({-0.8, 0.1, 0.6});
+    const FlatSlice flat = flatSlice(session, source->info(), normal);
+    std::istringstream lines(flatCsv(*source, session, flat, {*source->info().findChannel("U.x")}));
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_NE(line.find("interpolated"), std::string::npos);
+    std::getline(lines, line);
+    EXPECT_EQ(line.substr(0, 13), "u,v,x,y,z,U.x");
+    int rows = 0;
+    for (double u, v, x, y, z, value; std::getline(lines, line); ++rows) {
+        ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf", &u, &v, &x, &y, &z, &value), 6) << line;
+        EXPECT_NEAR(glm::dot(glm::dvec3(x, y, z) - session.cursor, normal), 0, 1e-10);
+        EXPECT_LT(glm::length(flat.placeAt({u, v}) - glm::dvec3(x, y, z)), 1e-9);
+        EXPECT_NEAR(value, 0.1 + (x - formula::kOrigin[0]) / (7 * formula::kSpacing[0]), 1e-5);
+    }
+    EXPECT_GT(rows, 1000);
 }
 
 } // namespace

