@@ -91,6 +91,7 @@ constexpr Consumer kConsumers[] = {
     {"profile",         "F F F . . . . . . . . . . . . F . . . F"},
     {"curves",          ". . . . . F . . . . . F . . . . . . . F"},
     {"sliceMatrix",     "F F . . . . . . . . . . . . . F . . . F"},
+    {"oblique",         "F F F F . . . . . . . . . . . F . . . F"},
     {"shadowCube",      "F F F F F F F F F F F F F . F . . . . F"},
     {"tesseract",       "F F . . . F F . . . . . . . F . . . . F"},
     {"compare",         "F F F F F F F F F F F F F F F . . . . F"},
