@@ -77,8 +77,8 @@ TEST_F(Dialogs, APictureSaysWhetherItHoldsItsSession) {
                vectors = HasSubstr("Texts and lines are vectors");
     EXPECT_THAT(drawnWords(), Contains(holds));
     EXPECT_THAT(drawnWords(), Not(Contains(vectors)));
-    click(find("Png").middle(), draw);
-    click(find("Pdf").middle(), draw);
+    click(find("PNG").middle(), draw);
+    click(find("PDF").middle(), draw);
     EXPECT_THAT(drawnWords(), Contains(vectors));
     EXPECT_THAT(drawnWords(), Not(Contains(holds)));
 }
