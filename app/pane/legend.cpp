@@ -125,6 +125,13 @@ float drawLegendBar(ImDrawList& draw, ImVec2 min, float width, const LegendEntry
     return legendBarHeight();
 }
 
+void legendBarItem(const LegendEntry& entry, bool shown) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = std::min(ImGui::GetContentRegionAvail().x, em() * 20);
+    const float height = shown ? drawLegendBar(*ImGui::GetWindowDrawList(), at, width, entry) : legendBarHeight();
+    ImGui::Dummy({width, height + em() * 0.3f});
+}
+
 void drawLegendColumn(ImDrawList& draw, ImVec2 min, float height, const LegendEntry& entry) {
     const float width = em() * 0.6f, line = ImGui::GetFontSize();
     const int steps = std::max(1, static_cast<int>(height));

@@ -65,6 +65,8 @@ void drawLegendRows(ImDrawList& draw, const std::vector<LegendEntry>& entries, I
 /// One horizontal bar with ticks and title below in the given width; returns its height.
 float drawLegendBar(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry);
 float legendBarHeight();
+/// The same as an item of the window, at most 20 em wide; where it is not `shown` its room stays empty.
+void legendBarItem(const LegendEntry& entry, bool shown);
 
 /// One narrow upright bar, highest value on top, with the values of its ends at its right; about five em wide.
 void drawLegendColumn(ImDrawList& draw, ImVec2 min, float height, const LegendEntry& entry);

@@ -45,6 +45,19 @@ protected:
             },
             seconds);
     }
+    template <class Body> void frames(int count, const Body& body) {
+        for (int i = 0; i < count; ++i) feed(body);
+    }
+    /// A left click, and frames until what it opened is there.
+    template <class Body> void click(ImVec2 at, const Body& body) {
+        mouse = at;
+        frames(2, body);
+        for (const bool down : {true, false}) {
+            ImGui::GetIO().MouseDown[0] = down;
+            feed(body);
+        }
+        frames(3, body);
+    }
     /// The texts of the widgets that `body` makes in a frame of its own (not what it draws by itself).
     template <class Body> std::string said(Body&& body) {
         std::string out;

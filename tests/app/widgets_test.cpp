@@ -23,18 +23,6 @@ protected:
         loadFonts(1);
         applyTheme(Theme::Dark, 1);
     }
-    template <class Body> void frames(int count, const Body& body) {
-        for (int i = 0; i < count; ++i) feed(body);
-    }
-    template <class Body> void click(ImVec2 at, const Body& body) {
-        mouse = at;
-        frames(2, body);
-        for (const bool down : {true, false}) {
-            ImGui::GetIO().MouseDown[0] = down;
-            feed(body);
-        }
-        frames(2, body);
-    }
     static ImVec2 placeOf(const std::string& text) {
         for (const DrawnText& each : drawnTexts())
             if (each.text == text) return each.middle();

@@ -1,18 +1,11 @@
 #include "vis/raycast/brush_uniforms.h"
 
+#include "tests/vis/two_channels.h"
+
 #include <gtest/gtest.h>
 
 namespace tessera::vis {
 namespace {
-
-volume::DatasetInfo twoChannels() {
-    volume::DatasetInfo info;
-    info.lattice.size = {4, 4, 4};
-    info.parameters.resize(2);
-    info.parameters[0].name = "a";
-    info.parameters[1].name = "b";
-    return info;
-}
 
 Scene sceneOf(std::vector<Brush> brushes) {
     Scene scene;

@@ -1,5 +1,7 @@
 #include "vis/raycast/ray_plan.h"
 
+#include "tests/vis/two_channels.h"
+
 #include <gtest/gtest.h>
 #include <map>
 #include <string>
@@ -11,17 +13,8 @@ namespace {
 
 using RecipeDefines = std::map<std::string, std::string>;
 
-volume::DatasetInfo aAndB() {
-    volume::DatasetInfo info;
-    info.lattice.size = {4, 4, 4};
-    info.parameters.resize(2);
-    info.parameters[0].name = "a";
-    info.parameters[1].name = "b";
-    return info;
-}
-
 RecipeDefines recipeDefines(const Scene& scene) {
-    const ProgramRecipe recipe = rayRecipe(planRays(scene, aAndB()), scene, {}, false);
+    const ProgramRecipe recipe = rayRecipe(planRays(scene, twoChannels()), scene, {}, false);
     RecipeDefines out(recipe.defines.begin(), recipe.defines.end());
     EXPECT_EQ(out.size(), recipe.defines.size()) << "each once";
     return out;

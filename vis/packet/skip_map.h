@@ -10,8 +10,8 @@
 namespace tessera::vis::packet {
 
 /// The number of blocks that look alike from each block on, for each octant of ray directions: those of a ray that goes
-/// there are known further than those all around (A. Deakin, M. Knoll: Fast ray casting of discrete volumes with
-/// anisotropic Chebyshev distances, 2020).
+/// there are known further than those all around (L. Deakin, M. Knackstedt: Efficient ray casting of volumetric images
+/// using distance maps for empty space skipping, Computational Visual Media 6, 2020).
 struct SkipMap {
     static constexpr int kMost = 127; ///< blocks that are counted
     static constexpr int kFull = 128; ///< added where a block can show something

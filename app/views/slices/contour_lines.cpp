@@ -1,5 +1,8 @@
 #include "app/views/slices/contour_lines.h"
 
+#include "app/pane/controls.h"
+#include "app/pane/tool_row.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -35,6 +38,14 @@ void layOut(ContourCache& cache, const Contours& contours, double step, const Pl
 }
 
 } // namespace
+
+void chooseContourCount(ToolRow& tools, int& count, const char* help) {
+    const float width = em() * 8;
+    if (!tools.next(width)) return;
+    ImGui::SetNextItemWidth(width);
+    ImGui::SliderInt("##contours", &count, 0, 50, count == 0 ? "no contours" : "%d contours");
+    if (ImGui::IsItemHovered()) tooltip(help);
+}
 
 void drawContours(ViewContext& context, ContourCache& cache, const std::string& jobKey, const ContourQuery& query,
                   double step, bool values, const PlotFrame& frame, glm::dvec2 perUnit) {

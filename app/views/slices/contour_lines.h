@@ -22,6 +22,9 @@ struct ContourCache {
     std::vector<LineLabel> labels;
 };
 
+/// The slider for the number of lines in the tools of a view, with the tooltip `help`.
+void chooseContourCount(ToolRow& tools, int& count, const char* help);
+
 /// The lines of a query with, if wanted, their values on them. While other lines are read there are none: those of
 /// another place or time would lie where the value is another. `perUnit`: of the frame's axes, by length of the data.
 void drawContours(ViewContext& context, ContourCache& cache, const std::string& jobKey, const ContourQuery& query,

@@ -4,6 +4,7 @@
 #include "app/session/shown_scene.h"
 #include "app/tools/oblique_tilt.h"
 #include "app/ui/widgets.h"
+#include "app/views/slices/contour_lines.h"
 #include "app/views/slices/flat_slice.h"
 
 #include <algorithm>
@@ -66,11 +67,7 @@ void drawTools(ViewContext& context, ToolRow& tools, ObliqueView& view, const Fl
             ImGui::EndPopup();
         }
     }
-    if (tools.next(em() * 8)) {
-        ImGui::SetNextItemWidth(em() * 8);
-        ImGui::SliderInt("##contours", &view.contours, 0, 50, view.contours == 0 ? "no contours" : "%d contours");
-        if (ImGui::IsItemHovered()) tooltip("Number of contour lines over the colour range");
-    }
+    chooseContourCount(tools, view.contours, "Number of contour lines over the colour range");
     if (tools.next(checkboxWidth("in 3D"))) {
         ImGui::Checkbox("in 3D", &view.inSpace);
         if (ImGui::IsItemHovered()) tooltip("Draw the slice in the volume views too");
@@ -207,12 +204,7 @@ void drawNumbersOf(ViewContext& context, const ObliqueView& view, ObliqueCache& 
     LegendEntry legend = legendOf(context.session, info, channel);
     if (const auto value = cache.readout.value(info.channel(channel).name); value && context.decoration.cursor)
         legend.marker = *value;
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float width = std::min(ImGui::GetContentRegionAvail().x, em() * 20);
-    const bool legendShown = context.decoration.legend;
-    ImGui::Dummy(
-        {width, (legendShown ? drawLegendBar(*ImGui::GetWindowDrawList(), at, width, legend) : legendBarHeight()) +
-                    em() * 0.3f});
+    legendBarItem(legend, context.decoration.legend);
     if (const std::string axes = axesText(flat); !axes.empty() && context.decoration.title) {
         ImGui::PushTextWrapPos(0);
         ImGui::TextDisabled("%s", axes.c_str());

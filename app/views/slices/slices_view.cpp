@@ -20,13 +20,9 @@ struct SlicesCache : ViewCache {
 
 /// Chooses the parameter of the lines, and whether they are labelled.
 void chooseContours(ToolRow& tools, const volume::DatasetInfo& info, SlicesView& view) {
-    if (tools.next(em() * 8)) {
-        ImGui::SetNextItemWidth(em() * 8);
-        ImGui::SliderInt("##contours", &view.contours, 0, 50, view.contours == 0 ? "no contours" : "%d contours");
-        if (ImGui::IsItemHovered())
-            tooltip("Number of contour lines over the colour range; of another parameter, or with values, at most this "
-                    "many at round values");
-    }
+    chooseContourCount(tools, view.contours,
+                       "Number of contour lines over the colour range; of another parameter, or with values, at most "
+                       "this many at round values");
     if (view.contours == 0) return;
     if (tools.next(em() * 8)) {
         ImGui::SetNextItemWidth(em() * 8);
@@ -106,14 +102,9 @@ void drawNumbers(ViewContext& context, const std::string& pane, const SlicesView
     const bool compact = readout && legends + readoutHeight(cache.readout) > ImGui::GetContentRegionAvail().y;
     const bool first = compact && !context.figure && ImGui::GetScrollMaxY() <= 0;
     if (first) drawReadout(context, cache.readout, true);
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float width = std::min(ImGui::GetContentRegionAvail().x, em() * 20);
     // What is left out keeps its place: the rest stays where it is.
-    const bool legendShown = context.decoration.legend;
-    ImGui::Dummy(
-        {width, (legendShown ? drawLegendBar(*ImGui::GetWindowDrawList(), at, width, legend) : legendBarHeight()) +
-                    em() * 0.3f});
-    if (!note.empty() && legendShown) {
+    legendBarItem(legend, context.decoration.legend);
+    if (!note.empty() && context.decoration.legend) {
         ImGui::PushTextWrapPos(0);
         ImGui::TextUnformatted(note.c_str());
         ImGui::PopTextWrapPos();
