@@ -33,6 +33,23 @@ double workingBytes(const volume::ResampleOptions& options) {
            (options.sharpen > 0 ? double(sizeof(float)) + 1 : 0);
 }
 
+/// Whether the coefficients of a parameter may be quantised, for which bricks need more memory.
+bool isBounded(const volume::Parameter& parameter, const PackOptions& options) {
+    const bool bounded = options.maxError > 0 || options.absError > 0 || options.sizeMb > 0;
+    return parameter.type == volume::ScalarType::F32 && bounded;
+}
+
+/// Memory of the bricks being coded, in bytes: samples, flags, codes and coefficients on every thread. Where
+/// coefficients are quantised, what a reader will decode is computed beside them.
+double bytesOfBricks(const volume::BrickGrid& grid, const volume::Parameter& parameter, const PackOptions& options) {
+    constexpr double kThreads = 16, kCodes = 12, kWithDecoded = 28;
+    const double codes = isBounded(parameter, options) ? kWithDecoded : kCodes;
+    const double brick = double(brickBytes(grid, parameter.type)),
+                 samples = brick / double(volume::byteSize(parameter.type));
+    return std::min({kThreads, double(std::thread::hardware_concurrency()), double(grid.brickCount())}) *
+           (brick + (1 + codes) * samples);
+}
+
 /// Memory of packing in slabs, in bytes.
 class SlabCosts {
 public:
@@ -45,16 +62,8 @@ public:
 
     /// For one parameter, independent of the number of layers.
     double always(const volume::Parameter& parameter) const {
-        // Bricks being coded: samples, flags, codes and coefficients on every thread, and the bytes of a batch.
-        // Where coefficients are quantised, what a reader will decode is computed beside them.
-        constexpr double kThreads = 16, kCodes = 12, kWithDecoded = 28;
-        const bool bounded = options_.maxError > 0 || options_.absError > 0 || options_.sizeMb > 0;
-        const double codes = parameter.type == volume::ScalarType::F32 && bounded ? kWithDecoded : kCodes;
         const std::size_t brick = brickBytes(metadata_.grid, parameter.type);
-        const double samples = double(brick) / double(volume::byteSize(parameter.type));
-        return std::min(kThreads, double(std::thread::hardware_concurrency())) *
-                   (double(brick) + (1 + codes) * samples) +
-               double(batchOf(brick) * brick);
+        return bytesOfBricks(metadata_.grid, parameter, options_) + double(batchOf(brick) * brick);
     }
     double ofLayers(const volume::Parameter& parameter, int layers) const {
         const double bytes = double(volume::byteSize(parameter.type)) + 1; // plus a flag
@@ -140,7 +149,8 @@ MemoryPlan planMemory(const Metadata& metadata, const volume::Dataset& dataset, 
     for (const volume::Parameter& parameter : source.parameters) {
         const double bytes = double(volume::byteSize(parameter.type)) + 1; // plus a flag
         step = std::max(step, parameter.components * samples * bytes + stored * bytes + working);
-        coding = std::max(coding, parameter.components * stored * bytes + 2 * stored * bytes);
+        const double bricks = isBounded(parameter, options) ? bytesOfBricks(metadata.grid, parameter, options) : 0;
+        coding = std::max(coding, parameter.components * stored * bytes + 2 * stored * bytes + bricks);
         all += parameter.components * samples * bytes;
         last += parameter.components * stored * bytes;
     }

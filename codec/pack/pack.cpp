@@ -8,6 +8,7 @@
 #include "codec/pack/frame_queue.h"
 #include "codec/pack/lossy_field.h"
 #include "codec/pack/memory_plan.h"
+#include "codec/pack/pack_grid.h"
 #include "codec/pack/pack_passes.h"
 #include "codec/pack/pack_size.h"
 #include "volume/field/quantities.h"
@@ -15,7 +16,6 @@
 #include "volume/resample/series_dataset.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <filesystem>
 
@@ -26,53 +26,6 @@ namespace {
 using volume::Field;
 using volume::LatticeKind;
 using volume::ScalarType;
-
-int defaultLevels(const volume::Lattice& lattice, int brickSize) {
-    const glm::ivec3 texels = lattice.texels();
-    const int longest = std::min(brickSize, std::max({texels.x, texels.y, texels.z}));
-    int levels = 1;
-    while (longest >> levels >= 4) ++levels;
-    return levels;
-}
-
-/// The automatic brick size. Repetition, which only integers that were not resampled have, is only found within a
-/// brick, so small data of that kind get one large brick. Archives that grow keep their brick size.
-int brickSizeFor(const volume::Lattice& lattice, const volume::DatasetInfo& info, const PackOptions& options,
-                 const Archive* grown) {
-    constexpr int kUsual = 64, kLargest = 128;
-    constexpr std::size_t kSmall = 1 << 19; // samples
-    if (options.brickSize != 0) return options.brickSize;
-    if (grown) return grown->grid().brickSize;
-    const glm::ivec3 size = lattice.size;
-    const int longest = std::max({size.x, size.y, size.z});
-    const auto isInteger = [](const volume::Parameter& parameter) { return parameter.type != ScalarType::F32; };
-    const bool one = lattice.kind == LatticeKind::CC && lattice == info.lattice && info.times.size() == 1 &&
-                     lattice.count() <= kSmall && longest > kUsual && longest <= kLargest &&
-                     std::all_of(info.parameters.begin(), info.parameters.end(), isInteger);
-    return one ? kLargest : kUsual;
-}
-
-volume::BrickGrid gridFor(const volume::Lattice& lattice, const volume::DatasetInfo& info, const PackOptions& options,
-                          const Archive* grown = nullptr) {
-    const int brickSize = brickSizeFor(lattice, info, options, grown);
-    volume::BrickGrid grid{lattice, brickSize, options.levels,
-                           levelPhase(waveletOf(options.wavelet).value_or(Wavelet::W22))};
-    if (brickSize < 4 || brickSize > 128 || !std::has_single_bit(unsigned(brickSize)))
-        throw Error("the brick size must be a power of two from 4 to 128, not " + std::to_string(brickSize));
-    if (grid.levels == 0) grid.levels = defaultLevels(lattice, grid.brickSize);
-    if (grid.levels < 1 || grid.levels > int(std::bit_width(unsigned(grid.brickSize))))
-        throw Error(std::to_string(grid.levels) + " levels do not fit bricks of " + std::to_string(grid.brickSize));
-    return grid;
-}
-
-bool hasThreshold(const PackOptions& options) {
-    return options.threshold.kind != ThresholdChoice::None && options.threshold.value > 0;
-}
-
-/// Whether the options keep all samples exactly, except in omitted bricks.
-bool isExact(const PackOptions& options) {
-    return options.maxError == 0 && options.absError == 0 && options.psnr == 0 && !hasThreshold(options);
-}
 
 /// Whether the error bound is relative to the range over all times, which requires a pass of its own; a single time is
 /// read only once.

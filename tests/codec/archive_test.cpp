@@ -299,6 +299,41 @@ TEST(Archive, OneSmallVolumeOfIntegersIsOneBrick) {
     EXPECT_EQ(Archive(path).info().times.size(), 2u);
 }
 
+// Every face of a brick costs bytes where coefficients are rounded; what a view reads whole anyway needs few of them.
+TEST(Archive, SmallVolumesOfFloatsWithinABoundHaveLargeBricks) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.tsr";
+    PackOptions bounded;
+    bounded.maxError = 1e-3;
+    bounded.lattice = StoredLattice::CC;
+    std::uint64_t bytes = 0;
+    const auto edgeOf = [&](ScalarType type, glm::ivec3 size, const PackOptions& options) {
+        volume::Dataset made = makeDataset(size, {{"n", ScalarType::U8}, {"a", type}}, 1);
+        bytes = pack(made, options, path).archiveBytes;
+        return Archive(path).grid().brickSize;
+    };
+    EXPECT_EQ(edgeOf(ScalarType::F32, {98, 34, 34}, bounded), 128);
+    const std::uint64_t inLarge = bytes;
+    volume::Dataset more = makeDataset({98, 34, 34}, {{"n", ScalarType::U8}, {"a"}}, 1);
+    more.info.times = {5};
+    append(more, path);
+    EXPECT_EQ(Archive(path).grid().brickSize, 128);
+    EXPECT_EQ(edgeOf(ScalarType::F32, {64, 34, 34}, bounded), 64) << "one of the usual size holds it";
+    EXPECT_EQ(edgeOf(ScalarType::F32, {1025, 64, 32}, bounded), 64) << "larger than 128^3";
+    EXPECT_EQ(edgeOf(ScalarType::I16, {130, 34, 34}, bounded), 64);
+    const auto changed = [&](auto member, auto value) {
+        PackOptions options = bounded;
+        options.*member = value;
+        return edgeOf(ScalarType::F32, {98, 34, 34}, options);
+    };
+    EXPECT_EQ(changed(&PackOptions::brickSize, 64), 64);
+    EXPECT_LT(inLarge, bytes);
+    EXPECT_EQ(changed(&PackOptions::maxError, 0.0), 64) << "lossless";
+    EXPECT_EQ(changed(&PackOptions::discard, 0.01), 64);
+    EXPECT_EQ(changed(&PackOptions::threshold, ThresholdOptions{ThresholdChoice::Soft, 0.01, true}), 64);
+    EXPECT_EQ(changed(&PackOptions::lattice, StoredLattice::BCC), 128);
+}
+
 TEST(Archive, AKeyOutsideIsAnError) {
     const TemporaryFolder folder;
     volume::Dataset made = makeDataset({20, 20, 20}, {{"a", ScalarType::U8, 1, Texture::Smooth, false, false}}, 1);
