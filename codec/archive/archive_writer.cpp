@@ -77,8 +77,6 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
     return segments;
 }
 
-constexpr int kTimesOfSteps = 16; ///< at every such time several steps are tried, at others those of the time before
-
 } // namespace
 
 struct ArchiveWriter::Impl {
@@ -107,9 +105,6 @@ struct ArchiveWriter::Impl {
     const SeenFrame* frameBefore(const FrameRecord& frame, const FrameSamples& samples) const;
     std::vector<std::uint8_t> repeated(const SeenFrame* before, const FrameSamples& samples, const FrameRecord& frame,
                                        const FrameOptions& options) const;
-    /// Whether and how coefficients of a frame are quantised: as at the time before where that is still shorter.
-    std::optional<SteppedFrame> stepsFor(const KnownModel* last, const FrameSamples& samples, const FrameRecord& frame,
-                                         const Model& model, const FrameOptions& options) const;
     /// Determines all coding parameters of a frame.
     FrameCoding prepare(int time, std::size_t component, const FrameSamples& samples, const FrameOptions& options);
     /// Codes every brick; true if no token was coded.
@@ -235,14 +230,6 @@ ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, b
 
 ArchiveWriter::~ArchiveWriter() = default;
 
-std::optional<SteppedFrame> ArchiveWriter::Impl::stepsFor(const KnownModel* last, const FrameSamples& samples,
-                                                          const FrameRecord& frame, const Model& model,
-                                                          const FrameOptions& options) const {
-    if (last && last->kind == NumberKind::Stepped && int(frame.time) / step() % kTimesOfSteps != 0)
-        if (const auto again = chooseSteps(metadata.grid, samples, frame, model, options, &last->steps)) return again;
-    return chooseSteps(metadata.grid, samples, frame, model, options, nullptr);
-}
-
 FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const FrameSamples& samples,
                                          const FrameOptions& options) {
     const volume::BrickGrid& grid = metadata.grid;
@@ -265,9 +252,11 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     coding.importance = importanceOfBricks(grid, samples, options.range, options.categorical, options.importance);
     const bool byBand = (header.features & kBandContexts) != 0;
     coding.model = chooseModel(grid, samples, last, byBand, frame, options, coding.taken);
-    if (const auto steps = stepsFor(last, samples, frame, coding.model, options)) {
+    if (auto steps = chooseSteps(grid, samples, frame, coding.model, options, last, time / step(), coding.taken)) {
         useSteps(*steps, frame);
         coding.taken.bricks.clear();
+        coding.taken.bricks.resize(grid.brickCount());
+        for (auto& [number, brick] : steps->bricks) coding.taken.bricks[number] = std::move(brick);
         frame.model = last && last->kind == NumberKind::Stepped && last->steps == frame.steps ? last->number : -1;
         header.features |= kSteppedBricks;
     } else if (!coding.taken.serves(frame, coding.model)) {

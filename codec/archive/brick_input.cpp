@@ -3,6 +3,7 @@
 #include "codec/archive/brick_access.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -58,14 +59,23 @@ void putSamples(const volume::BrickGrid& grid, glm::ivec3 brick, std::span<const
 
 void roundAsDecoded(const BrickFormat& format, double maxError, std::span<const std::uint32_t> decoded,
                     BrickInput& input) {
-    if (format.numbers.kind != NumberKind::Quantised && !format.isStepped()) return;
-    for (std::size_t i = 0; i < input.samples.size() / sizeof(float); ++i) {
-        if (!volume::isPresent(input.present, i)) continue;
-        const auto sample = sampleAt<float>(input.samples, i);
-        const std::uint32_t code = format.isStepped() ? decoded[i] : codeOf(format.numbers, sample);
-        const float rounded = sampleOf<float>(format.numbers, code);
-        if (close(format.numbers, maxError, sample, rounded))
-            std::memcpy(input.samples.data() + i * sizeof(float), &rounded, sizeof(float));
+    if (!isBounded(format.numbers)) return;
+    constexpr std::size_t kRow = 512;
+    std::array<float, kRow> samples, rounded;
+    std::array<std::uint32_t, kRow> own;
+    const std::size_t all = input.samples.size() / sizeof(float);
+    for (std::size_t first = 0; first < all; first += kRow) {
+        const std::size_t count = std::min(kRow, all - first);
+        const std::span<std::byte> row(input.samples.data() + first * sizeof(float), count * sizeof(float));
+        std::memcpy(samples.data(), row.data(), row.size());
+        const std::uint32_t* codes = format.isStepped() ? decoded.data() + first : own.data();
+        if (!format.isStepped()) codesOf(format.numbers, row, own.data());
+        toSamples(format.numbers, std::span(reinterpret_cast<const std::int32_t*>(codes), count), rounded.data());
+        for (std::size_t i = 0; i < count; ++i)
+            rounded[i] = std::abs(double(samples[i]) - double(rounded[i])) <= maxError ? rounded[i] : samples[i];
+        for (std::size_t i = 0; !input.present.empty() && i < count; ++i)
+            if (input.present[first + i] == 0) rounded[i] = samples[i];
+        std::memcpy(row.data(), rounded.data(), row.size());
     }
 }
 

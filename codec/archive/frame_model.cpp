@@ -5,6 +5,7 @@
 #include "volume/base/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <glm/common.hpp>
@@ -144,12 +145,16 @@ int codeBitsOf(const FrameSamples& samples, const NumberCoding& numbers) {
     if (numbers.kind == NumberKind::Float) return 32;
     std::uint32_t all = 0;
     samples.forSlabs([&](const volume::Field& part, Slab) {
-        const auto values = part.as<float>();
-        for (std::size_t i = 0; i < values.size(); ++i)
-            if (part.present(i)) {
-                const auto code = static_cast<std::int32_t>(codeOf(numbers, values[i]));
-                all |= static_cast<std::uint32_t>(code < 0 ? ~code : code);
-            }
+        constexpr std::size_t kRow = 512;
+        std::array<std::uint32_t, kRow> codes;
+        for (std::size_t first = 0; first < part.count(); first += kRow) {
+            const std::size_t count = std::min(kRow, part.count() - first);
+            codesOf(numbers, std::as_bytes(part.as<float>().subspan(first, count)), codes.data());
+            for (std::size_t i = 0; part.mask && i < count; ++i)
+                if (!part.present(first + i)) codes[i] = 0;
+            for (std::size_t i = 0; i < count; ++i)
+                all |= codes[i] ^ static_cast<std::uint32_t>(static_cast<std::int32_t>(codes[i]) >> 31);
+        }
         return true;
     });
     return std::max(1, int(std::bit_width(all)) + 1);

@@ -1,7 +1,6 @@
 #include "codec/archive/frame_steps.h"
 
 #include "codec/archive/brick_access.h"
-#include "codec/archive/frame_model.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace tessera::codec {
@@ -18,7 +18,8 @@ namespace {
 constexpr std::size_t kMostBoxes = 2, kWholeBrick = 1 << 17; // samples of the largest brick tried as a whole
 constexpr int kBoxOfBrick = 64;                              // edge of the box tried of a larger brick
 constexpr double kUsualQuantum = 3;                          // in units of the error bound
-constexpr double kHopeless = 1.6;                            // factor on the bytes beyond which trials end
+// Factors on the bytes beyond which trials end: with details split along all axes, and with them split along none.
+constexpr double kHopeless = 1.6, kHopelessUnsplit = 1.06;
 
 std::uint32_t quantumOf(double bounds) {
     constexpr double kSixteenths = 16;
@@ -37,6 +38,7 @@ public:
             const glm::ivec3 brick = grid.indexOf(number);
             Box box;
             box.format = brickFormat(grid, brick, type_, frame);
+            box.number = number;
             glm::ivec3 begin(0);
             if (countOf(box.format.size) > kWholeBrick) {
                 const int step = box.format.sublattices();
@@ -44,6 +46,7 @@ public:
                     size = glm::min(box.format.size, most);
                 begin = (box.format.size - size) / 2;
                 begin.z -= begin.z % step; // start on an even slice
+                box.whole = size == box.format.size;
                 box.format.size = size;
             }
             box.input.take(grid, grid.begin(brick) + begin, box.format.size, samples, frame.mask >= 0);
@@ -56,36 +59,55 @@ public:
     /// The part of the frame that is tried.
     double share() const { return share_; }
 
-    double bytesOfSamples(const Model& model) const {
+    /// Bytes with rounded samples; whole bricks are found in `taken` where it serves.
+    double bytesOfSamples(const Model& model, const Taken* taken) {
         const BandEncoder encoder(model);
-        return sum([&](const Box& box) {
+        return sum([&](Box& box) {
             Compressor compressor(3);
-            return encodeBrick(box.format, box.input.samples, box.input.present, maxError_, compressor, encoder);
+            const BrickInput& input = box.input;
+            if (taken && box.whole && taken->bricks[box.number])
+                return encodeBrick(box.format, *taken->bricks[box.number], input.samples, input.present, compressor,
+                                   encoder);
+            return encodeBrick(box.format, input.samples, input.present, maxError_, compressor, encoder);
         });
     }
 
-    double bytesOf(const SteppedFrame& how) const {
+    /// Bytes with rounded coefficients. Whole bricks are kept if that is less than `least`.
+    double bytesOf(const SteppedFrame& how, double least) {
         static const BandEncoder idle(makeModel(Histogram(1, {}), 1)); // codes nothing
-        return sum([&](const Box& box) {
+        const double bytes = sum([&](Box& box) {
             Compressor compressor(3);
             BrickFormat format = box.format;
             format.numbers = how.numbers;
             format.wavelet = how.wavelet;
             format.codeBits = how.codeBits;
             format.steps = how.steps;
-            SplitMemory memory;
-            const PreparedBrick brick =
-                prepareBrick(format, box.input.samples, box.input.present, maxError_, {}, memory);
-            return encodeBrick(format, brick, box.input.samples, box.input.present, compressor, idle);
+            box.latest = prepareBrick(format, box.input.samples, box.input.present, maxError_, {}, box.memory);
+            return encodeBrick(format, box.latest, box.input.samples, box.input.present, compressor, idle);
         });
+        if (bytes < least)
+            for (Box& box : boxes_) std::swap(box.best, box.latest);
+        return bytes;
+    }
+
+    /// The whole bricks as coded in the best of the trials.
+    std::vector<std::pair<std::size_t, PreparedBrick>> takeBest() {
+        std::vector<std::pair<std::size_t, PreparedBrick>> bricks;
+        for (Box& box : boxes_)
+            if (box.whole) bricks.emplace_back(box.number, std::move(box.best));
+        return bricks;
     }
 
 private:
     struct Box {
         BrickFormat format;
+        std::size_t number = 0;
+        bool whole = true; ///< rather than a part of the brick
         BrickInput input;
+        SplitMemory memory;
+        PreparedBrick latest, best;
     };
-    template <class Encode> double sum(const Encode& encode) const {
+    template <class Encode> double sum(const Encode& encode) {
         std::atomic<std::uint64_t> bytes = 0;
         parallelFor(boxes_.size(), [&](std::size_t i) {
             for (const Bytes& segment : encode(boxes_[i])) bytes += segment.size();
@@ -98,6 +120,86 @@ private:
     std::vector<Box> boxes_;
 };
 
+/// The best of the steps tried so far.
+class StepSearch {
+public:
+    explicit StepSearch(StepTrials trials) : trials_(std::move(trials)) {}
+    StepTrials& trials() { return trials_; }
+    const SteppedFrame& best() const { return best_; }
+    double least() const { return least_; } ///< bytes of the best
+    /// True if the steps are better than all before.
+    bool attempt(const SteppedFrame& how) {
+        const double bytes = trials_.bytesOf(how, least_);
+        if (bytes >= least_) return false;
+        least_ = bytes;
+        best_ = how;
+        return true;
+    }
+    /// Tries the best so far with a change.
+    template <class Change> bool attemptWith(const Change& change) {
+        SteppedFrame how = best_;
+        change(how.steps);
+        return attempt(how);
+    }
+
+private:
+    StepTrials trials_;
+    SteppedFrame best_;
+    double least_ = std::numeric_limits<double>::infinity();
+};
+
+/// How the time before was coded; nothing is set at the first time and when all is to be tried again.
+struct StepsBefore {
+    std::optional<StepChoice> steps; ///< with these, which are the only ones to be tried
+    bool rounded = false;            ///< with rounded samples: trials end earlier
+};
+
+std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, const FrameSamples& samples,
+                                     const FrameRecord& frame, const Model& model, const FrameOptions& options,
+                                     const StepsBefore& before, const Taken& taken) {
+    constexpr int kMostBits = 29;
+    constexpr double kApart = 1.4; // factor between quanta
+    const std::optional<NumberCoding> numbers = steppedCoding(samples, boundOf(frame, options));
+    if (!numbers) return std::nullopt;
+    SteppedFrame how{*numbers, options.wavelet.value_or(Wavelet::W44), 0, before.steps.value_or(usualSteps()), {}};
+    how.codeBits = codeBitsOf(samples, how.numbers) + 1;
+    if (how.codeBits > kMostBits) return std::nullopt;
+    StepSearch search(StepTrials(grid, samples, frame, options));
+    const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
+    const double limit = search.trials().bytesOfSamples(model, taken.serves(frame, model) ? &taken : nullptr) +
+                         ofModel * search.trials().share();
+    const auto result = [&]() -> std::optional<SteppedFrame> {
+        if (search.least() >= limit) return std::nullopt;
+        SteppedFrame best = search.best();
+        best.bricks = search.trials().takeBest();
+        return best;
+    };
+    SteppedFrame unsplit = how;
+    unsplit.steps.split.axes = 0;
+    if (before.rounded) {
+        search.attempt(unsplit);
+        if (search.least() > kHopelessUnsplit * limit) return std::nullopt;
+    }
+    search.attempt(how);
+    if (before.steps || search.least() > kHopeless * limit) return result();
+    if (!before.rounded && search.least() > limit) search.attempt(unsplit);
+    if (search.least() > kHopelessUnsplit * limit) return std::nullopt;
+    for (int axis = 0; axis < 3; ++axis) search.attemptWith([&](StepChoice& steps) { steps.split.axes ^= 1 << axis; });
+    for (const int length : {2, 10}) {
+        if (search.best().steps.split.axes == 0) break; // nothing is split
+        if (search.attemptWith([&](StepChoice& steps) { steps.split.least = length; })) break;
+    }
+    const auto scale = [&](double bounds) {
+        return search.attemptWith([&](StepChoice& steps) { steps.quantum = quantumOf(bounds); });
+    };
+    if (scale(kUsualQuantum * kApart)) {
+        scale(kUsualQuantum * kApart * kApart);
+    } else {
+        scale(kUsualQuantum / kApart);
+    }
+    return result();
+}
+
 } // namespace
 
 StepChoice usualSteps() {
@@ -106,51 +208,16 @@ StepChoice usualSteps() {
 
 std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, const FrameSamples& samples,
                                         const FrameRecord& frame, const Model& model, const FrameOptions& options,
-                                        const StepChoice* before) {
+                                        const KnownModel* last, int number, const Taken& taken) {
+    constexpr int kAgain = 16; // times between those at which all is tried
     if (frame.numbers.kind != NumberKind::Quantised || options.numbers || options.keepsSquares) return std::nullopt;
-    constexpr int kMostBits = 29;
-    constexpr double kApart = 1.4; // factor between quanta
-    const std::optional<NumberCoding> numbers = steppedCoding(samples, boundOf(frame, options));
-    if (!numbers) return std::nullopt;
-    SteppedFrame how{*numbers, frame.wavelet, 0, before ? *before : usualSteps()};
-    how.codeBits = codeBitsOf(samples, how.numbers) + 1;
-    if (how.codeBits > kMostBits) return std::nullopt;
-    const StepTrials trials(grid, samples, frame, options);
-    const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
-    const double limit = trials.bytesOfSamples(model) + ofModel * trials.share();
-    std::optional<SteppedFrame> best;
-    double least = std::numeric_limits<double>::infinity();
-    const auto attempt = [&](const SteppedFrame& tried) {
-        const double bytes = trials.bytesOf(tried);
-        if (bytes >= least) return false;
-        least = bytes;
-        best = tried;
-        return true;
+    const auto attempt = [&](const StepsBefore& before) {
+        return trySteps(grid, samples, frame, model, options, before, taken);
     };
-    how.wavelet = options.wavelet.value_or(Wavelet::W44);
-    attempt(how);
-    if (before || least > kHopeless * limit) return least < limit ? best : std::nullopt;
-    for (int axis = 0; axis < 3; ++axis) {
-        how = *best;
-        how.steps.split.axes &= ~(1 << axis);
-        attempt(how);
-    }
-    for (const int length : {2, 10}) {
-        how = *best;
-        how.steps.split.least = length;
-        if (attempt(how)) break;
-    }
-    const auto scale = [&](double bounds) {
-        how = *best;
-        how.steps.quantum = quantumOf(bounds);
-        return attempt(how);
-    };
-    if (scale(kUsualQuantum * kApart)) {
-        scale(kUsualQuantum * kApart * kApart);
-    } else {
-        scale(kUsualQuantum / kApart);
-    }
-    return least < limit ? best : std::nullopt;
+    if (!last || number % kAgain == 0) return attempt({});
+    if (last->kind != NumberKind::Stepped) return attempt({.steps = {}, .rounded = true});
+    if (auto again = attempt({.steps = last->steps, .rounded = false})) return again;
+    return attempt({});
 }
 
 void useSteps(const SteppedFrame& steps, FrameRecord& frame) {

@@ -1,11 +1,10 @@
 #pragma once
 
-#include "codec/archive/frame_options.h"
-#include "codec/brick/brick_codec.h"
-#include "codec/brick/frame_samples.h"
-#include "codec/container/index.h"
+#include "codec/archive/frame_model.h"
 
 #include <optional>
+#include <utility>
+#include <vector>
 
 /// Selects by trial whether the coefficients of a frame are quantised rather than its samples, and how.
 namespace tessera::codec {
@@ -15,6 +14,7 @@ struct SteppedFrame {
     Wavelet wavelet{};
     int codeBits = 32;
     StepChoice steps;
+    std::vector<std::pair<std::size_t, PreparedBrick>> bricks; ///< coded in the trials, by brick index
 };
 
 /// Steps that suit most fields.
@@ -22,10 +22,12 @@ StepChoice usualSteps();
 
 /// Quantised coefficients for a frame that would otherwise be coded as in `frame`, with quantised samples and `model`;
 /// none if that would be as short, the frame has no error bound, or the bound serves a mean error (keepsSquares).
-/// `before`: the only steps that are tried, as those of an earlier time; null: several.
+/// `last`: the coding of the component at the time before, or none. At every sixteenth time (`number` of the
+/// component's frames before) all steps are tried, at others first those of the time before. `taken`: bricks
+/// transformed for the model.
 std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, const FrameSamples& samples,
                                         const FrameRecord& frame, const Model& model, const FrameOptions& options,
-                                        const StepChoice* before);
+                                        const KnownModel* last, int number, const Taken& taken);
 
 /// Sets the coding of a frame.
 void useSteps(const SteppedFrame& steps, FrameRecord& frame);

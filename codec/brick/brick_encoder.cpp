@@ -3,6 +3,7 @@
 #include "codec/brick/brick_levels.h"
 #include "codec/brick/whole_brick.h"
 
+#include <array>
 #include <bit>
 #include <cassert>
 #include <cstring>
@@ -17,9 +18,9 @@ constexpr double kTryWhole = 3.0;
 constexpr std::size_t kGlance = 1 << 14;
 constexpr double
     kGlanceAsShort = 1.5,
-    kNearlyAsShort = 1.15,
+    kGlanceBeforeLzma = 2, kNearlyAsShort = 1.15,
     kPerhapsAsShort =
-        1.3; // factors on the size of bands below which a fast trial counts as promising; the last one before LZMA
+        1.3; // factors on the size of bands below which a fast trial counts as promising; for some before LZMA
 constexpr double kWorthLevels = 0.9;
 constexpr double kSparse = 0.75; // bits per sample
 constexpr int kLeastEffort = -4, kSomeEffort = 3;
@@ -29,55 +30,60 @@ struct Numbers {
     std::vector<std::uint32_t> codes, exactIndex, exactBits, absentBits;
 };
 
+/// Lists the samples that decoded codes do not reproduce.
+void addInexact(const BrickFormat& format, std::span<const std::byte> samples, std::span<const std::uint8_t> present,
+                double maxError, std::span<const std::uint32_t> decoded, Numbers& numbers) {
+    constexpr std::size_t kRow = 512;
+    std::array<float, kRow> wanted, rounded;
+    const double allowed = isBounded(format.numbers) ? maxError : -1;
+    for (std::size_t first = 0; first < decoded.size(); first += kRow) {
+        const std::size_t count = std::min(kRow, decoded.size() - first);
+        std::memcpy(wanted.data(), samples.data() + first * sizeof(float), count * sizeof(float));
+        toSamples(format.numbers, std::span(reinterpret_cast<const std::int32_t*>(decoded.data()) + first, count),
+                  rounded.data());
+        // In nearly all rows every sample is close, which a vectorised loop sees.
+        std::uint32_t far = 0;
+        for (std::size_t i = 0; i < count; ++i)
+            far |= std::abs(double(wanted[i]) - double(rounded[i])) <= allowed ||
+                           std::bit_cast<std::uint32_t>(wanted[i]) == std::bit_cast<std::uint32_t>(rounded[i])
+                       ? 0u
+                       : 1u;
+        for (std::size_t i = 0; far != 0 && i < count; ++i) {
+            if (close(format.numbers, maxError, wanted[i], rounded[i]) || !volume::isPresent(present, first + i))
+                continue;
+            numbers.exactIndex.push_back(static_cast<std::uint32_t>(first + i));
+            numbers.exactBits.push_back(std::bit_cast<std::uint32_t>(wanted[i]));
+        }
+    }
+}
+
 Numbers numbersOf(const BrickFormat& format, std::span<const std::byte> samples, std::span<const std::uint8_t> present,
                   double maxError) {
     Numbers numbers;
     numbers.codes.resize(countOf(format.size));
     volume::dispatch(format.type, [&]<class T>(T) {
-        if constexpr (!std::same_as<T, float>)
-            if (present.empty()) {
-                const auto* from = reinterpret_cast<const T*>(samples.data());
-                for (std::size_t i = 0; i < numbers.codes.size(); ++i)
-                    numbers.codes[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(from[i]));
-                return;
-            }
-        for (std::size_t i = 0; i < numbers.codes.size(); ++i) {
+        const auto sampleAt = [&](std::size_t i) {
             T sample;
             std::memcpy(&sample, samples.data() + i * sizeof(T), sizeof(T));
-            const bool absent = !volume::isPresent(present, i);
-            if constexpr (std::same_as<T, float>) {
-                if (absent) {
-                    numbers.absentBits.push_back(std::bit_cast<std::uint32_t>(sample));
-                    continue;
-                }
-                numbers.codes[i] = codeOf(format.numbers, sample);
-                if (!format.canHaveExact() || format.isStepped()) continue; // see addInexact
-                if (close(format.numbers, maxError, sample, sampleOf<float>(format.numbers, numbers.codes[i])))
-                    continue;
-                numbers.exactIndex.push_back(static_cast<std::uint32_t>(i));
-                numbers.exactBits.push_back(std::bit_cast<std::uint32_t>(sample));
-            } else {
-                numbers.codes[i] = codeOf(format.numbers, sample);
-                if (absent) numbers.absentBits.push_back(numbers.codes[i]);
+            return sample;
+        };
+        if constexpr (std::same_as<T, float>) {
+            codesOf(format.numbers, samples, numbers.codes.data());
+            for (std::size_t i = 0; i < present.size(); ++i) {
+                if (present[i] != 0) continue;
+                numbers.codes[i] = 0;
+                numbers.absentBits.push_back(std::bit_cast<std::uint32_t>(sampleAt(i)));
+            }
+            if (format.canHaveExact() && !format.isStepped())
+                addInexact(format, samples, present, maxError, numbers.codes, numbers);
+        } else {
+            for (std::size_t i = 0; i < numbers.codes.size(); ++i) {
+                numbers.codes[i] = codeOf(format.numbers, sampleAt(i));
+                if (!volume::isPresent(present, i)) numbers.absentBits.push_back(numbers.codes[i]);
             }
         }
     });
     return numbers;
-}
-
-/// Lists the samples that decoded codes do not reproduce.
-void addInexact(const BrickFormat& format, std::span<const std::byte> samples, std::span<const std::uint8_t> present,
-                double maxError, std::span<const std::uint32_t> decoded, Numbers& numbers) {
-    std::vector<float> rounded(decoded.size());
-    toSamples(format.numbers, std::span(reinterpret_cast<const std::int32_t*>(decoded.data()), decoded.size()),
-              rounded.data());
-    for (std::size_t i = 0; i < decoded.size(); ++i) {
-        float sample = 0;
-        std::memcpy(&sample, samples.data() + i * sizeof(float), sizeof(float));
-        if (close(format.numbers, maxError, sample, rounded[i]) || !volume::isPresent(present, i)) continue;
-        numbers.exactIndex.push_back(static_cast<std::uint32_t>(i));
-        numbers.exactBits.push_back(std::bit_cast<std::uint32_t>(sample));
-    }
 }
 
 /// Replaces each coarse sample by its difference from the previous one.
@@ -159,11 +165,17 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
         const double share = double(kGlance) / double(count);
         if (seen.empty() || double(seen.size()) > kGlanceAsShort * double(bytes) * share) return;
     }
-    const std::vector<std::uint32_t> all = numbersOf(format, samples, present, 0).codes;
-    std::vector<std::uint32_t> codes;
-    codes.reserve(all.size());
-    for (std::size_t i = 0; i < all.size(); ++i)
-        if (volume::isPresent(present, i)) codes.push_back(all[i]);
+    std::vector<std::uint32_t> codes = numbersOf(format, samples, present, 0).codes;
+    if (!present.empty()) {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < codes.size(); ++i)
+            if (volume::isPresent(present, i)) codes[kept++] = codes[i];
+        codes.resize(kept);
+    }
+    if (!sparse && isBounded(format.numbers) && codes.size() > 2 * kGlance) {
+        const std::span<const std::uint32_t> middle = std::span(codes).subspan((codes.size() - kGlance) / 2, kGlance);
+        if (!tryEffort(middle, kLeastEffort, compressor.triesLzma() ? kGlanceBeforeLzma : kGlanceAsShort)) return;
+    }
     // If a fast compression is about as short as bands, a thorough one is worth its time.
     if (!tryEffort(codes, kSomeEffort, compressor.triesLzma() ? kPerhapsAsShort : kNearlyAsShort)) return;
     (void)tryEffort(codes, effort, 1);

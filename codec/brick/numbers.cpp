@@ -3,8 +3,10 @@
 #include "codec/wavelet/lifting.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <optional>
 
@@ -69,12 +71,38 @@ NumberCoding chooseLossless(const FrameSamples& samples) {
     return best.value_or(NumberCoding{NumberKind::Float, 0, 1});
 }
 
-std::optional<NumberCoding> chooseQuantised(const FrameSamples& samples, double maxError) {
-    double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-    all(samples, 1, [&](float sample) {
-        if (std::isfinite(sample)) lo = std::min(lo, double(sample)), hi = std::max(hi, double(sample));
+/// Of the finite present samples; lo > hi if there are none.
+struct FloatRange {
+    float lo = std::numeric_limits<float>::infinity(), hi = -std::numeric_limits<float>::infinity(),
+          least = std::numeric_limits<float>::infinity(); ///< smallest magnitude
+};
+
+FloatRange rangeOf(const FrameSamples& frame) {
+    constexpr std::size_t kLanes = 16; // so that the loop is vectorised
+    std::array<float, kLanes> lo, hi, least;
+    lo.fill(FloatRange().lo), hi.fill(FloatRange().hi), least.fill(FloatRange().least);
+    const auto add = [&](std::size_t lane, float sample) {
+        const float size = std::abs(sample);
+        const bool finite = size <= std::numeric_limits<float>::max();
+        lo[lane] = finite && sample < lo[lane] ? sample : lo[lane];
+        hi[lane] = finite && sample > hi[lane] ? sample : hi[lane];
+        least[lane] = finite && size < least[lane] ? size : least[lane];
+    };
+    frame.forSlabs([&](const volume::Field& part, Slab) {
+        const auto samples = part.as<float>();
+        std::size_t i = 0;
+        if (!part.mask)
+            for (; i + kLanes <= samples.size(); i += kLanes)
+                for (std::size_t lane = 0; lane < kLanes; ++lane) add(lane, samples[i + lane]);
+        for (; i < samples.size(); ++i)
+            if (part.present(i)) add(0, samples[i]);
         return true;
     });
+    return {*std::ranges::min_element(lo), *std::ranges::max_element(hi), *std::ranges::min_element(least)};
+}
+
+std::optional<NumberCoding> chooseQuantised(const FloatRange& range, double maxError) {
+    const double lo = range.lo, hi = range.hi;
     if (!(lo <= hi)) return std::nullopt;
     const double largest = std::max(std::abs(lo), std::abs(hi));
     const auto rounded = static_cast<float>(largest);
@@ -101,22 +129,12 @@ double multipleWithin(double spacing, double maxError, double safeError) {
     return (2 * std::floor((isBinary ? maxError : safeError) / spacing) + 1) * spacing;
 }
 
-/// The smallest magnitude of a finite sample; 0 if there is none.
-float leastOf(const FrameSamples& samples) {
-    float least = std::numeric_limits<float>::infinity();
-    all(samples, 1, [&](float sample) {
-        least = std::min(least, std::isnan(sample) ? least : std::abs(sample));
-        return true;
-    });
-    return std::isfinite(least) ? least : 0;
-}
-
 } // namespace
 
 NumberCoding chooseCoding(const FrameSamples& samples, double maxError) {
     if (samples.type() != volume::ScalarType::F32) return {};
     if (maxError > 0)
-        if (const auto quantised = chooseQuantised(samples, maxError)) {
+        if (const auto quantised = chooseQuantised(rangeOf(samples), maxError)) {
             // Numbers that lie on a grid already need no more codes than the grid has points.
             const double step = multipleWithin(spacingOf(samples, maxError), maxError, quantised->step / 2);
             return step > quantised->step ? NumberCoding{NumberKind::Quantised, 0, step} : *quantised;
@@ -125,12 +143,13 @@ NumberCoding chooseCoding(const FrameSamples& samples, double maxError) {
 }
 
 std::optional<NumberCoding> steppedCoding(const FrameSamples& samples, double maxError) {
-    const std::optional<NumberCoding> quantised = chooseQuantised(samples, maxError);
+    const FloatRange range = rangeOf(samples);
+    const std::optional<NumberCoding> quantised = chooseQuantised(range, maxError);
     if (!quantised) return std::nullopt;
     double step = quantised->step;
     // Where floats are no denser than the samples, rounding to floats takes off up to half of their distance.
     const double spacing = spacingOf(samples, maxError);
-    const float least = leastOf(samples);
+    const float least = range.least;
     const double apart = double(std::nextafter(least, std::numeric_limits<float>::infinity())) - double(least);
     if (spacing > 0 && spacing <= apart) step = std::max(step, multipleWithin(spacing, maxError, quantised->step / 2));
     return NumberCoding{NumberKind::Stepped, quantised->origin, step / (2 * kReach + 1)};
@@ -163,6 +182,53 @@ std::uint32_t codeOf(const NumberCoding& coding, float sample) {
         return clampedCode((double(sample) - coding.origin) / coding.step);
     }
     return codeOfFloat(sample);
+}
+
+namespace {
+
+/// clampedCode(number(sample)) of a row, in a loop that compilers vectorise.
+template <class Number>
+TESSERA_INLINE void roundRow(const std::byte* floats, std::size_t count, std::uint32_t* codes, Number number) {
+    constexpr double kRound = 3.0 * (std::int64_t(1) << 51); // adding it leaves no binary places: as std::rint
+    for (std::size_t i = 0; i < count; ++i) {
+        float sample = 0;
+        std::memcpy(&sample, floats + i * sizeof(float), sizeof(float));
+        const double k = number(double(sample)), rounded = (k + kRound) - kRound;
+        codes[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(std::abs(k) <= kLargestCode ? rounded : 0.0));
+    }
+}
+
+TESSERA_INLINE void roundAll(const NumberCoding& coding, const std::byte* floats, std::size_t count,
+                             std::uint32_t* codes) {
+    const double origin = coding.origin, step = coding.step;
+    if (isBounded(coding))
+        roundRow(floats, count, codes, [=](double sample) { return (sample - origin) / step; });
+    else
+        roundRow(floats, count, codes, [=](double sample) { return sample * step; });
+}
+TESSERA_AVX512 void roundAll512(const NumberCoding& coding, const std::byte* floats, std::size_t count,
+                                std::uint32_t* codes) {
+    roundAll(coding, floats, count, codes);
+}
+TESSERA_AVX2 void roundAll2(const NumberCoding& coding, const std::byte* floats, std::size_t count,
+                            std::uint32_t* codes) {
+    roundAll(coding, floats, count, codes);
+}
+
+} // namespace
+
+void codesOf(const NumberCoding& coding, std::span<const std::byte> floats, std::uint32_t* codes, Cpu cpu) {
+    const std::size_t count = floats.size() / sizeof(float);
+    if (isBounded(coding) || coding.kind == NumberKind::Scaled) {
+        if (cpu == Cpu::Avx512) return roundAll512(coding, floats.data(), count, codes);
+        if (cpu == Cpu::Avx2) return roundAll2(coding, floats.data(), count, codes);
+        return roundAll(coding, floats.data(), count, codes);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        float sample = 0;
+        std::memcpy(&sample, floats.data() + i * sizeof(float), sizeof(float));
+        codes[i] = codeOf(coding, sample);
+    }
 }
 
 double valueOf(const NumberCoding& coding, std::uint32_t code) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/brick/frame_samples.h"
+#include "codec/bytes/cpu.h"
 
 #include <bit>
 #include <cmath>
@@ -48,6 +49,8 @@ std::uint32_t codeOf(const NumberCoding& coding, std::int16_t sample);
 std::uint32_t codeOf(const NumberCoding& coding, std::uint16_t sample);
 std::uint32_t codeOf(const NumberCoding& coding, std::int32_t sample);
 std::uint32_t codeOf(const NumberCoding& coding, float sample);
+/// Codes of a row of floats, which may be unaligned.
+void codesOf(const NumberCoding& coding, std::span<const std::byte> floats, std::uint32_t* codes, Cpu cpu = bestCpu());
 
 /// The sample of one code, in the type of the field; integers keep their low bits.
 template <class T> T sampleOf(const NumberCoding&, std::uint32_t code) {
@@ -64,12 +67,15 @@ double valueOf(const NumberCoding& coding, std::uint32_t code);
 template <class Word>
 void toValues(const NumberCoding& coding, double offset, double scale, std::span<const Word> codes, float* values);
 
+/// Whether a coding has a bound on the error of its samples, rather than being exact.
+inline bool isBounded(const NumberCoding& coding) {
+    return coding.kind == NumberKind::Quantised || coding.kind == NumberKind::Stepped;
+}
 /// Whether `sample` may be replaced by `decoded`: equal bits, or for Quantised and Stepped a difference of at most
 /// `maxError`.
 inline bool close(const NumberCoding& coding, double maxError, float sample, float decoded) {
     if (std::bit_cast<std::uint32_t>(sample) == std::bit_cast<std::uint32_t>(decoded)) return true;
-    const bool bounded = coding.kind == NumberKind::Quantised || coding.kind == NumberKind::Stepped;
-    return bounded && std::abs(double(sample) - double(decoded)) <= maxError;
+    return isBounded(coding) && std::abs(double(sample) - double(decoded)) <= maxError;
 }
 
 } // namespace tessera::codec

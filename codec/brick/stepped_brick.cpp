@@ -131,6 +131,30 @@ void correct(std::span<const Correction> corrections, DecodedBrick& out) {
     }
 }
 
+/// Corrects decoded codes further than kReach from those wanted; returns the corrections.
+std::vector<Correction> correctCodes(std::span<const std::uint32_t> wanted, std::span<const std::uint8_t> present,
+                                     std::span<std::uint32_t> decoded) {
+    constexpr std::size_t kRow = 512;
+    constexpr std::int64_t kUnit = 2 * kReach + 1;
+    std::vector<Correction> corrections;
+    for (std::size_t first = 0; first < wanted.size(); first += kRow) {
+        const std::size_t end = std::min(first + kRow, wanted.size());
+        // Differences are less than 2^32, since wanted codes are below 2^29: small ones modulo 2^32 are small.
+        std::uint32_t far = 0;
+        for (std::size_t i = first; i < end; ++i)
+            far |= wanted[i] - decoded[i] + std::uint32_t(kReach) > 2 * std::uint32_t(kReach) ? 1u : 0u;
+        for (std::size_t i = first; far != 0 && i < end; ++i) {
+            const std::int64_t apart =
+                std::int64_t(static_cast<std::int32_t>(wanted[i])) - static_cast<std::int32_t>(decoded[i]);
+            if (std::abs(apart) <= kReach || !volume::isPresent(present, i)) continue;
+            const auto times = static_cast<std::int32_t>((std::abs(apart) + kReach) / kUnit * (apart < 0 ? -1 : 1));
+            corrections.push_back({static_cast<std::uint32_t>(i), times});
+            decoded[i] += static_cast<std::uint32_t>(times) * static_cast<std::uint32_t>(kUnit);
+        }
+    }
+    return corrections;
+}
+
 } // namespace
 
 Bytes serialise(const StepChoice& steps) {
@@ -239,17 +263,7 @@ SteppedBrick encodeStepped(const BrickFormat& format, std::span<const std::uint3
     joining.odd(0);
 
     out.codes = decoded.codes();
-    std::vector<Correction> corrections;
-    for (std::size_t i = 0; i < codes.size(); ++i) {
-        if (masked && present[i] == 0) continue;
-        const std::int64_t apart =
-            std::int64_t(static_cast<std::int32_t>(codes[i])) - static_cast<std::int32_t>(out.codes[i]);
-        if (std::abs(apart) <= kReach) continue;
-        constexpr std::int64_t kUnit = 2 * kReach + 1;
-        const auto times = static_cast<std::int32_t>((std::abs(apart) + kReach) / kUnit * (apart < 0 ? -1 : 1));
-        corrections.push_back({static_cast<std::uint32_t>(i), times});
-        out.codes[i] += static_cast<std::uint32_t>(times) * static_cast<std::uint32_t>(kUnit);
-    }
+    const std::vector<Correction> corrections = correctCodes(codes, present, out.codes);
 
     AdaptiveBands model;
     for (int l = count - 1; l >= 0; --l) {

@@ -16,6 +16,7 @@
 #include <cstring>
 #include <ctime>
 #include <filesystem>
+#include <memory>
 #include <tbb/global_control.h>
 #include <unistd.h>
 
@@ -70,8 +71,9 @@ Loaded load(const fs::path& sidecar) {
         first.push_back(components);
         components += std::size_t(parameter.components);
     }
-    loaded.dataset.read = [fields = loaded.fields, components, first](int p, int c, int t) {
-        return fields[std::size_t(t) * components + first[std::size_t(p)] + std::size_t(c)];
+    const auto shared = std::make_shared<const std::vector<volume::Field>>(loaded.fields);
+    loaded.dataset.read = [shared, components, first](int p, int c, int t) {
+        return (*shared)[std::size_t(t) * components + first[std::size_t(p)] + std::size_t(c)];
     };
     return loaded;
 }

@@ -57,6 +57,31 @@ TEST(Numbers, AFewOddOnesDoNotSpoilTheRest) {
     EXPECT_EQ(chooseCoding(fieldOf(values), 0), (NumberCoding{NumberKind::Scaled, 0, 10}));
 }
 
+// Rows are rounded as single samples are, by every instruction set.
+TEST(Numbers, CodesOfRowsAreThoseOfTheirSamples) {
+    std::mt19937 random(8);
+    std::vector<float> values{0.0f, -0.0f, 0.5f, 1.5f, 2.5f, -0.5f, -2.5f, 1e30f, -1e30f, 536870912.0f, 536870944.0f};
+    for (const float odd : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()})
+        values.insert(values.end(), {odd, -odd});
+    for (int i = 0; i < 1000; ++i) {
+        values.push_back(std::bit_cast<float>(static_cast<std::uint32_t>(random())));
+        values.push_back(static_cast<float>(int(random() % 200001) - 100000) * 0.125f);
+    }
+    for (const NumberCoding& coding :
+         {NumberCoding{NumberKind::Quantised, 0, 1}, NumberCoding{NumberKind::Quantised, 3.25, 0.1},
+          NumberCoding{NumberKind::Stepped, -7, 0.3}, NumberCoding{NumberKind::Scaled, 0, 100},
+          NumberCoding{NumberKind::Float, 0, 1}})
+        for (const Cpu cpu : {Cpu::Portable, Cpu::Avx2, Cpu::Avx512}) {
+            if (cpu > bestCpu()) continue;
+            for (const std::size_t count : {values.size(), std::size_t(5)}) {
+                std::vector<std::uint32_t> codes(count);
+                codesOf(coding, std::as_bytes(std::span(values).first(count)), codes.data(), cpu);
+                for (std::size_t i = 0; i < count; ++i)
+                    ASSERT_EQ(codes[i], codeOf(coding, values[i])) << values[i] << ' ' << int(coding.kind);
+            }
+        }
+}
+
 TEST(Numbers, AbsentSamplesHaveNoSay) {
     std::vector<float> values(5000);
     volume::Mask mask(values.size(), 1);
