@@ -47,6 +47,21 @@ TEST(MemoryPlan, SlabsFitTheLimit) {
     }
 }
 
+// A brick whose coefficients may be quantised takes 33 bytes a sample while it is coded.
+TEST(MemoryPlan, CountsBricksThatAreCodedWithinABound) {
+    volume::Dataset made = makeDataset({100, 100, 100}, {{"v"}}, 1);
+    Metadata metadata = metadataOf(made.info, volume::LatticeKind::CC);
+    metadata.grid.brickSize = 128;
+    PackOptions options;
+    options.lattice = StoredLattice::CC;
+    options.memoryMb = 90;
+    EXPECT_NO_THROW((void)planMemory(metadata, made, options, 0));
+    options.maxError = 1e-3;
+    EXPECT_THROW((void)planMemory(metadata, made, options, 0), Error);
+    options.memoryMb = 120;
+    EXPECT_NO_THROW((void)planMemory(metadata, made, options, 0));
+}
+
 TEST(MetadataText, MistakesAreNamedByPlaceAndReason) {
     const volume::DatasetInfo info = makeDataset({9, 8, 7}, {{"v", ScalarType::U8}}, 1).info;
     Bytes plain;
