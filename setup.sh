@@ -25,7 +25,7 @@ case $(. /etc/os-release && echo "${ID:-} ${VERSION_ID:-}") in
     *) clang=19 ;;
 esac
 [ "${1:-}" = --tests ] && packages+=("${test_packages[@]}")
-[ "${1:-}" = --clang ] && packages+=("${test_packages[@]}" "clang-$clang" "libclang-rt-$clang-dev")
+[ "${1:-}" = --clang ] && packages+=("${test_packages[@]}" "clang-$clang" "libclang-rt-$clang-dev" "clang-tidy-$clang")
 
 if ! command -v apt-get >/dev/null; then
     echo "setup: no apt-get here. What the build needs has these names on Fedora (not tried):" >&2

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # What takes too long for every commit, one step after another; what failed is said at the end.
 #   tests/nightly.sh                  all of it
-#   tests/nightly.sh clang asan       some steps of: clang asan fuzz second-driver
-# FUZZ_SECONDS: how long each fuzz target searches (600).
+#   tests/nightly.sh clang asan       some steps of: clang tidy asan fuzz second-driver load
+# FUZZ_SECONDS: how long each fuzz target searches (600). LOAD_RUNS, LOAD_TESTS: how many times tests run beside busy cores (50), and
+# arguments of ctest that choose them (all).
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 export TESSERA_WERROR=ON
@@ -14,6 +15,15 @@ step() { # step NAME COMMAND...
 }
 
 clang() { ./test.sh clang -LE e2e; }
+
+# clang-tidy over the sources as the preset "clang" compiles them (six in one unit, which reads each header once for them).
+tidy() {
+    ./setup.sh --clang && cmake --preset clang -DBUILD_TESTING=ON -DTESSERA_WERROR=ON || return 1
+    local newest
+    newest=$(compgen -c clang-tidy- | grep -x 'clang-tidy-[0-9]*' | sort -V | tail -n 1)
+    python3 -c 'import json; print(*sorted({e["file"] for e in json.load(open("build/clang/compile_commands.json"))}), sep="\n")' |
+        xargs -P "$(nproc)" -n 1 "$newest" -p build/clang --quiet --warnings-as-errors='*' 2> /dev/null
+}
 
 asan() { ./test.sh asan; }
 
@@ -44,10 +54,23 @@ second_driver() {
         build/release/vis_gl_tests --gtest_brief=1
 }
 
-[ $# -gt 0 ] || set -- clang asan fuzz second-driver
+# Every test again and again while all cores are busy with something else: a test that depends on time fails now and then.
+load() {
+    local busy=() good=0
+    for _ in $(seq "$(nproc)"); do
+        (while :; do :; done) &
+        busy+=($!)
+    done
+    # shellcheck disable=SC2086
+    ./test.sh release --repeat until-fail:"${LOAD_RUNS:-50}" ${LOAD_TESTS:-} || good=1
+    kill "${busy[@]}"
+    return "$good"
+}
+
+[ $# -gt 0 ] || set -- clang tidy asan fuzz second-driver load
 for name in "$@"; do
     case $name in
-    clang | asan | fuzz) step "$name" "$name" ;;
+    clang | tidy | asan | fuzz | load) step "$name" "$name" ;;
     second-driver) step "$name" second_driver ;;
     *) echo "nightly: there is no step \"$name\"" >&2; exit 2 ;;
     esac

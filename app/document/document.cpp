@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <utility>
 
 namespace tessera::app {
@@ -17,6 +18,8 @@ SessionDocument Document::snapshot() const {
     SessionDocument document;
     document.session = session_;
     document.history = history_;
+    // An edit in progress (a drag, a text being typed) is a step of what is written: a history ends at its session.
+    document.history.observe(session_, false, std::numeric_limits<double>::infinity());
     document.unknown = unknown_;
     return document;
 }

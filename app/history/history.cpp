@@ -49,6 +49,22 @@ void followUnrecorded(Session& base, const Session& now) {
     base.animation.playing = now.animation.playing;
 }
 
+/// Where a session, as JSON, differs from what its steps lead to, but for changes that are not edits. Empty: nowhere.
+std::string differenceOf(Session end, const Session& session) {
+    followFocus(end.dock, session.dock);
+    Json ended = app::toJson(end);
+    const Json now = app::toJson(session);
+    std::vector<std::string> unrecorded{"/time", "/animation/position", "/animation/playing"};
+    for (const Track& track : session.animation.tracks)
+        if (!numbersAt(session, track.path).empty()) unrecorded.push_back(track.path);
+    for (const std::string& path : unrecorded) {
+        const Json::json_pointer at(path);
+        if (ended.contains(at) && now.contains(at)) ended[at] = now[at];
+    }
+    const Json differs = Json::diff(ended, now);
+    return differs.empty() ? std::string() : differs[0].at("path").get<std::string>();
+}
+
 } // namespace
 
 void History::reset(const Session& session) {
@@ -156,9 +172,8 @@ History History::fromJson(const Json& json, const Session& session) {
         History trial = history;
         for (std::size_t i = trial.position_; i-- > 0;) trial.seek(i);
         for (std::size_t i = 1; i <= trial.steps_.size(); ++i) trial.seek(i);
-        Session end = trial.seek(history.position_);
-        followFocus(end.dock, session.dock);
-        if (!(end == session)) throw Error("the history does not end at the session");
+        if (const std::string where = differenceOf(trial.seek(history.position_), session); !where.empty())
+            throw Error("the history does not end at the session, but with another " + where);
     } catch (const Json::exception& error) {
         throw Error(std::string("the history cannot be used: ") + error.what());
     }

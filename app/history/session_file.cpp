@@ -2,15 +2,13 @@
 
 #include "codec/remote/address.h"
 #include "volume/base/error.h"
-#include "volume/system/part_file.h"
+#include "volume/system/atomic_file.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
-#include <unistd.h>
 
 namespace tessera::app {
 
@@ -39,33 +37,6 @@ std::string readText(const std::string& path) {
     std::string text{std::istreambuf_iterator<char>(in), {}};
     if (in.bad()) throw Error("cannot be read", path);
     return text;
-}
-
-void writeTextAtomically(const std::string& path, std::string_view text) {
-    removeLeftParts(path);
-    const std::string temporary = partFileOf(path);
-    const auto fail = [&](const std::string& what) {
-        const std::string reason = what + ": " + std::strerror(errno);
-        std::remove(temporary.c_str());
-        throw MachineError(reason, path);
-    };
-    const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-    if (file < 0) fail("cannot be written");
-    std::size_t written = 0;
-    while (written < text.size()) {
-        const ssize_t count = ::write(file, text.data() + written, text.size() - written);
-        if (count < 0 && errno == EINTR) continue;
-        if (count <= 0) {
-            const int reason = errno;
-            ::close(file);
-            errno = reason;
-            fail("cannot be written");
-        }
-        written += static_cast<std::size_t>(count);
-    }
-    ::fsync(file);
-    if (::close(file) != 0) fail("cannot be written");
-    if (std::rename(temporary.c_str(), path.c_str()) != 0) fail("cannot be replaced");
 }
 
 bool looksLikeSession(std::string_view text) {
@@ -208,7 +179,7 @@ std::string printSession(const SessionDocument& document, const std::string& pat
 }
 
 void saveSession(const SessionDocument& document, const std::string& path) {
-    writeTextAtomically(path, printSession(document, path));
+    writeAtomically(path, printSession(document, path));
 }
 
 } // namespace tessera::app

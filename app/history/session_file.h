@@ -68,7 +68,5 @@ void noteTables(DataRef& data);
 
 /// A whole file as text. Throws Error.
 std::string readText(const std::string& path);
-/// Writes a file through a temporary one beside it. Throws MachineError.
-void writeTextAtomically(const std::string& path, std::string_view text);
 
 } // namespace tessera::app

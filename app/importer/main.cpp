@@ -5,8 +5,10 @@
 #include "app/importer/readers/vtk_messages.h"
 #include "app/importer/sampler.h"
 #include "volume/import/files/stream.h"
+#include "volume/system/confine.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -37,6 +39,8 @@ using volume::ScalarType;
 
 constexpr std::size_t kMostKilobytesKept = 512 * 1024; // of data kept from earlier requests
 constexpr std::size_t kMostSamplings = 64;
+constexpr const char* kNoMemory = "not enough memory";
+constexpr std::chrono::hours kMostTime{1}; // of the processor for one answer
 
 struct OpenFile {
     std::vector<std::string> files; ///< one, or slices of one volume
@@ -328,6 +332,8 @@ int run(int argc, char** argv) {
     dup2(STDERR_FILENO, STDOUT_FILENO);
     stdout = fdopen(out, "wb");
     catchMessages();
+    // Files may be damaged or hostile, and readers have errors: they can change nothing and take no more than this.
+    volume::confine({.writable = {"/dev/null"}, .memory = volume::machineMemory() / 4 * 3});
     State state;
     bool like = false;
     for (int i = 1; i < argc; ++i) {
@@ -341,9 +347,13 @@ int run(int argc, char** argv) {
             files.assign(argv + first, argv + first + std::max(count, 1));
             i = first + std::max(count, 1) - 1;
         }
+        volume::limitProcessorTime(kMostTime);
         try {
             state.files.push_back(openFile(state, files, like));
             sendMessage(MessageKind::Header, headerJson(state.files.back().blocks));
+        } catch (const std::bad_alloc&) {
+            sendMessage(MessageKind::Failure, kNoMemory);
+            return 0;
         } catch (const std::exception& error) {
             sendMessage(MessageKind::Failure, error.what());
             return 0;
@@ -351,13 +361,14 @@ int run(int argc, char** argv) {
         like = false;
     }
     for (std::string line; std::getline(std::cin, line);) {
+        volume::limitProcessorTime(kMostTime);
         try {
             if (line.starts_with("ranges "))
                 sendRanges(state, line);
             else
                 sendFrame(state, parseRequest(line));
         } catch (const std::bad_alloc&) {
-            sendMessage(MessageKind::Failure, "not enough memory");
+            sendMessage(MessageKind::Failure, kNoMemory);
         } catch (const std::exception& error) {
             sendMessage(MessageKind::Failure, error.what());
         }

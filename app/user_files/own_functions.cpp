@@ -2,6 +2,7 @@
 
 #include "app/history/session_file.h"
 #include "volume/base/error.h"
+#include "volume/system/atomic_file.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -101,7 +102,7 @@ std::string saveOwnFunction(const std::string& folder, const vis::TransferRecipe
         *found = recipe;
     else
         known.list.push_back(recipe);
-    writeTextAtomically(functionsPath(folder), printOwnFunctions(known));
+    writeAtomically(functionsPath(folder), printOwnFunctions(known));
     return kept;
 }
 
@@ -110,7 +111,7 @@ void deleteOwnFunction(const std::string& folder, const std::string& name) {
     const auto found = named(known.list, name);
     if (found == known.list.end()) return;
     known.list.erase(found);
-    writeTextAtomically(functionsPath(folder), printOwnFunctions(known));
+    writeAtomically(functionsPath(folder), printOwnFunctions(known));
 }
 
 } // namespace tessera::app

@@ -3,6 +3,7 @@
 #include "app/history/session_file.h"
 #include "codec/remote/address.h"
 #include "volume/base/error.h"
+#include "volume/system/atomic_file.h"
 #include "volume/system/user_folder.h"
 
 #include <algorithm>
@@ -66,7 +67,7 @@ void addRecentFile(const std::string& folder, const std::string& path) {
     files.insert(files.begin(), absolute);
     if (files.size() > kRecent) files.resize(kRecent);
     try {
-        writeTextAtomically(folder + "/recent.json", printJson(Json(files)));
+        writeAtomically(folder + "/recent.json", printJson(Json(files)));
     } catch (const Error&) {
         // Only a convenience.
     }
@@ -101,7 +102,7 @@ void rememberChoice(const std::string& folder, const std::string& name, const st
     auto made = choices(folder);
     made[name] = value;
     try {
-        writeTextAtomically(folder + "/choices.json", printJson(Json(made)));
+        writeAtomically(folder + "/choices.json", printJson(Json(made)));
     } catch (const Error&) {
         // Only a convenience.
     }
@@ -152,7 +153,7 @@ void Autosave::discard(const Recovery& recovery) {
 std::string Autosave::save(const std::string& text) {
     if (path_.empty() || lock_ < 0) return {};
     try {
-        writeTextAtomically(path_, text);
+        writeAtomically(path_, text);
     } catch (const Error& error) {
         return error.what();
     }

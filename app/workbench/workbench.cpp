@@ -7,6 +7,7 @@
 #include "volume/base/background.h"
 #include "volume/base/error.h"
 #include "volume/import/over_time.h"
+#include "volume/system/atomic_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -181,7 +182,7 @@ void Workbench::exportText(const std::string& path, std::function<std::string(co
                 [this, path, name, make = std::move(make)](const Progress& progress) -> Jobs::Finish {
                     const std::string text = make(progress);
                     progress.advance(1);
-                    writeTextAtomically(path, text);
+                    writeAtomically(path, text);
                     return [this, name] { message("Exported " + name); };
                 });
 }

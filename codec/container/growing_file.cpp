@@ -2,6 +2,7 @@
 
 #include "volume/base/error.h"
 #include "volume/system/part_file.h"
+#include "volume/system/sync.h"
 
 #include <cerrno>
 #include <cstring>
@@ -12,19 +13,6 @@
 #include <utility>
 
 namespace tessera::codec {
-
-namespace {
-
-/// Flushes the directory of a file to disk. Best effort: not every file system supports it.
-void syncFolderOf(const std::string& path) {
-    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-    const int file = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (file < 0) return;
-    (void)::fsync(file);
-    ::close(file);
-}
-
-} // namespace
 
 GrowingFile::GrowingFile(const std::string& path)
     : path_(path), kind_(std::filesystem::exists(path) ? Kind::Replacing : Kind::Fresh) {

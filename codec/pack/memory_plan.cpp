@@ -4,11 +4,11 @@
 #include "codec/archive/coded_bricks.h"
 #include "volume/base/error.h"
 #include "volume/resample/series.h"
+#include "volume/system/confine.h"
 
 #include <algorithm>
 #include <cmath>
 #include <thread>
-#include <unistd.h>
 
 namespace tessera::codec {
 
@@ -18,8 +18,8 @@ constexpr double kMega = 1e6;
 constexpr double kOwn = 64 * kMega; ///< the program itself, its threads and tables
 
 double quarterOfRam() {
-    const double pages = double(::sysconf(_SC_PHYS_PAGES)), bytes = double(::sysconf(_SC_PAGE_SIZE));
-    return pages > 0 && bytes > 0 ? pages * bytes / 4 : 1e9;
+    const std::uint64_t all = volume::machineMemory();
+    return all > 0 ? double(all) / 4 : 1e9;
 }
 
 bool isSpline(const volume::ResampleOptions& options) {

@@ -89,6 +89,21 @@ TEST_F(DocumentTest, EditsAreStepsThatGoBackAndForth) {
     EXPECT_EQ(document.history().steps().back().name, "Layout: Other");
 }
 
+TEST_F(DocumentTest, WhatIsSavedDuringAnEditHasItAsItsLastStep) {
+    const double before = document.session().camera.distance;
+    edit();
+    document.session().camera.distance *= 2;
+    EXPECT_FALSE(document.observe(true, clock)) << "a button is held";
+    const std::string path = (folder / "a.tessera.json").string();
+    document.save(path);
+    SessionDocument saved = loadSession(path);
+    EXPECT_EQ(saved.messages, std::vector<std::string>()) << "its history is whole";
+    EXPECT_TRUE(saved.session == document.session());
+    ASSERT_EQ(saved.history.steps().size(), 2U);
+    EXPECT_EQ(saved.history.undo().camera.distance, before);
+    EXPECT_EQ(document.history().steps().size(), 1U) << "here the edit goes on";
+}
+
 TEST_F(DocumentTest, StepsThroughStoredTimesAndStopsAtTheEnds) {
     const std::vector<double> times = document.info().times;
     document.session().time = times[0];

@@ -108,6 +108,35 @@ TEST(HistoryTest, PlayingIsNoEdit) {
     EXPECT_EQ(history.undo().time, 5);
 }
 
+TEST(HistoryTest, AHistoryFitsASessionWhoseTimePlayedOn) {
+    Session session = defaultSession(cellInfo(), {});
+    session.animation.playing = false;
+    History history;
+    history.reset(session);
+    session.time = 1;
+    ASSERT_TRUE(history.observe(session, false, 1));
+    session.animation.playing = true;
+    session.time = 3;
+    EXPECT_FALSE(history.observe(session, false, 20));
+    session.animation.playing = false;
+    EXPECT_FALSE(history.observe(session, false, 21));
+    History again = History::fromJson(history.toJson(), session);
+    EXPECT_EQ(again.steps().size(), 1U);
+    EXPECT_EQ(again.undo().time, 0);
+    EXPECT_EQ(again.redo().time, 1);
+
+    // Nor does a keyframe's parameter end where an edit left it. A rotation is not normalised again for that.
+    session.animation.tracks.push_back({"/camera/orientation", {{0, {1, 0, 0, 0}}, {4, {0, 1, 0, 0}}}});
+    session.camera.orientation = {0.6770412f, 0.24378258f, 0.66876096f, 0.18693383f};
+    ASSERT_TRUE(history.observe(session, false, 40));
+    session.animation.playing = true;
+    session.camera.orientation = {0.7f, 0.7f, 0.1f, 0.1f};
+    EXPECT_FALSE(history.observe(session, false, 60));
+    session.animation.playing = false;
+    EXPECT_FALSE(history.observe(session, false, 61));
+    EXPECT_EQ(History::fromJson(history.toJson(), session).steps().size(), 2U);
+}
+
 TEST(HistoryTest, WhichTabsAreInFrontIsNoEdit) {
     Session session;
     session.dock.root.id = 1;

@@ -5,6 +5,7 @@
 #include "codec/container/container.h"
 #include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
+#include "volume/system/atomic_file.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -351,6 +352,23 @@ TEST_F(Crash, OfAppendingThatFailedKeepsTheTimesBefore) {
     const Crashes crashes = crashesOf(recorder, path, {firstTimes(all, 1), all});
     EXPECT_EQ(crashes.states, (std::set<int>{0, 1}));
     EXPECT_EQ(crashes.last, 1);
+}
+
+// Sessions, autosaves, exports: whatever is written as a whole.
+TEST_F(Crash, OfAFileWrittenAsAWholeLeavesTheOldOneOrTheNew) {
+    const std::string old(100, 'a'), now(3000, 'b');
+    writeAtomically(path, old);
+    const Recorder recorder(folder / "");
+    writeAtomically(path, now);
+    std::set<std::string> seen;
+    std::string last;
+    forCrashes(recorder, [&](std::size_t, const Disk& disk, bool isLeast) {
+        const Content& content = disk.files.at(disk.names.at(path));
+        seen.emplace(content.begin(), content.end());
+        if (isLeast) last.assign(content.begin(), content.end());
+    });
+    EXPECT_EQ(seen, (std::set<std::string>{old, now}));
+    EXPECT_EQ(last, now) << "it is on the disk when writing it returns";
 }
 
 // A crash left either copy of the header torn, and bytes behind the end: the next one must not take the other copy.

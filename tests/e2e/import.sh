@@ -40,6 +40,22 @@ if [ -x "$(dirname "$tessera")/tessera-import" ]; then
 fi
 [ ! -e b.tsr ] || die "half an archive is left"
 
+# The reader of foreign files is confined before it reads the first one (tests/volume/confine_test.cpp: what that means).
+import=$(dirname "$tessera")/tessera-import
+if [ -x "$import" ]; then
+    head -c 17 /dev/zero >> cut.vtk # whole again
+    mkfifo asks
+    "$import" cut.vtk < asks > answers &
+    exec 9> asks
+    for _ in $(seq 100); do [ -s answers ] && break || sleep 0.1; done
+    grep -q '^NoNewPrivs:[[:space:]]*1' "/proc/$!/status" || [ "$(uname -r | cut -d. -f1)" -lt 6 ] ||
+        fail "the reader is not confined"
+    grep -q '^Max data size *[0-9]' "/proc/$!/limits" || fail "the memory of the reader is not limited"
+    grep -q '^Max cpu time *[0-9]' "/proc/$!/limits" || fail "the time of the reader is not limited"
+    exec 9>&-
+    wait
+fi
+
 data=${TESSERA_DATA:-$TESSERA_TEST_DATA}/fuel-cell
 [ -d "$data" ] && [ -x "$(dirname "$tessera")/tessera-import" ] || { echo "no fuel-cell data or no tessera-import"; exit 77; }
 "$tessera" info "$data/grid/large.pvd" | grep -q 'absent: O2=region:0,3' || die "absent gas is noticed"

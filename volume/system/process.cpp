@@ -149,7 +149,7 @@ std::string ChildProcess::ending() {
     else if (WIFSIGNALED(status)) {
         const int signal = WTERMSIG(status);
         interrupted_ = signal == SIGINT || signal == SIGTERM;
-        ended_ = "crashed (signal " + std::to_string(signal) + ")";
+        ended_ = signal == SIGXCPU ? "used too much processor time" : "crashed (signal " + std::to_string(signal) + ")";
     } else if (WEXITSTATUS(status) != 0)
         ended_ = "ended with status " + std::to_string(WEXITSTATUS(status));
     if (!ended_.empty() && !line.empty()) ended_ += ": " + line;
