@@ -125,11 +125,16 @@ TEST_F(EngineGl, PicturesOfSectionsSayNothingOfRays) {
     test::renderAll(renderer, *volume, scene, {32, 32});
     Scene section = scene;
     section.layers = {{.name = "cut", .technique = SliceLayer{.channel = "v"}}};
-    EXPECT_EQ(test::renderAll(renderer, *slice, section, {32, 32}).engine.refusal, "slices");
+    const EngineUse alone = test::renderAll(renderer, *slice, section, {32, 32}).engine;
+    EXPECT_FALSE(alone.byProcessor) << "a sample for each pixel";
+    EXPECT_EQ(alone.refusal, "");
     EXPECT_TRUE(renderer.engine().byProcessor);
     scene.layers.back().visible = true;
     test::renderAll(renderer, *volume, scene, {32, 32});
-    EXPECT_EQ(renderer.engine().refusal, "slices") << "a slice in the volume's picture";
+    EXPECT_TRUE(renderer.engine().byProcessor) << "a slice in the volume's picture";
+    scene.lighting.shadows.strength = 1;
+    test::renderAll(renderer, *volume, scene, {32, 32});
+    EXPECT_EQ(renderer.engine().refusal, "shadows");
 }
 
 /// Without waiting, the picture comes once its samples are read; a moving view gets a reduced one that is current.

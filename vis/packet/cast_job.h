@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vis/optics/brush_tests.h"
+#include "vis/optics/ray_setup.h"
 #include "vis/optics/surface_light.h"
 #include "vis/scene/brush_effect.h"
 #include "vis/scene/clipping.h"
@@ -26,7 +27,7 @@ struct VolumeView {
 };
 
 inline constexpr float kNowhere = -1e9f;
-inline constexpr int kMostPacketLayers = 16, kMostPacketSurfaces = 8, kMostBrushFields = 8;
+inline constexpr int kMostPacketLayers = 16, kMostPacketSurfaces = 8, kMostPacketSlices = 8, kMostBrushFields = 8;
 inline constexpr int kTableEntries = 2048; ///< of a transfer function
 inline constexpr int kShowBins = 256;      ///< of its places, one bit each
 /// Entries of the table of unshaded samples, which are not interpolated: red and green, blue and extinction in the low
@@ -52,6 +53,14 @@ struct LayerView {
     glm::vec3 isoColor{0}; ///< linear
     BrushEffect brushes = BrushEffect::Fade;
     int lens = -1; ///< index of the lens that it is drawn in; -1: everywhere
+};
+
+/// A slice layer.
+struct SliceView {
+    LayerView look; ///< its samples and colours, brushes and lens
+    Plane plane;
+    int contours = 0;
+    float opacity = 1;
 };
 
 /// A BrushTest in samples of its channels.
@@ -108,7 +117,9 @@ struct CastJob {
     float stepVoxels = 1;
     std::span<const PlacedClip> clips;
 
+    bool bcc = false, exact = false; ///< of all volumes
     std::span<const LayerView> layers;
+    std::span<const SliceView> slices;
     FocusView focus;
     SkipView skip;
     volume::GradientStencil stencil;

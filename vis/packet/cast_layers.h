@@ -97,6 +97,7 @@ template <bool Bcc, bool Exact> struct Caster {
 
     /// Puts a projection behind what is there.
     void showProjection(const LayerView& layer, const Projected& sums) {
+        packet.showSlices();
         const Mask some = (sums.count > Floats(0)) & (sums.factors > Floats(0));
         Floats place = sums.bestPlace, shownAt = sums.bestAt;
         if (layer.style == RayStyle::XRay || layer.style == RayStyle::Average) shownAt = packet.count * Floats(0.5);
@@ -115,21 +116,13 @@ template <bool Bcc, bool Exact> struct Caster {
         packet.blend(color, alpha, shownAt, some);
     }
 
-    /// A surface that rays meet before their next sample.
-    struct Surface {
-        Floats at; ///< in samples; beyond all where none is met
-        Vec color;
-        Floats opacity;
-    };
-
     /// The intersections with an iso-surface between samples k - 1 and k.
-    Surface meetSurface(const LayerView& layer, bool masked, const Found& before, const Found& now, Floats k,
-                        Mask lanes) {
+    Met meetSurface(const LayerView& layer, bool masked, const Found& before, const Found& now, Floats k, Mask lanes) {
         const Read read = reader(layer, masked);
-        const Floats value(layer.isoValue), far(1e9);
+        const Floats value(layer.isoValue), far(kFar);
         const Mask above = before.value >= value, below = !above, over = now.value >= value;
         const Mask crossed = lanes & before.present & now.present & ((above & !over) | (below & over));
-        Surface out{far, {Floats(0), Floats(0), Floats(0)}, Floats(0)};
+        Met out{far, {Floats(0), Floats(0), Floats(0)}, Floats(0)};
         if (!anyOf(crossed)) return out;
         Floats lo = k - Floats(1), hi = k;
         for (int i = 0; i < kBisections; ++i) {
@@ -184,6 +177,7 @@ template <bool Bcc, bool Exact> struct Caster {
                     now[i] = reader(job.layers[i], masked)(packet.cells(k), live);
                 }
                 drawSurfaces(before, now, masked, k, live);
+                if (packet.sliceCount > 0) packet.showSlices(k, live); // so that rays end at opaque ones
                 for (int i = 0; i < layers; ++i) drawVolume(job.layers[i], now[i], sums[i], masked, k, live);
                 for (int i = 0; i < layers; ++i) {
                     before[i].value = choose(live, now[i].value, before[i].value);
@@ -201,29 +195,15 @@ template <bool Bcc, bool Exact> struct Caster {
     static bool isProjection(RayStyle style) { return style != RayStyle::Composite && style != RayStyle::Iso; }
 
     void drawSurfaces(const Found* before, const Found* now, bool masked, Floats k, Mask lanes) {
-        Surface met[kMostPacketSurfaces];
+        Met met[kMostPacketSurfaces];
         int count = 0;
         for (std::size_t i = 0; i < job.layers.size(); ++i) {
             const LayerView& layer = job.layers[i];
             if (layer.style == RayStyle::Iso && count < kMostPacketSurfaces)
                 met[count++] = meetSurface(layer, masked, before[i], now[i], k, lanes);
         }
-        // Nearest first; equal ones in order.
-        for (int end = count; end > 1; --end)
-            for (int i = 0; i + 1 < end; ++i) {
-                const Mask later = met[i].at > met[i + 1].at;
-                if (!anyOf(later)) continue;
-                const Surface a = met[i], b = met[i + 1];
-                met[i] = pick(later, b, a);
-                met[i + 1] = pick(later, a, b);
-            }
+        sortByDistance(met, count);
         for (int i = 0; i < count; ++i) packet.blend(met[i].color, met[i].opacity, met[i].at, lanes);
-    }
-    static Surface pick(Mask which, const Surface& a, const Surface& b) {
-        return {choose(which, a.at, b.at),
-                {choose(which, a.color.x, b.color.x), choose(which, a.color.y, b.color.y),
-                 choose(which, a.color.z, b.color.z)},
-                choose(which, a.opacity, b.opacity)};
     }
 
     void drawVolume(const LayerView& layer, const Found& now, Projected& sums, bool masked, Floats k, Mask lanes) {

@@ -9,6 +9,31 @@
 namespace tessera::vis::packet::TESSERA_LANES {
 
 inline constexpr float kNoPick = -2, kPickOpacity = 0.1f; // as in vis/shaders/lib/shown.glsl
+inline constexpr float kFar = 1e9f;                       ///< beyond all samples
+
+/// A contribution at or between samples.
+struct Met {
+    Floats at; ///< in samples; kFar: none
+    Vec color;
+    Floats opacity;
+};
+inline Met choose(Mask which, const Met& a, const Met& b) {
+    return {
+        choose(which, a.at, b.at),
+        {choose(which, a.color.x, b.color.x), choose(which, a.color.y, b.color.y), choose(which, a.color.z, b.color.z)},
+        choose(which, a.opacity, b.opacity)};
+}
+/// Nearest first; equal ones in order.
+inline void sortByDistance(Met* met, int count) {
+    for (int end = count; end > 1; --end)
+        for (int i = 0; i + 1 < end; ++i) {
+            const Mask later = met[i].at > met[i + 1].at;
+            if (!anyOf(later)) continue;
+            const Met a = met[i], b = met[i + 1];
+            met[i] = choose(later, b, a);
+            met[i + 1] = choose(later, a, b);
+        }
+}
 
 /// Rays and what they have accumulated. Sample k of a ray lies at enter + (k + phase) step.
 struct Packet {
@@ -22,6 +47,12 @@ struct Packet {
     Vec color{Floats(0), Floats(0), Floats(0)};
     Floats opacity{0};
     Floats pick{kNoPick}; ///< sample at which opacity exceeds kPickOpacity
+
+    /// Slices that rays meet, nearest first; those up to `passed` are put behind what is there. What lies behind others
+    /// is put there after them: they need not be looked for at every sample.
+    Met slices[kMostPacketSlices];
+    int sliceCount = 0;
+    Floats passed{-kFar};
 
     Vec cells(Floats k) const {
         return {multiplyAdd(k, advance.x, first.x), multiplyAdd(k, advance.y, first.y),
@@ -40,8 +71,26 @@ struct Packet {
         return out;
     }
     Mask seeThrough() const { return opacity < Floats(kOpaque); }
-    /// Puts a colour behind what is there, met at a position in samples.
+    /// Puts a colour behind what is there, met at a position in samples, and slices before it.
     void blend(const Vec& over, Floats alpha, Floats at, Mask lanes) {
+        if (sliceCount > 0) showSlices(at, lanes & (at < Floats(kFar / 2)));
+        add(over, alpha, at, lanes);
+    }
+    /// The slices up to a position in samples.
+    void showSlices(Floats until, Mask lanes) {
+        for (int i = 0; i < sliceCount; ++i) {
+            const Mask due = lanes & (slices[i].at > passed) & (slices[i].at <= until);
+            if (anyOf(due)) add(slices[i].color, slices[i].opacity, slices[i].at, due);
+        }
+        passed = choose(lanes, larger(passed, until), passed);
+    }
+    /// Those that are left, of rays that are not opaque.
+    void showSlices() {
+        if (sliceCount > 0) showSlices(Floats(kFar / 2), meets & seeThrough());
+    }
+
+private:
+    void add(const Vec& over, Floats alpha, Floats at, Mask lanes) {
         const Floats weight = choose(lanes, (Floats(1) - opacity) * alpha, Floats(0));
         color = color + over * weight;
         opacity += weight;

@@ -31,8 +31,17 @@ bool sameTables(const Scene& a, const Scene& b) {
     const auto sameLens = [](const Lens& one, const Lens& other) {
         return one.name == other.name && one.enabled == other.enabled && one.marks == other.marks;
     };
-    return a.layers == b.layers && a.transfer == b.transfer && a.time == b.time && a.render.filter == b.render.filter &&
-           a.selection == b.selection && std::ranges::equal(a.lenses, b.lenses, sameLens);
+    const auto sameLayer = [](const Layer& one, const Layer& other) {
+        const auto* slice = std::get_if<SliceLayer>(&one.technique);
+        if (!slice || !std::holds_alternative<SliceLayer>(other.technique)) return one == other;
+        Layer moved = other; // where a slice lies is no matter of tables
+        moved.technique = *slice;
+        std::get<SliceLayer>(moved.technique).channel = std::get<SliceLayer>(other.technique).channel;
+        return one == moved;
+    };
+    return std::ranges::equal(a.layers, b.layers, sameLayer) && a.transfer == b.transfer && a.time == b.time &&
+           a.render.filter == b.render.filter && a.selection == b.selection &&
+           std::ranges::equal(a.lenses, b.lenses, sameLens);
 }
 
 } // namespace
@@ -65,7 +74,7 @@ PacketVolumes::Held& PacketVolumes::entry(const PacketChannel& channel) {
         return !each.coming.valid() || (each.asked + kForgotten < asked_ && isReady(each.coming));
     });
     auto found = std::ranges::find_if(held_, [&](const Held& each) { return each.channel == channel; });
-    if (found == held_.end()) found = held_.insert(held_.end(), {channel, {}, {}});
+    if (found == held_.end()) found = held_.insert(held_.end(), {.channel = channel, .volume = {}, .coming = {}});
     found->asked = asked_;
     return *found;
 }

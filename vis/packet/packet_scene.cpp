@@ -3,30 +3,15 @@
 #include "vis/optics/ray_setup.h"
 #include "vis/packet/packet_table.h"
 #include "vis/transfer/block_distance.h"
-#include "volume/bricks/parts_bricks.h"
-#include "volume/field/time_pair.h"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace tessera::vis::packet {
 
 namespace {
 
-/// A range of places narrower than this part of the data's range is read from floats.
-constexpr double kNarrow = 1.0 / 8;
 constexpr double kSlack = 2; ///< of bounds, in 16-bit samples, for rounding
-
-struct Transfer {
-    const TransferFunction& function;
-    Range range;
-};
-Transfer transferOfLayer(const Scene& scene, const volume::DatasetInfo& info, const Layer& layer, int channel) {
-    const volume::Channel known = info.channel(channel);
-    const TransferFunction& function = transferFor(scene, layer.transfer.empty() ? known.name : layer.transfer);
-    return {function, effectiveRange(function, info.channelRange(known))};
-}
 
 VolumeView viewOf(const PacketVolume& volume) {
     VolumeView view;
@@ -43,143 +28,58 @@ VolumeView viewOf(const PacketVolume& volume) {
 
 } // namespace
 
-namespace {
-
-/// Index of an enabled lens among those that placeLenses() gives, -1 if there is none of that name.
-int findEnabledLens(const Scene& scene, const std::string& name) {
-    int index = 0;
-    for (const Lens& lens : scene.lenses) {
-        if (!lens.enabled) continue;
-        if (lens.name == name) return index < kMaxLenses ? index : -1;
-        ++index;
-    }
-    return -1;
-}
-
-} // namespace
-
-std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::DatasetInfo& info) {
-    std::vector<DrawnChannel> out;
-    bool exact = false; // all have samples of the same kind
-    for (std::size_t i = 0; i < scene.layers.size(); ++i) {
-        const Layer& layer = scene.layers[i];
-        if (!layer.lens.empty() && findEnabledLens(scene, layer.lens) < 0) continue;
-        if (!layer.visible || std::holds_alternative<FlowLayer>(layer.technique)) continue;
-        const auto* iso = std::get_if<IsoLayer>(&layer.technique);
-        if (iso && iso->method == SurfaceMethod::Polygons) continue;
-        const std::string& name =
-            std::visit([](const auto& t) -> const std::string& { return t.channel; }, layer.technique);
-        const std::optional<int> channel = info.findChannel(name);
-        if (!channel) continue;
-        const volume::TimePair time = volume::timesAround(info.times, scene.time + layer.timeShift);
-        const Range range = transferOfLayer(scene, info, layer, *channel).range,
-                    whole = info.channelRange(info.channel(*channel));
-        exact = exact || std::abs(range.hi - range.lo) < kNarrow * std::abs(whole.hi - whole.lo);
-        out.push_back({int(i), {*channel, time.earlier, scene.render.filter, false}});
-    }
-    for (DrawnChannel& drawn : out) drawn.channel.exact = exact;
-    return out;
-}
-
-namespace {
-
-/// The channels of the enabled brushes that the data set has.
-std::vector<int> brushedChannels(const Scene& scene, const volume::DatasetInfo& info) {
-    std::vector<int> out;
-    for (const std::string& name : selectedChannels(scene.selection))
-        if (const std::optional<int> channel = info.findChannel(name)) out.push_back(*channel);
-    return out;
-}
-
-} // namespace
-
-std::vector<PacketChannel> packetChannels(const Scene& scene, const volume::DatasetInfo& info) {
-    std::vector<PacketChannel> out;
-    for (const DrawnChannel& drawn : drawnChannels(scene, info)) out.push_back(drawn.channel);
-    const bool exact = !out.empty() && out.front().exact;
-    const int time = volume::timesAround(info.times, scene.time).earlier;
-    for (const int channel : brushedChannels(scene, info)) out.push_back({channel, time, scene.render.filter, exact});
-    return out;
-}
-
-namespace {
-
-std::string refusalOfParameter(const volume::DatasetInfo& info, int channel) {
-    const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(channel).parameter)];
-    if (parameter.categorical) return "labels";
-    if (volume::labelChannel(info, parameter)) return "parameters whose regions are never mixed";
-    return "";
-}
-
-std::string refusalOfFocus(const Scene& scene, const volume::DatasetInfo& info) {
-    if (lensesBend(scene)) return "magnifying lenses";
-    if (!scene.selection.active()) return "";
-    if (scene.selection.contextBlur > 0) return "blurred context";
-    const std::vector<int> brushed = brushedChannels(scene, info);
-    for (const int channel : brushed)
-        if (std::string why = refusalOfParameter(info, channel); !why.empty()) return "brushes of " + why;
-    if (!brushed.empty() && volume::timesAround(info.times, scene.time).between())
-        return "times between the stored ones";
-    return brushed.size() > std::size_t(kMostBrushFields) ? "brushes of so many parameters" : "";
-}
-
-std::string refusalOfLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn) {
-    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
-    if (std::holds_alternative<SliceLayer>(layer.technique)) return "slices";
-    if (std::string why = refusalOfParameter(info, drawn.channel.channel); !why.empty()) return why;
-    if (volume::timesAround(info.times, scene.time + layer.timeShift).between()) return "times between the stored ones";
-    if (!colorByOf(layer.technique).empty()) return "colours by another parameter";
-    if (const Look* look = lookOf(layer.technique); look && look->any()) return "looks";
-    const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
-    if (!volume) return "";
-    if (volume->quantity == Quantity::Gradient) return "gradient magnitudes";
-    const auto [function, range] = transferOfLayer(scene, info, layer, drawn.channel.channel);
-    if (range.hi == range.lo) return "ranges without width";
-    if (volume->style != RayStyle::Composite) return "";
-    if (volume->classification != Classification::Post) return "classification before or over samples";
-    if (function.kind != TransferKind::Curve) return "transfer functions of two dimensions";
-    return "";
-}
-
-} // namespace
-
-std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
-    if (peelsOf(scene) > 0) return "meshes, lines and points";
-    if (std::string why = refusalOfFocus(scene, info); !why.empty()) return why;
-    if (scene.lighting.shadows.any()) return "shadows";
-    if (usesMaps(scene.lighting)) return "light from maps";
-    if (scene.render.proxy != Proxy::Rays) return "proxy geometry";
-    if (scene.render.adaptiveStep > 0) return "adaptive steps";
-    if (scene.render.normalBits > 0) return "quantised normals";
-    if (scene.render.filter == Filter::Tetrahedral && lattice.kind == volume::LatticeKind::BCC)
-        return "tetrahedral interpolation";
-    const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
-    int surfaces = 0;
-    for (const DrawnChannel& each : drawn) {
-        const std::string refusal = refusalOfLayer(scene, info, each);
-        if (!refusal.empty()) return refusal;
-        surfaces += std::holds_alternative<IsoLayer>(scene.layers[std::size_t(each.layer)].technique);
-    }
-    if (drawn.size() > std::size_t(kMostPacketLayers) || surfaces > kMostPacketSurfaces) return "so many layers";
-    return "";
-}
-
-void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
-                           const VolumeView* view) {
-    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
-    const PacketVolume& volume = *volumes_[layers_.size()];
-    const auto [function, range] = transferOfLayer(scene, info, layer, drawn.channel.channel);
+/// The samples of a layer, where they lie in its transfer function, its brushes and lens; not yet its table.
+LayerView PacketScene::viewOfLayer(const Layer& layer, Range range, std::size_t index) const {
+    const PacketVolume& volume = *volumes_[index];
     const double width = range.hi - range.lo;
     LayerView out;
-    out.volume = view;
+    out.volume = &views_[index];
     out.brushes = layer.brushes;
     if (!layer.lens.empty()) out.lens = findLens(lenses_, layer.lens);
     out.placeScale = width != 0 ? float(volume.scale / width) : 0;
     out.placeOffset = width != 0 ? float((volume.offset - range.lo) / width) : 0.5f;
-    Table table = makeTable(function, range);
-    out.opacityScale = table.opacityScale;
-    tables_.push_back(std::move(table.entries));
-    out.table = tables_.back().data();
+    return out;
+}
+
+/// Gives a layer its table.
+void PacketScene::setTable(LayerView& layer, const Table& table) {
+    layer.opacityScale = table.opacityScale;
+    tables_.push_back(table.entries);
+    layer.table = tables_.back().data();
+}
+
+/// `index` of a volume: that of the slice.
+void PacketScene::addSlice(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
+                           std::size_t index) {
+    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
+    const auto [function, range] = transferOfLayer(scene, info, layer, drawn.channel.channel);
+    SliceView out;
+    out.look = viewOfLayer(layer, range, index);
+    setTable(out.look, makeTable(function, range));
+    slices_.push_back(out);
+    sliceLayers_.push_back(drawn.layer);
+}
+
+/// Where the slices of a scene lie, and what else of them needs no other tables.
+void PacketScene::placeSlices(const Scene& scene, const WorldFrame& frame) {
+    for (std::size_t i = 0; i < slices_.size(); ++i) {
+        const auto& slice = std::get<SliceLayer>(scene.layers[std::size_t(sliceLayers_[i])].technique);
+        slices_[i].plane = slicePlane(slice, frame, scene.cursor);
+        slices_[i].contours = slice.contours;
+        slices_[i].opacity = slice.opacity;
+    }
+}
+
+/// `index` of a volume: that of the layer.
+void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
+                           std::size_t index) {
+    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
+    const PacketVolume& volume = *volumes_[index];
+    const auto [function, range] = transferOfLayer(scene, info, layer, drawn.channel.channel);
+    const double width = range.hi - range.lo;
+    LayerView out = viewOfLayer(layer, range, index);
+    const Table table = makeTable(function, range);
+    setTable(out, table);
     packed_.push_back(packedTable(function, range));
     out.packed = packed_.back().data();
     markShown(table, out);
@@ -294,20 +194,31 @@ PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, st
     addBrushes(scene, info);
     tables_.reserve(drawn.size());
     // Small blocks pay where rays soon end at surfaces.
+    const auto techniqueOf = [&](const DrawnChannel& each) -> const Technique& {
+        return scene.layers[std::size_t(each.layer)].technique;
+    };
     const bool surfaces = std::ranges::all_of(drawn, [&](const DrawnChannel& each) {
-        const auto* volume = std::get_if<VolumeLayer>(&scene.layers[std::size_t(each.layer)].technique);
+        const auto* volume = std::get_if<VolumeLayer>(&techniqueOf(each));
         return !volume || (volume->style == RayStyle::Composite && volume->shaded);
     });
     skip_.edge = surfaces ? kFine : 2 * kFine;
-    for (std::size_t i = 0; i < drawn.size(); ++i) addLayer(scene, info, drawn[i], &views_[i]);
-    for (const SharedVolume& volume : volumes_) {
+    std::vector<const PacketVolume*> sampled; // along rays
+    for (std::size_t i = 0; i < drawn.size(); ++i)
+        if (std::holds_alternative<SliceLayer>(techniqueOf(drawn[i]))) {
+            addSlice(scene, info, drawn[i], i);
+        } else {
+            addLayer(scene, info, drawn[i], i);
+            sampled.push_back(volumes_[i].get());
+        }
+    if (layers_.size() == 1 && (layers_[0].style == RayStyle::Maximum || layers_[0].style == RayStyle::Minimum))
+        bound_ = scoreBounds(*sampled[0], layers_[0], skip_);
+    for (std::size_t i = drawn.size(); i < volumes_.size(); ++i) sampled.push_back(volumes_[i].get());
+    for (const PacketVolume* const volume : sampled) {
         if (volume->absent.empty()) continue;
         absent_.resize(volume->absent.size());
         for (std::size_t i = 0; i < absent_.size(); ++i) absent_[i] = std::uint8_t(absent_[i] | volume->absent[i]);
     }
     if (!absent_.empty()) absent_.resize(absent_.size() + 3);
-    if (layers_.size() == 1 && (layers_[0].style == RayStyle::Maximum || layers_[0].style == RayStyle::Minimum))
-        bound_ = scoreBounds(*volumes_[0], layers_[0], skip_);
 }
 
 namespace {
@@ -358,6 +269,8 @@ CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, co
     clips_ = placeClips(scene.clips, frame);
     job.clips = clips_;
     job.layers = layers_;
+    placeSlices(scene, frame);
+    job.slices = slices_;
     lenses_ = placeLenses(scene, frame);
     job.focus = focus_;
     job.focus.lenses = lenses_;
@@ -368,6 +281,9 @@ CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, co
     job.surface = &lighting_;
     job.lights = lights_;
     job.jitterStarts = scene.render.jitter;
+    if (empty()) return job;
+    job.bcc = volumes_[0]->bcc;
+    job.exact = volumes_[0]->exact;
     if (layers_.empty()) return job;
     countAlike(skip_, octantsOf(job));
     job.skip.alike = skip_.alike.data();

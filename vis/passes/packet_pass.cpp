@@ -1,5 +1,6 @@
 #include "vis/passes/render_stages.h"
 
+#include "vis/packet/packet_refusal.h"
 #include "volume/base/error.h"
 #include "volume/field/time_pair.h"
 
@@ -39,7 +40,8 @@ bool RenderStages::chooseEngine(ViewTarget& target, const RenderCall& call, Fram
     const bool wanted = asked == Engine::Processor || (asked == Engine::Automatic && options.packets);
     if (target.packets.renderer.setVolumes(volumes)) target.packets.failed = false;
     volumes->keep(std::min(options.memoryBudget, std::size_t(call.scene.render.limits.brickMemory) << 20) / 2);
-    const bool possible = wanted && !call.plan.empty() && !options.countSamples;
+    const bool rays = !call.plan.layers.empty(); // slices alone are a sample for each pixel
+    const bool possible = wanted && (rays || call.plan.peels > 0) && !options.countSamples;
     EngineUse& use = status.engine;
     if (possible) use.refusal = refusalOfPackets(target, call);
     if (asked == Engine::Automatic && call.info().remote && use.refusal.empty())

@@ -1,0 +1,73 @@
+#include "vis/packet/packet_channels.h"
+
+#include "volume/field/time_pair.h"
+
+#include <cmath>
+#include <optional>
+
+namespace tessera::vis::packet {
+
+namespace {
+
+/// A range of places narrower than this part of the data's range is read from floats.
+constexpr double kNarrow = 1.0 / 8;
+
+/// Index of an enabled lens among those that placeLenses() gives, -1 if there is none of that name.
+int findEnabledLens(const Scene& scene, const std::string& name) {
+    int index = 0;
+    for (const Lens& lens : scene.lenses) {
+        if (!lens.enabled) continue;
+        if (lens.name == name) return index < kMaxLenses ? index : -1;
+        ++index;
+    }
+    return -1;
+}
+
+} // namespace
+
+Transfer transferOfLayer(const Scene& scene, const volume::DatasetInfo& info, const Layer& layer, int channel) {
+    const volume::Channel known = info.channel(channel);
+    const TransferFunction& function = transferFor(scene, layer.transfer.empty() ? known.name : layer.transfer);
+    return {function, effectiveRange(function, info.channelRange(known))};
+}
+
+std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::DatasetInfo& info) {
+    std::vector<DrawnChannel> out;
+    bool exact = false; // all have samples of the same kind
+    for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+        const Layer& layer = scene.layers[i];
+        if (!layer.lens.empty() && findEnabledLens(scene, layer.lens) < 0) continue;
+        if (!layer.visible || std::holds_alternative<FlowLayer>(layer.technique)) continue;
+        const auto* iso = std::get_if<IsoLayer>(&layer.technique);
+        if (iso && iso->method == SurfaceMethod::Polygons) continue;
+        const std::string& name =
+            std::visit([](const auto& t) -> const std::string& { return t.channel; }, layer.technique);
+        const std::optional<int> channel = info.findChannel(name);
+        if (!channel) continue;
+        const volume::TimePair time = volume::timesAround(info.times, scene.time + layer.timeShift);
+        const Range range = transferOfLayer(scene, info, layer, *channel).range,
+                    whole = info.channelRange(info.channel(*channel));
+        exact = exact || std::abs(range.hi - range.lo) < kNarrow * std::abs(whole.hi - whole.lo);
+        out.push_back({int(i), {*channel, time.earlier, scene.render.filter, false}});
+    }
+    for (DrawnChannel& drawn : out) drawn.channel.exact = exact;
+    return out;
+}
+
+std::vector<int> brushedChannels(const Scene& scene, const volume::DatasetInfo& info) {
+    std::vector<int> out;
+    for (const std::string& name : selectedChannels(scene.selection))
+        if (const std::optional<int> channel = info.findChannel(name)) out.push_back(*channel);
+    return out;
+}
+
+std::vector<PacketChannel> packetChannels(const Scene& scene, const volume::DatasetInfo& info) {
+    std::vector<PacketChannel> out;
+    for (const DrawnChannel& drawn : drawnChannels(scene, info)) out.push_back(drawn.channel);
+    const bool exact = !out.empty() && out.front().exact;
+    const int time = volume::timesAround(info.times, scene.time).earlier;
+    for (const int channel : brushedChannels(scene, info)) out.push_back({channel, time, scene.render.filter, exact});
+    return out;
+}
+
+} // namespace tessera::vis::packet

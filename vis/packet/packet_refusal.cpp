@@ -1,0 +1,75 @@
+#include "vis/packet/packet_refusal.h"
+
+#include "vis/packet/cast_job.h"
+#include "vis/packet/packet_channels.h"
+#include "volume/bricks/parts_bricks.h"
+#include "volume/field/time_pair.h"
+
+namespace tessera::vis::packet {
+
+namespace {
+
+std::string refusalOfParameter(const volume::DatasetInfo& info, int channel) {
+    const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(channel).parameter)];
+    if (parameter.categorical) return "labels";
+    if (volume::labelChannel(info, parameter)) return "parameters whose regions are never mixed";
+    return "";
+}
+
+std::string refusalOfFocus(const Scene& scene, const volume::DatasetInfo& info) {
+    if (lensesBend(scene)) return "magnifying lenses";
+    if (!scene.selection.active()) return "";
+    if (scene.selection.contextBlur > 0) return "blurred context";
+    const std::vector<int> brushed = brushedChannels(scene, info);
+    for (const int channel : brushed)
+        if (std::string why = refusalOfParameter(info, channel); !why.empty()) return "brushes of " + why;
+    if (!brushed.empty() && volume::timesAround(info.times, scene.time).between())
+        return "times between the stored ones";
+    return brushed.size() > std::size_t(kMostBrushFields) ? "brushes of so many parameters" : "";
+}
+
+std::string refusalOfLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn) {
+    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
+    if (std::string why = refusalOfParameter(info, drawn.channel.channel); !why.empty()) return why;
+    if (volume::timesAround(info.times, scene.time + layer.timeShift).between()) return "times between the stored ones";
+    if (!colorByOf(layer.technique).empty()) return "colours by another parameter";
+    if (const Look* look = lookOf(layer.technique); look && look->any()) return "looks";
+    if (std::holds_alternative<IsoLayer>(layer.technique)) return "";
+    const auto [function, range] = transferOfLayer(scene, info, layer, drawn.channel.channel);
+    if (range.hi == range.lo) return "ranges without width";
+    const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
+    if (!volume) return "";
+    if (volume->quantity == Quantity::Gradient) return "gradient magnitudes";
+    if (volume->style != RayStyle::Composite) return "";
+    if (volume->classification != Classification::Post) return "classification before or over samples";
+    if (function.kind != TransferKind::Curve) return "transfer functions of two dimensions";
+    return "";
+}
+
+} // namespace
+
+std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
+    if (peelsOf(scene) > 0) return "meshes, lines and points";
+    if (std::string why = refusalOfFocus(scene, info); !why.empty()) return why;
+    if (scene.lighting.shadows.any()) return "shadows";
+    if (usesMaps(scene.lighting)) return "light from maps";
+    if (scene.render.proxy != Proxy::Rays) return "proxy geometry";
+    if (scene.render.adaptiveStep > 0) return "adaptive steps";
+    if (scene.render.normalBits > 0) return "quantised normals";
+    if (scene.render.filter == Filter::Tetrahedral && lattice.kind == volume::LatticeKind::BCC)
+        return "tetrahedral interpolation";
+    const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
+    int surfaces = 0, slices = 0;
+    for (const DrawnChannel& each : drawn) {
+        const std::string refusal = refusalOfLayer(scene, info, each);
+        if (!refusal.empty()) return refusal;
+        const Technique& technique = scene.layers[std::size_t(each.layer)].technique;
+        surfaces += std::holds_alternative<IsoLayer>(technique);
+        slices += std::holds_alternative<SliceLayer>(technique);
+    }
+    if (drawn.size() > std::size_t(kMostPacketLayers) || surfaces > kMostPacketSurfaces || slices > kMostPacketSlices)
+        return "so many layers";
+    return "";
+}
+
+} // namespace tessera::vis::packet
