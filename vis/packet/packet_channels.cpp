@@ -1,7 +1,5 @@
 #include "vis/packet/packet_channels.h"
 
-#include "volume/field/time_pair.h"
-
 #include <cmath>
 #include <optional>
 
@@ -48,7 +46,7 @@ std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::Datase
         const Range range = transferOfLayer(scene, info, layer, *channel).range,
                     whole = info.channelRange(info.channel(*channel));
         exact = exact || std::abs(range.hi - range.lo) < kNarrow * std::abs(whole.hi - whole.lo);
-        out.push_back({int(i), {*channel, time.earlier, scene.render.filter, false}});
+        out.push_back({int(i), {*channel, time, scene.render.filter, false}});
     }
     for (DrawnChannel& drawn : out) drawn.channel.exact = exact;
     return out;
@@ -65,7 +63,7 @@ std::vector<PacketChannel> packetChannels(const Scene& scene, const volume::Data
     std::vector<PacketChannel> out;
     for (const DrawnChannel& drawn : drawnChannels(scene, info)) out.push_back(drawn.channel);
     const bool exact = !out.empty() && out.front().exact;
-    const int time = volume::timesAround(info.times, scene.time).earlier;
+    const volume::TimePair time = volume::timesAround(info.times, scene.time);
     for (const int channel : brushedChannels(scene, info)) out.push_back({channel, time, scene.render.filter, exact});
     return out;
 }

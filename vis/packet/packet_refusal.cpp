@@ -3,7 +3,6 @@
 #include "vis/packet/cast_job.h"
 #include "vis/packet/packet_channels.h"
 #include "volume/bricks/parts_bricks.h"
-#include "volume/field/time_pair.h"
 
 namespace tessera::vis::packet {
 
@@ -23,15 +22,12 @@ std::string refusalOfFocus(const Scene& scene, const volume::DatasetInfo& info) 
     const std::vector<int> brushed = brushedChannels(scene, info);
     for (const int channel : brushed)
         if (std::string why = refusalOfParameter(info, channel); !why.empty()) return "brushes of " + why;
-    if (!brushed.empty() && volume::timesAround(info.times, scene.time).between())
-        return "times between the stored ones";
     return brushed.size() > std::size_t(kMostBrushFields) ? "brushes of so many parameters" : "";
 }
 
 std::string refusalOfLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn) {
     const Layer& layer = scene.layers[std::size_t(drawn.layer)];
     if (std::string why = refusalOfParameter(info, drawn.channel.channel); !why.empty()) return why;
-    if (volume::timesAround(info.times, scene.time + layer.timeShift).between()) return "times between the stored ones";
     if (!colorByOf(layer.technique).empty()) return "colours by another parameter";
     if (const Look* look = lookOf(layer.technique); look && look->any()) return "looks";
     if (std::holds_alternative<IsoLayer>(layer.technique)) return "";

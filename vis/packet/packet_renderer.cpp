@@ -2,6 +2,7 @@
 
 #include "vis/optics/jitter.h"
 #include "vis/packet/cast.h"
+#include "vis/packet/packet_blend.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>
@@ -96,7 +97,20 @@ SharedVolume PacketVolumes::use(const SharedVolume& volume) {
     return volume;
 }
 
+/// Samples between two stored times, whose own samples are held as long.
+SharedVolume PacketVolumes::blend(const PacketChannel& channel) {
+    if (SharedVolume volume = entry(channel).volume.lock()) return volume;
+    const SharedVolume earlier = get(channel.at(channel.time.earlier)), later = get(channel.at(channel.time.later));
+    const auto volume = std::make_shared<const PacketVolume>(blendedVolume(*earlier, *later, channel.time.weight));
+    Held& own = entry(channel);
+    own.volume = volume;
+    own.earlier = earlier;
+    own.later = later;
+    return volume;
+}
+
 SharedVolume PacketVolumes::get(const PacketChannel& channel) {
+    if (channel.time.between()) return blend(channel);
     Held& own = entry(channel);
     SharedVolume volume = own.volume.lock();
     if (volume) return use(volume);
@@ -109,6 +123,10 @@ SharedVolume PacketVolumes::get(const PacketChannel& channel) {
 }
 
 bool PacketVolumes::request(const PacketChannel& channel) {
+    if (channel.time.between()) {
+        const bool earlier = request(channel.at(channel.time.earlier)), later = request(channel.at(channel.time.later));
+        return earlier && later;
+    }
     Held& own = entry(channel);
     if (!own.volume.expired()) return true;
     if (own.coming.valid()) return isReady(own.coming);

@@ -39,7 +39,8 @@ public:
     /// Keeps the last ones used up to so many bytes.
     void keep(std::size_t bytes);
     const std::shared_ptr<const volume::BrickSource>& source() const { return source_; }
-    /// The samples of a channel; waits until they are read. Throws Error when the source does.
+    /// The samples of a channel, between two stored times blended anew unless somebody holds them; waits until they are
+    /// read. Throws Error when the source does.
     SharedVolume get(const PacketChannel& channel);
     /// Whether get() would not wait; begins to read them in the background otherwise.
     bool request(const PacketChannel& channel);
@@ -48,10 +49,12 @@ private:
     struct Held {
         PacketChannel channel;
         std::weak_ptr<const PacketVolume> volume;
-        std::future<SharedVolume> coming; ///< valid until what is being read is taken
-        std::uint64_t asked = 0;          ///< value of asked_ when it was last asked for
+        SharedVolume earlier = {}, later = {}; ///< what it was blended from
+        std::future<SharedVolume> coming;      ///< valid until what is being read is taken
+        std::uint64_t asked = 0;               ///< value of asked_ when it was last asked for
     };
     Held& entry(const PacketChannel& channel);
+    SharedVolume blend(const PacketChannel& channel);
     SharedVolume use(const SharedVolume& volume);
 
     std::shared_ptr<const volume::BrickSource> source_;

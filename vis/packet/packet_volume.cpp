@@ -73,7 +73,9 @@ Gathered gatherAll(const volume::BrickSource& source, const PacketChannel& what)
     out.values.resize(grid.lattice.count());
     std::vector<Extent> own(grid.brickCount());
     std::vector<std::uint8_t> absent(own.size());
-    const auto key = [&](std::size_t i) { return volume::BrickKey{what.channel, what.time, 0, grid.indexOf(i)}; };
+    const auto key = [&](std::size_t i) {
+        return volume::BrickKey{what.channel, what.time.earlier, 0, grid.indexOf(i)};
+    };
     out.present.resize(out.values.size(), 1);
     parallelFor(own.size(), [&](std::size_t i) {
         const volume::BrickSamples brick = source.read(key(i));

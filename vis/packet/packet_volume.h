@@ -2,6 +2,7 @@
 
 #include "vis/scene/scene.h"
 #include "volume/bricks/brick_source.h"
+#include "volume/field/time_pair.h"
 
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -29,8 +30,10 @@ struct PacketVolume {
     glm::ivec3 bricks{1};
     std::vector<std::int16_t> shorts; ///< 0 .. kQuantum
     std::vector<float> floats;
-    std::vector<std::int16_t> present; ///< kQuantum or 0, at the same places; empty: all samples are present
-    double offset = 0, scale = 1;      ///< physical value = offset + scale * sample
+    /// kQuantum or 0, at the same places; empty: all samples are present. Between two stored times also the weight of
+    /// the one at which a sample is present; the sample has that weight, too.
+    std::vector<std::int16_t> present;
+    double offset = 0, scale = 1; ///< physical value = offset + scale * sample
     /// Bounds of the samples that interpolation in a block of kFine^3 cells can read, and whether one is absent. lo >
     /// hi: all are.
     glm::ivec3 blocks{1};
@@ -47,13 +50,17 @@ struct PacketVolume {
 
 /// What of a channel is read.
 struct PacketChannel {
-    int channel = 0, time = 0;
+    int channel = 0;
+    volume::TimePair time = {};
     Filter filter = Filter::AverageQuasi;
     bool exact = false; ///< 32-bit floats, else 15 bits over the range of the data
     bool operator==(const PacketChannel&) const = default;
+
+    /// The same at one of the stored times around.
+    PacketChannel at(int stored) const { return {channel, {stored, stored, 0}, filter, exact}; }
 };
 
-/// Throws Error when the source does.
+/// Samples at a stored time. Throws Error when the source does.
 PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketChannel& what);
 
 } // namespace tessera::vis::packet

@@ -15,8 +15,14 @@ namespace {
 double packetBytes(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
     constexpr double kShared = 2.69; // pairs, and samples that several bricks hold
     std::vector<packet::PacketChannel> channels;
-    for (const packet::PacketChannel& channel : packet::packetChannels(scene, info))
+    const auto add = [&](const packet::PacketChannel& channel) {
         if (std::ranges::find(channels, channel) == channels.end()) channels.push_back(channel);
+    };
+    for (const packet::PacketChannel& channel : packet::packetChannels(scene, info)) {
+        add(channel);
+        add(channel.at(channel.time.earlier));
+        add(channel.at(channel.time.later));
+    }
     const double samples = double(lattice.size.x) * double(lattice.size.y) * double(lattice.size.z);
     double bytes = 0;
     for (const packet::PacketChannel& channel : channels) bytes += samples * kShared * (channel.exact ? 4 : 2);
@@ -84,10 +90,11 @@ bool RenderStages::drawByPackets(ViewTarget& target, const RenderCall& call, Clo
 /// While an animation runs, the samples of the next stored time are read in the background.
 void RenderStages::prefetchTime(PacketView& packets, const RenderCall& call) {
     const std::vector<double>& times = call.info().times;
-    const int now = volume::timesAround(times, call.scene.time).earlier;
+    const volume::TimePair around = volume::timesAround(times, call.scene.time);
+    const int now = around.earlier;
     if (now != packets.time) packets.step = packets.time < 0 ? 0 : now - packets.time;
     packets.time = now;
-    const int next = now + packets.step;
+    const int next = (packets.step > 0 ? around.later : now) + packets.step;
     if (packets.step == 0 || next < 0 || next >= int(times.size())) return;
     Scene coming = call.scene;
     coming.time = times[std::size_t(next)];
