@@ -5,6 +5,7 @@
 #include "vis/optics/surface_light.h"
 #include "vis/scene/brush_effect.h"
 #include "vis/scene/clipping.h"
+#include "vis/scene/geometry.h"
 #include "vis/scene/layers.h"
 #include "vis/scene/lens.h"
 #include "volume/reconstruct/gradient.h"
@@ -120,6 +121,10 @@ struct CastJob {
     bool bcc = false, exact = false; ///< of all volumes
     std::span<const LayerView> layers;
     std::span<const SliceView> slices;
+    int peels = 0;                       ///< rasterised surfaces of each pixel (PacketGeometry)
+    std::size_t pixels = 0;              ///< from one of them to the next
+    const float* peelDistance = nullptr; ///< distance along the ray, and BrushEffect; `first` and `rowLength` as below
+    const float* peelColor = nullptr;    ///< RGBA, linear, premultiplied
     FocusView focus;
     SkipView skip;
     volume::GradientStencil stencil;

@@ -31,6 +31,14 @@ template <bool Bcc, bool Exact> struct Caster {
         return focusAt(job.focus, layer, cells, packet.world(k), lanes, read);
     }
 
+    /// Degree of interest of places that are no samples of rays.
+    Interest interestAt(const Vec& cells, const Vec& world, Mask lanes) const {
+        Found values[kMostBrushFields];
+        for (std::size_t i = 0; i < job.focus.fields.size(); ++i)
+            values[i] = reader(*job.focus.fields[i], true)(cells, lanes);
+        return interestOf(job.focus, values, cells, world, lanes);
+    }
+
     /// Counts reconstructions of a value.
     void count(Mask lanes, int reads = 1) {
         if (job.samples != nullptr) taken += std::uint64_t(__builtin_popcount(bitsOf(lanes)) * reads);
@@ -97,7 +105,7 @@ template <bool Bcc, bool Exact> struct Caster {
 
     /// Puts a projection behind what is there.
     void showProjection(const LayerView& layer, const Projected& sums) {
-        packet.showSlices();
+        packet.showEvents();
         const Mask some = (sums.count > Floats(0)) & (sums.factors > Floats(0));
         Floats place = sums.bestPlace, shownAt = sums.bestAt;
         if (layer.style == RayStyle::XRay || layer.style == RayStyle::Average) shownAt = packet.count * Floats(0.5);
@@ -177,7 +185,7 @@ template <bool Bcc, bool Exact> struct Caster {
                     now[i] = reader(job.layers[i], masked)(packet.cells(k), live);
                 }
                 drawSurfaces(before, now, masked, k, live);
-                if (packet.sliceCount > 0) packet.showSlices(k, live); // so that rays end at opaque ones
+                if (packet.eventCount > 0) packet.showEvents(k, live); // so that rays end at opaque ones
                 for (int i = 0; i < layers; ++i) drawVolume(job.layers[i], now[i], sums[i], masked, k, live);
                 for (int i = 0; i < layers; ++i) {
                     before[i].value = choose(live, now[i].value, before[i].value);

@@ -48,10 +48,10 @@ struct Packet {
     Floats opacity{0};
     Floats pick{kNoPick}; ///< sample at which opacity exceeds kPickOpacity
 
-    /// Slices that rays meet, nearest first; those up to `passed` are put behind what is there. What lies behind others
-    /// is put there after them: they need not be looked for at every sample.
-    Met slices[kMostPacketSlices];
-    int sliceCount = 0;
+    /// Slices and rasterised surfaces that rays meet, nearest first; those up to `passed` are put behind what is there.
+    /// Whatever is put behind others comes after them: they need not be looked for at every sample.
+    Met events[kMostPacketSlices + kPeels];
+    int eventCount = 0;
     Floats passed{-kFar};
 
     Vec cells(Floats k) const {
@@ -71,22 +71,22 @@ struct Packet {
         return out;
     }
     Mask seeThrough() const { return opacity < Floats(kOpaque); }
-    /// Puts a colour behind what is there, met at a position in samples, and slices before it.
+    /// Puts a colour behind what is there, met at a position in samples, and the events before it.
     void blend(const Vec& over, Floats alpha, Floats at, Mask lanes) {
-        if (sliceCount > 0) showSlices(at, lanes & (at < Floats(kFar / 2)));
+        if (eventCount > 0) showEvents(at, lanes & (at < Floats(kFar / 2)));
         add(over, alpha, at, lanes);
     }
-    /// The slices up to a position in samples.
-    void showSlices(Floats until, Mask lanes) {
-        for (int i = 0; i < sliceCount; ++i) {
-            const Mask due = lanes & (slices[i].at > passed) & (slices[i].at <= until);
-            if (anyOf(due)) add(slices[i].color, slices[i].opacity, slices[i].at, due);
+    /// The events up to a position in samples.
+    void showEvents(Floats until, Mask lanes) {
+        for (int i = 0; i < eventCount; ++i) {
+            const Mask due = lanes & (events[i].at > passed) & (events[i].at <= until);
+            if (anyOf(due)) add(events[i].color, events[i].opacity, events[i].at, due);
         }
         passed = choose(lanes, larger(passed, until), passed);
     }
     /// Those that are left, of rays that are not opaque.
-    void showSlices() {
-        if (sliceCount > 0) showSlices(Floats(kFar / 2), meets & seeThrough());
+    void showEvents() {
+        if (eventCount > 0) showEvents(Floats(kFar / 2), meets & seeThrough());
     }
 
 private:

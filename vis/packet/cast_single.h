@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vis/packet/cast_slices.h"
+#include "vis/packet/cast_events.h"
 
 #include <algorithm>
 
@@ -37,10 +37,10 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
     /// A composite layer without light, brushes, lenses and holes.
     void castUnshaded() {
         Floats k(0);
-        for (int i = 0; i < packet.sliceCount; ++i) {
-            const Floats at = smaller(packet.slices[i].at, Floats(kFar / 2));
+        for (int i = 0; i < packet.eventCount; ++i) {
+            const Floats at = smaller(packet.events[i].at, Floats(kFar / 2));
             marchUnshaded(k, clamped(roundUp(at), Floats(0), packet.count));
-            packet.showSlices(at, packet.meets & packet.seeThrough());
+            packet.showEvents(at, packet.meets & packet.seeThrough());
         }
         marchUnshaded(k, packet.count);
     }
@@ -274,11 +274,12 @@ template <bool Bcc, bool Exact> void castLayersOf(SingleCaster<Bcc, Exact>& cast
         caster.castLayers();
 }
 
-template <bool Bcc, bool Exact> std::uint64_t castPacket(const CastJob& job, Packet& packet) {
+template <bool Bcc, bool Exact>
+std::uint64_t castPacket(const CastJob& job, Packet& packet, glm::ivec2 begin, glm::ivec2 end) {
     const auto cast = [&](auto caster, const auto& castAll) {
-        if (!job.slices.empty()) findSlices<Bcc, Exact>(caster);
+        if (!job.slices.empty() || job.peels > 0) findEvents<Bcc, Exact>(caster, begin, end);
         castAll(caster);
-        packet.showSlices();
+        packet.showEvents();
         return caster.taken;
     };
     if (job.layers.empty()) return cast(Caster<Bcc, Exact>{job, packet}, [](const auto&) {});
@@ -291,7 +292,7 @@ template <bool Bcc, bool Exact> void castPixels(const CastJob& job, glm::ivec2 b
         for (int x = begin.x; x < end.x; x += kColumns) {
             Packet packet = beginPacket(job, {x, y}, end);
             if (!anyOf(packet.meets)) continue;
-            taken += castPacket<Bcc, Exact>(job, packet);
+            taken += castPacket<Bcc, Exact>(job, packet, {x, y}, end);
             storePacket(job, packet, {x, y}, end);
         }
     if (job.samples != nullptr) __atomic_fetch_add(job.samples, taken, __ATOMIC_RELAXED);

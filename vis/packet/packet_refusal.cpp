@@ -45,7 +45,6 @@ std::string refusalOfLayer(const Scene& scene, const volume::DatasetInfo& info, 
 } // namespace
 
 std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
-    if (peelsOf(scene) > 0) return "meshes, lines and points";
     if (std::string why = refusalOfFocus(scene, info); !why.empty()) return why;
     if (scene.lighting.shadows.any()) return "shadows";
     if (usesMaps(scene.lighting)) return "light from maps";

@@ -170,9 +170,10 @@ void PacketRenderer::prepare(const Scene& scene) {
     prepared_ = scene;
 }
 
-void PacketRenderer::draw(const Scene& scene, int pass, int passes, double stepFactor, PacketPicture& picture) {
+void PacketRenderer::draw(const Scene& scene, int pass, int passes, double stepFactor, PacketPicture& picture,
+                          const PacketGeometry& geometry) {
     const PixelBox& box = picture.box;
-    if (!scene_ || scene_->empty()) return;
+    if (!scene_ || (scene_->empty() && geometry.peels == 0)) return;
     CastJob job = scene_->job(scene, source().info(), source().grid().lattice, picture.size, stepFactor);
     job.jitter = glm::vec2(pixelJitter(pass));
     job.pass = std::uint32_t(pass);
@@ -181,6 +182,10 @@ void PacketRenderer::draw(const Scene& scene, int pass, int passes, double stepF
     job.rowLength = box.extent().x;
     job.picture = picture.rgba.data();
     job.pick = picture.pick.empty() || pass > 0 ? nullptr : picture.pick.data();
+    job.peels = geometry.peels;
+    job.pixels = std::size_t(box.extent().x) * std::size_t(box.extent().y);
+    job.peelDistance = geometry.distance.data();
+    job.peelColor = geometry.color.data();
     job.samples = counts_ ? &samples_ : nullptr;
     const glm::ivec2 tiles = (box.extent() + kTile - 1) / kTile;
     const CastPixels cast = casterOf(with_);

@@ -31,6 +31,14 @@ struct PacketPicture {
     void begin(glm::ivec2 size, const PixelBox& box, bool picks);
 };
 
+/// Meshes and lines that were rasterised for the pixels of a box of a picture: surfaces of each pixel, nearest first.
+struct PacketGeometry {
+    int peels = 0;
+    /// Of all pixels for each peel, rows bottom up: distance along the ray (1e9: none) and BrushEffect; RGBA, linear,
+    /// premultiplied.
+    std::vector<float> distance = {}, color = {};
+};
+
 /// The samples that renderers of one data set share: those that one of them holds, and the last ones used as far as
 /// they fit a limit. Not for several threads at once.
 class PacketVolumes {
@@ -80,8 +88,9 @@ public:
     bool prefetch(const Scene& scene);
     /// Reads samples and makes tables for a scene. Throws Error when the source does.
     void prepare(const Scene& scene);
-    /// Adds one pass of a picture with `passes` of them; after prepare().
-    void draw(const Scene& scene, int pass, int passes, double stepFactor, PacketPicture& picture);
+    /// Adds one pass of a picture with `passes` of them; after prepare(). `geometry`: of the same box.
+    void draw(const Scene& scene, int pass, int passes, double stepFactor, PacketPicture& picture,
+              const PacketGeometry& geometry = {});
     /// The whole picture with all passes.
     PacketPicture render(const Scene& scene, glm::ivec2 size);
 

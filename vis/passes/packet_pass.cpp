@@ -46,8 +46,8 @@ bool RenderStages::chooseEngine(ViewTarget& target, const RenderCall& call, Fram
     const bool wanted = asked == Engine::Processor || (asked == Engine::Automatic && options.packets);
     if (target.packets.renderer.setVolumes(volumes)) target.packets.failed = false;
     volumes->keep(std::min(options.memoryBudget, std::size_t(call.scene.render.limits.brickMemory) << 20) / 2);
-    const bool rays = !call.plan.layers.empty(); // slices alone are a sample for each pixel
-    const bool possible = wanted && (rays || call.plan.peels > 0) && !options.countSamples;
+    const bool rays = !call.plan.layers.empty(); // slices and meshes alone are quickly drawn
+    const bool possible = wanted && rays && !options.countSamples;
     EngineUse& use = status.engine;
     if (possible) use.refusal = refusalOfPackets(target, call);
     if (asked == Engine::Automatic && call.info().remote && use.refusal.empty())
@@ -106,17 +106,42 @@ void RenderStages::refineByPackets(ViewTarget& target, const RenderCall& call, C
     const bool moving = call.request.moving;
     if (state.full() ? state.converged() || moving : state.reduced() && moving) return;
     if (!call.request.wait && !presentable(target, call.scene)) return postpone(target, call.scene);
-    drawWithin(target, call, {.packets = &target.packets, .beyondPlan = {}, .beyondScene = {}}, start, true);
+    const RayPrograms programs{.packets = &target.packets,
+                               .geometry = call.plan.peels > 0 ? &target.geometry.buffer() : nullptr,
+                               .beyondPlan = {},
+                               .beyondScene = {}};
+    drawWithin(target, call, programs, start, true);
 }
 
+namespace {
+
+/// Reads rasterised surfaces back, `extent` texels from `first` on.
+void readGeometry(const GeometryBuffer& buffer, glm::ivec2 first, glm::ivec2 extent, packet::PacketGeometry& out) {
+    out.peels = buffer.peels;
+    const std::size_t texels = std::size_t(extent.x) * std::size_t(extent.y) * std::size_t(out.peels);
+    out.distance.resize(texels * 2);
+    out.color.resize(texels * 4);
+    const auto read = [&](const Texture& texture, GLenum parts, std::vector<float>& to) {
+        glGetTextureSubImage(texture.name(), 0, first.x, first.y, 0, extent.x, extent.y, out.peels, parts, GL_FLOAT,
+                             GLsizei(to.size() * sizeof(float)), to.data());
+    };
+    read(buffer.distance, GL_RG, out.distance);
+    read(buffer.color, GL_RGBA, out.color);
+}
+
+} // namespace
+
 /// Draws a tile with the rays of one pass; the buffer there is cleared.
-void RenderStages::castPackets(PacketView& packets, const RenderCall& call, const RayBuffer& buffer,
+void RenderStages::castPackets(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer,
                                const RayTile& what) {
+    PacketView& packets = *programs.packets;
     const Tile& tile = what.tile;
+    const glm::ivec2 at = buffer.first + tile.begin, extent = tile.end - tile.begin;
     packet::PacketPicture& picture = packets.picture;
     picture.begin(what.size, {tile.begin, tile.end}, what.pass == 0);
-    packets.renderer.draw(call.scene, what.pass, 1, what.stepFactor, picture);
-    const glm::ivec2 at = buffer.first + tile.begin, extent = tile.end - tile.begin;
+    packets.geometry.peels = 0;
+    if (programs.geometry) readGeometry(*programs.geometry, at, extent, packets.geometry);
+    packets.renderer.draw(call.scene, what.pass, 1, what.stepFactor, picture, packets.geometry);
     const auto store = [&](const Texture& texture, GLenum parts, const std::vector<float>& values) {
         glTextureSubImage2D(texture.name(), 0, at.x, at.y, extent.x, extent.y, parts, GL_FLOAT, values.data());
     };
