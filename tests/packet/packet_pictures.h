@@ -22,7 +22,8 @@ constexpr double kPsnr = 70;        ///< dB for a peak of 1
 constexpr std::size_t kOutliers = 4;
 constexpr double kOutlier = 0.01;
 
-/// Three scalars, the first two of which are absent outside a ball and in a slab if `masked`; sizes that fill no brick.
+/// Scalars, of which "a", "b" and "label" are absent outside a ball and in a slab if `masked`, "even" is 4 everywhere,
+/// and "label" has names; sizes that fill no brick.
 inline std::shared_ptr<FunctionSource> source(LatticeKind kind, bool masked) {
     const auto present = [masked](glm::dvec3 p) {
         return !masked || (glm::length((p - glm::dvec3(9, 8, 12)) / glm::dvec3(9.3, 8.4, 12.7)) < 1 &&
@@ -37,10 +38,18 @@ inline std::shared_ptr<FunctionSource> source(LatticeKind kind, bool masked) {
         return 0.04 * (p.x + p.y) + 0.3 * std::cos(0.35 * p.z);
     };
     const auto whole = [](glm::dvec3 p) -> std::optional<double> { return 0.04 * p.x + 0.05 * p.y + 0.01 * p.z; };
-    return std::make_shared<FunctionSource>(
-        kind, glm::ivec3(19, 17, 25), glm::dvec3(1),
-        std::vector<FunctionSource::Channel>{{"a", a, {225, 375}}, {"b", b, {-0.3, 1.7}}, {"whole", whole, {0, 1.8}}},
-        8, glm::dvec3(0.137, 0.211, 0.173));
+    const auto label = [present](glm::dvec3 p) -> std::optional<double> {
+        if (!present({p.x, p.y, p.z - 2})) return std::nullopt;
+        return std::floor(p.x / 4.1) + std::floor(p.z / 17);
+    };
+    const auto even = [](glm::dvec3) -> std::optional<double> { return 4; };
+    return std::make_shared<FunctionSource>(kind, glm::ivec3(19, 17, 25), glm::dvec3(1),
+                                            std::vector<FunctionSource::Channel>{{"a", a, {225, 375}},
+                                                                                 {"b", b, {-0.3, 1.7}},
+                                                                                 {"whole", whole, {0, 1.8}},
+                                                                                 {"even", even, {4, 4}},
+                                                                                 {"label", label, {0, 5}, true}},
+                                            8, glm::dvec3(0.137, 0.211, 0.173));
 }
 
 inline Scene baseScene(bool perspective) {

@@ -47,7 +47,7 @@ template <bool Bcc, bool Exact> void addSlices(Caster<Bcc, Exact>& caster) {
         const Floats at = sampleAt(packet, t);
         const Vec cells = cellsInBox(job, ray.origin + ray.direction * t);
         const LayerView& look = slice.look;
-        const Found found = Caster<Bcc, Exact>::reader(look, true)(cells, all);
+        const Found found = caster.reader(look, true)(cells, all);
         caster.count(packet.meets);
         const Mask within =
             (at > -packet.phase - face) & (at <= packet.count - packet.phase + face) &
@@ -55,9 +55,10 @@ template <bool Bcc, bool Exact> void addSlices(Caster<Bcc, Exact>& caster) {
         const Mask seen = packet.meets & within & found.present & packet.shows(at);
         if (!anyOf(seen)) continue;
         const Floats place = multiplyAdd(found.value, Floats(look.placeScale), Floats(look.placeOffset));
-        Vec color = colorAt(look, tablePlace(place), seen);
+        Vec color = colorAt(look.table, tablePlace(place), seen);
         if (slice.contours > 0) {
-            const Floats level = place * Floats(slice.contours + 1);
+            const Floats level = multiplyAdd(found.value, Floats(slice.levelScale), Floats(slice.levelOffset)) *
+                                 Floats(slice.contours + 1);
             color = withContours(color, level, changeBetweenPixels(level, found.present), slice.contours);
         }
         Floats opacity(slice.opacity);

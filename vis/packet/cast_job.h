@@ -22,6 +22,7 @@ struct VolumeView {
     const float* floats = nullptr;
     const std::int16_t* present = nullptr; ///< null: all
     bool bcc = false;
+    bool labels = false; ///< the nearest sample is read
     glm::ivec3 cells{1};
     glm::ivec3 perBrick{0}; ///< added to the place of a pair for each brick before it along an axis
     int oddOffset = 0;      ///< pairs from the even to the odd sublattice
@@ -36,6 +37,14 @@ inline constexpr int kShowBins = 256;      ///< of its places, one bit each
 /// of exponent and 10 of mantissa; 0 is 0.
 inline constexpr int kPackedEntries = 4096, kExtinctionShift = 13, kExtinctionLeast = 127 - 20;
 
+/// Another channel that colours a layer.
+struct ColorView {
+    const VolumeView* volume = nullptr; ///< null: none
+    float placeScale = 1, placeOffset = 0;
+    const std::int32_t* table = nullptr;
+    glm::vec3 absent{0}; ///< linear, where it has no value
+};
+
 /// A transfer function: entry i has the colour (linear) and opacity at places i and i + 1 of kTableEntries - 1, red,
 /// green, blue and opacity, low and high 16 bits of a number, kQuantum = 1.
 struct LayerView {
@@ -43,8 +52,12 @@ struct LayerView {
     RayStyle style = RayStyle::Composite;
     bool shaded = false;
     float placeScale = 1, placeOffset = 0; ///< place = sample * scale + offset
+    bool gradient = false;                 ///< shows the gradient's magnitude:
+    float gradientScale = 0;               ///< place = change of samples over a cell * this
+    float surfaceScale = 0;                ///< weight of the surface = change of samples over a cell * this, at most 1
     const std::int32_t* table = nullptr;
     const std::uint32_t* packed = nullptr;
+    ColorView colors = {};
     std::uint32_t shows[kShowBins / 32] = {}; ///< bits of places around which there is opacity
     float opacityScale = 1;                   ///< of the table's opacities
     float density = 1;
@@ -61,6 +74,7 @@ struct SliceView {
     LayerView look; ///< its samples and colours, brushes and lens
     Plane plane;
     int contours = 0;
+    float levelScale = 0, levelOffset = 0; ///< of contours: place in the range = sample * scale + offset
     float opacity = 1;
 };
 
@@ -86,6 +100,7 @@ struct FocusView {
     float contextOpacity = 1, brushColor = 0;
     ContextLook context;
     std::span<const PlacedLens> lenses;
+    float magnifies[kMaxLenses] = {}; ///< of each lens: distance from its centre within which it bends what is read
 };
 
 /// Blocks, and what leaps over them need.

@@ -19,16 +19,22 @@ template <bool Bcc, bool Exact> struct Caster {
     struct Projected : ProjectionSums<Floats, Mask> {
         Floats bestAt{0};
         Focus bestFocus;
+        Floats tint{0}, tintWeight{0}; ///< of sums: weighted sum of the colouring channel, and its weight
         Projected() : ProjectionSums<Floats, Mask>{.found = maskOf(0)} {}
     };
 
     /// `masked`: samples of some layer may be absent here.
-    static Read reader(const VolumeView& volume, bool masked) { return {volume, masked && volume.present != nullptr}; }
-    static Read reader(const LayerView& layer, bool masked) { return reader(*layer.volume, masked); }
+    Read reader(const VolumeView& volume, bool masked) const {
+        return {volume, (masked || packet.bends) && volume.present != nullptr, packet.bends ? &job : nullptr};
+    }
+    Read reader(const LayerView& layer, bool masked) const { return reader(*layer.volume, masked); }
+
+    /// Where the data are that are shown at a position, which is what brushes in space know.
+    Vec shown(const Vec& cells) const { return packet.bends ? bent(job, cells) : cells; }
 
     Focus focusOf(const LayerView& layer, const Vec& cells, Floats k, bool masked, Mask lanes) const {
         const auto read = [&](const VolumeView& field) { return reader(field, masked)(cells, lanes); };
-        return focusAt(job.focus, layer, cells, packet.world(k), lanes, read);
+        return focusAt(job.focus, layer, shown(cells), packet.world(k), lanes, read);
     }
 
     /// Degree of interest of places that are no samples of rays.
@@ -36,7 +42,7 @@ template <bool Bcc, bool Exact> struct Caster {
         Found values[kMostBrushFields];
         for (std::size_t i = 0; i < job.focus.fields.size(); ++i)
             values[i] = reader(*job.focus.fields[i], true)(cells, lanes);
-        return interestOf(job.focus, values, cells, world, lanes);
+        return interestOf(job.focus, values, shown(cells), world, lanes);
     }
 
     /// Counts reconstructions of a value.
@@ -50,16 +56,41 @@ template <bool Bcc, bool Exact> struct Caster {
             return read.next(fixedOf(at), lanes);
         };
         count(lanes, 2 * job.stencil.count);
+        if (packet.bends) {
+            const auto behind = [&](const Vec& at) { return read(at, lanes); };
+            return volume::gradientOf<Floats>(behind, cells, job.stencil) / spreadOut<Floats>(job.edges);
+        }
         if (!Exact && !read.masked && sharesReads(job.stencil, Bcc))
             return sharedGradient<Bcc>(read.volume, cells, job.stencil.reach, lanes) / spreadOut<Floats>(job.edges);
         return volume::gradientOf<Floats>(value, cells, job.stencil) / spreadOut<Floats>(job.edges);
     }
 
+    /// Change over a cell, of a gradient of samples in world axes.
+    Floats steepness(const Vec& slope) const { return lengthOf(slope * spreadOut<Floats>(job.cell)); }
+
+    /// Places of samples in a layer's transfer function, not clamped.
+    Floats placeAt(const LayerView& layer, bool masked, const Found& found, Floats k, Mask lanes) {
+        if (!layer.gradient) return multiplyAdd(found.value, Floats(layer.placeScale), Floats(layer.placeOffset));
+        if (!anyOf(lanes)) return Floats(0);
+        return steepness(gradient(reader(layer, masked), packet.cells(k), lanes)) * Floats(layer.gradientScale);
+    }
+
+    /// Colours by a value of the channel that colours a layer.
+    static Vec tint(const ColorView& colors, const Found& found) {
+        const Floats place = multiplyAdd(found.value, Floats(colors.placeScale), Floats(colors.placeOffset));
+        return choose(found.present, colorAt(colors.table, tablePlace(place), found.present),
+                      spreadOut<Floats>(colors.absent));
+    }
+    /// Colours of a layer; `own` if no other channel gives them.
+    Vec tinted(const LayerView& layer, const Vec& own, const Vec& cells, Mask lanes) const {
+        if (layer.colors.volume == nullptr) return own;
+        return tint(layer.colors, reader(*layer.colors.volume, true)(cells, lanes));
+    }
+
     /// The colour of samples of a composite layer after light.
     Vec lit(const LayerView& layer, const Read& read, const Vec& albedo, const Vec& cells, Floats k, Mask lanes) {
         const Vec slope = gradient(read, cells, lanes);
-        const Floats steepness = lengthOf(slope * spreadOut<Floats>(job.cell)) * magnitude(Floats(layer.placeScale));
-        const Floats weight = smaller(Floats(1), steepness * Floats(1 / kFlatGradient));
+        const Floats weight = smaller(Floats(1), steepness(slope) * Floats(layer.surfaceScale));
         return litColor(job, albedo, slope, weight, packet.world(k), -packet.ray.direction);
     }
 
@@ -67,7 +98,7 @@ template <bool Bcc, bool Exact> struct Caster {
     void drawSample(const LayerView& layer, bool masked, Floats place, Floats opacity, Floats k, Mask lanes) {
         const Read read = reader(layer, masked);
         const Vec cells = packet.cells(k);
-        Vec color = colorAt(layer, tablePlace(place), lanes);
+        Vec color = tinted(layer, colorAt(layer.table, tablePlace(place), lanes), cells, lanes);
         if (job.focus.any) {
             const Focus focus = focusOf(layer, cells, k, masked, lanes);
             color = focused(job.focus, layer, color, focus);
@@ -80,19 +111,31 @@ template <bool Bcc, bool Exact> struct Caster {
 
     void project(const LayerView& layer, bool masked, const Found& found, Projected& sums, Floats k, Mask lanes) {
         const Mask present = found.present & packet.shows(k);
-        const Floats along = multiplyAdd(found.value, Floats(layer.placeScale), Floats(layer.placeOffset));
+        const Floats along = placeAt(layer, masked, found, k, present & lanes);
         Focus focus;
         if (job.focus.any) focus = focusOf(layer, packet.cells(k), k, masked, present);
         Floats opacity(0);
         if (layer.style == RayStyle::XRay)
             opacity = correctedOpacity(opacityAt(layer, tablePlace(along), present) * focus.opacity, packet.step,
                                        Floats(layer.density));
+        if (layer.colors.volume != nullptr) addTint(layer, sums, focus.opacity, opacity, k, present);
         const Mask foundBefore = sums.found;
         const Mask better = sums.add(layer.style, Floats(layer.threshold), present, along, focus.opacity, opacity);
         sums.bestAt = choose(better, k, sums.bestAt);
         if (job.focus.any) keepBest(sums.bestFocus, focus, better);
         // Rays that have ended do not see a local maximum end.
         sums.found = (sums.found & lanes) | (foundBefore & !lanes);
+    }
+
+    /// Before the sample is added to the sums.
+    void addTint(const LayerView& layer, Projected& sums, Floats factor, Floats opacity, Floats k, Mask present) const {
+        const bool rays = layer.style == RayStyle::XRay;
+        if (!rays && layer.style != RayStyle::Average) return;
+        const Found found = reader(*layer.colors.volume, true)(packet.cells(k), present);
+        const Floats weight =
+            choose(found.present & present, rays ? (Floats(1) - sums.absorbed) * opacity : factor, Floats(0));
+        sums.tint = multiplyAdd(weight, found.value, sums.tint);
+        sums.tintWeight += weight;
     }
 
     static void keepBest(Focus& best, const Focus& focus, Mask better) {
@@ -114,7 +157,12 @@ template <bool Bcc, bool Exact> struct Caster {
         const TablePlace at = tablePlace(place);
         Floats alpha = smaller(Floats(1), Floats(layer.density) * opacityAt(layer, at, some));
         if (layer.style == RayStyle::XRay) alpha = sums.absorbed;
-        Vec color = colorAt(layer, at, some);
+        Vec color = colorAt(layer.table, at, some);
+        if (layer.colors.volume != nullptr) {
+            const bool mean = layer.style == RayStyle::XRay || layer.style == RayStyle::Average;
+            const Found whole{sums.tint / larger(sums.tintWeight, Floats(1e-20)), sums.tintWeight > Floats(0)};
+            color = mean ? tint(layer.colors, whole) : tinted(layer, color, packet.cells(sums.bestAt), some);
+        }
         if (job.focus.any && layer.style == RayStyle::Average)
             alpha = smaller(Floats(1), alpha * sums.factors / larger(sums.count, Floats(1)));
         if (job.focus.any && layer.style != RayStyle::Average && layer.style != RayStyle::XRay) {
@@ -144,9 +192,11 @@ template <bool Bcc, bool Exact> struct Caster {
         const Floats at = (lo + hi) * Floats(0.5);
         const Mask shown = crossed & packet.shows(at);
         if (!anyOf(shown)) return out;
-        const Vec cells = packet.cells(at), slope = gradient(read, cells, shown);
+        const Vec cells = packet.cells(at);
+        Vec slope(Floats(0), Floats(0), Floats(0)); // labels have none
+        if (!layer.volume->labels) slope = gradient(read, cells, shown);
         out.at = choose(shown, at, far);
-        Vec albedo = spreadOut<Floats>(layer.isoColor);
+        Vec albedo = tinted(layer, spreadOut<Floats>(layer.isoColor), cells, shown);
         Floats opacity(layer.isoOpacity);
         if (job.focus.any) {
             const Focus focus = focusOf(layer, cells, at, masked, shown);
@@ -167,7 +217,8 @@ template <bool Bcc, bool Exact> struct Caster {
         Floats k(0), last(-2); // `last`: the sample that `before` holds
         Mask live = packet.meets;
         while (anyOf(live)) {
-            const Skip::Look look = skip(k, live);
+            // Blocks are known where the data are, not where lenses show them.
+            const Skip::Look look = packet.bends ? Skip::Look{live, kRun} : skip(k, live);
             if (!anyOf(look.full)) continue;
             const bool masked = someAbsent(job, packet, k, live);
             // What rays that leapt would have read at the sample before.
@@ -217,7 +268,7 @@ template <bool Bcc, bool Exact> struct Caster {
     void drawVolume(const LayerView& layer, const Found& now, Projected& sums, bool masked, Floats k, Mask lanes) {
         if (layer.style == RayStyle::Iso) return;
         if (layer.style != RayStyle::Composite) return project(layer, masked, now, sums, k, lanes);
-        const Floats place = multiplyAdd(now.value, Floats(layer.placeScale), Floats(layer.placeOffset));
+        const Floats place = placeAt(layer, masked, now, k, lanes & now.present);
         const Floats alpha = opacityAt(layer, tablePlace(place), now.present);
         const Mask hit = lanes & now.present & (alpha > Floats(0));
         if (anyOf(hit)) drawSample(layer, masked, place, alpha, k, hit);

@@ -44,6 +44,8 @@ struct Packet {
     SegmentOf<Floats> holes[kMaxClips]; ///< in samples
     int holeCount = 0;
 
+    bool bends = false; ///< a magnifying lens may bend what they show
+
     Vec color{Floats(0), Floats(0), Floats(0)};
     Floats opacity{0};
     Floats pick{kNoPick}; ///< sample at which opacity exceeds kPickOpacity
@@ -142,6 +144,17 @@ inline Packet beginPacket(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) 
                                             choose(some, samples(own.exit), Floats(-2e6))};
     }
     return packet;
+}
+
+/// Whether rays come near a lens that magnifies.
+inline bool meetsMagnifier(const CastJob& job, const Packet& packet) {
+    for (std::size_t i = 0; i < job.focus.lenses.size(); ++i) {
+        const Floats reach(job.focus.magnifies[i]);
+        const Vec away = spreadOut<Floats>(job.focus.lenses[i].center) - packet.ray.origin;
+        const Floats along = inner(away, packet.ray.direction);
+        if (anyOf(packet.meets & (inner(away, away) - along * along < reach * reach))) return true;
+    }
+    return false;
 }
 
 inline std::size_t placeOf(const CastJob& job, const glm::ivec2& pixel) {

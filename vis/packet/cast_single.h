@@ -261,8 +261,10 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
 template <bool Bcc, bool Exact> void castLayersOf(SingleCaster<Bcc, Exact>& caster) {
     const CastJob& job = caster.job;
     const LayerView& layer = job.layers[0];
-    const bool one = job.layers.size() == 1, plain = !job.focus.any;
-    if (one && layer.style == RayStyle::Composite && plain && !layer.shaded && caster.packet.holeCount == 0)
+    const bool one = job.layers.size() == 1 && !layer.gradient && !layer.volume->labels && !caster.packet.bends;
+    const bool plain = !job.focus.any;
+    if (one && layer.style == RayStyle::Composite && plain && !layer.shaded && caster.packet.holeCount == 0 &&
+        layer.colors.volume == nullptr)
         caster.castUnshaded();
     else if (one && layer.style == RayStyle::Composite)
         caster.castComposite();
@@ -292,6 +294,7 @@ template <bool Bcc, bool Exact> void castPixels(const CastJob& job, glm::ivec2 b
         for (int x = begin.x; x < end.x; x += kColumns) {
             Packet packet = beginPacket(job, {x, y}, end);
             if (!anyOf(packet.meets)) continue;
+            packet.bends = meetsMagnifier(job, packet);
             taken += castPacket<Bcc, Exact>(job, packet, {x, y}, end);
             storePacket(job, packet, {x, y}, end);
         }

@@ -29,6 +29,28 @@ Transfer transferOfLayer(const Scene& scene, const volume::DatasetInfo& info, co
     return {function, effectiveRange(function, info.channelRange(known))};
 }
 
+Transfer transferOfColors(const Scene& scene, const volume::DatasetInfo& info, const Layer& layer, int channel) {
+    // A surface's own function is that of its colours, a volume's that of its opacity.
+    if (std::holds_alternative<IsoLayer>(layer.technique)) return transferOfLayer(scene, info, layer, channel);
+    return transferOfLayer(scene, info, {}, channel);
+}
+
+namespace {
+
+/// The stored times that samples at a time come from; of labels the nearest.
+volume::TimePair timesOf(const volume::DatasetInfo& info, int channel, double time) {
+    const volume::TimePair around = volume::timesAround(info.times, time);
+    if (!info.parameters[std::size_t(info.channel(channel).parameter)].categorical) return around;
+    return {around.nearest(), around.nearest(), 0};
+}
+
+/// Whether a range is a small part of that of the data.
+bool isNarrow(Range range, Range whole) {
+    return std::abs(range.hi - range.lo) < kNarrow * std::abs(whole.hi - whole.lo);
+}
+
+} // namespace
+
 std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::DatasetInfo& info) {
     std::vector<DrawnChannel> out;
     bool exact = false; // all have samples of the same kind
@@ -42,13 +64,21 @@ std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::Datase
             std::visit([](const auto& t) -> const std::string& { return t.channel; }, layer.technique);
         const std::optional<int> channel = info.findChannel(name);
         if (!channel) continue;
-        const volume::TimePair time = volume::timesAround(info.times, scene.time + layer.timeShift);
-        const Range range = transferOfLayer(scene, info, layer, *channel).range,
-                    whole = info.channelRange(info.channel(*channel));
-        exact = exact || std::abs(range.hi - range.lo) < kNarrow * std::abs(whole.hi - whole.lo);
-        out.push_back({int(i), {*channel, time, scene.render.filter, false}});
+        const double time = scene.time + layer.timeShift;
+        const auto wholeOf = [&](int of) { return info.channelRange(info.channel(of)); };
+        const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
+        exact = exact || isNarrow(transferOfLayer(scene, info, layer, *channel).range, wholeOf(*channel)) ||
+                (volume && volume->quantity == Quantity::Gradient);
+        out.push_back({int(i), {*channel, timesOf(info, *channel, time), scene.render.filter, false}});
+        const std::optional<int> colors = info.findChannel(colorByOf(layer.technique));
+        if (!colors) continue;
+        exact = exact || isNarrow(transferOfColors(scene, info, layer, *colors).range, wholeOf(*colors));
+        out.back().colors = {*colors, timesOf(info, *colors, time), scene.render.filter, false};
     }
-    for (DrawnChannel& drawn : out) drawn.channel.exact = exact;
+    for (DrawnChannel& drawn : out) {
+        drawn.channel.exact = exact;
+        if (drawn.colors) drawn.colors->exact = exact;
+    }
     return out;
 }
 
@@ -61,10 +91,13 @@ std::vector<int> brushedChannels(const Scene& scene, const volume::DatasetInfo& 
 
 std::vector<PacketChannel> packetChannels(const Scene& scene, const volume::DatasetInfo& info) {
     std::vector<PacketChannel> out;
-    for (const DrawnChannel& drawn : drawnChannels(scene, info)) out.push_back(drawn.channel);
+    for (const DrawnChannel& drawn : drawnChannels(scene, info)) {
+        out.push_back(drawn.channel);
+        if (drawn.colors) out.push_back(*drawn.colors);
+    }
     const bool exact = !out.empty() && out.front().exact;
-    const volume::TimePair time = volume::timesAround(info.times, scene.time);
-    for (const int channel : brushedChannels(scene, info)) out.push_back({channel, time, scene.render.filter, exact});
+    for (const int channel : brushedChannels(scene, info))
+        out.push_back({channel, timesOf(info, channel, scene.time), scene.render.filter, exact});
     return out;
 }
 

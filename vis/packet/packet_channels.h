@@ -3,6 +3,7 @@
 #include "vis/packet/packet_volume.h"
 #include "vis/scene/scene.h"
 
+#include <optional>
 #include <vector>
 
 /// Which samples of a data set a scene needs.
@@ -12,9 +13,11 @@ namespace tessera::vis::packet {
 struct DrawnChannel {
     int layer = 0; ///< index into Scene::layers
     PacketChannel channel;
+    std::optional<PacketChannel> colors = {}; ///< the channel that colours it
 };
 std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::DatasetInfo& info);
-/// All samples that a scene needs: those of drawnChannels(), then those of brushed channels.
+/// All samples that a scene needs: those of drawnChannels(), each followed by those that colour it, then those of
+/// brushed channels.
 std::vector<PacketChannel> packetChannels(const Scene& scene, const volume::DatasetInfo& info);
 
 /// The channels of the enabled brushes that the data set has.
@@ -26,5 +29,7 @@ struct Transfer {
     Range range;
 };
 Transfer transferOfLayer(const Scene& scene, const volume::DatasetInfo& info, const Layer& layer, int channel);
+/// The same for the channel that colours a layer.
+Transfer transferOfColors(const Scene& scene, const volume::DatasetInfo& info, const Layer& layer, int channel);
 
 } // namespace tessera::vis::packet

@@ -10,13 +10,11 @@ namespace {
 
 std::string refusalOfParameter(const volume::DatasetInfo& info, int channel) {
     const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(channel).parameter)];
-    if (parameter.categorical) return "labels";
     if (volume::labelChannel(info, parameter)) return "parameters whose regions are never mixed";
     return "";
 }
 
 std::string refusalOfFocus(const Scene& scene, const volume::DatasetInfo& info) {
-    if (lensesBend(scene)) return "magnifying lenses";
     if (!scene.selection.active()) return "";
     if (scene.selection.contextBlur > 0) return "blurred context";
     const std::vector<int> brushed = brushedChannels(scene, info);
@@ -28,17 +26,14 @@ std::string refusalOfFocus(const Scene& scene, const volume::DatasetInfo& info) 
 std::string refusalOfLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn) {
     const Layer& layer = scene.layers[std::size_t(drawn.layer)];
     if (std::string why = refusalOfParameter(info, drawn.channel.channel); !why.empty()) return why;
-    if (!colorByOf(layer.technique).empty()) return "colours by another parameter";
+    if (drawn.colors)
+        if (std::string why = refusalOfParameter(info, drawn.colors->channel); !why.empty()) return "colours by " + why;
     if (const Look* look = lookOf(layer.technique); look && look->any()) return "looks";
-    if (std::holds_alternative<IsoLayer>(layer.technique)) return "";
-    const auto [function, range] = transferOfLayer(scene, info, layer, drawn.channel.channel);
-    if (range.hi == range.lo) return "ranges without width";
     const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
-    if (!volume) return "";
-    if (volume->quantity == Quantity::Gradient) return "gradient magnitudes";
-    if (volume->style != RayStyle::Composite) return "";
+    if (!volume || volume->style != RayStyle::Composite || volume->quantity == Quantity::Gradient) return "";
     if (volume->classification != Classification::Post) return "classification before or over samples";
-    if (function.kind != TransferKind::Curve) return "transfer functions of two dimensions";
+    if (transferOfLayer(scene, info, layer, drawn.channel.channel).function.kind != TransferKind::Curve)
+        return "transfer functions of two dimensions";
     return "";
 }
 

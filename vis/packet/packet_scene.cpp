@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 namespace tessera::vis::packet {
 
@@ -19,6 +20,7 @@ VolumeView viewOf(const PacketVolume& volume) {
     view.floats = volume.exact ? volume.floats.data() : nullptr;
     view.present = volume.present.empty() ? nullptr : volume.present.data();
     view.bcc = volume.bcc;
+    view.labels = volume.labels;
     view.cells = volume.cells;
     view.oddOffset = volume.brickPairs();
     const int brick = volume.stride(), row = brick * volume.bricks.x, slice = row * volume.bricks.y;
@@ -28,34 +30,77 @@ VolumeView viewOf(const PacketVolume& volume) {
 
 } // namespace
 
-/// The samples of a layer, where they lie in its transfer function, its brushes and lens; not yet its table.
-LayerView PacketScene::viewOfLayer(const Layer& layer, Range range, std::size_t index) const {
-    const PacketVolume& volume = *volumes_[index];
+namespace {
+
+/// A table of a transfer function, and where the samples of a volume lie in it: place = sample * x + y.
+struct Tabled {
+    Table table;
+    glm::vec2 places;
+};
+
+/// `alone`: each sample is classified by itself, as in composite layers and slices. Then a range without width
+/// separates values below and above, and labels lie on entries; else all places are those of the range.
+Tabled tabled(const Transfer& transfer, const PacketVolume& volume, bool alone) {
+    const auto [function, range] = transfer;
     const double width = range.hi - range.lo;
+    if (width == 0) {
+        constexpr double kSteep = 1e12;
+        if (!alone) return {makeTable(function, range), glm::vec2(0, 0.5f)};
+        return {makeTable(function, {0, 1}),
+                glm::vec2(volume.scale * kSteep, 0.5 + (volume.offset - range.lo) * kSteep)};
+    }
+    Range domain = range;
+    const double first = std::floor(range.lo), labels = std::ceil(range.hi) - first;
+    if (alone && volume.labels && labels > 0 && labels < kTableEntries)
+        domain = {first, first + (kTableEntries - 1) / std::floor((kTableEntries - 1) / labels)};
+    const double over = domain.hi - domain.lo;
+    return {makeTable(function, range, domain), glm::vec2(volume.scale / over, (volume.offset - domain.lo) / over)};
+}
+
+} // namespace
+
+/// The samples of a layer, where they lie in its transfer function, its brushes and lens; not yet its table.
+LayerView PacketScene::viewOfLayer(const Layer& layer, glm::vec2 places, std::size_t index) const {
     LayerView out;
     out.volume = &views_[index];
     out.brushes = layer.brushes;
     if (!layer.lens.empty()) out.lens = findLens(lenses_, layer.lens);
-    out.placeScale = width != 0 ? float(volume.scale / width) : 0;
-    out.placeOffset = width != 0 ? float((volume.offset - range.lo) / width) : 0.5f;
+    out.placeScale = places.x;
+    out.placeOffset = places.y;
     return out;
 }
 
-/// Gives a layer its table.
-void PacketScene::setTable(LayerView& layer, const Table& table) {
-    layer.opacityScale = table.opacityScale;
-    tables_.push_back(table.entries);
-    layer.table = tables_.back().data();
+/// Keeps a table.
+const std::int32_t* PacketScene::keep(std::vector<std::int32_t> entries) {
+    tables_.push_back(std::move(entries));
+    return tables_.back().data();
+}
+
+/// `index` of a volume: that of the colouring channel.
+ColorView PacketScene::colorsOf(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
+                                std::size_t index) {
+    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
+    Tabled own = tabled(transferOfColors(scene, info, layer, drawn.colors->channel), *volumes_[index], true);
+    const auto* iso = std::get_if<IsoLayer>(&layer.technique);
+    return {.volume = &views_[index],
+            .placeScale = own.places.x,
+            .placeOffset = own.places.y,
+            .table = keep(std::move(own.table.entries)),
+            .absent = glm::vec3(linearFromSrgb(glm::dvec3(iso ? iso->color : kNoValueColor)))};
 }
 
 /// `index` of a volume: that of the slice.
 void PacketScene::addSlice(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
                            std::size_t index) {
     const Layer& layer = scene.layers[std::size_t(drawn.layer)];
-    const auto [function, range] = transferOfLayer(scene, info, layer, drawn.channel.channel);
+    const Transfer transfer = transferOfLayer(scene, info, layer, drawn.channel.channel);
+    Tabled own = tabled(transfer, *volumes_[index], true);
     SliceView out;
-    out.look = viewOfLayer(layer, range, index);
-    setTable(out.look, makeTable(function, range));
+    out.look = viewOfLayer(layer, own.places, index);
+    out.look.table = keep(std::move(own.table.entries));
+    const double width = transfer.range.hi - transfer.range.lo;
+    out.levelScale = width != 0 ? float(volumes_[index]->scale / width) : 0;
+    out.levelOffset = width != 0 ? float((volumes_[index]->offset - transfer.range.lo) / width) : 0;
     slices_.push_back(out);
     sliceLayers_.push_back(drawn.layer);
 }
@@ -75,14 +120,24 @@ void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, 
                            std::size_t index) {
     const Layer& layer = scene.layers[std::size_t(drawn.layer)];
     const PacketVolume& volume = *volumes_[index];
-    const auto [function, range] = transferOfLayer(scene, info, layer, drawn.channel.channel);
+    const Transfer transfer = transferOfLayer(scene, info, layer, drawn.channel.channel);
+    const auto [function, range] = transfer;
     const double width = range.hi - range.lo;
-    LayerView out = viewOfLayer(layer, range, index);
-    const Table table = makeTable(function, range);
-    setTable(out, table);
-    packed_.push_back(packedTable(function, range));
+    const auto* own = std::get_if<VolumeLayer>(&layer.technique);
+    const bool gradient = own && own->quantity == Quantity::Gradient;
+    const bool alone = own && own->style == RayStyle::Composite && !gradient;
+    const auto [table, places] = tabled(transfer, volume, alone);
+    LayerView out = viewOfLayer(layer, places, index);
+    out.opacityScale = table.opacityScale;
+    out.table = keep(table.entries);
+    packed_.push_back(packedTable(function, alone && width == 0 ? Range{0, 1} : range));
     out.packed = packed_.back().data();
     markShown(table, out);
+    const double perRange = width != 0 && !volume.labels ? std::abs(volume.scale / width) : 0;
+    out.gradient = gradient;
+    out.gradientScale = float(perRange / double(function.gradientTop));
+    out.surfaceScale = width != 0 || volume.labels ? float(perRange / kFlatGradient) : 1e20f;
+    if (drawn.colors) out.colors = colorsOf(scene, info, drawn, index + 1);
     const glm::dvec2 map(out.placeScale, out.placeOffset);
     const int edge = skip_.edge;
     const double slack = volume.exact ? kSlack / 2 / kQuantum : kSlack;
@@ -97,12 +152,11 @@ void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, 
             return double(lo) - slack <= double(out.isoValue) && double(out.isoValue) <= double(hi) + slack;
         };
     } else {
-        const auto& own = std::get<VolumeLayer>(layer.technique);
-        out.style = own.style;
-        out.shaded = own.shaded;
-        out.density = own.density;
-        out.threshold = float(std::max(0.0, (own.threshold - range.lo) / width));
-        if (own.style == RayStyle::Composite || own.style == RayStyle::XRay)
+        out.style = own->style;
+        out.shaded = own->shaded && !volume.labels;
+        out.density = own->density;
+        out.threshold = float(width != 0 ? std::max(0.0, (own->threshold - range.lo) / width) : 0.5);
+        if (!gradient && (own->style == RayStyle::Composite || own->style == RayStyle::XRay))
             shows = [&](float lo, float hi) {
                 return opaque.any(float(double(lo) - slack), float(double(hi) + slack));
             };
@@ -192,7 +246,6 @@ PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, st
     for (const SharedVolume& volume : volumes_) views_.push_back(viewOf(*volume));
     lenses_ = placeLenses(scene, worldFrame(info.bounds, scene.stretch));
     addBrushes(scene, info);
-    tables_.reserve(drawn.size());
     // Small blocks pay where rays soon end at surfaces.
     const auto techniqueOf = [&](const DrawnChannel& each) -> const Technique& {
         return scene.layers[std::size_t(each.layer)].technique;
@@ -203,16 +256,19 @@ PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, st
     });
     skip_.edge = surfaces ? kFine : 2 * kFine;
     std::vector<const PacketVolume*> sampled; // along rays
-    for (std::size_t i = 0; i < drawn.size(); ++i)
-        if (std::holds_alternative<SliceLayer>(techniqueOf(drawn[i]))) {
-            addSlice(scene, info, drawn[i], i);
+    std::size_t next = 0;                     // volume
+    for (const DrawnChannel& each : drawn) {
+        if (std::holds_alternative<SliceLayer>(techniqueOf(each))) {
+            addSlice(scene, info, each, next);
         } else {
-            addLayer(scene, info, drawn[i], i);
-            sampled.push_back(volumes_[i].get());
+            addLayer(scene, info, each, next);
+            sampled.push_back(volumes_[next].get());
         }
+        next += each.colors ? 2 : 1;
+    }
     if (layers_.size() == 1 && (layers_[0].style == RayStyle::Maximum || layers_[0].style == RayStyle::Minimum))
         bound_ = scoreBounds(*sampled[0], layers_[0], skip_);
-    for (std::size_t i = drawn.size(); i < volumes_.size(); ++i) sampled.push_back(volumes_[i].get());
+    for (; next < volumes_.size(); ++next) sampled.push_back(volumes_[next].get());
     for (const PacketVolume* const volume : sampled) {
         if (volume->absent.empty()) continue;
         absent_.resize(volume->absent.size());
@@ -222,6 +278,19 @@ PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, st
 }
 
 namespace {
+
+/// FocusView::magnifies of a lens; `cell`: longest edge of a cell, since gradients read beside rays.
+float magnifiedReach(const PlacedLens& lens, double cell) {
+    if (!(lens.magnification > 1)) return 0;
+    if (lens.shape == LensShape::Disc) return 1e6f; // at any depth
+    double longest = 0, sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double own = glm::length(lens.fromUnit[axis]);
+        longest = std::max(longest, own);
+        sum += own * own;
+    }
+    return float((lens.shape == LensShape::Sphere ? longest : std::sqrt(sum)) + 2 * cell);
+}
 
 /// The octants that rays go into, a bit each; a little beyond the picture, because rays are moved within their pixels.
 unsigned octantsOf(const CastJob& job) {
@@ -274,6 +343,8 @@ CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, co
     lenses_ = placeLenses(scene, frame);
     job.focus = focus_;
     job.focus.lenses = lenses_;
+    for (std::size_t i = 0; i < lenses_.size(); ++i)
+        job.focus.magnifies[i] = magnifiedReach(lenses_[i], std::max({job.cell.x, job.cell.y, job.cell.z}));
     job.focus.any = !brushes_.empty() || !lenses_.empty();
     job.stencil = volume::gradientStencil(lattice.kind, scene.render.gradient);
     lighting_ = scene.lighting;

@@ -30,8 +30,10 @@ public:
 
 private:
     void addBrushes(const Scene& scene, const volume::DatasetInfo& info);
-    LayerView viewOfLayer(const Layer& layer, Range range, std::size_t index) const;
-    void setTable(LayerView& layer, const Table& table);
+    LayerView viewOfLayer(const Layer& layer, glm::vec2 places, std::size_t index) const;
+    const std::int32_t* keep(std::vector<std::int32_t> entries);
+    ColorView colorsOf(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
+                       std::size_t index);
     void addSlice(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn, std::size_t index);
     void placeSlices(const Scene& scene, const WorldFrame& frame);
     void addLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn, std::size_t index);

@@ -269,6 +269,7 @@ PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketCha
     PacketVolume out;
     out.bcc = all.lattice.kind == volume::LatticeKind::BCC;
     out.exact = what.exact;
+    out.labels = categorical;
     out.cells = all.lattice.texels() + (2 * kMargin - 1);
     out.bricks = (out.cells + kBrick - 1) / kBrick;
     out.blocks = out.bricks * (kBrick / kFine);
@@ -294,6 +295,10 @@ PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketCha
         return filtered ? volume::prefilter(near, geometry) : near;
     };
     setScale(out, filtered && !out.exact ? rangeOf(bricks, samplesOf) : all.range);
+    if (categorical && (out.exact || all.range.hi - all.range.lo <= float(kQuantum))) {
+        out.offset = std::floor(double(all.range.lo));
+        out.scale = 1;
+    }
     parallelFor(bricks, [&](std::size_t i) {
         const volume::BrickSamples near = samplesOf(i);
         BrickWriter writer(out, placeOf(i), near);

@@ -26,6 +26,7 @@ inline constexpr int kQuantum = 32767;
 struct PacketVolume {
     bool bcc = false;
     bool exact = false;  ///< `floats` hold the samples, else `shorts`
+    bool labels = false; ///< never interpolated; samples are whole numbers
     glm::ivec3 cells{1}; ///< of a sublattice, with margins: a position lies in [0, cells)
     glm::ivec3 bricks{1};
     std::vector<std::int16_t> shorts; ///< 0 .. kQuantum

@@ -1,5 +1,7 @@
 #include "vis/scene/lens.h"
 
+#include "vis/scene/lens_bend.h"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -68,10 +70,7 @@ void setPlace(PlacedLens& placed, const Lens& lens, const Camera& camera) {
 } // namespace
 
 glm::dvec3 PlacedLens::bend(glm::dvec3 world) const {
-    const double r = radius(world);
-    if (!(r < 1)) return world;
-    const double share = 1 / (1 + (magnification - 1) * (1 - r));
-    return world - (1 - share) * (fromUnit * (toUnit * (world - center)));
+    return bentBy<double>(*this, world);
 }
 
 std::vector<PlacedLens> placeLenses(const std::vector<Lens>& lenses, const WorldFrame& frame, const Camera& camera,
@@ -102,10 +101,7 @@ int findLens(const std::vector<PlacedLens>& lenses, const std::string& name) {
 }
 
 glm::dvec3 bend(const std::vector<PlacedLens>& lenses, glm::dvec3 world, glm::dvec3 halfSize) {
-    const glm::dvec3 most = glm::max(halfSize, glm::abs(world));
-    for (auto lens = lenses.rbegin(); lens != lenses.rend(); ++lens)
-        if (lens->magnification > 1) world = lens->bend(world);
-    return glm::clamp(world, -most, most);
+    return bentBy<double>(lenses, world, halfSize);
 }
 
 } // namespace tessera::vis
