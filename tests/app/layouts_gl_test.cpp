@@ -121,9 +121,7 @@ const std::vector<Shipped>& shipped() {
          {{"tesseract", Green, 0.114},
           {"tesseract", Cold, 0.0945},
           {"tesseract", Warm, 0.0615},
-          {"volume", Green, 0.149}},
-         false,
-         "parameters whose regions are never mixed"},
+          {"volume", Green, 0.149}}},
     };
     return layouts;
 }

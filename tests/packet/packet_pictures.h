@@ -22,8 +22,8 @@ constexpr double kPsnr = 70;        ///< dB for a peak of 1
 constexpr std::size_t kOutliers = 4;
 constexpr double kOutlier = 0.01;
 
-/// Scalars, of which "a", "b" and "label" are absent outside a ball and in a slab if `masked`, "even" is 4 everywhere,
-/// and "label" has names; sizes that fill no brick.
+/// Scalars, of which some are absent outside a ball and in a slab if `masked`: not "whole" and "even", which is 4
+/// everywhere. "label" and "region" have names, "parted" jumps between two parts. Sizes that fill no brick.
 inline std::shared_ptr<FunctionSource> source(LatticeKind kind, bool masked) {
     const auto present = [masked](glm::dvec3 p) {
         return !masked || (glm::length((p - glm::dvec3(9, 8, 12)) / glm::dvec3(9.3, 8.4, 12.7)) < 1 &&
@@ -42,14 +42,24 @@ inline std::shared_ptr<FunctionSource> source(LatticeKind kind, bool masked) {
         if (!present({p.x, p.y, p.z - 2})) return std::nullopt;
         return std::floor(p.x / 4.1) + std::floor(p.z / 17);
     };
+    const auto region = [](glm::dvec3 p) -> std::optional<double> {
+        return p.x + 0.4 * p.z < 11 ? 0 : p.y < 9 ? 1 : 2;
+    };
+    const auto parted = [=](glm::dvec3 p) -> std::optional<double> {
+        if (!present({p.x - 1, p.y, p.z})) return std::nullopt;
+        return *region(p) == 0 ? 5 + 0.15 * p.y : 1 + 0.12 * p.z + 0.4 * std::sin(0.5 * p.y);
+    };
     const auto even = [](glm::dvec3) -> std::optional<double> { return 4; };
-    return std::make_shared<FunctionSource>(kind, glm::ivec3(19, 17, 25), glm::dvec3(1),
-                                            std::vector<FunctionSource::Channel>{{"a", a, {225, 375}},
-                                                                                 {"b", b, {-0.3, 1.7}},
-                                                                                 {"whole", whole, {0, 1.8}},
-                                                                                 {"even", even, {4, 4}},
-                                                                                 {"label", label, {0, 5}, true}},
-                                            8, glm::dvec3(0.137, 0.211, 0.173));
+    return std::make_shared<FunctionSource>(
+        kind, glm::ivec3(19, 17, 25), glm::dvec3(1),
+        std::vector<FunctionSource::Channel>{{"a", a, {225, 375}},
+                                             {"b", b, {-0.3, 1.7}},
+                                             {"whole", whole, {0, 1.8}},
+                                             {"even", even, {4, 4}},
+                                             {"label", label, {0, 5}, true},
+                                             {"parted", parted, {0, 8}, false, {"region", {{0}, {1, 2}}}},
+                                             {"region", region, {0, 2}, true}},
+        8, glm::dvec3(0.137, 0.211, 0.173));
 }
 
 inline Scene baseScene(bool perspective) {

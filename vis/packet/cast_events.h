@@ -7,15 +7,18 @@
 namespace tessera::vis::packet::TESSERA_LANES {
 
 /// How much a quantity differs between the two pixels of a pair, the sum over both axes of the picture; where the other
-/// one has no value by nothing. Packets begin at even pixels of their tile, as the pairs of graphics cards do.
-inline Floats changeBetweenPixels(Floats of, Mask present) {
-    float own[kLanes], out[kLanes];
+/// one has no value, or one of another part, by nothing. Packets begin at even pixels of their tile, as the pairs of
+/// graphics cards do.
+inline Floats changeBetweenPixels(Floats of, Floats part, Mask present) {
+    float own[kLanes], parts[kLanes], out[kLanes];
     of.store(own);
+    part.store(parts);
     const unsigned there = bitsOf(present);
     for (int i = 0; i < kLanes; ++i) {
         out[i] = 0;
         for (const int other : {i ^ 1, i ^ kColumns})
-            if (there >> other & 1) out[i] += __builtin_fabsf(own[other] - own[i]);
+            if ((there >> other & 1) && int(parts[other]) == int(parts[i]))
+                out[i] += __builtin_fabsf(own[other] - own[i]);
     }
     return Floats::load(out);
 }
@@ -59,7 +62,8 @@ template <bool Bcc, bool Exact> void addSlices(Caster<Bcc, Exact>& caster) {
         if (slice.contours > 0) {
             const Floats level = multiplyAdd(found.value, Floats(slice.levelScale), Floats(slice.levelOffset)) *
                                  Floats(slice.contours + 1);
-            color = withContours(color, level, changeBetweenPixels(level, found.present), slice.contours);
+            const Floats width = changeBetweenPixels(level, caster.reader(look, true).part(cells, all), found.present);
+            color = withContours(color, level, width, slice.contours);
         }
         Floats opacity(slice.opacity);
         if (job.focus.any) {

@@ -24,8 +24,10 @@ struct VolumeView {
     bool bcc = false;
     bool labels = false; ///< the nearest sample is read
     glm::ivec3 cells{1};
-    glm::ivec3 perBrick{0}; ///< added to the place of a pair for each brick before it along an axis
-    int oddOffset = 0;      ///< pairs from the even to the odd sublattice
+    glm::ivec3 perBrick{0};            ///< added to the place of a pair for each brick before it along an axis
+    int oddOffset = 0;                 ///< pairs from the even to the odd sublattice
+    const VolumeView* parts = nullptr; ///< of a parameter with several; then this one has no samples
+    int partCount = 0;
 };
 
 inline constexpr float kNowhere = -1e9f;

@@ -55,14 +55,27 @@ template <bool Bcc, bool Exact> struct Caster {
         const auto value = [&](const Vec& at) __attribute__((always_inline)) {
             return read.next(fixedOf(at), lanes);
         };
+        if (read.volume.partCount > 0) return gradientOfParts(read, cells, lanes);
         count(lanes, 2 * job.stencil.count);
-        if (packet.bends) {
-            const auto behind = [&](const Vec& at) { return read(at, lanes); };
-            return volume::gradientOf<Floats>(behind, cells, job.stencil) / spreadOut<Floats>(job.edges);
-        }
+        if (packet.bends) return gradientBehindLenses(read, cells, lanes);
         if (!Exact && !read.masked && sharesReads(job.stencil, Bcc))
             return sharedGradient<Bcc>(read.volume, cells, job.stencil.reach, lanes) / spreadOut<Floats>(job.edges);
         return volume::gradientOf<Floats>(value, cells, job.stencil) / spreadOut<Floats>(job.edges);
+    }
+
+    [[gnu::noinline]] Vec gradientBehindLenses(const Read& read, const Vec& cells, Mask lanes) {
+        const auto value = [&](const Vec& at) { return read(at, lanes); };
+        return volume::gradientOf<Floats>(value, cells, job.stencil) / spreadOut<Floats>(job.edges);
+    }
+    /// The same within the part that each place belongs to.
+    [[gnu::noinline]] Vec gradientOfParts(const Read& read, const Vec& cells, Mask lanes) {
+        const Floats part = read.part(cells, lanes);
+        Vec out(Floats(0), Floats(0), Floats(0));
+        for (int i = 0; i < read.volume.partCount; ++i) {
+            const Mask own = lanes & (part >= Floats(i)) & (part <= Floats(i));
+            if (anyOf(own)) out = choose(own, gradient(read.ofPart(i), cells, own), out);
+        }
+        return out;
     }
 
     /// Change over a cell, of a gradient of samples in world axes.
@@ -83,8 +96,10 @@ template <bool Bcc, bool Exact> struct Caster {
     }
     /// Colours of a layer; `own` if no other channel gives them.
     Vec tinted(const LayerView& layer, const Vec& own, const Vec& cells, Mask lanes) const {
-        if (layer.colors.volume == nullptr) return own;
-        return tint(layer.colors, reader(*layer.colors.volume, true)(cells, lanes));
+        return layer.colors.volume == nullptr ? own : colorsAt(layer.colors, cells, lanes);
+    }
+    [[gnu::noinline]] Vec colorsAt(const ColorView& colors, const Vec& cells, Mask lanes) const {
+        return tint(colors, reader(*colors.volume, true)(cells, lanes));
     }
 
     /// The colour of samples of a composite layer after light.
@@ -172,27 +187,48 @@ template <bool Bcc, bool Exact> struct Caster {
         packet.blend(color, alpha, shownAt, some);
     }
 
+    /// The values from samples of one part each, as far as these have any weight.
+    [[gnu::noinline]] Found continuedInPart(const Read& read, Floats part, const Vec& cells, Mask lanes) const {
+        Found out{Floats(0), maskOf(0)};
+        for (int i = 0; i < read.volume.partCount; ++i) {
+            const Mask of = lanes & (part >= Floats(i)) & (part <= Floats(i));
+            if (!anyOf(of)) continue;
+            const Found own = read.ofPart(i).continued(cells, of);
+            out = {choose(of, own.value, out.value), out.present | (own.present & of)};
+        }
+        return out;
+    }
+
     /// The intersections with an iso-surface between samples k - 1 and k.
     Met meetSurface(const LayerView& layer, bool masked, const Found& before, const Found& now, Floats k, Mask lanes) {
         const Read read = reader(layer, masked);
         const Floats value(layer.isoValue), far(kFar);
         const Mask above = before.value >= value, below = !above, over = now.value >= value;
-        const Mask crossed = lanes & before.present & now.present & ((above & !over) | (below & over));
+        Mask crossed = lanes & before.present & now.present & ((above & !over) | (below & over));
+        const bool parts = read.volume.partCount > 0;
+        Floats part(0);
+        const auto same = [&](Floats other) { return (other >= part) & (other <= part); };
+        if (parts && anyOf(crossed)) { // a surface lies within one part
+            part = read.part(packet.cells(k), crossed);
+            crossed &= same(read.part(packet.cells(k - Floats(1)), crossed));
+        }
         Met out{far, {Floats(0), Floats(0), Floats(0)}, Floats(0)};
         if (!anyOf(crossed)) return out;
         Floats lo = k - Floats(1), hi = k;
         for (int i = 0; i < kBisections; ++i) {
             const Floats middle = (lo + hi) * Floats(0.5);
             count(crossed);
-            const Found there = read.continued(packet.cells(middle), crossed);
-            const Mask high = there.present & (there.value >= value), same = (high & above) | (!high & below);
-            lo = choose(same, middle, lo);
-            hi = choose(same, hi, middle);
+            const Vec place = packet.cells(middle);
+            const Found there = parts ? continuedInPart(read, part, place, crossed) : read.continued(place, crossed);
+            const Mask high = there.present & (there.value >= value), alike = (high & above) | (!high & below);
+            lo = choose(alike, middle, lo);
+            hi = choose(alike, hi, middle);
         }
         const Floats at = (lo + hi) * Floats(0.5);
-        const Mask shown = crossed & packet.shows(at);
-        if (!anyOf(shown)) return out;
         const Vec cells = packet.cells(at);
+        Mask shown = crossed & packet.shows(at);
+        if (parts) shown &= same(read.part(cells, crossed));
+        if (!anyOf(shown)) return out;
         Vec slope(Floats(0), Floats(0), Floats(0)); // labels have none
         if (!layer.volume->labels) slope = gradient(read, cells, shown);
         out.at = choose(shown, at, far);

@@ -5,6 +5,7 @@
 #include "vis/packet/packet_volume.h"
 #include "vis/scene/lens_bend.h"
 #include "volume/base/numbers.h"
+#include "volume/reconstruct/part_choice.h"
 #include "volume/reconstruct/present_coverage.h"
 
 /// Packets of samples read from a PacketVolume: reconstruction, classification, light. Only for cast_*.cpp.
@@ -95,7 +96,18 @@ template <bool Bcc, bool Exact> struct Reader {
 
     [[gnu::noinline]] Found operator()(const Vec& cells, Mask lanes) const {
         const Vec at = bends != nullptr ? bent(*bends, cells) : cells;
+        if (volume.partCount > 0) return ofParts(fixedOf(at), lanes).found;
         return volume.labels ? nearest(at, lanes) : next(fixedOf(at), lanes);
+    }
+    /// The parts that places belong to, whether present or absent.
+    [[gnu::noinline]] Floats part(const Vec& cells, Mask lanes) const {
+        if (volume.partCount == 0) return Floats(0);
+        return ofParts(fixedOf(bends != nullptr ? bent(*bends, cells) : cells), lanes).part;
+    }
+    /// Of a single part.
+    Reader ofPart(int part) const {
+        const VolumeView& own = volume.parts[part];
+        return {own, own.present != nullptr, bends};
     }
     /// The same within loops over samples.
     [[gnu::always_inline]] Found next(const Fixed& at, Mask lanes) const { return valueOf(around(at, lanes), lanes); }
@@ -121,6 +133,27 @@ template <bool Bcc, bool Exact> struct Reader {
     }
 
 private:
+    /// Twin: reference::Samples::read.
+    struct OfParts {
+        Found found;
+        Floats part;
+    };
+    OfParts ofParts(const Fixed& at, Mask lanes) const {
+        volume::PartChoiceOf<Floats, Mask> choice;
+        Floats best(0);
+        for (int i = 0; i < volume.partCount; ++i) {
+            const Reader own = ofPart(i);
+            Floats sum(0), coverage(0);
+            own.add(own.around(at, lanes), lanes, sum, coverage);
+            const Floats covered =
+                own.masked ? coverage * Floats((Bcc ? 0.5f : 1.0f) / kQuantum / kQuantum) : Floats(1);
+            best = choose(choice.add(i, covered), sum, best);
+        }
+        return {{best * Floats(kUnit) / larger(choice.coverage, Floats(1e-9)),
+                 lanes & (choice.total >= Floats(volume::kPresentCoverage))},
+                choice.part};
+    }
+
     /// Twin: volume::nearest.
     Found nearest(const Vec& cells, Mask lanes) const {
         Ints best(0);

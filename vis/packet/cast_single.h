@@ -39,13 +39,14 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         Floats k(0);
         for (int i = 0; i < packet.eventCount; ++i) {
             const Floats at = smaller(packet.events[i].at, Floats(kFar / 2));
-            marchUnshaded(k, clamped(roundUp(at), Floats(0), packet.count));
+            k = marchUnshaded(k, clamped(roundUp(at), Floats(0), packet.count));
             packet.showEvents(at, packet.meets & packet.seeThrough());
         }
         marchUnshaded(k, packet.count);
     }
-    /// Takes its samples from k on, those before `samples`. The sum of colours is in kQuantum until the end.
-    void marchUnshaded(Floats& k, Floats samples) {
+    /// Takes its samples from k on, those before `samples`, and returns the next. The sum of colours is in kQuantum
+    /// until the end.
+    Floats marchUnshaded(Floats k, Floats samples) {
         constexpr float kLast = kPackedEntries - 1;
         const Floats length = packet.step * Floats(layer.density), perEntry(layer.placeScale * kLast),
                      firstEntry(layer.placeOffset * kLast + 0.5f);
@@ -84,7 +85,7 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         packet.color = color * Floats(1.0 / kQuantum);
         packet.opacity = opacity;
         packet.pick = pick;
-        k = smaller(k, samples); // samples are taken several at a time
+        return smaller(k, samples); // samples are taken several at a time
     }
 
     /// A composite layer: rays march to their next sample with opacity and wait there until half of them have met one;
@@ -261,7 +262,8 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
 template <bool Bcc, bool Exact> void castLayersOf(SingleCaster<Bcc, Exact>& caster) {
     const CastJob& job = caster.job;
     const LayerView& layer = job.layers[0];
-    const bool one = job.layers.size() == 1 && !layer.gradient && !layer.volume->labels && !caster.packet.bends;
+    const bool one = job.layers.size() == 1 && !layer.gradient && !layer.volume->labels &&
+                     layer.volume->partCount == 0 && !caster.packet.bends;
     const bool plain = !job.focus.any;
     if (one && layer.style == RayStyle::Composite && plain && !layer.shaded && caster.packet.holeCount == 0 &&
         layer.colors.volume == nullptr)

@@ -29,7 +29,8 @@ struct Shares {
 
 class Blender {
 public:
-    Blender(const PacketVolume& earlier, const PacketVolume& later, double weight)
+    /// `alone`: not one of several parts, which have the same scale.
+    Blender(const PacketVolume& earlier, const PacketVolume& later, double weight, bool alone)
         : a_(earlier), b_(later), weight_(weight), whole_(earlier.present.empty() && later.present.empty()) {
         out_.bcc = a_.bcc;
         out_.exact = a_.exact;
@@ -38,7 +39,8 @@ public:
         out_.blocks = a_.blocks;
         const Held one = heldBy(a_), other = heldBy(b_);
         Held both{std::min(one.lo, other.lo), std::max(one.hi, other.hi)};
-        if (whole_) both = {(1 - weight) * one.lo + weight * other.lo, (1 - weight) * one.hi + weight * other.hi};
+        if (whole_ && alone)
+            both = {(1 - weight) * one.lo + weight * other.lo, (1 - weight) * one.hi + weight * other.hi};
         const double width = both.hi - both.lo;
         out_.offset = out_.exact ? (both.lo + both.hi) / 2 : both.lo;
         out_.scale = width > 0 ? (out_.exact ? width : width / kQuantum) : 1;
@@ -47,6 +49,7 @@ public:
                    weight * (b_.offset - out_.offset) / out_.scale};
     }
 
+    const PacketVolume& shape() const { return out_; } ///< without samples
     PacketVolume make() {
         if (out_.exact)
             blend(a_.floats, b_.floats, out_.floats);
@@ -128,7 +131,12 @@ private:
 } // namespace
 
 PacketVolume blendedVolume(const PacketVolume& earlier, const PacketVolume& later, double weight) {
-    return Blender(earlier, later, weight).make();
+    if (earlier.parts.empty()) return Blender(earlier, later, weight, true).make();
+    PacketVolume out = Blender(earlier, later, weight, false).shape();
+    for (std::size_t i = 0; i < earlier.parts.size(); ++i)
+        out.parts.push_back(Blender(earlier.parts[i], later.parts[i], weight, false).make());
+    joinParts(out);
+    return out;
 }
 
 } // namespace tessera::vis::packet

@@ -2,32 +2,20 @@
 
 #include "vis/packet/cast_job.h"
 #include "vis/packet/packet_channels.h"
-#include "volume/bricks/parts_bricks.h"
 
 namespace tessera::vis::packet {
 
 namespace {
 
-std::string refusalOfParameter(const volume::DatasetInfo& info, int channel) {
-    const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(channel).parameter)];
-    if (volume::labelChannel(info, parameter)) return "parameters whose regions are never mixed";
-    return "";
-}
-
 std::string refusalOfFocus(const Scene& scene, const volume::DatasetInfo& info) {
     if (!scene.selection.active()) return "";
     if (scene.selection.contextBlur > 0) return "blurred context";
     const std::vector<int> brushed = brushedChannels(scene, info);
-    for (const int channel : brushed)
-        if (std::string why = refusalOfParameter(info, channel); !why.empty()) return "brushes of " + why;
     return brushed.size() > std::size_t(kMostBrushFields) ? "brushes of so many parameters" : "";
 }
 
 std::string refusalOfLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn) {
     const Layer& layer = scene.layers[std::size_t(drawn.layer)];
-    if (std::string why = refusalOfParameter(info, drawn.channel.channel); !why.empty()) return why;
-    if (drawn.colors)
-        if (std::string why = refusalOfParameter(info, drawn.colors->channel); !why.empty()) return "colours by " + why;
     if (const Look* look = lookOf(layer.technique); look && look->any()) return "looks";
     const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
     if (!volume || volume->style != RayStyle::Composite || volume->quantity == Quantity::Gradient) return "";

@@ -23,6 +23,7 @@ VolumeView viewOf(const PacketVolume& volume) {
     view.labels = volume.labels;
     view.cells = volume.cells;
     view.oddOffset = volume.brickPairs();
+    view.partCount = int(volume.parts.size());
     const int brick = volume.stride(), row = brick * volume.bricks.x, slice = row * volume.bricks.y;
     view.perBrick = {brick - kBrick, row - kBrick * kRow, slice - kBrick * kSlice};
     return view;
@@ -243,7 +244,13 @@ void PacketScene::addBrushes(const Scene& scene, const volume::DatasetInfo& info
 PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, std::vector<SharedVolume> volumes)
     : volumes_(std::move(volumes)) {
     const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
-    for (const SharedVolume& volume : volumes_) views_.push_back(viewOf(*volume));
+    for (const SharedVolume& volume : volumes_) {
+        views_.push_back(viewOf(*volume));
+        std::vector<VolumeView> parts;
+        for (const PacketVolume& part : volume->parts) parts.push_back(viewOf(part));
+        partViews_.push_back(std::move(parts));
+        views_.back().parts = partViews_.back().data();
+    }
     lenses_ = placeLenses(scene, worldFrame(info.bounds, scene.stretch));
     addBrushes(scene, info);
     // Small blocks pay where rays soon end at surfaces.

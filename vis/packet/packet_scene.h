@@ -40,6 +40,7 @@ private:
 
     std::vector<SharedVolume> volumes_;
     std::vector<VolumeView> views_;
+    std::vector<std::vector<VolumeView>> partViews_; ///< of each volume
     std::vector<std::vector<std::int32_t>> tables_;
     std::vector<std::vector<std::uint32_t>> packed_;
     std::vector<LayerView> layers_;

@@ -40,6 +40,9 @@ struct PacketVolume {
     glm::ivec3 blocks{1};
     std::vector<float> lo, hi;
     std::vector<std::uint8_t> absent; ///< empty: none
+    /// Of a parameter with several parts (volume/field/parts.h), each with the samples of the others absent and in the
+    /// same scale; then this one has bounds, but no samples.
+    std::vector<PacketVolume> parts;
 
     int brickPairs() const { return kSlice * kRow; } ///< of one sublattice
     /// Pairs from one brick to the next.
@@ -60,6 +63,9 @@ struct PacketChannel {
     /// The same at one of the stored times around.
     PacketChannel at(int stored) const { return {channel, {stored, stored, 0}, filter, exact}; }
 };
+
+/// Sets the bounds of blocks from those of the parts.
+void joinParts(PacketVolume& volume);
 
 /// Samples at a stored time. Throws Error when the source does.
 PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketChannel& what);

@@ -25,7 +25,10 @@ double packetBytes(const Scene& scene, const volume::DatasetInfo& info, const vo
     }
     const double samples = double(lattice.size.x) * double(lattice.size.y) * double(lattice.size.z);
     double bytes = 0;
-    for (const packet::PacketChannel& channel : channels) bytes += samples * kShared * (channel.exact ? 4 : 2);
+    for (const packet::PacketChannel& channel : channels) {
+        const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(channel.channel).parameter)];
+        bytes += samples * kShared * (channel.exact ? 4 : 2) * double(parameter.parts.count());
+    }
     return bytes;
 }
 

@@ -55,7 +55,8 @@ template <class Number> struct Caster {
     };
 
     /// The colour of a slice, with contour lines, where it has a value.
-    glm::dvec3 sliceColor(const DrawnLayer& layer, double value) const {
+    glm::dvec3 sliceColor(const DrawnLayer& layer, const Reading& own) const {
+        const double value = own.value;
         const glm::dvec3 color(layer.classify(value));
         const int contours = std::get<SliceLayer>(*layer.technique).contours;
         if (contours <= 0) return color;
@@ -64,9 +65,9 @@ template <class Number> struct Caster {
         for (const Ray& other : beside) {
             const double t = planeDistance(layer.plane, other.origin, other.direction);
             const glm::dvec3 place = other.origin + t * other.direction;
-            const std::optional<double> next =
-                layer.samples->value(scene.cells(glm::clamp(place, -scene.frame.halfSize, scene.frame.halfSize)));
-            if (next) width += std::abs(level(*next) - level(value));
+            const std::optional<Reading> next =
+                layer.samples->read(scene.cells(glm::clamp(place, -scene.frame.halfSize, scene.frame.halfSize)));
+            if (next && next->part == own.part) width += std::abs(level(next->value) - level(value));
         }
         return withContours<double>(color, level(value), width, contours);
     }
@@ -79,11 +80,11 @@ template <class Number> struct Caster {
             const auto t = Number(planeDistance(layer.plane, ray.origin, ray.direction));
             if (!(t > from && t <= to) || !shows(inSamples(double(t)))) continue;
             const glm::dvec3 place = glm::clamp(glm::dvec3(at(t)), -scene.frame.halfSize, scene.frame.halfSize);
-            const std::optional<double> value = layer.samples->value(scene.cells(place));
-            if (!value) continue;
+            const std::optional<Reading> found = layer.samples->read(scene.cells(place));
+            if (!found) continue;
             const Interest doi = scene.interest(place);
             const LensAction lens = scene.lensAction(layer, glm::dvec3(at(t)));
-            events.push_back({t, scene.focused(layer, sliceColor(layer, *value), doi, lens.saturation),
+            events.push_back({t, scene.focused(layer, sliceColor(layer, *found), doi, lens.saturation),
                               std::min(double(std::get<SliceLayer>(*layer.technique).opacity) *
                                            scene.opacityFactor(layer, doi) * lens.opacity,
                                        1.0),
