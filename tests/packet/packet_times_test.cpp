@@ -1,5 +1,5 @@
 #include "tests/packet/packet_pictures.h"
-#include "vis/packet/packet_blend.h"
+#include "vis/packed/packet_blend.h"
 
 #include <atomic>
 

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "vis/packed/packet_volume.h"
 #include "vis/packet/cast_job.h"
 #include "vis/packet/lanes.h"
-#include "vis/packet/packet_volume.h"
 #include "vis/scene/lens_bend.h"
 #include "volume/base/numbers.h"
 #include "volume/reconstruct/part_choice.h"

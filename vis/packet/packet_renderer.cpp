@@ -1,8 +1,8 @@
 #include "vis/packet/packet_renderer.h"
 
 #include "vis/optics/jitter.h"
+#include "vis/packed/packet_blend.h"
 #include "vis/packet/cast.h"
-#include "vis/packet/packet_blend.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "vis/packed/skip_map.h"
 #include "vis/packet/cast_job.h"
 #include "vis/packet/packet_channels.h"
 #include "vis/packet/packet_table.h"
-#include "vis/packet/skip_map.h"
 #include "vis/scene/scene.h"
 
 #include <memory>

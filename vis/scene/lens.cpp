@@ -1,7 +1,5 @@
 #include "vis/scene/lens.h"
 
-#include "vis/scene/lens_bend.h"
-
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -69,10 +67,6 @@ void setPlace(PlacedLens& placed, const Lens& lens, const Camera& camera) {
 
 } // namespace
 
-glm::dvec3 PlacedLens::bend(glm::dvec3 world) const {
-    return bentBy<double>(*this, world);
-}
-
 std::vector<PlacedLens> placeLenses(const std::vector<Lens>& lenses, const WorldFrame& frame, const Camera& camera,
                                     glm::dvec3 cursor) {
     std::vector<PlacedLens> all;
@@ -98,10 +92,6 @@ int findLens(const std::vector<PlacedLens>& lenses, const std::string& name) {
     for (std::size_t i = 0; i < lenses.size(); ++i)
         if (lenses[i].name == name) return int(i);
     return -1;
-}
-
-glm::dvec3 bend(const std::vector<PlacedLens>& lenses, glm::dvec3 world, glm::dvec3 halfSize) {
-    return bentBy<double>(lenses, world, halfSize);
 }
 
 } // namespace tessera::vis

@@ -1,4 +1,4 @@
-#include "vis/packet/packet_volume.h"
+#include "vis/packed/packet_volume.h"
 
 #include "volume/base/parallel.h"
 #include "volume/bricks/parts_bricks.h"
@@ -276,9 +276,9 @@ std::size_t PacketVolume::bytes() const {
 namespace {
 
 /// Lays the samples of a channel out.
-class Layout {
+class VolumeMaker {
 public:
-    Layout(const volume::BrickSource& source, const PacketChannel& what)
+    VolumeMaker(const volume::BrickSource& source, const PacketChannel& what)
         : geometry_(volume::levelGeometry(source.grid(), 0)) {
         const volume::DatasetInfo& info = source.info();
         shape_.labels = info.parameters[std::size_t(info.channel(what.channel).parameter)].categorical;
@@ -366,22 +366,22 @@ void joinParts(PacketVolume& volume) {
 PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketChannel& what) {
     const volume::DatasetInfo& info = source.info();
     const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(what.channel).parameter)];
-    Layout layout(source, what);
+    VolumeMaker maker(source, what);
     const std::optional<int> label = volume::labelChannel(info, parameter);
     if (!label) {
         const Gathered all = gatherAll(source, what, std::nullopt);
-        layout.setRange(layout.range(all));
-        return layout.write(all);
+        maker.setRange(maker.range(all));
+        return maker.write(all);
     }
     std::vector<Gathered> parts;
     Extent range;
     for (std::size_t part = 0; part < parameter.parts.count(); ++part) {
         parts.push_back(gatherAll(source, what, OnePart{*label, parameter.parts, part}));
-        if (somePresent(parts.back())) range.add(layout.range(parts.back()));
+        if (somePresent(parts.back())) range.add(maker.range(parts.back()));
     }
-    layout.setRange(range.lo <= range.hi ? range : Extent{0, 0});
-    PacketVolume out = layout.shape();
-    for (const Gathered& part : parts) out.parts.push_back(layout.write(part));
+    maker.setRange(range.lo <= range.hi ? range : Extent{0, 0});
+    PacketVolume out = maker.shape();
+    for (const Gathered& part : parts) out.parts.push_back(maker.write(part));
     joinParts(out);
     return out;
 }

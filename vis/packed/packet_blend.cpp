@@ -1,4 +1,4 @@
-#include "vis/packet/packet_blend.h"
+#include "vis/packed/packet_blend.h"
 
 #include "volume/base/parallel.h"
 
