@@ -26,7 +26,8 @@ struct Shipped {
     const char* views;
     const char* legends;
     std::vector<Share> shares;
-    bool brushed = false; ///< what its brushes hold is orange in the scatterplots, and nothing is without them
+    bool brushed = false;     ///< what its brushes hold is orange in the scatterplots, and nothing is without them
+    const char* refusal = ""; ///< why the processor does not cast the rays of its 3D view
 };
 
 void PrintTo(const Shipped& layout, std::ostream* out) {
@@ -45,7 +46,9 @@ const std::vector<Shipped>& shipped() {
         {"charcoal",
          "data layers timeline transfer volume",
          "",
-         {{"volume", Light, 0.86}, {"volume", Warm, 0}, {"volume", Cold, 0}}},
+         {{"volume", Light, 0.86}, {"volume", Warm, 0}, {"volume", Cold, 0}},
+         false,
+         "looks"},
         // Several pictures beside each other are under test with the view itself.
         {"compare_compression", "compare data layers transfer", "O2 [mol/m³] = 2.5; T [K] 353.16 .. 356.85", {}},
         {"compare_lattice", "compare data layers transfer", "rho = 0.5", {}},
@@ -61,7 +64,9 @@ const std::vector<Shipped>& shipped() {
         {"evening",
          "data layers transfer volume",
          "rho = 0.5",
-         {{"volume", Warm, 0.132}, {"volume", Dark, 0.556}, {"volume", Cold, 0}}},
+         {{"volume", Warm, 0.132}, {"volume", Dark, 0.556}, {"volume", Cold, 0}},
+         false,
+         "shadows"},
         {"flow",
          "data layers slices timeline transfer volume",
          "O2 [mol/m³] 0.06 .. 6.22; H2 [mol/m³] 24.48 .. 29.50; T [K] 353.16 .. 356.85",
@@ -78,7 +83,9 @@ const std::vector<Shipped>& shipped() {
         {"illustration",
          "data layers timeline transfer volume",
          "O2 [mol/m³] = 2.5; T [K] 353.16 .. 356.85",
-         {{"volume", Light, 0.825}, {"volume", Orange, 0.0837}}},
+         {{"volume", Light, 0.825}, {"volume", Orange, 0.0837}},
+         false,
+         "looks"},
         {"lens",
          "data history layers scatterMatrix slices statistics timeline transfer volume",
          "T [K] 353.16 .. 356.85; O2 [mol/m³] 0.06 .. 6.22; O2 [mol/m³] = 2.2; |U| [m/s] 0.00 .. 2.76",
@@ -196,6 +203,18 @@ TEST_P(Layouts, ShowWhatTheyAreFor) {
     if (!GetParam().brushed) return;
     session().selection.brushes.clear();
     EXPECT_EQ(shareOf(picture("scatterMatrix"), Hue::Orange), 0);
+}
+
+/// What casts the rays of the 3D view where the processor is asked to.
+TEST_P(Layouts, AreDrawnByTheProcessorBut) {
+    if (!session().views.contains("volume")) return;
+    session().render.engine = vis::Engine::Processor;
+    opened.document.history.reset(session());
+    vis::EngineUse use;
+    maker.render(opened.document, opened.sources(), {.pane = "volume", .size = {160, 120}, .scale = 1},
+                 [&](const Workbench& workbench) { use = workbench.renderer()->engine(); });
+    EXPECT_EQ(use.refusal, GetParam().refusal);
+    EXPECT_EQ(use.byProcessor, GetParam().refusal == std::string_view());
 }
 
 INSTANTIATE_TEST_SUITE_P(Shipped, Layouts, testing::ValuesIn(shipped()),

@@ -1,7 +1,7 @@
 #include "vis/packet/packet_table.h"
 
 #include "vis/optics/ray_setup.h"
-#include "vis/packet/packet_volume.h"
+#include "vis/packed/packet_volume.h"
 
 #include <bit>
 #include <cmath>

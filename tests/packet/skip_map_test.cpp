@@ -1,4 +1,4 @@
-#include "vis/packet/skip_map.h"
+#include "vis/packed/skip_map.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

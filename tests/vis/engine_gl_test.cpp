@@ -125,11 +125,69 @@ TEST_F(EngineGl, PicturesOfSectionsSayNothingOfRays) {
     test::renderAll(renderer, *volume, scene, {32, 32});
     Scene section = scene;
     section.layers = {{.name = "cut", .technique = SliceLayer{.channel = "v"}}};
-    EXPECT_EQ(test::renderAll(renderer, *slice, section, {32, 32}).engine.refusal, "slices");
+    const EngineUse alone = test::renderAll(renderer, *slice, section, {32, 32}).engine;
+    EXPECT_FALSE(alone.byProcessor) << "a sample for each pixel";
+    EXPECT_EQ(alone.refusal, "");
     EXPECT_TRUE(renderer.engine().byProcessor);
     scene.layers.back().visible = true;
     test::renderAll(renderer, *volume, scene, {32, 32});
-    EXPECT_EQ(renderer.engine().refusal, "slices") << "a slice in the volume's picture";
+    EXPECT_TRUE(renderer.engine().byProcessor) << "a slice in the volume's picture";
+    scene.lighting.shadows.strength = 1;
+    test::renderAll(renderer, *volume, scene, {32, 32});
+    EXPECT_EQ(renderer.engine().refusal, "shadows");
+}
+
+/// OpenGL rasterises meshes and lines for both engines.
+std::shared_ptr<const Geometry> crossedRectangles() {
+    auto geometry = std::make_shared<Geometry>();
+    for (const int axis : {0, 2})
+        for (int corner = 0; corner < 4; ++corner) {
+            glm::vec3 at(10, 8, 12);
+            at[axis] += float((corner == 1 || corner == 2) ? 9 : -9);
+            at.y += float(corner >= 2 ? 7 : -7);
+            at[2 - axis] += 0.3f * (at.y - 8);
+            geometry->mesh.positions.push_back(at);
+            geometry->mesh.scalars.push_back(0.1f * at.y);
+        }
+    geometry->mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+    return geometry;
+}
+
+TEST_F(EngineGl, MeshesAndSlicesAmongLayersAreAlike) {
+    for (const volume::LatticeKind kind : {volume::LatticeKind::CC, volume::LatticeKind::BCC})
+        for (const bool brushed : {false, true}) {
+            Renderer renderer({.exactTextures = true});
+            renderer.setSource(waves(kind));
+            std::vector<std::vector<glm::vec4>> pictures;
+            for (const Engine engine : {Engine::OpenGl, Engine::Processor}) {
+                Scene scene = wavesScene(engine);
+                scene.cursor = {8, 7, 9};
+                scene.layers.push_back({.name = "cut",
+                                        .technique = SliceLayer{.channel = "v",
+                                                                .orientation = SliceOrientation::Oblique,
+                                                                .normal = {0.3f, 0.5f, -0.8f},
+                                                                .contours = 5,
+                                                                .opacity = 0.7f}});
+                GeometryLayer mesh{.geometry = crossedRectangles()};
+                mesh.style.opacity = 0.6f;
+                scene.geometry = {mesh};
+                if (brushed) {
+                    scene.selection.brushes = {rangeBrush({{.channel = "v", .lo = 0.5, .hi = 0.7, .soft = 0.1}})};
+                    scene.geometry[0].brushes = BrushEffect::FocusOnly;
+                }
+                const ViewTargetPtr target = renderer.makeTarget();
+                const FrameStatus status = renderer.render(*target, scene, {.size = {161, 121}, .wait = true});
+                EXPECT_EQ(status.engine.byProcessor, engine == Engine::Processor) << status.engine.refusal;
+                pictures.push_back(renderer.readLinear(*target));
+                scene.geometry.clear();
+                renderer.render(*target, scene, {.size = {161, 121}, .wait = true});
+                EXPECT_GT(rms(pictures.back(), renderer.readLinear(*target)), 0.01) << "the mesh is seen";
+            }
+            const Apart apart = apartBy(pictures[0], pictures[1]);
+            EXPECT_LE(apart.outliers, 25);
+            EXPECT_LT(apart.rms, 5e-4);
+            EXPECT_TRUE(renderer.takeMessages().empty());
+        }
 }
 
 /// Without waiting, the picture comes once its samples are read; a moving view gets a reduced one that is current.

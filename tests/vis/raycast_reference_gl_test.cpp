@@ -156,6 +156,11 @@ const Mode kModes[] = {
                                  .opacity = 0.6f}},
                      {"", true, SliceLayer{.channel = "label", .atCursor = false, .position = 0.83}}};
      }},
+    {"contour lines",
+     [](Scene& s) {
+         s.layers = {{"", true, SliceLayer{.channel = "a", .orientation = SliceOrientation::X, .contours = 3}}};
+     },
+     kCornerOutliers},
     {"layers and brushes",
      [](Scene& s) {
          s.layers = {{"", true, VolumeLayer{.channel = "a"}},

@@ -1,4 +1,5 @@
 #include "tests/vis/shader_probe.h"
+#include "vis/optics/contour.h"
 #include "vis/optics/jitter.h"
 #include "vis/optics/ray_setup.h"
 #include "vis/optics/surface_light.h"
@@ -93,6 +94,20 @@ TEST_F(ShaderLib, StartsAreShiftedAlikeAndSpread) {
     }
     EXPECT_NEAR(sum / kCases, 0, 0.05);
     EXPECT_GT(worst, 0.15) << "neighbours start alike";
+}
+
+TEST_F(ShaderLib, ContoursAreDrawnAlike) {
+    const auto got = evaluate("#include \"lib/color.glsl\"\n#include \"lib/contours.glsl\"\n",
+                              "vec4(withContours(abs(a[i].rgb), 6.0 * b[i].x, 0.4 * c[i].x, 4.0), 1.0)");
+    int drawn = 0;
+    for (int i = 0; i < kCases; ++i) {
+        const glm::dvec3 color = glm::abs(glm::dvec3(a[i]));
+        const glm::dvec3 wanted = vis::withContours<double>(color, 6 * double(b[i].x), 0.4 * double(c[i].x), 4);
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(got[i][k], wanted[k], 1e-4) << i;
+        drawn += glm::length(wanted - color) > 0.1;
+    }
+    EXPECT_GT(drawn, 3);
+    EXPECT_LT(drawn, kCases - 3);
 }
 
 TEST_F(ShaderLib, TonesAreMappedAlike) {

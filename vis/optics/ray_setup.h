@@ -130,6 +130,14 @@ struct Plane {
     double offset = 0;
 };
 Plane slicePlane(const SliceLayer& layer, const WorldFrame& frame, glm::dvec3 cursor);
+/// Rays with a smaller cosine to a plane's normal do not meet it.
+inline constexpr double kParallel = 1e-6;
+/// Distance along a ray at which it meets a plane; anything where it does not.
+template <class N> N planeDistance(const Plane& plane, const glm::vec<3, N>& origin, const glm::vec<3, N>& direction) {
+    const glm::vec<3, N> normal = spreadOut<N>(plane.normal);
+    const N slope = inner(normal, direction);
+    return (N(plane.offset) - inner(normal, origin)) / choose(magnitude(slope) < N(1e-9), N(1e-9), slope);
+}
 
 double linearFromSrgb(double encoded);
 double srgbFromLinear(double linear);

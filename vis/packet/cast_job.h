@@ -1,9 +1,11 @@
 #pragma once
 
 #include "vis/optics/brush_tests.h"
+#include "vis/optics/ray_setup.h"
 #include "vis/optics/surface_light.h"
 #include "vis/scene/brush_effect.h"
 #include "vis/scene/clipping.h"
+#include "vis/scene/geometry.h"
 #include "vis/scene/layers.h"
 #include "vis/scene/lens.h"
 #include "volume/reconstruct/gradient.h"
@@ -20,19 +22,30 @@ struct VolumeView {
     const float* floats = nullptr;
     const std::int16_t* present = nullptr; ///< null: all
     bool bcc = false;
+    bool labels = false; ///< the nearest sample is read
     glm::ivec3 cells{1};
-    glm::ivec3 perBrick{0}; ///< added to the place of a pair for each brick before it along an axis
-    int oddOffset = 0;      ///< pairs from the even to the odd sublattice
+    glm::ivec3 perBrick{0};            ///< added to the place of a pair for each brick before it along an axis
+    int oddOffset = 0;                 ///< pairs from the even to the odd sublattice
+    const VolumeView* parts = nullptr; ///< of a parameter with several; then this one has no samples
+    int partCount = 0;
 };
 
 inline constexpr float kNowhere = -1e9f;
-inline constexpr int kMostPacketLayers = 16, kMostPacketSurfaces = 8, kMostBrushFields = 8;
+inline constexpr int kMostPacketLayers = 16, kMostPacketSurfaces = 8, kMostPacketSlices = 8, kMostBrushFields = 8;
 inline constexpr int kTableEntries = 2048; ///< of a transfer function
 inline constexpr int kShowBins = 256;      ///< of its places, one bit each
 /// Entries of the table of unshaded samples, which are not interpolated: red and green, blue and extinction in the low
 /// and high 16 bits of two words; kQuantum = 1. The extinction (ray_setup.h) is a float of a sign bit that is 0, 5 bits
 /// of exponent and 10 of mantissa; 0 is 0.
 inline constexpr int kPackedEntries = 4096, kExtinctionShift = 13, kExtinctionLeast = 127 - 20;
+
+/// Another channel that colours a layer.
+struct ColorView {
+    const VolumeView* volume = nullptr; ///< null: none
+    float placeScale = 1, placeOffset = 0;
+    const std::int32_t* table = nullptr;
+    glm::vec3 absent{0}; ///< linear, where it has no value
+};
 
 /// A transfer function: entry i has the colour (linear) and opacity at places i and i + 1 of kTableEntries - 1, red,
 /// green, blue and opacity, low and high 16 bits of a number, kQuantum = 1.
@@ -41,8 +54,12 @@ struct LayerView {
     RayStyle style = RayStyle::Composite;
     bool shaded = false;
     float placeScale = 1, placeOffset = 0; ///< place = sample * scale + offset
+    bool gradient = false;                 ///< shows the gradient's magnitude:
+    float gradientScale = 0;               ///< place = change of samples over a cell * this
+    float surfaceScale = 0;                ///< weight of the surface = change of samples over a cell * this, at most 1
     const std::int32_t* table = nullptr;
     const std::uint32_t* packed = nullptr;
+    ColorView colors = {};
     std::uint32_t shows[kShowBins / 32] = {}; ///< bits of places around which there is opacity
     float opacityScale = 1;                   ///< of the table's opacities
     float density = 1;
@@ -52,6 +69,15 @@ struct LayerView {
     glm::vec3 isoColor{0}; ///< linear
     BrushEffect brushes = BrushEffect::Fade;
     int lens = -1; ///< index of the lens that it is drawn in; -1: everywhere
+};
+
+/// A slice layer.
+struct SliceView {
+    LayerView look; ///< its samples and colours, brushes and lens
+    Plane plane;
+    int contours = 0;
+    float levelScale = 0, levelOffset = 0; ///< of contours: place in the range = sample * scale + offset
+    float opacity = 1;
 };
 
 /// A BrushTest in samples of its channels.
@@ -76,6 +102,7 @@ struct FocusView {
     float contextOpacity = 1, brushColor = 0;
     ContextLook context;
     std::span<const PlacedLens> lenses;
+    float magnifies[kMaxLenses] = {}; ///< of each lens: distance from its centre within which it bends what is read
 };
 
 /// Blocks, and what leaps over them need.
@@ -108,7 +135,13 @@ struct CastJob {
     float stepVoxels = 1;
     std::span<const PlacedClip> clips;
 
+    bool bcc = false, exact = false; ///< of all volumes
     std::span<const LayerView> layers;
+    std::span<const SliceView> slices;
+    int peels = 0;                       ///< rasterised surfaces of each pixel (PacketGeometry)
+    std::size_t pixels = 0;              ///< from one of them to the next
+    const float* peelDistance = nullptr; ///< distance along the ray, and BrushEffect; `first` and `rowLength` as below
+    const float* peelColor = nullptr;    ///< RGBA, linear, premultiplied
     FocusView focus;
     SkipView skip;
     volume::GradientStencil stencil;

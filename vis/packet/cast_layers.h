@@ -19,16 +19,30 @@ template <bool Bcc, bool Exact> struct Caster {
     struct Projected : ProjectionSums<Floats, Mask> {
         Floats bestAt{0};
         Focus bestFocus;
+        Floats tint{0}, tintWeight{0}; ///< of sums: weighted sum of the colouring channel, and its weight
         Projected() : ProjectionSums<Floats, Mask>{.found = maskOf(0)} {}
     };
 
     /// `masked`: samples of some layer may be absent here.
-    static Read reader(const VolumeView& volume, bool masked) { return {volume, masked && volume.present != nullptr}; }
-    static Read reader(const LayerView& layer, bool masked) { return reader(*layer.volume, masked); }
+    Read reader(const VolumeView& volume, bool masked) const {
+        return {volume, (masked || packet.bends) && volume.present != nullptr, packet.bends ? &job : nullptr};
+    }
+    Read reader(const LayerView& layer, bool masked) const { return reader(*layer.volume, masked); }
+
+    /// Where the data are that are shown at a position, which is what brushes in space know.
+    Vec shown(const Vec& cells) const { return packet.bends ? bent(job, cells) : cells; }
 
     Focus focusOf(const LayerView& layer, const Vec& cells, Floats k, bool masked, Mask lanes) const {
         const auto read = [&](const VolumeView& field) { return reader(field, masked)(cells, lanes); };
-        return focusAt(job.focus, layer, cells, packet.world(k), lanes, read);
+        return focusAt(job.focus, layer, shown(cells), packet.world(k), lanes, read);
+    }
+
+    /// Degree of interest of places that are no samples of rays.
+    Interest interestAt(const Vec& cells, const Vec& world, Mask lanes) const {
+        Found values[kMostBrushFields];
+        for (std::size_t i = 0; i < job.focus.fields.size(); ++i)
+            values[i] = reader(*job.focus.fields[i], true)(cells, lanes);
+        return interestOf(job.focus, values, shown(cells), world, lanes);
     }
 
     /// Counts reconstructions of a value.
@@ -41,17 +55,57 @@ template <bool Bcc, bool Exact> struct Caster {
         const auto value = [&](const Vec& at) __attribute__((always_inline)) {
             return read.next(fixedOf(at), lanes);
         };
+        if (read.volume.partCount > 0) return gradientOfParts(read, cells, lanes);
         count(lanes, 2 * job.stencil.count);
+        if (packet.bends) return gradientBehindLenses(read, cells, lanes);
         if (!Exact && !read.masked && sharesReads(job.stencil, Bcc))
             return sharedGradient<Bcc>(read.volume, cells, job.stencil.reach, lanes) / spreadOut<Floats>(job.edges);
         return volume::gradientOf<Floats>(value, cells, job.stencil) / spreadOut<Floats>(job.edges);
     }
 
+    [[gnu::noinline]] Vec gradientBehindLenses(const Read& read, const Vec& cells, Mask lanes) {
+        const auto value = [&](const Vec& at) { return read(at, lanes); };
+        return volume::gradientOf<Floats>(value, cells, job.stencil) / spreadOut<Floats>(job.edges);
+    }
+    /// The same within the part that each place belongs to.
+    [[gnu::noinline]] Vec gradientOfParts(const Read& read, const Vec& cells, Mask lanes) {
+        const Floats part = read.part(cells, lanes);
+        Vec out(Floats(0), Floats(0), Floats(0));
+        for (int i = 0; i < read.volume.partCount; ++i) {
+            const Mask own = lanes & (part >= Floats(i)) & (part <= Floats(i));
+            if (anyOf(own)) out = choose(own, gradient(read.ofPart(i), cells, own), out);
+        }
+        return out;
+    }
+
+    /// Change over a cell, of a gradient of samples in world axes.
+    Floats steepness(const Vec& slope) const { return lengthOf(slope * spreadOut<Floats>(job.cell)); }
+
+    /// Places of samples in a layer's transfer function, not clamped.
+    Floats placeAt(const LayerView& layer, bool masked, const Found& found, Floats k, Mask lanes) {
+        if (!layer.gradient) return multiplyAdd(found.value, Floats(layer.placeScale), Floats(layer.placeOffset));
+        if (!anyOf(lanes)) return Floats(0);
+        return steepness(gradient(reader(layer, masked), packet.cells(k), lanes)) * Floats(layer.gradientScale);
+    }
+
+    /// Colours by a value of the channel that colours a layer.
+    static Vec tint(const ColorView& colors, const Found& found) {
+        const Floats place = multiplyAdd(found.value, Floats(colors.placeScale), Floats(colors.placeOffset));
+        return choose(found.present, colorAt(colors.table, tablePlace(place), found.present),
+                      spreadOut<Floats>(colors.absent));
+    }
+    /// Colours of a layer; `own` if no other channel gives them.
+    Vec tinted(const LayerView& layer, const Vec& own, const Vec& cells, Mask lanes) const {
+        return layer.colors.volume == nullptr ? own : colorsAt(layer.colors, cells, lanes);
+    }
+    [[gnu::noinline]] Vec colorsAt(const ColorView& colors, const Vec& cells, Mask lanes) const {
+        return tint(colors, reader(*colors.volume, true)(cells, lanes));
+    }
+
     /// The colour of samples of a composite layer after light.
     Vec lit(const LayerView& layer, const Read& read, const Vec& albedo, const Vec& cells, Floats k, Mask lanes) {
         const Vec slope = gradient(read, cells, lanes);
-        const Floats steepness = lengthOf(slope * spreadOut<Floats>(job.cell)) * magnitude(Floats(layer.placeScale));
-        const Floats weight = smaller(Floats(1), steepness * Floats(1 / kFlatGradient));
+        const Floats weight = smaller(Floats(1), steepness(slope) * Floats(layer.surfaceScale));
         return litColor(job, albedo, slope, weight, packet.world(k), -packet.ray.direction);
     }
 
@@ -59,7 +113,7 @@ template <bool Bcc, bool Exact> struct Caster {
     void drawSample(const LayerView& layer, bool masked, Floats place, Floats opacity, Floats k, Mask lanes) {
         const Read read = reader(layer, masked);
         const Vec cells = packet.cells(k);
-        Vec color = colorAt(layer, tablePlace(place), lanes);
+        Vec color = tinted(layer, colorAt(layer.table, tablePlace(place), lanes), cells, lanes);
         if (job.focus.any) {
             const Focus focus = focusOf(layer, cells, k, masked, lanes);
             color = focused(job.focus, layer, color, focus);
@@ -72,19 +126,31 @@ template <bool Bcc, bool Exact> struct Caster {
 
     void project(const LayerView& layer, bool masked, const Found& found, Projected& sums, Floats k, Mask lanes) {
         const Mask present = found.present & packet.shows(k);
-        const Floats along = multiplyAdd(found.value, Floats(layer.placeScale), Floats(layer.placeOffset));
+        const Floats along = placeAt(layer, masked, found, k, present & lanes);
         Focus focus;
         if (job.focus.any) focus = focusOf(layer, packet.cells(k), k, masked, present);
         Floats opacity(0);
         if (layer.style == RayStyle::XRay)
             opacity = correctedOpacity(opacityAt(layer, tablePlace(along), present) * focus.opacity, packet.step,
                                        Floats(layer.density));
+        if (layer.colors.volume != nullptr) addTint(layer, sums, focus.opacity, opacity, k, present);
         const Mask foundBefore = sums.found;
         const Mask better = sums.add(layer.style, Floats(layer.threshold), present, along, focus.opacity, opacity);
         sums.bestAt = choose(better, k, sums.bestAt);
         if (job.focus.any) keepBest(sums.bestFocus, focus, better);
         // Rays that have ended do not see a local maximum end.
         sums.found = (sums.found & lanes) | (foundBefore & !lanes);
+    }
+
+    /// Before the sample is added to the sums.
+    void addTint(const LayerView& layer, Projected& sums, Floats factor, Floats opacity, Floats k, Mask present) const {
+        const bool rays = layer.style == RayStyle::XRay;
+        if (!rays && layer.style != RayStyle::Average) return;
+        const Found found = reader(*layer.colors.volume, true)(packet.cells(k), present);
+        const Floats weight =
+            choose(found.present & present, rays ? (Floats(1) - sums.absorbed) * opacity : factor, Floats(0));
+        sums.tint = multiplyAdd(weight, found.value, sums.tint);
+        sums.tintWeight += weight;
     }
 
     static void keepBest(Focus& best, const Focus& focus, Mask better) {
@@ -97,6 +163,7 @@ template <bool Bcc, bool Exact> struct Caster {
 
     /// Puts a projection behind what is there.
     void showProjection(const LayerView& layer, const Projected& sums) {
+        packet.showEvents();
         const Mask some = (sums.count > Floats(0)) & (sums.factors > Floats(0));
         Floats place = sums.bestPlace, shownAt = sums.bestAt;
         if (layer.style == RayStyle::XRay || layer.style == RayStyle::Average) shownAt = packet.count * Floats(0.5);
@@ -105,7 +172,12 @@ template <bool Bcc, bool Exact> struct Caster {
         const TablePlace at = tablePlace(place);
         Floats alpha = smaller(Floats(1), Floats(layer.density) * opacityAt(layer, at, some));
         if (layer.style == RayStyle::XRay) alpha = sums.absorbed;
-        Vec color = colorAt(layer, at, some);
+        Vec color = colorAt(layer.table, at, some);
+        if (layer.colors.volume != nullptr) {
+            const bool mean = layer.style == RayStyle::XRay || layer.style == RayStyle::Average;
+            const Found whole{sums.tint / larger(sums.tintWeight, Floats(1e-20)), sums.tintWeight > Floats(0)};
+            color = mean ? tint(layer.colors, whole) : tinted(layer, color, packet.cells(sums.bestAt), some);
+        }
         if (job.focus.any && layer.style == RayStyle::Average)
             alpha = smaller(Floats(1), alpha * sums.factors / larger(sums.count, Floats(1)));
         if (job.focus.any && layer.style != RayStyle::Average && layer.style != RayStyle::XRay) {
@@ -115,37 +187,52 @@ template <bool Bcc, bool Exact> struct Caster {
         packet.blend(color, alpha, shownAt, some);
     }
 
-    /// A surface that rays meet before their next sample.
-    struct Surface {
-        Floats at; ///< in samples; beyond all where none is met
-        Vec color;
-        Floats opacity;
-    };
+    /// The values from samples of one part each, as far as these have any weight.
+    [[gnu::noinline]] Found continuedInPart(const Read& read, Floats part, const Vec& cells, Mask lanes) const {
+        Found out{Floats(0), maskOf(0)};
+        for (int i = 0; i < read.volume.partCount; ++i) {
+            const Mask of = lanes & (part >= Floats(i)) & (part <= Floats(i));
+            if (!anyOf(of)) continue;
+            const Found own = read.ofPart(i).continued(cells, of);
+            out = {choose(of, own.value, out.value), out.present | (own.present & of)};
+        }
+        return out;
+    }
 
     /// The intersections with an iso-surface between samples k - 1 and k.
-    Surface meetSurface(const LayerView& layer, bool masked, const Found& before, const Found& now, Floats k,
-                        Mask lanes) {
+    Met meetSurface(const LayerView& layer, bool masked, const Found& before, const Found& now, Floats k, Mask lanes) {
         const Read read = reader(layer, masked);
-        const Floats value(layer.isoValue), far(1e9);
+        const Floats value(layer.isoValue), far(kFar);
         const Mask above = before.value >= value, below = !above, over = now.value >= value;
-        const Mask crossed = lanes & before.present & now.present & ((above & !over) | (below & over));
-        Surface out{far, {Floats(0), Floats(0), Floats(0)}, Floats(0)};
+        Mask crossed = lanes & before.present & now.present & ((above & !over) | (below & over));
+        const bool parts = read.volume.partCount > 0;
+        Floats part(0);
+        const auto same = [&](Floats other) { return (other >= part) & (other <= part); };
+        if (parts && anyOf(crossed)) { // a surface lies within one part
+            part = read.part(packet.cells(k), crossed);
+            crossed &= same(read.part(packet.cells(k - Floats(1)), crossed));
+        }
+        Met out{far, {Floats(0), Floats(0), Floats(0)}, Floats(0)};
         if (!anyOf(crossed)) return out;
         Floats lo = k - Floats(1), hi = k;
         for (int i = 0; i < kBisections; ++i) {
             const Floats middle = (lo + hi) * Floats(0.5);
             count(crossed);
-            const Found there = read.continued(packet.cells(middle), crossed);
-            const Mask high = there.present & (there.value >= value), same = (high & above) | (!high & below);
-            lo = choose(same, middle, lo);
-            hi = choose(same, hi, middle);
+            const Vec place = packet.cells(middle);
+            const Found there = parts ? continuedInPart(read, part, place, crossed) : read.continued(place, crossed);
+            const Mask high = there.present & (there.value >= value), alike = (high & above) | (!high & below);
+            lo = choose(alike, middle, lo);
+            hi = choose(alike, hi, middle);
         }
         const Floats at = (lo + hi) * Floats(0.5);
-        const Mask shown = crossed & packet.shows(at);
+        const Vec cells = packet.cells(at);
+        Mask shown = crossed & packet.shows(at);
+        if (parts) shown &= same(read.part(cells, crossed));
         if (!anyOf(shown)) return out;
-        const Vec cells = packet.cells(at), slope = gradient(read, cells, shown);
+        Vec slope(Floats(0), Floats(0), Floats(0)); // labels have none
+        if (!layer.volume->labels) slope = gradient(read, cells, shown);
         out.at = choose(shown, at, far);
-        Vec albedo = spreadOut<Floats>(layer.isoColor);
+        Vec albedo = tinted(layer, spreadOut<Floats>(layer.isoColor), cells, shown);
         Floats opacity(layer.isoOpacity);
         if (job.focus.any) {
             const Focus focus = focusOf(layer, cells, at, masked, shown);
@@ -166,7 +253,8 @@ template <bool Bcc, bool Exact> struct Caster {
         Floats k(0), last(-2); // `last`: the sample that `before` holds
         Mask live = packet.meets;
         while (anyOf(live)) {
-            const Skip::Look look = skip(k, live);
+            // Blocks are known where the data are, not where lenses show them.
+            const Skip::Look look = packet.bends ? Skip::Look{live, kRun} : skip(k, live);
             if (!anyOf(look.full)) continue;
             const bool masked = someAbsent(job, packet, k, live);
             // What rays that leapt would have read at the sample before.
@@ -184,6 +272,7 @@ template <bool Bcc, bool Exact> struct Caster {
                     now[i] = reader(job.layers[i], masked)(packet.cells(k), live);
                 }
                 drawSurfaces(before, now, masked, k, live);
+                if (packet.eventCount > 0) packet.showEvents(k, live); // so that rays end at opaque ones
                 for (int i = 0; i < layers; ++i) drawVolume(job.layers[i], now[i], sums[i], masked, k, live);
                 for (int i = 0; i < layers; ++i) {
                     before[i].value = choose(live, now[i].value, before[i].value);
@@ -201,35 +290,21 @@ template <bool Bcc, bool Exact> struct Caster {
     static bool isProjection(RayStyle style) { return style != RayStyle::Composite && style != RayStyle::Iso; }
 
     void drawSurfaces(const Found* before, const Found* now, bool masked, Floats k, Mask lanes) {
-        Surface met[kMostPacketSurfaces];
+        Met met[kMostPacketSurfaces];
         int count = 0;
         for (std::size_t i = 0; i < job.layers.size(); ++i) {
             const LayerView& layer = job.layers[i];
             if (layer.style == RayStyle::Iso && count < kMostPacketSurfaces)
                 met[count++] = meetSurface(layer, masked, before[i], now[i], k, lanes);
         }
-        // Nearest first; equal ones in order.
-        for (int end = count; end > 1; --end)
-            for (int i = 0; i + 1 < end; ++i) {
-                const Mask later = met[i].at > met[i + 1].at;
-                if (!anyOf(later)) continue;
-                const Surface a = met[i], b = met[i + 1];
-                met[i] = pick(later, b, a);
-                met[i + 1] = pick(later, a, b);
-            }
+        sortByDistance(met, count);
         for (int i = 0; i < count; ++i) packet.blend(met[i].color, met[i].opacity, met[i].at, lanes);
-    }
-    static Surface pick(Mask which, const Surface& a, const Surface& b) {
-        return {choose(which, a.at, b.at),
-                {choose(which, a.color.x, b.color.x), choose(which, a.color.y, b.color.y),
-                 choose(which, a.color.z, b.color.z)},
-                choose(which, a.opacity, b.opacity)};
     }
 
     void drawVolume(const LayerView& layer, const Found& now, Projected& sums, bool masked, Floats k, Mask lanes) {
         if (layer.style == RayStyle::Iso) return;
         if (layer.style != RayStyle::Composite) return project(layer, masked, now, sums, k, lanes);
-        const Floats place = multiplyAdd(now.value, Floats(layer.placeScale), Floats(layer.placeOffset));
+        const Floats place = placeAt(layer, masked, now, k, lanes & now.present);
         const Floats alpha = opacityAt(layer, tablePlace(place), now.present);
         const Mask hit = lanes & now.present & (alpha > Floats(0));
         if (anyOf(hit)) drawSample(layer, masked, place, alpha, k, hit);

@@ -9,6 +9,31 @@
 namespace tessera::vis::packet::TESSERA_LANES {
 
 inline constexpr float kNoPick = -2, kPickOpacity = 0.1f; // as in vis/shaders/lib/shown.glsl
+inline constexpr float kFar = 1e9f;                       ///< beyond all samples
+
+/// A contribution at or between samples.
+struct Met {
+    Floats at; ///< in samples; kFar: none
+    Vec color;
+    Floats opacity;
+};
+inline Met choose(Mask which, const Met& a, const Met& b) {
+    return {
+        choose(which, a.at, b.at),
+        {choose(which, a.color.x, b.color.x), choose(which, a.color.y, b.color.y), choose(which, a.color.z, b.color.z)},
+        choose(which, a.opacity, b.opacity)};
+}
+/// Nearest first; equal ones in order.
+inline void sortByDistance(Met* met, int count) {
+    for (int end = count; end > 1; --end)
+        for (int i = 0; i + 1 < end; ++i) {
+            const Mask later = met[i].at > met[i + 1].at;
+            if (!anyOf(later)) continue;
+            const Met a = met[i], b = met[i + 1];
+            met[i] = choose(later, b, a);
+            met[i + 1] = choose(later, a, b);
+        }
+}
 
 /// Rays and what they have accumulated. Sample k of a ray lies at enter + (k + phase) step.
 struct Packet {
@@ -19,9 +44,17 @@ struct Packet {
     SegmentOf<Floats> holes[kMaxClips]; ///< in samples
     int holeCount = 0;
 
+    bool bends = false; ///< a magnifying lens may bend what they show
+
     Vec color{Floats(0), Floats(0), Floats(0)};
     Floats opacity{0};
     Floats pick{kNoPick}; ///< sample at which opacity exceeds kPickOpacity
+
+    /// Slices and rasterised surfaces that rays meet, nearest first; those up to `passed` are put behind what is there.
+    /// Whatever is put behind others comes after them: they need not be looked for at every sample.
+    Met events[kMostPacketSlices + kPeels];
+    int eventCount = 0;
+    Floats passed{-kFar};
 
     Vec cells(Floats k) const {
         return {multiplyAdd(k, advance.x, first.x), multiplyAdd(k, advance.y, first.y),
@@ -40,8 +73,26 @@ struct Packet {
         return out;
     }
     Mask seeThrough() const { return opacity < Floats(kOpaque); }
-    /// Puts a colour behind what is there, met at a position in samples.
+    /// Puts a colour behind what is there, met at a position in samples, and the events before it.
     void blend(const Vec& over, Floats alpha, Floats at, Mask lanes) {
+        if (eventCount > 0) showEvents(at, lanes & (at < Floats(kFar / 2)));
+        add(over, alpha, at, lanes);
+    }
+    /// The events up to a position in samples.
+    void showEvents(Floats until, Mask lanes) {
+        for (int i = 0; i < eventCount; ++i) {
+            const Mask due = lanes & (events[i].at > passed) & (events[i].at <= until);
+            if (anyOf(due)) add(events[i].color, events[i].opacity, events[i].at, due);
+        }
+        passed = choose(lanes, larger(passed, until), passed);
+    }
+    /// Those that are left, of rays that are not opaque.
+    void showEvents() {
+        if (eventCount > 0) showEvents(Floats(kFar / 2), meets & seeThrough());
+    }
+
+private:
+    void add(const Vec& over, Floats alpha, Floats at, Mask lanes) {
         const Floats weight = choose(lanes, (Floats(1) - opacity) * alpha, Floats(0));
         color = color + over * weight;
         opacity += weight;
@@ -93,6 +144,17 @@ inline Packet beginPacket(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) 
                                             choose(some, samples(own.exit), Floats(-2e6))};
     }
     return packet;
+}
+
+/// Whether rays come near a lens that magnifies.
+inline bool meetsMagnifier(const CastJob& job, const Packet& packet) {
+    for (std::size_t i = 0; i < job.focus.lenses.size(); ++i) {
+        const Floats reach(job.focus.magnifies[i]);
+        const Vec away = spreadOut<Floats>(job.focus.lenses[i].center) - packet.ray.origin;
+        const Floats along = inner(away, packet.ray.direction);
+        if (anyOf(packet.meets & (inner(away, away) - along * along < reach * reach))) return true;
+    }
+    return false;
 }
 
 inline std::size_t placeOf(const CastJob& job, const glm::ivec2& pixel) {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include "vis/packed/packet_volume.h"
 #include "vis/packet/cast_job.h"
 #include "vis/packet/lanes.h"
-#include "vis/packet/packet_volume.h"
+#include "vis/scene/lens_bend.h"
 #include "volume/base/numbers.h"
+#include "volume/reconstruct/part_choice.h"
 #include "volume/reconstruct/present_coverage.h"
 
 /// Packets of samples read from a PacketVolume: reconstruction, classification, light. Only for cast_*.cpp.
@@ -79,13 +81,34 @@ inline Ints pairWeights(Floats f) {
     return mix(low, high, z);
 }
 
+/// Where the data are that a position shows, behind magnifying lenses; both in cells.
+inline Vec bent(const CastJob& job, const Vec& cells) {
+    const Vec offset = spreadOut<Floats>(job.cellsOffset), scale = spreadOut<Floats>(job.cellsPerWorld);
+    return bentBy<Floats>(job.focus.lenses, (cells - offset) / scale, job.halfSize) * scale + offset;
+}
+
 /// Reconstructs samples; Bcc and Exact as in PacketVolume. Twin: volume/reconstruct/reconstruct.h.
 template <bool Bcc, bool Exact> struct Reader {
     static constexpr float kUnit = (Exact ? 1.0f : 1.0f / kQuantum) * (Bcc ? 0.5f : 1.0f);
     const VolumeView& volume;
-    bool masked; ///< some samples may be absent here
+    bool masked;                    ///< some samples may be absent here
+    const CastJob* bends = nullptr; ///< whose lenses bend what is read, except in next() and row()
 
-    [[gnu::noinline]] Found operator()(const Vec& cells, Mask lanes) const { return next(fixedOf(cells), lanes); }
+    [[gnu::noinline]] Found operator()(const Vec& cells, Mask lanes) const {
+        const Vec at = bends != nullptr ? bent(*bends, cells) : cells;
+        if (volume.partCount > 0) return ofParts(fixedOf(at), lanes).found;
+        return volume.labels ? nearest(at, lanes) : next(fixedOf(at), lanes);
+    }
+    /// The parts that places belong to, whether present or absent.
+    [[gnu::noinline]] Floats part(const Vec& cells, Mask lanes) const {
+        if (volume.partCount == 0) return Floats(0);
+        return ofParts(fixedOf(bends != nullptr ? bent(*bends, cells) : cells), lanes).part;
+    }
+    /// Of a single part.
+    Reader ofPart(int part) const {
+        const VolumeView& own = volume.parts[part];
+        return {own, own.present != nullptr, bends};
+    }
     /// The same within loops over samples.
     [[gnu::always_inline]] Found next(const Fixed& at, Mask lanes) const { return valueOf(around(at, lanes), lanes); }
     /// The same of `Count` samples, `way` apart; `at` moves beyond them. First come the places of all, then their
@@ -101,15 +124,61 @@ template <bool Bcc, bool Exact> struct Reader {
     }
     /// The value as far as samples have any weight, see reference::Samples::continued; present where they have.
     [[gnu::noinline]] Found continued(const Vec& cells, Mask lanes) const {
-        if (!masked) return (*this)(cells, lanes);
+        if (!masked || volume.labels) return (*this)(cells, lanes);
         Floats sum(0), coverage(0);
-        add(around(fixedOf(cells), lanes), lanes, sum, coverage);
+        add(around(fixedOf(bends != nullptr ? bent(*bends, cells) : cells), lanes), lanes, sum, coverage);
         const Floats weight = coverage * Floats(1.0f / kQuantum / kQuantum);
         return {sum * Floats(Exact ? 1.0f : 1.0f / kQuantum) / larger(weight, Floats(1e-9)),
                 lanes & (weight > Floats(0))};
     }
 
 private:
+    /// Twin: reference::Samples::read.
+    struct OfParts {
+        Found found;
+        Floats part;
+    };
+    OfParts ofParts(const Fixed& at, Mask lanes) const {
+        volume::PartChoiceOf<Floats, Mask> choice;
+        Floats best(0);
+        for (int i = 0; i < volume.partCount; ++i) {
+            const Reader own = ofPart(i);
+            Floats sum(0), coverage(0);
+            own.add(own.around(at, lanes), lanes, sum, coverage);
+            const Floats covered =
+                own.masked ? coverage * Floats((Bcc ? 0.5f : 1.0f) / kQuantum / kQuantum) : Floats(1);
+            best = choose(choice.add(i, covered), sum, best);
+        }
+        return {{best * Floats(kUnit) / larger(choice.coverage, Floats(1e-9)),
+                 lanes & (choice.total >= Floats(volume::kPresentCoverage))},
+                choice.part};
+    }
+
+    /// Twin: volume::nearest.
+    Found nearest(const Vec& cells, Mask lanes) const {
+        Ints best(0);
+        Floats distance(0);
+        for (int grid = 0; grid < (Bcc ? 2 : 1); ++grid) {
+            const Vec in = grid == 1 ? cells - Floats(0.5) : cells;
+            Vec at;
+            for (int axis = 0; axis < 3; ++axis) at[axis] = roundDown(in[axis] + Floats(0.5));
+            const Floats own = inner(at - in, at - in);
+            const Fixed place{toInts(at.x) << 16, toInts(at.y) << 16, toInts(at.z) << 16};
+            const Ints index = pairAt(volume, place) + Ints(grid * volume.oddOffset);
+            const Mask nearer = grid == 0 ? maskOf(~0u) : own < distance;
+            best = choose(nearer, index, best);
+            distance = choose(nearer, own, distance);
+        }
+        const Ints low(0xffff);
+        Found found{Floats(0), lanes};
+        if constexpr (Exact)
+            found.value = sameBits(gather<8>(volume.floats, best, lanes));
+        else
+            found.value = toFloats(gather<4>(volume.shorts, best, lanes) & low);
+        if (masked) found.present = lanes & (Ints(0) < (gather<4>(volume.present, best, lanes) & low));
+        return found;
+    }
+
     /// A position in each sublattice.
     struct Around {
         Corner grids[Bcc ? 2 : 1];
@@ -150,8 +219,8 @@ inline TablePlace tablePlace(Floats place) {
     const Ints entry = toInts(u);
     return {entry << 2, pairWeights(u - toFloats(entry))};
 }
-inline Floats tableValue(const LayerView& layer, const TablePlace& at, int component, Mask lanes) {
-    return toFloats(dotPairs(gather<4>(layer.table + component, at.entry, lanes), at.weights)) *
+inline Floats tableValue(const std::int32_t* table, const TablePlace& at, int component, Mask lanes) {
+    return toFloats(dotPairs(gather<4>(table + component, at.entry, lanes), at.weights)) *
            Floats(1.0f / kQuantum / kQuantum);
 }
 /// Whether entries around places may have opacity.
@@ -172,10 +241,10 @@ struct Medium {
             choose(Ints(0) < bits, extinction, Floats(0))};
 }
 inline Floats opacityAt(const LayerView& layer, const TablePlace& at, Mask lanes) {
-    return tableValue(layer, at, 3, lanes) * Floats(layer.opacityScale);
+    return tableValue(layer.table, at, 3, lanes) * Floats(layer.opacityScale);
 }
-inline Vec colorAt(const LayerView& layer, const TablePlace& at, Mask lanes) {
-    return {tableValue(layer, at, 0, lanes), tableValue(layer, at, 1, lanes), tableValue(layer, at, 2, lanes)};
+inline Vec colorAt(const std::int32_t* table, const TablePlace& at, Mask lanes) {
+    return {tableValue(table, at, 0, lanes), tableValue(table, at, 1, lanes), tableValue(table, at, 2, lanes)};
 }
 
 /// The lit colour of samples with surfaces of weight 0..1, see vis/optics/shade.h (without maps and shadows).

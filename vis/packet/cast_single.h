@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vis/packet/cast_layers.h"
+#include "vis/packet/cast_events.h"
 
 #include <algorithm>
 
@@ -34,14 +34,25 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         read.template row<Count>(at, advance, lanes, found);
     }
 
-    /// A composite layer without light, brushes, lenses and holes. The sum of colours is in kQuantum until the end.
+    /// A composite layer without light, brushes, lenses and holes.
     void castUnshaded() {
+        Floats k(0);
+        for (int i = 0; i < packet.eventCount; ++i) {
+            const Floats at = smaller(packet.events[i].at, Floats(kFar / 2));
+            k = marchUnshaded(k, clamped(roundUp(at), Floats(0), packet.count));
+            packet.showEvents(at, packet.meets & packet.seeThrough());
+        }
+        marchUnshaded(k, packet.count);
+    }
+    /// Takes its samples from k on, those before `samples`, and returns the next. The sum of colours is in kQuantum
+    /// until the end.
+    Floats marchUnshaded(Floats k, Floats samples) {
         constexpr float kLast = kPackedEntries - 1;
         const Floats length = packet.step * Floats(layer.density), perEntry(layer.placeScale * kLast),
-                     firstEntry(layer.placeOffset * kLast + 0.5f), samples = packet.count;
-        Vec color(Floats(0), Floats(0), Floats(0));
-        Floats opacity(0), pick(kNoPick), k(0);
-        Mask live = packet.meets;
+                     firstEntry(layer.placeOffset * kLast + 0.5f);
+        Vec color = packet.color * Floats(float(kQuantum));
+        Floats opacity = packet.opacity, pick = packet.pick;
+        Mask live = packet.meets & (k < samples) & (opacity < Floats(kOpaque));
         while (anyOf(live)) {
             const Skip::Look look = skip(k, live);
             Mask full = look.full;
@@ -74,6 +85,7 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         packet.color = color * Floats(1.0 / kQuantum);
         packet.opacity = opacity;
         packet.pick = pick;
+        return smaller(k, samples); // samples are taken several at a time
     }
 
     /// A composite layer: rays march to their next sample with opacity and wait there until half of them have met one;
@@ -204,7 +216,7 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
             }
             if (!anyOf(met)) return;
             const bool masked = someAbsent(job, packet, k, met);
-            const typename Base::Surface surface = this->meetSurface(layer, masked, before, now, k, met);
+            const Met surface = this->meetSurface(layer, masked, before, now, k, met);
             packet.blend(surface.color, surface.opacity, surface.at, met);
             before.value = choose(met, now.value, before.value);
             before.present = (before.present & !met) | (now.present & met);
@@ -247,11 +259,14 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
     }
 };
 
-template <bool Bcc, bool Exact> std::uint64_t castPacket(const CastJob& job, Packet& packet) {
+template <bool Bcc, bool Exact> void castLayersOf(SingleCaster<Bcc, Exact>& caster) {
+    const CastJob& job = caster.job;
     const LayerView& layer = job.layers[0];
-    const bool one = job.layers.size() == 1, plain = !job.focus.any;
-    SingleCaster<Bcc, Exact> caster(job, packet);
-    if (one && layer.style == RayStyle::Composite && plain && !layer.shaded && packet.holeCount == 0)
+    const bool one = job.layers.size() == 1 && !layer.gradient && !layer.volume->labels &&
+                     layer.volume->partCount == 0 && !caster.packet.bends;
+    const bool plain = !job.focus.any;
+    if (one && layer.style == RayStyle::Composite && plain && !layer.shaded && caster.packet.holeCount == 0 &&
+        layer.colors.volume == nullptr)
         caster.castUnshaded();
     else if (one && layer.style == RayStyle::Composite)
         caster.castComposite();
@@ -261,7 +276,18 @@ template <bool Bcc, bool Exact> std::uint64_t castPacket(const CastJob& job, Pac
         caster.castExtremum();
     else
         caster.castLayers();
-    return caster.taken;
+}
+
+template <bool Bcc, bool Exact>
+std::uint64_t castPacket(const CastJob& job, Packet& packet, glm::ivec2 begin, glm::ivec2 end) {
+    const auto cast = [&](auto caster, const auto& castAll) {
+        if (!job.slices.empty() || job.peels > 0) findEvents<Bcc, Exact>(caster, begin, end);
+        castAll(caster);
+        packet.showEvents();
+        return caster.taken;
+    };
+    if (job.layers.empty()) return cast(Caster<Bcc, Exact>{job, packet}, [](const auto&) {});
+    return cast(SingleCaster<Bcc, Exact>(job, packet), [](auto& caster) { castLayersOf(caster); });
 }
 
 template <bool Bcc, bool Exact> void castPixels(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) {
@@ -270,17 +296,16 @@ template <bool Bcc, bool Exact> void castPixels(const CastJob& job, glm::ivec2 b
         for (int x = begin.x; x < end.x; x += kColumns) {
             Packet packet = beginPacket(job, {x, y}, end);
             if (!anyOf(packet.meets)) continue;
-            taken += castPacket<Bcc, Exact>(job, packet);
+            packet.bends = meetsMagnifier(job, packet);
+            taken += castPacket<Bcc, Exact>(job, packet, {x, y}, end);
             storePacket(job, packet, {x, y}, end);
         }
     if (job.samples != nullptr) __atomic_fetch_add(job.samples, taken, __ATOMIC_RELAXED);
 }
 
 inline void castTile(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) {
-    const VolumeView& volume = *job.layers[0].volume;
-    const bool exact = volume.shorts == nullptr;
-    (volume.bcc ? (exact ? castPixels<true, true> : castPixels<true, false>)
-                : (exact ? castPixels<false, true> : castPixels<false, false>))(job, begin, end);
+    (job.bcc ? (job.exact ? castPixels<true, true> : castPixels<true, false>)
+             : (job.exact ? castPixels<false, true> : castPixels<false, false>))(job, begin, end);
 }
 
 } // namespace tessera::vis::packet::TESSERA_LANES

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "vis/packed/skip_map.h"
 #include "vis/packet/cast_packet.h"
-#include "vis/packet/skip_map.h"
 
 #include <algorithm>
 

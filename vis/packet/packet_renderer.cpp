@@ -1,6 +1,7 @@
 #include "vis/packet/packet_renderer.h"
 
 #include "vis/optics/jitter.h"
+#include "vis/packed/packet_blend.h"
 #include "vis/packet/cast.h"
 #include "volume/base/parallel.h"
 
@@ -31,8 +32,17 @@ bool sameTables(const Scene& a, const Scene& b) {
     const auto sameLens = [](const Lens& one, const Lens& other) {
         return one.name == other.name && one.enabled == other.enabled && one.marks == other.marks;
     };
-    return a.layers == b.layers && a.transfer == b.transfer && a.time == b.time && a.render.filter == b.render.filter &&
-           a.selection == b.selection && std::ranges::equal(a.lenses, b.lenses, sameLens);
+    const auto sameLayer = [](const Layer& one, const Layer& other) {
+        const auto* slice = std::get_if<SliceLayer>(&one.technique);
+        if (!slice || !std::holds_alternative<SliceLayer>(other.technique)) return one == other;
+        Layer moved = other; // where a slice lies is no matter of tables
+        moved.technique = *slice;
+        std::get<SliceLayer>(moved.technique).channel = std::get<SliceLayer>(other.technique).channel;
+        return one == moved;
+    };
+    return std::ranges::equal(a.layers, b.layers, sameLayer) && a.transfer == b.transfer && a.time == b.time &&
+           a.render.filter == b.render.filter && a.selection == b.selection &&
+           std::ranges::equal(a.lenses, b.lenses, sameLens);
 }
 
 } // namespace
@@ -65,7 +75,7 @@ PacketVolumes::Held& PacketVolumes::entry(const PacketChannel& channel) {
         return !each.coming.valid() || (each.asked + kForgotten < asked_ && isReady(each.coming));
     });
     auto found = std::ranges::find_if(held_, [&](const Held& each) { return each.channel == channel; });
-    if (found == held_.end()) found = held_.insert(held_.end(), {channel, {}, {}});
+    if (found == held_.end()) found = held_.insert(held_.end(), {.channel = channel, .volume = {}, .coming = {}});
     found->asked = asked_;
     return *found;
 }
@@ -87,7 +97,20 @@ SharedVolume PacketVolumes::use(const SharedVolume& volume) {
     return volume;
 }
 
+/// Samples between two stored times, whose own samples are held as long.
+SharedVolume PacketVolumes::blend(const PacketChannel& channel) {
+    if (SharedVolume volume = entry(channel).volume.lock()) return volume;
+    const SharedVolume earlier = get(channel.at(channel.time.earlier)), later = get(channel.at(channel.time.later));
+    const auto volume = std::make_shared<const PacketVolume>(blendedVolume(*earlier, *later, channel.time.weight));
+    Held& own = entry(channel);
+    own.volume = volume;
+    own.earlier = earlier;
+    own.later = later;
+    return volume;
+}
+
 SharedVolume PacketVolumes::get(const PacketChannel& channel) {
+    if (channel.time.between()) return blend(channel);
     Held& own = entry(channel);
     SharedVolume volume = own.volume.lock();
     if (volume) return use(volume);
@@ -100,6 +123,10 @@ SharedVolume PacketVolumes::get(const PacketChannel& channel) {
 }
 
 bool PacketVolumes::request(const PacketChannel& channel) {
+    if (channel.time.between()) {
+        const bool earlier = request(channel.at(channel.time.earlier)), later = request(channel.at(channel.time.later));
+        return earlier && later;
+    }
     Held& own = entry(channel);
     if (!own.volume.expired()) return true;
     if (own.coming.valid()) return isReady(own.coming);
@@ -143,9 +170,10 @@ void PacketRenderer::prepare(const Scene& scene) {
     prepared_ = scene;
 }
 
-void PacketRenderer::draw(const Scene& scene, int pass, int passes, double stepFactor, PacketPicture& picture) {
+void PacketRenderer::draw(const Scene& scene, int pass, int passes, double stepFactor, PacketPicture& picture,
+                          const PacketGeometry& geometry) {
     const PixelBox& box = picture.box;
-    if (!scene_ || scene_->empty()) return;
+    if (!scene_ || (scene_->empty() && geometry.peels == 0)) return;
     CastJob job = scene_->job(scene, source().info(), source().grid().lattice, picture.size, stepFactor);
     job.jitter = glm::vec2(pixelJitter(pass));
     job.pass = std::uint32_t(pass);
@@ -154,6 +182,10 @@ void PacketRenderer::draw(const Scene& scene, int pass, int passes, double stepF
     job.rowLength = box.extent().x;
     job.picture = picture.rgba.data();
     job.pick = picture.pick.empty() || pass > 0 ? nullptr : picture.pick.data();
+    job.peels = geometry.peels;
+    job.pixels = std::size_t(box.extent().x) * std::size_t(box.extent().y);
+    job.peelDistance = geometry.distance.data();
+    job.peelColor = geometry.color.data();
     job.samples = counts_ ? &samples_ : nullptr;
     const glm::ivec2 tiles = (box.extent() + kTile - 1) / kTile;
     const CastPixels cast = casterOf(with_);

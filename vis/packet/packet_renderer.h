@@ -31,6 +31,14 @@ struct PacketPicture {
     void begin(glm::ivec2 size, const PixelBox& box, bool picks);
 };
 
+/// Meshes and lines that were rasterised for the pixels of a box of a picture: surfaces of each pixel, nearest first.
+struct PacketGeometry {
+    int peels = 0;
+    /// Of all pixels for each peel, rows bottom up: distance along the ray (1e9: none) and BrushEffect; RGBA, linear,
+    /// premultiplied.
+    std::vector<float> distance = {}, color = {};
+};
+
 /// The samples that renderers of one data set share: those that one of them holds, and the last ones used as far as
 /// they fit a limit. Not for several threads at once.
 class PacketVolumes {
@@ -39,7 +47,8 @@ public:
     /// Keeps the last ones used up to so many bytes.
     void keep(std::size_t bytes);
     const std::shared_ptr<const volume::BrickSource>& source() const { return source_; }
-    /// The samples of a channel; waits until they are read. Throws Error when the source does.
+    /// The samples of a channel, between two stored times blended anew unless somebody holds them; waits until they are
+    /// read. Throws Error when the source does.
     SharedVolume get(const PacketChannel& channel);
     /// Whether get() would not wait; begins to read them in the background otherwise.
     bool request(const PacketChannel& channel);
@@ -48,10 +57,12 @@ private:
     struct Held {
         PacketChannel channel;
         std::weak_ptr<const PacketVolume> volume;
-        std::future<SharedVolume> coming; ///< valid until what is being read is taken
-        std::uint64_t asked = 0;          ///< value of asked_ when it was last asked for
+        SharedVolume earlier = {}, later = {}; ///< what it was blended from
+        std::future<SharedVolume> coming;      ///< valid until what is being read is taken
+        std::uint64_t asked = 0;               ///< value of asked_ when it was last asked for
     };
     Held& entry(const PacketChannel& channel);
+    SharedVolume blend(const PacketChannel& channel);
     SharedVolume use(const SharedVolume& volume);
 
     std::shared_ptr<const volume::BrickSource> source_;
@@ -77,8 +88,9 @@ public:
     bool prefetch(const Scene& scene);
     /// Reads samples and makes tables for a scene. Throws Error when the source does.
     void prepare(const Scene& scene);
-    /// Adds one pass of a picture with `passes` of them; after prepare().
-    void draw(const Scene& scene, int pass, int passes, double stepFactor, PacketPicture& picture);
+    /// Adds one pass of a picture with `passes` of them; after prepare(). `geometry`: of the same box.
+    void draw(const Scene& scene, int pass, int passes, double stepFactor, PacketPicture& picture,
+              const PacketGeometry& geometry = {});
     /// The whole picture with all passes.
     PacketPicture render(const Scene& scene, glm::ivec2 size);
 

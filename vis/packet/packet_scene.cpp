@@ -3,30 +3,16 @@
 #include "vis/optics/ray_setup.h"
 #include "vis/packet/packet_table.h"
 #include "vis/transfer/block_distance.h"
-#include "volume/bricks/parts_bricks.h"
-#include "volume/field/time_pair.h"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <glm/geometric.hpp>
 
 namespace tessera::vis::packet {
 
 namespace {
 
-/// A range of places narrower than this part of the data's range is read from floats.
-constexpr double kNarrow = 1.0 / 8;
 constexpr double kSlack = 2; ///< of bounds, in 16-bit samples, for rounding
-
-struct Transfer {
-    const TransferFunction& function;
-    Range range;
-};
-Transfer transferOfLayer(const Scene& scene, const volume::DatasetInfo& info, const Layer& layer, int channel) {
-    const volume::Channel known = info.channel(channel);
-    const TransferFunction& function = transferFor(scene, layer.transfer.empty() ? known.name : layer.transfer);
-    return {function, effectiveRange(function, info.channelRange(known))};
-}
 
 VolumeView viewOf(const PacketVolume& volume) {
     VolumeView view;
@@ -34,8 +20,10 @@ VolumeView viewOf(const PacketVolume& volume) {
     view.floats = volume.exact ? volume.floats.data() : nullptr;
     view.present = volume.present.empty() ? nullptr : volume.present.data();
     view.bcc = volume.bcc;
+    view.labels = volume.labels;
     view.cells = volume.cells;
     view.oddOffset = volume.brickPairs();
+    view.partCount = int(volume.parts.size());
     const int brick = volume.stride(), row = brick * volume.bricks.x, slice = row * volume.bricks.y;
     view.perBrick = {brick - kBrick, row - kBrick * kRow, slice - kBrick * kSlice};
     return view;
@@ -45,144 +33,112 @@ VolumeView viewOf(const PacketVolume& volume) {
 
 namespace {
 
-/// Index of an enabled lens among those that placeLenses() gives, -1 if there is none of that name.
-int findEnabledLens(const Scene& scene, const std::string& name) {
-    int index = 0;
-    for (const Lens& lens : scene.lenses) {
-        if (!lens.enabled) continue;
-        if (lens.name == name) return index < kMaxLenses ? index : -1;
-        ++index;
-    }
-    return -1;
-}
+/// A table of a transfer function, and where the samples of a volume lie in it: place = sample * x + y.
+struct Tabled {
+    Table table;
+    glm::vec2 places;
+};
 
-} // namespace
-
-std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::DatasetInfo& info) {
-    std::vector<DrawnChannel> out;
-    bool exact = false; // all have samples of the same kind
-    for (std::size_t i = 0; i < scene.layers.size(); ++i) {
-        const Layer& layer = scene.layers[i];
-        if (!layer.lens.empty() && findEnabledLens(scene, layer.lens) < 0) continue;
-        if (!layer.visible || std::holds_alternative<FlowLayer>(layer.technique)) continue;
-        const auto* iso = std::get_if<IsoLayer>(&layer.technique);
-        if (iso && iso->method == SurfaceMethod::Polygons) continue;
-        const std::string& name =
-            std::visit([](const auto& t) -> const std::string& { return t.channel; }, layer.technique);
-        const std::optional<int> channel = info.findChannel(name);
-        if (!channel) continue;
-        const volume::TimePair time = volume::timesAround(info.times, scene.time + layer.timeShift);
-        const Range range = transferOfLayer(scene, info, layer, *channel).range,
-                    whole = info.channelRange(info.channel(*channel));
-        exact = exact || std::abs(range.hi - range.lo) < kNarrow * std::abs(whole.hi - whole.lo);
-        out.push_back({int(i), {*channel, time.earlier, scene.render.filter, false}});
-    }
-    for (DrawnChannel& drawn : out) drawn.channel.exact = exact;
-    return out;
-}
-
-namespace {
-
-/// The channels of the enabled brushes that the data set has.
-std::vector<int> brushedChannels(const Scene& scene, const volume::DatasetInfo& info) {
-    std::vector<int> out;
-    for (const std::string& name : selectedChannels(scene.selection))
-        if (const std::optional<int> channel = info.findChannel(name)) out.push_back(*channel);
-    return out;
-}
-
-} // namespace
-
-std::vector<PacketChannel> packetChannels(const Scene& scene, const volume::DatasetInfo& info) {
-    std::vector<PacketChannel> out;
-    for (const DrawnChannel& drawn : drawnChannels(scene, info)) out.push_back(drawn.channel);
-    const bool exact = !out.empty() && out.front().exact;
-    const int time = volume::timesAround(info.times, scene.time).earlier;
-    for (const int channel : brushedChannels(scene, info)) out.push_back({channel, time, scene.render.filter, exact});
-    return out;
-}
-
-namespace {
-
-std::string refusalOfParameter(const volume::DatasetInfo& info, int channel) {
-    const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(channel).parameter)];
-    if (parameter.categorical) return "labels";
-    if (volume::labelChannel(info, parameter)) return "parameters whose regions are never mixed";
-    return "";
-}
-
-std::string refusalOfFocus(const Scene& scene, const volume::DatasetInfo& info) {
-    if (lensesBend(scene)) return "magnifying lenses";
-    if (!scene.selection.active()) return "";
-    if (scene.selection.contextBlur > 0) return "blurred context";
-    const std::vector<int> brushed = brushedChannels(scene, info);
-    for (const int channel : brushed)
-        if (std::string why = refusalOfParameter(info, channel); !why.empty()) return "brushes of " + why;
-    if (!brushed.empty() && volume::timesAround(info.times, scene.time).between())
-        return "times between the stored ones";
-    return brushed.size() > std::size_t(kMostBrushFields) ? "brushes of so many parameters" : "";
-}
-
-std::string refusalOfLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn) {
-    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
-    if (std::holds_alternative<SliceLayer>(layer.technique)) return "slices";
-    if (std::string why = refusalOfParameter(info, drawn.channel.channel); !why.empty()) return why;
-    if (volume::timesAround(info.times, scene.time + layer.timeShift).between()) return "times between the stored ones";
-    if (!colorByOf(layer.technique).empty()) return "colours by another parameter";
-    if (const Look* look = lookOf(layer.technique); look && look->any()) return "looks";
-    const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
-    if (!volume) return "";
-    if (volume->quantity == Quantity::Gradient) return "gradient magnitudes";
-    const auto [function, range] = transferOfLayer(scene, info, layer, drawn.channel.channel);
-    if (range.hi == range.lo) return "ranges without width";
-    if (volume->style != RayStyle::Composite) return "";
-    if (volume->classification != Classification::Post) return "classification before or over samples";
-    if (function.kind != TransferKind::Curve) return "transfer functions of two dimensions";
-    return "";
-}
-
-} // namespace
-
-std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
-    if (peelsOf(scene) > 0) return "meshes, lines and points";
-    if (std::string why = refusalOfFocus(scene, info); !why.empty()) return why;
-    if (scene.lighting.shadows.any()) return "shadows";
-    if (usesMaps(scene.lighting)) return "light from maps";
-    if (scene.render.proxy != Proxy::Rays) return "proxy geometry";
-    if (scene.render.adaptiveStep > 0) return "adaptive steps";
-    if (scene.render.normalBits > 0) return "quantised normals";
-    if (scene.render.filter == Filter::Tetrahedral && lattice.kind == volume::LatticeKind::BCC)
-        return "tetrahedral interpolation";
-    const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
-    int surfaces = 0;
-    for (const DrawnChannel& each : drawn) {
-        const std::string refusal = refusalOfLayer(scene, info, each);
-        if (!refusal.empty()) return refusal;
-        surfaces += std::holds_alternative<IsoLayer>(scene.layers[std::size_t(each.layer)].technique);
-    }
-    if (drawn.size() > std::size_t(kMostPacketLayers) || surfaces > kMostPacketSurfaces) return "so many layers";
-    return "";
-}
-
-void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
-                           const VolumeView* view) {
-    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
-    const PacketVolume& volume = *volumes_[layers_.size()];
-    const auto [function, range] = transferOfLayer(scene, info, layer, drawn.channel.channel);
+/// `alone`: each sample is classified by itself, as in composite layers and slices. Then a range without width
+/// separates values below and above, and labels lie on entries; else all places are those of the range.
+Tabled tabled(const Transfer& transfer, const PacketVolume& volume, bool alone) {
+    const auto [function, range] = transfer;
     const double width = range.hi - range.lo;
+    if (width == 0) {
+        constexpr double kSteep = 1e12;
+        if (!alone) return {makeTable(function, range), glm::vec2(0, 0.5f)};
+        return {makeTable(function, {0, 1}),
+                glm::vec2(volume.scale * kSteep, 0.5 + (volume.offset - range.lo) * kSteep)};
+    }
+    Range domain = range;
+    const double first = std::floor(range.lo), labels = std::ceil(range.hi) - first;
+    if (alone && volume.labels && labels > 0 && labels < kTableEntries)
+        domain = {first, first + (kTableEntries - 1) / std::floor((kTableEntries - 1) / labels)};
+    const double over = domain.hi - domain.lo;
+    return {makeTable(function, range, domain), glm::vec2(volume.scale / over, (volume.offset - domain.lo) / over)};
+}
+
+} // namespace
+
+/// The samples of a layer, where they lie in its transfer function, its brushes and lens; not yet its table.
+LayerView PacketScene::viewOfLayer(const Layer& layer, glm::vec2 places, std::size_t index) const {
     LayerView out;
-    out.volume = view;
+    out.volume = &views_[index];
     out.brushes = layer.brushes;
     if (!layer.lens.empty()) out.lens = findLens(lenses_, layer.lens);
-    out.placeScale = width != 0 ? float(volume.scale / width) : 0;
-    out.placeOffset = width != 0 ? float((volume.offset - range.lo) / width) : 0.5f;
-    Table table = makeTable(function, range);
+    out.placeScale = places.x;
+    out.placeOffset = places.y;
+    return out;
+}
+
+/// Keeps a table.
+const std::int32_t* PacketScene::keep(std::vector<std::int32_t> entries) {
+    tables_.push_back(std::move(entries));
+    return tables_.back().data();
+}
+
+/// `index` of a volume: that of the colouring channel.
+ColorView PacketScene::colorsOf(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
+                                std::size_t index) {
+    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
+    Tabled own = tabled(transferOfColors(scene, info, layer, drawn.colors->channel), *volumes_[index], true);
+    const auto* iso = std::get_if<IsoLayer>(&layer.technique);
+    return {.volume = &views_[index],
+            .placeScale = own.places.x,
+            .placeOffset = own.places.y,
+            .table = keep(std::move(own.table.entries)),
+            .absent = glm::vec3(linearFromSrgb(glm::dvec3(iso ? iso->color : kNoValueColor)))};
+}
+
+/// `index` of a volume: that of the slice.
+void PacketScene::addSlice(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
+                           std::size_t index) {
+    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
+    const Transfer transfer = transferOfLayer(scene, info, layer, drawn.channel.channel);
+    Tabled own = tabled(transfer, *volumes_[index], true);
+    SliceView out;
+    out.look = viewOfLayer(layer, own.places, index);
+    out.look.table = keep(std::move(own.table.entries));
+    const double width = transfer.range.hi - transfer.range.lo;
+    out.levelScale = width != 0 ? float(volumes_[index]->scale / width) : 0;
+    out.levelOffset = width != 0 ? float((volumes_[index]->offset - transfer.range.lo) / width) : 0;
+    slices_.push_back(out);
+    sliceLayers_.push_back(drawn.layer);
+}
+
+/// Where the slices of a scene lie, and what else of them needs no other tables.
+void PacketScene::placeSlices(const Scene& scene, const WorldFrame& frame) {
+    for (std::size_t i = 0; i < slices_.size(); ++i) {
+        const auto& slice = std::get<SliceLayer>(scene.layers[std::size_t(sliceLayers_[i])].technique);
+        slices_[i].plane = slicePlane(slice, frame, scene.cursor);
+        slices_[i].contours = slice.contours;
+        slices_[i].opacity = slice.opacity;
+    }
+}
+
+/// `index` of a volume: that of the layer.
+void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
+                           std::size_t index) {
+    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
+    const PacketVolume& volume = *volumes_[index];
+    const Transfer transfer = transferOfLayer(scene, info, layer, drawn.channel.channel);
+    const auto [function, range] = transfer;
+    const double width = range.hi - range.lo;
+    const auto* own = std::get_if<VolumeLayer>(&layer.technique);
+    const bool gradient = own && own->quantity == Quantity::Gradient;
+    const bool alone = own && own->style == RayStyle::Composite && !gradient;
+    const auto [table, places] = tabled(transfer, volume, alone);
+    LayerView out = viewOfLayer(layer, places, index);
     out.opacityScale = table.opacityScale;
-    tables_.push_back(std::move(table.entries));
-    out.table = tables_.back().data();
-    packed_.push_back(packedTable(function, range));
+    out.table = keep(table.entries);
+    packed_.push_back(packedTable(function, alone && width == 0 ? Range{0, 1} : range));
     out.packed = packed_.back().data();
     markShown(table, out);
+    const double perRange = width != 0 && !volume.labels ? std::abs(volume.scale / width) : 0;
+    out.gradient = gradient;
+    out.gradientScale = float(perRange / double(function.gradientTop));
+    out.surfaceScale = width != 0 || volume.labels ? float(perRange / kFlatGradient) : 1e20f;
+    if (drawn.colors) out.colors = colorsOf(scene, info, drawn, index + 1);
     const glm::dvec2 map(out.placeScale, out.placeOffset);
     const int edge = skip_.edge;
     const double slack = volume.exact ? kSlack / 2 / kQuantum : kSlack;
@@ -197,12 +153,11 @@ void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, 
             return double(lo) - slack <= double(out.isoValue) && double(out.isoValue) <= double(hi) + slack;
         };
     } else {
-        const auto& own = std::get<VolumeLayer>(layer.technique);
-        out.style = own.style;
-        out.shaded = own.shaded;
-        out.density = own.density;
-        out.threshold = float(std::max(0.0, (own.threshold - range.lo) / width));
-        if (own.style == RayStyle::Composite || own.style == RayStyle::XRay)
+        out.style = own->style;
+        out.shaded = own->shaded && !volume.labels;
+        out.density = own->density;
+        out.threshold = float(width != 0 ? std::max(0.0, (own->threshold - range.lo) / width) : 0.5);
+        if (!gradient && (own->style == RayStyle::Composite || own->style == RayStyle::XRay))
             shows = [&](float lo, float hi) {
                 return opaque.any(float(double(lo) - slack), float(double(hi) + slack));
             };
@@ -289,28 +244,60 @@ void PacketScene::addBrushes(const Scene& scene, const volume::DatasetInfo& info
 PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, std::vector<SharedVolume> volumes)
     : volumes_(std::move(volumes)) {
     const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
-    for (const SharedVolume& volume : volumes_) views_.push_back(viewOf(*volume));
+    for (const SharedVolume& volume : volumes_) {
+        views_.push_back(viewOf(*volume));
+        std::vector<VolumeView> parts;
+        for (const PacketVolume& part : volume->parts) parts.push_back(viewOf(part));
+        partViews_.push_back(std::move(parts));
+        views_.back().parts = partViews_.back().data();
+    }
     lenses_ = placeLenses(scene, worldFrame(info.bounds, scene.stretch));
     addBrushes(scene, info);
-    tables_.reserve(drawn.size());
     // Small blocks pay where rays soon end at surfaces.
+    const auto techniqueOf = [&](const DrawnChannel& each) -> const Technique& {
+        return scene.layers[std::size_t(each.layer)].technique;
+    };
     const bool surfaces = std::ranges::all_of(drawn, [&](const DrawnChannel& each) {
-        const auto* volume = std::get_if<VolumeLayer>(&scene.layers[std::size_t(each.layer)].technique);
+        const auto* volume = std::get_if<VolumeLayer>(&techniqueOf(each));
         return !volume || (volume->style == RayStyle::Composite && volume->shaded);
     });
     skip_.edge = surfaces ? kFine : 2 * kFine;
-    for (std::size_t i = 0; i < drawn.size(); ++i) addLayer(scene, info, drawn[i], &views_[i]);
-    for (const SharedVolume& volume : volumes_) {
+    std::vector<const PacketVolume*> sampled; // along rays
+    std::size_t next = 0;                     // volume
+    for (const DrawnChannel& each : drawn) {
+        if (std::holds_alternative<SliceLayer>(techniqueOf(each))) {
+            addSlice(scene, info, each, next);
+        } else {
+            addLayer(scene, info, each, next);
+            sampled.push_back(volumes_[next].get());
+        }
+        next += each.colors ? 2 : 1;
+    }
+    if (layers_.size() == 1 && (layers_[0].style == RayStyle::Maximum || layers_[0].style == RayStyle::Minimum))
+        bound_ = scoreBounds(*sampled[0], layers_[0], skip_);
+    for (; next < volumes_.size(); ++next) sampled.push_back(volumes_[next].get());
+    for (const PacketVolume* const volume : sampled) {
         if (volume->absent.empty()) continue;
         absent_.resize(volume->absent.size());
         for (std::size_t i = 0; i < absent_.size(); ++i) absent_[i] = std::uint8_t(absent_[i] | volume->absent[i]);
     }
     if (!absent_.empty()) absent_.resize(absent_.size() + 3);
-    if (layers_.size() == 1 && (layers_[0].style == RayStyle::Maximum || layers_[0].style == RayStyle::Minimum))
-        bound_ = scoreBounds(*volumes_[0], layers_[0], skip_);
 }
 
 namespace {
+
+/// FocusView::magnifies of a lens; `cell`: longest edge of a cell, since gradients read beside rays.
+float magnifiedReach(const PlacedLens& lens, double cell) {
+    if (!(lens.magnification > 1)) return 0;
+    if (lens.shape == LensShape::Disc) return 1e6f; // at any depth
+    double longest = 0, sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double own = glm::length(lens.fromUnit[axis]);
+        longest = std::max(longest, own);
+        sum += own * own;
+    }
+    return float((lens.shape == LensShape::Sphere ? longest : std::sqrt(sum)) + 2 * cell);
+}
 
 /// The octants that rays go into, a bit each; a little beyond the picture, because rays are moved within their pixels.
 unsigned octantsOf(const CastJob& job) {
@@ -358,9 +345,13 @@ CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, co
     clips_ = placeClips(scene.clips, frame);
     job.clips = clips_;
     job.layers = layers_;
+    placeSlices(scene, frame);
+    job.slices = slices_;
     lenses_ = placeLenses(scene, frame);
     job.focus = focus_;
     job.focus.lenses = lenses_;
+    for (std::size_t i = 0; i < lenses_.size(); ++i)
+        job.focus.magnifies[i] = magnifiedReach(lenses_[i], std::max({job.cell.x, job.cell.y, job.cell.z}));
     job.focus.any = !brushes_.empty() || !lenses_.empty();
     job.stencil = volume::gradientStencil(lattice.kind, scene.render.gradient);
     lighting_ = scene.lighting;
@@ -368,6 +359,9 @@ CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, co
     job.surface = &lighting_;
     job.lights = lights_;
     job.jitterStarts = scene.render.jitter;
+    if (empty()) return job;
+    job.bcc = volumes_[0]->bcc;
+    job.exact = volumes_[0]->exact;
     if (layers_.empty()) return job;
     countAlike(skip_, octantsOf(job));
     job.skip.alike = skip_.alike.data();

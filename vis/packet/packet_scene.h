@@ -1,28 +1,16 @@
 #pragma once
 
+#include "vis/packed/skip_map.h"
 #include "vis/packet/cast_job.h"
-#include "vis/packet/skip_map.h"
+#include "vis/packet/packet_channels.h"
+#include "vis/packet/packet_table.h"
 #include "vis/scene/scene.h"
 
 #include <memory>
-#include <string>
 #include <vector>
 
 /// A scene as the packet ray caster draws it.
 namespace tessera::vis::packet {
-
-/// Why a scene cannot be drawn by packets of rays, in words for users; empty: it can. Everything else must be drawn by
-/// OpenGL.
-std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice);
-
-/// The layers that rays intersect, with their channels; of a scene that is not refused.
-struct DrawnChannel {
-    int layer = 0; ///< index into Scene::layers
-    PacketChannel channel;
-};
-std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::DatasetInfo& info);
-/// All samples that a scene needs: those of drawnChannels(), then those of brushed channels.
-std::vector<PacketChannel> packetChannels(const Scene& scene, const volume::DatasetInfo& info);
 
 using SharedVolume = std::shared_ptr<const PacketVolume>;
 
@@ -34,22 +22,30 @@ public:
     PacketScene(const PacketScene&) = delete;
     PacketScene& operator=(const PacketScene&) = delete;
 
-    bool empty() const { return layers_.empty(); }
+    bool empty() const { return layers_.empty() && slices_.empty(); }
     /// A job without a picture. `scene` may differ from that of the constructor in its camera, clips, lighting, steps
-    /// and the places of its lenses.
+    /// and the places of its lenses and slices.
     CastJob job(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice, glm::ivec2 size,
                 double stepFactor);
 
 private:
     void addBrushes(const Scene& scene, const volume::DatasetInfo& info);
-    void addLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
-                  const VolumeView* view);
+    LayerView viewOfLayer(const Layer& layer, glm::vec2 places, std::size_t index) const;
+    const std::int32_t* keep(std::vector<std::int32_t> entries);
+    ColorView colorsOf(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
+                       std::size_t index);
+    void addSlice(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn, std::size_t index);
+    void placeSlices(const Scene& scene, const WorldFrame& frame);
+    void addLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn, std::size_t index);
 
     std::vector<SharedVolume> volumes_;
     std::vector<VolumeView> views_;
+    std::vector<std::vector<VolumeView>> partViews_; ///< of each volume
     std::vector<std::vector<std::int32_t>> tables_;
     std::vector<std::vector<std::uint32_t>> packed_;
     std::vector<LayerView> layers_;
+    std::vector<SliceView> slices_;
+    std::vector<int> sliceLayers_; ///< indices into Scene::layers
     SkipMap skip_;
     std::vector<std::uint8_t> absent_, bound_;
     std::vector<PlacedClip> clips_;

@@ -1,7 +1,7 @@
 #include "vis/packet/packet_table.h"
 
 #include "vis/optics/ray_setup.h"
-#include "vis/packet/packet_volume.h"
+#include "vis/packed/packet_volume.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,11 +9,11 @@
 
 namespace tessera::vis::packet {
 
-Table makeTable(const TransferFunction& function, Range range) {
+Table makeTable(const TransferFunction& function, Range range, std::optional<Range> domain) {
+    const Range over = domain.value_or(range);
     std::vector<glm::dvec4> colors;
     for (int i = 0; i < kTableEntries; ++i) {
-        const glm::dvec4 srgb =
-            evaluate(function, range, glm::mix(range.lo, range.hi, double(i) / (kTableEntries - 1)));
+        const glm::dvec4 srgb = evaluate(function, range, glm::mix(over.lo, over.hi, double(i) / (kTableEntries - 1)));
         colors.emplace_back(linearFromSrgb(glm::dvec3(srgb)), srgb.a);
     }
     double most = 0;

@@ -3,6 +3,7 @@
 #include "vis/packet/cast_job.h"
 #include "vis/transfer/transfer_function.h"
 
+#include <optional>
 #include <vector>
 
 /// Transfer functions as tables for packets of samples.
@@ -14,7 +15,8 @@ struct Table {
     std::vector<float> opacity; ///< of each entry, in kQuantum
     float opacityScale = 1;
 };
-Table makeTable(const TransferFunction& function, Range range);
+/// Its first and last entry are those of `domain`, by default of `range`.
+Table makeTable(const TransferFunction& function, Range range, std::optional<Range> domain = {});
 
 /// LayerView::packed.
 std::vector<std::uint32_t> packedTable(const TransferFunction& function, Range range);

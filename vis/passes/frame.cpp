@@ -217,8 +217,11 @@ void RenderStages::drawTile(ViewTarget& target, const RenderCall& call, const Ra
         Scene seen = call.scene;
         seen.camera = lensCamera(seen.camera, pass, raysPerPixel(seen));
         const RenderCall own{seen, call.request, call.source, call.plan};
-        const RayPrograms all{
-            .packets = programs.packets, .program = programs.program, .beyondPlan = {}, .beyondScene = {}};
+        const RayPrograms all{.packets = programs.packets,
+                              .geometry = programs.geometry,
+                              .program = programs.program,
+                              .beyondPlan = {},
+                              .beyondScene = {}};
         setUniforms(all, target, own, 1);
         castTile(target, own, all, tile, pass);
     } else {

@@ -1,5 +1,6 @@
 #include "vis/passes/render_stages.h"
 
+#include "vis/packet/packet_refusal.h"
 #include "volume/base/error.h"
 #include "volume/field/time_pair.h"
 
@@ -14,11 +15,20 @@ namespace {
 double packetBytes(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
     constexpr double kShared = 2.69; // pairs, and samples that several bricks hold
     std::vector<packet::PacketChannel> channels;
-    for (const packet::PacketChannel& channel : packet::packetChannels(scene, info))
+    const auto add = [&](const packet::PacketChannel& channel) {
         if (std::ranges::find(channels, channel) == channels.end()) channels.push_back(channel);
+    };
+    for (const packet::PacketChannel& channel : packet::packetChannels(scene, info)) {
+        add(channel);
+        add(channel.at(channel.time.earlier));
+        add(channel.at(channel.time.later));
+    }
     const double samples = double(lattice.size.x) * double(lattice.size.y) * double(lattice.size.z);
     double bytes = 0;
-    for (const packet::PacketChannel& channel : channels) bytes += samples * kShared * (channel.exact ? 4 : 2);
+    for (const packet::PacketChannel& channel : channels) {
+        const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(channel.channel).parameter)];
+        bytes += samples * kShared * (channel.exact ? 4 : 2) * double(parameter.parts.count());
+    }
     return bytes;
 }
 
@@ -39,7 +49,8 @@ bool RenderStages::chooseEngine(ViewTarget& target, const RenderCall& call, Fram
     const bool wanted = asked == Engine::Processor || (asked == Engine::Automatic && options.packets);
     if (target.packets.renderer.setVolumes(volumes)) target.packets.failed = false;
     volumes->keep(std::min(options.memoryBudget, std::size_t(call.scene.render.limits.brickMemory) << 20) / 2);
-    const bool possible = wanted && !call.plan.empty() && !options.countSamples;
+    const bool rays = !call.plan.layers.empty(); // slices and meshes alone are quickly drawn
+    const bool possible = wanted && rays && !options.countSamples;
     EngineUse& use = status.engine;
     if (possible) use.refusal = refusalOfPackets(target, call);
     if (asked == Engine::Automatic && call.info().remote && use.refusal.empty())
@@ -82,10 +93,11 @@ bool RenderStages::drawByPackets(ViewTarget& target, const RenderCall& call, Clo
 /// While an animation runs, the samples of the next stored time are read in the background.
 void RenderStages::prefetchTime(PacketView& packets, const RenderCall& call) {
     const std::vector<double>& times = call.info().times;
-    const int now = volume::timesAround(times, call.scene.time).earlier;
+    const volume::TimePair around = volume::timesAround(times, call.scene.time);
+    const int now = around.earlier;
     if (now != packets.time) packets.step = packets.time < 0 ? 0 : now - packets.time;
     packets.time = now;
-    const int next = now + packets.step;
+    const int next = (packets.step > 0 ? around.later : now) + packets.step;
     if (packets.step == 0 || next < 0 || next >= int(times.size())) return;
     Scene coming = call.scene;
     coming.time = times[std::size_t(next)];
@@ -97,17 +109,42 @@ void RenderStages::refineByPackets(ViewTarget& target, const RenderCall& call, C
     const bool moving = call.request.moving;
     if (state.full() ? state.converged() || moving : state.reduced() && moving) return;
     if (!call.request.wait && !presentable(target, call.scene)) return postpone(target, call.scene);
-    drawWithin(target, call, {.packets = &target.packets, .beyondPlan = {}, .beyondScene = {}}, start, true);
+    const RayPrograms programs{.packets = &target.packets,
+                               .geometry = call.plan.peels > 0 ? &target.geometry.buffer() : nullptr,
+                               .beyondPlan = {},
+                               .beyondScene = {}};
+    drawWithin(target, call, programs, start, true);
 }
 
+namespace {
+
+/// Reads rasterised surfaces back, `extent` texels from `first` on.
+void readGeometry(const GeometryBuffer& buffer, glm::ivec2 first, glm::ivec2 extent, packet::PacketGeometry& out) {
+    out.peels = buffer.peels;
+    const std::size_t texels = std::size_t(extent.x) * std::size_t(extent.y) * std::size_t(out.peels);
+    out.distance.resize(texels * 2);
+    out.color.resize(texels * 4);
+    const auto read = [&](const Texture& texture, GLenum parts, std::vector<float>& to) {
+        glGetTextureSubImage(texture.name(), 0, first.x, first.y, 0, extent.x, extent.y, out.peels, parts, GL_FLOAT,
+                             GLsizei(to.size() * sizeof(float)), to.data());
+    };
+    read(buffer.distance, GL_RG, out.distance);
+    read(buffer.color, GL_RGBA, out.color);
+}
+
+} // namespace
+
 /// Draws a tile with the rays of one pass; the buffer there is cleared.
-void RenderStages::castPackets(PacketView& packets, const RenderCall& call, const RayBuffer& buffer,
+void RenderStages::castPackets(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer,
                                const RayTile& what) {
+    PacketView& packets = *programs.packets;
     const Tile& tile = what.tile;
+    const glm::ivec2 at = buffer.first + tile.begin, extent = tile.end - tile.begin;
     packet::PacketPicture& picture = packets.picture;
     picture.begin(what.size, {tile.begin, tile.end}, what.pass == 0);
-    packets.renderer.draw(call.scene, what.pass, 1, what.stepFactor, picture);
-    const glm::ivec2 at = buffer.first + tile.begin, extent = tile.end - tile.begin;
+    packets.geometry.peels = 0;
+    if (programs.geometry) readGeometry(*programs.geometry, at, extent, packets.geometry);
+    packets.renderer.draw(call.scene, what.pass, 1, what.stepFactor, picture, packets.geometry);
     const auto store = [&](const Texture& texture, GLenum parts, const std::vector<float>& values) {
         glTextureSubImage2D(texture.name(), 0, at.x, at.y, extent.x, extent.y, parts, GL_FLOAT, values.data());
     };

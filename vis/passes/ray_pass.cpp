@@ -90,7 +90,7 @@ void RenderStages::rays(const RayPrograms& programs, const RenderCall& call, con
     if (begin.x >= end.x || begin.y >= end.y) return;
     within(begin, end);
     if (programs.packets)
-        return castPackets(*programs.packets, call, buffer, {size, {begin, end}, nullptr, what.stepFactor, what.pass});
+        return castPackets(programs, call, buffer, {size, {begin, end}, nullptr, what.stepFactor, what.pass});
     const std::vector<Tile> whole{{begin, end}};
     glBindVertexArray(tools.vertices.name());
     const auto prepare = [&](const Program& program) {

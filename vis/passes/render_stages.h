@@ -13,7 +13,8 @@ namespace tessera::vis {
 
 /// What casts the rays of one picture: program variants, or packets.
 struct RayPrograms {
-    PacketView* packets = nullptr; ///< instead of programs: the processor casts the rays
+    PacketView* packets = nullptr;            ///< instead of programs: the processor casts the rays
+    const GeometryBuffer* geometry = nullptr; ///< for these: what they meet, rasterised; null: nothing
     const Program* program = nullptr;
     const Program* beyond = nullptr; ///< for pixels outside all lenses; null: same as `program`
     RayPlan beyondPlan;              ///< the plan of `beyond`
@@ -90,7 +91,7 @@ struct RenderStages {
     bool drawByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start, FrameStatus& status);
     void refineByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start);
     void prefetchTime(PacketView& packets, const RenderCall& call);
-    void castPackets(PacketView& packets, const RenderCall& call, const RayBuffer& buffer, const RayTile& what);
+    void castPackets(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer, const RayTile& what);
 
     // present.cpp
     BoxLines box(const ViewTarget& target, const Scene& scene) const;

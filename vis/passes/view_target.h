@@ -45,10 +45,11 @@ private:
 /// What the processor draws a view with.
 struct PacketView {
     packet::PacketRenderer renderer;
-    packet::PacketPicture picture; ///< of the tile drawn last
-    Pace pace{false};              ///< of rays cast by the processor, measured by the clock
-    int time = -1, step = 0;       ///< index of the stored time drawn last, and the way from the one before
-    bool failed = false;           ///< its samples could not be read: OpenGL draws these data, without what is damaged
+    packet::PacketPicture picture;   ///< of the tile drawn last
+    packet::PacketGeometry geometry; ///< that its rays met
+    Pace pace{false};                ///< of rays cast by the processor, measured by the clock
+    int time = -1, step = 0;         ///< index of the stored time drawn last, and the way from the one before
+    bool failed = false; ///< its samples could not be read: OpenGL draws these data, without what is damaged
 };
 
 /// The picture of one view: its buffers, and the stages that produce it, each of which owns its state.

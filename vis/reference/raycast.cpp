@@ -1,11 +1,13 @@
 #include "vis/reference/raycast.h"
 
+#include "vis/optics/contour.h"
 #include "vis/optics/jitter.h"
 #include "vis/reference/prepared.h"
 #include "vis/reference/projection.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tessera::vis::reference {
@@ -21,6 +23,7 @@ template <class Number> using Vec4 = glm::vec<4, Number>;
 template <class Number> struct Caster {
     const Prepared& scene;
     Ray ray;
+    std::array<Ray, 2> beside; ///< of the other pixel of its pair, in its row and in its column
     RaySegment segment;
     RaySamples samples;
     std::vector<RaySegment> holes = {}; ///< in samples
@@ -51,20 +54,37 @@ template <class Number> struct Caster {
         double opacity, interest;
     };
 
+    /// The colour of a slice, with contour lines, where it has a value.
+    glm::dvec3 sliceColor(const DrawnLayer& layer, const Reading& own) const {
+        const double value = own.value;
+        const glm::dvec3 color(layer.classify(value));
+        const int contours = std::get<SliceLayer>(*layer.technique).contours;
+        if (contours <= 0) return color;
+        const auto level = [&](double of) { return layer.unclamped(of) * (contours + 1); };
+        double width = 0;
+        for (const Ray& other : beside) {
+            const double t = planeDistance(layer.plane, other.origin, other.direction);
+            const glm::dvec3 place = other.origin + t * other.direction;
+            const std::optional<Reading> next =
+                layer.samples->read(scene.cells(glm::clamp(place, -scene.frame.halfSize, scene.frame.halfSize)));
+            if (next && next->part == own.part) width += std::abs(level(next->value) - level(value));
+        }
+        return withContours<double>(color, level(value), width, contours);
+    }
+
     /// Adds the slices intersected in (from, to].
     void findSlices(std::vector<Event>& events, Number from, Number to) const {
         for (const DrawnLayer& layer : scene.layers) {
             if (!std::holds_alternative<SliceLayer>(*layer.technique)) continue;
-            const double slope = glm::dot(layer.plane.normal, ray.direction);
-            if (slope == 0) continue;
-            const auto t = Number((layer.plane.offset - glm::dot(layer.plane.normal, ray.origin)) / slope);
+            if (!(std::abs(glm::dot(layer.plane.normal, ray.direction)) > kParallel)) continue;
+            const auto t = Number(planeDistance(layer.plane, ray.origin, ray.direction));
             if (!(t > from && t <= to) || !shows(inSamples(double(t)))) continue;
             const glm::dvec3 place = glm::clamp(glm::dvec3(at(t)), -scene.frame.halfSize, scene.frame.halfSize);
-            const std::optional<double> value = layer.samples->value(scene.cells(place));
-            if (!value) continue;
+            const std::optional<Reading> found = layer.samples->read(scene.cells(place));
+            if (!found) continue;
             const Interest doi = scene.interest(place);
             const LensAction lens = scene.lensAction(layer, glm::dvec3(at(t)));
-            events.push_back({t, scene.focused(layer, glm::dvec3(layer.classify(*value)), doi, lens.saturation),
+            events.push_back({t, scene.focused(layer, sliceColor(layer, *found), doi, lens.saturation),
                               std::min(double(std::get<SliceLayer>(*layer.technique).opacity) *
                                            scene.opacityFactor(layer, doi) * lens.opacity,
                                        1.0),
@@ -336,9 +356,13 @@ Image renderWith(const Scene& scene, const volume::BrickSource& source, glm::ive
             for (int pass = 0; pass < passes; ++pass) {
                 // The shader counts pixel rows from the bottom.
                 const glm::ivec2 pixel(x, size.y - 1 - int(y));
-                const glm::dvec2 ndc = (glm::dvec2(pixel) + 0.5 + pixelJitter(pass)) / glm::dvec2(size) * 2.0 - 1.0;
                 const Camera camera = lensCamera(scene.camera, pass, passes);
-                Caster<Number> caster{prepared, cameraRay(camera, double(size.x) / size.y, ndc), {}, {}};
+                const auto rayOf = [&](glm::ivec2 of) {
+                    const glm::dvec2 ndc = (glm::dvec2(of) + 0.5 + pixelJitter(pass)) / glm::dvec2(size) * 2.0 - 1.0;
+                    return cameraRay(camera, double(size.x) / size.y, ndc);
+                };
+                Caster<Number> caster{
+                    prepared, rayOf(pixel), {rayOf({pixel.x ^ 1, pixel.y}), rayOf({pixel.x, pixel.y ^ 1})}, {}, {}};
                 if (!caster.begin(perspective, pixel, pass)) continue;
                 caster.cast();
                 glm::dvec4& out = image.pixels[y * std::size_t(size.x) + std::size_t(x)];

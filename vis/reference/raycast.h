@@ -10,8 +10,8 @@
 /// empty-space skipping, no levels of detail, no textures).
 namespace tessera::vis::reference {
 
-/// Renders the layers of a scene at full resolution. Lines (box, contours) are not drawn; layers of unknown channels
-/// are left out. The result does not depend on the number of threads. Throws Error when the source does.
+/// Renders the layers of a scene at full resolution. The box is not drawn; layers of unknown channels are left out. The
+/// result does not depend on the number of threads. Throws Error when the source does.
 Image render(const Scene& scene, const volume::BrickSource& source, glm::ivec2 size, const Options& options = {});
 
 /// The same with rays, colours and accumulation in single precision: shows how much rounding may change a picture.

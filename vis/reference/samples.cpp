@@ -186,7 +186,7 @@ std::optional<Reading> Samples::read(glm::dvec3 cells) const {
         if (choice.add(int(i), own.coverage)) sum = own.sum;
     }
     if (choice.total < volume::kPresentCoverage) return std::nullopt;
-    return Reading{sum / choice.coverage, choice.part};
+    return Reading{sum / choice.coverage, int(choice.part)};
 }
 
 std::optional<double> Samples::value(glm::dvec3 cells) const {
@@ -197,7 +197,7 @@ std::optional<double> Samples::value(glm::dvec3 cells) const {
 int Samples::part(glm::dvec3 cells) const {
     volume::PartChoice choice;
     for (std::size_t i = 0; i < parts_.size(); ++i) choice.add(int(i), parts_[i]->blend(cells).coverage);
-    return choice.part;
+    return int(choice.part);
 }
 
 std::optional<double> Samples::ofPart(int part, glm::dvec3 cells) const {

@@ -67,13 +67,6 @@ void setPlace(PlacedLens& placed, const Lens& lens, const Camera& camera) {
 
 } // namespace
 
-glm::dvec3 PlacedLens::bend(glm::dvec3 world) const {
-    const double r = radius(world);
-    if (!(r < 1)) return world;
-    const double share = 1 / (1 + (magnification - 1) * (1 - r));
-    return world - (1 - share) * (fromUnit * (toUnit * (world - center)));
-}
-
 std::vector<PlacedLens> placeLenses(const std::vector<Lens>& lenses, const WorldFrame& frame, const Camera& camera,
                                     glm::dvec3 cursor) {
     std::vector<PlacedLens> all;
@@ -99,13 +92,6 @@ int findLens(const std::vector<PlacedLens>& lenses, const std::string& name) {
     for (std::size_t i = 0; i < lenses.size(); ++i)
         if (lenses[i].name == name) return int(i);
     return -1;
-}
-
-glm::dvec3 bend(const std::vector<PlacedLens>& lenses, glm::dvec3 world, glm::dvec3 halfSize) {
-    const glm::dvec3 most = glm::max(halfSize, glm::abs(world));
-    for (auto lens = lenses.rbegin(); lens != lenses.rend(); ++lens)
-        if (lens->magnification > 1) world = lens->bend(world);
-    return glm::clamp(world, -most, most);
 }
 
 } // namespace tessera::vis

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "volume/base/numbers.h"
+
 /// Chooses the part of a parameter (volume/field/parts.h) at a position between samples; twin of
 /// lib/between_times.glsl.
 namespace tessera::volume {
@@ -8,21 +10,22 @@ namespace tessera::volume {
 /// parts, which rays often hit, belong to the lower one regardless of rounding.
 inline constexpr double kPartMargin = 1.0 / 512;
 
-/// The part whose samples have the largest weight at a position. Presence is decided by all parts together
-/// (kPresentCoverage), so parts do not change where a parameter ends.
-struct PartChoice {
-    int part = 0;
-    double coverage = 0; ///< of that part
-    double total = 0;    ///< of all parts
+/// The part whose samples have the largest weight at a position, or at a packet of them (volume/base/numbers.h).
+/// Presence is decided by all parts together (kPresentCoverage), so parts do not change where a parameter ends.
+template <class N, class Yes> struct PartChoiceOf {
+    N part{0};     ///< a whole number
+    N coverage{0}; ///< of that part
+    N total{0};    ///< of all parts
 
     /// Call with the coverage of each part in turn, from part 0 on; true if it is the choice so far.
-    bool add(int next, double covered) {
+    Yes add(int next, N covered) {
         total += covered;
-        if (next > 0 && !(covered > coverage + kPartMargin)) return false;
-        part = next;
-        coverage = covered;
-        return true;
+        const Yes better = (covered > coverage + N(kPartMargin)) | (N(next) <= N(0));
+        part = choose(better, N(next), part);
+        coverage = choose(better, covered, coverage);
+        return better;
     }
 };
+using PartChoice = PartChoiceOf<double, bool>;
 
 } // namespace tessera::volume

@@ -1,4 +1,6 @@
 // Intersections of the ray with slices and rasterised surfaces, sorted by distance.
+#include "lib/contours.glsl"
+
 #define EVENTS (SLICES + GEOMETRY)
 
 #if EVENTS > 0
@@ -23,7 +25,9 @@ void findEvents() {
         float x = s.x * sliceMap[i].x + sliceMap[i].y;
         float doi = degreeOfInterest(p);
         vec3 c = transfer(LAYERS + i, x).rgb;
-        float level = x * (sliceMap[i].z + 1.0), width = fwidth(level);
+        float level = x * (sliceMap[i].z + 1.0), there = present(s) ? 1.0 : 0.0;
+        vec2 changes = abs(vec2(dFdx(level), dFdy(level))), ends = vec2(dFdx(there), dFdy(there));
+        float width = (ends.x == 0.0 ? changes.x : 0.0) + (ends.y == 0.0 ? changes.y : 0.0);
 #if PARTS
         // Use the gradient within the part, so that a jump between parts draws no contour line.
         vec3 across = dFdx(world), up = dFdy(world);
@@ -32,11 +36,7 @@ void findEvents() {
             width = (abs(dot(g, across)) + abs(dot(g, up))) * abs(sliceMap[i].x) * (sliceMap[i].z + 1.0);
         }
 #endif
-        if (sliceMap[i].z > 0.5 && width > 0.0) {
-            // Contours at level = 1, 2, ..., n; 1.4 pixels wide, dark on light colours and light on dark ones.
-            float away = abs(level - clamp(floor(level + 0.5), 1.0, sliceMap[i].z)) / width;
-            c = mix(c, vec3(luminance(c) > 0.18 ? 0.0 : 1.0), 0.75 * clamp(1.2 - away, 0.0, 1.0) / max(1.0, width * 2.0));
-        }
+        if (sliceMap[i].z > 0.5) c = withContours(c, level, width, sliceMap[i].z);
         float tolerance = 1e-5;
         bool seen = ray.meets && abs(slope) > 1e-6 && t > ray.inside.x - tolerance && t < ray.inside.y + tolerance &&
                     present(s);

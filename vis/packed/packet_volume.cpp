@@ -1,11 +1,13 @@
-#include "vis/packet/packet_volume.h"
+#include "vis/packed/packet_volume.h"
 
 #include "volume/base/parallel.h"
+#include "volume/bricks/parts_bricks.h"
 #include "volume/reconstruct/reconstruct.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace tessera::vis::packet {
 
@@ -66,17 +68,28 @@ void insertBrick(Gathered& out, glm::ivec3 begin, const volume::BrickSamples& br
         }
 }
 
-Gathered gatherAll(const volume::BrickSource& source, const PacketChannel& what) {
+/// One part of a parameter.
+struct OnePart {
+    int label; ///< channel
+    const volume::Parts& parts;
+    std::size_t part;
+};
+
+/// All samples, or those of one part.
+Gathered gatherAll(const volume::BrickSource& source, const PacketChannel& what, const std::optional<OnePart>& only) {
     const volume::BrickGrid& grid = source.grid();
     Gathered out;
     out.lattice = grid.lattice;
     out.values.resize(grid.lattice.count());
     std::vector<Extent> own(grid.brickCount());
     std::vector<std::uint8_t> absent(own.size());
-    const auto key = [&](std::size_t i) { return volume::BrickKey{what.channel, what.time, 0, grid.indexOf(i)}; };
+    const auto read = [&](int channel, std::size_t i) {
+        return source.read({channel, what.time.earlier, 0, grid.indexOf(i)});
+    };
     out.present.resize(out.values.size(), 1);
     parallelFor(own.size(), [&](std::size_t i) {
-        const volume::BrickSamples brick = source.read(key(i));
+        volume::BrickSamples brick = read(what.channel, i);
+        if (only) brick = volume::onlyPart(std::move(brick), read(only->label, i), only->parts, only->part);
         insertBrick(out, grid.begin(grid.indexOf(i)), brick);
         own[i] = extentOf(brick);
         absent[i] = std::ranges::find(brick.present, std::uint8_t(0)) != brick.present.end();
@@ -254,52 +267,122 @@ std::size_t PacketVolume::at(glm::ivec3 sample, int sublattice) const {
 }
 
 std::size_t PacketVolume::bytes() const {
-    return shorts.size() * 2 + floats.size() * 4 + present.size() * 2 + (lo.size() + hi.size()) * 4 + absent.size();
+    std::size_t out =
+        shorts.size() * 2 + floats.size() * 4 + present.size() * 2 + (lo.size() + hi.size()) * 4 + absent.size();
+    for (const PacketVolume& part : parts) out += part.bytes();
+    return out;
+}
+
+namespace {
+
+/// Lays the samples of a channel out.
+class VolumeMaker {
+public:
+    VolumeMaker(const volume::BrickSource& source, const PacketChannel& what)
+        : geometry_(volume::levelGeometry(source.grid(), 0)) {
+        const volume::DatasetInfo& info = source.info();
+        shape_.labels = info.parameters[std::size_t(info.channel(what.channel).parameter)].categorical;
+        filtered_ = what.filter == Filter::AverageQuasi && !shape_.labels;
+        const volume::Lattice& lattice = source.grid().lattice;
+        shape_.bcc = lattice.kind == volume::LatticeKind::BCC;
+        shape_.exact = what.exact;
+        shape_.cells = lattice.texels() + (2 * kMargin - 1);
+        shape_.bricks = (shape_.cells + kBrick - 1) / kBrick;
+        shape_.blocks = shape_.bricks * (kBrick / kFine);
+        bricks_ = std::size_t(shape_.bricks.x) * std::size_t(shape_.bricks.y) * std::size_t(shape_.bricks.z);
+    }
+
+    /// Without samples.
+    const PacketVolume& shape() const { return shape_; }
+    /// Of what is stored.
+    Extent range(const Gathered& all) const {
+        if (!filtered_ || shape_.exact) return all.range;
+        return rangeOf(bricks_, [&](std::size_t i) { return samplesOf(all, i); });
+    }
+    void setRange(const Extent& range) {
+        setScale(shape_, range);
+        if (!shape_.labels || (!shape_.exact && range.hi - range.lo > float(kQuantum))) return;
+        shape_.offset = std::floor(double(range.lo));
+        shape_.scale = 1;
+    }
+    PacketVolume write(const Gathered& all) const {
+        PacketVolume out = shape_;
+        const std::size_t samples = (bricks_ * std::size_t(out.stride()) + 1) * 2, blocks = bricks_ * 64;
+        if (out.exact)
+            out.floats.resize(samples);
+        else
+            out.shorts.resize(samples);
+        if (!all.present.empty()) {
+            out.present.resize(samples);
+            out.absent.resize(blocks);
+        }
+        out.lo.resize(blocks);
+        out.hi.resize(blocks);
+        parallelFor(bricks_, [&](std::size_t i) {
+            const volume::BrickSamples near = samplesOf(all, i);
+            BrickWriter writer(out, placeOf(i), near);
+            writer.samples();
+            writer.bounds();
+        });
+        if (out.bcc) spreadOdd(out);
+        if (!out.absent.empty()) spreadAbsent(out);
+        return out;
+    }
+
+private:
+    glm::ivec3 placeOf(std::size_t i) const {
+        return {int(i % std::size_t(shape_.bricks.x)),
+                int(i / std::size_t(shape_.bricks.x) % std::size_t(shape_.bricks.y)),
+                int(i / std::size_t(shape_.bricks.x) / std::size_t(shape_.bricks.y))};
+    }
+    volume::BrickSamples samplesOf(const Gathered& all, std::size_t i) const {
+        const volume::BrickSamples near = neighbourhood(all, placeOf(i) * kBrick - kMargin, filtered_ ? 1 : 0);
+        return filtered_ ? volume::prefilter(near, geometry_) : near;
+    }
+
+    volume::LevelGeometry geometry_;
+    bool filtered_ = false;
+    PacketVolume shape_;
+    std::size_t bricks_ = 0;
+};
+
+bool somePresent(const Gathered& all) {
+    return all.present.empty() || std::ranges::find(all.present, std::uint8_t(1)) != all.present.end();
+}
+
+} // namespace
+
+void joinParts(PacketVolume& volume) {
+    for (const PacketVolume& part : volume.parts) {
+        volume.lo.resize(part.lo.size(), std::numeric_limits<float>::infinity());
+        volume.hi.resize(part.hi.size(), -std::numeric_limits<float>::infinity());
+        for (std::size_t i = 0; i < part.lo.size(); ++i) {
+            volume.lo[i] = std::min(volume.lo[i], part.lo[i]);
+            volume.hi[i] = std::max(volume.hi[i], part.hi[i]);
+        }
+    }
 }
 
 PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketChannel& what) {
     const volume::DatasetInfo& info = source.info();
-    const bool categorical = info.parameters[std::size_t(info.channel(what.channel).parameter)].categorical;
-    const bool filtered = what.filter == Filter::AverageQuasi && !categorical;
-    const Gathered all = gatherAll(source, what);
-    const volume::LevelGeometry geometry = volume::levelGeometry(source.grid(), 0);
-
-    PacketVolume out;
-    out.bcc = all.lattice.kind == volume::LatticeKind::BCC;
-    out.exact = what.exact;
-    out.cells = all.lattice.texels() + (2 * kMargin - 1);
-    out.bricks = (out.cells + kBrick - 1) / kBrick;
-    out.blocks = out.bricks * (kBrick / kFine);
-    const std::size_t bricks = std::size_t(out.bricks.x) * std::size_t(out.bricks.y) * std::size_t(out.bricks.z);
-    const std::size_t samples = (bricks * std::size_t(out.stride()) + 1) * 2, blocks = bricks * 64;
-    if (out.exact)
-        out.floats.resize(samples);
-    else
-        out.shorts.resize(samples);
-    if (!all.present.empty()) {
-        out.present.resize(samples);
-        out.absent.resize(blocks);
+    const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(what.channel).parameter)];
+    VolumeMaker maker(source, what);
+    const std::optional<int> label = volume::labelChannel(info, parameter);
+    if (!label) {
+        const Gathered all = gatherAll(source, what, std::nullopt);
+        maker.setRange(maker.range(all));
+        return maker.write(all);
     }
-    out.lo.resize(blocks);
-    out.hi.resize(blocks);
-    const auto placeOf = [&](std::size_t i) {
-        return glm::ivec3(int(i % std::size_t(out.bricks.x)),
-                          int(i / std::size_t(out.bricks.x) % std::size_t(out.bricks.y)),
-                          int(i / std::size_t(out.bricks.x) / std::size_t(out.bricks.y)));
-    };
-    const auto samplesOf = [&](std::size_t i) {
-        const volume::BrickSamples near = neighbourhood(all, placeOf(i) * kBrick - kMargin, filtered ? 1 : 0);
-        return filtered ? volume::prefilter(near, geometry) : near;
-    };
-    setScale(out, filtered && !out.exact ? rangeOf(bricks, samplesOf) : all.range);
-    parallelFor(bricks, [&](std::size_t i) {
-        const volume::BrickSamples near = samplesOf(i);
-        BrickWriter writer(out, placeOf(i), near);
-        writer.samples();
-        writer.bounds();
-    });
-    if (out.bcc) spreadOdd(out);
-    if (!out.absent.empty()) spreadAbsent(out);
+    std::vector<Gathered> parts;
+    Extent range;
+    for (std::size_t part = 0; part < parameter.parts.count(); ++part) {
+        parts.push_back(gatherAll(source, what, OnePart{*label, parameter.parts, part}));
+        if (somePresent(parts.back())) range.add(maker.range(parts.back()));
+    }
+    maker.setRange(range.lo <= range.hi ? range : Extent{0, 0});
+    PacketVolume out = maker.shape();
+    for (const Gathered& part : parts) out.parts.push_back(maker.write(part));
+    joinParts(out);
     return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include "vis/scene/scene.h"
 #include "volume/bricks/brick_source.h"
+#include "volume/field/time_pair.h"
 
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -25,17 +26,23 @@ inline constexpr int kQuantum = 32767;
 struct PacketVolume {
     bool bcc = false;
     bool exact = false;  ///< `floats` hold the samples, else `shorts`
+    bool labels = false; ///< never interpolated; samples are whole numbers
     glm::ivec3 cells{1}; ///< of a sublattice, with margins: a position lies in [0, cells)
     glm::ivec3 bricks{1};
     std::vector<std::int16_t> shorts; ///< 0 .. kQuantum
     std::vector<float> floats;
-    std::vector<std::int16_t> present; ///< kQuantum or 0, at the same places; empty: all samples are present
-    double offset = 0, scale = 1;      ///< physical value = offset + scale * sample
+    /// kQuantum or 0, at the same places; empty: all samples are present. Between two stored times also the weight of
+    /// the one at which a sample is present; the sample has that weight, too.
+    std::vector<std::int16_t> present;
+    double offset = 0, scale = 1; ///< physical value = offset + scale * sample
     /// Bounds of the samples that interpolation in a block of kFine^3 cells can read, and whether one is absent. lo >
     /// hi: all are.
     glm::ivec3 blocks{1};
     std::vector<float> lo, hi;
     std::vector<std::uint8_t> absent; ///< empty: none
+    /// Of a parameter with several parts (volume/field/parts.h), each with the samples of the others absent and in the
+    /// same scale; then this one has bounds, but no samples.
+    std::vector<PacketVolume> parts;
 
     int brickPairs() const { return kSlice * kRow; } ///< of one sublattice
     /// Pairs from one brick to the next.
@@ -47,13 +54,20 @@ struct PacketVolume {
 
 /// What of a channel is read.
 struct PacketChannel {
-    int channel = 0, time = 0;
+    int channel = 0;
+    volume::TimePair time = {};
     Filter filter = Filter::AverageQuasi;
     bool exact = false; ///< 32-bit floats, else 15 bits over the range of the data
     bool operator==(const PacketChannel&) const = default;
+
+    /// The same at one of the stored times around.
+    PacketChannel at(int stored) const { return {channel, {stored, stored, 0}, filter, exact}; }
 };
 
-/// Throws Error when the source does.
+/// Sets the bounds of blocks from those of the parts.
+void joinParts(PacketVolume& volume);
+
+/// Samples at a stored time. Throws Error when the source does.
 PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketChannel& what);
 
 } // namespace tessera::vis::packet

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vis/packet/packet_volume.h"
+#include "vis/packed/packet_volume.h"
 
 #include <cstdint>
 #include <functional>

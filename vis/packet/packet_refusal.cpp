@@ -1,0 +1,53 @@
+#include "vis/packet/packet_refusal.h"
+
+#include "vis/packet/cast_job.h"
+#include "vis/packet/packet_channels.h"
+
+namespace tessera::vis::packet {
+
+namespace {
+
+std::string refusalOfFocus(const Scene& scene, const volume::DatasetInfo& info) {
+    if (!scene.selection.active()) return "";
+    if (scene.selection.contextBlur > 0) return "blurred context";
+    const std::vector<int> brushed = brushedChannels(scene, info);
+    return brushed.size() > std::size_t(kMostBrushFields) ? "brushes of so many parameters" : "";
+}
+
+std::string refusalOfLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn) {
+    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
+    if (const Look* look = lookOf(layer.technique); look && look->any()) return "looks";
+    const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
+    if (!volume || volume->style != RayStyle::Composite || volume->quantity == Quantity::Gradient) return "";
+    if (volume->classification != Classification::Post) return "classification before or over samples";
+    if (transferOfLayer(scene, info, layer, drawn.channel.channel).function.kind != TransferKind::Curve)
+        return "transfer functions of two dimensions";
+    return "";
+}
+
+} // namespace
+
+std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
+    if (std::string why = refusalOfFocus(scene, info); !why.empty()) return why;
+    if (scene.lighting.shadows.any()) return "shadows";
+    if (usesMaps(scene.lighting)) return "light from maps";
+    if (scene.render.proxy != Proxy::Rays) return "proxy geometry";
+    if (scene.render.adaptiveStep > 0) return "adaptive steps";
+    if (scene.render.normalBits > 0) return "quantised normals";
+    if (scene.render.filter == Filter::Tetrahedral && lattice.kind == volume::LatticeKind::BCC)
+        return "tetrahedral interpolation";
+    const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
+    int surfaces = 0, slices = 0;
+    for (const DrawnChannel& each : drawn) {
+        const std::string refusal = refusalOfLayer(scene, info, each);
+        if (!refusal.empty()) return refusal;
+        const Technique& technique = scene.layers[std::size_t(each.layer)].technique;
+        surfaces += std::holds_alternative<IsoLayer>(technique);
+        slices += std::holds_alternative<SliceLayer>(technique);
+    }
+    if (drawn.size() > std::size_t(kMostPacketLayers) || surfaces > kMostPacketSurfaces || slices > kMostPacketSlices)
+        return "so many layers";
+    return "";
+}
+
+} // namespace tessera::vis::packet
