@@ -226,10 +226,8 @@ void exportMenu(ViewContext& context, ToolRow& tools, const std::string& title,
     if (ImGui::MenuItem("Picture (PNG)...") && context.runCommand) context.runCommand("Save picture...");
     for (const auto& [item, suffix] :
          {std::pair{"Vector graphics (SVG)...", "svg"}, {"Vector graphics (PDF)...", "pdf"}})
-        if (made.figure && ImGui::MenuItem(item))
-            context.exportText(name + "." + suffix, [figure = made.figure, suffix](const Progress& progress) {
-                return fileOf(figure(progress), suffix);
-            });
+        if (made.figure && context.exportFigure && ImGui::MenuItem(item))
+            context.exportFigure(name + "." + suffix, made.figure);
     if (made.csv && ImGui::MenuItem("Copy table (CSV)"))
         context.jobs.start("copy " + title, "Copying " + title,
                            [csv = made.csv](const Progress& progress) -> Jobs::Finish {
