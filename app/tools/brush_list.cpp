@@ -170,6 +170,8 @@ void drawBrushList(ViewContext& context) {
     for (std::size_t i = 0; i < selection.brushes.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
         const auto unfold = added ? std::optional(i == *added) : std::nullopt; // the newest is the one to set up
+        // Those in space come by a command; a drag in a plot leaves the list where it is.
+        if (i == added && !context.headless && spaceShape(selection.brushes[i])) ImGui::SetScrollHereY(0.1f);
         if (drawBrush(context, selection.brushes[i], i, unfold)) removed = static_cast<int>(i);
         ImGui::PopID();
     }
@@ -250,9 +252,11 @@ void addSpaceBrush(Session& session, const volume::DatasetInfo& info, bool box) 
 }
 
 void drawBrushMenu(ViewContext& context) {
+    const std::size_t before = context.session.selection.brushes.size();
     if (ImGui::MenuItem("Brush a sphere at the cross-hair"))
         addSpaceBrush(context.session, context.source->info(), false);
     if (ImGui::MenuItem("Brush a box at the cross-hair")) addSpaceBrush(context.session, context.source->info(), true);
+    if (context.session.selection.brushes.size() > before) showLists(context.session);
     if (ImGui::MenuItem("Clear brushes", "Esc", false, !context.session.selection.brushes.empty()))
         context.session.selection.brushes.clear();
 }
