@@ -25,6 +25,7 @@ bool beginDialog(const char* title, bool& open, float width) {
     ImGui::SetNextWindowSize({width, 0});
     if (!ImGui::BeginPopupModal(title, &open, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoResize))
         return false;
+    keepInView();
     if (escapePressed() && !ImGui::IsWindowAppearing()) open = false; // not by the key that asked
     return true;
 }

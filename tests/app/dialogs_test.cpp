@@ -71,6 +71,23 @@ TEST_F(Dialogs, APictureSaysThatItHoldsItsSessionAndWhatAreVectors) {
     EXPECT_THAT(drawnWords(), Contains(holds));
 }
 
+TEST_F(Dialogs, StayInAWindowThatBecomesSmaller) {
+    HelpDialogs dialogs;
+    const auto draw = [&] { dialogs.draw({}, fonts, {}); };
+    dialogs.showAbout();
+    frames(4, draw);
+    const DrawnText before = find("Close");
+    frames(2, draw);
+    EXPECT_EQ(find("Close").min.x, before.min.x) << "it stays where it is";
+    const ImVec2 small{before.min.x - 40, before.min.y - 30}; // the button would lie outside
+    ImGui::GetIO().DisplaySize = small;
+    frames(3, draw);
+    const DrawnText after = find("Close");
+    EXPECT_LE(after.max.x, small.x);
+    EXPECT_LE(after.max.y, small.y);
+    EXPECT_GE(find("About Tessera").min.x, 0);
+}
+
 TEST_F(Dialogs, AQuestionForAFileHasItsTitle) {
     Jobs jobs;
     FileQuestions questions(jobs);
