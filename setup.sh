@@ -10,10 +10,10 @@ packages=(
     libzstd-dev liblzma-dev libxxhash-dev libpng-dev libmuparser-dev
     libimgui-dev libstb-dev libfreetype-dev libglfw3-dev libepoxy-dev libegl-dev # the window
     libgl1-mesa-dri libegl1 libgl1 libglx-mesa0                      # GL without a GPU
-    libcairo2-dev                                                    # figures as PDF
+    libcairo2-dev zlib1g-dev                                         # figures as PDF
     libcurl4-openssl-dev                                             # archives on web servers
     fonts-roboto-unhinted fonts-font-awesome                         # text and icons
-    libvtk9-dev libtiff-dev zlib1g-dev                               # tessera-import: readers of foreign formats
+    libvtk9-dev libtiff-dev                                          # tessera-import: readers of foreign formats
 )
 test_packages=( # only ./test.sh needs these
     libgtest-dev libgmock-dev clang-format glslang-tools xvfb xdotool xauth x11-utils

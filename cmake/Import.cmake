@@ -4,7 +4,6 @@ find_package(VTK 9.1 QUIET COMPONENTS CommonCore CommonDataModel CommonExecution
 if(VTK_FOUND)
   file(GLOB_RECURSE import_sources CONFIGURE_DEPENDS app/importer/*.cpp)
   list(REMOVE_ITEM import_sources ${CMAKE_SOURCE_DIR}/app/importer/main.cpp)
-  find_package(ZLIB REQUIRED)
   find_package(TIFF REQUIRED)
   # The readers, which fuzz targets link too.
   add_library(importer STATIC ${import_sources})

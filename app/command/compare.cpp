@@ -83,7 +83,7 @@ void addCompareCommand(CLI::App& app) {
         ->check(CLI::Range(0, 15));
     command
         ->add_option("-o,--output", options->output,
-                     "Picture to write: a PNG, which contains the session, or a figure (.svg, .pdf)")
+                     "Picture to write: a PNG or a figure (.svg, .pdf), which contain the session")
         ->required();
     command->add_option("--csv", options->csv, "CSV file to write the table to");
     command->callback([options] {

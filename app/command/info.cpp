@@ -2,6 +2,7 @@
 #include "app/data/format.h"
 #include "app/data/import_options.h"
 #include "app/data/merge_layouts.h"
+#include "app/data/picture_session.h"
 #include "app/described/describe_cli.h"
 #include "app/history/session_file.h"
 #include "app/user_files/import_memory.h"
@@ -9,13 +10,11 @@
 #include "codec/container/exactness.h"
 #include "codec/pack/error_bound.h"
 #include "codec/remote/address.h"
-#include "vis/image/image_io.h"
 #include "volume/import/find_parts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -145,17 +144,9 @@ void printArchive(const codec::Archive& archive) {
     if (!info.provenance.empty()) std::printf("  %s\n", info.provenance.c_str());
 }
 
-/// The session embedded in a PNG written by Tessera. Throws Error if there is none.
-SessionDocument sessionOfPicture(const std::string& path) {
-    std::map<std::string, std::string> texts;
-    (void)vis::readPng(path, &texts);
-    const auto found = texts.find(vis::kSessionTextKey);
-    if (found == texts.end()) throw Error("this picture contains no session", path);
-    return parseSession(found->second, path);
-}
-
 void printSession(const std::string& path, bool asJson) {
-    const SessionDocument document = hasEnding(path, ".png") ? sessionOfPicture(path) : loadSession(path);
+    const SessionDocument document =
+        namesPicture(path) ? parseSession(sessionTextOfPicture(path), path) : loadSession(path);
     const Session& session = document.session;
     Json files = Json::array(), layers = Json::array(), views = Json::array();
     for (const DataFile& file : session.data.files) files.push_back(file.path);
@@ -310,8 +301,8 @@ void describe(const InfoRequest& request) {
         describeArchive(request);
     } else if (request.bricks || request.merge) {
         throw Error("only archives (.tsr) have bricks", paths[0]);
-    } else if (paths.size() == 1 && (hasEnding(paths[0], ".png") ||
-                                     (hasEnding(paths[0], ".json") && looksLikeSession(readText(paths[0]))))) {
+    } else if (paths.size() == 1 &&
+               (namesPicture(paths[0]) || (hasEnding(paths[0], ".json") && looksLikeSession(readText(paths[0]))))) {
         printSession(paths[0], asJson);
     } else {
         const volume::ImportPreview preview =
@@ -328,7 +319,7 @@ void addInfoCommand(CLI::App& app) {
     const auto request = std::make_shared<InfoRequest>();
     command
         ->add_option("FILE", request->paths,
-                     "Archive, session, PNG exported by Tessera, or data files that belong together")
+                     "Archive, session, picture exported by Tessera, or data files that belong together")
         ->required();
     command->add_flag("--json", request->json, "Print JSON with stable keys");
     command->add_flag("--bricks", request->bricks,

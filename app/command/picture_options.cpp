@@ -131,7 +131,7 @@ void addTransferOption(CLI::App& command, std::vector<std::string>& transfer) {
 void addPictureOptions(CLI::App& command, PictureOptions& options) {
     command
         .add_option("input", options.inputs,
-                    "Session, layout, PNG exported by Tessera, or data files (default: the built-in fuel cell)")
+                    "Session, layout, picture exported by Tessera, or data files (default: the built-in fuel cell)")
         ->type_name("SESSION|LAYOUT|DATA");
     addLayoutOption(command, options.layout);
     command

@@ -32,15 +32,22 @@ DataRef dataRef(const PlotRequest& request) {
     return data;
 }
 
+/// A session that shows the plot, in the pane `pane`.
+SessionDocument plotDocument(const PlotRequest& request, const DataRef& data, const volume::DatasetInfo& info,
+                             std::string& pane) {
+    SessionDocument document;
+    document.session = defaultSession(info, data);
+    document.session.appearance.theme = Theme::Light;
+    document.session.time = request.time.value_or(info.times.front());
+    pane = addView(document.session, request.view);
+    document.history.reset(document.session);
+    return document;
+}
+
 /// Draws the plot as the window does.
 void drawPicture(const PlotRequest& request, const DataRef& data, const Sources& sources) {
-    SessionDocument document;
-    document.session = defaultSession(sources.pictures->info(), data);
-    document.session.appearance.theme = Theme::Light;
-    document.session.time = request.time.value_or(sources.pictures->info().times.front());
-    const std::string pane = addView(document.session, request.view);
-    document.history.reset(document.session);
-    PictureRequest picture{.pane = pane};
+    PictureRequest picture;
+    const SessionDocument document = plotDocument(request, data, sources.pictures->info(), picture.pane);
     if (std::sscanf(request.size.c_str(), "%dx%d", &picture.size.x, &picture.size.y) != 2 || picture.size.x < 64 ||
         picture.size.y < 64 || picture.size.x > 16384 || picture.size.y > 16384)
         throw Error("needs WIDTHxHEIGHT, 64 to 16384 each", {}, "--size");
@@ -66,8 +73,14 @@ void run(const PlotRequest& request) {
     const volume::Curves curves =
         readCurves(*sources.numbers, plotCurvesQuery(request.view, session, info), progress.part(0.4, 1));
     AtomicFile file(request.output);
-    file.write(csv ? originLine(sources.origin, info) + curvesCsv(curves)
-                   : fileOf(curvesDrawing(curves, request.time), pdf ? "pdf" : "svg"));
+    if (csv) {
+        file.write(originLine(sources.origin, info) + curvesCsv(curves));
+    } else {
+        std::string pane;
+        VectorPage page = curvesDrawing(curves, request.time);
+        page.session = printSession(plotDocument(request, data, info, pane), request.output);
+        file.write(fileOf(page, pdf ? "pdf" : "svg"));
+    }
     file.commit();
 }
 

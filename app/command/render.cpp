@@ -36,9 +36,10 @@ void addRenderCommand(CLI::App& app) {
                         "Time to show, in the unit of the data; in the whole window that of the timeline, which "
                         "views with a time of their own do not follow");
     command
-        ->add_option(
-            "-o,--output", options->output,
-            "File to write: a PNG, which contains the session, a figure (.svg, .pdf), or with --view a table (.csv)")
+        ->add_option("-o,--output", options->output,
+                     "File to write: a picture (.png) or a figure (.svg, .pdf), which contain the session, or with "
+                     "--view a table "
+                     "(.csv)")
         ->required();
     command->callback([options] {
         const Progress progress = terminalProgress("render");
@@ -68,7 +69,7 @@ void addRenderCommand(CLI::App& app) {
         if (ending.empty() || request.pane.empty())
             return maker.write(opened.document, opened.sources(), request, options->output);
         AtomicFile file(options->output);
-        file.write(maker.exportText(opened.document, opened.sources(), request, ending, progress));
+        file.write(maker.exportText(opened.document, opened.sources(), request, options->output, progress));
         file.commit();
     });
 }

@@ -32,7 +32,7 @@ void addWorkbench(CLI::App& app) {
     auto options = std::make_shared<Options>();
     app.add_option(
            "file", options->request.paths,
-           "Session, archive, PNG exported by Tessera, or data files to open (default: the built-in fuel cell); "
+           "Session, archive, picture exported by Tessera, or data files to open (default: the built-in fuel cell); "
            "an archive also by its address on another machine: https://host/run.tsr, sftp://host/path/run.tsr")
         ->type_name("FILE");
     addLayoutOption(app, options->request.layout);

@@ -2,11 +2,11 @@
 
 #include "app/data/boundary_value.h"
 #include "app/data/first_view.h"
+#include "app/data/picture_session.h"
 #include "app/session/shown_scene.h"
 #include "app/user_files/import_memory.h"
 
 #include "codec/remote/address.h"
-#include "vis/image/image_io.h"
 #include "volume/base/error.h"
 #include "volume/field/quantities.h"
 #include "volume/import/import.h"
@@ -42,7 +42,7 @@ enum class Kind { Session, Picture, Data };
 
 Kind kindOf(const std::string& path) {
     if (codec::isRemote(path)) return Kind::Data;
-    if (endsWith(path, ".png")) return Kind::Picture;
+    if (namesPicture(path)) return Kind::Picture;
     if (!endsWith(path, ".json")) return Kind::Data;
     if (endsWith(path, ".tessera.json")) return Kind::Session;
     // Other JSON files are sessions (layouts) or the sidecars of raw files.
@@ -91,14 +91,6 @@ Opened openDocument(SessionDocument document, const std::string& folder, const O
 }
 
 } // namespace
-
-std::string sessionTextOfPicture(const std::string& path) {
-    std::map<std::string, std::string> texts;
-    vis::readPng(path, &texts);
-    const auto found = texts.find(vis::kSessionTextKey);
-    if (found == texts.end()) throw Error("this picture contains no session", path);
-    return found->second;
-}
 
 std::vector<std::string> layoutNames() {
     std::set<std::string> names;

@@ -57,9 +57,6 @@ DataRef dataOf(const std::vector<std::string>& paths, const volume::ImportOption
 DataRef dataNamed(const std::vector<std::string>& inputs, const volume::ImportOptions& stated,
                   const Progress& progress = {});
 
-/// The session text inside a PNG of ours. Throws Error when there is none.
-std::string sessionTextOfPicture(const std::string& path);
-
 /// Names of the layouts that ship with the program, and the file of a layout given by name or path. Throws Error.
 std::vector<std::string> layoutNames();
 std::string findLayout(const std::string& nameOrPath);

@@ -25,6 +25,7 @@ bool beginDialog(const char* title, bool& open, float width) {
     ImGui::SetNextWindowSize({width, 0});
     if (!ImGui::BeginPopupModal(title, &open, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoResize))
         return false;
+    keepInView();
     if (escapePressed() && !ImGui::IsWindowAppearing()) open = false; // not by the key that asked
     return true;
 }
@@ -245,9 +246,8 @@ std::optional<PictureRequest> PictureDialog::draw(const Session& session, const 
     drawWhat(session, info);
     const std::optional<PictureRequest> request = drawForm();
     ImGui::Spacing();
-    ImGui::TextDisabled("%s", form_->format == PictureFormat::Png
-                                  ? "The picture contains the session: open it in Tessera to continue from it."
-                                  : "Texts and lines are vectors. A PNG would contain the session as well.");
+    if (form_->format != PictureFormat::Png) ImGui::TextDisabled("Texts and lines are vectors.");
+    ImGui::TextDisabled("The picture contains the session: open it in Tessera to continue from it.");
     const int button = dialogButtons({"Cancel", "Save..."});
     const bool save = button == 1 && request;
     if (button == 0 || save) shown_ = false;

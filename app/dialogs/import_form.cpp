@@ -1,6 +1,7 @@
 #include "app/dialogs/import_form.h"
 
 #include "app/data/open.h"
+#include "app/data/picture_session.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "codec/remote/address.h"
@@ -107,7 +108,7 @@ std::string summary(const std::string& path, const volume::ImportOptions& stated
     std::string name = fs::path(path).filename().string();
     std::transform(name.begin(), name.end(), name.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (name.ends_with(".png")) {
+    if (namesPicture(name)) {
         sessionTextOfPicture(path);
         return "A picture that contains its session.";
     }

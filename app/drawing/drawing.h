@@ -79,6 +79,7 @@ struct VectorPage {
     glm::dvec2 size{0};
     std::vector<shapes::Mark> marks; ///< later ones cover earlier ones
     std::string numbers = {};        ///< where its numbers come from, one line
+    std::string session = {};        ///< as saved, kept inside its file (embedded_session.h); "": none
 };
 
 /// As an SVG file; texts stay texts.

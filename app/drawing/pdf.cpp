@@ -1,5 +1,6 @@
 #include "app/drawing/drawing.h"
 
+#include "app/drawing/embedded_session.h"
 #include "volume/base/error.h"
 
 #include <array>
@@ -166,7 +167,7 @@ std::string pdfOf(const VectorPage& drawing) {
     std::string out;
     Fonts fonts;
     const Surface surface(cairo_pdf_surface_create_for_stream(append, &out, drawing.size.x, drawing.size.y));
-    cairo_pdf_surface_restrict_to_version(surface.get(), CAIRO_PDF_VERSION_1_5);
+    cairo_pdf_surface_restrict_to_version(surface.get(), CAIRO_PDF_VERSION_1_4); // has a cross-reference table
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATOR, "Tessera");
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
     if (!drawing.numbers.empty())
@@ -180,7 +181,7 @@ std::string pdfOf(const VectorPage& drawing) {
     cairo_surface_finish(surface.get());
     if (const cairo_status_t status = cairo_surface_status(surface.get()); status != CAIRO_STATUS_SUCCESS)
         throw MachineError(std::string("no PDF could be made: ") + cairo_status_to_string(status));
-    return out;
+    return drawing.session.empty() ? out : withAttachedSession(std::move(out), drawing.session);
 }
 
 vis::Image imageOf(const VectorPage& drawing, glm::ivec2 pixels) {

@@ -1,5 +1,6 @@
 #include "app/pane/figure.h"
 
+#include "app/drawing/line_pieces.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/ticks.h"
 
@@ -18,6 +19,7 @@ constexpr double kWidth = kLeft + kFigurePlot.x + kRight, kHeight = kTop + kFigu
 
 constexpr glm::vec4 kInk{0.133f, 0.133f, 0.133f, 1}, kFrame{0.267f, 0.267f, 0.267f, 1}, kWhite{1};
 constexpr double kThin = 0.7, kLine = 1.2, kHaloWidth = 1.8; // widths of lines
+constexpr double kDash = 5, kDashPeriod = 8, kDot = 2.2;
 
 class Panel {
 public:
@@ -38,6 +40,7 @@ public:
                                           .angle = each.angle,
                                           .halo = kHaloWidth,
                                           .middle = true}});
+        for (const FigureOutline& each : panel_.outlines) outline(each);
         for (const FigureSeries& series : panel_.series) series.bars ? bars(series) : line(series);
         for (const glm::dvec2& mark : panel_.marks) circle(mark, 4.5, {0, 0, 0, 1}, kLine);
         legend();
@@ -89,6 +92,26 @@ private:
         for (const glm::dvec2& each : values) points.push_back(at(each));
         stroke(points, shapes::kHalo, kHaloWidth);
         stroke(std::move(points), kInk, kThin);
+    }
+    void outline(const FigureOutline& shown) {
+        std::vector<glm::dvec2> points;
+        for (const glm::dvec2& each : shown.points) points.push_back(at(each));
+        if (!points.empty()) points.push_back(points.front());
+        const std::vector<glm::dvec2> frame{{x0_, y1_}, {x1_, y1_}, {x1_, y0_}, {x0_, y0_}};
+        for (std::vector<glm::dvec2>& piece : piecesWithin(points, frame)) {
+            if (!shown.dashed) {
+                stroke(std::move(piece), shown.color, kLine);
+                continue;
+            }
+            DashPattern dashes(kDash, kDashPeriod);
+            for (std::size_t i = 1; i < piece.size(); ++i)
+                dashes.line(piece[i - 1], piece[i], [&](glm::dvec2 a, glm::dvec2 b) {
+                    stroke({a, b}, shown.color, kLine);
+                });
+        }
+        if (!shown.dot) return;
+        const glm::dvec2 dot = at(*shown.dot);
+        if (dot.x >= x0_ && dot.x <= x1_ && dot.y >= y1_ && dot.y <= y0_) circle(*shown.dot, kDot, shown.color);
     }
     void bars(const FigureSeries& series) {
         if (series.points.size() < 2) return;
@@ -203,10 +226,8 @@ void exportMenu(ViewContext& context, ToolRow& tools, const std::string& title,
     if (ImGui::MenuItem("Picture (PNG)...") && context.runCommand) context.runCommand("Save picture...");
     for (const auto& [item, suffix] :
          {std::pair{"Vector graphics (SVG)...", "svg"}, {"Vector graphics (PDF)...", "pdf"}})
-        if (made.figure && ImGui::MenuItem(item))
-            context.exportText(name + "." + suffix, [figure = made.figure, suffix](const Progress& progress) {
-                return fileOf(figure(progress), suffix);
-            });
+        if (made.figure && context.exportFigure && ImGui::MenuItem(item))
+            context.exportFigure(name + "." + suffix, made.figure);
     if (made.csv && ImGui::MenuItem("Copy table (CSV)"))
         context.jobs.start("copy " + title, "Copying " + title,
                            [csv = made.csv](const Progress& progress) -> Jobs::Finish {

@@ -6,6 +6,8 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <optional>
 
 /// Plots as vector graphics and tables, for export.
 namespace tessera::app {
@@ -36,6 +38,14 @@ struct FigureLabel {
     double angle = 0; ///< degrees, clockwise
 };
 
+/// A closed line, in the values of the axes; drawn where it lies between them.
+struct FigureOutline {
+    std::vector<glm::dvec2> points;
+    glm::vec4 color{0, 0, 0, 1};
+    bool dashed = false;
+    std::optional<glm::dvec2> dot = {}; ///< marked
+};
+
 struct FigurePanel {
     std::string title;
     FigureAxis x, y;
@@ -45,6 +55,7 @@ struct FigurePanel {
     std::string note = {};              ///< a second line below the title
     std::vector<std::vector<glm::dvec2>> contours = {};
     std::vector<FigureLabel> labels = {};
+    std::vector<FigureOutline> outlines = {};
 };
 
 /// What is between the axes of a panel, and the height of texts, in points.

@@ -36,6 +36,27 @@ double SpacePlane::distance(glm::dvec3 place) const {
     return glm::dot(normal, place - at);
 }
 
+glm::dvec2 PicturePlane::along(glm::dvec3 place) const {
+    return {glm::dot(place, right), glm::dot(place, up)};
+}
+
+glm::dvec3 PicturePlane::placeAt(glm::dvec2 to) const {
+    const glm::dvec2 from = along(at);
+    return at + right * (to.x - from.x) + up * (to.y - from.y);
+}
+
+SpacePlane PicturePlane::plane() const {
+    return {glm::cross(right, up), at};
+}
+
+PicturePlane planeAcross(int right, int up, int normal, double position) {
+    PicturePlane plane{glm::dvec3(0), glm::dvec3(0), glm::dvec3(0)};
+    plane.at[normal] = position;
+    plane.right[right] = 1;
+    plane.up[up] = 1;
+    return plane;
+}
+
 std::vector<glm::dvec3> planeSection(const SpacePlane& plane, const volume::Box& box) {
     std::vector<glm::dvec3> corners;
     const double tiny = 1e-12 * glm::length(box.size());

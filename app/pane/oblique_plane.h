@@ -28,6 +28,20 @@ struct SpacePlane {
     double distance(glm::dvec3 place) const; ///< positive on the side of the normal
 };
 
+/// A plane with the directions that run to the right and up in its picture; a place in the picture is the distances
+/// from the data's origin along them.
+struct PicturePlane {
+    glm::dvec3 at{0};                       ///< a place in it
+    glm::dvec3 right{1, 0, 0}, up{0, 1, 0}; ///< length 1, at right angles
+
+    glm::dvec2 along(glm::dvec3 place) const; ///< for places of the plane placeAt() is the reverse
+    glm::dvec3 placeAt(glm::dvec2 along) const;
+    SpacePlane plane() const;
+    bool operator==(const PicturePlane&) const = default;
+};
+/// The plane across an axis at a position along it, as the axes `right` and `up` run in its picture.
+PicturePlane planeAcross(int right, int up, int normal, double position);
+
 /// Corners of the part of the plane in the box, in order around it; empty where the plane misses the box.
 std::vector<glm::dvec3> planeSection(const SpacePlane& plane, const volume::Box& box);
 

@@ -66,6 +66,8 @@ struct ViewContext {
     std::function<void(const std::string& command)> runCommand = {};
     /// Asks where to save, then writes what `make` returns, in the background; null in tests.
     std::function<void(const std::string& fileName, std::function<std::string(const Progress&)> make)> exportText = {};
+    /// The same for a figure, with the session as it is then inside its file.
+    std::function<void(const std::string& fileName, std::function<VectorPage(const Progress&)> make)> exportFigure = {};
     /// Receives the exports of a view, once its numbers are available; null if not requested.
     std::function<void(ViewExport)> offerExport = {};
     /// Asks for a file to open, then changes the session by it as an edit; an Error goes to the log. Null in tests.

@@ -129,8 +129,10 @@ std::string vectorSuffix(const std::string& path) {
 void writePicture(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
                   const PictureRequest& request, const std::string& path, const Inspect& inspect) {
     if (const std::string suffix = vectorSuffix(path); !suffix.empty()) {
+        VectorPage page = pageOfRequest(document, sources, std::move(renderer), request, inspect);
+        page.session = printSession(document, path);
         AtomicFile file(path);
-        file.write(fileOf(pageOfRequest(document, sources, std::move(renderer), request, inspect), suffix));
+        file.write(fileOf(page, suffix));
         return file.commit();
     }
     const vis::Image image = renderAndInspect(document, sources, std::move(renderer), request, inspect);
@@ -149,19 +151,25 @@ PictureMaker::PictureMaker(const vis::RendererOptions& options) : impl_(std::mak
 PictureMaker::~PictureMaker() = default;
 
 std::string PictureMaker::exportText(const SessionDocument& document, const Sources& sources, PictureRequest request,
-                                     const std::string& ending, const Progress& progress) {
-    const bool table = ending == "csv";
+                                     const std::string& path, const Progress& progress) {
+    const std::string suffix = vectorSuffix(path);
+    const bool table = suffix.empty();
     std::string text;
     request.controls = true;
     renderAndInspect(document, sources, impl_->renderer, request, [&](const Workbench& workbench) {
         const ViewExport* offered = workbench.exported(request.pane);
         if (offered && table && offered->csv) text = offered->csv(progress);
-        if (offered && !table && offered->figure) text = fileOf(offered->figure(progress), ending);
+        if (!offered || table || !offered->figure) return;
+        VectorPage page = offered->figure(progress);
+        page.session = printSession(document, path);
+        text = fileOf(page, suffix);
     });
     if (!text.empty()) return text;
-    if (table) throw Error("has no " + ending + " of what it shows", "--view", request.pane);
+    if (table) throw Error("has no table of what it shows", "--view", request.pane);
     request.controls = false;
-    return fileOf(pageOfRequest(document, sources, impl_->renderer, request, {}), ending);
+    VectorPage page = pageOfRequest(document, sources, impl_->renderer, request, {});
+    page.session = printSession(document, path);
+    return fileOf(page, suffix);
 }
 
 VectorPage PictureMaker::page(const SessionDocument& document, const Sources& sources, const PictureRequest& request) {

@@ -10,7 +10,7 @@ namespace tessera::app {
 using Inspect = std::function<void(const Workbench&)>;
 
 /// Writes a picture of a session to a file, in the GL context that is current: what the window would show. Its suffix
-/// says the form; a PNG contains the session. Throws Error, MachineError.
+/// says the form; its file contains the session. Throws Error, MachineError.
 void writePicture(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
                   const PictureRequest& request, const std::string& path, const Inspect& inspect = {});
 
@@ -23,10 +23,10 @@ public:
     PictureMaker(const PictureMaker&) = delete;
     PictureMaker& operator=(const PictureMaker&) = delete;
 
-    /// What Export in the view of request.pane writes: "svg", "pdf" or "csv"; figures of views that have none of their
-    /// own are their page. Throws Error where there is no table.
+    /// What Export in the view of request.pane writes to a path: a figure (.svg, .pdf), which contains the session,
+    /// else a table; figures of views that have none of their own are their page. Throws Error where there is no table.
     std::string exportText(const SessionDocument& document, const Sources& sources, PictureRequest request,
-                           const std::string& ending, const Progress& progress = {});
+                           const std::string& path, const Progress& progress = {});
 
     /// What render() would draw, as vector graphics.
     VectorPage page(const SessionDocument& document, const Sources& sources, const PictureRequest& request);

@@ -3,6 +3,7 @@
 #include "app/pane/axis_label.h"
 #include "app/pane/figure.h"
 #include "app/pane/view_parts.h"
+#include "app/ui/fitted_text.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "volume/field/quantities.h"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <imgui.h>
+#include <numeric>
 
 namespace tessera::app {
 
@@ -95,6 +97,27 @@ void drawFlowing(const std::vector<std::string>& texts) {
     }
 }
 
+constexpr float kColumnWeights[] = {1.4f, 1, 1, 1};
+
+/// How many columns of the table have room for whole names and numbers: all, those without the region, or none. What
+/// labels say may be cut off.
+std::size_t columnsThatFit(const volume::DatasetInfo& info, const Readout& readout,
+                           const std::vector<std::vector<std::string>>& rows, std::size_t columns) {
+    const float padding = 2 * ImGui::GetStyle().CellPadding.x, room = ImGui::GetContentRegionAvail().x - padding;
+    for (std::size_t count = columns; count >= 3; --count) {
+        const float all = std::accumulate(kColumnWeights, kColumnWeights + count, 0.0f);
+        bool fits = true;
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            const auto parameter = static_cast<std::size_t>(readout.channels[i].parameter);
+            if (info.parameters[parameter].categorical) continue;
+            for (std::size_t c = 0; c < count; ++c)
+                fits = fits && ImGui::CalcTextSize(rows[i][c].c_str()).x + padding <= room * kColumnWeights[c] / all;
+        }
+        if (fits) return count;
+    }
+    return 0;
+}
+
 } // namespace
 
 float readoutHeight(const Readout& readout) {
@@ -119,7 +142,10 @@ void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
         at.insert(at.begin(), text);
     }
     drawFlowing(at);
-    if (compact) {
+    const std::vector<std::string> heads = readoutHeads(info);
+    const std::vector<std::vector<std::string>> rows = readoutRows(info, readout);
+    const std::size_t columns = columnsThatFit(info, readout, rows, heads.size());
+    if (compact || columns == 0) {
         std::vector<std::string> values;
         for (std::size_t i = 0; i < readout.channels.size() && i < readout.values.size(); ++i) {
             const volume::Channel& channel = readout.channels[i];
@@ -143,29 +169,34 @@ void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
     ImGui::PopStyleColor();
     ImGui::PopTextWrapPos();
 
-    const std::vector<std::string> heads = readoutHeads(info);
-    if (!ImGui::BeginTable("values", static_cast<int>(heads.size()),
+    // ImGui keeps the widths of a table: one for each number of columns.
+    const std::string id = "values " + std::to_string(columns);
+    if (!ImGui::BeginTable(id.c_str(), static_cast<int>(columns),
                            ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg | ImGuiTableFlags_PadOuterX))
         return;
-    for (const std::string& head : heads)
-        ImGui::TableSetupColumn(head.c_str(), ImGuiTableColumnFlags_WidthStretch, &head == &heads[0] ? 1.4f : 1);
-    if (heads.size() > 3)
+    for (std::size_t c = 0; c < columns; ++c)
+        ImGui::TableSetupColumn(heads[c].c_str(), ImGuiTableColumnFlags_WidthStretch, kColumnWeights[c]);
+    if (columns > 3)
         tableHeader({"Parameter", "Value", "Nearest", "Region"});
     else
         tableHeader({"Parameter", "Value", "Nearest"});
-    const std::vector<std::vector<std::string>> rows = readoutRows(info, readout);
+    const auto cell = [](const std::string& text, bool faint) {
+        const std::string shown = fitText(text, ImGui::GetContentRegionAvail().x);
+        textRight(shown, faint);
+        tellWhole(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), text, shown);
+    };
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const volume::ProbeValue& value = readout.values[i];
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        ImGui::TextUnformatted(rows[i][0].c_str());
+        fittedText(rows[i][0]);
         ImGui::TableNextColumn();
-        textRight(rows[i][1], !value.interpolated);
+        cell(rows[i][1], !value.interpolated);
         ImGui::TableNextColumn();
-        textRight(rows[i][2], !value.nearest);
-        if (heads.size() < 4) continue;
+        cell(rows[i][2], !value.nearest);
+        if (columns < 4) continue;
         ImGui::TableNextColumn();
-        textRight(rows[i][3], true);
+        cell(rows[i][3], true);
     }
     ImGui::EndTable();
 }

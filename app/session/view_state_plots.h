@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/session/contour_settings.h"
 #include "app/session/section_settings.h"
 #include "app/session/view_kind.h"
 #include "volume/base/describe.h"
@@ -185,7 +186,7 @@ struct ObliqueView {
     static constexpr std::string_view kType = "oblique";
     std::string channel;         ///< "" = the channel of the first layer
     glm::dvec3 normal{-1, 0, 1}; ///< in true proportions, of any length
-    int contours = 0;
+    ContourSettings lines;
     bool inSpace = true;
     bool showReadout = true;
     bool operator==(const ObliqueView&) const = default;
@@ -196,9 +197,7 @@ struct ObliqueView {
                                      .doc = "Normal of the plane through the cross-hair, in true proportions; the "
                                             "plane is seen from the side that it points to",
                                      .range = Range{-1, 1}});
-        visit(self.contours,
-              FieldInfo{
-                  .key = "contours", .unit = "", .doc = "Number of contour lines, 0 = none", .range = Range{0, 50}});
+        ContourSettings::describe(self.lines, visit);
         visit(self.inSpace, FieldInfo{.key = "inSpace", .unit = "", .doc = "Draw the slice in the volume views too"});
         visit(self.showReadout,
               FieldInfo{.key = "readout", .unit = "", .doc = "List the value of every parameter at the cross-hair"});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/session/contour_settings.h"
 #include "app/session/view_kind.h"
 #include "vis/scene/camera.h"
 #include "vis/scene/layers.h"
@@ -73,24 +74,12 @@ DrawView<VolumeView> drawVolumeView;
 struct SlicesView {
     static constexpr std::string_view kType = "slices";
     std::string channel; ///< "" = the channel of the first layer
-    int contours = 0;
-    std::string contourOf; ///< "" = the channel shown
-    bool contourValues = false;
+    ContourSettings lines;
     bool showReadout = true;
     bool operator==(const SlicesView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
-        visit(self.contours,
-              FieldInfo{
-                  .key = "contours", .unit = "", .doc = "Number of contour lines, 0 = none", .range = Range{0, 50}});
-        visit(self.contourOf,
-              FieldInfo{.key = "contourOf",
-                        .unit = "",
-                        .doc = "Parameter of the contour lines, drawn at round values; empty: the parameter shown",
-                        .refersTo = "optionalChannel"});
-        visit(
-            self.contourValues,
-            FieldInfo{.key = "contourValues", .unit = "", .doc = "Draw the lines at round values, labelled with them"});
+        ContourSettings::describe(self.lines, visit);
         visit(self.showReadout,
               FieldInfo{.key = "readout", .unit = "", .doc = "List the value of every parameter at the cross-hair"});
     }

@@ -18,12 +18,6 @@ constexpr glm::vec3 kBrushColors[] = {{1.0f, 0.69f, 0.25f}, {0.7f, 0.05f, 1.0f},
                                       {0.2f, 0.55f, 0.5f},  {0.25f, 0.8f, 0.75f}, {0.95f, 0.25f, 0.0f},
                                       {0.95f, 1.0f, 0.1f},  {0.65f, 0.55f, 0.95f}};
 
-/// A colour of the session on the theme's background: light ones vanish on white.
-ImU32 onTheme(glm::vec3 color, float alpha = 1) {
-    color *= darkTheme() ? 1.0f : 0.7f;
-    return ImGui::ColorConvertFloat4ToU32({color.r, color.g, color.b, alpha});
-}
-
 float reach() {
     return std::max(4.0f, em() * 0.35f);
 }
@@ -258,8 +252,12 @@ glm::vec3 newBrushColor(const vis::Selection& selection) {
     return kBrushColors[selection.brushes.size() % std::size(kBrushColors)];
 }
 
+ImU32 brushColor(glm::vec3 color, float alpha) {
+    color *= darkTheme() ? 1.0f : 0.7f;
+    return ImGui::ColorConvertFloat4ToU32({color.r, color.g, color.b, alpha});
+}
 ImU32 brushColor(const vis::Brush& brush, float alpha) {
-    return onTheme(brush.color, alpha);
+    return brushColor(brush.color, alpha);
 }
 
 ImU32 focusColor(const Session& session) {
@@ -270,7 +268,7 @@ ImU32 focusColor(const Session& session) {
     if (!session.selection.active())
         for (const vis::Lens& lens : session.lenses)
             if (lens.enabled && lens.marks) colors.push_back(lens.color);
-    return colors.size() == 1 ? onTheme(colors.front()) : plotColors().focus;
+    return colors.size() == 1 ? brushColor(colors.front()) : plotColors().focus;
 }
 
 } // namespace tessera::app

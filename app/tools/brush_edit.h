@@ -57,8 +57,9 @@ void drawBrushes(ImDrawList& draw, const vis::Selection& selection, const PlotFr
 std::string newBrushName(const vis::Selection& selection, const std::string& base);
 /// A colour that no brush of the selection has yet, while there are some.
 glm::vec3 newBrushColor(const vis::Selection& selection);
-/// A brush's colour on the theme's background.
+/// A brush's colour on the theme's background: light ones vanish on white.
 ImU32 brushColor(const vis::Brush& brush, float alpha = 1);
+ImU32 brushColor(glm::vec3 color, float alpha = 1);
 /// The colour of marked samples in plots: that of the only brush that adds to the selection, or of the only lens that
 /// marks if nothing is brushed; a common one for several.
 ImU32 focusColor(const Session& session);

@@ -17,8 +17,6 @@ namespace tessera::app {
 
 namespace {
 
-constexpr int kParts = 48; ///< of a circle
-
 /// One line that says what a region holds.
 std::string regionText(const volume::DatasetInfo& info, const vis::Region& region) {
     if (const auto* range = std::get_if<vis::RangeRegion>(&region)) {
@@ -172,6 +170,8 @@ void drawBrushList(ViewContext& context) {
     for (std::size_t i = 0; i < selection.brushes.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
         const auto unfold = added ? std::optional(i == *added) : std::nullopt; // the newest is the one to set up
+        // Those in space come by a command; a drag in a plot leaves the list where it is.
+        if (i == added && !context.headless && spaceShape(selection.brushes[i])) ImGui::SetScrollHereY(0.1f);
         if (drawBrush(context, selection.brushes[i], i, unfold)) removed = static_cast<int>(i);
         ImGui::PopID();
     }
@@ -252,9 +252,11 @@ void addSpaceBrush(Session& session, const volume::DatasetInfo& info, bool box) 
 }
 
 void drawBrushMenu(ViewContext& context) {
+    const std::size_t before = context.session.selection.brushes.size();
     if (ImGui::MenuItem("Brush a sphere at the cross-hair"))
         addSpaceBrush(context.session, context.source->info(), false);
     if (ImGui::MenuItem("Brush a box at the cross-hair")) addSpaceBrush(context.session, context.source->info(), true);
+    if (context.session.selection.brushes.size() > before) showLists(context.session);
     if (ImGui::MenuItem("Clear brushes", "Esc", false, !context.session.selection.brushes.empty()))
         context.session.selection.brushes.clear();
 }
@@ -269,29 +271,6 @@ void drawSpaceBrushes(ImDrawList& draw, const SpaceFrame& frame, const vis::Sele
             const auto from = frame.pixel(a), to = frame.pixel(b);
             if (from && to) draw.AddLine(*from, *to, color, std::max(1.0f, em() * 0.08f));
         }
-    }
-}
-
-void drawBrushSections(ImDrawList& draw, const PlotFrame& frame, const vis::Selection& selection, int right, int up,
-                       int normal, double at, glm::dvec2 perUnit) {
-    for (const vis::Brush& brush : selection.brushes) {
-        const auto shape = spaceShape(brush);
-        if (!shape) continue;
-        const double away = std::abs(at - shape->center[normal]) / shape->radius[normal];
-        if (away > 1) continue;
-        const double share = shape->box ? 1 : std::sqrt(1 - away * away);
-        const ImU32 color = brushColor(brush, brush.enabled ? 0.9f : 0.35f);
-        std::vector<ImVec2> outline;
-        const int parts = shape->box ? 4 : kParts;
-        for (int i = 0; i < parts; ++i) {
-            const double angle = 2 * 3.14159265358979 * (i + 0.5) / parts;
-            const double reach = shape->box ? std::sqrt(2.0) : share;
-            outline.push_back(
-                frame.pixel((shape->center[right] + shape->radius[right] * reach * std::cos(angle)) * perUnit.x,
-                            (shape->center[up] + shape->radius[up] * reach * std::sin(angle)) * perUnit.y));
-        }
-        draw.AddPolyline(outline.data(), static_cast<int>(outline.size()), color, ImDrawFlags_Closed,
-                         std::max(1.0f, em() * 0.1f));
     }
 }
 

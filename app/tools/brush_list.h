@@ -25,9 +25,4 @@ void drawBrushMenu(ViewContext& context);
 /// Wire outlines of the brushes in space.
 void drawSpaceBrushes(ImDrawList& draw, const SpaceFrame& frame, const vis::Selection& selection);
 
-/// Their sections with a plane perpendicular to an axis at `at`; the frame's values are positions along the axes
-/// `right` and `up` times the factors.
-void drawBrushSections(ImDrawList& draw, const PlotFrame& frame, const vis::Selection& selection, int right, int up,
-                       int normal, double at, glm::dvec2 perUnit);
-
 } // namespace tessera::app

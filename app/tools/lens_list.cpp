@@ -255,10 +255,17 @@ void removeLens(Session& session, std::size_t index) {
     });
 }
 
+void showLists(Session& session) {
+    if (!session.dock.maximised.empty()) return;
+    for (const auto& [pane, view] : session.views)
+        if (std::holds_alternative<LayersView>(view)) return showPane(session.dock, pane);
+}
+
 void drawLensMenu(ViewContext& context) {
     Session& session = context.session;
     const volume::DatasetInfo& info = context.source->info();
     const auto channels = info.channels();
+    const std::size_t before = session.lenses.size();
     const auto each = [&](const auto& add) {
         for (const int channel : comparedChannels(info)) {
             const volume::Channel& own = channels[static_cast<std::size_t>(channel)];
@@ -282,6 +289,7 @@ void drawLensMenu(ViewContext& context) {
                                              "Lens: suppress", "Lens: magnify",   "Lens: brushes inside"};
     for (std::size_t i = 0; i < std::size(kItems); ++i)
         if (ImGui::MenuItem(kItems[i])) addLens(session, info, static_cast<vis::LensEffect>(i));
+    if (session.lenses.size() != before) showLists(session);
 }
 
 bool chooseLens(const char* id, const Session& session, std::string& value, const char* none) {
@@ -306,6 +314,7 @@ void drawLensList(ViewContext& context, const std::string& pane, LensStatistics&
     for (std::size_t i = 0; i < session.lenses.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
         const auto unfold = added ? std::optional(i == *added) : std::nullopt; // the newest is the one to set up
+        if (i == added && !context.headless) ImGui::SetScrollHereY(0.1f); // pictures show the same of the same session
         if (const int dropped = drawGrip(context, session.lenses[i], i); dropped >= 0) {
             from = static_cast<std::size_t>(dropped);
             to = i;

@@ -19,6 +19,10 @@ void drawLensList(ViewContext& context, const std::string& pane, LensStatistics&
 /// A lens of an effect around the cursor, with a name and colour of its own, that fits the shown box.
 vis::Lens newLens(const Session& session, const volume::DatasetInfo& info, vis::LensEffect effect);
 
+/// Brings the list of layers, lenses and brushes to the front, so that what was added can be set up; not over a pane
+/// that fills the window.
+void showLists(Session& session);
+
 /// Adds one of these.
 void addLens(Session& session, const volume::DatasetInfo& info, vis::LensEffect effect);
 

@@ -1,9 +1,10 @@
 #pragma once
 
+#include "app/drawing/line_pieces.h"
 #include "app/pane/axes3d.h"
 #include "app/pane/view_context.h"
 
-/// Outlines of lenses in space, and their sections in slices.
+/// Outlines of lenses in space; their sections with planes are in plane_sections.h.
 namespace tessera::app {
 
 /// Pixel of a world point; nothing behind the eye.
@@ -12,12 +13,27 @@ std::optional<ImVec2> worldPixel(const SpaceFrame& frame, glm::dvec3 world);
 /// Outlines of the enabled lenses, fainter behind their middle; lens `active` (-1: none) is drawn stronger.
 void drawLenses(ImDrawList& draw, const SpaceFrame& frame, const Session& session, int active);
 
-/// The section of a lens with a plane perpendicular to an axis: world points around it, none where it misses.
-std::vector<glm::dvec3> lensSection(const vis::PlacedLens& lens, int right, int up, int normal, double at);
+/// The colour of a lens's lines.
+ImU32 lensColor(glm::vec3 color, float alpha);
 
-/// Sections of the enabled lenses with the plane at `at` (physical); the frame's values are physical positions along
-/// the axes `right` and `up` times the factors.
-void drawLensSections(ImDrawList& draw, const PlotFrame& frame, const Session& session, const volume::DatasetInfo& info,
-                      int right, int up, int normal, double at, glm::dvec2 perUnit);
+/// Joined lines as dashes, so that a lens looks unlike a brush in space, whose lines are whole.
+class LensDashes {
+public:
+    LensDashes(ImDrawList& draw, float width) : draw_(draw), width_(width), pattern_(em() * 0.55, em() * 0.9) {}
+    void line(ImVec2 from, ImVec2 to, ImU32 color);
+
+private:
+    ImDrawList& draw_;
+    float width_;
+    DashPattern pattern_;
+};
+
+/// Calls `each(index, lens, placed)` for the lenses that act.
+template <class Each> void eachLens(const Session& session, const vis::WorldFrame& world, const Each& each) {
+    const auto placed = vis::placeLenses(session.lenses, world, session.camera, session.cursor);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < session.lenses.size() && next < placed.size(); ++i)
+        if (session.lenses[i].enabled) each(static_cast<int>(i), session.lenses[i], placed[next++]);
+}
 
 } // namespace tessera::app

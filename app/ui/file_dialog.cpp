@@ -291,6 +291,7 @@ std::optional<FileDialog::Answer> FileDialog::draw() {
         shown_ = false;
         return {};
     }
+    keepInView();
     // The folders of the path as buttons.
     std::string into;
     fs::path walked;
@@ -331,6 +332,17 @@ std::optional<FileDialog::Answer> FileDialog::draw() {
     }
     ImGui::EndPopup();
     return answer;
+}
+
+void keepInView() {
+    const ImGuiViewport& viewport = *ImGui::GetMainViewport();
+    const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    const auto kept = [](float place, float own, float lo, float all) {
+        return std::max(lo, std::min(place, lo + all - own));
+    };
+    const ImVec2 to{kept(at.x, size.x, viewport.Pos.x, viewport.Size.x),
+                    kept(at.y, size.y, viewport.Pos.y, viewport.Size.y)};
+    if (to.x != at.x || to.y != at.y) ImGui::SetWindowPos(to);
 }
 
 } // namespace tessera::app

@@ -3,6 +3,7 @@
 #include "app/session/shown_scene.h"
 #include "app/ui/keys.h"
 #include "app/views/data/derived_list.h"
+#include "app/workbench/whole_box.h"
 #include "app/workbench/workbench.h"
 #include "app/workbench/workbench_commands.h"
 #include "volume/base/error.h"
@@ -16,8 +17,30 @@ namespace tessera::app {
 
 namespace {
 
-/// Opens a view of the data in space to the right of the first volume view, or closes it.
-void showSpaceBeside(Session& session, bool wanted) {
+/// The panes of volume views, those of the data in space beside a plane of theirs last.
+std::vector<std::string> volumePanes(const Session& session) {
+    std::vector<std::string> panes, inSpace;
+    for (const auto& [pane, view] : session.views)
+        if (const auto* volume = std::get_if<VolumeView>(&view)) (volume->inSpace ? inSpace : panes).push_back(pane);
+    panes.insert(panes.end(), inSpace.begin(), inSpace.end());
+    return panes;
+}
+
+/// Where a pane beside a volume view leaves the box larger in both: to its right or below it.
+DockSide roomierSide(const Session& session, const std::string& pane, const std::string& beside,
+                     const vis::WorldFrame& world, float scale) {
+    const auto distance = [&](DockSide side) {
+        Session tried = session;
+        insertPane(tried.dock, pane, stackWith(tried.dock.root, beside), side);
+        fitToPane(tried, beside, world, scale);
+        const VolumeView* const view = volumeView(tried, beside);
+        return view->camera ? view->camera->distance : tried.camera.distance;
+    };
+    return distance(DockSide::Bottom) < distance(DockSide::Right) ? DockSide::Bottom : DockSide::Right;
+}
+
+/// Opens a view of the data in space beside the first volume view, or closes it.
+void showSpaceBeside(Session& session, bool wanted, const vis::WorldFrame& world, float scale) {
     const auto inSpace = [](const auto& view) {
         const auto* volume = std::get_if<VolumeView>(&view.second);
         return volume && volume->inSpace;
@@ -34,8 +57,9 @@ void showSpaceBeside(Session& session, bool wanted) {
     VolumeView view = std::get<VolumeView>(first->second);
     view.inSpace = true;
     const std::string pane = addView(session, view);
-    if (const int id = stackWith(session.dock.root, beside)) insertPane(session.dock, pane, id, DockSide::Right);
     session.dock.maximised.clear();
+    if (const int id = stackWith(session.dock.root, beside))
+        insertPane(session.dock, pane, id, roomierSide(session, pane, beside, world, scale));
 }
 
 std::vector<Command> historyCommands(Workbench& workbench) {
@@ -151,7 +175,15 @@ void toggleTimeAlong(Workbench& workbench, volume::SpaceAxis axis) {
     const volume::Box& box = workbench.document().info().bounds;
     const int a = static_cast<int>(axis);
     if (!shown) data.timeAxis = {axis, (workbench.session().cursor[a] - box.lo[a]) / box.size()[a]};
-    showSpaceBeside(workbench.session(), data.timeAxis.has_value());
+    // Half the room, or twice as much, for the same box: it has the same extent in space and over time.
+    Session& session = workbench.session();
+    const float scale = workbench.look().scale();
+    const vis::WorldFrame world = vis::worldFrame(box, session.stretch);
+    const std::vector<std::string> panes = volumePanes(session);
+    const bool whole = !panes.empty() && seesWholeBox(session, panes.front(), world, scale);
+    showSpaceBeside(session, data.timeAxis.has_value(), world, scale);
+    if (whole)
+        for (const std::string& pane : volumePanes(session)) fitToPane(session, pane, world, scale);
     workbench.data().show(data, "Time along an axis");
 }
 

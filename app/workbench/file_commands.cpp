@@ -55,7 +55,7 @@ std::vector<Command> fileCommands(Workbench& workbench) {
     const auto loaded = [&workbench] { return workbench.document().loaded(); };
     return {{.menu = "File",
              .name = "Open...",
-             .help = "Open a session, an archive, a PNG exported by Tessera, or data files",
+             .help = "Open a session, an archive, a picture exported by Tessera, or data files",
              .words = "load import read file data",
              .shortcut = {.key = 'O', .ctrl = true},
              .run =
@@ -97,7 +97,7 @@ std::vector<Command> fileCommands(Workbench& workbench) {
              .checked = [&workbench] { return workbench.session().data.other.has_value(); }},
             {.menu = "File",
              .name = "-Save picture...",
-             .help = "Save the window, one view, or several as a figure: PNG, which contains the session, SVG or PDF",
+             .help = "Save the window, one view, or several as a figure: PNG, SVG or PDF, which contain the session",
              .words = "screenshot image png export figure print capture",
              .shortcut = {.key = key::kF12},
              .run = [&workbench] { workbench.pictureDialog().show(workbench.panes().current(workbench.session())); },

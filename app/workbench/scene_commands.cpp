@@ -31,6 +31,7 @@ std::vector<Command> addingCommands(Workbench& workbench) {
                                     Session& session = workbench.session();
                                     const ShownScene scene(session, volumePane(session));
                                     add(session, workbench.document().info());
+                                    showLists(session);
                                 },
                             .enabled = std::move(enabled)});
     };

@@ -4,6 +4,7 @@
 #include "app/session/shown_scene.h"
 #include "app/ui/dock_layout.h"
 #include "app/ui/time_text.h"
+#include "app/workbench/whole_box.h"
 #include "app/workbench/workbench.h"
 #include "app/workbench/workbench_commands.h"
 
@@ -48,36 +49,6 @@ std::vector<Command> linkCommands(Workbench& workbench) {
 constexpr std::size_t kMostMultiples = 9;
 constexpr float kLeastCell = 66000; ///< square design pixels of a view among many
 
-/// Size of a part of the dock in the window, in pixels.
-ImVec2 sizeOf(const Session& session, const DockNode& part, float scale) {
-    DockTree tree = session.dock;
-    const auto rects = layoutDock(tree, {{0, 0}, ImGui::GetMainViewport()->Size}, scale).rects;
-    ImVec2 lo{1e9f, 1e9f}, hi{-1e9f, -1e9f};
-    const std::function<void(const DockNode&)> add = [&](const DockNode& node) {
-        if (const auto rect = rects.find(node.id); rect != rects.end()) {
-            lo = {std::min(lo.x, rect->second.lo.x), std::min(lo.y, rect->second.lo.y)};
-            hi = {std::max(hi.x, rect->second.hi.x), std::max(hi.y, rect->second.hi.y)};
-        }
-        for (const DockNode& child : node.children) add(child);
-    };
-    add(part);
-    return hi.x > lo.x && hi.y > lo.y ? ImVec2{hi.x - lo.x, hi.y - lo.y} : ImGui::GetMainViewport()->Size;
-}
-
-/// Half the width and height of what the box covers of a picture of height 2 around its middle.
-glm::dvec2 boxExtent(const vis::Camera& camera, const vis::WorldFrame& world) {
-    const glm::dmat4 toClip = vis::projectionMatrix(camera, 1) * vis::viewMatrix(camera);
-    glm::dvec2 extent(0);
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 at =
-            world.halfSize * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-        const glm::dvec4 clip = toClip * glm::dvec4(at, 1);
-        if (!(clip.w > 0)) return glm::dvec2(1e9); // behind the eye
-        extent = glm::max(extent, glm::abs(glm::dvec2(clip) / clip.w));
-    }
-    return extent;
-}
-
 /// Shows the views in place of the volume view clicked last, as one step; what was wholly visible before stays so.
 void showMultiples(Workbench& workbench, std::vector<VolumeView> views, Session session, const std::string& step) {
     const float scale = workbench.look().scale();
@@ -88,15 +59,11 @@ void showMultiples(Workbench& workbench, std::vector<VolumeView> views, Session 
     const DockNode* const place = placeOfMultiples(session, from);
     const ImVec2 size = place ? sizeOf(session, *place, scale) : ImGui::GetMainViewport()->Size;
     const double aspect = double(size.x / size.y), object = std::clamp(extent.x / extent.y, 0.5, 3.0);
-    DockNode stack;
-    stack.id = stackWith(session.dock.root, from);
-    const ImVec2 before = sizeOf(session, stack, scale);
-    const bool wasWhole = extent.y <= 1 && extent.x * double(before.y) <= double(before.x);
+    const bool wasWhole = seesWholeBox(session, from, world, scale);
     const int count = static_cast<int>(views.size());
     makeMultiples(session, from, std::move(views), aspect, object);
     const double columns = gridColumns(count, aspect, object), rows = std::ceil(count / columns);
-    const double strip = 24 * double(scale); // of tabs
-    const double cell = double(size.x) / columns / std::max(1.0, double(size.y) / rows - strip);
+    const double cell = double(size.x) / columns / std::max(1.0, double(size.y) / rows - kTabStrip * double(scale));
     if (wasWhole) vis::fit(session.camera, world, cell);
     workbench.document().replace(std::move(session), step);
 }

@@ -1,5 +1,6 @@
 #include "app/workbench/workbench.h"
 
+#include "app/drawing/drawing.h"
 #include "app/user_files/import_memory.h"
 #include "app/workbench/status_bar.h"
 #include "app/workbench/workbench_commands.h"
@@ -187,6 +188,14 @@ void Workbench::exportText(const std::string& path, std::function<std::string(co
                 });
 }
 
+void Workbench::exportFigure(const std::string& path, std::function<VectorPage(const Progress&)> make) {
+    exportText(path, [path, make = std::move(make), shown = document_.snapshot()](const Progress& progress) {
+        VectorPage page = make(progress);
+        page.session = printSession(shown, path);
+        return fileOf(page, path.ends_with(".pdf") ? "pdf" : "svg");
+    });
+}
+
 void Workbench::requestQuit() {
     leave([this] { quit_ = true; });
 }
@@ -254,6 +263,12 @@ ViewContext Workbench::viewContext() {
                     const auto dot = name.rfind('.');
                     files_.askSave("Export", name, dot == std::string::npos ? "" : name.substr(dot),
                                    [this, make = std::move(make)](const std::string& path) { exportText(path, make); });
+                },
+            .exportFigure =
+                [this](const std::string& name, std::function<VectorPage(const Progress&)> make) {
+                    files_.askSave(
+                        "Export", name, fs::path(name).extension().string(),
+                        [this, make = std::move(make)](const std::string& path) { exportFigure(path, make); });
                 },
             .askFile =
                 [this](const std::string& title, std::function<void(Session&, const std::string&)> take) {

@@ -124,6 +124,7 @@ private:
     void saveThen(std::function<void()> then);
     bool saveTo(const std::string& path);
     void exportText(const std::string& path, std::function<std::string(const Progress&)> make);
+    void exportFigure(const std::string& path, std::function<VectorPage(const Progress&)> make);
 
     double now() const; ///< s
     ViewContext viewContext();

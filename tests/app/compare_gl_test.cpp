@@ -1,6 +1,8 @@
 #include "app/edits/compare.h"
 #include "app/platform/headless.h"
+#include "app/views/compare/compare_pictures.h"
 #include "app/views/compare/compare_view.h"
+#include "tests/app/views_fixture.h"
 #include "volume/base/error.h"
 #include "volume/sources/memory_source.h"
 #include "volume/synthetic/models.h"
@@ -180,6 +182,40 @@ TEST(CompareView, ValuesDifferInTheirUnit) {
     compared.draw({800, 400});
     EXPECT_FALSE(compared.rows[1].data);
     EXPECT_TRUE(compared.rows[1].measured);
+}
+
+struct CompareNumbers : ViewsTest {};
+
+/// Other variants in the same places, whose data are not opened yet, have no numbers: not those of the ones before.
+TEST_F(CompareNumbers, AreNotThoseOfTheVariantsBefore) {
+    show(fuelCell(volume::LatticeKind::CC));
+    session.layers = {{"T", true, vis::VolumeLayer{.channel = "T", .shaded = false}}};
+    session.render.samples = 1;
+    ComparePictures pictures;
+    std::vector<CompareRow> rows;
+    const auto drawn = [&](const std::vector<CompareVariant>& variants, bool draws) {
+        frame([&] {
+            ViewContext context{session, source, renderer, jobs, caches};
+            context.headless = true;
+            pictures.prepare(context, variants);
+            if (draws) pictures.draw(context, "compare", 0, {120, 90}, false);
+            rows = pictures.rows(context, 0);
+        });
+        jobs.wait();
+    };
+    const std::vector<CompareVariant> before{{"fine", {}}, {"coarse", {{"/render/step", "3"}}}};
+    for (int i = 0; i < 3; ++i) drawn(before, true);
+    ASSERT_EQ(rows.size(), 2u);
+    ASSERT_TRUE(rows[1].measured);
+    EXPECT_GT(rows[1].rmse, 0);
+    EXPECT_GT(rows[1].samples, 0);
+    drawn({{"fine", {}}, {"lossless", {{"/render/step", "0.5"}}}}, false);
+    EXPECT_FALSE(rows[1].measured);
+    EXPECT_EQ(rows[1].milliseconds, 0);
+    EXPECT_EQ(rows[1].samples, 0);
+    EXPECT_GT(rows[0].samples, 0) << "the one that stays keeps its own";
+    for (int i = 0; i < 3; ++i) drawn(before, true);
+    EXPECT_TRUE(rows[1].measured) << "and they come again";
 }
 
 } // namespace

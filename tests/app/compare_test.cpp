@@ -1,6 +1,7 @@
 #include "app/edits/compare.h"
 
 #include "app/history/history.h"
+#include "app/history/session_file.h"
 #include "tests/app/table_text.h"
 #include "volume/base/error.h"
 
@@ -36,6 +37,18 @@ TEST(Compare, AVariantIsTheSessionWithItsChanges) {
     back.time = session.time;
     EXPECT_EQ(back, session) << "nothing else differs";
     EXPECT_EQ(variantSession(session, {}), session);
+}
+
+TEST(Compare, TheLayoutOfCompressionsPacksAnyData) {
+    const Session layout = loadSession(std::string(TESSERA_SOURCE_DIR) + "/layouts/compare_compression.json").session;
+    Session own = layout;
+    own.data = {};
+    own.data.model = "casting"; // as they were opened, not packed
+    for (const CompareVariant& variant : std::get<CompareView>(layout.views.at("compare")).variants) {
+        const std::optional<codec::PackOptions> packed = variantSession(own, variant).data.packed;
+        ASSERT_EQ(packed.has_value(), variant.name != "as computed") << variant.name;
+        EXPECT_EQ(packed && packed->lossless, variant.name == "lossless") << variant.name;
+    }
 }
 
 TEST(Compare, AChangeThatDoesNotFitSaysWhere) {

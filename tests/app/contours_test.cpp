@@ -44,7 +44,7 @@ struct Page {
     Page() {
         levels = contourLevels({300, 477.5}, 12);
         const volume::Box& box = source->info().bounds;
-        const ContourQuery query{1, {}, box.center().z, {}, levels.values};
+        const ContourQuery query = contourQuery(source->info(), 1, {}, box.center().z, {}, levels.values);
         for (const volume::ContourLine& line : readContours(*source, query).lines) {
             lines.push_back({contourText(line.level, levels.step), {}});
             for (const glm::dvec2& point : line.points) lines.back().points.push_back(onPage(point));
@@ -161,7 +161,7 @@ TEST(Contours, StayInTheirRegion) {
     data.info.parameters[0].ranges = {{-2, 70}};
     const auto source = volume::makeMemorySource(std::move(data), {});
     // 30 lies in neither region, only between them.
-    const ContourQuery query{0, {0, 2, 1}, 9.5, {}, {4, 5, 30, 57}};
+    const ContourQuery query = contourQuery(source->info(), 0, {0, 2, 1}, 9.5, {}, {4, 5, 30, 57});
     const Contours contours = readContours(*source, query);
     std::size_t air = 0, fuel = 0;
     for (const volume::ContourLine& line : contours.lines) {
@@ -182,12 +182,12 @@ TEST(Contours, AreInTheSvgWithTheirValuesAndBothNames) {
     const auto source = twoParameters();
     Session session = defaultSession(source->info(), {});
     SlicesView view;
-    view.contours = 10;
-    view.contourOf = "B";
+    view.lines.count = 10;
+    view.lines.channel = "B";
     const std::string plain = svgOf(slicesDrawing(*source, session, view, 0));
     EXPECT_EQ(plain.find("paint-order"), std::string::npos);
     EXPECT_NE(plain.find("<path"), std::string::npos);
-    view.contourValues = true;
+    view.lines.values = true;
     std::vector<double> told;
     Progress progress;
     progress.report = [&](double fraction, const std::string&) { told.push_back(fraction); };
@@ -218,22 +218,30 @@ TEST(Contours, SettingsAreKeptInASession) {
     const auto source = twoParameters();
     Session session = defaultSession(source->info(), {});
     SlicesView view;
-    view.contours = 7;
-    view.contourOf = "B";
-    view.contourValues = true;
+    view.lines = {7, "B", true};
     session.views["lined"] = view;
+    ObliqueView tilted;
+    tilted.lines = view.lines;
+    session.views["tilted"] = tilted;
     Session back;
     std::vector<JsonIssue> issues;
     fromJson(back, toJson(session), issues, "");
     EXPECT_TRUE(issues.empty());
     EXPECT_EQ(std::get<SlicesView>(back.views.at("lined")), view);
-    EXPECT_EQ(contourChannel(source->info(), view, 0), 1);
-    view.contourOf = "gone";
-    EXPECT_FALSE(contourChannel(source->info(), view, 0));
-    view.contourOf = "";
-    EXPECT_EQ(contourChannel(source->info(), view, 0), 0);
-    view.contours = 0;
-    EXPECT_FALSE(contourChannel(source->info(), view, 0));
+    EXPECT_EQ(std::get<ObliqueView>(back.views.at("tilted")), tilted);
+    EXPECT_EQ(toJson(session)["views"]["tilted"]["contourOf"], "B") << "without a section around them";
+    ContourSettings& lines = view.lines;
+    EXPECT_EQ(contourChannel(source->info(), lines, 0), 1);
+    lines.channel = "gone";
+    EXPECT_FALSE(contourChannel(source->info(), lines, 0));
+    EXPECT_EQ(contourNote(source->info(), lines, drawnContours(session, source->info(), lines, 0)),
+              "no contour lines: there is no gone");
+    lines.channel = "";
+    EXPECT_EQ(contourChannel(source->info(), lines, 0), 0);
+    lines.values = false;
+    EXPECT_FALSE(drawnContours(session, source->info(), lines, 0).channel) << "the renderer draws them";
+    lines.count = 0;
+    EXPECT_FALSE(contourChannel(source->info(), lines, 0));
 }
 
 } // namespace

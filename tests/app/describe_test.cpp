@@ -124,6 +124,7 @@ std::vector<DescribedStruct> everyStruct() {
     std::map<std::string, DescribedStruct> found;
     const Lister list{found};
     list.add<Session>();
+    list.add<ContourSettings>(); // without a section of its own in views of slices
     list.add<PictureForm>();
     list.add<vis::TransferRecipe>();
     list.add<volume::MergeOptions>();

@@ -54,7 +54,7 @@ TEST_F(Dialogs, AboutIsClosedByItsButtonAndItsCross) {
     }
 }
 
-TEST_F(Dialogs, APictureSaysWhetherItHoldsItsSession) {
+TEST_F(Dialogs, APictureSaysThatItHoldsItsSessionAndWhatAreVectors) {
     Session session;
     addView(session, *viewOfKind("volume"));
     PictureDialog dialog;
@@ -68,7 +68,24 @@ TEST_F(Dialogs, APictureSaysWhetherItHoldsItsSession) {
     click(find("PNG").middle(), draw);
     click(find("PDF").middle(), draw);
     EXPECT_THAT(drawnWords(), Contains(vectors));
-    EXPECT_THAT(drawnWords(), Not(Contains(holds)));
+    EXPECT_THAT(drawnWords(), Contains(holds));
+}
+
+TEST_F(Dialogs, StayInAWindowThatBecomesSmaller) {
+    HelpDialogs dialogs;
+    const auto draw = [&] { dialogs.draw({}, fonts, {}); };
+    dialogs.showAbout();
+    frames(4, draw);
+    const DrawnText before = find("Close");
+    frames(2, draw);
+    EXPECT_EQ(find("Close").min.x, before.min.x) << "it stays where it is";
+    const ImVec2 small{before.min.x - 40, before.min.y - 30}; // the button would lie outside
+    ImGui::GetIO().DisplaySize = small;
+    frames(3, draw);
+    const DrawnText after = find("Close");
+    EXPECT_LE(after.max.x, small.x);
+    EXPECT_LE(after.max.y, small.y);
+    EXPECT_GE(find("About Tessera").min.x, 0);
 }
 
 TEST_F(Dialogs, AQuestionForAFileHasItsTitle) {

@@ -1,6 +1,7 @@
 #include "app/pane/axes3d.h"
 #include "app/pane/oblique_plane.h"
 #include "app/tools/camera_hand.h"
+#include "app/views/slices/flat_slice.h"
 #include "tests/app/hands_fixture.h"
 #include "vis/optics/surface_light.h"
 
@@ -246,6 +247,109 @@ TEST_F(TiltedPlaneHands, InTheFlatViewTheCrossHairStaysInThePlaneAndTheWheelMove
     EXPECT_LT(glm::length(session().cursor - start - n * step), 1e-9);
     for (int i = 0; i < 40; ++i) turnWheel(3);
     EXPECT_FALSE(planeSection({n, session().cursor}, planesBox()).empty()) << "not out of the box";
+}
+
+TEST_F(TiltedPlaneHands, ItIsTiltedByNumbersLikeAnySetting) {
+    show(tiltedBy({-0.8, 0, 0.6}), {520, 460});
+    click(inPane({"Tilt"}).GetCenter());
+    ASSERT_TRUE(popup());
+    const ImRect x = item(popup(), {"/normal", "##normal", 0, ""}), y = item(popup(), {"/normal", "##normal", 1, ""});
+    EXPECT_GT(x.GetWidth(), 40) << "readable";
+    drag(x.GetCenter(), within(x, 0.75, 0.5));
+    const glm::dvec3 tilted = view<ObliqueView>().normal;
+    EXPECT_NEAR(tilted.x, 0.5, 0.15);
+    EXPECT_EQ(tilted.z, 0.6);
+    drag(y.GetCenter(), {y.Max.x + 300, y.GetCenter().y});
+    EXPECT_EQ(view<ObliqueView>().normal.y, 1) << "within its range";
+    settle();
+    EXPECT_EQ(steps(), 2u);
+}
+
+/// Pixels of a colour in a part of the picture, each part of the colour within a few steps.
+std::size_t pixelsOf(const vis::Image& image, const ImRect& in, glm::ivec3 color) {
+    std::size_t found = 0;
+    for (int y = int(in.Min.y); y < int(in.Max.y); ++y)
+        for (int x = int(in.Min.x); x < int(in.Max.x); ++x) {
+            const std::uint8_t* pixel = &image.rgba[std::size_t(4 * (y * image.size.x + x))];
+            found += std::abs(pixel[0] - color.r) + std::abs(pixel[1] - color.g) + std::abs(pixel[2] - color.b) < 60;
+        }
+    return found;
+}
+
+TEST_F(TiltedPlaneHands, TheFlatViewShowsWhatCrossesItAndTheValuesOfItsLines) {
+    ObliqueView oblique = tiltedBy({-0.8, 0, 0.6});
+    oblique.channel = "T";
+    oblique.showReadout = false;
+    show(oblique, {520, 460});
+    const ImRect flat = pictures().back();
+    const glm::ivec3 red(230, 0, 230), blue(0, 230, 0);
+    const auto count = [&](glm::ivec3 color) {
+        settle();
+        return pixelsOf(frames->read(), flat, color);
+    };
+    EXPECT_EQ(count(red), 0u);
+    EXPECT_EQ(count(blue), 0u);
+    const glm::dvec3 size = planesBox().size();
+    session().selection.brushes.resize(1);
+    session().selection.brushes[0].color = {1, 0, 1};
+    session().selection.brushes[0].region = vis::SphereRegion{.center = session().cursor, .radius = 0.2 * size};
+    EXPECT_GT(count(red), 60u) << "the border of the brush";
+    session().lenses = {vis::Lens{}};
+    session().lenses[0].color = {0, 1, 0};
+    session().lenses[0].center = session().cursor;
+    session().lenses[0].effect = vis::LensEffect::Magnify; // shows no parameter of its own
+    EXPECT_GT(count(blue), 40u) << "the lens";
+    session().selection.brushes.clear();
+    session().lenses.clear();
+    const auto shown = [&] {
+        settle();
+        return frames->read();
+    };
+    const auto changed = [&](const vis::Image& a, const vis::Image& b) {
+        std::size_t found = 0;
+        for (int y = int(flat.Min.y); y < int(flat.Max.y); ++y)
+            for (int x = int(flat.Min.x); x < int(flat.Max.x); ++x) {
+                const std::size_t at = std::size_t(4 * (y * a.size.x + x));
+                found += std::abs(a.rgba[at] - b.rgba[at]) + std::abs(a.rgba[at + 1] - b.rgba[at + 1]) > 60;
+            }
+        return found;
+    };
+    const vis::Image plain = shown();
+    ContourSettings& lines = view<ObliqueView>().lines;
+    lines = {.count = 8, .channel = "U.x", .values = false};
+    const vis::Image lined = shown();
+    EXPECT_GT(changed(plain, lined), 300u) << "lines of another parameter";
+    lines.values = true;
+    EXPECT_GT(changed(lined, shown()), 100u) << "texts on them";
+    lines.channel.clear();
+    EXPECT_GT(changed(lined, shown()), 300u) << "those of the parameter shown lie elsewhere";
+}
+
+TEST_F(TiltedPlaneHands, InTheFlatViewALensIsDraggedByItsMiddleAlongThePlane) {
+    show(tiltedBy({-0.8, 0, 0.6}), {520, 460}, [](Session& edited) {
+        edited.lenses = {vis::Lens{}};
+        edited.lenses[0].center = edited.cursor;
+    });
+    const ImRect flat = pictures().back();
+    const Session before = session();
+    const FlatSlice slice = flatSlice(before, workbench.source()->info(), {-0.8, 0, 0.6});
+    const auto pixelOf = [&](glm::dvec3 place) {
+        const glm::dvec2 at = slice.along(place);
+        return within(flat, (at.x - slice.x.lo) / (slice.x.hi - slice.x.lo),
+                      1 - (at.y - slice.y.lo) / (slice.y.hi - slice.y.lo));
+    };
+    const ImVec2 from = pixelOf(before.cursor);
+    drag(from, {from.x + 24, from.y - 16});
+    const glm::dvec3 center = session().lenses[0].center;
+    EXPECT_EQ(session().cursor, before.cursor);
+    EXPECT_NEAR(slice.plane.distance(center), 0, 1e-9) << "in the plane it was in";
+    EXPECT_NEAR(pixelOf(center).x, from.x + 24, 2);
+    EXPECT_NEAR(pixelOf(center).y, from.y - 16, 2);
+    settle();
+    EXPECT_EQ(steps(), 1u);
+    drag({from.x - 40, from.y + 30}, {from.x - 30, from.y + 30});
+    EXPECT_NE(session().cursor, before.cursor) << "elsewhere the cross-hair goes along";
+    EXPECT_EQ(session().lenses[0].center, center);
 }
 
 TEST_F(TiltedPlaneHands, TheCommandTiltsEveryObliqueSliceToTheViewer) {

@@ -1,4 +1,5 @@
 #include "app/data/open.h"
+#include "app/drawing/drawing.h"
 #include "app/user_files/state_dir.h"
 #include "vis/image/image_io.h"
 #include "volume/base/error.h"
@@ -189,6 +190,31 @@ TEST_F(OpenTest, APictureCarriesItsSession) {
     vis::writePng(in("plain.png"), image);
     request.paths = {in("plain.png")};
     EXPECT_THROW(open(request), Error);
+}
+
+TEST_F(OpenTest, SoDoFiguresAsSvgAndPdf) {
+    const Opened opened = open(rawRequest(raw("a.raw")));
+    VectorPage page;
+    page.size = {100, 80};
+    for (const char* suffix : {"svg", "pdf"}) {
+        const std::string path = in(std::string("figure.") + suffix);
+        OpenRequest request;
+        request.paths = {path};
+        page.session = printSession(opened.document, path);
+        writeTextAtomically(path, fileOf(page, suffix));
+        const Opened again = open(request);
+        EXPECT_TRUE(again.document.session == opened.document.session) << suffix;
+        EXPECT_TRUE(again.source) << "with its data";
+        EXPECT_EQ(again.sessionPath, "") << "a figure is no place to save a session to";
+        page.session.clear();
+        writeTextAtomically(path, fileOf(page, suffix));
+        try {
+            open(request);
+            ADD_FAILURE() << suffix;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.reason(), "this picture contains no session");
+        }
+    }
 }
 
 TEST_F(OpenTest, ALayoutFitsAnyData) {

@@ -1,5 +1,6 @@
 #include "app/pane/plot.h"
 #include "app/ui/theme.h"
+#include "app/views/curves/profile_data.h"
 #include "tests/app/drawn_text.h"
 #include "tests/app/fed_imgui.h"
 
@@ -109,6 +110,27 @@ TEST(DensityImage, EveryBinIsAPixelOrPartOfOne) {
                             ASSERT_EQ(at(y, x)[0] == 255 && at(y, x)[1] == 0, inFocus);
                         }
                 }
+}
+
+TEST(PlotText, StandsWhereItHidesLeastOfTheLine) {
+    const PlotFrame frame{{100, 50}, {300, 130}, {0, 1}, {0, 1}};
+    const ImVec2 size{80, 16};
+    const auto line = [](float from, float to) {
+        std::vector<ImVec2> points;
+        for (int i = 0; i <= 100; ++i) points.push_back({100 + 2.0f * float(i), from + (to - from) * float(i) / 100});
+        return points;
+    };
+    const auto corner = [&](const std::vector<ImVec2>& points) {
+        const ImVec2 at = freeCorner(frame, size, points);
+        return std::pair(at.x, at.y);
+    };
+    EXPECT_EQ(corner({}), std::pair(0.0f, 0.0f));
+    EXPECT_EQ(corner(line(90, 90)), std::pair(0.0f, 0.0f)) << "none is hidden: as ever";
+    EXPECT_EQ(corner(line(55, 55)), std::pair(0.0f, 1.0f)) << "along the top";
+    EXPECT_EQ(corner(line(55, 125)), std::pair(0.0f, 1.0f)) << "falling";
+    std::vector<ImVec2> both = line(55, 125), other = line(125, 55);
+    both.insert(both.end(), other.begin(), other.begin() + 60); // both left corners, and one at the right
+    EXPECT_EQ(corner(both), std::pair(1.0f, 0.0f));
 }
 
 } // namespace

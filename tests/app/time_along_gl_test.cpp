@@ -3,6 +3,7 @@
 #include "app/ui/time_text.h"
 #include "app/views/curves/profile_data.h"
 #include "app/views/volume/space_beside.h"
+#include "app/workbench/whole_box.h"
 #include "tests/app/views_fixture.h"
 #include "tests/app/workbench_fixture.h"
 #include "volume/sources/time_axis.h"
@@ -207,8 +208,45 @@ struct TimeAlongWorkbench : DrawnWorkbench {
     }
 };
 
+/// Half the width of what the box covers of the picture of a pane, as a share of it.
+double coveredWidth(Workbench& workbench, const std::string& pane) {
+    const Session& session = workbench.session();
+    const vis::WorldFrame world = vis::worldFrame(workbench.document().info().bounds, session.stretch);
+    const ImGuiWindow* const window = ImGui::FindWindowByName(("###pane." + pane).c_str());
+    if (!window || !window->WasActive) return 0;
+    return boxExtent(session.camera, world).x * double(window->Size.y) / double(window->Size.x);
+}
+
+TEST_F(TimeAlongWorkbench, TheBoxIsWholeInBothHalvesOfThePane) {
+    const vis::WorldFrame world = vis::worldFrame(workbench.document().info().bounds, workbench.session().stretch);
+    fitToPane(workbench.session(), "volume", world, 1);
+    settle();
+    const vis::Camera wide = workbench.session().camera;
+    EXPECT_LE(coveredWidth(workbench, "volume"), 1);
+    EXPECT_GT(coveredWidth(workbench, "volume"), 0.5);
+    ASSERT_TRUE(run("Time along z"));
+    settle();
+    const std::string beside = besidePane();
+    for (const std::string& pane : {std::string("volume"), beside}) {
+        EXPECT_LE(coveredWidth(workbench, pane), 1) << pane;
+        EXPECT_GT(coveredWidth(workbench, pane), 0.5) << pane;
+    }
+    EXPECT_LT(workbench.session().camera.distance, 1.3f * wide.distance) << "a long box in panes below each other";
+    ASSERT_TRUE(run("Time along z")); // back to one pane, as large as it was
+    settle();
+    EXPECT_NEAR(workbench.session().camera.distance, wide.distance, 0.15f * wide.distance);
+    // A camera that saw a part of the box goes on to see that part.
+    workbench.session().camera.distance = 0.4f;
+    settle();
+    const vis::Camera close = workbench.session().camera;
+    ASSERT_TRUE(run("Time along z"));
+    settle();
+    EXPECT_EQ(workbench.session().camera, close);
+}
+
 TEST_F(TimeAlongWorkbench, TheDataInSpaceStandBesideAsTheyWere) {
     workbench.session().time = workbench.source()->info().times[1];
+    const vis::Camera camera = workbench.session().camera;
     const vis::Image before = pictureOf("volume");
     EXPECT_EQ(besidePane(), "");
     ASSERT_TRUE(run("Time along z"));
@@ -216,6 +254,7 @@ TEST_F(TimeAlongWorkbench, TheDataInSpaceStandBesideAsTheyWere) {
     const std::string beside = besidePane();
     ASSERT_FALSE(beside.empty());
     ASSERT_EQ(workbench.source()->info().times.size(), 1u);
+    workbench.session().camera = camera; // it moved away for the box to have room in half the pane
     const vis::Image along = pictureOf("volume"), space = pictureOf(beside);
     EXPECT_LT(differing(before, space), 0.01) << "the same data at the same time";
     EXPECT_GT(differing(before, along), 0.02) << "the plane at all times looks otherwise";
@@ -230,6 +269,7 @@ TEST_F(TimeAlongWorkbench, TheDataInSpaceStandBesideAsTheyWere) {
     settle();
     EXPECT_EQ(besidePane(), "");
     EXPECT_EQ(workbench.origin().cutFrom, nullptr);
+    workbench.session().camera = camera;
     EXPECT_LT(differing(before, pictureOf("volume")), 0.01);
 }
 

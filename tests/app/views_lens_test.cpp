@@ -1,6 +1,7 @@
 #include "app/tools/lens_edit.h"
 #include "app/tools/lens_list.h"
 #include "app/tools/lens_outline.h"
+#include "app/tools/plane_sections.h"
 #include "tests/app/fed_imgui.h"
 
 #include <cmath>
@@ -160,13 +161,13 @@ TEST(LensSection, LiesOnTheLensAndInThePlane) {
     for (const vis::LensShape shape : {vis::LensShape::Sphere, vis::LensShape::Box, vis::LensShape::Cylinder}) {
         const vis::Lens lens{.shape = shape, .size = {0.2f, 0.1f, 0.15f}, .rotation = {30, 40, 50}};
         const vis::PlacedLens placed = vis::placeLenses({lens}, {}, {}, {}).front();
-        const auto points = lensSection(placed, 0, 1, 2, 0.05);
+        const auto points = lensSection(placed, {0, 0, 0.05}, {1, 0, 0}, {0, 1, 0});
         EXPECT_GE(points.size(), 32u);
         for (const glm::dvec3& point : points) {
             EXPECT_EQ(point.z, 0.05);
             EXPECT_NEAR(placed.radius(point), 1, 1e-6);
         }
-        EXPECT_TRUE(lensSection(placed, 0, 1, 2, 0.4).empty());
+        EXPECT_TRUE(lensSection(placed, {0, 0, 0.4}, {1, 0, 0}, {0, 1, 0}).empty());
     }
 }
 
@@ -175,7 +176,7 @@ TEST(LensSection, FollowsATiltedLensToBothSides) {
     const vis::Lens lens{.shape = vis::LensShape::Sphere, .size = {0.6f, 0.05f, 0.05f}, .rotation = {0, 45, 0}};
     const vis::PlacedLens placed = vis::placeLenses({lens}, {}, {}, {}).front();
     const auto middleAt = [&](double z) {
-        const auto points = lensSection(placed, 0, 1, 2, z);
+        const auto points = lensSection(placed, {0, 0, z}, {1, 0, 0}, {0, 1, 0});
         glm::dvec3 sum(0);
         for (const glm::dvec3& point : points) sum += point / double(std::max<std::size_t>(points.size(), 1));
         EXPECT_FALSE(points.empty()) << z;

@@ -1,8 +1,11 @@
+#include "app/queries/readout.h"
+#include "app/tools/lens_list.h"
 #include "app/ui/ticks.h"
 #include "tests/app/drawn_text.h"
 #include "tests/app/views_fixture.h"
 
 #include <gmock/gmock.h>
+#include <imgui_internal.h>
 
 /// What views say in words: that there is nothing to show, and where there is, what it is.
 namespace tessera::app {
@@ -13,6 +16,7 @@ using testing::Not;
 
 class SaidViews : public ViewsTest {
 protected:
+    Readout readout;
     /// What a view says once it has settled.
     template <class View>
     std::string of(const char* pane, View& view, void (*function)(ViewContext&, const std::string&, View&)) {
@@ -171,6 +175,75 @@ TEST_F(SaidViews, AMatrixOfScatterplotsHasTheCorrelationsAboveItsDiagonal) {
             EXPECT_LT(text.middle().y, 300);
         }
     EXPECT_EQ(numbers, 1);
+}
+
+/// Numbers that are cut off say nothing: the column of regions gives way, then the table.
+TEST_F(SaidViews, TheReadOutHasWholeNumbersInAnyWidth) {
+    show(fuelCell(volume::LatticeKind::CC));
+    const auto at = [&](float width) {
+        const auto body = [&] {
+            ViewContext context{session, source, renderer, jobs, caches};
+            context.headless = true;
+            ImGui::SetNextWindowPos({0, 0});
+            ImGui::SetNextWindowSize({width, 560});
+            ImGui::Begin("readout", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+            updateReadout(context, "readout", readout);
+            drawReadout(context, readout);
+            ImGui::End();
+        };
+        for (int i = 0; i < 3; ++i) {
+            frame(body);
+            jobs.wait();
+        }
+        return said(body);
+    };
+    const std::string wide = at(640), narrower = at(270), narrow = at(150);
+    EXPECT_THAT(wide, HasSubstr("Nearest"));
+    EXPECT_THAT(wide, HasSubstr("Region"));
+    EXPECT_THAT(narrower, HasSubstr("Nearest"));
+    EXPECT_THAT(narrower, Not(HasSubstr("Region")));
+    EXPECT_THAT(narrow, Not(HasSubstr("Nearest")));
+    EXPECT_THAT(narrow, HasSubstr("T 35"));
+    const auto row = readoutRows(source->info(), readout);
+    for (const std::vector<std::string>& each : row)
+        if (each[0] != "region") {
+            EXPECT_THAT(narrower, HasSubstr(each[1])) << each[0];
+        }
+}
+
+/// A lens that was added by a command is the thing to set up: the list goes to it.
+TEST_F(SaidViews, TheListOfLayersGoesToANewLens) {
+    headless = false;
+    show(fuelCell(volume::LatticeKind::CC));
+    const auto body = [&] { draw("layers", layersView, drawLayersView, {330, 260}); };
+    for (int i = 0; i < 3; ++i) frame(body);
+    const ImGuiWindow* window = nullptr;
+    for (const ImGuiWindow* each : GImGui->Windows)
+        if (each->WasActive && each->ScrollMax.y > 200) window = each;
+    ASSERT_TRUE(window) << "lenses are below the fold";
+    ASSERT_EQ(window->Scroll.y, 0);
+    addLens(session, source->info(), vis::LensEffect::Magnify);
+    for (int i = 0; i < 4; ++i) frame(body);
+    EXPECT_GT(window->Scroll.y, 100);
+    const float there = window->Scroll.y;
+    session.selection.brushes = {vis::rangeBrush({{"T", 353, 355, 0}})}; // as by a drag in a plot
+    for (int i = 0; i < 4; ++i) frame(body);
+    EXPECT_EQ(window->Scroll.y, there);
+}
+
+TEST(Lists, ComeToTheFrontForWhatIsNewInThem) {
+    Session session;
+    session.views["data"] = DataView{};
+    session.views["layers"] = LayersView{};
+    session.views["volume"] = VolumeView{};
+    session.dock.root.tabs = {"data", "layers"};
+    session.dock.root.active = 0;
+    session.dock.maximised = "volume";
+    showLists(session);
+    EXPECT_EQ(session.dock.root.active, 0) << "not over a pane that fills the window";
+    session.dock.maximised.clear();
+    showLists(session);
+    EXPECT_EQ(session.dock.root.active, 1);
 }
 
 } // namespace

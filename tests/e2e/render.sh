@@ -58,6 +58,26 @@ python3 png.py session first.png > s.tessera.json || die "no session in the pict
 draw s.tessera.json -o from-file.png || die "the session does not open"
 cmp <(pixels first.png) <(pixels from-file.png) || die "the session as a file gives another picture"
 
+# So does a figure, and readers that know nothing of sessions accept it.
+for ending in svg pdf; do
+    draw s.tessera.json -o figure.$ending || die "no figure"
+    draw figure.$ending -o from-$ending.png || die "a figure as $ending does not open as a session"
+    cmp <(pixels first.png) <(pixels from-$ending.png) || die "the session in the $ending gives another picture"
+    "$tessera" info figure.$ending | grep -q '(session)' || die "info of a figure as $ending"
+done
+if command -v rsvg-convert > /dev/null; then
+    rsvg-convert figure.svg -o figure.svg.png 2> err && [ ! -s err ] || die "librsvg: $(cat err)"
+fi
+if command -v pdfdetach > /dev/null; then
+    pdfinfo figure.pdf > out 2> err && [ ! -s err ] && grep -q 'Pages: *1$' out || die "poppler: $(cat err)"
+    pdftotext figure.pdf texts 2> err && grep -q "stretch 5 : 10 : 1" texts && [ ! -s err ] || die "the texts of the PDF: $(cat err)"
+    pdfdetach -save 1 -o attached.tessera.json figure.pdf 2> err && [ ! -s err ] || die "the attached session"
+    draw attached.tessera.json -o attached.png || die "the attached session does not open"
+    cmp <(pixels first.png) <(pixels attached.png) || die "the attached session gives another picture"
+fi
+python3 -c 'import re, sys; print(re.sub("(?s)<metadata.*</metadata>", "", sys.stdin.read()))' < figure.svg > plain.svg
+! draw plain.svg -o none.png && grep -q 'plain.svg: this picture contains no session' err || die "a figure without session"
+
 # The comparison can fail: another camera is another picture.
 draw s.tessera.json --set /camera/distance=9 -o far.png || die "--set"
 cmp -s <(pixels first.png) <(pixels far.png) && die "another camera gives the same picture"

@@ -222,6 +222,7 @@ void ComparePictures::prepare(const ViewContext& context, const std::vector<Comp
     for (std::size_t i = 0; i < variants.size(); ++i) {
         if (!cells_[i]) cells_[i] = std::make_shared<CompareCell>();
         CompareCell& cell = *cells_[i];
+        if (!(cell.variant == variants[i])) cell.forgetNumbers();
         if (!(cell.variant == variants[i]) || !sameScene(cell.of, context.session)) {
             cell.variant = variants[i];
             cell.of = context.session;

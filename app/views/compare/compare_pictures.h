@@ -78,6 +78,14 @@ struct CompareCell {
     double shownTop = -1;
     CompareValues values; ///< how far the first layer's values are from the reference's
 
+    /// Drops the numbers of the variant that was here before.
+    void forgetNumbers() {
+        status = {};
+        image.reset();
+        measured.reset();
+        samplesOf = {};
+        samples.reset();
+    }
     const std::shared_ptr<const volume::BrickSource>& source(const ViewContext& context) const {
         return data ? data->source : context.source;
     }

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace tessera::app {
 
@@ -168,6 +169,22 @@ VectorPage profileDrawing(const volume::DatasetInfo& info, const Session& sessio
         panels.push_back(std::move(panel));
     }
     return drawingOf(panels, 2);
+}
+
+ImVec2 freeCorner(const PlotFrame& frame, ImVec2 size, const std::vector<ImVec2>& line) {
+    ImVec2 best{0, 0};
+    std::ptrdiff_t least = std::numeric_limits<std::ptrdiff_t>::max();
+    for (const ImVec2 corner : {ImVec2{0, 0}, {0, 1}, {1, 0}, {1, 1}}) {
+        const ImVec2 lo{frame.min.x + (frame.width() - size.x) * corner.x,
+                        frame.min.y + (frame.height() - size.y) * corner.y};
+        const auto hidden = std::ranges::count_if(line, [&](ImVec2 at) {
+            return at.x >= lo.x && at.y >= lo.y && at.x <= lo.x + size.x && at.y <= lo.y + size.y;
+        });
+        if (hidden >= least) continue;
+        least = hidden;
+        best = corner;
+    }
+    return best;
 }
 
 } // namespace tessera::app

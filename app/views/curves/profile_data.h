@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/drawing/drawing.h"
+#include "app/pane/plot.h"
 #include "app/session/session.h"
 #include "volume/base/progress.h"
 #include "volume/bricks/brick_source.h"
@@ -55,5 +56,9 @@ VectorPage profileDrawing(const volume::DatasetInfo& info, const Session& sessio
 /// a row per stored time, transparent where absent.
 std::vector<std::uint8_t> profileImage(const volume::DatasetInfo& info, const Session& session, const Profile& profile,
                                        std::size_t channel);
+
+/// The corner of a plot, as shares of its width and height, in which a text of a size in pixels hides the fewest points
+/// of a line: the upper left one if no other is better, then the lower left one.
+ImVec2 freeCorner(const PlotFrame& frame, ImVec2 size, const std::vector<ImVec2>& line);
 
 } // namespace tessera::app

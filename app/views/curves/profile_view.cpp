@@ -86,8 +86,9 @@ void drawCurve(const std::string& title, Range range, const Profile& profile, st
     const PlotColors colors = plotColors();
     const std::vector<double>& values = profile.values[c];
     draw.PushClipRect(frame.min, frame.max, true);
-    std::vector<ImVec2> run;
+    std::vector<ImVec2> run, line;
     const auto flush = [&] {
+        line.insert(line.end(), run.begin(), run.end());
         if (run.size() > 1)
             draw.AddPolyline(run.data(), static_cast<int>(run.size()), colors.focus, 0, std::max(1.2f, em() * 0.11f));
         else if (run.size() == 1)
@@ -108,8 +109,13 @@ void drawCurve(const std::string& title, Range range, const Profile& profile, st
     drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
     std::string text = title;
     if (marked) text += "  " + formatNumber(values[*marked], (range.hi - range.lo) / 1000);
-    addFittedWithBackdrop(draw, {frame.min.x + em() * 0.4f, frame.min.y + em() * 0.2f}, {0, 0}, colors.text, text,
-                          frame.width() - em());
+    const ImVec2 size{std::min(ImGui::CalcTextSize(text.c_str()).x, frame.width() - em()), em()};
+    const ImVec2 pivot = freeCorner(frame, {size.x + em() * 0.8f, size.y + em() * 0.4f}, line);
+    const auto inset = [](float lo, float hi, float share, float by) { return share > 0 ? hi - by : lo + by; };
+    addFittedWithBackdrop(
+        draw,
+        {inset(frame.min.x, frame.max.x, pivot.x, em() * 0.4f), inset(frame.min.y, frame.max.y, pivot.y, em() * 0.2f)},
+        pivot, colors.text, text, frame.width() - em());
 }
 
 void updatePictures(ProfileCache& cache, const Session& session, const volume::DatasetInfo& info,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/pane/oblique_plane.h"
 #include "app/session/session.h"
 #include "volume/analysis/contours.h"
 #include "volume/base/progress.h"
@@ -33,29 +34,44 @@ std::string contourText(double level, double step);
 /// What is asked for; equal queries have equal answers.
 struct ContourQuery {
     int channel = 0; ///< index of DatasetInfo::channels()
-    SliceAxes axes;
-    double position = 0; ///< along axes.normal
+    PicturePlane plane;
+    Range x, y; ///< what the picture spans along the plane's directions
     volume::TimePair time;
     std::vector<double> levels;
     bool operator==(const ContourQuery&) const = default;
 };
 
+/// The slice across axes.normal at a position, as wide as the data.
+ContourQuery contourQuery(const volume::DatasetInfo& info, int channel, const SliceAxes& axes, double position,
+                          const volume::TimePair& time, std::vector<double> levels);
+
 struct Contours {
-    std::vector<volume::ContourLine> lines; ///< points: physical places along axes.right and axes.up
+    std::vector<volume::ContourLine> lines; ///< points: distances along the plane's directions
 };
 
-/// Traces the lines on a grid as fine as the samples or finer. Where regions are kept apart (volume/field/parts.h) each
-/// has lines of its own. Throws Error, Cancelled.
+/// Traces the lines on a grid as fine as the samples or finer, up to the faces of the data. Where regions are kept
+/// apart (volume/field/parts.h) each has lines of its own. Throws Error, Cancelled.
 Contours readContours(const volume::BrickSource& source, const ContourQuery& query, const Progress& progress = {});
 
-/// The parameter that has the lines of a view: its own where SlicesView::contourOf is "", else that one. Nothing where
-/// the data lack it, it is a label, or no lines are wanted.
-std::optional<int> contourChannel(const volume::DatasetInfo& info, const SlicesView& view, int shown);
+/// The parameter that has the lines of a view: the one shown where ContourSettings::channel is "", else that one.
+/// Nothing where the data lack it, it is a label, or no lines are wanted.
+std::optional<int> contourChannel(const volume::DatasetInfo& info, const ContourSettings& settings, int shown);
 
 /// The levels of a parameter over the range of its colours.
 ContourLevels contourLevels(const Session& session, const volume::DatasetInfo& info, int channel, int count);
 
 /// Which parameter the lines are of and how far apart they lie, e.g. "lines: T [K], 10 apart".
 std::string contourTitle(const volume::Channel& channel, const ContourLevels& levels);
+
+/// The lines that a view draws instead of the renderer: those of another parameter and those with values.
+struct DrawnContours {
+    std::optional<int> channel; ///< nothing: none
+    ContourLevels levels;
+};
+DrawnContours drawnContours(const Session& session, const volume::DatasetInfo& info, const ContourSettings& settings,
+                            int shown);
+
+/// What the legend says of them; "" where the renderer draws the lines or none are wanted.
+std::string contourNote(const volume::DatasetInfo& info, const ContourSettings& settings, const DrawnContours& lines);
 
 } // namespace tessera::app

@@ -1,7 +1,7 @@
 #include "app/views/slices/contour_lines.h"
 
 #include "app/pane/controls.h"
-#include "app/pane/tool_row.h"
+#include "app/ui/widgets.h"
 
 #include <algorithm>
 #include <utility>
@@ -39,12 +39,30 @@ void layOut(ContourCache& cache, const Contours& contours, double step, const Pl
 
 } // namespace
 
-void chooseContourCount(ToolRow& tools, int& count, const char* help) {
+void chooseContours(ToolRow& tools, const volume::DatasetInfo& info, ContourSettings& settings) {
     const float width = em() * 8;
     if (!tools.next(width)) return;
     ImGui::SetNextItemWidth(width);
-    ImGui::SliderInt("##contours", &count, 0, 50, count == 0 ? "no contours" : "%d contours");
-    if (ImGui::IsItemHovered()) tooltip(help);
+    ImGui::SliderInt("##contours", &settings.count, 0, 50, settings.count == 0 ? "no contours" : "%d contours");
+    if (ImGui::IsItemHovered())
+        tooltip("Number of contour lines over the colour range; of another parameter, or with values, at most this "
+                "many at round values");
+    if (settings.count == 0) return;
+    if (tools.next(width)) {
+        ImGui::SetNextItemWidth(width);
+        chooseChannel("##contourOf", &info, settings.channel, "same parameter");
+        if (ImGui::IsItemHovered()) tooltip("Parameter of the contour lines");
+    }
+    if (!tools.next(checkboxWidth("values"))) return;
+    ImGui::Checkbox("values", &settings.values);
+    if (ImGui::IsItemHovered()) tooltip("Draw the lines at round values, labelled with them");
+}
+
+void drawContourNote(const std::string& note) {
+    if (note.empty()) return;
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(note.c_str());
+    ImGui::PopTextWrapPos();
 }
 
 void drawContours(ViewContext& context, ContourCache& cache, const std::string& jobKey, const ContourQuery& query,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/pane/plot.h"
+#include "app/pane/tool_row.h"
 #include "app/queries/async_query.h"
 #include "app/views/slices/contour_data.h"
 #include "app/views/slices/contour_labels.h"
@@ -22,8 +23,11 @@ struct ContourCache {
     std::vector<LineLabel> labels;
 };
 
-/// The slider for the number of lines in the tools of a view, with the tooltip `help`.
-void chooseContourCount(ToolRow& tools, int& count, const char* help);
+/// In the tools of a view: how many lines, of which parameter, and whether their values are written on them.
+void chooseContours(ToolRow& tools, const volume::DatasetInfo& info, ContourSettings& settings);
+
+/// What the legend says of the lines, as an item of its own; nothing for "".
+void drawContourNote(const std::string& note);
 
 /// The lines of a query with, if wanted, their values on them. While other lines are read there are none: those of
 /// another place or time would lie where the value is another. `perUnit`: of the frame's axes, by length of the data.

@@ -33,6 +33,11 @@ std::string nameOf(glm::dvec3 direction, const char* other) {
     return std::max({size.x, size.y, size.z}) > kAlong ? directionText(direction) : other;
 }
 
+/// "x", or "u = 0.71 x - 0.71 z".
+std::string axisText(const std::string& name, glm::dvec3 direction) {
+    return name == "u" || name == "v" ? name + " = " + directionText(direction) : name;
+}
+
 /// Places on a grid over the whole picture, row by row from below; the longer edge of the data has kSliceCells.
 std::vector<std::vector<glm::dvec3>> gridOf(const FlatSlice& flat, bool ends, glm::ivec2 count) {
     std::vector<std::vector<glm::dvec3>> rows;
@@ -53,11 +58,6 @@ bool inside(const volume::Box& box, glm::dvec3 place) {
 }
 
 } // namespace
-
-glm::dvec3 FlatSlice::placeAt(glm::dvec2 at) const {
-    return plane.at + axes.right * (at.x - glm::dot(plane.at, axes.right)) +
-           axes.up * (at.y - glm::dot(plane.at, axes.up));
-}
 
 FlatSlice flatSlice(const Session& session, const volume::DatasetInfo& info, glm::dvec3 normal) {
     const double size = glm::length(info.bounds.size()), same = kSameOffset * std::max(size, 1e-300);
@@ -90,13 +90,13 @@ std::string placeText(const FlatSlice& flat, const volume::DatasetInfo& info) {
 
 std::string axesText(const FlatSlice& flat) {
     std::string text;
-    if (flat.nameX == "u") text = "u = " + directionText(flat.axes.right);
-    if (flat.nameY == "v") text += (text.empty() ? "" : ", ") + ("v = " + directionText(flat.axes.up));
+    if (flat.nameX == "u") text = axisText("u", flat.axes.right);
+    if (flat.nameY == "v") text += (text.empty() ? "" : ", ") + axisText("v", flat.axes.up);
     return text;
 }
 
-VectorPage flatDrawing(const volume::BrickSource& source, const Session& session, const FlatSlice& flat, int channel,
-                       const Progress& progress) {
+VectorPage flatDrawing(const volume::BrickSource& source, const Session& session, const FlatSlice& flat,
+                       const ContourSettings& lines, int channel, const Progress& progress) {
     const volume::DatasetInfo& info = source.info();
     const volume::Channel own = info.channel(channel);
     const vis::TransferFunction& function = transferOf(session, own.name);
@@ -106,14 +106,14 @@ VectorPage flatDrawing(const volume::BrickSource& source, const Session& session
     FigurePanel panel;
     panel.title = own.name + " " + formatNumber(range.lo, digits) + " .. " + formatQuantity(range.hi, own.unit, digits);
     panel.note = placeText(flat, info);
-    if (const std::string axes = axesText(flat); !axes.empty()) panel.note += "; " + axes;
-    panel.x = {flat.nameX + " [" + flat.unitX.name + "]", scaled(flat.x, flat.unitX.perUnit)};
-    panel.y = {flat.nameY + " [" + flat.unitY.name + "]", scaled(flat.y, flat.unitY.perUnit)};
+    panel.x = {axisText(flat.nameX, flat.axes.right) + " [" + flat.unitX.name + "]",
+               scaled(flat.x, flat.unitX.perUnit)};
+    panel.y = {axisText(flat.nameY, flat.axes.up) + " [" + flat.unitY.name + "]", scaled(flat.y, flat.unitY.perUnit)};
     panel.image.width = panel.image.height = kSliceCells;
     const volume::TimePair time = volume::timesAround(info.times, session.time);
     const auto rows = gridOf(flat, false, {kSliceCells, kSliceCells});
     for (std::size_t j = rows.size(); j-- > 0;) {
-        progress.advance(1 - static_cast<double>(j) / kSliceCells);
+        progress.advance(0.5 * (1 - static_cast<double>(j) / kSliceCells));
         const auto values = volume::probeAlong(source, channel, rows[j], time);
         for (std::size_t i = 0; i < values.size(); ++i) {
             const bool shown = values[i].interpolated && inside(info.bounds, rows[j][i]);
@@ -124,6 +124,12 @@ VectorPage flatDrawing(const volume::BrickSource& source, const Session& session
             panel.image.rgba.push_back(shown ? 255 : 0);
         }
     }
+    addContours(panel, source, session, lines, channel, {channel, flat.page(), flat.x, flat.y, time, {}},
+                flat.perUnit(), progress.part(0.5, 1));
+    FigureOutline edge{.points = {}, .color = {0.267f, 0.267f, 0.267f, 1}};
+    for (const glm::dvec3& corner : flat.corners) edge.points.push_back(flat.along(corner) * flat.perUnit());
+    panel.outlines.push_back(std::move(edge));
+    addSections(panel, session, info, flat.page(), flat.perUnit());
     return drawingOf({panel}, 1);
 }
 

@@ -22,9 +22,9 @@ struct FlatSlice {
     LengthUnit unitX, unitY;
     std::string nameX, nameY; ///< of the axes: "x" where one runs along it, else "u" and "v"
 
-    /// Where a place lies along the axes; for places of the plane placeAt() is the reverse.
-    glm::dvec2 along(glm::dvec3 place) const { return {glm::dot(place, axes.right), glm::dot(place, axes.up)}; }
-    glm::dvec3 placeAt(glm::dvec2 along) const;
+    PicturePlane page() const { return {plane.at, axes.right, axes.up}; }
+    glm::dvec2 along(glm::dvec3 place) const { return page().along(place); }
+    glm::dvec3 placeAt(glm::dvec2 along) const { return page().placeAt(along); }
     glm::dvec2 perUnit() const { return {unitX.perUnit, unitY.perUnit}; }
 };
 
@@ -36,9 +36,10 @@ FlatSlice flatSlice(const Session& session, const volume::DatasetInfo& info, glm
 std::string placeText(const FlatSlice& flat, const volume::DatasetInfo& info);
 std::string axesText(const FlatSlice& flat);
 
-/// The plane as cells in the colours of a channel. Throws Error, Cancelled.
-VectorPage flatDrawing(const volume::BrickSource& source, const Session& session, const FlatSlice& flat, int channel,
-                       const Progress& progress = {});
+/// The plane as cells in the colours of a channel, with contour lines, their values, and the outlines of lenses and
+/// brushes. Throws Error, Cancelled.
+VectorPage flatDrawing(const volume::BrickSource& source, const Session& session, const FlatSlice& flat,
+                       const ContourSettings& lines, int channel, const Progress& progress = {});
 
 /// Values of channels on a grid of places of the plane in the box: u and v along its axes, x, y and z, the values,
 /// interpolated between the samples, as its first line says. Throws Error, Cancelled.

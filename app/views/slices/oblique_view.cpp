@@ -3,12 +3,15 @@
 #include "app/queries/readout.h"
 #include "app/session/shown_scene.h"
 #include "app/tools/oblique_tilt.h"
-#include "app/ui/widgets.h"
+#include "app/tools/plane_sections.h"
+#include "app/ui/parameter_widget.h"
 #include "app/views/slices/contour_lines.h"
 #include "app/views/slices/flat_slice.h"
+#include "app/views/slices/inner_slices.h"
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace tessera::app {
@@ -22,6 +25,8 @@ struct ObliqueCache : ViewCache {
     vis::ViewTargetPtr target;
     Readout readout;
     bool dragging = false;
+    int lens = -1; ///< that is dragged instead of the cross-hair
+    ContourCache contours;
 };
 
 /// Where picture and numbers lie; numbers without extent where there is no room.
@@ -60,23 +65,20 @@ void drawTools(ViewContext& context, ToolRow& tools, ObliqueView& view, const Fl
         if (ImGui::BeginPopup("tilt")) {
             drawTiltMenu(context.session, info, view);
             ImGui::Separator();
-            ImGui::SetNextItemWidth(em() * 14);
-            constexpr double kLeast = -1, kMost = 1;
-            ImGui::DragScalarN("normal", ImGuiDataType_Double, &view.normal.x, 3, 0.01f, &kLeast, &kMost, "%.3g",
-                               ImGuiSliderFlags_AlwaysClamp);
+            ImGui::Dummy({em() * 22, 0}); // its least width
+            drawMember(view, "/normal", {.labelShare = 0.2f});
             ImGui::EndPopup();
         }
     }
-    chooseContourCount(tools, view.contours, "Number of contour lines over the colour range");
+    chooseContours(tools, info, view.lines);
     if (tools.next(checkboxWidth("in 3D"))) {
         ImGui::Checkbox("in 3D", &view.inSpace);
         if (ImGui::IsItemHovered()) tooltip("Draw the slice in the volume views too");
     }
     exportMenu(
         context, tools, "oblique",
-        [source = context.numbers, session = context.session, flat, channel](const Progress& progress) {
-            return flatDrawing(*source, session, flat, channel, progress);
-        },
+        [source = context.numbers, session = context.session, flat, lines = view.lines,
+         channel](const Progress& progress) { return flatDrawing(*source, session, flat, lines, channel, progress); },
         [source = context.numbers, session = context.session, flat, channels = comparedChannels(info)](
             const Progress& progress) { return flatCsv(*source, session, flat, channels, progress); });
     if (!view.showReadout || !tools.next(iconButtonWidth(context, icons::kCopy))) return;
@@ -115,11 +117,21 @@ void useMouse(ViewContext& context, ObliqueCache& cache, ObliqueView& view, cons
         ImGui::EndPopup();
     }
     const ImGuiIO& io = ImGui::GetIO();
-    if (ImGui::IsItemActivated()) cache.dragging = true;
+    if (ImGui::IsItemActivated()) {
+        cache.dragging = true;
+        cache.lens = lensAtPixel(session, plot, flat.page(), flat.perUnit(), io.MousePos);
+    }
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) cache.dragging = false;
     if (cache.dragging) {
         const glm::dvec3 place = flat.placeAt(plot.data(io.MousePos) / flat.perUnit());
-        session.cursor = nearestInPlane(flat.plane, info.bounds, place);
+        if (cache.lens >= 0 && cache.lens < static_cast<int>(session.lenses.size())) {
+            // Along the plane: it stays as far before or behind it.
+            glm::dvec3& center = session.lenses[static_cast<std::size_t>(cache.lens)].center;
+            const glm::dvec2 by = flat.along(place) - flat.along(center);
+            center = glm::clamp(center + flat.axes.right * by.x + flat.axes.up * by.y, info.bounds.lo, info.bounds.hi);
+        } else {
+            session.cursor = nearestInPlane(flat.plane, info.bounds, place);
+        }
         context.interacting = true;
     }
     if (!ImGui::IsItemHovered()) return;
@@ -141,14 +153,14 @@ void drawPicture(ViewContext& context, vis::ViewTargetPtr& target, const Oblique
     const glm::dvec2 middle((flat.x.lo + flat.x.hi) / 2, (flat.y.lo + flat.y.hi) / 2);
     scene.camera = flatCamera(flat.axes, flat.placeAt(middle), flat.y.hi - flat.y.lo, world);
     vis::SliceLayer layer = obliqueLayer(view, channel, world);
-    layer.contours = view.contours;
+    if (!view.lines.drawn()) layer.contours = view.lines.count;
     // Only the place along the normal matters: dragging within the plane leaves its picture as it is.
     layer.atCursor = false;
     const glm::dvec3 normal = worldNormal(flat.plane.normal, world);
     const double reach = glm::dot(glm::abs(normal), world.halfSize);
     layer.position = reach > 0 ? (glm::dot(normal, world.toWorld(flat.plane.at)) / reach + 1) / 2 : 0.5;
     scene.layers = {vis::Layer{"slice", true, layer}};
-    scene.lenses.clear();
+    addInnerSlices(scene, context.session, layer);
     if (!target) target = context.renderer.makeTarget();
     vis::FrameRequest request;
     request.size = {plot.width(), plot.height()};
@@ -160,8 +172,10 @@ void drawPicture(ViewContext& context, vis::ViewTargetPtr& target, const Oblique
     addPicture(*ImGui::GetWindowDrawList(), status.texture, plot.min, plot.max);
 }
 
-/// Where the plane lies above the picture, its axes, the edge of the data, and the cross-hair.
-void drawOver(ViewContext& context, const ObliqueRooms& rooms, const FlatSlice& flat, const PlotFrame& plot,
+/// Where the plane lies above the picture, its axes, the edge of the data, contour lines with values, the outlines of
+/// lenses and brushes, and the cross-hair.
+void drawOver(ViewContext& context, ObliqueCache& cache, const std::string& pane, const ObliqueRooms& rooms,
+              const ObliqueView& view, const DrawnContours& lines, const FlatSlice& flat, const PlotFrame& plot,
               bool axes) {
     const Decoration& shown = context.decoration;
     const PlotColors colors = plotColors();
@@ -192,19 +206,27 @@ void drawOver(ViewContext& context, const ObliqueRooms& rooms, const FlatSlice& 
         for (std::size_t i = 0; i < flat.corners.size(); ++i)
             draw.AddLine(pixel(flat.corners[i]), pixel(flat.corners[(i + 1) % flat.corners.size()]), colors.frame,
                          std::max(1.0f, em() * 0.08f));
+    const volume::DatasetInfo& info = context.source->info();
+    if (lines.channel)
+        drawContours(context, cache.contours, "contours " + pane,
+                     {*lines.channel, flat.page(), flat.x, flat.y,
+                      volume::timesAround(info.times, context.session.time), lines.levels.values},
+                     lines.levels.step, view.lines.values, plot, unit);
+    if (shown.outlines) drawPlaneSections(draw, plot, planeSections(context.session, info, flat.page()), unit);
     const glm::dvec2 cursor = flat.along(context.session.cursor) * unit;
     if (shown.cursor) drawCrosshair(draw, plot, cursor.x, cursor.y, true);
     draw.PopClipRect();
 }
 
 /// Legend, axes in words, and the values at the cross-hair.
-void drawNumbersOf(ViewContext& context, const ObliqueView& view, ObliqueCache& cache, const FlatSlice& flat,
-                   int channel) {
+void drawNumbersOf(ViewContext& context, const ObliqueView& view, ObliqueCache& cache, const DrawnContours& lines,
+                   const FlatSlice& flat, int channel) {
     const volume::DatasetInfo& info = context.source->info();
     LegendEntry legend = legendOf(context.session, info, channel);
     if (const auto value = cache.readout.value(info.channel(channel).name); value && context.decoration.cursor)
         legend.marker = *value;
     legendBarItem(legend, context.decoration.legend);
+    if (context.decoration.legend) drawContourNote(contourNote(info, view.lines, lines));
     if (const std::string axes = axesText(flat); !axes.empty() && context.decoration.title) {
         ImGui::PushTextWrapPos(0);
         ImGui::TextDisabled("%s", axes.c_str());
@@ -236,6 +258,7 @@ void drawObliqueView(ViewContext& context, const std::string& pane, ObliqueView&
         drawTools(context, tools, view, flatSlice(context.session, info, view.normal), cache.readout, *channel);
     }
     const FlatSlice flat = flatSlice(context.session, info, view.normal);
+    const DrawnContours lines = drawnContours(context.session, info, view.lines, *channel);
     const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 6)};
     const double aspect = (flat.x.hi - flat.x.lo) * flat.axes.scale.x / ((flat.y.hi - flat.y.lo) * flat.axes.scale.y);
     ObliqueRooms rooms = roomsOf(ImGui::GetCursorScreenPos(), room, aspect, true);
@@ -243,14 +266,14 @@ void drawObliqueView(ViewContext& context, const std::string& pane, ObliqueView&
     if (const auto plot = placePicture(rooms, flat, axes)) {
         useMouse(context, cache, view, flat, *plot);
         drawPicture(context, cache.target, view, flat, info.channel(*channel).name, *plot);
-        drawOver(context, rooms, flat, *plot, axes);
+        drawOver(context, cache, pane, rooms, view, lines, flat, *plot, axes);
         if (rooms.numbers.y < plot->max.y) rooms.numbers.x = std::min(rooms.numbers.x, plot->max.x + em() * 4);
     }
     if (rooms.numbersEnd.x - rooms.numbers.x < em() || rooms.numbersEnd.y - rooms.numbers.y < em()) return;
     ImGui::SetCursorScreenPos(rooms.numbers);
     ImGui::BeginChild("readout", {rooms.numbersEnd.x - rooms.numbers.x, rooms.numbersEnd.y - rooms.numbers.y}, false,
                       context.figure ? ImGuiWindowFlags_NoScrollbar : ImGuiWindowFlags_None);
-    drawNumbersOf(context, view, cache, flat, *channel);
+    drawNumbersOf(context, view, cache, lines, flat, *channel);
     ImGui::EndChild();
 }
 

@@ -2,6 +2,7 @@
 
 #include "app/pane/axis_label.h"
 #include "app/pane/view_parts.h"
+#include "app/tools/plane_sections.h"
 #include "app/ui/ticks.h"
 #include "app/views/slices/contour_labels.h"
 #include "volume/reconstruct/probe.h"
@@ -14,8 +15,10 @@ namespace tessera::app {
 
 namespace {
 
+constexpr float kOnWhite = 0.7f; // of light colours, which vanish on white
+
 /// The lines, broken beneath the values written on them.
-void addContours(FigurePanel& panel, const Contours& contours, double step, bool values, glm::dvec2 perUnit) {
+void addLines(FigurePanel& panel, const Contours& contours, double step, bool values, glm::dvec2 perUnit) {
     // Placed in points, as the page has them, and kept in the units of the axes.
     const glm::dvec2 size = kFigurePlot, from(panel.x.range.lo, panel.y.range.lo),
                      span(panel.x.range.hi - panel.x.range.lo, panel.y.range.hi - panel.y.range.lo);
@@ -40,6 +43,33 @@ void addContours(FigurePanel& panel, const Contours& contours, double step, bool
 }
 
 } // namespace
+
+void addContours(FigurePanel& panel, const volume::BrickSource& source, const Session& session,
+                 const ContourSettings& settings, int shown, ContourQuery query, glm::dvec2 perUnit,
+                 const Progress& progress) {
+    const volume::DatasetInfo& info = source.info();
+    const std::optional<int> lined = contourChannel(info, settings, shown);
+    if (!lined) return;
+    const ContourLevels levels = contourLevels(session, info, *lined, settings.count);
+    query.channel = *lined;
+    query.levels = levels.values;
+    // Below the title, or behind it where something else stands there.
+    const std::string text = contourTitle(info.channel(*lined), levels);
+    panel.note.empty() ? panel.note = text : panel.title += "; " + text;
+    addLines(panel, readContours(source, query, progress), levels.step, settings.values, perUnit);
+}
+
+void addSections(FigurePanel& panel, const Session& session, const volume::DatasetInfo& info, const PicturePlane& plane,
+                 glm::dvec2 perUnit) {
+    for (const PlaneSection& section : planeSections(session, info, plane)) {
+        FigureOutline outline;
+        for (const glm::dvec2& point : section.outline) outline.points.push_back(point * perUnit);
+        outline.color = glm::vec4(section.color * kOnWhite, section.faint ? 0.35f : 1.0f);
+        outline.dashed = section.dashed;
+        if (section.middle) outline.dot = *section.middle * perUnit;
+        panel.outlines.push_back(std::move(outline));
+    }
+}
 
 FigurePanel slicePanel(const volume::BrickSource& source, const Session& session, int channel, const SliceAxes& axes,
                        double position) {
@@ -86,23 +116,19 @@ FigurePanel slicePanel(const volume::BrickSource& source, const Session& session
 VectorPage slicesDrawing(const volume::BrickSource& source, const Session& session, const SlicesView& view, int channel,
                          const Progress& progress) {
     const volume::DatasetInfo& info = source.info();
-    const std::optional<int> lined = contourChannel(info, view, channel);
-    const ContourLevels levels = lined ? contourLevels(session, info, *lined, view.contours) : ContourLevels{};
     const AxisLabels labels = axisLabels(session, info);
     std::vector<FigurePanel> panels;
     for (const SliceAxes& axes : kSlicePlanes) {
         const double done = static_cast<double>(panels.size()) / std::size(kSlicePlanes);
         progress.advance(done);
-        FigurePanel& panel =
-            panels.emplace_back(slicePanel(source, session, channel, axes, session.cursor[axes.normal]));
-        if (!lined) continue;
-        const ContourQuery query{*lined, axes, session.cursor[axes.normal],
-                                 volume::timesAround(info.times, session.time), levels.values};
+        const double position = session.cursor[axes.normal];
+        FigurePanel& panel = panels.emplace_back(slicePanel(source, session, channel, axes, position));
         const glm::dvec2 perUnit(labels[static_cast<std::size_t>(axes.right)].unit.perUnit,
                                  labels[static_cast<std::size_t>(axes.up)].unit.perUnit);
-        panel.note = contourTitle(info.channel(*lined), levels);
-        addContours(panel, readContours(source, query, progress.part(done, done + 1.0 / std::size(kSlicePlanes))),
-                    levels.step, view.contourValues, perUnit);
+        addContours(panel, source, session, view.lines, channel,
+                    contourQuery(info, channel, axes, position, volume::timesAround(info.times, session.time), {}),
+                    perUnit, progress.part(done, done + 1.0 / std::size(kSlicePlanes)));
+        addSections(panel, session, info, planeAcross(axes.right, axes.up, axes.normal, position), perUnit);
     }
     return drawingOf(panels, 2);
 }

@@ -3,10 +3,11 @@
 #include "app/pane/axes3d.h"
 #include "app/pane/view_parts.h"
 #include "app/tools/brush_list.h"
-#include "app/tools/lens_outline.h"
+#include "app/tools/plane_sections.h"
 #include "app/tools/profile_line.h"
 #include "app/ui/ticks.h"
 #include "app/views/slices/contour_lines.h"
+#include "app/views/slices/inner_slices.h"
 #include "app/views/slices/slice_figure.h"
 
 #include <algorithm>
@@ -22,32 +23,6 @@ void stepCursor(Session& session, const volume::DatasetInfo& info, int axis, flo
     const double cell = info.lattice.spacing[axis] * (info.lattice.kind == volume::LatticeKind::BCC ? 0.5 : 1);
     session.cursor[axis] = std::clamp(session.cursor[axis] + cell * static_cast<double>(steps), info.bounds.lo[axis],
                                       info.bounds.hi[axis]);
-}
-
-/// The pinned lens whose middle is at a pixel of a slice, -1 if none; later ones lie over those before them.
-int lensAt(const Session& session, const PlotFrame& frame, const SliceAxes& plane, glm::dvec2 perUnit, ImVec2 mouse) {
-    for (int i = static_cast<int>(session.lenses.size()) - 1; i >= 0; --i) {
-        const vis::Lens& lens = session.lenses[static_cast<std::size_t>(i)];
-        const ImVec2 at = frame.pixel(lens.center[plane.right] * perUnit.x, lens.center[plane.up] * perUnit.y);
-        if (lens.enabled && !lens.followsCursor && std::hypot(at.x - mouse.x, at.y - mouse.y) < em() * 0.7f) return i;
-    }
-    return -1;
-}
-
-/// Lenses with layers of their own show these layers' parameters in their section, others nothing.
-void addInnerSlices(vis::Scene& scene, const Session& session, const vis::SliceLayer& like) {
-    std::erase_if(scene.lenses, [&](const vis::Lens& lens) {
-        return lens.effect != vis::LensEffect::Replace || lens.shape == vis::LensShape::Disc ||
-               std::none_of(session.layers.begin(), session.layers.end(),
-                            [&](const vis::Layer& layer) { return layer.visible && layer.lens == lens.name; });
-    });
-    for (const vis::Lens& lens : scene.lenses)
-        for (const vis::Layer& layer : session.layers) {
-            if (!layer.visible || layer.lens != lens.name) continue;
-            vis::SliceLayer inner = like;
-            inner.channel = std::visit([](const auto& own) { return own.channel; }, layer.technique);
-            scene.layers.push_back({layer.name, true, inner, layer.lens, layer.transfer, layer.timeShift});
-        }
 }
 
 /// One slice in its pane: names and units along the picture and across it, and the room between its axes.
@@ -145,7 +120,8 @@ void handlePlaneMouse(ViewContext& context, SlicePlanes& planes, const PlaneFram
     if (onHandle) context.interacting = true;
     if (ImGui::IsItemActivated() && !onHandle) {
         planes.dragging = index;
-        planes.lens = lensAt(session, frame.plot, axes, frame.perUnit, io.MousePos);
+        planes.lens = lensAtPixel(session, frame.plot, planeAcross(axes.right, axes.up, axes.normal, 0), frame.perUnit,
+                                  io.MousePos);
     }
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) planes.dragging = -1;
     if (planes.dragging == index) {
@@ -171,7 +147,7 @@ void drawPlanePicture(ViewContext& context, vis::ViewTargetPtr& target, const Sl
     vis::SliceLayer layer;
     layer.channel = channel;
     layer.orientation = static_cast<vis::SliceOrientation>(frame.axes.normal);
-    if (view.contourOf.empty() && !view.contourValues) layer.contours = view.contours;
+    if (!view.lines.drawn()) layer.contours = view.lines.count;
     scene.layers = {vis::Layer{"slice", true, layer}};
     addInnerSlices(scene, context.session, layer);
     // Only the place along the normal matters: dragging within a slice leaves its picture as it is.
@@ -207,13 +183,14 @@ void drawOverPlane(ViewContext& context, SlicePlanes& planes, const std::string&
     }
     draw.PushClipRect(frame.plot.min, frame.plot.max, true);
     if (lines.channel)
-        drawContours(
-            context, planes.contours[static_cast<std::size_t>(index)], "contours " + pane + std::to_string(index),
-            {*lines.channel, frame.axes, place, volume::timesAround(info.times, session.time), lines.levels.values},
-            lines.levels.step, view.contourValues, frame.plot, frame.perUnit);
+        drawContours(context, planes.contours[static_cast<std::size_t>(index)],
+                     "contours " + pane + std::to_string(index),
+                     contourQuery(info, *lines.channel, frame.axes, place,
+                                  volume::timesAround(info.times, session.time), lines.levels.values),
+                     lines.levels.step, view.lines.values, frame.plot, frame.perUnit);
     if (shown.outlines) {
-        drawBrushSections(draw, frame.plot, session.selection, right, up, normal, place, frame.perUnit);
-        drawLensSections(draw, frame.plot, session, info, right, up, normal, place, frame.perUnit);
+        drawPlaneSections(draw, frame.plot, planeSections(session, info, planeAcross(right, up, normal, place)),
+                          frame.perUnit);
         drawProfileLines(draw, frame.plot, session, right, up, frame.perUnit);
         drawHandles(draw, planes.handles[static_cast<std::size_t>(index)], frame.plot, session, info, right, up,
                     frame.perUnit);

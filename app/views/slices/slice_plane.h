@@ -7,7 +7,6 @@
 #include "app/views/slices/slice_rooms.h"
 
 #include <array>
-#include <optional>
 #include <string>
 
 /// One of the three pictures of a slices view.
@@ -20,12 +19,6 @@ struct SlicePlanes {
     int lens = -1;     ///< the lens that is dragged instead of the cross-hair
     std::array<HandleDrag, 3> handles;
     std::array<ContourCache, 3> contours;
-};
-
-/// The contour lines that the view draws instead of the renderer: those of another parameter and those with labels.
-struct DrawnContours {
-    std::optional<int> channel; ///< nothing: none
-    ContourLevels levels;
 };
 
 /// Draws plane `index` of kSlicePlanes in its room of the pane, and lets the mouse move cross-hair, lenses and handles

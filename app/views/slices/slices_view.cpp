@@ -18,30 +18,6 @@ struct SlicesCache : ViewCache {
     Readout readout;
 };
 
-/// Chooses the parameter of the lines, and whether they are labelled.
-void chooseContours(ToolRow& tools, const volume::DatasetInfo& info, SlicesView& view) {
-    chooseContourCount(tools, view.contours,
-                       "Number of contour lines over the colour range; of another parameter, or with values, at most "
-                       "this many at round values");
-    if (view.contours == 0) return;
-    if (tools.next(em() * 8)) {
-        ImGui::SetNextItemWidth(em() * 8);
-        chooseChannel("##contourOf", &info, view.contourOf, "same parameter");
-        if (ImGui::IsItemHovered()) tooltip("Parameter of the contour lines");
-    }
-    if (!tools.next(buttonWidth("values") + em())) return;
-    ImGui::Checkbox("values", &view.contourValues);
-    if (ImGui::IsItemHovered()) tooltip("Draw the lines at round values, labelled with them");
-}
-
-/// The line below the legend that says what the contour lines are.
-std::string contourNote(const volume::DatasetInfo& info, const SlicesView& view, const DrawnContours& lines) {
-    if (view.contours == 0 || (view.contourOf.empty() && !view.contourValues)) return {};
-    if (lines.channel) return contourTitle(info.channel(*lines.channel), lines.levels);
-    return "no contour lines: " +
-           (info.findChannel(view.contourOf) ? "labels have none" : "there is no " + view.contourOf);
-}
-
 /// Parameter, contour lines and export, and a copy of the values at the cross-hair.
 void chooseShown(ViewContext& context, ToolRow& tools, SlicesView& view, const Readout& readout, int channel,
                  std::string& name) {
@@ -52,7 +28,7 @@ void chooseShown(ViewContext& context, ToolRow& tools, SlicesView& view, const R
         if (chooseChannel("##channel", &info, name)) view.channel = name;
         if (ImGui::IsItemHovered()) tooltip("Parameter that colours the slices");
     }
-    chooseContours(tools, info, view);
+    chooseContours(tools, info, view.lines);
     exportMenu(
         context, tools, "slices",
         [source = context.numbers, session = context.session, view, channel](const Progress& progress) {
@@ -96,7 +72,7 @@ void drawNumbers(ViewContext& context, const std::string& pane, const SlicesView
         legend.marker = *value;
     // If the table does not fit below the legend, the values come first, as running text; after the legend, which is
     // whole, in figures and where both have no room, so that values scroll.
-    const std::string note = contourNote(info, view, lines);
+    const std::string note = contourNote(info, view.lines, lines);
     const float legends = legendBarHeight() + (note.empty() ? 0 : ImGui::GetTextLineHeightWithSpacing());
     const bool readout = view.showReadout && context.decoration.cursor;
     const bool compact = readout && legends + readoutHeight(cache.readout) > ImGui::GetContentRegionAvail().y;
@@ -104,11 +80,7 @@ void drawNumbers(ViewContext& context, const std::string& pane, const SlicesView
     if (first) drawReadout(context, cache.readout, true);
     // What is left out keeps its place: the rest stays where it is.
     legendBarItem(legend, context.decoration.legend);
-    if (!note.empty() && context.decoration.legend) {
-        ImGui::PushTextWrapPos(0);
-        ImGui::TextUnformatted(note.c_str());
-        ImGui::PopTextWrapPos();
-    }
+    if (context.decoration.legend) drawContourNote(note);
     if (readout && !first) drawReadout(context, cache.readout, compact);
 }
 
@@ -131,16 +103,13 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
         ToolRow tools(context);
         chooseShown(context, tools, view, cache.readout, *channel, name);
     }
-    DrawnContours lines;
-    if (!view.contourOf.empty() || view.contourValues) lines.channel = contourChannel(info, view, *channel);
-    if (lines.channel) lines.levels = contourLevels(context.session, info, *lines.channel, view.contours);
+    const DrawnContours lines = drawnContours(context.session, info, view.lines, *channel);
     drawStretch(context);
 
     const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 6)};
     const SliceRooms rooms =
         sliceRooms(ImGui::GetCursorScreenPos(), room, vis::worldFrame(info.bounds, context.session.stretch).halfSize,
                    em(), context.figure);
-    ;
     for (int i = 0; i < 3; ++i) drawSlicePlane(context, cache.planes, pane, view, name, lines, i, rooms);
     const ImVec2 size = rooms.numbers.size();
     if (size.x < em() || size.y < em()) return updateReadout(context, pane, cache.readout);

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+/// The session inside a picture that Tessera exported.
+namespace tessera::app {
+
+/// True for the suffixes .png, .svg and .pdf, in any case: of files that are opened as pictures with a session.
+bool namesPicture(const std::string& path);
+
+/// The session's text. Throws Error where there is none or the picture is damaged.
+std::string sessionTextOfPicture(const std::string& path);
+
+} // namespace tessera::app

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "app/pane/oblique_plane.h"
+#include "app/pane/plot.h"
+#include "app/session/session.h"
+#include "volume/field/dataset.h"
+
+#include <glm/vec4.hpp>
+#include <optional>
+#include <vector>
+
+/// Lenses and brushes in space where they cross a plane: the outlines that slices and their figures show.
+namespace tessera::app {
+
+struct PlaneSection {
+    std::vector<glm::dvec2> outline; ///< closed, in order; distances along the plane's directions (PicturePlane)
+    glm::vec3 color{0};
+    bool faint = false;                    ///< of a brush that is switched off
+    bool dashed = false;                   ///< of a lens
+    std::optional<glm::dvec2> middle = {}; ///< of a lens, also where it is before or behind the plane
+};
+
+/// The outline of a lens in a plane through `at`, around the place where the lens is deepest: world points, none where
+/// the plane misses it. `right` and `up` (world, length 1) are at right angles.
+std::vector<glm::dvec3> lensSection(const vis::PlacedLens& lens, glm::dvec3 at, glm::dvec3 right, glm::dvec3 up);
+
+/// Sections of the brushes in space, then of the enabled lenses.
+std::vector<PlaneSection> planeSections(const Session& session, const volume::DatasetInfo& info,
+                                        const PicturePlane& plane);
+
+/// Draws them; the frame's values are distances along the plane's directions times the factors.
+void drawPlaneSections(ImDrawList& draw, const PlotFrame& frame, const std::vector<PlaneSection>& sections,
+                       glm::dvec2 perUnit);
+
+/// The lens whose middle is at a pixel of the picture and which does not follow the cross-hair, -1 if none; later ones
+/// lie over those before them.
+int lensAtPixel(const Session& session, const PlotFrame& frame, const PicturePlane& plane, glm::dvec2 perUnit,
+                ImVec2 mouse);
+
+} // namespace tessera::app
