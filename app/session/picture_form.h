@@ -118,12 +118,11 @@ struct PictureForm {
     PictureFormat format = PictureFormat::Png;
     bool operator==(const PictureForm&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.format,
-              FieldInfo{.key = "format",
-                        .unit = "",
-                        .doc = "PNG: a raster picture, which contains the session; SVG and PDF: texts and lines "
-                               "as vectors, views as pictures of the size above",
-                        .names = kPictureFormatNames});
+        visit(self.format, FieldInfo{.key = "format",
+                                     .unit = "",
+                                     .doc = "PNG: a raster picture; SVG and PDF: texts and lines as vectors, views as "
+                                            "pictures of the size above. Each contains the session",
+                                     .names = kPictureFormatNames});
         visit(self.size, FieldInfo{.key = "size", .unit = "", .doc = "Size of the picture and of its text"});
         visit(self.ground, FieldInfo{.key = "ground",
                                      .unit = "",

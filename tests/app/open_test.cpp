@@ -3,6 +3,7 @@
 #include "app/user_files/state_dir.h"
 #include "vis/image/image_io.h"
 #include "volume/base/error.h"
+#include "volume/system/atomic_file.h"
 
 #include <algorithm>
 #include <fcntl.h>
@@ -201,13 +202,13 @@ TEST_F(OpenTest, SoDoFiguresAsSvgAndPdf) {
         OpenRequest request;
         request.paths = {path};
         page.session = printSession(opened.document, path);
-        writeTextAtomically(path, fileOf(page, suffix));
+        writeAtomically(path, fileOf(page, suffix));
         const Opened again = open(request);
         EXPECT_TRUE(again.document.session == opened.document.session) << suffix;
         EXPECT_TRUE(again.source) << "with its data";
         EXPECT_EQ(again.sessionPath, "") << "a figure is no place to save a session to";
         page.session.clear();
-        writeTextAtomically(path, fileOf(page, suffix));
+        writeAtomically(path, fileOf(page, suffix));
         try {
             open(request);
             ADD_FAILURE() << suffix;
