@@ -7,8 +7,8 @@
 namespace tessera {
 
 /// A file that gets its name only when complete: written to a temporary file beside it, renamed by `commit`, removed by
-/// the destructor otherwise. After a crash of the program or of the machine the name stands for what it stood for before
-/// or for the whole new file. Throws MachineError when writing fails.
+/// the destructor otherwise. After a crash of the program or of the machine the name stands for what it stood for
+/// before or for the whole new file. Throws MachineError when writing fails.
 class AtomicFile {
 public:
     explicit AtomicFile(const std::string& path);
