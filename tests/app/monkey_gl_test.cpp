@@ -188,7 +188,6 @@ protected:
         const SessionDocument again = parseSession(text, path);
         std::ofstream(path) << text; // to look at
         ASSERT_THAT(again.messages, testing::IsEmpty()) << "after input " << step_;
-        ASSERT_TRUE(again.session == now.session) << "after input " << step_;
         ASSERT_TRUE(printSession(again, path) == text) << "after input " << step_;
     }
 
