@@ -38,8 +38,7 @@ void addRenderCommand(CLI::App& app) {
     command
         ->add_option("-o,--output", options->output,
                      "File to write: a picture (.png) or a figure (.svg, .pdf), which contain the session, or with "
-                     "--view a table "
-                     "(.csv)")
+                     "--view a table (.csv)")
         ->required();
     command->callback([options] {
         const Progress progress = terminalProgress("render");

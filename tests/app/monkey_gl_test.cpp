@@ -215,7 +215,6 @@ TEST_F(Monkey, AnyInputLeavesAStateThatIsTheSameWhenReopened) {
     const double minutes = numberFrom("TESSERA_MONKEY_MINUTES", 0);
     const auto begin = Clock::now();
     const auto passed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count() / 60; };
-    std::vector<double> memories; // MB, when each round begins
     do {
         start({1000, 700});
         const int last = step_ + (minutes > 0 ? 1000 : 300);
@@ -229,8 +228,7 @@ TEST_F(Monkey, AnyInputLeavesAStateThatIsTheSameWhenReopened) {
             if (HasFatalFailure()) return;
         }
         workbench.jobs().wait();
-        memories.push_back(memory());
-        std::printf("%.1f min, %d inputs, %.0f MB\n", passed(), step_, memories.back());
+        std::printf("%.1f min, %d inputs, %.0f MB\n", passed(), step_, memory());
         std::fflush(stdout);
     } while (passed() < minutes);
 }
