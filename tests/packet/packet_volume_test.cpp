@@ -1,23 +1,90 @@
 #include "tests/vis/function_source.h"
 #include "vis/packet/packet_scene.h"
+#include "volume/reconstruct/reconstruct.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <gtest/gtest.h>
 
-/// What empty space is skipped by: bounds of blocks, and distances between them.
+/// Samples as they are laid out, and what empty space is skipped by: bounds of blocks.
 namespace tessera::vis::packet {
 namespace {
 
 using volume::LatticeKind;
 
+std::optional<double> wave(glm::dvec3 p, bool masked) {
+    if (masked && std::abs(p.x - p.z * 0.5 - 2.2) < 1.7) return std::nullopt;
+    return std::sin(0.9 * p.x) * std::cos(0.8 * p.y) + std::sin(1.1 * p.z + 0.1 * p.x);
+}
+
 std::shared_ptr<FunctionSource> waves(LatticeKind kind, bool masked) {
-    const auto value = [masked](glm::dvec3 p) -> std::optional<double> {
-        if (masked && std::abs(p.x - p.z * 0.5 - 2.2) < 1.7) return std::nullopt;
-        return std::sin(0.9 * p.x) * std::cos(0.8 * p.y) + std::sin(1.1 * p.z + 0.1 * p.x);
-    };
+    const auto value = [masked](glm::dvec3 p) { return wave(p, masked); };
     return std::make_shared<FunctionSource>(kind, glm::ivec3(19, 17, 25), glm::dvec3(1),
                                             std::vector<FunctionSource::Channel>{{"a", value, {-2, 2}}}, 8);
+}
+
+/// Every sample with its margin is that of the source, or what the prefilter makes of it; beyond the lattice the
+/// nearest of the same sublattice.
+TEST(PacketLayout, HoldsTheSamplesOfTheSource) {
+    for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC})
+        for (const bool masked : {false, true})
+            for (const Filter filter : {Filter::Average, Filter::AverageQuasi}) {
+                const auto source = waves(kind, masked);
+                const PacketVolume volume = readPacketVolume(*source, {.filter = filter, .exact = true});
+                ASSERT_EQ(volume.present.empty(), !masked);
+                const volume::Lattice& lattice = source->grid().lattice;
+                const auto raw = [&](glm::ivec3 at) -> volume::Sample {
+                    const glm::ivec3 inside = volume::clampToLattice(kind, lattice.size, at);
+                    const std::optional<double> value = wave(lattice.position(inside), masked);
+                    return {value ? double(float(*value)) : 0, value.has_value()};
+                };
+                const volume::LevelGeometry geometry = volume::levelGeometry(source->grid(), 0);
+                const volume::Prefiltered filtered(raw, geometry);
+                int absent = 0;
+                for (int odd = 0; odd < (volume.bcc ? 2 : 1); ++odd)
+                    for (int z = 0; z <= volume.cells.z; ++z)
+                        for (int y = 0; y <= volume.cells.y; ++y)
+                            for (int x = 0; x <= volume.cells.x; ++x) {
+                                glm::ivec3 at = glm::ivec3(x, y, z) - kMargin;
+                                if (volume.bcc) at.z = 2 * at.z + odd;
+                                const volume::Sample wanted = filter == Filter::Average ? raw(at) : filtered(at);
+                                const std::size_t stored = volume.at({x, y, z}, odd);
+                                if (masked) {
+                                    ASSERT_EQ(volume.present[stored], wanted.present ? kQuantum : 0);
+                                }
+                                absent += !wanted.present;
+                                const double got = volume.offset + volume.scale * double(volume.floats[stored]);
+                                if (wanted.present) {
+                                    ASSERT_NEAR(got, wanted.value, 1e-6) << x << ' ' << y << ' ' << z << ' ' << odd;
+                                } else {
+                                    ASSERT_EQ(volume.floats[stored], 0);
+                                }
+                            }
+                EXPECT_EQ(absent > 500, masked) << absent;
+            }
+}
+
+/// No wider than the samples around a block are.
+TEST(PacketBlocks, BoundsAreTight) {
+    const PacketVolume volume = readPacketVolume(*waves(LatticeKind::CC, false), {.filter = Filter::Average});
+    int compared = 0;
+    for (int z = 0; z + kFine <= volume.cells.z; z += kFine)
+        for (int y = 0; y + kFine <= volume.cells.y; y += kFine)
+            for (int x = 0; x + kFine <= volume.cells.x; x += kFine) {
+                std::int16_t lo = kQuantum, hi = 0;
+                for (int n = 0; n < 125; ++n) {
+                    const std::int16_t sample = volume.shorts[volume.at({x + n % 5, y + n / 5 % 5, z + n / 25}, 0)];
+                    lo = std::min(lo, sample);
+                    hi = std::max(hi, sample);
+                }
+                const std::size_t block =
+                    std::size_t((z / kFine * volume.blocks.y + y / kFine) * volume.blocks.x + x / kFine);
+                ASSERT_NEAR(volume.lo[block], lo, 0.51);
+                ASSERT_NEAR(volume.hi[block], hi, 0.51);
+                ++compared;
+            }
+    EXPECT_GT(compared, 100);
 }
 
 /// Everything that interpolation between samples reads in the cells of a block lies within the block's bounds. In a

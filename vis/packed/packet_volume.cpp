@@ -1,251 +1,166 @@
 #include "vis/packed/packet_volume.h"
 
+#include "vis/packed/padded_samples.h"
 #include "volume/base/parallel.h"
 #include "volume/bricks/parts_bricks.h"
 #include "volume/reconstruct/reconstruct.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 namespace tessera::vis::packet {
 
 namespace {
 
-struct Extent {
-    float lo = std::numeric_limits<float>::infinity(), hi = -lo;
-    void add(const Extent& other) { *this = {std::min(lo, other.lo), std::max(hi, other.hi)}; }
-};
-
-/// Of the present samples.
-Extent extentOf(const volume::BrickSamples& brick) {
-    constexpr std::size_t kTogether = 16; // so that the compiler uses vectors
-    Extent out;
-    float lo[kTogether], hi[kTogether];
-    std::ranges::fill(lo, Extent{}.lo);
-    std::ranges::fill(hi, Extent{}.hi);
-    const std::size_t whole = brick.present.empty() ? brick.values.size() / kTogether * kTogether : 0;
-    for (std::size_t s = 0; s < whole; s += kTogether)
-        for (std::size_t i = 0; i < kTogether; ++i) {
-            lo[i] = std::min(lo[i], brick.values[s + i]);
-            hi[i] = std::max(hi[i], brick.values[s + i]);
-        }
-    for (std::size_t s = whole; s < brick.values.size(); ++s)
-        if (brick.isPresent(s)) out.add({brick.values[s], brick.values[s]});
-    for (std::size_t i = 0; i < kTogether; ++i) out.add({lo[i], hi[i]});
-    return out;
-}
-
-/// All samples of a channel as the source has them.
-struct Gathered {
-    volume::Lattice lattice;
-    std::vector<float> values;
-    std::vector<std::uint8_t> present; ///< empty: all
-    Extent range;
-
-    std::size_t at(glm::ivec3 sample) const {
-        return lattice.index(volume::clampToLattice(lattice.kind, lattice.size, sample));
-    }
-};
-
-void insertBrick(Gathered& out, glm::ivec3 begin, const volume::BrickSamples& brick) {
-    for (int z = 0; z < brick.size.z; ++z)
-        for (int y = 0; y < brick.size.y; ++y) {
-            const std::size_t to = out.lattice.index(begin + glm::ivec3(0, y, z));
-            const std::size_t from =
-                (std::size_t(z) * std::size_t(brick.size.y) + std::size_t(y)) * std::size_t(brick.size.x);
-            if (brick.present.empty()) {
-                std::copy_n(brick.values.begin() + std::ptrdiff_t(from), brick.size.x,
-                            out.values.begin() + std::ptrdiff_t(to));
-                continue;
-            }
-            for (std::size_t x = 0; x < std::size_t(brick.size.x); ++x) {
-                const bool there = brick.isPresent(from + x);
-                out.values[to + x] = there ? brick.values[from + x] : 0;
-                if (!out.present.empty()) out.present[to + x] = there;
-            }
-        }
-}
-
-/// One part of a parameter.
-struct OnePart {
-    int label; ///< channel
-    const volume::Parts& parts;
-    std::size_t part;
-};
-
-/// All samples, or those of one part.
-Gathered gatherAll(const volume::BrickSource& source, const PacketChannel& what, const std::optional<OnePart>& only) {
-    const volume::BrickGrid& grid = source.grid();
-    Gathered out;
-    out.lattice = grid.lattice;
-    out.values.resize(grid.lattice.count());
-    std::vector<Extent> own(grid.brickCount());
-    std::vector<std::uint8_t> absent(own.size());
-    const auto read = [&](int channel, std::size_t i) {
-        return source.read({channel, what.time.earlier, 0, grid.indexOf(i)});
-    };
-    out.present.resize(out.values.size(), 1);
-    parallelFor(own.size(), [&](std::size_t i) {
-        volume::BrickSamples brick = read(what.channel, i);
-        if (only) brick = volume::onlyPart(std::move(brick), read(only->label, i), only->parts, only->part);
-        insertBrick(out, grid.begin(grid.indexOf(i)), brick);
-        own[i] = extentOf(brick);
-        absent[i] = std::ranges::find(brick.present, std::uint8_t(0)) != brick.present.end();
-    });
-    for (const Extent& each : own) out.range.add(each);
-    if (std::ranges::none_of(absent, [](std::uint8_t some) { return some != 0; })) out.present = {};
-    if (!(out.range.lo <= out.range.hi)) out.range = {0, 0};
-    return out;
-}
-
-/// The samples of a brick with `halo` more of each sublattice on every side.
-volume::BrickSamples neighbourhood(const Gathered& all, glm::ivec3 firstTexel, int halo) {
-    const int slices = all.lattice.kind == volume::LatticeKind::BCC ? 2 : 1;
-    volume::BrickSamples out;
-    const int edge = kRow + 2 * halo;
-    out.size = {edge, edge, edge * slices};
-    const std::size_t count = std::size_t(edge) * std::size_t(edge) * std::size_t(edge * slices);
-    out.values.resize(count);
-    if (!all.present.empty()) out.present.resize(count);
-    const glm::ivec3 first = (firstTexel - halo) * glm::ivec3(1, 1, slices);
-    const int last = all.lattice.size.x - 1;
-    std::vector<int> column(std::size_t(edge), 0);
-    for (int x = 0; x < edge; ++x) column[std::size_t(x)] = std::clamp(first.x + x, 0, last);
-    std::size_t to = 0;
-    for (int z = 0; z < out.size.z; ++z)
-        for (int y = 0; y < edge; ++y) {
-            const std::size_t row = all.at({0, first.y + y, first.z + z});
-            for (const int x : column) {
-                out.values[to] = all.values[row + std::size_t(x)];
-                if (!all.present.empty()) out.present[to] = all.present[row + std::size_t(x)];
-                ++to;
+/// Extremes within windows along one axis: of `from`, `outer` times `length` times `inner` values, windows of kFine + 1
+/// texels of `slices` values that begin every kFine texels; `to` gets `outer` times kBrick / kFine times `inner`.
+template <class T, class Op>
+std::vector<T> inWindows(const std::vector<T>& from, int outer, int length, int slices, const Op& op) {
+    const std::size_t inner = from.size() / std::size_t(outer * length);
+    std::vector<T> out(std::size_t(outer) * (kBrick / kFine) * inner);
+    T* to = out.data();
+    for (int o = 0; o < outer; ++o)
+        for (int window = 0; window < kBrick / kFine; ++window, to += inner) {
+            const T* each = from.data() + std::size_t(o * length + window * kFine * slices) * inner;
+            std::copy_n(each, inner, to);
+            for (int n = 1; n < (kFine + 1) * slices; ++n) {
+                each += inner;
+                for (std::size_t i = 0; i < inner; ++i) to[i] = op(to[i], each[i]);
             }
         }
     return out;
 }
+
+/// The same in cubes, of a brick with `slices` of each texel.
+template <class T, class Op> std::vector<T> inBlocks(const std::vector<T>& from, int slices, const Op& op) {
+    constexpr int kWindows = kBrick / kFine;
+    const std::vector<T> slabs = inWindows(from, 1, kRow * slices, slices, op);
+    const std::vector<T> bars = inWindows(slabs, kWindows, kRow, 1, op);
+    return inWindows(bars, kWindows * kWindows, kRow, 1, op);
+}
+
+constexpr auto least = [](auto a, auto b) { return std::min(a, b); };
+constexpr auto most = [](auto a, auto b) { return std::max(a, b); };
 
 /// Writes one brick, and the bounds of its blocks.
 class BrickWriter {
 public:
-    BrickWriter(PacketVolume& out, glm::ivec3 brick, const volume::BrickSamples& from)
-        : out_(out), brick_(brick), from_(from), slices_(out.bcc ? 2 : 1) {}
-
-    void samples() {
-        const std::size_t base =
-            ((std::size_t(brick_.z) * std::size_t(out_.bricks.y) + std::size_t(brick_.y)) * std::size_t(out_.bricks.x) +
-             std::size_t(brick_.x)) *
-            std::size_t(out_.stride()) * 2;
-        if (out_.exact)
-            pairs(out_.floats.data() + base, [&](std::size_t i) {
-                return from_.isPresent(i) ? float((double(from_.values[i]) - out_.offset) / out_.scale) : 0.0f;
-            });
-        else
-            pairs(out_.shorts.data() + base, [&, perUnit = 1 / out_.scale](std::size_t i) {
-                const double value = from_.isPresent(i) ? (double(from_.values[i]) - out_.offset) * perUnit : 0;
-                return std::int16_t(std::clamp(value, 0.0, double(kQuantum)) + 0.5);
-            });
-        if (!out_.present.empty())
-            pairs(out_.present.data() + base,
-                  [&](std::size_t i) { return std::int16_t(from_.isPresent(i) ? kQuantum : 0); });
+    /// `all`: texels from -kMargin on.
+    BrickWriter(PacketVolume& out, glm::ivec3 brick, const volume::BrickSamples& all)
+        : out_(out), brick_(brick), slices_(out.bcc ? 2 : 1) {
+        const glm::ivec3 first = brick * kBrick * glm::ivec3(1, 1, slices_);
+        values_.reserve(std::size_t(kRow * kRow * kRow * slices_));
+        if (!all.present.empty()) present_.reserve(values_.capacity());
+        for (int z = first.z; z < first.z + kRow * slices_; ++z)
+            for (int y = first.y; y < first.y + kRow; ++y) {
+                const std::ptrdiff_t row = (std::ptrdiff_t(z) * all.size.y + std::ptrdiff_t(y)) * all.size.x + first.x;
+                const auto values = all.values.begin() + row;
+                values_.insert(values_.end(), values, values + kRow);
+                if (all.present.empty()) continue;
+                const auto present = all.present.begin() + row;
+                present_.insert(present_.end(), present, present + kRow);
+            }
     }
 
-    void bounds() {
-        const int perBrick = kBrick / kFine;
-        for (int i = 0; i < perBrick * perBrick * perBrick; ++i) {
-            const glm::ivec3 inside(i % perBrick, i / perBrick % perBrick, i / perBrick / perBrick);
-            const glm::ivec3 block = brick_ * perBrick + inside;
-            const std::size_t to = (std::size_t(block.z) * std::size_t(out_.blocks.y) + std::size_t(block.y)) *
-                                       std::size_t(out_.blocks.x) +
-                                   std::size_t(block.x);
-            block_(inside * kFine, to);
+    void samples() const {
+        const std::size_t base = number(brick_, out_.bricks) * std::size_t(out_.stride()) * 2;
+        if (out_.exact)
+            pairs<float>(out_.floats.data() + base,
+                         [&](float value) { return float((double(value) - out_.offset) / out_.scale); });
+        else
+            pairs<std::int16_t>(out_.shorts.data() + base,
+                                [offset = out_.offset, perUnit = 1 / out_.scale](float value) {
+                                    const double scaled = (double(value) - offset) * perUnit;
+                                    return std::int16_t(std::clamp(scaled, 0.0, double(kQuantum)) + 0.5);
+                                });
+        if (present_.empty()) return;
+        std::vector<std::int16_t> flags(present_.size());
+        std::ranges::transform(present_, flags.begin(), [](bool there) { return std::int16_t(there ? kQuantum : 0); });
+        interleave(flags, out_.present.data() + base);
+    }
+
+    /// The odd sublattice lies half a cell further: its cells around a block begin one earlier, which may lie in the
+    /// brick before. Its first samples stand for them here; `spreadOdd` joins the neighbours' bounds.
+    void bounds() const {
+        const std::vector<float> lo = inBlocks(bounded(Extent{}.lo), slices_, least),
+                                 hi = inBlocks(bounded(Extent{}.hi), slices_, most);
+        std::vector<std::uint8_t> whole;
+        if (!present_.empty()) whole = inBlocks(present_, slices_, least);
+        const auto scaled = [&](float value) { return float((double(value) - out_.offset) / out_.scale); };
+        constexpr int kWindows = kBrick / kFine;
+        for (std::size_t i = 0; i < lo.size(); ++i) {
+            const int n = int(i);
+            const glm::ivec3 inside(n % kWindows, n / kWindows % kWindows, n / kWindows / kWindows);
+            const std::size_t to = number(brick_ * kWindows + inside, out_.blocks);
+            out_.lo[to] = lo[i] <= hi[i] ? scaled(lo[i]) : Extent{}.lo;
+            out_.hi[to] = lo[i] <= hi[i] ? scaled(hi[i]) : Extent{}.hi;
+            if (!whole.empty()) out_.absent[to] = whole[i] == 0;
         }
     }
 
 private:
-    /// `value(i)`: what is stored of sample i.
-    template <class T, class Value> void pairs(T* to, const Value& value) const {
-        std::vector<T> own(from_.values.size());
-        for (std::size_t i = 0; i < own.size(); ++i) own[i] = value(i);
+    static std::size_t number(glm::ivec3 at, glm::ivec3 count) {
+        return (std::size_t(at.z) * std::size_t(count.y) + std::size_t(at.y)) * std::size_t(count.x) +
+               std::size_t(at.x);
+    }
+    /// The values, with `instead` where they are absent.
+    std::vector<float> bounded(float instead) const {
+        std::vector<float> out = values_;
+        for (std::size_t i = 0; i < present_.size(); ++i)
+            if (present_[i] == 0) out[i] = instead;
+        return out;
+    }
+    /// `store(value)`: what is stored of a present sample.
+    template <class T, class Store> void pairs(T* to, const Store& store) const {
+        std::vector<T> own(values_.size());
+        std::ranges::transform(values_, own.begin(), store);
+        for (std::size_t i = 0; i < present_.size(); ++i)
+            if (present_[i] == 0) own[i] = 0;
+        interleave(own, to);
+    }
+    template <class T> void interleave(const std::vector<T>& own, T* to) const {
         for (int s = 0; s < slices_; ++s)
-            for (int z = 0; z < kRow; ++z) {
+            for (int z = 0; z < kRow; ++z, to += 2 * kSlice) {
                 const T* first = own.data() + std::size_t(z * slices_ + s) * kRow * kRow;
                 for (int i = 0; i < kSlice; ++i) {
-                    *to++ = first[i];
-                    *to++ = first[i + kRow];
+                    to[2 * i] = first[i];
+                    to[2 * i + 1] = first[i + kRow];
                 }
             }
     }
 
-    /// The odd sublattice lies half a cell further: its cells around the block begin one earlier, which may lie in the
-    /// brick before. Its first samples stand for them here; `spreadOdd` joins the neighbours' bounds.
-    void block_(glm::ivec3 begin, std::size_t to) {
-        float lo = std::numeric_limits<float>::infinity(), hi = -lo;
-        bool absent = false;
-        for (int z = begin.z * slices_; z < (begin.z + kFine + 1) * slices_; ++z)
-            for (int y = begin.y; y <= begin.y + kFine; ++y)
-                for (int x = begin.x; x <= begin.x + kFine; ++x) {
-                    const std::size_t i = (std::size_t(z) * kRow + std::size_t(y)) * kRow + std::size_t(x);
-                    if (!from_.isPresent(i)) {
-                        absent = true;
-                        continue;
-                    }
-                    lo = std::min(lo, from_.values[i]);
-                    hi = std::max(hi, from_.values[i]);
-                }
-        out_.lo[to] = lo <= hi ? float((double(lo) - out_.offset) / out_.scale) : lo;
-        out_.hi[to] = lo <= hi ? float((double(hi) - out_.offset) / out_.scale) : hi;
-        if (!out_.absent.empty()) out_.absent[to] = absent;
-    }
-
     PacketVolume& out_;
     glm::ivec3 brick_;
-    const volume::BrickSamples& from_;
     int slices_;
+    std::vector<float> values_;
+    std::vector<std::uint8_t> present_; ///< empty: all
 };
 
-/// Calls `visit(block, neighbour)` for each of the 27 blocks around each block, within the volume.
-template <class Visit> void eachNeighbour(glm::ivec3 count, int before, int after, const Visit& visit) {
-    const auto index = [&](glm::ivec3 at) {
-        return (std::size_t(at.z) * std::size_t(count.y) + std::size_t(at.y)) * std::size_t(count.x) +
-               std::size_t(at.x);
-    };
-    for (int z = 0; z < count.z; ++z)
-        for (int y = 0; y < count.y; ++y)
-            for (int x = 0; x < count.x; ++x)
-                for (int dz = std::max(z - before, 0); dz <= std::min(z + after, count.z - 1); ++dz)
-                    for (int dy = std::max(y - before, 0); dy <= std::min(y + after, count.y - 1); ++dy)
-                        for (int dx = std::max(x - before, 0); dx <= std::min(x + after, count.x - 1); ++dx)
-                            visit(index({x, y, z}), index({dx, dy, dz}));
+/// Every block's value joined with those up to `before` and `after` blocks away along each axis.
+template <class T, class Op>
+void spread(std::vector<T>& values, glm::ivec3 count, int before, int after, const Op& op) {
+    int step = 1;
+    for (int axis = 0; axis < 3; step *= count[axis++]) {
+        const std::vector<T> own = values;
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            const int at = int(i / std::size_t(step)) % count[axis];
+            for (int n = std::max(-before, -at); n <= std::min(after, count[axis] - 1 - at); ++n)
+                values[i] = op(values[i], own[std::size_t(std::ptrdiff_t(i) + n * step)]);
+        }
+    }
 }
 
 /// Bounds of BCC blocks take those before them in (the odd sublattice reads half a cell earlier).
 void spreadOdd(PacketVolume& volume) {
-    const std::vector<float> lo = volume.lo, hi = volume.hi;
-    eachNeighbour(volume.blocks, 1, 0, [&](std::size_t block, std::size_t other) {
-        volume.lo[block] = std::min(volume.lo[block], lo[other]);
-        volume.hi[block] = std::max(volume.hi[block], hi[other]);
-    });
+    spread(volume.lo, volume.blocks, 1, 0, least);
+    spread(volume.hi, volume.blocks, 1, 0, most);
 }
 
 /// A block with an absent sample in a neighbour counts as having one: gradients read there, and so do the few samples
 /// that are taken before blocks are looked up again.
 void spreadAbsent(PacketVolume& volume) {
-    const std::vector<std::uint8_t> own = volume.absent;
-    eachNeighbour(volume.blocks, 2, 2, [&](std::size_t block, std::size_t other) {
-        volume.absent[block] = std::uint8_t(volume.absent[block] | own[other]);
-    });
-}
-
-/// Of the present samples of all bricks. Filtered ones leave the range of the data, by up to 2/3 of its width but
-/// seldom by much, and 15 bits are few: so they are filtered twice.
-template <class Samples> Extent rangeOf(std::size_t bricks, const Samples& samplesOf) {
-    std::vector<Extent> own(bricks);
-    parallelFor(bricks, [&](std::size_t i) { own[i] = extentOf(samplesOf(i)); });
-    Extent out;
-    for (const Extent& each : own) out.add(each);
-    return out.lo <= out.hi ? out : Extent{0, 0};
+    spread(volume.absent, volume.blocks, 2, 2, most);
 }
 
 void setScale(PacketVolume& out, const Extent& range) {
@@ -279,7 +194,7 @@ namespace {
 class VolumeMaker {
 public:
     VolumeMaker(const volume::BrickSource& source, const PacketChannel& what)
-        : geometry_(volume::levelGeometry(source.grid(), 0)) {
+        : source_(source), what_(what), geometry_(volume::levelGeometry(source.grid(), 0)) {
         const volume::DatasetInfo& info = source.info();
         shape_.labels = info.parameters[std::size_t(info.channel(what.channel).parameter)].categorical;
         filtered_ = what.filter == Filter::AverageQuasi && !shape_.labels;
@@ -289,25 +204,42 @@ public:
         shape_.cells = lattice.texels() + (2 * kMargin - 1);
         shape_.bricks = (shape_.cells + kBrick - 1) / kBrick;
         shape_.blocks = shape_.bricks * (kBrick / kFine);
-        bricks_ = std::size_t(shape_.bricks.x) * std::size_t(shape_.bricks.y) * std::size_t(shape_.bricks.z);
     }
 
     /// Without samples.
     const PacketVolume& shape() const { return shape_; }
-    /// Of what is stored.
-    Extent range(const Gathered& all) const {
-        if (!filtered_ || shape_.exact) return all.range;
-        return rangeOf(bricks_, [&](std::size_t i) { return samplesOf(all, i); });
+    /// Samples as they are written, texels from -kMargin on, and the range that their scale comes from.
+    struct Read {
+        volume::BrickSamples samples;
+        Extent range;
+    };
+    /// Filtered samples leave the range of the data, by up to 2/3 of its width but seldom by much, and 15 bits are few:
+    /// so shorts have the range of the filtered ones.
+    Read read(const std::optional<OnePart>& only) const {
+        const int halo = filtered_ ? 1 : 0;
+        Read out{readPadded(source_, {.channel = what_.channel,
+                                      .time = what_.time.earlier,
+                                      .only = only,
+                                      .first = glm::ivec3(-kMargin - halo),
+                                      .count = shape_.bricks * kBrick + (kRow - kBrick + 2 * halo)}),
+                 {}};
+        if (!filtered_ || shape_.exact) out.range = extentOf(out.samples);
+        if (filtered_) out.samples = volume::prefilter(out.samples, geometry_);
+        if (filtered_ && !shape_.exact) out.range = extentOf(out.samples);
+        return out;
     }
     void setRange(const Extent& range) {
-        setScale(shape_, range);
-        if (!shape_.labels || (!shape_.exact && range.hi - range.lo > float(kQuantum))) return;
-        shape_.offset = std::floor(double(range.lo));
+        const Extent some = range.lo <= range.hi ? range : Extent{0, 0};
+        setScale(shape_, some);
+        if (!shape_.labels || (!shape_.exact && some.hi - some.lo > float(kQuantum))) return;
+        shape_.offset = std::floor(double(some.lo));
         shape_.scale = 1;
     }
-    PacketVolume write(const Gathered& all) const {
+    PacketVolume write(const volume::BrickSamples& all) const {
         PacketVolume out = shape_;
-        const std::size_t samples = (bricks_ * std::size_t(out.stride()) + 1) * 2, blocks = bricks_ * 64;
+        const std::size_t bricks =
+            std::size_t(shape_.bricks.x) * std::size_t(shape_.bricks.y) * std::size_t(shape_.bricks.z);
+        const std::size_t samples = (bricks * std::size_t(out.stride()) + 1) * 2, blocks = bricks * 64;
         if (out.exact)
             out.floats.resize(samples);
         else
@@ -318,9 +250,8 @@ public:
         }
         out.lo.resize(blocks);
         out.hi.resize(blocks);
-        parallelFor(bricks_, [&](std::size_t i) {
-            const volume::BrickSamples near = samplesOf(all, i);
-            BrickWriter writer(out, placeOf(i), near);
+        parallelFor(bricks, [&](std::size_t i) {
+            const BrickWriter writer(out, placeOf(i), all);
             writer.samples();
             writer.bounds();
         });
@@ -335,20 +266,13 @@ private:
                 int(i / std::size_t(shape_.bricks.x) % std::size_t(shape_.bricks.y)),
                 int(i / std::size_t(shape_.bricks.x) / std::size_t(shape_.bricks.y))};
     }
-    volume::BrickSamples samplesOf(const Gathered& all, std::size_t i) const {
-        const volume::BrickSamples near = neighbourhood(all, placeOf(i) * kBrick - kMargin, filtered_ ? 1 : 0);
-        return filtered_ ? volume::prefilter(near, geometry_) : near;
-    }
 
+    const volume::BrickSource& source_;
+    const PacketChannel& what_;
     volume::LevelGeometry geometry_;
     bool filtered_ = false;
     PacketVolume shape_;
-    std::size_t bricks_ = 0;
 };
-
-bool somePresent(const Gathered& all) {
-    return all.present.empty() || std::ranges::find(all.present, std::uint8_t(1)) != all.present.end();
-}
 
 } // namespace
 
@@ -369,19 +293,19 @@ PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketCha
     VolumeMaker maker(source, what);
     const std::optional<int> label = volume::labelChannel(info, parameter);
     if (!label) {
-        const Gathered all = gatherAll(source, what, std::nullopt);
-        maker.setRange(maker.range(all));
-        return maker.write(all);
+        const VolumeMaker::Read all = maker.read(std::nullopt);
+        maker.setRange(all.range);
+        return maker.write(all.samples);
     }
-    std::vector<Gathered> parts;
+    std::vector<VolumeMaker::Read> parts;
     Extent range;
     for (std::size_t part = 0; part < parameter.parts.count(); ++part) {
-        parts.push_back(gatherAll(source, what, OnePart{*label, parameter.parts, part}));
-        if (somePresent(parts.back())) range.add(maker.range(parts.back()));
+        parts.push_back(maker.read(OnePart{*label, parameter.parts, part}));
+        range.add(parts.back().range);
     }
-    maker.setRange(range.lo <= range.hi ? range : Extent{0, 0});
+    maker.setRange(range);
     PacketVolume out = maker.shape();
-    for (const Gathered& part : parts) out.parts.push_back(maker.write(part));
+    for (const VolumeMaker::Read& part : parts) out.parts.push_back(maker.write(part.samples));
     joinParts(out);
     return out;
 }
