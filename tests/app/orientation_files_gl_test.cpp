@@ -274,6 +274,7 @@ TEST_F(OrientationOfFiles, MeshesLieWhereTheSurfaceIs) {
             "mesh beacon.tsr --channel beacon --iso 0.5 --time " + std::to_string(int(beacon::kTimes[time]));
         run(surface + " -o out.stl");
         const std::string stl = text("out.stl");
+        ASSERT_GE(stl.size(), 84u);
         const auto triangles = readAs<std::uint32_t>(stl.data() + 80);
         ASSERT_GT(triangles, 8u);
         ASSERT_EQ(stl.size(), 84 + 50 * std::size_t(triangles));
