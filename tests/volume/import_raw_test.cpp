@@ -292,7 +292,21 @@ TEST_F(ImportRaw, SeveralFilesAreParametersOrTimes) {
     EXPECT_EQ(runs.info.timeUnit, "");
     write("small.raw", "1");
     write("small.json", R"({"dims":[1,1,1],"dtype":"uint8"})");
-    EXPECT_THROW(openFiles({base + "O2.raw", base + "small.raw"}, {}), Error);
+    write("moved.raw", "12345678");
+    write("moved.json", R"({"dims":[2,2,2],"dtype":"uint8","origin":[1,0,0]})");
+    const auto failureWith = [&](const std::string& other) {
+        try {
+            openFiles({base + "O2.raw", base + other}, {});
+            return std::string();
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+    };
+    const std::string grid = " does not lie on the grid of " + base + "O2.raw ",
+                      why = "; files that are opened together make one data set";
+    EXPECT_EQ(failureWith("small.raw"), base + "small.raw:" + grid + "(1 x 1 x 1 samples against 2 x 2 x 2)" + why);
+    EXPECT_EQ(failureWith("moved.raw"),
+              base + "moved.raw:" + grid + "(as many samples, but another place or spacing)" + why);
 }
 
 TEST_F(ImportRaw, FramesOfASeriesHaveOneType) {

@@ -60,6 +60,28 @@ Lattice gridForMesh(const Box& box, glm::dvec3 cellSize, bool cellData, glm::ive
     return grid;
 }
 
+/// Throws Error if a file whose samples cannot be interpolated lies on another grid than the others.
+void checkGrids(const std::vector<OpenedFile>& files) {
+    const FileBlock* fixed = nullptr;
+    for (const OpenedFile& file : files)
+        for (const FileBlock& block : file.blocks)
+            if (!block.resamples && !fixed) fixed = &block;
+    if (!fixed) return;
+    const Lattice& grid = fixed->lattice;
+    for (const OpenedFile& file : files)
+        for (const FileBlock& block : file.blocks) {
+            if (!block.mesh && sameLattice(grid, block.lattice)) continue;
+            std::string how = "a mesh";
+            if (!block.mesh)
+                how = block.lattice.size == grid.size
+                          ? "as many samples, but another place or spacing"
+                          : words(block.lattice.size) + " samples against " + words(grid.size);
+            throw Error("does not lie on the grid of " + fixed->file + " (" + how +
+                            "); files that are opened together make one data set",
+                        block.file);
+        }
+}
+
 } // namespace
 
 Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize, Box& bounds,
@@ -77,6 +99,7 @@ Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize,
         bounds = {first.lattice.origin, first.lattice.position(first.lattice.size - 1)};
         return first.lattice;
     }
+    checkGrids(files);
     Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
     glm::dvec3 perLength(0);
     double cells = 0;
@@ -86,10 +109,6 @@ Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize,
     for (const OpenedFile& file : files) {
         const bool firstOfGroup = groups.insert(file.entry.group).second;
         for (const FileBlock& block : file.blocks) {
-            if (!block.resamples)
-                throw Error("does not lie on the grid of " + first.file + " (" + words(block.lattice.size) +
-                                " against " + words(first.lattice.size) + ")",
-                            block.file);
             const Lattice& own = block.lattice;
             const Box extent = block.mesh ? block.box : Box{own.origin, own.position(own.size - 1)};
             box.lo = glm::min(box.lo, extent.lo);
