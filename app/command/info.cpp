@@ -110,16 +110,14 @@ void printArchive(const codec::Archive& archive) {
                 : info.lattice.kind == volume::LatticeKind::BCC ? "BCC"
                                                                 : "CC",
                 triple(archive.metadata().source.size).c_str());
-    std::printf("  extent     %s x %s x %s %s\n", numberText(extent.x).c_str(), numberText(extent.y).c_str(),
-                numberText(extent.z).c_str(), info.lengthUnit.c_str());
-    std::printf("  times      %zu, %s%s .. %s %s\n", info.times.size(),
-                info.timeName == "time" ? "" : (info.timeName + " ").c_str(), numberText(info.times.front()).c_str(),
-                numberText(info.times.back()).c_str(), info.timeUnit.c_str());
+    std::printf("  extent     %s x %s x %s%s%s\n", numberText(extent.x).c_str(), numberText(extent.y).c_str(),
+                numberText(extent.z).c_str(), info.lengthUnit.empty() ? "" : " ", info.lengthUnit.c_str());
+    std::printf("  times      %s\n", timesText(info).c_str());
     std::printf("%s", quantityLines(info).c_str());
     if (archive.commits() > 1) std::printf("  written    in %d steps\n", archive.commits());
-    std::printf("  bricks     %s of %d, %d levels:", triple(grid.count()).c_str(), grid.brickSize, grid.levels);
+    std::printf("  bricks     %s of %d, levels from fine to coarse:", triple(grid.count()).c_str(), grid.brickSize);
     for (int level = 0; level < grid.levels; ++level)
-        std::printf(" %s", bytesText(double(archive.levelBytes(level))).c_str());
+        std::printf("%s %s", level > 0 ? "," : "", bytesText(double(archive.levelBytes(level))).c_str());
     std::printf("\n");
     if (archive.maskCount() > 0)
         std::printf("  masks      %d, %s\n", archive.maskCount(), bytesText(double(archive.maskBytes())).c_str());

@@ -22,7 +22,9 @@ struct MeshOptions {
     int level = 0;
     bool bcc = false;
     static void describe(auto& self, auto&& visit) {
-        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter whose surface is extracted"});
+        visit(self.channel, FieldInfo{.key = "channel",
+                                      .unit = "",
+                                      .doc = "Parameter whose surface is extracted (default: the only one)"});
         visit(self.iso, FieldInfo{.key = "iso", .unit = "", .doc = "Value on the surface, in the parameter's unit"});
         visit(self.time,
               FieldInfo{.key = "time", .unit = "", .doc = "Time, in the unit of the data (default: the first)"});
@@ -53,7 +55,7 @@ std::shared_ptr<const volume::BrickSource> openInput(const MeshRequest& request,
     return source;
 }
 
-void run(const MeshRequest& request) {
+void run(MeshRequest request) {
     const std::string& path = request.output;
     if (std::ranges::none_of(volume::kMeshEndings, [&](auto ending) { return path.ends_with(ending); }))
         throw Error("meshes are written as .ply, .stl, .obj or .vtp", path);
@@ -62,6 +64,11 @@ void run(const MeshRequest& request) {
     const volume::DatasetInfo& info = source->info();
     std::string known;
     for (const volume::Channel& channel : info.channels()) known += (known.empty() ? "" : ", ") + channel.name;
+    if (request.mesh.channel.empty()) {
+        if (info.channels().size() > 1)
+            throw Error("name a parameter with --channel; there are " + known, request.inputs[0]);
+        request.mesh.channel = known;
+    }
     for (const std::string* name : {&request.mesh.channel, &request.mesh.colorBy})
         if (!(name == &request.mesh.colorBy && name->empty()) && !info.findChannel(*name))
             throw Error("there is no parameter \"" + *name + "\"; there are " + known, request.inputs[0]);
@@ -93,7 +100,6 @@ void addMeshCommand(CLI::App& app) {
         ->required();
     command->add_option("-o,--output", request->output, "File to write")->required();
     addDescribed(*command, request->mesh);
-    command->get_option("--channel")->required();
     command->get_option("--iso")->required();
     addImportOptions(*command, request->import);
     command->callback([request] { run(*request); });

@@ -52,9 +52,10 @@ void run(const VerifyRequest& request) {
     }
     if (!whole) throw Error(verdictOf(report), path);
     if (!json)
-        std::printf("%s: whole%s; %llu bricks decoded at every level, %s checked\n", path.c_str(),
+        std::printf("%s: whole%s; %llu brick%s decoded at every level, %s checked\n", path.c_str(),
                     report.damagedHeader ? " but for one copy of the header, which the next append replaces" : "",
-                    static_cast<unsigned long long>(report.bricks), bytesText(double(archive.fileBytes())).c_str());
+                    static_cast<unsigned long long>(report.bricks), report.bricks == 1 ? "" : "s",
+                    bytesText(double(archive.fileBytes())).c_str());
 }
 
 } // namespace

@@ -184,21 +184,25 @@ std::string quantityLines(const volume::DatasetInfo& info) {
     return out;
 }
 
+std::string timesText(const volume::DatasetInfo& info) {
+    std::string out = std::to_string(info.times.size());
+    if (info.times.size() == 1) return out;
+    return out + ": " + (info.timeName == "time" ? "" : info.timeName + " ") + number(info.times.front()) + " .. " +
+           number(info.times.back()) + (info.timeUnit.empty() ? "" : " " + info.timeUnit);
+}
+
 std::string describePreview(const volume::ImportPreview& preview) {
     const volume::DatasetInfo& info = preview.info;
     const volume::Lattice& lattice = info.lattice;
     const glm::dvec3 extent = info.bounds.size();
+    const std::string unit = info.lengthUnit.empty() ? "" : " " + info.lengthUnit;
     std::string out = info.name + " (" + preview.format + ")\n";
     out += "  samples    " + std::to_string(lattice.size.x) + " x " + std::to_string(lattice.size.y) + " x " +
            std::to_string(lattice.size.z) + "\n";
     out += "  spacing    " + number(lattice.spacing.x) + " x " + number(lattice.spacing.y) + " x " +
-           number(lattice.spacing.z) + " " + info.lengthUnit + "\n";
-    out += "  extent     " + number(extent.x) + " x " + number(extent.y) + " x " + number(extent.z) + " " +
-           info.lengthUnit + "\n";
-    out += "  times      " + std::to_string(info.times.size());
-    if (info.times.size() > 1)
-        out += ": " + (info.timeName == "time" ? "" : info.timeName + " ") + number(info.times.front()) + " .. " +
-               number(info.times.back()) + (info.timeUnit.empty() ? "" : " " + info.timeUnit);
+           number(lattice.spacing.z) + unit + "\n";
+    out += "  extent     " + number(extent.x) + " x " + number(extent.y) + " x " + number(extent.z) + unit + "\n";
+    out += "  times      " + timesText(info);
     out += "\n" + quantityLines(info);
     if (out.ends_with('\n')) out.pop_back();
     out += "\n  size       " + size(preview.bytes) + "\n  parameters " + std::to_string(info.parameters.size()) + "\n";

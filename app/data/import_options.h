@@ -19,6 +19,8 @@ void addRemoteOptions(CLI::App& command, codec::RemoteOptions& options);
 
 /// What `tessera info DATAFILE` prints: dims, spacing, parameters with type and unit, times, bytes, notes.
 std::string describePreview(const volume::ImportPreview& preview);
+/// How many times there are, and which: "6: 0 .. 50 min".
+std::string timesText(const volume::DatasetInfo& info);
 /// Quantities over time as lines of text, and as JSON: [{name, unit, values}].
 std::string quantityLines(const volume::DatasetInfo& info);
 nlohmann::json quantitiesJson(const volume::DatasetInfo& info);

@@ -100,13 +100,14 @@ TEST_F(Commands, InfoSaysTheBytesOfEachLevel) {
     ASSERT_EQ(run({"info", in("cell.tsr")}), 0);
     const std::string said = testing::internal::GetCapturedStdout();
     const codec::Archive archive(in("cell.tsr"));
-    std::string levels = "levels:";
+    std::string levels = "levels from fine to coarse:";
     for (int level = 0; level < archive.grid().levels; ++level) {
         EXPECT_GT(archive.levelBytes(level), 0u);
-        levels += " " + bytesText(double(archive.levelBytes(level)));
+        levels += (level > 0 ? ", " : " ") + bytesText(double(archive.levelBytes(level)));
     }
     EXPECT_NE(said.find(levels + "\n"), std::string::npos) << said;
     EXPECT_NE(said.find("  samples    8 x 7 x 9 on CC, from a grid of 8 x 7 x 9\n"), std::string::npos) << said;
+    EXPECT_NE(said.find("  times      3: 0 .. 2 s\n"), std::string::npos) << said;
 }
 
 TEST_F(Commands, StatsAreOfTheTimeAndRegions) {

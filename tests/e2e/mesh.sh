@@ -19,6 +19,12 @@ check "an unknown parameter" 2 "$tessera" mesh ml.tsr --channel nothing --iso 0.
 grep -q "rho" err.txt || fail "the known parameters are not named"
 check "an unknown form" 2 "$tessera" mesh ml.tsr --channel rho --iso 0.5 -o none.xyz
 check "no value" 1 "$tessera" mesh ml.tsr --channel rho -o none.ply
+check "of the only parameter" 0 "$tessera" mesh ml.tsr --iso 0.5 -o only.ply
+cmp -s only.ply surface.ply || fail "the only parameter is not what is taken"
+"$tessera" info ml.tsr > info.txt
+grep -qx "  times      1" info.txt || fail "info says more of one time than that it is one: $(grep times info.txt)"
+check "of one of several parameters" 2 "$tessera" mesh planted --iso 0.5 -o none.ply
+grep -q -- "--channel; there are .*,.*" err.txt || fail "the parameters to choose from are not named"
 check "of a model" 0 "$tessera" mesh marschner-lobb --channel rho --iso 0.5 -o model.ply
 
 # VTK reads what we wrote, where it is installed.
