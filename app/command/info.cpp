@@ -2,6 +2,7 @@
 #include "app/data/format.h"
 #include "app/data/import_options.h"
 #include "app/data/merge_layouts.h"
+#include "app/data/open.h"
 #include "app/data/picture_session.h"
 #include "app/described/describe_cli.h"
 #include "app/history/session_file.h"
@@ -11,6 +12,8 @@
 #include "codec/pack/error_bound.h"
 #include "codec/remote/address.h"
 #include "volume/import/find_parts.h"
+#include "volume/import/import.h"
+#include "volume/synthetic/models.h"
 
 #include <algorithm>
 #include <cmath>
@@ -292,6 +295,13 @@ void describeArchive(const InfoRequest& request) {
     if (request.merge) printLayouts(archive, layouts, request.merging);
 }
 
+volume::ImportPreview previewOf(const std::vector<std::string>& paths, const volume::ImportOptions& stated) {
+    if (paths.size() != 1 || !namesModel(paths[0]))
+        return volume::previewFiles(paths, recallOptions(paths, stated), terminalProgress("info"));
+    const volume::Dataset model = volume::makeModel(paths[0], {}, terminalProgress("info"));
+    return {.format = "built-in model", .info = model.info, .bytes = volume::bytesOf(model.info), .notes = {}};
+}
+
 void describe(const InfoRequest& request) {
     const std::vector<std::string>& paths = request.paths;
     const bool asJson = request.json;
@@ -303,8 +313,7 @@ void describe(const InfoRequest& request) {
                (namesPicture(paths[0]) || (hasEnding(paths[0], ".json") && looksLikeSession(readText(paths[0]))))) {
         printSession(paths[0], asJson);
     } else {
-        const volume::ImportPreview preview =
-            volume::previewFiles(paths, recallOptions(paths, request.import), terminalProgress("info"));
+        const volume::ImportPreview preview = previewOf(paths, request.import);
         std::printf("%s%s", (asJson ? describePreviewJson(preview) : describePreview(preview)).c_str(),
                     asJson ? "\n" : "");
     }
@@ -316,8 +325,9 @@ void addInfoCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("info", "Describe a data file, an archive, a session or a picture");
     const auto request = std::make_shared<InfoRequest>();
     command
-        ->add_option("FILE", request->paths,
-                     "Archive, session, picture exported by Tessera, or data files that belong together")
+        ->add_option(
+            "FILE", request->paths,
+            "Archive, session, picture exported by Tessera, data files that belong together, or a built-in model")
         ->required();
     command->add_flag("--json", request->json, "Print JSON with stable keys");
     command->add_flag("--bricks", request->bricks,

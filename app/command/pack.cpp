@@ -3,11 +3,13 @@
 #include "app/command/follow.h"
 #include "app/data/format.h"
 #include "app/data/import_options.h"
+#include "app/data/open.h"
 #include "app/described/describe_cli.h"
 #include "app/user_files/import_memory.h"
 #include "codec/container/exactness.h"
 #include "codec/pack/unpack.h"
 #include "codec/remote/address.h"
+#include "volume/synthetic/models.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,6 +72,8 @@ struct PackInput {
 };
 
 PackInput open(const PackRequest& request, const Progress& progress) {
+    if (request.inputs.size() == 1 && namesModel(request.inputs[0]))
+        return {volume::makeModel(request.inputs[0], {}, progress), {}};
     if (request.inputs.size() == 1 && codec::namesArchive(request.inputs[0])) {
         const auto archive = std::make_shared<const codec::Archive>(request.inputs[0]);
         const bool asGrid = latticeOf(request) != codec::StoredLattice::BCC || archive->metadata().alternating;
@@ -224,7 +228,9 @@ void addFollowOptions(CLI::App& command, PackRequest& request) {
 void addPackCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("pack", "Import, resample, brick and compress data into one archive");
     const auto request = std::make_shared<PackRequest>();
-    command->add_option("IN", request->inputs, "Data files that belong together: parameters, times")->required();
+    command
+        ->add_option("IN", request->inputs, "Data files that belong together (parameters, times), or a built-in model")
+        ->required();
     command->add_option("-o,--output", request->output, "Archive to write (.tsr)")->required();
     command->add_flag("--append", request->append,
                       "Append to the archive: later times, or further parameters at all its times, with the options it "

@@ -130,8 +130,9 @@ void addTransferOption(CLI::App& command, std::vector<std::string>& transfer) {
 
 void addPictureOptions(CLI::App& command, PictureOptions& options) {
     command
-        .add_option("input", options.inputs,
-                    "Session, layout, picture exported by Tessera, or data files (default: the built-in fuel cell)")
+        .add_option(
+            "input", options.inputs,
+            "Session, layout, picture exported by Tessera, data files, or a built-in model (default: fuel-cell)")
         ->type_name("SESSION|LAYOUT|DATA");
     addLayoutOption(command, options.layout);
     command
@@ -160,7 +161,8 @@ Opened openForPicture(const PictureOptions& options, const Progress& progress) {
     if (!(options.import == volume::ImportOptions{})) request.import = options.import;
     if (!(options.remote == codec::RemoteOptions{})) request.remote = options.remote;
     if (!request.paths.empty() && request.layout.empty() && !codec::isRemote(request.paths[0]) &&
-        !std::filesystem::exists(request.paths[0]) && request.paths[0].find('.') == std::string::npos) {
+        !std::filesystem::exists(request.paths[0]) && request.paths[0].find('.') == std::string::npos &&
+        !namesModel(request.paths[0])) {
         request.layout = request.paths[0];          // the name of a layout
         request.paths.erase(request.paths.begin()); // the remaining paths are data
     }

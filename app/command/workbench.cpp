@@ -14,7 +14,7 @@ namespace tessera::app {
 
 void requireFile(const std::string& word) {
     std::error_code problem;
-    if (codec::isRemote(word) || std::filesystem::exists(word, problem)) return;
+    if (codec::isRemote(word) || namesModel(word) || std::filesystem::exists(word, problem)) return;
     if (word.find_first_of("./") != std::string::npos) throw Error("no such file", word);
     const std::vector<std::string> layouts = layoutNames();
     if (std::find(layouts.begin(), layouts.end(), word) != layouts.end())
@@ -30,10 +30,10 @@ void addWorkbench(CLI::App& app) {
         std::string screenshots;
     };
     auto options = std::make_shared<Options>();
-    app.add_option(
-           "file", options->request.paths,
-           "Session, archive, picture exported by Tessera, or data files to open (default: the built-in fuel cell); "
-           "an archive also by its address on another machine: https://host/run.tsr, sftp://host/path/run.tsr")
+    app.add_option("file", options->request.paths,
+                   "Session, archive, picture exported by Tessera, data files or a built-in model to open (default: "
+                   "fuel-cell); "
+                   "an archive also by its address on another machine: https://host/run.tsr, sftp://host/path/run.tsr")
         ->type_name("FILE");
     addLayoutOption(app, options->request.layout);
     app.add_option("--screenshots", options->screenshots,

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kFirstLayout = "overview";
+constexpr const char *kFirstLayout = "overview", *kFirstModel = "fuel-cell";
 /// Width by height of the volume pane in a new window, labels taken off: with and without a timeline below it.
 double firstAspect(const volume::DatasetInfo& info) {
     return info.times.size() > 1 ? 0.92 : 0.78;
@@ -129,12 +129,15 @@ DataRef dataOf(const std::vector<std::string>& paths, const volume::ImportOption
     return data;
 }
 
-DataRef dataNamed(const std::vector<std::string>& inputs, const volume::ImportOptions& stated,
-                  const Progress& progress) {
+bool namesModel(const std::string& input) {
     const std::vector<std::string> models = volume::modelNames();
     std::error_code problem;
-    if (inputs.size() != 1 || std::ranges::find(models, inputs[0]) == models.end() || fs::exists(inputs[0], problem))
-        return dataOf(inputs, recallOptions(inputs, stated, progress));
+    return std::ranges::find(models, input) != models.end() && !fs::exists(input, problem);
+}
+
+DataRef dataNamed(const std::vector<std::string>& inputs, const volume::ImportOptions& stated,
+                  const Progress& progress) {
+    if (inputs.size() != 1 || !namesModel(inputs[0])) return dataOf(inputs, recallOptions(inputs, stated, progress));
     DataRef data;
     data.model = inputs[0];
     data.import = stated;
@@ -313,6 +316,14 @@ Session changeLayout(const SessionDocument& layout, const volume::BrickSource& s
 }
 
 Opened open(const OpenRequest& request, const Progress& progress) {
+    if (!request.data && request.paths.size() == 1 && namesModel(request.paths[0])) {
+        OpenRequest inner = request;
+        inner.paths.clear();
+        if (request.paths[0] == kFirstModel && request.layout.empty()) inner.layout = kFirstLayout;
+        inner.data = dataNamed(request.paths, request.import.value_or(volume::ImportOptions{}));
+        if (request.lattice) inner.data->lattice = *request.lattice;
+        return open(inner, progress);
+    }
     Opened opened;
     std::vector<std::string> dataPaths;
     if (request.paths.size() == 1) {
@@ -362,7 +373,7 @@ Opened open(const OpenRequest& request, const Progress& progress) {
         if (!found.missing.empty()) throw Error("data file is missing", found.missing[0].wanted.path);
         data = found.data;
     } else {
-        data.model = "fuel-cell";
+        data.model = kFirstModel;
         if (request.lattice) data.lattice = *request.lattice;
     }
     if (request.remote) data.remote = *request.remote;

@@ -52,8 +52,11 @@ void moveTo(Session& session, History& history, const volume::DatasetInfo* from,
 /// The data set of files that are opened together.
 DataRef dataOf(const std::vector<std::string>& paths, const volume::ImportOptions& options);
 
-/// The data set named on a command line: a built-in model (if no file has that name), or files with what has been
-/// stated about them before. Throws Error.
+/// Whether an input of a command is a built-in model, which it is if no file has that name.
+bool namesModel(const std::string& input);
+
+/// The data set named on a command line: a built-in model, or files with what has been stated about them before. Throws
+/// Error.
 DataRef dataNamed(const std::vector<std::string>& inputs, const volume::ImportOptions& stated,
                   const Progress& progress = {});
 

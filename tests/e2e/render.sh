@@ -36,6 +36,13 @@ status=$?
 draw cell.tsr --layout "$source/layouts/overview.json" -o second.png || die "render again"
 cmp first.png second.png || die "two runs of one session differ"
 
+# A built-in model is an input like a file; the fuel cell is what is drawn without one.
+draw fuel-cell --view volume -o named.png || die "render fuel-cell"
+draw --view volume -o default.png || die "render without input"
+cmp named.png default.png || die "the fuel cell by its name is another picture"
+draw overview marschner-lobb --view volume -o signal.png || die "a layout with a model"
+! cmp -s signal.png named.png || die "another model is the same picture"
+
 # What a PNG holds: its pixels, or the session in it ("pixels" or "session").
 cat > png.py <<'PY'
 import struct, sys, zlib

@@ -154,13 +154,6 @@ std::set<std::string> namesInFile(const std::vector<LabelRule>& rules, const Imp
     return names;
 }
 
-double bytesOf(const DatasetInfo& info) {
-    double perSample = 0;
-    for (const Parameter& parameter : info.parameters)
-        perSample += parameter.components * double(byteSize(parameter.type));
-    return perSample * double(info.lattice.count()) * double(info.times.size());
-}
-
 /// A .nrrd file that needs no VTK.
 std::optional<FileBlock> openNrrd(const std::string& path) {
     const std::filesystem::path file(path);
@@ -292,6 +285,13 @@ OpenedSeries openSeries(const std::vector<SeriesFile>& entries, const ImportOpti
     dataset = withParameters(std::move(dataset), options.parameters);
     if (!unitsStated && formatNamed(opened.format) != nullptr) guessUnits(dataset, readSamples);
     return opened;
+}
+
+double bytesOf(const DatasetInfo& info) {
+    double perSample = 0;
+    for (const Parameter& parameter : info.parameters)
+        perSample += parameter.components * double(byteSize(parameter.type));
+    return perSample * double(info.lattice.count()) * double(info.times.size());
 }
 
 ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOptions& options,

@@ -19,6 +19,9 @@ struct ImportPreview {
     std::vector<std::string> notes; ///< e.g. "unstructured mesh of 41 000 cells, resampled to 24 x 32 x 88"
 };
 
+/// Bytes of all samples of a data set.
+double bytesOf(const DatasetInfo& info);
+
 /// Previews files that belong together (several parameters, a series: see volume/import/files/series.h). Throws Error.
 ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOptions& options,
                            const Progress& progress = {});
