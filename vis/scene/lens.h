@@ -153,7 +153,7 @@ template <class N>
 LensActionOf<N> lensAction(std::span<const PlacedLens> lenses, int own, const glm::vec<3, N>& world) {
     LensActionOf<N> action;
     if (own >= 0) action.opacity = lenses[std::size_t(own)].weight(world);
-    for (const PlacedLens& lens : lenses.subspan(std::size_t(own + 1))) {
+    for (const PlacedLens& lens : lenses.subspan(std::size_t(own) + 1)) {
         const N weight = lens.weight(world);
         action.opacity = action.opacity * blended(N(lens.outside), N(lens.inside), weight);
         action.saturation = action.saturation * blended(N(1), N(lens.saturation), weight);

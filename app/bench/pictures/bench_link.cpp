@@ -63,7 +63,7 @@ public:
     volume::BrickStats stats(const volume::BrickKey&) const override { return {-1.2f, 1.2f, 1}; }
     volume::BrickSamples read(const volume::BrickKey& key) const override {
         const std::vector<float>& from =
-            bricks_[std::size_t(key.channel * kKinds + (key.index.x + key.index.y + key.index.z) % kKinds)];
+            bricks_[std::size_t(key.channel) * kKinds + std::size_t(key.index.x + key.index.y + key.index.z) % kKinds];
         const glm::ivec3 size = grid_.brickSamples(key.index, key.level);
         volume::BrickSamples out{.size = size, .values = {}, .present = {}};
         out.values.resize(std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z));
@@ -71,8 +71,8 @@ public:
         for (int z = 0; z < size.z; ++z)
             for (int y = 0; y < size.y; ++y)
                 for (int x = 0; x < size.x; ++x)
-                    out.values[to++] =
-                        from[std::size_t(((z << key.level) * 64 + (y << key.level)) * 64 + (x << key.level))];
+                    out.values[to++] = from[((std::size_t(z) << key.level) * 64 + (std::size_t(y) << key.level)) * 64 +
+                                            (std::size_t(x) << key.level)];
         return out;
     }
 

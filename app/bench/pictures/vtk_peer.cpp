@@ -96,7 +96,9 @@ std::optional<vis::reference::Image> readPicture(const fs::path& path, int size)
         for (int x = 0; x < size; ++x) {
             glm::dvec4 pixel;
             for (int c = 0; c < 4; ++c)
-                pixel[c] = static_cast<unsigned char>(bytes[std::size_t((y * size + x) * 4 + c)]) / 255.0;
+                pixel[c] = static_cast<unsigned char>(
+                               bytes[(std::size_t(y) * std::size_t(size) + std::size_t(x)) * 4 + std::size_t(c)]) /
+                           255.0;
             image.pixels.push_back(pixel);
         }
     return image;
