@@ -3,6 +3,7 @@
 #include "app/data/boundary_value.h"
 #include "app/data/first_view.h"
 #include "app/data/picture_session.h"
+#include "app/edits/layout_brushes.h"
 #include "app/session/shown_scene.h"
 #include "app/user_files/import_memory.h"
 
@@ -303,6 +304,9 @@ Session changeLayout(const SessionDocument& layout, const volume::BrickSource& s
     next.appearance = shown.appearance;
     next.time = shown.time;
     next.cursor = shown.cursor;
+    std::vector<std::string> layouts;
+    for (const std::string& name : layoutNames()) layouts.push_back(findLayout(name));
+    keepOwnBrushes(next, shown, layouts, messages);
     const auto refit = [&](vis::Camera& camera) {
         vis::fit(camera, vis::worldFrame(source.info().bounds, next.stretch), firstAspect(source.info()));
     };

@@ -76,8 +76,8 @@ Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& in
 void fitSurfaces(Session& session, const volume::BrickSource& source, const Session& layout,
                  std::vector<std::string>& messages);
 
-/// A layout chosen for data that are already shown: theme, time and cross-hair stay as in `shown`, and where the layout
-/// was made with other data the camera sees all of these. Throws Error.
+/// A layout chosen for data that are already shown: theme, time, cross-hair and the user's brushes (keepOwnBrushes)
+/// stay as in `shown`, and where the layout was made with other data the camera sees all of these. Throws Error.
 Session changeLayout(const SessionDocument& layout, const volume::BrickSource& source, const Session& shown,
                      std::vector<std::string>& messages);
 

@@ -107,6 +107,7 @@ int matchScore(const std::string& typed, const std::string& name, const std::str
 }
 
 std::vector<const Command*> matchingCommands(const std::string& typed, const std::vector<Command>& commands) {
+    constexpr int kNamed = 800; // less than any name that holds the text, more than one found by words
     struct Match {
         const Command* command;
         bool available;
@@ -120,8 +121,13 @@ std::vector<const Command*> matchingCommands(const std::string& typed, const std
         if (score > 0) matches.push_back({&command, command.available(), score});
     }
     if (best >= kWholeWords) std::erase_if(matches, [](const Match& match) { return match.score < kWholeWords; });
-    std::ranges::stable_sort(matches, [](const Match& a, const Match& b) {
-        return a.available != b.available ? a.available : a.score > b.score;
+    // What was typed as it is comes first even if it is not possible: Enter must not run something else.
+    const auto named = [](const Match& match) { return match.score > kNamed; };
+    const bool instead =
+        std::ranges::none_of(matches, [&](const Match& each) { return each.available && named(each); });
+    const auto rank = [&](const Match& match) { return match.available ? 1 : instead && named(match) ? 0 : 2; };
+    std::ranges::stable_sort(matches, [&](const Match& a, const Match& b) {
+        return rank(a) != rank(b) ? rank(a) < rank(b) : a.score > b.score;
     });
     std::vector<const Command*> found;
     for (const Match& match : matches) found.push_back(match.command);
@@ -173,9 +179,11 @@ const Command* drawPalette(CommandPalette& palette, const std::vector<Command>& 
         }
     }
     if (count == 0) ImGui::TextDisabled("No such command");
+    const bool possible = count > 0 && matches[static_cast<std::size_t>(palette.chosen)]->available();
     ImGui::EndChild();
-    if (enter && count > 0 && matches[static_cast<std::size_t>(palette.chosen)]->available())
-        chosen = matches[static_cast<std::size_t>(palette.chosen)];
+    if (count > 0 && !possible)
+        ImGui::TextDisabled("%s", helpOf(*matches[static_cast<std::size_t>(palette.chosen)]).c_str());
+    if (enter && possible) chosen = matches[static_cast<std::size_t>(palette.chosen)];
     if (chosen || escapePressed()) {
         ImGui::CloseCurrentPopup();
         palette.shown = false;

@@ -50,7 +50,7 @@ int matchScore(const std::string& typed, const std::string& name, const std::str
 inline constexpr int kWholeWords = 500; ///< the least score of a match by words
 
 /// Commands that match, best first; those by letters alone only where none matches by words. What is not available now
-/// comes after what is.
+/// comes after what is, but where only such names hold the text as it is, they come first.
 std::vector<const Command*> matchingCommands(const std::string& typed, const std::vector<Command>& commands);
 
 /// What keys and mouse do, for the help window.

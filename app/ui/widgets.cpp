@@ -88,6 +88,7 @@ bool drawNumber(const WidgetContext& context, const FieldInfo& info, std::option
     if (info.logScale) flags |= ImGuiSliderFlags_Logarithmic;
     const double lo = range ? range->lo : 0, hi = range ? range->hi : 0;
     bool changed = false;
+    const std::vector<double> before(values, values + count);
     if (info.range || (range && count == 1)) {
         changed = ImGui::SliderScalarN(idOf(info).c_str(), ImGuiDataType_Double, values, count, &lo, &hi,
                                        format.c_str(), flags);
@@ -99,6 +100,9 @@ bool drawNumber(const WidgetContext& context, const FieldInfo& info, std::option
                                      static_cast<float>(span * 0.004), nullptr, nullptr, format.c_str(),
                                      ImGuiSliderFlags_NoRoundToFormat);
     }
+    // 1e999 is read as infinity; a drag makes NaN of that, which passes all limits.
+    for (int i = 0; i < count; ++i)
+        if (changed && !std::isfinite(values[i])) values[i] = before[std::size_t(i)];
     if (changed && integer)
         for (int i = 0; i < count; ++i) values[i] = std::round(std::clamp(values[i], -2147483647.0, 2147483647.0));
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_None) && !ImGui::IsItemActive() && ImGui::GetIO().KeyCtrl)

@@ -9,6 +9,7 @@
 #include "volume/base/error.h"
 #include "volume/import/over_time.h"
 #include "volume/system/atomic_file.h"
+#include "volume/system/free_memory.h"
 
 #include <algorithm>
 #include <cmath>
@@ -216,6 +217,7 @@ void Workbench::frame() {
     for (const std::string& text : panes_.takeMessages()) message(text, true);
     busy_ = panes_.busy();
     if (!options_.headless) {
+        if (memory_.due(busy(), now())) volume::giveBackFreeMemory();
         drawDialogs();
         if (const Command* command = drawPalette(palette_, commands_)) chosen_ = command->run;
         play();

@@ -7,6 +7,7 @@
 #include "app/document/data_follower.h"
 #include "app/document/document.h"
 #include "app/workbench/given_up_drag.h"
+#include "app/workbench/idle_moment.h"
 #include "app/workbench/keyboard_focus.h"
 #include "app/workbench/pane_host.h"
 #include "app/workbench/window_look.h"
@@ -156,6 +157,7 @@ private:
     CommandPalette palette_;
     KeyboardFocus keyboard_;
     GivenUpDrag givenUp_;
+    IdleMoment memory_;            ///< when free memory is given back
     std::function<void()> chosen_; ///< command chosen in this frame, run before the next one
 
     std::optional<PictureJob> picture_;

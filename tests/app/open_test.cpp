@@ -9,6 +9,7 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
 #include <unistd.h>
@@ -304,6 +305,45 @@ TEST_F(OpenTest, ASurfaceThatCannotBeIsToldOf) {
     changeLayout(loadSession(findLayout("evening")), *opened.source, opened.document.session, messages);
     EXPECT_TRUE(std::ranges::any_of(
         messages, [](const std::string& text) { return text.find("surface is empty") != std::string::npos; }));
+}
+
+TEST_F(OpenTest, ALayoutChosenKeepsTheBrushesOfTheUser) {
+    const Opened opened = open(smallCell(3));
+    const auto change = [&](const Session& from, const char* name, std::vector<std::string>& messages) {
+        return changeLayout(loadSession(findLayout(name)), *opened.source, from, messages);
+    };
+    const auto names = [](const Session& session) {
+        std::vector<std::string> all;
+        for (const vis::Brush& brush : session.selection.brushes)
+            all.push_back(brush.name + (brush.enabled ? "" : " off"));
+        return all;
+    };
+    using Names = std::vector<std::string>;
+    Session shown = opened.document.session;
+    std::vector<std::string> messages;
+    EXPECT_EQ(names(change(shown, "focus", messages)), Names{"hot and starved"});
+    EXPECT_EQ(names(change(change(shown, "focus", messages), "statistics", messages)), Names{"little oxygen"})
+        << "a brush that came from a layout goes with it";
+    EXPECT_TRUE(change(change(shown, "focus", messages), "overview", messages).selection.brushes.empty());
+
+    shown.selection.brushes = {vis::rangeBrush({{"T", 340, 350, 0}}, "mine")};
+    messages.clear();
+    const Session plain = change(shown, "overview", messages);
+    EXPECT_EQ(plain.selection.brushes, shown.selection.brushes);
+    const Session focus = change(shown, "focus", messages);
+    EXPECT_EQ(names(focus), (Names{"mine", "hot and starved off"})) << "the selection stays";
+    EXPECT_THAT(messages, testing::Contains("the layout's brush hot and starved is switched off, beside yours"));
+    EXPECT_EQ(names(change(focus, "overview", messages)), Names{"mine"});
+    shown.selection.brushes[0].name = "hot and starved";
+    messages.clear();
+    EXPECT_EQ(change(shown, "focus", messages).selection.brushes, shown.selection.brushes);
+    EXPECT_THAT(messages,
+                testing::Contains("the layout's brush hot and starved is left out: yours of that name stays"));
+
+    shown.selection.brushes[0].region = vis::LensRegion{.lens = "glass"};
+    messages.clear();
+    EXPECT_TRUE(change(shown, "overview", messages).selection.brushes.empty());
+    EXPECT_THAT(messages, testing::Contains("brush hot and starved is removed: the layout has no lens glass"));
 }
 
 TEST_F(OpenTest, VariantsOfAnotherModelAreLeftOut) {

@@ -313,9 +313,63 @@ TEST(CommandsTest, WhatIsNotPossibleNowComesLastAndLettersOnlyWithoutWords) {
         for (const Command* command : matchingCommands(typed, commands)) names.push_back(command->name);
         return names;
     };
-    EXPECT_EQ(found("undo"), (std::vector<std::string>{"New: History", "Undo"}));
+    EXPECT_EQ(found("hist undo"), (std::vector<std::string>{"New: History"}));
     EXPECT_EQ(found("uod"), (std::vector<std::string>{"Unload old"}));
     EXPECT_EQ(found("").size(), 3u);
+    EXPECT_EQ(found("").back(), "Undo");
+}
+
+// Enter runs the first: "add flow layer" without vectors opened another pane of layers.
+TEST(CommandsTest, WhatIsTypedAsItIsComesFirstThoughItIsNotPossible) {
+    const auto none = [] {};
+    const std::vector<Command> commands{
+        {.menu = "View", .name = "New: Layers", .help = "", .words = "add flow layer", .run = none},
+        {.menu = "", .name = "Add flow layer", .help = "", .run = none, .enabled = [] { return false; }},
+        {.menu = "", .name = "Add flow layer below", .help = "", .words = "", .run = none}};
+    EXPECT_EQ(matchingCommands("add flow layer", {commands[0], commands[1]}).front()->name, "Add flow layer");
+    EXPECT_EQ(matchingCommands("add flow layer", commands).front()->name, "Add flow layer below");
+    EXPECT_EQ(matchingCommands("flow", {commands[0], commands[1]}).front()->name, "Add flow layer");
+}
+
+// Dear ImGui reads 1e999 as infinity, whose differences are not numbers.
+TEST_F(UiTest, ATypedNumberIsFinite) {
+    const FieldInfo limited{.key = "gain", .unit = "", .doc = "", .range = Range{0, 1}};
+    const FieldInfo free{.key = "place", .unit = "m", .doc = ""};
+    for (const FieldInfo& info : {limited, free}) {
+        double value = 0.5;
+        ImVec2 at;
+        const auto body = [&] {
+            ImGui::SetNextWindowPos({0, 0});
+            ImGui::SetNextWindowSize({400, 100});
+            ImGui::Begin("test");
+            drawNumber({}, info, {}, &value, 1, false);
+            const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
+            at = {(lo.x + hi.x) / 2, (lo.y + hi.y) / 2};
+            ImGui::End();
+        };
+        const auto type = [&](const char* text) {
+            ImGuiIO& io = ImGui::GetIO();
+            for (int i = 0; i < 2; ++i) frame(body);
+            mouse = at;
+            feedModifiers(io, true, false, false);
+            for (const bool down : {false, true, false}) {
+                held = down;
+                frame(body);
+            }
+            feedModifiers(io, false, false, false);
+            frame(body);
+            io.AddInputCharactersUTF8(text);
+            frame(body);
+            for (const bool down : {true, false}) {
+                feedKey(io, key::kEnter, down);
+                frame(body);
+            }
+        };
+        type("0.25");
+        EXPECT_EQ(value, 0.25) << info.key;
+        type("1e999");
+        EXPECT_EQ(value, info.range ? 1 : 0.25) << info.key << ": a limit, or as before";
+    }
 }
 
 TEST_F(UiTest, AMenuHasRoomForTheListOfSettings) {

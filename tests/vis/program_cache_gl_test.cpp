@@ -94,6 +94,46 @@ TEST_F(ProgramCacheTest, CompilingBlocksNobody) {
     EXPECT_TRUE(renderer.takeMessages().empty());
 }
 
+/// The same program with another constant: as different ones as numbers.
+vis::ProgramRecipe numbered(int number) {
+    return {"screen.vert.glsl", "accumulate.frag.glsl", {}, {{"NUMBER", std::to_string(number)}}};
+}
+
+/// Programs that GL has.
+int livePrograms() {
+    int live = 0;
+    for (GLuint name = 1; name < 200; ++name) live += glIsProgram(name) ? 1 : 0;
+    return live;
+}
+
+// Sessions of a day use hundreds of combinations of settings; the code of each takes memory.
+TEST_F(ProgramCacheTest, ProgramsThatAreNoLongerUsedAreDeleted) {
+    using namespace std::chrono_literals;
+    vis::ProgramCache cache(false, {.count = 3, .unused = 0ms});
+    const int before = livePrograms();
+    const vis::Program* const first = cache.find(numbered(0));
+    ASSERT_TRUE(first);
+    const GLuint name = first->name();
+    for (int number = 1; number < 20; ++number) {
+        EXPECT_TRUE(cache.find(numbered(number)));
+        const vis::Program* const again = cache.find(numbered(0));
+        ASSERT_TRUE(again);
+        EXPECT_EQ(again->name(), name) << "the one in use stays";
+    }
+    EXPECT_EQ(cache.size(), 3u);
+    EXPECT_EQ(livePrograms() - before, 3);
+    EXPECT_TRUE(cache.find(numbered(1))) << "one that was deleted is made again";
+    EXPECT_TRUE(cache.takeMessages().empty());
+}
+
+TEST_F(ProgramCacheTest, APictureOfManyProgramsKeepsThemAll) {
+    vis::ProgramCache cache(false, {.count = 3, .unused = std::chrono::hours(1)});
+    std::vector<const vis::Program*> made;
+    for (int number = 0; number < 8; ++number) made.push_back(cache.find(numbered(number)));
+    for (int number = 0; number < 8; ++number) EXPECT_EQ(cache.find(numbered(number)), made[std::size_t(number)]);
+    EXPECT_EQ(cache.size(), 8u);
+}
+
 // So it is with the program that presents: another tone curve is waited for under the former picture.
 TEST_F(ProgramCacheTest, PresentingBlocksNobody) {
     vis::Renderer renderer;

@@ -2,6 +2,7 @@
 
 #include "volume/base/error.h"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -21,6 +22,7 @@ struct ProgramCache::Entry {
     ProgramText text;
     Program program;                            ///< used only by the thread that owns the current stage
     ProgramStage stage = ProgramStage::Linking; ///< guarded by the mutex
+    Clock::time_point used = {};                ///< read and written by the cache's own thread
 };
 
 void ProgramCache::Shared::fail(Entry& entry, const std::string& reason) {
@@ -44,8 +46,8 @@ bool underWay(ProgramStage stage) {
 
 } // namespace
 
-ProgramCache::ProgramCache(bool warmsUp)
-    : warmsUp_(warmsUp), shared_(std::make_shared<Shared>()), context_(SharedContext::make()) {
+ProgramCache::ProgramCache(bool warmsUp, ProgramLimit limit)
+    : warmsUp_(warmsUp), limit_(limit), shared_(std::make_shared<Shared>()), context_(SharedContext::make()) {
     if (context_) worker_ = std::make_unique<JobQueue>(1, JobThreads::Equal);
 }
 
@@ -53,8 +55,11 @@ ProgramCache::~ProgramCache() = default;
 
 ProgramCache::Entry& ProgramCache::make(const ProgramRecipe& recipe, bool background) {
     const auto [found, isNew] = programs_.try_emplace(recipe.key());
-    if (!isNew) return *found->second;
-    const auto entry = found->second = std::make_shared<Entry>();
+    if (isNew) found->second = std::make_shared<Entry>();
+    const std::shared_ptr<Entry> entry = found->second;
+    entry->used = Clock::now();
+    if (!isNew) return *entry;
+    dropUnused();
     const auto link = [entry, shared = shared_](ProgramStage next) {
         try {
             entry->program = linkProgram(entry->text);
@@ -80,6 +85,18 @@ ProgramCache::Entry& ProgramCache::make(const ProgramRecipe& recipe, bool backgr
         });
     }
     return *entry;
+}
+
+/// Programs that the worker refers to stay, since only this thread may delete them.
+void ProgramCache::dropUnused() {
+    while (programs_.size() > limit_.count) {
+        const auto oldest = std::ranges::min_element(
+            programs_, {}, [](const auto& each) { return std::pair(each.second.use_count() > 1, each.second->used); });
+        const Entry& entry = *oldest->second;
+        if (oldest->second.use_count() > 1 || Clock::now() - entry.used < limit_.unused) return;
+        drawn_.erase(entry.program.name());
+        programs_.erase(oldest);
+    }
 }
 
 const Program* ProgramCache::find(const ProgramRecipe& recipe) {

@@ -17,7 +17,8 @@ namespace tessera::vis {
 ///     if (answer.stage == ProgramStage::Linked) { set its uniforms, bind its textures; cache.warmUp(recipe, ...); }
 ///     if (answer.stage != ProgramStage::Ready) show the former picture;
 ///
-/// A program that fails to compile is tried once; the error becomes a message.
+/// A program that fails to compile is tried once; the error becomes a message. A program stays valid until others have
+/// been requested: it is kept while it is one of the last ProgramLimit::count.
 enum class ProgramStage {
     Linking, ///< in progress
     Linked,  ///< needs warmUp() once its uniforms and textures are set
@@ -30,10 +31,16 @@ struct ProgramAnswer {
     ProgramStage stage = ProgramStage::Failed;
 };
 
+/// How many programs a cache keeps. Software GL takes some 10 MB for the machine code of one.
+struct ProgramLimit {
+    std::size_t count = 24;                                      ///< the least recently used ones beyond are deleted,
+    std::chrono::milliseconds unused = std::chrono::seconds(20); ///< once nobody has asked for them for so long
+};
+
 class ProgramCache {
 public:
     /// `warmsUp`: programs need warmUp() (Driver::compilesAtFirstDraw); otherwise they are ready once linked.
-    explicit ProgramCache(bool warmsUp = true);
+    explicit ProgramCache(bool warmsUp = true, ProgramLimit limit = {});
     ~ProgramCache(); ///< waits for a running compilation
 
     /// The program of a recipe, compiled now if necessary; null if it does not compile.
@@ -45,11 +52,13 @@ public:
     /// True once per program: its first draw may be slow and should not be timed.
     bool firstUse(const Program& program) { return drawn_.insert(program.name()).second; }
     std::vector<std::string> takeMessages();
+    std::size_t size() const { return programs_.size(); }
 
 private:
     struct Entry;
     struct Shared;
     Entry& make(const ProgramRecipe& recipe, bool background);
+    void dropUnused();
     /// A program drawn by the other context, its draw state, and the time of that draw in milliseconds.
     struct Drawn {
         std::shared_ptr<Entry> entry;
@@ -61,6 +70,7 @@ private:
     void awaitDiskCache(const Drawn& drawn, std::size_t trial, Clock::time_point since);
 
     bool warmsUp_;
+    ProgramLimit limit_;
     std::map<std::string, std::shared_ptr<Entry>> programs_;
     std::shared_ptr<Shared> shared_;
     std::set<GLuint> drawn_;

@@ -64,7 +64,7 @@ struct Problem {
     }
     std::string operator()(const MagnitudeRecipe& recipe) const {
         for (const std::string& name : {recipe.x, recipe.y, recipe.z})
-            if (const std::string problem = channel(name); !problem.empty()) return problem;
+            if (std::string problem = channel(name); !problem.empty()) return problem;
         return {};
     }
     std::string vector(const std::string& name) const {
@@ -79,9 +79,9 @@ struct Problem {
         return channel(recipe.channel);
     }
     std::string operator()(const DifferenceRecipe& recipe) const {
-        if (const std::string problem = channel(recipe.channel); !problem.empty()) return problem;
+        if (std::string problem = channel(recipe.channel); !problem.empty()) return problem;
         const int of = *info.findChannel(recipe.channel);
-        if (const std::string problem = timeProblem(recipe.reference(), info, of); !problem.empty()) return problem;
+        if (std::string problem = timeProblem(recipe.reference(), info, of); !problem.empty()) return problem;
         if (recipe.from != OtherTime::Other) return {};
         const std::vector<Channel> channels = info.channels();
         const Channel &own = channels[std::size_t(of)], &other = channels[std::size_t(*otherChannel(info, of))];
