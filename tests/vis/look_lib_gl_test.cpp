@@ -31,7 +31,8 @@ protected:
         out.curvature = 40 * std::abs(b[i].x);
         out.depth = std::abs(b[i].y);
         out.pixel = 0.005;
-        out.grain = glm::abs(glm::dvec4(b[i].z, b[i].w, b[i].x, b[i].y));
+        const glm::dvec4 grain = glm::abs(glm::dvec4(b[i].z, b[i].w, b[i].x, b[i].y));
+        out.grain = {grain.x, grain.y, grain.z, grain.w};
         return out;
     }
 };
@@ -46,8 +47,8 @@ TEST_F(LookLib, EnhancementsAgree) {
         silhouette.silhouette = vis::SilhouetteEnhancement{.retained = 0.1f, .strength = 3, .exponent = 2.5f};
         EXPECT_NEAR(got[i].x * 0.1, vis::lookOpacity(boundary, 0.1, sample(i)), 2e-6) << i;
         EXPECT_NEAR(got[i].y * 0.1, vis::lookOpacity(silhouette, 0.1, sample(i)), 2e-6) << i;
-        EXPECT_NEAR(got[i].z, vis::outline(std::abs(a[i].y), 40 * std::abs(b[i].x), 0.01), 2e-5) << i;
-        EXPECT_EQ(got[i].w, float(vis::lightStep(a[i].x, 4))) << i;
+        EXPECT_NEAR(got[i].z, vis::outline<double>(std::abs(a[i].y), 40 * std::abs(b[i].x), 0.01), 2e-5) << i;
+        EXPECT_EQ(got[i].w, float(vis::lightStep(double(a[i].x), 4))) << i;
     }
 }
 

@@ -84,7 +84,7 @@ struct MeshBall {
             sample.wire = wireCoverage(place, normal, toViewer, double(layer.style.look.wire->spacing),
                                        double(layer.style.look.wire->width), sample.pixel);
         const Illumination light = illuminate(scene.lighting, scene.camera);
-        const glm::dvec3 lit = shade(light, lookAlbedo(layer.style.look, albedo, 1), normal, 1, place, toViewer);
+        const glm::dvec3 lit = shade(light, lookAlbedo(layer.style.look, albedo, 1.0), normal, 1, place, toViewer);
         const double alpha = lookOpacity(layer.style.look, double(layer.style.opacity), sample);
         return {lookColor(layer.style.look, albedo, lit, sample, view.ground) * alpha, alpha};
     }

@@ -142,101 +142,13 @@ GrainTile makeTile() {
 
 } // namespace
 
-std::shared_ptr<const GrainTile> grainTile() {
+const std::shared_ptr<const GrainTile>& grainTile() {
     static const auto tile = std::make_shared<const GrainTile>(makeTile());
     return tile;
 }
 
 glm::dvec3 GrainTile::at(glm::dvec2 texel) const {
-    const glm::dvec2 moved = texel - 0.5, base = glm::floor(moved), part = moved - base;
-    const auto fetch = [&](int x, int y) {
-        const int i = (int(base.x) + x) & (kGrainEdge - 1), j = (int(base.y) + y) & (kGrainEdge - 1);
-        return glm::dvec3(texels[std::size_t(j) * kGrainEdge + std::size_t(i)]);
-    };
-    return glm::mix(glm::mix(fetch(0, 0), fetch(1, 0), part.x), glm::mix(fetch(0, 1), fetch(1, 1), part.x), part.y);
-}
-
-namespace {
-
-/// The planes and scales that a surface shows the tile at.
-struct GrainPlaces {
-    glm::dvec3 place, planes;
-    double whole, part;
-
-    GrainPlaces(glm::dvec3 at, glm::dvec3 normal, double size) : place(at), planes(normal * normal * normal * normal) {
-        const double octave = std::log2(std::max(size, 1e-9));
-        whole = std::floor(octave);
-        part = octave - whole;
-        planes /= std::max(planes.x + planes.y + planes.z, 1e-12);
-    }
-    /// Calls use(axis, weight, position in texels) for each.
-    template <class Use> void each(const Use& use) const {
-        for (int scale = 0; scale < 2; ++scale) {
-            const glm::dvec3 texel = place * std::exp2(-whole - scale);
-            for (int axis = 0; axis < 3; ++axis)
-                // Offsets, so that no plane passes through the origin of another.
-                use(axis, planes[axis] * (scale == 0 ? 1 - part : part),
-                    glm::dvec2(texel[(axis + 1) % 3], texel[(axis + 2) % 3]) + 17.3 * (axis + 1));
-        }
-    }
-};
-
-} // namespace
-
-glm::dvec2 grainAt(const GrainTile& tile, glm::dvec3 place, glm::dvec3 normal, double size) {
-    double sum = 0, squares = 0, dots = 1;
-    GrainPlaces(place, normal, size).each([&](int, double weight, glm::dvec2 on) {
-        const glm::dvec3 texel = tile.at(on);
-        sum += weight * (texel.x - 0.5);
-        squares += weight * weight;
-        dots = std::min(dots, 1 - std::pow(std::max(1 - texel.z, 0.0), 1 / std::max(weight, 1e-3)));
-    });
-    return {std::clamp(0.5 + sum / std::sqrt(std::max(squares, 1e-12)), 0.0, 1.0), dots};
-}
-
-double strokesAt(const GrainTile& tile, glm::dvec3 place, glm::dvec3 normal, glm::dvec3 along, double size,
-                 double shift) {
-    double sum = 0, squares = 0;
-    GrainPlaces(place, normal, size).each([&](int axis, double planeWeight, glm::dvec2 on) {
-        const glm::dvec2 way(along[(axis + 1) % 3], along[(axis + 2) % 3]);
-        const double turns = std::atan2(way.y, way.x + 1e-9) / std::numbers::pi * kStrokeTurns;
-        const double first = std::floor(turns), share = glm::smoothstep(0.35, 0.65, turns - first);
-        for (int next = 0; next < 2; ++next) {
-            // Strokes lie along the tile's diagonal. Half a turn more is the same direction.
-            const double number = first + next - kStrokeTurns * std::floor((first + next) / kStrokeTurns);
-            const double angle = (0.25 - number / kStrokeTurns) * std::numbers::pi;
-            const double cosine = std::cos(angle), sine = std::sin(angle);
-            const double weight = planeWeight * (next == 0 ? 1 - share : share);
-            sum += weight *
-                   (tile.at(glm::dvec2(cosine * on.x - sine * on.y, sine * on.x + cosine * on.y) + shift).y - 0.5);
-            squares += weight * weight;
-        }
-    });
-    return std::clamp(0.5 + sum / std::sqrt(std::max(squares, 1e-12)), 0.0, 1.0);
-}
-
-glm::dvec3 acrossNormal(glm::dvec3 n) {
-    const double sign = n.z < 0 ? -1 : 1, a = -1 / (sign + n.z);
-    return {1 + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x};
-}
-
-double bendAlong(SurfaceBend bend, glm::dvec3 normal, glm::dvec3 along) {
-    const glm::dvec3 first = acrossNormal(normal), second = glm::cross(normal, first);
-    const double u = glm::dot(first, along), v = glm::dot(second, along);
-    return 0.5 * (bend.x + bend.y * (u * u - v * v) + bend.z * 2 * u * v);
-}
-
-glm::dvec3 strokeDirection(glm::dvec3 normal, SurfaceBend bend, double follow, double turn) {
-    const glm::dvec3 first = acrossNormal(normal), second = glm::cross(normal, first);
-    const double u = (first.x + first.y + first.z) / std::sqrt(3.0),
-                 v = (second.x + second.y + second.z) / std::sqrt(3.0);
-    const glm::dvec2 apart(bend.y, bend.z);
-    const double most = std::max(std::abs(bend.x), glm::length(apart));
-    const glm::dvec2 bent = bend.x * apart / std::max(most * most, 1e-12);
-    const glm::dvec2 doubled =
-        follow * glm::smoothstep(0.04, 0.2, most) * bent + 0.25 * glm::dvec2(u * u - v * v, 2 * u * v);
-    const double angle = 0.5 * std::atan2(doubled.y, doubled.x + 1e-9) + turn;
-    return std::cos(angle) * first + std::sin(angle) * second;
+    return {patternAt(*this, 0, texel), patternAt(*this, 1, texel), patternAt(*this, 2, texel)};
 }
 
 double paperShade(const GrainTile& tile, glm::dvec2 at, double tooth) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vis/optics/brush_tests.h"
+#include "vis/optics/look_shading.h"
 #include "vis/optics/ray_setup.h"
 #include "vis/optics/surface_light.h"
 #include "vis/scene/brush_effect.h"
@@ -59,6 +60,8 @@ struct LayerView {
     float surfaceScale = 0;                ///< weight of the surface = change of samples over a cell * this, at most 1
     const std::int32_t* table = nullptr;
     const std::uint32_t* packed = nullptr;
+    const Look* look = nullptr; ///< null: plain
+    float smooth = 0;           ///< of the look, in cells of a sublattice
     ColorView colors = {};
     std::uint32_t shows[kShowBins / 32] = {}; ///< bits of places around which there is opacity
     float opacityScale = 1;                   ///< of the table's opacities
@@ -145,6 +148,8 @@ struct CastJob {
     FocusView focus;
     SkipView skip;
     volume::GradientStencil stencil;
+    LookView look;               ///< of looks, when there are any
+    glm::dvec3 middle{0, 0, -1}; ///< direction of the ray in the middle of the picture
     const Lighting* surface = nullptr;
     std::span<const PlacedLight> lights;
     std::uint64_t* samples = nullptr; ///< counts samples taken, when not null

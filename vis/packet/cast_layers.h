@@ -1,7 +1,6 @@
 #pragma once
 
-#include "vis/packet/cast_focus.h"
-#include "vis/packet/cast_gradient.h"
+#include "vis/packet/cast_look.h"
 
 /// Packets of rays through the layers of a scene, sample by sample as vis/optics/ray_setup.h says. Only for cast_*.cpp.
 namespace tessera::vis::packet::TESSERA_LANES {
@@ -109,17 +108,54 @@ template <bool Bcc, bool Exact> struct Caster {
         return litColor(job, albedo, slope, weight, packet.world(k), -packet.ray.direction);
     }
 
+    /// Colours and opacities after light and look, of samples of one part each.
+    struct Drawn {
+        Vec color;
+        Floats opacity;
+    };
+    [[gnu::noinline]] Drawn looked(const LayerView& layer, const Read& read, const Vec& albedo, Floats opacity,
+                                   Floats doi, const Vec& cells, Floats k, Mask lanes) {
+        const bool iso = layer.style == RayStyle::Iso;
+        const Vec none(Floats(0), Floats(0), Floats(0));
+        const Look& look = *layer.look;
+        Vec narrow = none; // labels have none
+        if (!layer.volume->labels) narrow = choose(lanes, gradient(read, cells, lanes), none);
+        const Floats steep = steepness(narrow), weight = smaller(Floats(1), steep * Floats(layer.surfaceScale));
+        const Looked at{
+            layer, cells,  packet.world(k), packet.ray.direction,    packet.enter + (k + packet.phase) * packet.step,
+            doi,   narrow, steep,           iso ? Floats(1) : weight};
+        const Floats part = read.part(cells, lanes);
+        const auto value = [&](const Vec& place) {
+            count(lanes);
+            return inPart(read, part, withinBox(job, place), lanes);
+        };
+        const Vec slope = lookGradient(job, at, value);
+        const LookSampleOf<Floats> sample = lookSample(job, at, value, slope);
+        if (!iso) opacity = solidOpacity(look, opacity, sample.share);
+        Vec color = lookAlbedo(look, albedo, sample.share);
+        if (iso || layer.shaded) color = litColor(job, color, slope, at.weight, at.world, -packet.ray.direction);
+        color = lookColor(look, albedo, color, sample, job.look.ground);
+        return {choose(lanes, color, none), choose(lanes, lookOpacity(look, opacity, sample), Floats(0))};
+    }
+
     /// Shades samples of a composite layer and puts them behind what is there.
     void drawSample(const LayerView& layer, bool masked, Floats place, Floats opacity, Floats k, Mask lanes) {
         const Read read = reader(layer, masked);
         const Vec cells = packet.cells(k);
         Vec color = tinted(layer, colorAt(layer.table, tablePlace(place), lanes), cells, lanes);
+        Focus focus;
         if (job.focus.any) {
-            const Focus focus = focusOf(layer, cells, k, masked, lanes);
+            focus = focusOf(layer, cells, k, masked, lanes);
             color = focused(job.focus, layer, color, focus);
             opacity = opacity * focus.opacity;
         }
-        if (layer.shaded) color = lit(layer, read, color, cells, k, lanes);
+        if (layer.look != nullptr) {
+            const Drawn own = looked(layer, read, color, opacity, focus.interest.doi, cells, k, lanes);
+            color = own.color;
+            opacity = own.opacity;
+        } else if (layer.shaded) {
+            color = lit(layer, read, color, cells, k, lanes);
+        }
         const Floats thickness = Floats(layer.density) * (packet.holeCount > 0 ? packet.coverage(k) : Floats(1));
         packet.blend(color, correctedOpacity(opacity, packet.step, thickness), k, lanes);
     }
@@ -187,7 +223,19 @@ template <bool Bcc, bool Exact> struct Caster {
         packet.blend(color, alpha, shownAt, some);
     }
 
-    /// The values from samples of one part each, as far as these have any weight.
+    /// The values from samples of one part each.
+    Found inPart(const Read& read, Floats part, const Vec& cells, Mask lanes) const {
+        if (read.volume.partCount == 0) return read(cells, lanes);
+        Found out{Floats(0), maskOf(0)};
+        for (int i = 0; i < read.volume.partCount; ++i) {
+            const Mask of = lanes & (part >= Floats(i)) & (part <= Floats(i));
+            if (!anyOf(of)) continue;
+            const Found own = read.ofPart(i)(cells, of);
+            out = {choose(of, own.value, out.value), out.present | (own.present & of)};
+        }
+        return out;
+    }
+    /// The same as far as these have any weight.
     [[gnu::noinline]] Found continuedInPart(const Read& read, Floats part, const Vec& cells, Mask lanes) const {
         Found out{Floats(0), maskOf(0)};
         for (int i = 0; i < read.volume.partCount; ++i) {
@@ -229,16 +277,23 @@ template <bool Bcc, bool Exact> struct Caster {
         Mask shown = crossed & packet.shows(at);
         if (parts) shown &= same(read.part(cells, crossed));
         if (!anyOf(shown)) return out;
-        Vec slope(Floats(0), Floats(0), Floats(0)); // labels have none
-        if (!layer.volume->labels) slope = gradient(read, cells, shown);
         out.at = choose(shown, at, far);
         Vec albedo = tinted(layer, spreadOut<Floats>(layer.isoColor), cells, shown);
         Floats opacity(layer.isoOpacity);
+        Focus focus;
         if (job.focus.any) {
-            const Focus focus = focusOf(layer, cells, at, masked, shown);
+            focus = focusOf(layer, cells, at, masked, shown);
             albedo = focused(job.focus, layer, albedo, focus);
             opacity = smaller(Floats(1), opacity * focus.opacity);
         }
+        if (layer.look != nullptr) {
+            const Drawn own = looked(layer, read, albedo, opacity, focus.interest.doi, cells, at, shown);
+            out.color = own.color;
+            out.opacity = own.opacity;
+            return out;
+        }
+        Vec slope(Floats(0), Floats(0), Floats(0)); // labels have none
+        if (!layer.volume->labels) slope = gradient(read, cells, shown);
         out.color = litColor(job, albedo, slope, Floats(1), packet.world(at), -packet.ray.direction);
         out.opacity = choose(shown, opacity, Floats(0));
         return out;

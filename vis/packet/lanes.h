@@ -233,4 +233,40 @@ inline Floats power(Floats base, Floats exponent) {
     return choose(base > Floats(0), powerOfTwo(exponent * logarithm(base)), Floats(0));
 }
 
+/// Error below 3e-7 for angles of a few turns (Taylor series around the multiples of pi / 2).
+inline Floats sine(Floats radians) {
+    const Floats quarter = roundDown(multiplyAdd(radians, Floats(0.63661977), Floats(0.5)));
+    const Floats x = multiplyAdd(quarter, Floats(4.3711390e-8), multiplyAdd(quarter, Floats(-1.57079637f), radians));
+    const Floats q = x * x;
+    const Floats odd =
+        x * multiplyAdd(q, multiplyAdd(q, multiplyAdd(q, Floats(-1.0 / 5040), Floats(1.0 / 120)), Floats(-1.0 / 6)),
+                        Floats(1));
+    const Floats even = multiplyAdd(
+        q,
+        multiplyAdd(q, multiplyAdd(q, multiplyAdd(q, Floats(1.0 / 40320), Floats(-1.0 / 720)), Floats(1.0 / 24)),
+                    Floats(-0.5)),
+        Floats(1));
+    const Ints turn = toInts(quarter);
+    const Floats own = choose((turn & Ints(1)) == Ints(0), odd, even);
+    return choose((turn & Ints(2)) == Ints(0), own, -own);
+}
+inline Floats cosine(Floats radians) {
+    return sine(radians + Floats(1.5707963));
+}
+/// The angle of (x, y), -pi .. pi, error below 5e-7 (polynomial of Cephes' atanf, S. L. Moshier); 0 of (0, 0).
+inline Floats angleOf(Floats y, Floats x) {
+    const Floats wide = magnitude(x), high = magnitude(y), most = larger(wide, high);
+    const Floats ratio = smaller(wide, high) / choose(most > Floats(0), most, Floats(1));
+    const Mask steep = ratio > Floats(0.41421356);
+    const Floats a = choose(steep, (ratio - Floats(1)) / (ratio + Floats(1)), ratio), q = a * a;
+    const Floats series = multiplyAdd(
+        q,
+        multiplyAdd(q, multiplyAdd(q, Floats(8.05374449538e-2), Floats(-1.38776856032e-1)), Floats(1.99777106478e-1)),
+        Floats(-3.33329491539e-1));
+    Floats angle = multiplyAdd(series * q, a, a) + choose(steep, Floats(0.78539816), Floats(0));
+    angle = choose(high > wide, Floats(1.5707963) - angle, angle);
+    angle = choose(x < Floats(0), Floats(3.1415927) - angle, angle);
+    return choose(y < Floats(0), -angle, angle);
+}
+
 } // namespace tessera::vis::packet::TESSERA_LANES

@@ -49,6 +49,11 @@ bool isNarrow(Range range, Range whole) {
     return std::abs(range.hi - range.lo) < kNarrow * std::abs(whole.hi - whole.lo);
 }
 
+/// Whether strokes or dots depend on second differences and thresholds, for which 15 bits are too few here and there.
+bool drawsMarks(const Look* look) {
+    return look && look->charcoal;
+}
+
 } // namespace
 
 std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::DatasetInfo& info) {
@@ -68,7 +73,7 @@ std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::Datase
         const auto wholeOf = [&](int of) { return info.channelRange(info.channel(of)); };
         const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
         exact = exact || isNarrow(transferOfLayer(scene, info, layer, *channel).range, wholeOf(*channel)) ||
-                (volume && volume->quantity == Quantity::Gradient);
+                (volume && volume->quantity == Quantity::Gradient) || drawsMarks(lookOf(layer.technique));
         out.push_back({int(i), {*channel, timesOf(info, *channel, time), scene.render.filter, false}});
         const std::optional<int> colors = info.findChannel(colorByOf(layer.technique));
         if (!colors) continue;

@@ -16,7 +16,6 @@ std::string refusalOfFocus(const Scene& scene, const volume::DatasetInfo& info) 
 
 std::string refusalOfLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn) {
     const Layer& layer = scene.layers[std::size_t(drawn.layer)];
-    if (const Look* look = lookOf(layer.technique); look && look->any()) return "looks";
     const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
     if (!volume || volume->style != RayStyle::Composite || volume->quantity == Quantity::Gradient) return "";
     if (volume->classification != Classification::Post) return "classification before or over samples";

@@ -139,6 +139,11 @@ void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, 
     out.gradientScale = float(perRange / double(function.gradientTop));
     out.surfaceScale = width != 0 || volume.labels ? float(perRange / kFlatGradient) : 1e20f;
     if (drawn.colors) out.colors = colorsOf(scene, info, drawn, index + 1);
+    if (const Look* look = lookOf(layer.technique); look && look->any()) {
+        out.look = &looks_.emplace_back(*look);
+        const auto kind = volume.bcc ? volume::LatticeKind::BCC : volume::LatticeKind::CC;
+        out.smooth = float(volume::smoothReach(kind, double(look->smooth)));
+    }
     const glm::dvec2 map(out.placeScale, out.placeOffset);
     const int edge = skip_.edge;
     const double slack = volume.exact ? kSlack / 2 / kQuantum : kSlack;
@@ -357,6 +362,8 @@ CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, co
     lighting_ = scene.lighting;
     lights_ = placeLights(scene.lighting, scene.camera);
     job.surface = &lighting_;
+    job.middle = middle.direction;
+    if (!looks_.empty()) job.look = lookView(scene, frame.halfSize, job.cell, size);
     job.lights = lights_;
     job.jitterStarts = scene.render.jitter;
     if (empty()) return job;

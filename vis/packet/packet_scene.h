@@ -6,6 +6,7 @@
 #include "vis/packet/packet_table.h"
 #include "vis/scene/scene.h"
 
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -41,6 +42,7 @@ private:
     std::vector<SharedVolume> volumes_;
     std::vector<VolumeView> views_;
     std::vector<std::vector<VolumeView>> partViews_; ///< of each volume
+    std::deque<Look> looks_;                         ///< of layers
     std::vector<std::vector<std::int32_t>> tables_;
     std::vector<std::vector<std::uint32_t>> packed_;
     std::vector<LayerView> layers_;

@@ -37,7 +37,7 @@ void setLookUniforms(const Program& program, const std::vector<const Look*>& loo
     for (const Look* own : looks) {
         static const Look kPlain;
         const Look& look = own ? *own : kPlain;
-        const double none = lookShare(look.part, 0), all = lookShare(look.part, 1);
+        const double none = lookShare(look.part, 0.0), all = lookShare(look.part, 1.0);
         share.emplace_back(none, all - none);
         const WarmCool gooch = look.tone.value_or(WarmCool{});
         warm.emplace_back(linear(gooch.warmColor), gooch.amount);

@@ -199,28 +199,6 @@ Medium<double> Prepared::medium(const LightGrid& grid) const {
     return out;
 }
 
-double Prepared::secondDifference(const Samples& of, glm::dvec3 world, int part, glm::dvec3 offset) const {
-    const std::optional<double> centre = of.ofPart(part, cells(world));
-    double sum = 0;
-    for (const double side : {-1.0, 1.0}) {
-        const glm::dvec3 place = glm::clamp(world + side * offset, -frame.halfSize, frame.halfSize);
-        if (centre) sum += of.ofPart(part, cells(place)).value_or(*centre) - *centre;
-    }
-    return sum;
-}
-
-SurfaceBend Prepared::surfaceBend(const Samples& of, glm::dvec3 world, int part, glm::dvec3 normal,
-                                  double reach) const {
-    const glm::dvec3 first = acrossNormal(normal), second = glm::cross(normal, first);
-    double turned[4];
-    for (int i = 0; i < 4; ++i) {
-        const double angle = glm::radians(45.0 * i);
-        turned[i] = secondDifference(of, world, part, (std::cos(angle) * first + std::sin(angle) * second) * reach);
-    }
-    return SurfaceBend(0.5 * (turned[0] + turned[1] + turned[2] + turned[3]), turned[0] - turned[2],
-                       turned[1] - turned[3]);
-}
-
 Interest Prepared::interest(glm::dvec3 world) const {
     if (!scene.selection.active()) return {};
     std::vector<double> values;

@@ -116,12 +116,11 @@ struct Prepared {
         return volume::smoothGradient(seen, lattice.toCells(frame.toPhysical(world)),
                                       volume::smoothReach(lattice.kind, width), narrow);
     }
-    /// The sum of the values at place - offset and place + offset within the box, less twice that at the place; absent
-    /// ones are like it.
-    double secondDifference(const Samples& of, glm::dvec3 world, int part, glm::dvec3 offset) const;
-    /// Curvature of the surface through a place by four of these in its tangent plane, times the length of the gradient
-    /// per `reach`, in world units.
-    SurfaceBend surfaceBend(const Samples& of, glm::dvec3 world, int part, glm::dvec3 normal, double reach) const;
+    /// The value of a part beside a place, within the box.
+    volume::FoundValue<double, bool> beside(const Samples& of, glm::dvec3 world, int part, glm::dvec3 offset) const {
+        const auto found = of.ofPart(part, cells(glm::clamp(world + offset, -frame.halfSize, frame.halfSize)));
+        return {found.value_or(0), found.has_value()};
+    }
     /// The gradient within the part that the position belongs to.
     glm::dvec3 gradient(const Samples& of, glm::dvec3 world) const {
         return gradient(of, world, of.part(cells(world)));

@@ -144,10 +144,12 @@ template <class Number> struct Caster {
             const glm::dvec3 across = tangent / std::max(glm::length(tangent), 1e-6);
             const double reach = bendReach(look, view), perReach = 1 / (reach * glm::length(gradient));
             const bool follows = look.charcoal && look.charcoal->mark == Mark::Strokes && look.charcoal->follow > 0;
-            if (follows) bend = perReach * scene.surfaceBend(*layer.samples, place, part, sample.at.normal, reach);
-            const double turned = follows
-                                      ? bendAlong(bend, sample.at.normal, across)
-                                      : perReach * scene.secondDifference(*layer.samples, place, part, across * reach);
+            const auto centre = layer.samples->ofPart(part, scene.cells(place));
+            const volume::FoundValue<double, bool> middle{centre.value_or(0), centre.has_value()};
+            const auto valueAt = [&](glm::dvec3 to) { return scene.beside(*layer.samples, place, part, to); };
+            if (follows) bend = perReach * surfaceBend<double>(valueAt, middle, sample.at.normal, reach);
+            const double turned = follows ? bendAlong(bend, sample.at.normal, across)
+                                          : perReach * secondDifference<double>(valueAt, middle, across * reach);
             sample.curvature = std::abs(turned) / reach;
         }
         if (look.wire)

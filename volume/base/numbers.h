@@ -40,6 +40,20 @@ inline double power(double base, double exponent) {
 inline double powerOfTwo(double a) {
     return std::exp2(a);
 }
+/// Base-two logarithm.
+inline double logarithm(double a) {
+    return std::log2(a);
+}
+inline double sine(double radians) {
+    return std::sin(radians);
+}
+inline double cosine(double radians) {
+    return std::cos(radians);
+}
+/// The angle of (x, y), -pi .. pi.
+inline double angleOf(double y, double x) {
+    return std::atan2(y, x);
+}
 
 template <class N> N clamped(N x, N lo, N hi) {
     return smaller(larger(x, lo), hi);
@@ -50,8 +64,16 @@ template <class N> N blended(N a, N b, N share) {
 template <class N> glm::vec<3, N> blended(const glm::vec<3, N>& a, const glm::vec<3, N>& b, N share) {
     return a * (N(1) - share) + b * share;
 }
+/// 0 up to lo, 1 from hi on, smooth between.
+template <class N> N smoothStep(N lo, N hi, N x) {
+    const N t = clamped((x - lo) / (hi - lo), N(0), N(1));
+    return t * t * (N(3) - N(2) * t);
+}
 template <class N> N inner(const glm::vec<3, N>& a, const glm::vec<3, N>& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class N> glm::vec<3, N> crossProduct(const glm::vec<3, N>& a, const glm::vec<3, N>& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 template <class N> N lengthOf(const glm::vec<3, N>& a) {
     return squareRoot(inner(a, a));

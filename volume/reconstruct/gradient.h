@@ -72,13 +72,16 @@ glm::vec<3, N> gradientOf(const Value& value, const glm::vec<3, N>& cells, const
     return out;
 }
 
-/// The same of `value(cells) -> std::optional<double>`.
-template <class Value> glm::dvec3 gradient(const Value& value, glm::dvec3 cells, const GradientStencil& stencil) {
-    const auto found = [&](const glm::dvec3& at) {
+/// `value(cells) -> std::optional<double>` as one that gives FoundValue.
+template <class Value> auto foundBy(const Value& value) {
+    return [&value](const glm::dvec3& at) {
         const std::optional<double> one = value(at);
         return FoundValue<double, bool>{one.value_or(0), one.has_value()};
     };
-    return gradientOf<double>(found, cells, stencil);
+}
+/// The same of `value(cells) -> std::optional<double>`.
+template <class Value> glm::dvec3 gradient(const Value& value, glm::dvec3 cells, const GradientStencil& stencil) {
+    return gradientOf<double>(foundBy(value), cells, stencil);
 }
 
 /// Width in cells of the sublattice of `voxels` cells of the CC grid with the same sample density.
@@ -89,29 +92,39 @@ inline double smoothReach(LatticeKind kind, double voxels) {
 inline constexpr double kSmoothDepth =
     0.5; ///< reach of smoothGradient() along the normal, as a share of that across it
 
-/// Gradient of a smoothed field, per cell and axis: the least-squares fit of the differences between -o and +o for the
-/// offsets o = `reach` A d, d the four diagonals (1, 1, 1), ..., A = 1 - (1 - kSmoothDepth) n n^T, n = `narrow` /
-/// |narrow|. So each component is a mean of parallel differences, which smooths over `reach` across a surface with the
-/// unsmoothed gradient `narrow` but less along its normal, where beyond a thin wall other things begin. Where less than
-/// 0.1 to 0.4 of the gradient is left, `reach` is wider than what is there, and the unsmoothed one stays. Absent values
-/// as in gradient().
+/// Gradient of a smoothed field, per cell and axis, of `value(cells) -> FoundValue`: the least-squares fit of the
+/// differences between -o and +o for the offsets o = `reach` A d, d the four diagonals (1, 1, 1), ..., A = 1 - (1 -
+/// kSmoothDepth) n n^T, n = `narrow` / |narrow|. So each component is a mean of parallel differences, which smooths
+/// over `reach` across a surface with the unsmoothed gradient `narrow` but less along its normal, where beyond a thin
+/// wall other things begin. Where less than 0.1 to 0.4 of the gradient is left, `reach` is wider than what is there,
+/// and the unsmoothed one stays. Absent values as in gradient().
+template <class N, class Value>
+glm::vec<3, N> smoothGradientOf(const Value& value, const glm::vec<3, N>& cells, double reach,
+                                const glm::vec<3, N>& narrow) {
+    const N length = lengthOf(narrow);
+    const auto slopes = length > N(0);
+    const N perLength = choose(slopes, N(1) / choose(slopes, length, N(1)), N(0));
+    const glm::vec<3, N> normal = narrow * perLength;
+    const auto centre = value(cells);
+    glm::vec<3, N> sum(N(0), N(0), N(0));
+    for (int i = 0; i < 4; ++i) {
+        const glm::vec<3, N> way(N(i == 1 ? -1 : 1), N(i == 2 ? -1 : 1), N(i == 3 ? -1 : 1));
+        const glm::vec<3, N> offset = (way - normal * (N(1 - kSmoothDepth) * inner(way, normal))) * N(reach);
+        const auto lower = value(cells - offset), upper = value(cells + offset);
+        const auto both = lower.present & upper.present;
+        const N high = choose(upper.present, upper.value, centre.value),
+                low = choose(lower.present, lower.value, centre.value);
+        const N one = choose(centre.present, high - low, N(0));
+        sum = sum + way * choose(both, N(0.5) * (upper.value - lower.value), one);
+    }
+    const glm::vec<3, N> smooth = (sum + normal * (N(1 / kSmoothDepth - 1) * inner(sum, normal))) * N(1 / (4 * reach));
+    return blended(narrow, smooth, smoothStep(N(0.1), N(0.4), inner(smooth, normal) * perLength));
+}
+
+/// The same of `value(cells) -> std::optional<double>`.
 template <class Value>
 glm::dvec3 smoothGradient(const Value& value, glm::dvec3 cells, double reach, glm::dvec3 narrow) {
-    const double length = glm::length(narrow);
-    const glm::dvec3 normal = length > 0 ? narrow / length : glm::dvec3(0);
-    const std::optional<double> centre = value(cells);
-    glm::dvec3 sum(0);
-    for (int i = 0; i < 4; ++i) {
-        const glm::dvec3 way(i == 1 ? -1 : 1, i == 2 ? -1 : 1, i == 3 ? -1 : 1);
-        const glm::dvec3 offset = reach * (way - (1 - kSmoothDepth) * glm::dot(way, normal) * normal);
-        const std::optional<double> lower = value(cells - offset), upper = value(cells + offset);
-        if (lower && upper)
-            sum += way * (0.5 * (*upper - *lower));
-        else if (centre)
-            sum += way * (upper.value_or(*centre) - lower.value_or(*centre));
-    }
-    const glm::dvec3 smooth = (sum + (1 / kSmoothDepth - 1) * glm::dot(sum, normal) * normal) / (4 * reach);
-    return glm::mix(narrow, smooth, glm::smoothstep(0.1, 0.4, length > 0 ? glm::dot(smooth, normal) / length : 0));
+    return smoothGradientOf<double>(foundBy(value), cells, reach, narrow);
 }
 
 } // namespace tessera::volume
