@@ -156,6 +156,7 @@ const Command* drawPalette(CommandPalette& palette, const std::vector<Command>& 
     ImGui::SetNextItemWidth(-FLT_MIN);
     const bool enter = ImGui::InputTextWithHint("##search", "Search for a command", &palette.text,
                                                 ImGuiInputTextFlags_EnterReturnsTrue);
+    if (enter) ImGui::SetKeyboardFocusHere(-1); // where that ran nothing, the next text replaces this one
     if (ImGui::IsItemEdited()) palette.chosen = 0;
     const int count = static_cast<int>(matches.size());
     if (pressed({.key = key::kDown}, true)) ++palette.chosen;

@@ -124,5 +124,23 @@ TEST_F(Palette, WhatIsTypedIsRunByEnter) {
     EXPECT_EQ(std::get<LayersView>(workbench.session().views.at("layers")).selected, int(layers));
 }
 
+// Enter runs nothing that is not possible, and what is typed next takes the place of the text.
+TEST_F(Palette, EnterOnWhatIsNotPossibleKeepsTheHands) {
+    const std::size_t layers = workbench.session().layers.size();
+    workbench.palette().open = true;
+    for (int i = 0; i < 3; ++i) frame();
+    type("undo");
+    press(key::kEnter);
+    for (int i = 0; i < 3; ++i) frame();
+    EXPECT_TRUE(workbench.palette().shown);
+    EXPECT_EQ(workbench.palette().text, "undo");
+    type("flow");
+    EXPECT_EQ(workbench.palette().text, "flow");
+    press(key::kEnter);
+    for (int i = 0; i < 3; ++i) frame();
+    EXPECT_FALSE(workbench.palette().shown);
+    EXPECT_EQ(workbench.session().layers.size(), layers + 1);
+}
+
 } // namespace
 } // namespace tessera::app
