@@ -154,8 +154,9 @@ const Command* drawPalette(CommandPalette& palette, const std::vector<Command>& 
     const std::vector<const Command*> matches = matchingCommands(palette.text, commands);
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-FLT_MIN);
-    const bool enter = ImGui::InputTextWithHint("##search", "Search for a command", &palette.text,
-                                                ImGuiInputTextFlags_EnterReturnsTrue);
+    const bool enter =
+        ImGui::InputTextWithHint("##search", "Search for a command", &palette.text,
+                                 ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     if (enter) ImGui::SetKeyboardFocusHere(-1); // where that ran nothing, the next text replaces this one
     if (ImGui::IsItemEdited()) palette.chosen = 0;
     const int count = static_cast<int>(matches.size());
