@@ -62,9 +62,7 @@ const Mode kOnSurfaces[] = {
          Look look = *Look::preset("cartoon");
          look.part = LookPart::Context;
          s.layers = {surface("parted", 4, look)};
-         Brush brush{.name = "ball", .region = {}};
-         brush.region = SphereRegion{.center = {9, 8, 12}, .radius = {6, 6, 6}, .soft = 0.4};
-         s.selection.brushes = {brush};
+         s.selection.brushes = {rangeBrush({{.channel = "whole", .lo = 0.6, .hi = 1.1, .soft = 0.2}})};
          s.selection.contextOpacity = 0.7f;
      }},
 };
