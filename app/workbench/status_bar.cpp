@@ -108,7 +108,7 @@ std::string residencyText(const vis::ResidencyInfo& use) {
     constexpr double kMebibyte = 1 << 20; // the unit in which the limit is set
     std::string text = "   textures " + formatNumber(double(use.textureBytes) / kMebibyte, 0.1) + " of " +
                        formatNumber(double(use.textureBudget) / kMebibyte, 1) + " MiB, " +
-                       formatCount(use.bricksResident) + " bricks";
+                       formatCount(use.bricksResident) + (use.bricksResident == 1 ? " brick" : " bricks");
     if (use.bricksKept > 0) text += ", " + formatCount(use.bricksKept) + " kept from other times";
     if (use.bricksHidden > 0) text += ", " + formatCount(use.bricksHidden) + " hidden";
     if (use.bricksWanted > 0) text += ", " + formatCount(use.bricksWanted) + " loading";

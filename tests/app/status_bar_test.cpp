@@ -20,6 +20,8 @@ TEST(StatusBar, SaysWhatIsLoaded) {
     vis::ResidencyInfo use;
     use.textureBytes = std::size_t(25) << 19;
     use.textureBudget = std::size_t(512) << 20;
+    use.bricksResident = 1;
+    EXPECT_EQ(residencyText(use), "   textures 12.5 of 512 MiB, 1 brick");
     use.bricksResident = 96;
     EXPECT_EQ(residencyText(use), "   textures 12.5 of 512 MiB, 96 bricks");
     use.bricksWanted = 4;

@@ -266,7 +266,9 @@ private:
 
     void drawProgress(const vis::FrameStatus& status) {
         std::string text = status.compiling ? "compiling shaders" : "refining";
-        if (status.bricksMissing > 0) text += ", " + formatCount(status.bricksMissing) + " bricks still loading";
+        if (status.bricksMissing > 0)
+            text += ", " + formatCount(status.bricksMissing) + (status.bricksMissing == 1 ? " brick" : " bricks") +
+                    " still loading";
         drawUpperLeft(text, plotColors().faint);
     }
 
