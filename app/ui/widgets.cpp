@@ -237,11 +237,14 @@ void endSection() {
 }
 
 std::string wrappedAtSpaces(const std::string& text, float width) {
+    const auto isDigit = [&](std::size_t at) { return text[at] >= '0' && text[at] <= '9'; };
     std::string out;
     float used = 0;
     for (std::size_t at = 0; at < text.size();) {
         std::size_t end = text.find_first_not_of(' ', at); // a word with the spaces before it
         end = std::min(text.find_first_of(" \n", end), text.size());
+        while (end > at && end + 1 < text.size() && isDigit(end - 1) && text[end] == ' ' && isDigit(end + 1))
+            end = std::min(text.find_first_of(" \n", end + 1), text.size()); // of a number of several groups
         const char* const begin = text.c_str() + at;
         float wide = ImGui::CalcTextSize(begin, text.c_str() + end).x;
         if (used > 0 && used + wide > width && text[at] == ' ') {

@@ -60,7 +60,7 @@ void endSection();
 /// A small button that adds to a list or removes from it.
 bool drawListButton(const char* label);
 /// The text with line ends for a width in pixels, at spaces alone: ImGui would also break "a..b" between the dots. A
-/// word wider than a line stays whole.
+/// word wider than a line stays whole, as do the groups of digits of a number.
 std::string wrappedAtSpaces(const std::string& text, float width);
 
 template <class T> bool drawDescribed(T& value, const WidgetContext& context);

@@ -233,5 +233,21 @@ TEST_F(Widgets, HeadsOfNumbersEndWhereTheNumbersEnd) {
     EXPECT_GT(find("Mean").min.x, find("Name").min.x + 150);
 }
 
+// At the width of the number nothing else fits its line; at any width its groups stay together.
+TEST_F(Widgets, NumbersOfSeveralGroupsDoNotBreak) {
+    frame([] {
+        const std::string text = "11 x 13 = 14 443 001 samples\n7 a";
+        const float number = ImGui::CalcTextSize(" 14 443 001").x;
+        EXPECT_THAT(wrappedAtSpaces(text, number), testing::HasSubstr("\n14 443 001\nsamples"));
+        for (float width = 1; width < 400; width += 3) {
+            const std::string wrapped = wrappedAtSpaces(text, width);
+            EXPECT_THAT(wrapped, testing::HasSubstr("14 443 001")) << width;
+            EXPECT_THAT(wrapped, testing::HasSubstr("samples\n7")) << width;
+        }
+        EXPECT_EQ(wrappedAtSpaces(text, 1000), text);
+        EXPECT_EQ(wrappedAtSpaces("\n 1 ", 1000), "\n 1 ");
+    });
+}
+
 } // namespace
 } // namespace tessera::app

@@ -151,7 +151,7 @@ std::vector<BrickId> BrickLevels::ask(std::size_t count) {
     count = std::min(count, pending_.size());
     std::partial_sort(pending_.begin(), pending_.begin() + std::ptrdiff_t(count), pending_.end(),
                       [&](const BrickId& a, const BrickId& b) { return at(a).priority < at(b).priority; });
-    const std::vector<BrickId> asked(pending_.begin(), pending_.begin() + std::ptrdiff_t(count));
+    std::vector<BrickId> asked(pending_.begin(), pending_.begin() + std::ptrdiff_t(count));
     pending_.erase(pending_.begin(), pending_.begin() + std::ptrdiff_t(count));
     for (const BrickId& id : asked) at(id).state = State::Asked;
     return asked;

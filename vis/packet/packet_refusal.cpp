@@ -38,8 +38,7 @@ std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, c
     const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
     int surfaces = 0, slices = 0;
     for (const DrawnChannel& each : drawn) {
-        const std::string refusal = refusalOfLayer(scene, info, each);
-        if (!refusal.empty()) return refusal;
+        if (std::string refusal = refusalOfLayer(scene, info, each); !refusal.empty()) return refusal;
         const Technique& technique = scene.layers[std::size_t(each.layer)].technique;
         surfaces += std::holds_alternative<IsoLayer>(technique);
         slices += std::holds_alternative<SliceLayer>(technique);

@@ -101,7 +101,7 @@ SharedVolume PacketVolumes::use(const SharedVolume& volume) {
 SharedVolume PacketVolumes::blend(const PacketChannel& channel) {
     if (SharedVolume volume = entry(channel).volume.lock()) return volume;
     const SharedVolume earlier = get(channel.at(channel.time.earlier)), later = get(channel.at(channel.time.later));
-    const auto volume = std::make_shared<const PacketVolume>(blendedVolume(*earlier, *later, channel.time.weight));
+    auto volume = std::make_shared<const PacketVolume>(blendedVolume(*earlier, *later, channel.time.weight));
     Held& own = entry(channel);
     own.volume = volume;
     own.earlier = earlier;

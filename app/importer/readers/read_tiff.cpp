@@ -83,7 +83,8 @@ void readPage(TIFF* file, const Page& page, char* to) {
                 if (TIFFReadTile(file, tile.data(), x, y, 0, 0) < 0) fail();
                 const std::size_t columns = std::min(width, page.width - x);
                 for (std::uint32_t line = 0; line < std::min(height, page.height - y); ++line)
-                    std::copy_n(tile.data() + line * width * pixel, columns * pixel, to + (y + line) * row + x * pixel);
+                    std::copy_n(tile.data() + std::size_t(line) * width * pixel, columns * pixel,
+                                to + (y + line) * row + x * pixel);
             }
         return;
     }

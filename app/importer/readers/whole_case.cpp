@@ -168,7 +168,7 @@ private:
         endLine();
         if (at_ >= bytes_.size()) shortFile();
         const std::size_t end = std::min(bytes_.size(), bytes_.find_first_of(" \t\r\n", at_));
-        const std::string text = bytes_.substr(at_, end - at_);
+        std::string text = bytes_.substr(at_, end - at_);
         at_ = end;
         return text;
     }

@@ -100,7 +100,6 @@ void checkDeflated(const std::string& path, std::size_t begin, double wanted) {
         if (status == Z_STREAM_END) {
             if (*stream.next_in != 0x1f) break; // something else follows
             inflateReset(&stream);
-            ended = false;
         }
         stream.avail_out = static_cast<unsigned>(out.size());
         stream.next_out = reinterpret_cast<Bytef*>(out.data());

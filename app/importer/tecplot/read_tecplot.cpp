@@ -58,7 +58,7 @@ public:
     /// The next word, without consuming it.
     std::string ahead() {
         const std::size_t at = at_;
-        const std::string word = next();
+        std::string word = next();
         at_ = at;
         return word;
     }
@@ -68,19 +68,19 @@ public:
         if (text_[at_] == '"') {
             const std::size_t end = text_.find('"', at_ + 1);
             if (end == std::string::npos) throw std::runtime_error("ends within a name: truncated");
-            const std::string word = text_.substr(at_ + 1, end - at_ - 1);
+            std::string word = text_.substr(at_ + 1, end - at_ - 1);
             at_ = end + 1;
             return word;
         }
         if (text_[at_] == '(' || text_[at_] == '=') {
             const std::size_t end = text_[at_] == '=' ? at_ : text_.find(')', at_);
             if (end == std::string::npos) throw std::runtime_error("ends within a list: truncated");
-            const std::string word = text_.substr(at_, end - at_ + 1);
+            std::string word = text_.substr(at_, end - at_ + 1);
             at_ = end + 1;
             return word;
         }
         const std::size_t end = std::min(text_.size(), text_.find_first_of(" \t\r\n,=(\"", at_));
-        const std::string word = text_.substr(at_, end - at_);
+        std::string word = text_.substr(at_, end - at_);
         at_ = end;
         return word;
     }
@@ -220,7 +220,7 @@ Zone readZone(Words& words, std::size_t variables) {
     return zone;
 }
 
-TecplotZone described(std::shared_ptr<const Zone> zone, std::size_t variables) {
+TecplotZone described(const std::shared_ptr<const Zone>& zone, std::size_t variables) {
     TecplotZone out = shapeOf(*zone);
     out.name = zone->word("T");
     if (zone->has("SOLUTIONTIME")) out.time = std::strtod(zone->word("SOLUTIONTIME").c_str(), nullptr);
