@@ -235,7 +235,7 @@ TEST_F(Widgets, HeadsOfNumbersEndWhereTheNumbersEnd) {
 
 // At the width of the number nothing else fits its line; at any width its groups stay together.
 TEST_F(Widgets, NumbersOfSeveralGroupsDoNotBreak) {
-    frame([] {
+    frames(1, [] {
         const std::string text = "11 x 13 = 14 443 001 samples\n7 a";
         const float number = ImGui::CalcTextSize(" 14 443 001").x;
         EXPECT_THAT(wrappedAtSpaces(text, number), testing::HasSubstr("\n14 443 001\nsamples"));
