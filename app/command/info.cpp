@@ -13,7 +13,6 @@
 #include "codec/remote/address.h"
 #include "volume/import/find_parts.h"
 #include "volume/import/import.h"
-#include "volume/synthetic/models.h"
 
 #include <algorithm>
 #include <cmath>
@@ -298,7 +297,7 @@ void describeArchive(const InfoRequest& request) {
 volume::ImportPreview previewOf(const std::vector<std::string>& paths, const volume::ImportOptions& stated) {
     if (paths.size() != 1 || !namesModel(paths[0]))
         return volume::previewFiles(paths, recallOptions(paths, stated), terminalProgress("info"));
-    const volume::Dataset model = volume::makeModel(paths[0], {}, terminalProgress("info"));
+    const volume::Dataset model = modelNamed(paths[0], stated, terminalProgress("info"));
     return {.format = "built-in model", .info = model.info, .bytes = volume::bytesOf(model.info), .notes = {}};
 }
 

@@ -9,7 +9,6 @@
 #include "codec/container/exactness.h"
 #include "codec/pack/unpack.h"
 #include "codec/remote/address.h"
-#include "volume/synthetic/models.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,7 +72,7 @@ struct PackInput {
 
 PackInput open(const PackRequest& request, const Progress& progress) {
     if (request.inputs.size() == 1 && namesModel(request.inputs[0]))
-        return {volume::makeModel(request.inputs[0], {}, progress), {}};
+        return {modelNamed(request.inputs[0], request.import, progress), {}};
     if (request.inputs.size() == 1 && codec::namesArchive(request.inputs[0])) {
         const auto archive = std::make_shared<const codec::Archive>(request.inputs[0]);
         const bool asGrid = latticeOf(request) != codec::StoredLattice::BCC || archive->metadata().alternating;

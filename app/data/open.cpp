@@ -136,6 +136,12 @@ bool namesModel(const std::string& input) {
     return std::ranges::find(models, input) != models.end() && !fs::exists(input, problem);
 }
 
+volume::Dataset modelNamed(const std::string& input, const volume::ImportOptions& stated, const Progress& progress) {
+    if (!(stated == volume::ImportOptions{}))
+        throw Error("options about files do not apply to a built-in model", input);
+    return volume::makeModel(input, {}, progress);
+}
+
 DataRef dataNamed(const std::vector<std::string>& inputs, const volume::ImportOptions& stated,
                   const Progress& progress) {
     if (inputs.size() != 1 || !namesModel(inputs[0])) return dataOf(inputs, recallOptions(inputs, stated, progress));
@@ -329,7 +335,6 @@ Opened open(const OpenRequest& request, const Progress& progress) {
         return open(inner, progress);
     }
     Opened opened;
-    std::vector<std::string> dataPaths;
     if (request.paths.size() == 1) {
         const std::string& path = request.paths[0];
         std::error_code problem;

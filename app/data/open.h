@@ -54,6 +54,8 @@ DataRef dataOf(const std::vector<std::string>& paths, const volume::ImportOption
 
 /// Whether an input of a command is a built-in model, which it is if no file has that name.
 bool namesModel(const std::string& input);
+/// That model. Throws Error if anything is stated, since only files can use it.
+volume::Dataset modelNamed(const std::string& input, const volume::ImportOptions& stated, const Progress& progress);
 
 /// The data set named on a command line: a built-in model, or files with what has been stated about them before. Throws
 /// Error.

@@ -38,6 +38,13 @@ TEST(OpenModel, LayoutAndLatticeApplyToIt) {
     EXPECT_TRUE(cube);
 }
 
+TEST(OpenModel, WhatIsStatedAboutFilesIsRefused) {
+    EXPECT_EQ(modelNamed("marschner-lobb", {}, {}).info.parameters.size(), 1u);
+    volume::ImportOptions stated;
+    stated.parameters = {"rho"};
+    EXPECT_THROW(modelNamed("marschner-lobb", stated, {}), Error);
+}
+
 TEST(OpenModel, AFileOfThatNameTakesItsPlace) {
     const auto former = std::filesystem::current_path(),
                folder = std::filesystem::temp_directory_path() / "tessera_open_model";
