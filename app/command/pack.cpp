@@ -1,6 +1,7 @@
 #include "codec/pack/pack.h"
 #include "app/command/command.h"
 #include "app/command/follow.h"
+#include "app/command/frame_stream.h"
 #include "app/data/format.h"
 #include "app/data/import_options.h"
 #include "app/data/open.h"
@@ -34,6 +35,8 @@ struct PackRequest {
     bool follows = false;
     ArrivalTimes arrival;
     std::optional<double> untilIdle;
+    double timeStep = 1;
+    bool timesGiven = false;
 };
 
 /// One JSON object per line on stdout, for a window that runs this command.
@@ -150,15 +153,31 @@ nlohmann::json reportOf(const codec::PackSummary& summary, const std::string& pa
               stage("write", summary.writeSeconds, summary.addedBytes)}}};
 }
 
-void run(PackRequest request) {
-    if (!request.follows) checkOutput(request);
-    if (request.options.memoryMb > 0) keepNoFreedFrames();
+/// Whether the input is frames on standard input.
+bool isStream(const PackRequest& request) {
+    return std::ranges::find(request.inputs, "-") != request.inputs.end();
+}
+
+/// The inputs that grow while they are packed.
+void runGrowing(const PackRequest& request) {
+    const GrowingRequest archive{request.output, request.import, request.options, request.json};
     if (request.follows) {
         if (request.inputs.size() > 1)
             throw Error("--follow needs one pattern in quotes, such as 'run_*.vti'", request.inputs[1]);
-        return follow({request.inputs[0], request.output, request.import, request.options, request.arrival,
-                       request.untilIdle, request.json});
+        return follow({request.inputs[0], archive, request.arrival, request.untilIdle});
     }
+    if (request.inputs.size() > 1) throw Error("frames on standard input (-) are packed alone", request.inputs[1]);
+    if (request.progressJson) throw Error("nobody knows how many frames will come", {}, "--progress-json");
+    packStream({archive, request.append, request.timeStep, request.timesGiven});
+}
+
+void run(PackRequest request) {
+    if (!request.follows) checkOutput(request);
+    if (request.options.memoryMb > 0) keepNoFreedFrames();
+    if (request.follows || isStream(request)) return runGrowing(request);
+    if (request.timesGiven || request.timeStep != 1)
+        throw Error("is for frames on standard input (IN is -); state the times of files by --times", {},
+                    request.timesGiven ? "--times-given" : "--time-step");
     if (request.keepsLattice) request.options.lattice = storedLattice(request.inputs[0]);
     const Progress terminal = terminalProgress("pack");
     const Progress progress = request.progressJson ? jsonProgress(terminal) : terminal;
@@ -222,13 +241,33 @@ void addFollowOptions(CLI::App& command, PackRequest& request) {
             "A file that cannot be read is tried again for so many seconds before later ones go ahead");
 }
 
+void addStreamOptions(CLI::App& command, PackRequest& request) {
+    CLI::Option* const step = command
+                                  .add_option("--time-step", request.timeStep,
+                                              "Time from one frame on standard input to the next (default: 1); the "
+                                              "first one is at 0, or follows those "
+                                              "of the archive")
+                                  ->check(CLI::PositiveNumber)
+                                  ->group("Standard input");
+    command
+        .add_flag("--times-given", request.timesGiven,
+                  "Each frame on standard input begins with its time, a 64-bit floating-point number")
+        ->excludes(step)
+        ->excludes("--follow")
+        ->group("Standard input");
+    step->excludes("--follow");
+}
+
 } // namespace
 
 void addPackCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("pack", "Import, resample, brick and compress data into one archive");
     const auto request = std::make_shared<PackRequest>();
     command
-        ->add_option("IN", request->inputs, "Data files that belong together (parameters, times), or a built-in model")
+        ->add_option(
+            "IN", request->inputs,
+            "Data files that belong together (parameters, times), a built-in model, or - for frames of raw samples "
+            "on standard input, each a later time, of the layout that --raw states")
         ->required();
     command->add_option("-o,--output", request->output, "Archive to write (.tsr)")->required();
     command->add_flag("--append", request->append,
@@ -237,6 +276,7 @@ void addPackCommand(CLI::App& app) {
     command->add_flag("--json", request->json, "Print the summary as JSON");
     command->add_flag("--progress-json", request->progressJson, "Print progress and summary as JSON lines");
     addFollowOptions(*command, *request);
+    addStreamOptions(*command, *request);
     addDescribed(*command, request->options);
     addImportOptions(*command, request->import);
     command->callback([request] { run(*request); });

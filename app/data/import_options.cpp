@@ -86,7 +86,7 @@ void addImportOptions(CLI::App& command, volume::ImportOptions& options) {
         .add_option("--raw", options.raw,
                     "Layout of a raw file without sidecar: "
                     "dims=XxYxZ,type=u8|i16|u16|i32|f32|f64,spacing=AxBxC,origin=AxBxC,components=N,times=N,big-endian,"
-                    "skip=BYTES")
+                    "skip=BYTES; or the name of a sidecar (.json) that states it")
         ->group("Import");
     command
         .add_option_function<std::string>(

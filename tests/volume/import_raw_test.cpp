@@ -151,6 +151,16 @@ TEST_F(ImportRaw, RawOptionTakesThePlaceOfASidecar) {
         EXPECT_THROW(parseRawOption(bad), Error) << bad;
 }
 
+TEST_F(ImportRaw, TheRawOptionNamesASidecar) {
+    ImportOptions options;
+    options.raw = write("form.json", R"({"dims":[2,1,1],"dtype":"uint8","components":[{"name":"T","unit":"K"}]})");
+    const Dataset dataset = openFiles({write("b.bin", "\x07\x09")}, options);
+    EXPECT_EQ(dataset.info.parameters.at(0).name, "T");
+    EXPECT_EQ(dataset.info.parameters.at(0).unit, "K");
+    EXPECT_EQ(dataset.read(0, 0, 0).value(1), 9);
+    EXPECT_THROW(statedForm((folder_ / "none.json").string()), Error);
+}
+
 TEST_F(ImportRaw, BadInputGivesOneLine) {
     write("a.raw", "12345678");
     const std::string path = (folder_ / "a.raw").string();

@@ -149,11 +149,18 @@ bool hasSidecar(const std::string& path) {
     return fs::file_size(sidecar, unknown) > kMostSidecar || otherThanSidecar(readSidecar(sidecar)).empty();
 }
 
+RawForm statedForm(const std::string& rawOption) {
+    if (!rawOption.ends_with(".json")) return parseRawOption(rawOption);
+    std::error_code unknown;
+    if (!fs::is_regular_file(rawOption, unknown)) throw Error("no such file", rawOption, "--raw");
+    return parseSidecar(readSidecar(rawOption), rawOption);
+}
+
 FileBlock openRaw(const std::string& path, const std::string& rawOption) {
     RawForm form;
     fs::path data = path;
     if (!rawOption.empty()) {
-        form = parseRawOption(rawOption);
+        form = statedForm(rawOption);
     } else {
         fs::path sidecar = path;
         if (sidecar.extension() != ".json") sidecar.replace_extension(".json");

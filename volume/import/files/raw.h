@@ -48,6 +48,9 @@ RawForm parseSidecar(std::string_view json, const std::string& file);
 /// Reads the text of `--raw`: "dims=XxYxZ,type=u8,spacing=AxBxC,origin=AxBxC,components=N,times=N,big-endian,skip=N".
 RawForm parseRawOption(std::string_view text);
 
+/// The layout that `--raw` states: its text, or the sidecar that it names (*.json). Throws Error.
+RawForm statedForm(const std::string& rawOption);
+
 /// The text of `--raw` derived from a file name: "engine_149x208x110_uint8.raw" gives "dims=149x208x110,type=u8". "" if
 /// the name has no dims or no type, or the file has another size. The words c5 and t12 in a name mean 5 components and
 /// 12 times.
