@@ -44,9 +44,9 @@ float widthOf(const std::string& text) {
     return ImGui::CalcTextSize(text.c_str()).x;
 }
 
-/// The widest of one side's titles from `first` on: whole, and the wider one of both parts.
+/// The widest of one side's titles from `first` on: whole, the wider one of both parts, and the second part.
 struct TitleWidths {
-    float whole = 0, part = 0;
+    float whole = 0, part = 0, rest = 0;
 };
 TitleWidths titleWidths(const ScatterLayout& matrix, std::size_t first, AxisSide side, float length) {
     TitleWidths widest;
@@ -54,6 +54,7 @@ TitleWidths titleWidths(const ScatterLayout& matrix, std::size_t first, AxisSide
         const TitleParts parts = titleParts(matrix, i, side, length);
         widest.whole = std::max(widest.whole, widthOf(parts.whole()));
         widest.part = std::max({widest.part, widthOf(parts.name), widthOf(parts.rest)});
+        widest.rest = std::max(widest.rest, widthOf(parts.rest));
     }
     return widest;
 }
@@ -62,9 +63,9 @@ TitleWay titleWay(const TitleWidths& widths, float cell) {
     return widths.whole <= cell ? TitleWay::OneLine : widths.part <= cell ? TitleWay::TwoLines : TitleWay::Across;
 }
 
-/// The most pixels that titles across their cells take of a length.
-float mostAcross(float room) {
-    return std::max(em() * 4.5f, room * 0.2f);
+/// The most pixels that titles across their cells take of a length: a fifth, but what the numbers mean nothing without.
+float mostAcross(float room, float needed) {
+    return std::max({em() * 4.5f, room * 0.2f, needed});
 }
 
 /// Name and unit in so many pixels: the name is cut off, the unit as long as there is room for it.
@@ -277,13 +278,15 @@ MatrixTitles matrixTitles(const ScatterLayout& matrix, ImVec2 room, double most,
         titles.beside = titleWay(up, cellY);
         titles.bottom = axisRoom(AxisSide::Bottom, matrix.ranges[0], titles.below != TitleWay::Across);
         if (titles.below == TitleWay::TwoLines) titles.bottom += em();
-        if (titles.below == TitleWay::Across) titles.bottom += std::min(across.whole, mostAcross(room.y)) + em() * 0.5f;
+        if (titles.below == TitleWay::Across)
+            titles.bottom += std::min(across.whole, mostAcross(room.y, across.rest + em() * 2)) + em() * 0.5f;
         titles.left = lone ? axisRoom(AxisSide::Left, titles.counts, !titles.countTitle.empty()) : 0;
         for (std::size_t i = 1; i < matrix.size(); ++i)
             titles.left =
                 std::max(titles.left, axisRoom(AxisSide::Left, matrix.ranges[i], titles.beside != TitleWay::Across));
         if (titles.beside == TitleWay::TwoLines) titles.left += em();
-        if (titles.beside == TitleWay::Across) titles.left += std::min(up.part, mostAcross(room.x)) + em() * 0.5f;
+        if (titles.beside == TitleWay::Across)
+            titles.left += std::min(up.part, mostAcross(room.x, up.rest)) + em() * 0.5f;
     }
     return titles;
 }
