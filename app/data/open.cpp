@@ -4,6 +4,7 @@
 #include "app/data/first_view.h"
 #include "app/data/picture_session.h"
 #include "app/edits/layout_brushes.h"
+#include "app/edits/other_data.h"
 #include "app/session/shown_scene.h"
 #include "app/user_files/import_memory.h"
 
@@ -218,29 +219,6 @@ std::optional<Range> rangeAt(const volume::BrickSource& source, int channel, int
     return range;
 }
 
-/// Sizes and settings of a model do not apply to other data.
-void dropForeignVariants(Session& session, const DataRef& made, std::vector<std::string>& messages) {
-    if (made.model.empty() || (session.data.files.empty() && session.data.model == made.model)) return;
-    for (auto& [pane, view] : session.views) {
-        auto* compare = std::get_if<CompareView>(&view);
-        if (!compare) continue;
-        for (std::size_t i = compare->variants.size(); i-- > 0;) {
-            const auto changes = [&, &variant = compare->variants[i]](std::string_view place) {
-                return std::ranges::any_of(variant.changes,
-                                           [&](const auto& change) { return change.first.starts_with(place); });
-            };
-            if (!changes("/data/settings") || changes("/data/model")) continue;
-            messages.push_back("this comparison uses the model " + made.model + ": \"" + compare->variants[i].name +
-                               "\" is skipped, as it needs that model");
-            compare->variants.erase(compare->variants.begin() + static_cast<std::ptrdiff_t>(i));
-            const auto before = [&](int index) { return std::max(0, index - (index > static_cast<int>(i) ? 1 : 0)); };
-            compare->reference = before(compare->reference);
-            compare->other = before(compare->other);
-            if (compare->other == compare->reference) compare->other = compare->reference + 1;
-        }
-    }
-}
-
 } // namespace
 
 Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& info, const DataRef& data,
@@ -262,7 +240,8 @@ Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& in
     Session session = sessionFromJson(result, {});
     std::erase_if(session.transfer, [&](const auto& entry) { return !info.findChannel(entry.first); });
     fitSession(session, info, messages);
-    if (!own) dropForeignVariants(session, layout.session.data, messages);
+    if (!own) suitOtherData(session, info, layout.session.data, messages);
+    session.layoutBrushes = session.selection.brushes;
     return session;
 }
 
@@ -310,9 +289,7 @@ Session changeLayout(const SessionDocument& layout, const volume::BrickSource& s
     next.appearance = shown.appearance;
     next.time = shown.time;
     next.cursor = shown.cursor;
-    std::vector<std::string> layouts;
-    for (const std::string& name : layoutNames()) layouts.push_back(findLayout(name));
-    keepOwnBrushes(next, shown, layouts, messages);
+    keepOwnBrushes(next, shown, messages);
     const auto refit = [&](vis::Camera& camera) {
         vis::fit(camera, vis::worldFrame(source.info().bounds, next.stretch), firstAspect(source.info()));
     };

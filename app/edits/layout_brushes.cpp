@@ -1,8 +1,5 @@
 #include "app/edits/layout_brushes.h"
 
-#include "app/history/session_file.h"
-#include "volume/base/error.h"
-
 #include <algorithm>
 
 namespace tessera::app {
@@ -20,28 +17,14 @@ bool sameButForUse(vis::Brush a, const vis::Brush& b) {
     return a == b;
 }
 
-std::vector<vis::Brush> brushesOf(const std::vector<std::string>& layouts) {
-    std::vector<vis::Brush> brushes;
-    for (const std::string& path : layouts) {
-        try {
-            const std::vector<vis::Brush> own = loadSession(path).session.selection.brushes;
-            brushes.insert(brushes.end(), own.begin(), own.end());
-        } catch (const Error&) { // one that is chosen says what is wrong with it
-        }
-    }
-    return brushes;
-}
-
 } // namespace
 
-void keepOwnBrushes(Session& next, const Session& shown, const std::vector<std::string>& layouts,
-                    std::vector<std::string>& messages) {
+void keepOwnBrushes(Session& next, const Session& shown, std::vector<std::string>& messages) {
     if (shown.selection.brushes.empty()) return;
-    const std::vector<vis::Brush> ofLayouts = brushesOf(layouts);
     std::vector<vis::Brush> kept;
     for (const vis::Brush& brush : shown.selection.brushes) {
-        if (std::ranges::any_of(ofLayouts, [&](const vis::Brush& each) { return sameButForUse(each, brush); }))
-            continue;
+        const auto same = [&](const vis::Brush& each) { return sameButForUse(each, brush); };
+        if (std::ranges::any_of(shown.layoutBrushes, same)) continue;
         if (hasNoLens(brush, next.lenses))
             messages.push_back("brush " + brush.name + " is removed: the layout has no lens " +
                                std::get<vis::LensRegion>(brush.region).lens);

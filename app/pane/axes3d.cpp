@@ -3,6 +3,7 @@
 #include "app/ui/ticks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tessera::app {
@@ -40,6 +41,39 @@ SpaceFrame spaceFrame(ImVec2 min, ImVec2 max, const vis::Camera& camera, const v
     const double aspect = std::max(1.0f, max.x - min.x) / std::max(1.0f, max.y - min.y);
     return {min, max, vis::projectionMatrix(camera, aspect) * vis::viewMatrix(camera), vis::worldFrame(bounds, stretch),
             bounds};
+}
+
+double coveredByBox(const SpaceFrame& frame, ImVec2 min, ImVec2 max) {
+    constexpr int kParts = 16; // a side, of the rectangle
+    std::array<ImVec2, 8> corners;
+    for (int i = 0; i < 8; ++i) {
+        const volume::Box& box = frame.bounds;
+        const auto at =
+            frame.pixel({i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z});
+        if (!at) return 1;
+        corners[std::size_t(i)] = *at;
+    }
+    // A pixel is covered where it lies in one of the faces, whose corners follow each other around it.
+    static constexpr std::array<std::array<std::size_t, 4>, 6> kFaces{
+        {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
+    const auto covered = [&](ImVec2 at) {
+        return std::ranges::any_of(kFaces, [&](const auto& face) {
+            int left = 0, right = 0;
+            for (std::size_t i = 0; i < 4; ++i) {
+                const ImVec2 a = corners[face[i]], b = corners[face[(i + 1) % 4]];
+                const float side = (b.x - a.x) * (at.y - a.y) - (b.y - a.y) * (at.x - a.x);
+                left += side >= 0;
+                right += side <= 0;
+            }
+            return (left == 4) != (right == 4); // both: on the line of a face that is seen edge on
+        });
+    };
+    int count = 0;
+    for (int y = 0; y <= kParts; ++y)
+        for (int x = 0; x <= kParts; ++x)
+            count +=
+                covered({min.x + (max.x - min.x) * float(x) / kParts, min.y + (max.y - min.y) * float(y) / kParts});
+    return count / double((kParts + 1) * (kParts + 1));
 }
 
 std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eye) {

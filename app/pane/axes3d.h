@@ -23,6 +23,9 @@ struct SpaceFrame {
 };
 SpaceFrame spaceFrame(ImVec2 min, ImVec2 max, const vis::Camera& camera, const volume::Box& bounds, glm::dvec3 stretch);
 
+/// The share of a rectangle of the picture that the box of the data covers; 1 where the box reaches behind the eye.
+double coveredByBox(const SpaceFrame& frame, ImVec2 min, ImVec2 max);
+
 /// An edge of the box to be labelled: both ends (physical), the axis it runs along, the direction away from the box on
 /// screen.
 struct LabelledEdge {

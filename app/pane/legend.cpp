@@ -260,33 +260,55 @@ private:
     float width_, title_ = 0, number_ = 0;
 };
 
+/// Which legends are shown in a corner, how and where.
+struct PlacedLegends {
+    LegendLines lines;
+    bool small = false;
+    float width = 0, pad = em() * 0.5f;
+    std::vector<const LegendEntry*> shown = {};
+    LegendArea area;
+};
+
+PlacedLegends placeLegends(const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max, LegendCorner corner,
+                           bool whole) {
+    PlacedLegends out{.lines = LegendLines(entries, max.x - min.x), .area = {max, max}};
+    const float pad = out.pad, room = max.y - min.y;
+    float all = 0;
+    for (const LegendEntry& entry : entries) all += heightOf(entry);
+    out.small = !whole && legendsAsLines(all, room);
+    out.width = out.small ? out.lines.width() : std::min(em() * 15, (max.x - min.x) * 0.45f);
+    if (out.width < em() * 7) return out;
+    float height = 0;
+    for (const LegendEntry& entry : entries) {
+        const float own = out.small ? out.lines.height(entry) : heightOf(entry);
+        if (height + own > room * 0.6f) break;
+        height += own;
+        out.shown.push_back(&entry);
+    }
+    if (out.shown.empty()) return out;
+    const float wide = out.width + 2 * pad, high = height + pad * 1.5f;
+    const bool bottom = corner == LegendCorner::BottomRight, left = corner == LegendCorner::TopLeft;
+    out.area.min = {left ? min.x : max.x - wide, bottom ? max.y - high : min.y};
+    out.area.max = {out.area.min.x + wide, out.area.min.y + high};
+    return out;
+}
+
 } // namespace
+
+LegendArea legendArea(const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max, LegendCorner corner,
+                      bool whole) {
+    return placeLegends(entries, min, max, corner, whole).area;
+}
 
 LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max,
                        LegendCorner corner, bool whole) {
-    const float pad = em() * 0.5f, room = max.y - min.y;
-    const LegendLines lines(entries, max.x - min.x);
-    float all = 0;
-    for (const LegendEntry& entry : entries) all += heightOf(entry);
-    const bool small = !whole && legendsAsLines(all, room);
-    const float width = small ? lines.width() : std::min(em() * 15, (max.x - min.x) * 0.45f);
-    if (width < em() * 7) return {max, max};
-    std::vector<const LegendEntry*> shown;
-    float height = 0;
-    for (const LegendEntry& entry : entries) {
-        const float own = small ? lines.height(entry) : heightOf(entry);
-        if (height + own > room * 0.6f) break;
-        height += own;
-        shown.push_back(&entry);
-    }
-    if (shown.empty()) return {max, max};
-    const float bottom = corner == LegendCorner::Bottom ? max.y : min.y + height + pad * 1.5f;
-    const ImVec2 from{max.x - width - pad, bottom - height - pad};
-    draw.AddRectFilled({from.x - pad, from.y - pad * 0.5f}, {max.x, bottom}, plotColors().backdrop, em() * 0.25f);
-    float y = from.y;
-    for (const LegendEntry* entry : shown)
-        y += small ? lines.draw(draw, {from.x, y}, *entry) : drawLegend(draw, {from.x, y}, width, *entry);
-    return {{from.x - pad, from.y - pad * 0.5f}, {max.x, bottom}};
+    const PlacedLegends placed = placeLegends(entries, min, max, corner, whole);
+    if (placed.shown.empty()) return placed.area;
+    draw.AddRectFilled(placed.area.min, placed.area.max, plotColors().backdrop, em() * 0.25f);
+    ImVec2 at{placed.area.min.x + placed.pad, placed.area.min.y + placed.pad * 0.5f};
+    for (const LegendEntry* entry : placed.shown)
+        at.y += placed.small ? placed.lines.draw(draw, at, *entry) : drawLegend(draw, at, placed.width, *entry);
+    return placed.area;
 }
 
 } // namespace tessera::app

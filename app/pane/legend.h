@@ -48,14 +48,17 @@ void drawOpacityStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::Trans
 /// `room` pixels in sight.
 bool legendsAsLines(float height, float room);
 
-/// Legends stacked in a right corner of a rectangle, at most as many as fit; returns the pixels they cover. `whole`:
-/// never one line each.
+/// Legends stacked in a corner of a rectangle, at most as many as fit; returns the pixels they cover. `whole`: never
+/// one line each.
 struct LegendArea {
     ImVec2 min, max;
 };
-enum class LegendCorner { Bottom, Top };
+enum class LegendCorner { BottomRight, TopRight, TopLeft };
+/// The pixels that drawLegends() covers.
+LegendArea legendArea(const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max, LegendCorner corner,
+                      bool whole = false);
 LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max,
-                       LegendCorner corner = LegendCorner::Bottom, bool whole = false);
+                       LegendCorner corner = LegendCorner::BottomRight, bool whole = false);
 
 /// Legends side by side in rows, as they are placed below a picture; those that do not fit into `most` are dropped.
 /// Returns the height, 0 if there are none.

@@ -107,6 +107,10 @@ float axisRoom(AxisSide side, Range range, bool title) {
     return std::ceil(room + (title ? em() * 1.3f : 0.0f));
 }
 
+std::string axisNote(AxisSide side, Range range, float length) {
+    return fittingTicks(side, range, length).note;
+}
+
 ColumnHeights columnHeights(float room, std::size_t plots) {
     const float count = std::max(1.0f, static_cast<float>(plots)), gap = em() * 0.4f;
     ColumnHeights out{};

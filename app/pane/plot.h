@@ -60,6 +60,9 @@ struct AxisOptions {
 /// Pixels that drawAxis needs outside the frame for ticks, labels and title.
 float axisRoom(AxisSide side, Range range, bool title);
 
+/// What the numbers of an axis that is `length` pixels long must be read with ("+ 100000"); else "".
+std::string axisNote(AxisSide side, Range range, float length);
+
 /// Heights of plots below each other over one axis, pixels.
 struct ColumnHeights {
     float all;    ///< more than the pane has where that must scroll

@@ -1,6 +1,7 @@
 #include "app/pane/view_parts.h"
 
 #include "app/pane/plot.h"
+#include "app/session/shown_scene.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 
@@ -191,22 +192,7 @@ LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, in
     return entry;
 }
 
-namespace {
-
-/// True if a layer is drawn wholly in the colour of a stick instead of its own.
-bool isDrawing(const vis::Technique& technique) {
-    const vis::Look* look = vis::lookOf(technique);
-    return look && look->charcoal && look->part == vis::LookPart::Everything;
-}
-
-} // namespace
-
-bool onlyDrawings(const Session& session) {
-    const auto shown = [](const vis::Layer& layer) { return layer.visible; };
-    return std::ranges::any_of(session.layers, shown) &&
-           std::ranges::all_of(session.layers,
-                               [&](const vis::Layer& layer) { return !shown(layer) || isDrawing(layer.technique); });
-}
+namespace {} // namespace
 
 std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info, bool drawings) {
     std::vector<LegendEntry> entries;

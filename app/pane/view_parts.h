@@ -68,10 +68,6 @@ LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, in
 /// drawn in charcoal or chalk, whose colours the picture does not show, have legends only with `drawings`.
 std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info, bool drawings = false);
 
-/// Whether every visible layer is drawn in charcoal or chalk: then box and cross-hair, which no drawing has, are left
-/// out unless asked for.
-bool onlyDrawings(const Session& session);
-
 /// The scene of the session, with its share of the limits of memory.
 vis::Scene sceneWithLimits(const ViewContext& context);
 

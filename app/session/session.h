@@ -138,6 +138,7 @@ struct Session {
     glm::dvec3 stretch{1};
     vis::Camera camera;
     vis::Selection selection;
+    std::vector<vis::Brush> layoutBrushes; ///< those of `selection` that the layout brought, as it brought them
     std::map<std::string, vis::TransferFunction> transfer; ///< by channel name
     std::vector<vis::Layer> layers;
     vis::RenderParams render;
@@ -173,6 +174,10 @@ struct Session {
                                       .logScale = true});
         visit(self.camera, FieldInfo{.key = "camera", .unit = "", .doc = "Camera of the 3D views"});
         visit(self.selection, FieldInfo{.key = "selection", .unit = "", .doc = "Brushes shared by all views"});
+        visit(self.layoutBrushes, FieldInfo{.key = "layoutBrushes",
+                                            .unit = "",
+                                            .doc = "Brushes as the layout brought them: another layout takes them away",
+                                            .hidden = true});
         visit(self.transfer, FieldInfo{.key = "transfer", .unit = "", .doc = "Transfer functions by parameter"});
         visit(self.layers, FieldInfo{.key = "layers", .unit = "", .doc = "Layers drawn in the 3D views"});
         visit(self.render, FieldInfo{.key = "render", .unit = "", .doc = "Settings of the ray caster"});

@@ -84,4 +84,16 @@ std::vector<const std::vector<vis::Layer>*> layerLists(const Session& session) {
     return listsOf<std::vector<const std::vector<vis::Layer>*>>(session);
 }
 
+bool isDrawing(const vis::Technique& technique) {
+    const vis::Look* look = vis::lookOf(technique);
+    return look && look->charcoal && look->part == vis::LookPart::Everything;
+}
+
+bool onlyDrawings(const Session& session) {
+    const auto shown = [](const vis::Layer& layer) { return layer.visible; };
+    return std::ranges::any_of(session.layers, shown) &&
+           std::ranges::all_of(session.layers,
+                               [&](const vis::Layer& layer) { return !shown(layer) || isDrawing(layer.technique); });
+}
+
 } // namespace tessera::app

@@ -64,4 +64,10 @@ Session sessionShownIn(const Session& session, const std::string& pane);
 std::vector<std::vector<vis::Layer>*> layerLists(Session& session);
 std::vector<const std::vector<vis::Layer>*> layerLists(const Session& session);
 
+/// Whether a layer is drawn wholly in the colour of a stick instead of its own.
+bool isDrawing(const vis::Technique& technique);
+/// Whether every visible layer is drawn in charcoal or chalk: then box and cross-hair, which no drawing has, are left
+/// out unless asked for.
+bool onlyDrawings(const Session& session);
+
 } // namespace tessera::app

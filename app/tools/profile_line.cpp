@@ -38,10 +38,11 @@ void drawProfileLines(ImDrawList& draw, const SpaceFrame& frame, const Session& 
     drawLines(draw, session, [&](glm::dvec3 at) { return frame.pixel(at); });
 }
 
-void drawProfileLines(ImDrawList& draw, const PlotFrame& frame, const Session& session, int right, int up,
+void drawProfileLines(ImDrawList& draw, const PlotFrame& frame, const Session& session, const PicturePlane& plane,
                       glm::dvec2 perUnit) {
     drawLines(draw, session, [&](glm::dvec3 at) {
-        return std::optional<ImVec2>(frame.pixel(at[right] * perUnit.x, at[up] * perUnit.y));
+        const glm::dvec2 place = plane.along(at) * perUnit;
+        return std::optional<ImVec2>(frame.pixel(place.x, place.y));
     });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/pane/axes3d.h"
+#include "app/pane/oblique_plane.h"
 #include "app/pane/view_context.h"
 
 /// Lines of line-profile views, drawn in 3D views and slices.
@@ -11,8 +12,8 @@ std::vector<glm::dvec3> profileCorners(const ProfileView& view, const Session& s
 
 /// Every profile's line that has corners of its own, with a dot at each.
 void drawProfileLines(ImDrawList& draw, const SpaceFrame& frame, const Session& session);
-/// The same seen along an axis: the frame's values are positions along `right` and `up` times the factors.
-void drawProfileLines(ImDrawList& draw, const PlotFrame& frame, const Session& session, int right, int up,
+/// The same seen across a plane; the frame's values are distances along its directions times the factors.
+void drawProfileLines(ImDrawList& draw, const PlotFrame& frame, const Session& session, const PicturePlane& plane,
                       glm::dvec2 perUnit);
 
 } // namespace tessera::app

@@ -46,10 +46,10 @@ void findHandle(HandleDrag& drag, const std::vector<HandledObject>& objects, con
 }
 
 /// Mouse handling common to 3D pictures and slices; `dragged` gives the new position of the held dot.
-bool editWith(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, bool hovered, bool lights,
-              const PixelOf& pixel, const std::function<glm::dvec3(const SpaceHandle& from, ImVec2 mouse)>& dragged) {
+bool editWith(HandleDrag& drag, Session& session, const volume::DatasetInfo& info,
+              const std::vector<HandledObject>& objects, bool hovered, const PixelOf& pixel,
+              const std::function<glm::dvec3(const SpaceHandle& from, ImVec2 mouse)>& dragged) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const std::vector<HandledObject> objects = handledObjects(session, info, lights);
     if (drag.active) {
         const HandledObject* object = findObject(objects, drag.object);
         if (!object || drag.handle >= object->handles.size()) {
@@ -121,29 +121,63 @@ PixelOf inSpace(const SpaceFrame& frame) {
     return [&frame](const SpaceHandle& handle) { return frame.pixel(handle.at); };
 }
 
-PixelOf inSlice(const PlotFrame& frame, int right, int up, glm::dvec2 perUnit) {
-    return [&frame, right, up, perUnit](const SpaceHandle& handle) -> std::optional<ImVec2> {
-        if (handle.axis >= 0 && handle.axis != right && handle.axis != up) return std::nullopt;
-        return frame.pixel(handle.at[right] * perUnit.x, handle.at[up] * perUnit.y);
+/// Pixels of the picture of a slice.
+struct SlicePixels {
+    const PlotFrame& frame;
+    const PicturePlane& plane;
+    glm::dvec2 perUnit;
+
+    ImVec2 of(glm::dvec3 place) const {
+        const glm::dvec2 at = plane.along(place) * perUnit;
+        return frame.pixel(at.x, at.y);
+    }
+    /// Pixels by which a place moves with the axis of a dot; nothing where the axis stands (nearly) upright on the
+    /// slice.
+    std::optional<glm::dvec2> along(int axis) const {
+        const glm::dvec2 way(plane.right[axis], plane.up[axis]);
+        if (glm::dot(way, way) < kSteep) return std::nullopt;
+        return way * perUnit / glm::dvec2(frame.perPixelX(), -frame.perPixelY());
+    }
+};
+
+PixelOf inSlice(const SlicePixels& pixels) {
+    return [pixels](const SpaceHandle& handle) -> std::optional<ImVec2> {
+        if (handle.axis >= 0 && !pixels.along(handle.axis)) return std::nullopt;
+        return pixels.of(handle.at);
     };
 }
 
-/// The plane as it crosses a slice through `cursor` across the axis `normal`: the line of both in the box, and the
-/// arrow.
-std::vector<SpaceLine> planeCrossing(const HandledObject& object, const volume::Box& box, int normal,
-                                     glm::dvec3 cursor) {
+/// Whether an object is the plane of the slice itself.
+bool isPlane(const HandledObject& object, const PicturePlane& plane, const volume::Box& box) {
+    constexpr double kClose = 1e-6;
+    if (!object.plane) return false;
+    const SpacePlane own = plane.plane();
+    return std::abs(std::abs(glm::dot(own.normal, object.plane->normal)) - 1) < kClose &&
+           std::abs(own.distance(object.plane->at)) < kClose * glm::length(box.size());
+}
+
+/// The plane as it crosses a slice: the line of both in the box, and the arrow.
+std::vector<SpaceLine> planeCrossing(const HandledObject& object, const volume::Box& box, const SpacePlane& slice) {
     std::vector<SpaceLine> lines;
     if (!object.plane) return lines;
     const std::vector<glm::dvec3> corners = planeSection(*object.plane, box);
     std::vector<glm::dvec3> ends;
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const glm::dvec3 from = corners[i], to = corners[(i + 1) % corners.size()];
-        const double a = from[normal] - cursor[normal], b = to[normal] - cursor[normal];
+        const double a = slice.distance(from), b = slice.distance(to);
         if ((a < 0) != (b < 0)) ends.push_back(glm::mix(from, to, a / (a - b)));
     }
     if (ends.size() == 2) lines.emplace_back(ends[0], ends[1]);
     if (object.handles.size() > 1) lines.emplace_back(object.handles[0].at, object.handles[1].at);
     return lines;
+}
+
+/// What has dots in a slice.
+std::vector<HandledObject> objectsInSlice(const Session& session, const volume::DatasetInfo& info,
+                                          const PicturePlane& plane) {
+    std::vector<HandledObject> objects = handledObjects(session, info);
+    std::erase_if(objects, [&](const HandledObject& object) { return isPlane(object, plane, info.bounds); });
+    return objects;
 }
 
 } // namespace
@@ -232,29 +266,36 @@ glm::dvec3 draggedAround(const SpaceFrame& frame, const vis::Camera& camera, glm
 
 bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const SpaceFrame& frame,
                  bool hovered, bool lights) {
-    return editWith(drag, session, info, hovered, lights, inSpace(frame), [&](const SpaceHandle& handle, ImVec2 mouse) {
-        const glm::dvec3 from = frame.world.toWorld(handle.at);
-        const vis::Camera& camera = session.camera;
-        glm::dvec3 to;
-        if (handle.how == HandleWay::Along)
-            to = draggedAlong(frame, camera, from, glm::normalize(handle.way * frame.world.scale), drag.start, mouse);
-        else if (handle.how == HandleWay::Around)
-            to = draggedAround(frame, camera, from, frame.world.toWorld(handle.way), drag.start, mouse);
-        else
-            to = draggedPlace(frame, camera, from, drag.start, mouse, ImGui::GetIO().KeyShift);
-        return frame.world.toPhysical(to);
-    });
+    const std::vector<HandledObject> objects = handledObjects(session, info, lights);
+    return editWith(drag, session, info, objects, hovered, inSpace(frame),
+                    [&](const SpaceHandle& handle, ImVec2 mouse) {
+                        const glm::dvec3 from = frame.world.toWorld(handle.at);
+                        const vis::Camera& camera = session.camera;
+                        glm::dvec3 to;
+                        if (handle.how == HandleWay::Along)
+                            to = draggedAlong(frame, camera, from, glm::normalize(handle.way * frame.world.scale),
+                                              drag.start, mouse);
+                        else if (handle.how == HandleWay::Around)
+                            to = draggedAround(frame, camera, from, frame.world.toWorld(handle.way), drag.start, mouse);
+                        else
+                            to = draggedPlace(frame, camera, from, drag.start, mouse, ImGui::GetIO().KeyShift);
+                        return frame.world.toPhysical(to);
+                    });
 }
 
-bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const PlotFrame& frame, int right,
-                 int up, glm::dvec2 perUnit, bool hovered) {
-    return editWith(drag, session, info, hovered, false, inSlice(frame, right, up, perUnit),
+bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const PlotFrame& frame,
+                 const PicturePlane& plane, glm::dvec2 perUnit, bool hovered) {
+    const SlicePixels pixels{frame, plane, perUnit};
+    return editWith(drag, session, info, objectsInSlice(session, info, plane), hovered, inSlice(pixels),
                     [&](const SpaceHandle& handle, ImVec2 mouse) {
-                        const glm::dvec2 now = frame.data(mouse), then = frame.data(drag.start);
                         glm::dvec3 to = handle.at;
-                        to[right] += (now.x - then.x) / perUnit.x;
-                        to[up] += (now.y - then.y) / perUnit.y;
-                        return to;
+                        if (const auto way = handle.axis >= 0 ? pixels.along(handle.axis) : std::nullopt) {
+                            const glm::dvec2 by(mouse.x - drag.start.x, mouse.y - drag.start.y);
+                            to[handle.axis] += glm::dot(by, *way) / glm::dot(*way, *way);
+                            return to;
+                        }
+                        const glm::dvec2 by = (frame.data(mouse) - frame.data(drag.start)) / perUnit;
+                        return to + plane.right * by.x + plane.up * by.y;
                     });
 }
 
@@ -266,12 +307,12 @@ void drawHandles(ImDrawList& draw, const HandleDrag& drag, const SpaceFrame& fra
 }
 
 void drawHandles(ImDrawList& draw, const HandleDrag& drag, const PlotFrame& frame, const Session& session,
-                 const volume::DatasetInfo& info, int right, int up, glm::dvec2 perUnit) {
-    for (HandledObject& object : handledObjects(session, info)) {
-        if (object.plane) object.lines = planeCrossing(object, info.bounds, 3 - right - up, session.cursor);
-        drawObject(draw, drag, object, !object.plane, inSlice(frame, right, up, perUnit), [&](glm::dvec3 at) {
-            return std::optional(frame.pixel(at[right] * perUnit.x, at[up] * perUnit.y));
-        });
+                 const volume::DatasetInfo& info, const PicturePlane& plane, glm::dvec2 perUnit) {
+    const SlicePixels pixels{frame, plane, perUnit};
+    for (HandledObject& object : objectsInSlice(session, info, plane)) {
+        if (object.plane) object.lines = planeCrossing(object, info.bounds, plane.plane());
+        drawObject(draw, drag, object, !object.plane, inSlice(pixels),
+                   [&](glm::dvec3 at) { return std::optional(pixels.of(at)); });
     }
 }
 

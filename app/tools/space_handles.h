@@ -10,8 +10,8 @@
 
 /// Objects in space that are edited by dots: seed points of flow (line, plane, ball or box), brushes in space, the
 /// corners of profile lines, planes, lights, the point in focus. A dot moves in the plane that faces the viewer, with
-/// Shift nearer or farther, along a line, or around a middle; Escape cancels a drag. In slices the same dots move along
-/// the slice. Lenses have further handles (lens_edit.h).
+/// Shift nearer or farther, along a line, or around a middle; Escape cancels a drag. In slices, tilted ones too, the
+/// same dots move along the slice. Lenses have further handles (lens_edit.h).
 namespace tessera::app {
 
 /// The ray through a pixel of the picture.
@@ -46,7 +46,7 @@ enum class HandleWay {
     Beyond    ///< also outside of the box
 };
 
-/// A dot. `axis`: along which it alone moves something, -1: any; slices across that axis leave it out.
+/// A dot. `axis`: along which it alone moves something, -1: any; slices (nearly) across that axis leave it out.
 struct SpaceHandle {
     glm::dvec3 at{0}; ///< physical
     int axis = -1;
@@ -83,14 +83,15 @@ struct HandleDrag {
 bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const SpaceFrame& frame,
                  bool hovered, bool lights = false);
 
-/// The same in a slice: values of the frame are positions along the axes `right` and `up` times the factors.
-bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const PlotFrame& frame, int right,
-                 int up, glm::dvec2 perUnit, bool hovered);
+/// The same in the picture of a slice: values of the frame are distances along its directions times the factors. What
+/// is the plane of the slice itself has no dots there.
+bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const PlotFrame& frame,
+                 const PicturePlane& plane, glm::dvec2 perUnit, bool hovered);
 
 /// Dots, lines of what is not drawn elsewhere, and the name of what is under the mouse.
 void drawHandles(ImDrawList& draw, const HandleDrag& drag, const SpaceFrame& frame, const Session& session,
                  const volume::DatasetInfo& info, bool lights = false);
 void drawHandles(ImDrawList& draw, const HandleDrag& drag, const PlotFrame& frame, const Session& session,
-                 const volume::DatasetInfo& info, int right, int up, glm::dvec2 perUnit);
+                 const volume::DatasetInfo& info, const PicturePlane& plane, glm::dvec2 perUnit);
 
 } // namespace tessera::app

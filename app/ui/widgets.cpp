@@ -15,8 +15,8 @@ namespace tessera::app {
 
 namespace {
 
-/// A printf format with the digits that a slider over this range can resolve, and the unit.
-std::string numberFormat(std::optional<Range> range, bool logScale, bool integer, std::string_view unit) {
+/// A printf format with the digits that a slider over this range can resolve.
+std::string numberFormat(std::optional<Range> range, bool logScale, bool integer) {
     std::string format = "%.4g";
     if (integer) {
         format = "%.0f";
@@ -28,10 +28,44 @@ std::string numberFormat(std::optional<Range> range, bool logScale, bool integer
         else
             format = "%.5g";
     }
+    return format;
+}
+
+std::string withUnit(std::string format, std::string_view unit) {
     if (unit.empty()) return format;
     format += ' ';
     for (const char c : prettyUnit(unit)) format += c == '%' ? "%%" : std::string(1, c);
     return format;
+}
+
+std::string printed(const std::string& format, double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, format.c_str(), value);
+    return text;
+}
+
+/// How numbers are written in a row of fields.
+struct NumberRow {
+    std::string format;
+    bool stacked = false; ///< one below the other
+    bool whole = true;    ///< with unit and all digits
+};
+
+/// The first way to write them that fits, from the whole to two digits.
+NumberRow numberRow(const std::string& format, std::string_view unit, const double* values, int count, bool integer) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float gaps = style.ItemInnerSpacing.x * static_cast<float>(count - 1);
+    const float width = (ImGui::CalcItemWidth() - gaps) / static_cast<float>(count) - 2 * style.FramePadding.x;
+    const std::string whole = withUnit(format, unit);
+    std::vector<std::string> formats{whole, format};
+    if (!integer) formats.insert(formats.end(), {"%.3g", "%.2g"});
+    for (const std::string& each : formats) {
+        float widest = 0;
+        for (int i = 0; i < count; ++i)
+            widest = std::max(widest, ImGui::CalcTextSize(printed(each, values[i]).c_str()).x);
+        if (widest <= width) return {each, false, each == whole};
+    }
+    return {whole, true, true};
 }
 
 std::string idOf(const FieldInfo& info) {
@@ -78,35 +112,60 @@ bool drawBool(const WidgetContext& context, const FieldInfo& info, bool& value) 
     return ImGui::Checkbox(idOf(info).c_str(), &value);
 }
 
+LengthUnit dataLength(const WidgetContext& context) {
+    if (!context.info) return {"m", 1};
+    const glm::dvec3 size = context.info->bounds.size();
+    return suitableLength(context.info->lengthUnit, std::max({size.x, size.y, size.z}));
+}
+
 bool drawNumber(const WidgetContext& context, const FieldInfo& info, std::optional<Range> scale, double* values,
                 int count, bool integer) {
     drawLabel(context, labelOf(info.key), info.doc);
     std::optional<Range> range = info.range;
     if (!range && scale && scale->hi > scale->lo) range = scale;
-    const std::string format = numberFormat(range, info.logScale, integer, info.unit);
+    const std::string format = numberFormat(range, info.logScale, integer);
+    NumberRow row{withUnit(format, info.unit)};
+    if (count > 1) row = numberRow(format, info.unit, values, count, integer);
     ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
     if (info.logScale) flags |= ImGuiSliderFlags_Logarithmic;
     const double lo = range ? range->lo : 0, hi = range ? range->hi : 0;
+    double largest = 0;
+    for (int i = 0; i < count; ++i) largest = std::max(largest, std::abs(values[i]));
+    const double span = range ? hi - lo : std::max(largest, 1e-3);
+    const bool slides = info.range || (range && count == 1);
+    const auto draw = [&](const std::string& id, double* from, int fields) {
+        if (slides)
+            return ImGui::SliderScalarN(id.c_str(), ImGuiDataType_Double, from, fields, &lo, &hi, row.format.c_str(),
+                                        flags);
+        return ImGui::DragScalarN(id.c_str(), ImGuiDataType_Double, from, fields, static_cast<float>(span * 0.004),
+                                  nullptr, nullptr, row.format.c_str(), ImGuiSliderFlags_NoRoundToFormat);
+    };
     bool changed = false;
     const std::vector<double> before(values, values + count);
-    if (info.range || (range && count == 1)) {
-        changed = ImGui::SliderScalarN(idOf(info).c_str(), ImGuiDataType_Double, values, count, &lo, &hi,
-                                       format.c_str(), flags);
+    if (row.stacked) {
+        ImGui::BeginGroup();
+        for (int i = 0; i < count; ++i) {
+            ImGui::SetNextItemWidth(-FLT_MIN);
+            changed |= draw(idOf(info) + std::to_string(i), values + i, 1);
+        }
+        ImGui::EndGroup();
     } else {
-        double largest = 0;
-        for (int i = 0; i < count; ++i) largest = std::max(largest, std::abs(values[i]));
-        const double span = range ? hi - lo : std::max(largest, 1e-3);
-        changed = ImGui::DragScalarN(idOf(info).c_str(), ImGuiDataType_Double, values, count,
-                                     static_cast<float>(span * 0.004), nullptr, nullptr, format.c_str(),
-                                     ImGuiSliderFlags_NoRoundToFormat);
+        changed = draw(idOf(info), values, count);
     }
     // 1e999 is read as infinity; a drag makes NaN of that, which passes all limits.
     for (int i = 0; i < count; ++i)
         if (changed && !std::isfinite(values[i])) values[i] = before[std::size_t(i)];
     if (changed && integer)
         for (int i = 0; i < count; ++i) values[i] = std::round(std::clamp(values[i], -2147483647.0, 2147483647.0));
-    if (ImGui::IsItemHovered(ImGuiHoveredFlags_None) && !ImGui::IsItemActive() && ImGui::GetIO().KeyCtrl)
+    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_None) || ImGui::IsItemActive()) return changed;
+    if (!row.whole) {
+        std::string whole;
+        for (const double value : before)
+            whole += (whole.empty() ? "" : ", ") + printed(withUnit(format, info.unit), value);
+        ImGui::SetTooltip("%s", whole.c_str());
+    } else if (ImGui::GetIO().KeyCtrl) {
         ImGui::SetTooltip("Ctrl+click to type a number");
+    }
     return changed;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/described/describe_json.h"
+#include "app/ui/ticks.h"
 #include "volume/field/dataset.h"
 
 #include <algorithm>
@@ -36,11 +37,16 @@ struct WidgetContext {
 /// A label in the left column with the help as a tooltip; the next item fills the rest of the line.
 void drawLabel(const WidgetContext& context, std::string_view label, std::string_view help);
 
+/// The unit for a setting of unit "m", a place in the data or a length there: one in which the data are of handy size.
+LengthUnit dataLength(const WidgetContext& context);
+
 /// The label of a setting: keyWords with a capital, "contextOpacity" -> "Context opacity".
 std::string labelOf(std::string_view key);
 
 bool drawBool(const WidgetContext& context, const FieldInfo& info, bool& value);
 /// A slider where a range is known, else a field to drag or type in. `scale`: range of the parameter it refers to.
+/// Several numbers stand side by side, without their unit or with fewer digits where there is little room, and else
+/// below each other; the whole is in a tooltip.
 bool drawNumber(const WidgetContext& context, const FieldInfo& info, std::optional<Range> scale, double* values,
                 int count, bool integer);
 bool drawChoice(const WidgetContext& context, const FieldInfo& info, int& index);
@@ -154,10 +160,14 @@ struct MemberToWidget {
                     return;
                 }
             }
-            double parts[4] = {};
-            for (int i = 0; i < GlmLength<T>::value; ++i) parts[i] = static_cast<double>(value[i]);
+            const LengthUnit length = info.unit == "m" ? dataLength(context) : LengthUnit{std::string(info.unit), 1};
+            info.unit = length.name;
+            double parts[4] = {}, before[4] = {};
+            for (int i = 0; i < GlmLength<T>::value; ++i)
+                parts[i] = before[i] = static_cast<double>(value[i]) * length.perUnit;
             if (drawNumber(context, info, {}, parts, GlmLength<T>::value, std::is_integral_v<V>)) {
-                for (int i = 0; i < GlmLength<T>::value; ++i) value[i] = static_cast<V>(parts[i]);
+                for (int i = 0; i < GlmLength<T>::value; ++i)
+                    if (parts[i] != before[i]) value[i] = static_cast<V>(parts[i] / length.perUnit);
                 changed = true;
             }
         } else if constexpr (Described<T>) {

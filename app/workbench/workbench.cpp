@@ -64,7 +64,8 @@ void Workbench::open(OpenRequest request) {
     for (const std::string& path : request.paths) {
         const bool pattern = path.find_first_of("*?[") != std::string::npos;
         std::error_code unknown;
-        if (!options_.headless && !pattern && !codec::isRemote(path) && !fs::exists(path, unknown))
+        const bool model = request.paths.size() == 1 && namesModel(path);
+        if (!options_.headless && !pattern && !model && !codec::isRemote(path) && !fs::exists(path, unknown))
             return message(path + ": no such file", true);
     }
     if (document_.loaded() && !options_.headless && request.paths.size() == 1 && !request.import &&
@@ -92,7 +93,8 @@ void Workbench::start(const OpenRequest& request) {
             if (!opened->missing.empty()) return missing_.show(std::move(*opened));
             install(std::move(*opened));
             if (request.import && !options_.headless) rememberStated(*request.import, document_.info().name);
-            for (const std::string& path : request.paths) addRecentFile(options_.stateFolder, path);
+            for (const std::string& path : request.paths)
+                if (!namesModel(path)) addRecentFile(options_.stateFolder, path);
         };
     });
 }
@@ -285,13 +287,18 @@ ViewContext Workbench::viewContext() {
             .interacting = ImGui::IsAnyItemActive()};
 }
 
+std::string Workbench::whyEmpty() const {
+    const auto& said = messages_.list(); // the status line forgets it, and no pane has it
+    return said.empty() || !said.back().failure ? "" : said.back().text + "\n\n";
+}
+
 void Workbench::drawWindow() {
     const ImGuiViewport& viewport = *ImGui::GetMainViewport();
     PaneHost::Area area{viewport.Pos, viewport.Size, options_.onlyPane, {}};
     if (document_.loaded())
         area.none = "No view is open: choose one in the View menu.";
     else if (!jobs_.running("open"))
-        area.none = "No data: choose File > Open, or drop a file here.";
+        area.none = whyEmpty() + "No data: choose File > Open, or drop a file here.";
     if (!options_.onlyPane.empty()) return panes_.draw(viewContext(), area);
     drawMenus();
     const float top = ImGui::GetFrameHeight(), bottom = std::round(ImGui::GetFontSize() * 1.7f);

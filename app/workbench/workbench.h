@@ -131,6 +131,7 @@ private:
     ViewContext viewContext();
     void pressKeys();
     void drawWindow();
+    std::string whyEmpty() const; ///< what went wrong last, where nothing is open
     void drawMenus();
     void drawRecentFiles();
     void drawDialogs();

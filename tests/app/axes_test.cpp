@@ -54,6 +54,24 @@ TEST_F(AxesTest, AnAxisWithoutRoomBesideItHasItsTitleBeyondItsEnd) {
     EXPECT_NEAR(above[0].middle().x, 186, em / 2);
 }
 
+TEST_F(AxesTest, ACornerIsCoveredAsFarAsTheBoxReachesIntoIt) {
+    const vis::Camera camera = vis::planeCamera(0, 1, vis::worldFrame(kBox, glm::dvec3(1)));
+    const SpaceFrame frame =
+        spaceFrame({0, 0}, {800, 500}, camera, kBox, glm::dvec3(1)); // the whole height: 150 to 650
+    EXPECT_EQ(coveredByBox(frame, {0, 0}, {140, 500}), 0);
+    EXPECT_EQ(coveredByBox(frame, {200, 100}, {300, 200}), 1);
+    EXPECT_NEAR(coveredByBox(frame, {600, 100}, {700, 200}), 0.5, 0.07);
+    vis::Camera turned = camera; // a corner up, which hides no corner of the picture
+    turned.orientation = glm::normalize(glm::quat(0.92f, 0, 0, 0.38f) * turned.orientation);
+    turned.distance *= 1.5f;
+    const SpaceFrame diamond = spaceFrame({0, 0}, {500, 500}, turned, kBox, glm::dvec3(1));
+    EXPECT_EQ(coveredByBox(diamond, {0, 0}, {120, 120}), 0) << "the box, not the rectangle around it";
+    EXPECT_EQ(coveredByBox(diamond, {220, 220}, {280, 280}), 1);
+    vis::Camera inside;
+    inside.distance = 0.01f;
+    EXPECT_EQ(coveredByBox(spaceFrame({0, 0}, {500, 500}, inside, kBox, glm::dvec3(1)), {0, 0}, {10, 10}), 1);
+}
+
 TEST_F(AxesTest, TheTriadNamesTheEndsAndAClickLooksAgainstThem) {
     const ImVec2 center{300, 300};
     const float radius = 80;

@@ -352,6 +352,61 @@ TEST_F(TiltedPlaneHands, InTheFlatViewALensIsDraggedByItsMiddleAlongThePlane) {
     EXPECT_EQ(session().lenses[0].center, center);
 }
 
+TEST_F(TiltedPlaneHands, InTheFlatViewSeedsLinesAndBrushesAreDraggedByTheirDots) {
+    const glm::dvec3 upright{-0.8, 0, 0.6}, size = planesBox().size();
+    show(tiltedBy(upright), {520, 460}, [&](Session& edited) {
+        vis::FlowLayer flow;
+        flow.channel = "U";
+        flow.seeds = volume::SeedShape::Line;
+        flow.from = {0.3f, 0.3f, 0.3f};
+        flow.to = {0.6f, 0.7f, 0.5f};
+        edited.layers = {{"flow", true, flow}};
+        edited.selection.brushes.resize(1);
+        edited.selection.brushes[0].region =
+            vis::SphereRegion{.center = edited.cursor + 0.15 * size, .radius = 0.2 * size};
+        ProfileView line;
+        line.points = {planesBox().lo + 0.2 * size, planesBox().lo + glm::dvec3(0.3, 0.9, 0.7) * size};
+        edited.views["line"] = line;
+    });
+    const ImRect flat = pictures().back();
+    const FlatSlice slice = flatSlice(session(), workbench.source()->info(), upright);
+    const auto pixelOf = [&](glm::dvec3 place) {
+        const glm::dvec2 at = slice.along(place);
+        return within(flat, (at.x - slice.x.lo) / (slice.x.hi - slice.x.lo),
+                      1 - (at.y - slice.y.lo) / (slice.y.hi - slice.y.lo));
+    };
+    const glm::dvec3 cursor = session().cursor;
+    /// Drags a dot, and says where it must be then: moved along the plane alone.
+    const auto dragDot = [&](const std::function<glm::dvec3()>& dot, const char* what) {
+        const glm::dvec3 before = dot();
+        const ImVec2 from = pixelOf(before);
+        drag(from, {from.x + 22, from.y - 14});
+        EXPECT_NEAR(pixelOf(dot()).x, from.x + 22, 1.5) << what;
+        EXPECT_NEAR(pixelOf(dot()).y, from.y - 14, 1.5) << what;
+        EXPECT_NEAR(slice.plane.distance(dot()), slice.plane.distance(before), 1e-6 * glm::length(size)) << what;
+        EXPECT_EQ(session().cursor, cursor) << what;
+    };
+    dragDot(
+        [&] { return planesBox().lo + glm::dvec3(std::get<vis::FlowLayer>(session().layers[0].technique).to) * size; },
+        "the end of a line of seeds");
+    dragDot([&] { return std::get<ProfileView>(session().views.at("line")).points[1]; }, "the end of a profile line");
+    const auto ball = [&] { return std::get<vis::SphereRegion>(session().selection.brushes[0].region); };
+    dragDot([&] { return ball().center; }, "the middle of a brush");
+    const vis::SphereRegion before = ball();
+    const ImVec2 end = pixelOf(before.center + glm::dvec3(0, before.radius.y, 0)); // y runs upwards
+    drag(end, {end.x + 9, end.y - 20});
+    EXPECT_NEAR(pixelOf(ball().center + glm::dvec3(0, ball().radius.y, 0)).y, end.y - 20, 1.5);
+    EXPECT_EQ(ball().center, before.center);
+    EXPECT_EQ(ball().radius.x, before.radius.x);
+    const ImVec2 slant = pixelOf(ball().center + glm::dvec3(0, 0, ball().radius.z)), // z runs aslant
+        middle = pixelOf(ball().center);
+    drag(slant, {slant.x + (slant.x - middle.x) * 0.5f, slant.y});
+    EXPECT_NEAR(ball().radius.z, before.radius.z * 1.5, before.radius.z * 0.08)
+        << "it follows the mouse, not the plane";
+    settle();
+    EXPECT_EQ(steps(), 5u);
+}
+
 TEST_F(TiltedPlaneHands, TheCommandTiltsEveryObliqueSliceToTheViewer) {
     showVolume([](Session& edited) {
         edited.camera.orientation = glm::normalize(glm::quat(0.9f, 0.2f, 0.3f, 0.1f));

@@ -1,5 +1,6 @@
 #include "app/pane/view_parts.h"
 #include "app/session/session.h"
+#include "app/session/shown_scene.h"
 #include "app/ui/ticks.h"
 
 #include <gtest/gtest.h>

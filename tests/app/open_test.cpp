@@ -326,6 +326,17 @@ TEST_F(OpenTest, ALayoutChosenKeepsTheBrushesOfTheUser) {
         << "a brush that came from a layout goes with it";
     EXPECT_TRUE(change(change(shown, "focus", messages), "overview", messages).selection.brushes.empty());
 
+    // As do those of a layout file of the user's own, whatever became of the file.
+    SessionDocument own = loadSession(findLayout("focus"));
+    own.session.selection.brushes[0].name = "hot";
+    own.raw["selection"] = toJson(own.session)["selection"];
+    Session brushed = changeLayout(own, *opened.source, shown, messages);
+    ASSERT_EQ(names(brushed), Names{"hot"});
+    brushed = sessionFromJson(toJson(brushed), {}); // as saved and opened again
+    EXPECT_EQ(names(change(brushed, "statistics", messages)), Names{"little oxygen"});
+    brushed.selection.brushes[0].inverted = true;
+    EXPECT_EQ(names(change(brushed, "overview", messages)), Names{"hot"}) << "it is the user's once it was changed";
+
     shown.selection.brushes = {vis::rangeBrush({{"T", 340, 350, 0}}, "mine")};
     messages.clear();
     const Session plain = change(shown, "overview", messages);
@@ -344,6 +355,32 @@ TEST_F(OpenTest, ALayoutChosenKeepsTheBrushesOfTheUser) {
     messages.clear();
     EXPECT_TRUE(change(shown, "overview", messages).selection.brushes.empty());
     EXPECT_THAT(messages, testing::Contains("brush hot and starved is removed: the layout has no lens glass"));
+}
+
+TEST_F(OpenTest, ADrawingOfAFieldIsSeenAcrossItsLengthWithItsBox) {
+    const SessionDocument layout = loadSession(findLayout("charcoal"));
+    const auto box = [](const Session& session) {
+        const auto& view = std::get<VolumeView>(session.views.at("volume"));
+        return view.showBox && view.drawingBox;
+    };
+    std::vector<std::string> messages;
+    const Opened cell = open(smallCell(2));
+    const Session drawn = changeLayout(layout, *cell.source, cell.document.session, messages);
+    const vis::WorldFrame world = vis::worldFrame(cell.source->info().bounds, drawn.stretch);
+    EXPECT_EQ(drawn.camera.orientation, vis::firstOrientation(world)) << "the layout looks along a channel";
+    EXPECT_TRUE(box(drawn)) << "its surfaces float in the paper else";
+    const Opened scan = open(rawRequest(raw("scan.raw")));
+    const Session body = changeLayout(layout, *scan.source, scan.document.session, messages);
+    EXPECT_FALSE(box(body));
+    std::vector<std::string> none;
+    volume::DatasetInfo cube = scan.source->info();
+    cube.bounds = {glm::dvec3(0), glm::dvec3(1)};
+    EXPECT_EQ(applyLayout(layout, cube, scan.document.session.data, none).camera.orientation,
+              layout.session.camera.orientation)
+        << "what is as long as wide is seen as the layout has it";
+    OpenRequest own;
+    own.layout = "charcoal";
+    EXPECT_FALSE(box(open(own).document.session)) << "with its own data a layout is as it was made";
 }
 
 TEST_F(OpenTest, VariantsOfAnotherModelAreLeftOut) {

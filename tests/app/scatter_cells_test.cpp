@@ -4,6 +4,7 @@
 #include "tests/app/drawn_text.h"
 #include "tests/app/fed_imgui.h"
 
+#include <algorithm>
 #include <gmock/gmock.h>
 #include <limits>
 
@@ -136,30 +137,130 @@ TEST_F(ScatterCells, MeansHaveTheirColoursInTheirPlaces) {
     EXPECT_EQ(rgba[4], meanColor(function, range, 14.0 / 25) >> IM_COL32_R_SHIFT & 255) << "weighted by samples";
 }
 
-TEST_F(ScatterCells, ATitleThatIsWiderThanItsColumnStandsUprightBelowItsNumbers) {
-    matrix.infos[0].name = "mean temperature";
-    matrix.infos[1].name = "b";
-    matrix.infos[0].unit = matrix.infos[1].unit = "K";
-    matrix.min = {150, 20};
-    matrix.cellX = matrix.cellY = 60;
-    matrix.gap = 4;
+/// Axes of the matrix in so much room, and what was drawn.
+struct DrawnAxes {
     MatrixTitles titles;
-    for (int i = 0; i < 2; ++i)
-        feedWindow([&] {
-            titles = matrixTitles(matrix, matrix.cellX, matrix.cellY);
-            drawMatrixAxes(*ImGui::GetWindowDrawList(), matrix, titles);
-        });
-    ASSERT_TRUE(titles.upright);
+    std::vector<DrawnText> texts;
+    int count(const std::string& text) const {
+        return int(std::count_if(texts.begin(), texts.end(), [&](const DrawnText& each) { return each.text == text; }));
+    }
+};
+
+class ScatterTitles : public ScatterCells {
+protected:
+    DrawnAxes axesIn(ImVec2 room, double most = 1, bool logCounts = false) {
+        DrawnAxes drawn;
+        for (int i = 0; i < 3; ++i)
+            feedWindow([&] {
+                drawn.titles = matrixTitles(matrix, room, most, logCounts);
+                const auto n = float(matrix.size());
+                matrix.gap = em() * 0.35f;
+                matrix.min = {20 + drawn.titles.left, 20};
+                matrix.cellX = (room.x - drawn.titles.left) / n;
+                matrix.cellY = (room.y - drawn.titles.bottom) / n;
+                drawMatrixAxes(*ImGui::GetWindowDrawList(), matrix, drawn.titles);
+            });
+        drawn.texts = drawnTexts();
+        for (const DrawnText& text : drawn.texts) {
+            EXPECT_GE(text.min.x, 20 - 1) << text.text;
+            EXPECT_LE(text.max.y, 20 + room.y + 1) << text.text;
+        }
+        return drawn;
+    }
+    void call(const std::string& first, const std::string& second, const std::string& unit) {
+        matrix.infos[0].name = first;
+        matrix.infos[1].name = second;
+        matrix.infos[0].unit = matrix.infos[1].unit = unit;
+    }
+};
+
+TEST_F(ScatterTitles, StandWithTheirUnitsOnOneLineWhereTheyHaveRoom) {
+    call("H2", "H2O", "mol/m3");
+    const DrawnAxes drawn = axesIn({700, 500});
+    EXPECT_EQ(drawn.count("H2 [mol/m³]"), 1);
+    EXPECT_EQ(drawn.count("H2O [mol/m³]"), 2);
+    EXPECT_LT(drawn.titles.left, 4 * em());
+}
+
+TEST_F(ScatterTitles, KeepTheirUnitsOnASecondLineOrAcrossTheirCells) {
+    call("H2", "H2O", "mol/m3");
+    DrawnAxes drawn = axesIn({190, 230});
+    EXPECT_EQ(drawn.titles.below, TitleWay::TwoLines);
+    EXPECT_EQ(drawn.count("H2"), 1);
+    EXPECT_EQ(drawn.count("H2O"), 2);
+    EXPECT_EQ(drawn.count("[mol/m³]"), 3);
+    drawn = axesIn({600, 140});
+    EXPECT_EQ(drawn.titles.beside, TitleWay::Across);
+    EXPECT_EQ(drawn.count("H2O"), 1);
+    EXPECT_EQ(drawn.count("[mol/m³]"), 1);
+}
+
+TEST_F(ScatterTitles, CutOffLongNamesAndLeaveMostOfTheRoomToThePlots) {
+    const std::string name = "mean temperature of the cathode side of the channel";
+    call(name, name, "K");
+    const DrawnAxes drawn = axesIn({400, 360});
+    EXPECT_EQ(drawn.titles.below, TitleWay::Across);
+    EXPECT_EQ(drawn.titles.beside, TitleWay::Across);
+    EXPECT_LT(drawn.titles.left, 400 * 0.35f);
+    EXPECT_LT(drawn.titles.bottom, 360 * 0.4f);
+    int upright = 0, level = 0, units = 0;
+    for (const DrawnText& text : drawn.texts) {
+        const bool turned = text.max.x - text.min.x < text.max.y - text.min.y;
+        upright += turned && text.text.starts_with("mean") && text.text.ends_with("... [K]");
+        level += !turned && text.text.starts_with("mean") && text.text.ends_with("...");
+        units += text.text == "[K]";
+    }
+    EXPECT_EQ(upright, 2);
+    EXPECT_EQ(level, 1);
+    EXPECT_EQ(units, 1);
+    for (const DrawnText& text : drawn.texts)
+        if (text.text.starts_with("mean")) mouse = text.middle();
+    for (int i = 0; i < 3; ++i) feedWindow([&] { drawMatrixAxes(*ImGui::GetWindowDrawList(), matrix, drawn.titles); });
+    const std::string said = drawnWords().back();
+    EXPECT_TRUE(said == name || said == name + " [K]") << said;
+}
+
+TEST_F(ScatterTitles, ATitleThatIsWiderThanItsColumnStandsUprightBelowItsNumbers) {
+    call("mean temperature", "b", "");
+    const DrawnAxes drawn = axesIn({220, 700});
+    ASSERT_EQ(drawn.titles.below, TitleWay::Across);
     const PlotFrame last = matrix.cell(0, 1);
     int found = 0;
-    for (const DrawnText& text : drawnTexts()) {
+    for (const DrawnText& text : drawn.texts) {
         if (text.text != "mean temperature" || text.max.x - text.min.x > text.max.y - text.min.y) continue;
         ++found;
-        EXPECT_NEAR(text.middle().x, (last.min.x + last.max.x) / 2, 2);
+        EXPECT_NEAR(text.middle().x, (last.min.x + last.max.x) / 2, 3);
         EXPECT_GT(text.min.y, last.max.y + em()) << "below the numbers";
-        EXPECT_LT(text.max.y, last.max.y + titles.bottom + 2) << "within the room that was asked for";
+        EXPECT_LT(text.max.y, last.max.y + drawn.titles.bottom + 2) << "within the room that was asked for";
     }
     EXPECT_EQ(found, 1);
+}
+
+TEST_F(ScatterTitles, NumbersOfAxesAreReadWithTheOffsetWhateverWayTheTitlesStand) {
+    call("p", "pressure of the air", "Pa");
+    matrix.ranges = matrix.whole = {{1000000, 1000016}, {1000000, 1000016}};
+    for (const ImVec2 room : {ImVec2{800, 560}, ImVec2{400, 300}, ImVec2{300, 180}}) {
+        int notes = 0;
+        for (const DrawnText& text : axesIn(room).texts) notes += text.text.find("+ 1000000") != std::string::npos;
+        EXPECT_EQ(notes, 3) << room.x;
+    }
+}
+
+TEST_F(ScatterTitles, ALoneHistogramHasAnAxisOfCounts) {
+    matrix.channels = {0};
+    matrix.infos.resize(1);
+    matrix.ranges = matrix.whole = {{0, 8}};
+    DrawnAxes drawn = axesIn({400, 300}, 4000);
+    EXPECT_EQ(drawn.count("samples"), 1);
+    EXPECT_EQ(drawn.count("2000"), 1);
+    const PlotFrame cell = matrix.cell(0, 0);
+    const float high = cell.max.y - float(2000 / drawn.titles.counts.hi) * cell.height();
+    for (const DrawnText& text : drawn.texts)
+        if (text.text == "2000") EXPECT_NEAR(text.middle().y, high, em() * 0.5f);
+    EXPECT_NEAR(4000 / drawn.titles.counts.hi, kHighestBar, 1e-9) << "as high as its bar";
+    drawn = axesIn({400, 300}, 9999, true);
+    EXPECT_EQ(drawn.count("log10(1 + samples)"), 1);
+    EXPECT_NEAR(4 / drawn.titles.counts.hi, kHighestBar, 1e-9);
 }
 
 } // namespace

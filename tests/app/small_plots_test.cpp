@@ -54,7 +54,7 @@ TEST_F(SmallPlots, LegendsOfASmallPictureAreOneLineEach) {
     const auto drawn = [&](ImVec2 size, bool whole) {
         LegendArea area{};
         feedWindow([&] {
-            area = drawLegends(*ImGui::GetWindowDrawList(), entries, {0, 0}, size, LegendCorner::Bottom, whole);
+            area = drawLegends(*ImGui::GetWindowDrawList(), entries, {0, 0}, size, LegendCorner::BottomRight, whole);
         });
         return area.max.y - area.min.y;
     };

@@ -42,8 +42,8 @@ protected:
         if (slice) {
             // x to the right, y up; the frame's values are centimetres.
             const PlotFrame plot{{50, 50}, {450, 350}, {0, 200}, {0, 100}};
-            edited = editHandles(drag, session, info, plot, 0, 1, glm::dvec2(100), ImGui::IsItemHovered());
-            drawHandles(*ImGui::GetWindowDrawList(), drag, plot, session, info, 0, 1, glm::dvec2(100));
+            edited = editHandles(drag, session, info, plot, page, glm::dvec2(100), ImGui::IsItemHovered());
+            drawHandles(*ImGui::GetWindowDrawList(), drag, plot, session, info, page, glm::dvec2(100));
         } else {
             edited = editHandles(drag, session, info, space(), ImGui::IsItemHovered());
             drawHandles(*ImGui::GetWindowDrawList(), drag, space(), session, info);
@@ -84,6 +84,7 @@ protected:
     volume::DatasetInfo info;
     HandleDrag drag;
     ImVec2 mouse{0, 0};
+    PicturePlane page = planeAcross(0, 1, 2, 0.5); ///< of slices
     bool slice = false, edited = false;
     bool moved = false; ///< the drag changed the session, as it said
 };
@@ -149,6 +150,21 @@ TEST_F(SpaceHandles, BrushesMoveAndGrowInSpaceAndSlices) {
     EXPECT_NEAR(ball.center.x, 1.1, 0.01);
     EXPECT_NEAR(ball.center.y, 0.4, 0.01);
     EXPECT_EQ(ball.center.z, 0.5);
+}
+
+TEST_F(SpaceHandles, ASliceHasNoDotsOfItsOwnPlane) {
+    ObliqueView view;
+    view.normal = {0, 0, 1};
+    session.views["oblique"] = view;
+    slice = true;
+    const glm::dvec3 cursor = session.cursor;
+    dragBy({50 + 1.0f * 200, 350 - 0.5f * 300}, {40, 30});
+    EXPECT_EQ(session.cursor, cursor);
+    EXPECT_FALSE(moved);
+    std::get<ObliqueView>(session.views["oblique"]).normal = {1, 0, 0};
+    dragBy({50 + 1.0f * 200, 350 - 0.5f * 300}, {40, 30});
+    EXPECT_TRUE(moved) << "another plane has them";
+    EXPECT_NEAR(session.cursor.x, 1.2, 0.01);
 }
 
 TEST_F(SpaceHandles, ProfileLinesBecomeTheirOwn) {

@@ -1,6 +1,7 @@
 #include "app/pane/pane_title.h"
 #include "app/pane/view_parts.h"
 #include "app/session/shown_scene.h"
+#include "tests/app/drawn_text.h"
 #include "tests/app/hands_fixture.h"
 #include "tests/app/workbench_fixture.h"
 
@@ -172,6 +173,32 @@ TEST_F(VolumePanes, TheLayersListedAreThoseOfTheViewClickedLast) {
     click(within(rectOf("pane"), 0.5, 0.5));
     settle();
     EXPECT_EQ(session().dock.volume, "pane");
+}
+
+TEST_F(VolumePanes, TheLegendStandsWhereTheDataAreNot) {
+    VolumeView plain;
+    plain.showAxes = plain.showScaleBar = plain.showGizmo = false;
+    show(plain, {420, 640}, [](Session& session) {
+        session.camera = {};
+        session.camera.orientation = glm::quat(1, 0, 0, 0);
+        session.camera.distance = 6; // the picture is 2.5 x 3.8, the data 1 at most
+    });
+    const auto legend = [&](float x, float y) { // with the data there, from the middle of the picture
+        session().camera.target = {-x, -y, 0};
+        settle();
+        for (const DrawnText& text : drawnTexts())
+            if (text.text.find('[') != std::string::npos) return text.middle();
+        ADD_FAILURE() << "no legend";
+        return ImVec2{};
+    };
+    const ImVec2 usual = legend(0, 0.5f);
+    EXPECT_GT(usual.x, 210);
+    EXPECT_GT(usual.y, 500) << "the corner at the bottom right, which is free";
+    const ImVec2 above = legend(0.8f, -1.6f);
+    EXPECT_GT(above.x, 210);
+    EXPECT_LT(above.y, 150);
+    session().camera.distance = 1.2f; // the data are everywhere
+    EXPECT_GT(legend(0, 0).y, 500);
 }
 
 TEST_F(VolumePanes, TitlesNameWhatIsOwned) {

@@ -6,6 +6,7 @@
 #include "tests/app/cell_info.h"
 #include "tests/app/drawn_text.h"
 #include "tests/app/fed_imgui.h"
+#include "vis/scene/selection.h"
 
 #include <gmock/gmock.h>
 
@@ -96,6 +97,63 @@ TEST_F(Widgets, AListOfParametersIsReadAndChosenFrom) {
     frames(2, draw);
     EXPECT_THAT(drawnWords(), Contains("2")) << "what cannot be chosen from is counted";
     EXPECT_THAT(drawnWords(), Not(Contains("a, b")));
+}
+
+TEST_F(Widgets, PlacesInTheDataFitTheirPaneInAHandyUnit) {
+    volume::DatasetInfo info;
+    info.bounds = {{0, 0, 0}, {0.0011, 0.0012, 0.04}};
+    vis::SphereRegion ball{.center = {0.000512345, 0.000612345, 0.0123456}, .radius = glm::dvec3(0.00112345)};
+    const vis::SphereRegion before = ball;
+    float width = 500;
+    const auto draw = [&] {
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({width, 400});
+        ImGui::Begin("test", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+        drawDescribed(ball, {.info = &info});
+        ImGui::End();
+    };
+    const auto numbers = [&] {
+        mouse = {-1000, -1000};
+        frames(3, draw);
+        std::vector<DrawnText> all;
+        for (const DrawnText& text : drawnTexts())
+            if (text.text.find_first_of("0123456789") != std::string::npos) all.push_back(text);
+        return all;
+    };
+    using testing::StartsWith;
+    for (width = 700; width > 120; width -= 20) {
+        const std::vector<DrawnText> all = numbers();
+        ASSERT_EQ(all.size(), 7u) << width << ": three of the centre, three radii, and the soft edge";
+        for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+            EXPECT_LT(all[i].max.x, width) << width;
+            for (std::size_t k = 0; k < i; ++k)
+                EXPECT_TRUE(all[i].min.x > all[k].max.x || all[i].min.y > all[k].max.y) << width << ' ' << all[i].text;
+        }
+        EXPECT_THAT(all[2].text, StartsWith("12")) << width;
+    }
+    width = 700;
+    EXPECT_EQ(numbers()[2].text, "12.35 mm");
+    width = 300;
+    const DrawnText last = numbers()[2];
+    EXPECT_EQ(last.text, "12.3");
+    EXPECT_EQ(ball, before) << "looking changes nothing";
+    mouse = last.middle();
+    frames(3, draw);
+    EXPECT_THAT(drawnWords(), Contains("0.5123 mm, 0.6123 mm, 12.35 mm")) << "the whole under the mouse";
+    // What is dragged alone changes, in the unit of the data.
+    ImGui::GetIO().MouseDown[0] = true;
+    frames(2, draw);
+    mouse.x += 20;
+    frames(2, draw);
+    ImGui::GetIO().MouseDown[0] = false;
+    frames(2, draw);
+    EXPECT_EQ(ball.center.x, before.center.x);
+    EXPECT_EQ(ball.center.y, before.center.y);
+    EXPECT_GT(ball.center.z, before.center.z);
+    EXPECT_LT(ball.center.z, 0.02);
+    info.lengthUnit = "km"; // one that is not known stays
+    width = 700;
+    EXPECT_THAT(numbers()[0].text, testing::EndsWith(" km"));
 }
 
 TEST_F(Widgets, AFloatingPaneStaysWhereItIsPut) {

@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <unistd.h>
+#include <vector>
 
 namespace tessera::app {
 namespace {
@@ -234,6 +236,29 @@ TEST_F(WorkbenchData, AnotherFileStandsBeside) {
     EXPECT_FALSE(workbench.session().data.other);
     EXPECT_FALSE(workbench.source()->info().findChannel(shown + " (other)"));
 }
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+
+/// Resident memory of the process, MB.
+double residentMegabytes() {
+    std::ifstream statistics("/proc/self/statm");
+    double pages = 0;
+    statistics >> pages >> pages;
+    return pages * double(::sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+TEST_F(WorkbenchData, WhatWorkLeftBehindIsGivenBackOnceNothingIsBusy) {
+    // As data leave that are no longer shown: free memory below blocks in use.
+    std::vector<std::unique_ptr<std::vector<char>>> blocks;
+    for (int i = 0; i < 12'000; ++i) blocks.push_back(std::make_unique<std::vector<char>>(32'000, 'x'));
+    for (std::size_t i = 0; i + 1 < blocks.size(); ++i) blocks[i].reset();
+    const double held = residentMegabytes();
+    workbench.install(smallData());
+    settle();
+    EXPECT_LT(residentMegabytes(), held - 200);
+}
+
+#endif
 
 } // namespace
 } // namespace tessera::app

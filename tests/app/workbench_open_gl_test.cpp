@@ -1,3 +1,4 @@
+#include "tests/app/drawn_text.h"
 #include "workbench_fixture.h"
 
 #include <algorithm>
@@ -40,6 +41,31 @@ struct WorkbenchOpening : DrawnWorkbench {
     fs::path before = fs::current_path();
     fs::path folder = fs::path(testing::TempDir()) / ("workbench_opening_" + std::to_string(::getpid()));
 };
+
+TEST_F(WorkbenchOpening, WhatCannotBeOpenedIsToldWhereTheDataWouldBe) {
+    OpenRequest request;
+    request.paths = {"lost.vti"};
+    workbench.open(request);
+    settle();
+    int told = 0, below = 0;
+    for (const DrawnText& text : drawnTexts())
+        if (text.text.find("lost.vti: no such file") != std::string::npos) ++(text.min.y < 300 ? told : below);
+    EXPECT_EQ(told, 1) << "for as long as nothing is open";
+    EXPECT_EQ(below, 1) << "news in the status line";
+}
+
+TEST_F(WorkbenchOpening, ABuiltInModelIsOpenedByItsName) {
+    OpenRequest request;
+    request.paths = {"marschner-lobb"};
+    workbench.open(request);
+    settle();
+    EXPECT_EQ(workbench.session().data.model, "marschner-lobb");
+    request.paths = {"no-model"};
+    workbench.open(request);
+    settle();
+    EXPECT_EQ(news(), 1u) << "what is neither is told of";
+    EXPECT_EQ(workbench.session().data.model, "marschner-lobb");
+}
 
 // The layout that the name of one raw file tells, or that was typed for it, is not asked of the next one.
 TEST_F(WorkbenchOpening, ALayoutIsOfTheFileItWasStatedFor) {

@@ -21,7 +21,7 @@ def save():
     time.sleep(0.4)
     before = os.stat(SESSION).st_mtime_ns if os.path.exists(SESSION) else 0
     xdo("key", "ctrl+s")
-    for _ in range(300):
+    for _ in range(900):
         time.sleep(0.05)
         if os.path.exists(SESSION) and os.stat(SESSION).st_mtime_ns != before:
             with open(SESSION, encoding="utf-8") as file:
@@ -72,6 +72,21 @@ def until(what, holds, found=lambda s: ""):
     return session
 
 
+def palette(text):
+    """Runs the first command that the palette finds, when the pictures before it are drawn."""
+    save()
+    press("ctrl+shift+p")
+    time.sleep(1)
+    xdo("type", "--delay", 30, text)
+    time.sleep(0.5)
+    press("Return")
+    time.sleep(0.5)
+
+
+def brushes(session):
+    return [each["name"] + ("" if each["enabled"] else " off") for each in session["selection"]["brushes"]]
+
+
 def near(a, b, tolerance):
     return abs(a - b) <= tolerance
 
@@ -105,7 +120,8 @@ def opacities(session):
 # Places in the window of 1500 x 950 with the overview.
 VOLUME = (310, 420)
 BOX_XY, BOX_ZY = ((664, 106), (718, 172)), ((856, 106), (1074, 172))
-DENSITY_PLOT = ((700, 572), (785, 616))  # H2O over O2
+DENSITY_PLOT = ((737, 568), (818, 618))  # H2O over O2
+LENS = (412, 406)  # in the layout of lenses
 TIMELINE_Y, TIMELINE_FIRST, TIMELINE_LAST = 864, 23, 1160
 
 press("ctrl+s")
@@ -261,13 +277,39 @@ s = until("a double click on a tab maximises its pane", lambda s: s["dock"]["max
           lambda s: s["dock"]["maximised"])
 press("F11", at=VOLUME)
 s = until("F11 takes that back", lambda s: s["dock"]["maximised"] == "", lambda s: s["dock"]["maximised"])
-press("ctrl+shift+p")
-time.sleep(0.5)
-xdo("type", "--delay", 30, "light theme")
-time.sleep(0.3)
-press("Return")
-time.sleep(0.5)
+palette("light theme")
 s = until("the palette runs what is typed", lambda s: s["appearance"]["theme"] == "light",
           lambda s: s["appearance"]["theme"])
+
+# Layouts one after the other: a brush of the user's own stays, those of a layout go with it. In each, what it is for.
+palette("layout: overview")
+before = save()
+drag((x0 + 15, y0 + 10), (x0 + 45, y0 + 30))
+s = until("a brush of one's own", lambda s: len(s["selection"]["brushes"]) == 1, brushes)
+mine = brushes(s)
+palette("layout: focus")
+until("beside it the brush of a layout is off", lambda s: brushes(s) == [*mine, "hot and starved off"], brushes)
+palette("layout: lens")
+s = until("and goes with its layout", lambda s: brushes(s) == mine and len(s["lenses"]) == 2, brushes)
+lenses = s["lenses"]
+drag(LENS, (LENS[0] - 60, LENS[1] - 12), modifier="alt")
+s = until("Alt and a drag move the lens", lambda s: s["lenses"][0]["center"][2] < lenses[0]["center"][2] - 1e-3,
+          lambda s: [each["center"] for each in s["lenses"]])
+xdo("mousemove", LENS[0] - 60, LENS[1] - 12, "keydown", "alt", "click", 4, "keyup", "alt")
+until("Alt and the wheel make it larger", lambda s: s["lenses"][0]["size"][0] > lenses[0]["size"][0],
+      lambda s: [each["size"] for each in s["lenses"]])
+for name, shows in (("shadowcube", "shadowCube"), ("tesseract", "tesseract"), ("charcoal", "volume")):
+    palette("layout: " + name)
+    until(f"the layout {name} shows its view, and keeps the brush",
+          lambda s: shows in [view["type"] for view in s["views"].values()] and s["views"] != before["views"] and
+          brushes(s)[:1] == mine, lambda s: [sorted(s["views"]), brushes(s)])
+last = save()
+for key in ("ctrl+z", "ctrl+shift+z"):
+    for _ in range(15):
+        xdo("key", key)
+        time.sleep(0.2)
+parts = ("camera", "selection", "layers", "lenses", "views", "dock")
+until("15 undos and 15 redos lead back", lambda s: all(s[part] == last[part] for part in parts),
+      lambda s: [part for part in parts if s[part] != last[part]])
 
 sys.exit(1 if failures else 0)

@@ -15,8 +15,8 @@ await 30 fresh || fail "Esc draws nothing"
 
 # A brush: drag across a density plot (O2 against H2O is the third row, first column of the matrix).
 mark
-xdotool mousemove 712 582 mousedown 1
-for ((x = 716; x <= 772; x += 8)); do xdotool mousemove $x $((582 + (x - 712) / 3)); sleep 0.03; done
+xdotool mousemove 745 582 mousedown 1
+for ((x = 749; x <= 805; x += 8)); do xdotool mousemove $x $((582 + (x - 745) / 3)); sleep 0.03; done
 xdotool mouseup 1
 await 60 fresh || fail "brushing draws nothing"
 
@@ -44,8 +44,8 @@ mark
 xdotool mousemove 970 468 click 1
 await 30 fresh || fail "no tool is chosen"
 mark
-xdotool mousemove 720 634 mousedown 1
-for at in "740 630" "760 634" "772 646" "765 662" "745 670" "725 662"; do
+xdotool mousemove 750 634 mousedown 1
+for at in "770 630" "790 634" "802 646" "795 662" "775 670" "755 662"; do
     xdotool mousemove $at
     sleep 0.3
 done

@@ -26,12 +26,53 @@ std::string countText(double count, double total, double focus, bool brushed) {
     return text;
 }
 
-/// Width of the widest title without its unit.
-float widestTitle(const ScatterLayout& matrix, std::size_t first) {
-    float widest = 0;
-    for (std::size_t i = first; i < matrix.size(); ++i)
-        widest = std::max(widest, ImGui::CalcTextSize(matrix.infos[i].name.c_str()).x);
+/// A title in two parts: the name, and what its numbers mean nothing without.
+struct TitleParts {
+    std::string name, rest;
+    std::string whole() const { return rest.empty() ? name : name + " " + rest; }
+};
+
+TitleParts titleParts(const ScatterLayout& matrix, std::size_t i, AxisSide side, float length) {
+    const volume::Channel& own = matrix.infos[i];
+    TitleParts parts{own.name, own.unit.empty() ? "" : "[" + prettyUnit(own.unit) + "]"};
+    if (const std::string note = axisNote(side, matrix.ranges[i], length); !note.empty())
+        parts.rest += (parts.rest.empty() ? "" : " ") + note;
+    return parts;
+}
+
+float widthOf(const std::string& text) {
+    return ImGui::CalcTextSize(text.c_str()).x;
+}
+
+/// The widest of one side's titles from `first` on: whole, the wider one of both parts, and the second part.
+struct TitleWidths {
+    float whole = 0, part = 0, rest = 0;
+};
+TitleWidths titleWidths(const ScatterLayout& matrix, std::size_t first, AxisSide side, float length) {
+    TitleWidths widest;
+    for (std::size_t i = first; i < matrix.size(); ++i) {
+        const TitleParts parts = titleParts(matrix, i, side, length);
+        widest.whole = std::max(widest.whole, widthOf(parts.whole()));
+        widest.part = std::max({widest.part, widthOf(parts.name), widthOf(parts.rest)});
+        widest.rest = std::max(widest.rest, widthOf(parts.rest));
+    }
     return widest;
+}
+
+TitleWay titleWay(const TitleWidths& widths, float cell) {
+    return widths.whole <= cell ? TitleWay::OneLine : widths.part <= cell ? TitleWay::TwoLines : TitleWay::Across;
+}
+
+/// The most pixels that titles across their cells take of a length: a fifth, but what the numbers mean nothing without.
+float mostAcross(float room, float needed) {
+    return std::max({em() * 4.5f, room * 0.2f, needed});
+}
+
+/// Name and unit in so many pixels: the name is cut off, the unit as long as there is room for it.
+std::string fittedTitle(const TitleParts& parts, float width) {
+    if (widthOf(parts.whole()) <= width || parts.rest.empty()) return fitText(parts.whole(), width);
+    const std::string name = fitText(parts.name, width - widthOf(" " + parts.rest));
+    return name.empty() ? fitText(parts.whole(), width) : name + " " + parts.rest;
 }
 
 } // namespace
@@ -50,7 +91,7 @@ void drawHistogram(ImDrawList& draw, const PlotFrame& frame, const volume::Histo
     for (std::uint64_t count : histogram.count) most = std::max(most, count);
     const auto height = [&](double count) {
         const double top = static_cast<double>(most);
-        return static_cast<float>((logCounts ? std::log1p(count) / std::log1p(top) : count / top) * 0.94);
+        return static_cast<float>((logCounts ? std::log1p(count) / std::log1p(top) : count / top) * kHighestBar);
     };
     std::vector<float> all, focus;
     for (std::size_t i = 0; i < histogram.count.size(); ++i) {
@@ -217,39 +258,97 @@ int meanImage(const volume::JointHistogram& joint, int merge, const vis::Transfe
     return static_cast<int>(n);
 }
 
-MatrixTitles matrixTitles(const ScatterLayout& matrix, float cellX, float cellY) {
+MatrixTitles matrixTitles(const ScatterLayout& matrix, ImVec2 room, double most, bool logCounts) {
     MatrixTitles titles;
-    titles.shown = matrix.size() == 1 || (cellX >= em() * 2.6f && cellY >= em() * 1.9f);
-    if (!titles.shown) return titles;
-    const float across = widestTitle(matrix, 0), up = widestTitle(matrix, 1);
-    titles.upright = across > cellX - em() * 0.2f;
-    titles.level = up > cellY - em() * 0.2f;
-    titles.bottom =
-        axisRoom(AxisSide::Bottom, matrix.ranges[0], !titles.upright) + (titles.upright ? across + em() * 0.5f : 0);
-    float numbers = 0;
-    for (std::size_t i = 1; i < matrix.size(); ++i)
-        numbers = std::max(numbers, axisRoom(AxisSide::Left, matrix.ranges[i], !titles.level));
-    titles.left = matrix.size() == 1 ? em() : numbers + (titles.level ? up + em() * 0.5f : 0);
+    const auto n = static_cast<float>(matrix.size());
+    const bool lone = matrix.size() == 1;
+    titles.left = em() * 4, titles.bottom = em() * 3;
+    titles.shown = lone || ((room.x - titles.left) / n >= em() * 2.6f && (room.y - titles.bottom) / n >= em() * 1.9f);
+    if (!titles.shown) titles.left = titles.bottom = 0;
+    if (lone) {
+        titles.counts = {0, (logCounts ? std::log10(1 + most) : std::max(1.0, most)) / kHighestBar};
+        titles.countTitle = room.y < em() * 8 ? "" : logCounts ? "log10(1 + samples)" : "samples";
+    }
+    for (int pass = 0; titles.shown && pass < 2; ++pass) { // titles make the cells smaller that they stand beside
+        const float cellX = (room.x - titles.left) / n - em() * 0.6f,
+                    cellY = (room.y - titles.bottom) / n - em() * 0.6f;
+        const TitleWidths across = titleWidths(matrix, 0, AxisSide::Bottom, cellX),
+                          up = titleWidths(matrix, 1, AxisSide::Left, cellY);
+        titles.below = titleWay(across, cellX);
+        titles.beside = titleWay(up, cellY);
+        titles.bottom = axisRoom(AxisSide::Bottom, matrix.ranges[0], titles.below != TitleWay::Across);
+        if (titles.below == TitleWay::TwoLines) titles.bottom += em();
+        if (titles.below == TitleWay::Across)
+            titles.bottom += std::min(across.whole, mostAcross(room.y, across.rest + em() * 2)) + em() * 0.5f;
+        titles.left = lone ? axisRoom(AxisSide::Left, titles.counts, !titles.countTitle.empty()) : 0;
+        for (std::size_t i = 1; i < matrix.size(); ++i)
+            titles.left =
+                std::max(titles.left, axisRoom(AxisSide::Left, matrix.ranges[i], titles.beside != TitleWay::Across));
+        if (titles.beside == TitleWay::TwoLines) titles.left += em();
+        if (titles.beside == TitleWay::Across)
+            titles.left += std::min(up.part, mostAcross(room.x, up.rest)) + em() * 0.5f;
+    }
     return titles;
 }
 
+namespace {
+
+/// The title of a column below its numbers.
+void drawTitleBelow(ImDrawList& draw, const PlotFrame& frame, const TitleParts& title, const MatrixTitles& titles) {
+    const PlotColors colors = plotColors();
+    const float middle = (frame.min.x + frame.max.x) / 2, bottom = frame.max.y + titles.bottom;
+    if (titles.below == TitleWay::Across) {
+        const float most = titles.bottom - axisRoom(AxisSide::Bottom, frame.x, false) - em() * 0.4f;
+        const std::string shown = fittedTitle(title, most);
+        const float half = widthOf(shown) / 2;
+        addTextUpwards(draw, {middle, bottom - half}, colors.text, shown.c_str());
+        tellWhole({middle - em() / 2, bottom - 2 * half}, {middle + em() / 2, bottom}, title.whole(), shown);
+        return;
+    }
+    float y = bottom - em() * (titles.below == TitleWay::TwoLines ? 2.15f : 1.15f);
+    const bool two = titles.below == TitleWay::TwoLines;
+    for (const std::string& line : {two ? title.name : title.whole(), two ? title.rest : std::string()}) {
+        draw.AddText({std::round(middle - widthOf(line) / 2), std::round(y)}, colors.faint, line.c_str());
+        y += em();
+    }
+}
+
+/// The title of a row beside its numbers.
+void drawTitleBeside(ImDrawList& draw, const PlotFrame& frame, const TitleParts& title, const MatrixTitles& titles) {
+    const PlotColors colors = plotColors();
+    const float middle = (frame.min.y + frame.max.y) / 2, left = frame.min.x - titles.left;
+    if (titles.beside == TitleWay::Across) {
+        const float most = titles.left - axisRoom(AxisSide::Left, frame.y, false) - em() * 0.4f;
+        float y = middle - em() * (title.rest.empty() ? 0.5f : 1.0f);
+        for (const std::string& line : {title.name, title.rest}) {
+            addFittedText(draw, {std::round(left), std::round(y)}, colors.text, line, most);
+            y += em();
+        }
+        return;
+    }
+    const bool two = titles.beside == TitleWay::TwoLines;
+    float x = left + em() * 0.6f;
+    for (const std::string& line : {two ? title.name : title.whole(), two ? title.rest : std::string()}) {
+        addTextUpwards(draw, {x, middle}, colors.faint, line.c_str());
+        x += em();
+    }
+}
+
+} // namespace
+
 void drawMatrixAxes(ImDrawList& draw, const ScatterLayout& matrix, const MatrixTitles& titles) {
-    const ImU32 color = plotColors().text;
     for (std::size_t i = 0; i < matrix.size() && titles.shown; ++i) {
-        const volume::Channel& info = matrix.infos[i];
-        const PlotFrame across = matrix.cell(i, matrix.size() - 1), up = matrix.cell(0, i);
-        const ImVec2 size = ImGui::CalcTextSize(info.name.c_str());
-        drawAxis(draw, across, AxisSide::Bottom, titles.upright ? "" : info.name, titles.upright ? "" : info.unit,
-                 across.min.x, across.max.x);
-        if (titles.upright)
-            addTextUpwards(draw, {(across.min.x + across.max.x) / 2, across.max.y + titles.bottom - size.x / 2}, color,
-                           info.name.c_str());
+        const PlotFrame across = matrix.cell(i, matrix.size() - 1);
+        drawAxis(draw, across, AxisSide::Bottom, "", "", across.min.x, across.max.x);
+        drawTitleBelow(draw, across, titleParts(matrix, i, AxisSide::Bottom, across.width()), titles);
+        PlotFrame up = matrix.cell(0, i);
+        if (matrix.size() == 1) {
+            up.y = titles.counts;
+            drawAxis(draw, up, AxisSide::Left, titles.countTitle, "", up.min.y, up.max.y, {.room = titles.left});
+        }
         if (i == 0) continue;
-        drawAxis(draw, up, AxisSide::Left, titles.level ? "" : info.name, titles.level ? "" : info.unit, up.min.y,
-                 up.max.y, {.room = titles.left});
-        if (titles.level)
-            draw.AddText({std::round(up.min.x - titles.left), std::round((up.min.y + up.max.y - size.y) / 2)}, color,
-                         info.name.c_str());
+        drawAxis(draw, up, AxisSide::Left, "", "", up.min.y, up.max.y);
+        drawTitleBeside(draw, up, titleParts(matrix, i, AxisSide::Left, up.height()), titles);
     }
 }
 

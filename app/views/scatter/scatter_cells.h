@@ -11,6 +11,9 @@ namespace tessera::app {
 /// Position of a pair among the joint histograms, -1 for a histogram.
 int jointIndex(const volume::Statistics& statistics, std::size_t column, std::size_t row);
 
+/// The share of a plot's height that its highest bar has.
+inline constexpr double kHighestBar = 0.94;
+
 void drawHistogram(ImDrawList& draw, const PlotFrame& frame, const volume::Histogram& histogram, bool brushed,
                    bool logCounts, ImU32 focusShade);
 
@@ -38,13 +41,20 @@ void hoverText(const ScatterLayout& matrix, std::size_t column, std::size_t row,
 int meanImage(const volume::JointHistogram& joint, int merge, const vis::TransferFunction& function, Range range,
               std::vector<std::uint8_t>& rgba);
 
-/// A titled axis along every column and row; where a title does not fit beside its cell it is written across.
+/// How the titles along one side of a scatterplot matrix stand: names and units along their cells on one line, on two,
+/// or across them, which takes as much room as the longest.
+enum class TitleWay { OneLine, TwoLines, Across };
+
+/// A titled axis along every column and row. Names are cut off rather than units.
 struct MatrixTitles {
-    bool shown = true;                   ///< small cells have neither numbers nor titles: their diagonal has the names
-    bool upright = false, level = false; ///< below the columns, beside the rows
-    float left = 0, bottom = 0;          ///< pixels they need with the numbers
+    bool shown = true; ///< small cells have neither numbers nor titles: their diagonal has the names
+    TitleWay below = TitleWay::OneLine, beside = TitleWay::OneLine;
+    float left = 0, bottom = 0; ///< pixels they need with the numbers
+    Range counts{0, 1};         ///< along the left side of a lone histogram
+    std::string countTitle = {};
 };
-MatrixTitles matrixTitles(const ScatterLayout& matrix, float cellX, float cellY);
+/// `room`: of the whole matrix with its titles. `most`: the highest count of a lone histogram.
+MatrixTitles matrixTitles(const ScatterLayout& matrix, ImVec2 room, double most, bool logCounts);
 void drawMatrixAxes(ImDrawList& draw, const ScatterLayout& matrix, const MatrixTitles& titles);
 
 } // namespace tessera::app

@@ -274,6 +274,13 @@ void drawCells(ViewContext& context, ScatterCache& cache, ScatterMatrixView& vie
         }
 }
 
+/// The highest count of the first parameter's histogram.
+double highestCount(const StatisticsResult& result) {
+    std::uint64_t most = 0;
+    for (const std::uint64_t count : result.statistics.channels.front().histogram.count) most = std::max(most, count);
+    return static_cast<double>(most);
+}
+
 /// The parameters compared and their ranges, without positions.
 ScatterLayout matrixOf(const volume::DatasetInfo& info, const ScatterMatrixView& view) {
     ScatterLayout matrix;
@@ -319,7 +326,7 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
     const ImVec2 origin = ImGui::GetCursorScreenPos();
     const ImVec2 room{ImGui::GetContentRegionAvail().x,
                       heightAtLeast(em() * (matrix.size() == 1 ? 5 : 1.3f * n + 0.2f))};
-    const MatrixTitles titles = matrixTitles(matrix, (room.x - em() * 4) / n, (room.y - em() * 3) / n);
+    const MatrixTitles titles = matrixTitles(matrix, room, result ? highestCount(*result) : 1, view.logDensity);
     const float left = titles.left, bottom = titles.bottom;
     matrix.gap = std::round(em() * 0.35f);
     matrix.min = {origin.x + left, origin.y + em() * 0.2f};

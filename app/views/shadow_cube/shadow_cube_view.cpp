@@ -309,7 +309,7 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     for (const int channel : walls) legends.push_back(legendOf(session, info, channel));
     // At the top, where faces have no titles.
     if (context.decoration.legend)
-        drawLegends(draw, legends, frame.min, frame.max(), LegendCorner::Top, context.figure);
+        drawLegends(draw, legends, frame.min, frame.max(), LegendCorner::TopRight, context.figure);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     if (const auto hit = hovered ? frame.hit(mouse) : std::nullopt; hit && frame.onData(*hit))
         drawReading(context, frame, cache, view, *hit, mouse);

@@ -4,6 +4,8 @@
 #include "app/session/shown_scene.h"
 #include "app/tools/oblique_tilt.h"
 #include "app/tools/plane_sections.h"
+#include "app/tools/profile_line.h"
+#include "app/tools/space_handles.h"
 #include "app/ui/parameter_widget.h"
 #include "app/views/slices/contour_lines.h"
 #include "app/views/slices/flat_slice.h"
@@ -26,6 +28,7 @@ struct ObliqueCache : ViewCache {
     Readout readout;
     bool dragging = false;
     int lens = -1; ///< that is dragged instead of the cross-hair
+    HandleDrag handles;
     ContourCache contours;
 };
 
@@ -105,7 +108,7 @@ std::optional<PlotFrame> placePicture(const ObliqueRooms& rooms, const FlatSlice
     return PlotFrame{corner, {corner.x + pixels(wide), corner.y + pixels(high)}, x, y};
 }
 
-/// A drag moves the cross-hair in the plane, the wheel moves the plane along its normal by samples.
+/// A drag moves a handle, a lens or the cross-hair in the plane, the wheel moves the plane along its normal by samples.
 void useMouse(ViewContext& context, ObliqueCache& cache, ObliqueView& view, const FlatSlice& flat,
               const PlotFrame& plot) {
     const volume::DatasetInfo& info = context.source->info();
@@ -117,7 +120,10 @@ void useMouse(ViewContext& context, ObliqueCache& cache, ObliqueView& view, cons
         ImGui::EndPopup();
     }
     const ImGuiIO& io = ImGui::GetIO();
-    if (ImGui::IsItemActivated()) {
+    const bool onHandle = editHandles(cache.handles, session, info, plot, flat.page(), flat.perUnit(),
+                                      ImGui::IsItemHovered() && !cache.dragging);
+    if (onHandle) context.interacting = true;
+    if (ImGui::IsItemActivated() && !onHandle) {
         cache.dragging = true;
         cache.lens = lensAtPixel(session, plot, flat.page(), flat.perUnit(), io.MousePos);
     }
@@ -212,7 +218,11 @@ void drawOver(ViewContext& context, ObliqueCache& cache, const std::string& pane
                      {*lines.channel, flat.page(), flat.x, flat.y,
                       volume::timesAround(info.times, context.session.time), lines.levels.values},
                      lines.levels.step, view.lines.values, plot, unit);
-    if (shown.outlines) drawPlaneSections(draw, plot, planeSections(context.session, info, flat.page()), unit);
+    if (shown.outlines) {
+        drawPlaneSections(draw, plot, planeSections(context.session, info, flat.page()), unit);
+        drawProfileLines(draw, plot, context.session, flat.page(), unit);
+        drawHandles(draw, cache.handles, plot, context.session, info, flat.page(), unit);
+    }
     const glm::dvec2 cursor = flat.along(context.session.cursor) * unit;
     if (shown.cursor) drawCrosshair(draw, plot, cursor.x, cursor.y, true);
     draw.PopClipRect();

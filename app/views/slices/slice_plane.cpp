@@ -114,9 +114,9 @@ void handlePlaneMouse(ViewContext& context, SlicePlanes& planes, const PlaneFram
     }
     ImGui::PopID();
     const ImGuiIO& io = ImGui::GetIO();
-    const bool onHandle =
-        editHandles(planes.handles[static_cast<std::size_t>(index)], session, info, frame.plot, axes.right, axes.up,
-                    frame.perUnit, ImGui::IsItemHovered() && planes.dragging < 0);
+    const bool onHandle = editHandles(planes.handles[static_cast<std::size_t>(index)], session, info, frame.plot,
+                                      planeAcross(axes.right, axes.up, axes.normal, session.cursor[axes.normal]),
+                                      frame.perUnit, ImGui::IsItemHovered() && planes.dragging < 0);
     if (onHandle) context.interacting = true;
     if (ImGui::IsItemActivated() && !onHandle) {
         planes.dragging = index;
@@ -189,10 +189,10 @@ void drawOverPlane(ViewContext& context, SlicePlanes& planes, const std::string&
                                   volume::timesAround(info.times, session.time), lines.levels.values),
                      lines.levels.step, view.lines.values, frame.plot, frame.perUnit);
     if (shown.outlines) {
-        drawPlaneSections(draw, frame.plot, planeSections(session, info, planeAcross(right, up, normal, place)),
-                          frame.perUnit);
-        drawProfileLines(draw, frame.plot, session, right, up, frame.perUnit);
-        drawHandles(draw, planes.handles[static_cast<std::size_t>(index)], frame.plot, session, info, right, up,
+        const PicturePlane page = planeAcross(right, up, normal, place);
+        drawPlaneSections(draw, frame.plot, planeSections(session, info, page), frame.perUnit);
+        drawProfileLines(draw, frame.plot, session, page, frame.perUnit);
+        drawHandles(draw, planes.handles[static_cast<std::size_t>(index)], frame.plot, session, info, page,
                     frame.perUnit);
     }
     if (shown.cursor)

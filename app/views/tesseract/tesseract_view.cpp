@@ -312,7 +312,7 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
     }
     entries.push_back(along);
     if (view.colorBy == TesseractColor::Value) entries.push_back(legendOf(session, info, channel));
-    drawLegends(draw, entries, frame.min, max, LegendCorner::Bottom, context.figure);
+    drawLegends(draw, entries, frame.min, max, LegendCorner::BottomRight, context.figure);
 }
 
 } // namespace

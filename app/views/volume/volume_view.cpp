@@ -29,6 +29,7 @@ struct VolumeCache : ViewCache {
     CameraHand hand;
     LensDrag lens;
     HandleDrag handles;
+    LegendCorner legend = LegendCorner::BottomRight; ///< where it stays while something moves
 };
 
 /// Of a view of the data in space beside a plane whose times run along an axis.
@@ -149,6 +150,7 @@ public:
         addPicture(*list_, status.texture, picture_.min, max());
         const SpaceFrame space = spaceFrame(picture_.min, max(), session_.camera, info_.bounds, session_.stretch);
         drawObjects(space);
+        if (!request.moving) cache_.legend = freeCorner(space);
         const AxisLabels labels = axisLabels(session_, info_);
         if (const auto chain = chain_.draw(*list_)) taken_.push_back(*chain);
         drawLegend();
@@ -205,12 +207,35 @@ private:
         drawHandles(*list_, cache_.handles, space, session_, info_, view_.showLights);
     }
 
+    /// The upper left corner of the legends' room: below what stands at the top of the picture.
+    ImVec2 legendTop(LegendCorner corner) const {
+        const bool bottom = corner == LegendCorner::BottomRight;
+        return {picture_.min.x, picture_.min.y + (bottom ? 0 : em() * 1.8f)};
+    }
+
+    /// The corner in which the legends cover least of the data.
+    LegendCorner freeCorner(const SpaceFrame& space) const {
+        if (!showsLegend()) return LegendCorner::BottomRight;
+        const std::vector<LegendEntry> entries = sceneLegends(session_, info_, view_.drawingLegend);
+        LegendCorner best = LegendCorner::BottomRight;
+        double least = 2;
+        for (const LegendCorner corner : {LegendCorner::BottomRight, LegendCorner::TopRight, LegendCorner::TopLeft}) {
+            const LegendArea area = legendArea(entries, legendTop(corner), max(), corner, context_.figure);
+            const double covered = coveredByBox(space, area.min, area.max);
+            if (covered >= least - 0.02) continue; // rather one where it usually is
+            least = covered;
+            best = corner;
+        }
+        return best;
+    }
+
     void drawLegend() {
         if (!showsLegend()) return;
         const std::vector<LegendEntry> entries = sceneLegends(session_, info_, view_.drawingLegend);
         if (view_.multiple && entries.size() == 1 && drawUprightLegend(entries.front())) return;
         const LegendArea area =
-            drawLegends(*list_, entries, picture_.min, max(), LegendCorner::Bottom, context_.figure);
+            drawLegends(*list_, entries, legendTop(cache_.legend), max(), cache_.legend, context_.figure);
+        if (cache_.legend == LegendCorner::BottomRight) legendLeft_ = area.min.x;
         taken_.push_back({area.min, area.max});
     }
 
@@ -227,6 +252,7 @@ private:
         const float left = lo.x + em() * 0.4f;
         list_->AddText({left, lo.y + em() * 0.3f}, plotColors().text, title.c_str());
         drawLegendColumn(*list_, {left, hi.y - height - em() * 0.4f}, height, entry);
+        legendLeft_ = lo.x;
         taken_.push_back({lo, hi});
         return true;
     }
@@ -242,7 +268,7 @@ private:
 
     void drawBar() {
         const float left = hasTriad_ ? triadAt_.x + triad_ + em() : picture_.min.x + em();
-        const float right = taken_.empty() || !showsLegend() ? max().x : taken_.front().first.x;
+        const float right = legendLeft_.value_or(max().x);
         const float most = std::min(em() * 9, right - left - em());
         const ScaleBar bar =
             scaleBar(session_.camera, world_, session_.stretch, info_.lengthUnit, picture_.size.y, most);
@@ -292,6 +318,7 @@ private:
     bool hasTriad_;  ///< or would have it: what is left out of a picture keeps its place
     Chain chain_;
     ImDrawList* list_ = nullptr;
+    std::optional<float> legendLeft_;              ///< of a legend at the bottom, pixels
     std::vector<std::pair<ImVec2, ImVec2>> taken_; ///< corners of what is drawn already, which labels keep clear of
 };
 
