@@ -117,7 +117,7 @@ inline std::vector<Case> cases() {
 
 /// The pictures of all modes, parallel and perspective.
 inline void expectAgreement(const Case& param, const std::shared_ptr<const volume::BrickSource>& data,
-                            std::span<const Mode> modes) {
+                            std::span<const Mode> modes, const std::shared_ptr<const CubeMap>& surroundings = {}) {
     PacketRenderer renderer(param.with);
     renderer.setSource(data);
     for (const Mode& mode : modes)
@@ -125,8 +125,9 @@ inline void expectAgreement(const Case& param, const std::shared_ptr<const volum
             Scene scene = baseScene(perspective);
             mode.apply(scene);
             ASSERT_EQ(packetRefusal(scene, data->info(), data->grid().lattice), "") << mode.name;
-            const reference::Image wanted = reference::render(scene, *data, kSize);
-            const reference::Image got = asImage(renderer.render(scene, kSize));
+            const reference::Image wanted =
+                reference::render(scene, *data, kSize, {.flaws = {}, .surroundings = surroundings});
+            const reference::Image got = asImage(renderer.render(scene, kSize, surroundings.get()));
             double most = 0;
             for (const glm::dvec4& pixel : wanted.pixels) most = std::max(most, pixel.a);
             EXPECT_GT(most, 0.2) << mode.name << " shows next to nothing";

@@ -184,8 +184,8 @@ TEST(PacketRefusal, NamesWhatIsNotDrawn) {
     scene.layers = {layerOf(VolumeLayer{.channel = "a"})};
     EXPECT_EQ(refusal(scene), "");
     Scene other = scene;
-    other.lighting.shadows.strength = 1;
-    EXPECT_EQ(refusal(other), "shadows");
+    other.render.adaptiveStep = 0.5f;
+    EXPECT_EQ(refusal(other), "adaptive steps");
     other = scene;
     for (int i = 0; i <= kMostPacketSlices; ++i) {
         EXPECT_EQ(refusal(other), "");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vis/optics/surface_light.h"
+#include "volume/base/vectors.h"
 
 #include <glm/vec4.hpp>
 #include <span>
@@ -26,6 +27,23 @@ struct LightGrid {
     bool operator==(const LightGrid&) const = default;
 };
 LightGrid lightGrid(const WorldFrame& frame, const Shadows& shadows);
+
+/// Trilinear value between the centres of cells, constant beyond the outer ones; `at(index)` gives that of a cell.
+template <class N, class At> auto betweenCells(const LightGrid& grid, const glm::vec<3, N>& world, const At& at) {
+    const glm::dvec3 cell = grid.cell();
+    N first[3], second[3], share[3]; // indices along each axis, times what they count for
+    for (int axis = 0, stride = 1; axis < 3; stride *= grid.size[axis++]) {
+        const double last = grid.size[axis] - 1;
+        const N p = clamped((world[axis] + N(grid.halfSize[axis])) * N(1 / cell[axis]) - N(0.5), N(0), N(last));
+        const N below = roundDown(p);
+        first[axis] = below * N(stride);
+        second[axis] = smaller(below + N(1), N(last)) * N(stride);
+        share[axis] = p - below;
+    }
+    const auto row = [&](N y, N z) { return blended(at(first[0] + y + z), at(second[0] + y + z), share[0]); };
+    const auto slice = [&](N z) { return blended(row(first[1], z), row(second[1], z), share[1]); };
+    return blended(slice(first[2]), slice(second[2]), share[2]);
+}
 
 /// Optical properties of a cell, from kMediumSamples^3 points (the centres of its subcells): a = extinction per world
 /// unit, rgb = extinction times colour (linear).

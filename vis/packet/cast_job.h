@@ -3,7 +3,8 @@
 #include "vis/optics/brush_tests.h"
 #include "vis/optics/look_shading.h"
 #include "vis/optics/ray_setup.h"
-#include "vis/optics/surface_light.h"
+#include "vis/optics/shade.h"
+#include "vis/packed/packed_light.h"
 #include "vis/scene/brush_effect.h"
 #include "vis/scene/clipping.h"
 #include "vis/scene/geometry.h"
@@ -150,9 +151,9 @@ struct CastJob {
     volume::GradientStencil stencil;
     LookView look;               ///< of looks, when there are any
     glm::dvec3 middle{0, 0, -1}; ///< direction of the ray in the middle of the picture
-    const Lighting* surface = nullptr;
-    std::span<const PlacedLight> lights;
-    std::uint64_t* samples = nullptr; ///< counts samples taken, when not null
+    ShadedBy light;
+    const PackedLight* around = nullptr; ///< what `light` looks up
+    std::uint64_t* samples = nullptr;    ///< counts samples taken, when not null
 };
 
 } // namespace tessera::vis::packet

@@ -133,7 +133,10 @@ template <bool Bcc, bool Exact> struct Caster {
         const LookSampleOf<Floats> sample = lookSample(job, at, value, slope);
         if (!iso) opacity = solidOpacity(look, opacity, sample.share);
         Vec color = lookAlbedo(look, albedo, sample.share);
-        if (iso || layer.shaded) color = litColor(job, color, slope, at.weight, at.world, -packet.ray.direction);
+        if (iso || layer.shaded)
+            color = litColor(job, color, slope, at.weight, at.world, -packet.ray.direction);
+        else if (job.light.volume)
+            color = flatColor(job, color, at.world);
         color = lookColor(look, albedo, color, sample, job.look.ground);
         return {choose(lanes, color, none), choose(lanes, lookOpacity(look, opacity, sample), Floats(0))};
     }
@@ -155,6 +158,8 @@ template <bool Bcc, bool Exact> struct Caster {
             opacity = own.opacity;
         } else if (layer.shaded) {
             color = lit(layer, read, color, cells, k, lanes);
+        } else if (job.light.volume) {
+            color = flatColor(job, color, packet.world(k));
         }
         const Floats thickness = Floats(layer.density) * (packet.holeCount > 0 ? packet.coverage(k) : Floats(1));
         packet.blend(color, correctedOpacity(opacity, packet.step, thickness), k, lanes);

@@ -1,18 +1,20 @@
 #pragma once
 
+#include "vis/lanes/lanes.h"
 #include "vis/packed/packet_volume.h"
 #include "vis/packet/cast_job.h"
-#include "vis/packet/lanes.h"
 #include "vis/scene/lens_bend.h"
-#include "volume/base/numbers.h"
+#include "volume/base/vectors.h"
 #include "volume/reconstruct/part_choice.h"
 #include "volume/reconstruct/present_coverage.h"
 
-/// Packets of samples read from a PacketVolume: reconstruction, classification, light. Only for cast_*.cpp.
+/// Packets of samples read from a PacketVolume: reconstruction, classification. Only for cast_*.cpp.
 namespace tessera::vis::packet::TESSERA_LANES {
 
 using Vec = glm::vec<3, Floats>;
 using Found = volume::FoundValue<Floats, Mask>;
+
+using tessera::choose;
 
 inline Floats mix(Floats a, Floats b, Floats share) {
     return multiplyAdd(share, b - a, a);
@@ -245,23 +247,6 @@ inline Floats opacityAt(const LayerView& layer, const TablePlace& at, Mask lanes
 }
 inline Vec colorAt(const std::int32_t* table, const TablePlace& at, Mask lanes) {
     return {tableValue(table, at, 0, lanes), tableValue(table, at, 1, lanes), tableValue(table, at, 2, lanes)};
-}
-
-/// The lit colour of samples with surfaces of weight 0..1, see vis/optics/shade.h (without maps and shadows).
-inline Vec litColor(const CastJob& job, const Vec& albedo, const Vec& gradient, Floats weight, const Vec& place,
-                    const Vec& toViewer) {
-    const Floats squared = inner(gradient, gradient);
-    const Mask surface = (squared > Floats(0)) & (weight > Floats(0));
-    if (!anyOf(surface)) return albedo;
-    // Gradients of samples may be tiny: the squares of their lengths must not vanish.
-    const Vec whole(choose(surface, gradient.x, Floats(0)), choose(surface, gradient.y, Floats(0)),
-                    choose(surface, gradient.z, Floats(1)));
-    const FacingOf<Floats> at = facing(whole, toViewer);
-    const ReflectedOf<Floats> even = evenLight(at, albedo, *job.surface);
-    const Vec around = (even.diffuse + even.specular) * Floats(job.surface->ambient);
-    const Vec lit = around + reflectedLights<Floats>(job.lights, *job.surface, at, albedo, even, place,
-                                                     [](int) { return Floats(1); });
-    return blended(albedo, lit, choose(surface, weight, Floats(0)));
 }
 
 } // namespace tessera::vis::packet::TESSERA_LANES

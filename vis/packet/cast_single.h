@@ -265,7 +265,7 @@ template <bool Bcc, bool Exact> void castLayersOf(SingleCaster<Bcc, Exact>& cast
     const bool one = job.layers.size() == 1 && !layer.gradient && !layer.volume->labels &&
                      layer.volume->partCount == 0 && !caster.packet.bends;
     const bool plain = !job.focus.any;
-    if (one && layer.style == RayStyle::Composite && plain && !layer.shaded && !layer.look &&
+    if (one && layer.style == RayStyle::Composite && plain && !layer.shaded && !layer.look && !job.light.volume &&
         caster.packet.holeCount == 0 && layer.colors.volume == nullptr)
         caster.castUnshaded();
     else if (one && layer.style == RayStyle::Composite)

@@ -28,8 +28,6 @@ std::string refusalOfLayer(const Scene& scene, const volume::DatasetInfo& info, 
 
 std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
     if (std::string why = refusalOfFocus(scene, info); !why.empty()) return why;
-    if (scene.lighting.shadows.any()) return "shadows";
-    if (usesMaps(scene.lighting)) return "light from maps";
     if (scene.render.proxy != Proxy::Rays) return "proxy geometry";
     if (scene.render.adaptiveStep > 0) return "adaptive steps";
     if (scene.render.normalBits > 0) return "quantised normals";

@@ -323,7 +323,7 @@ unsigned octantsOf(const CastJob& job) {
 } // namespace
 
 CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice,
-                         glm::ivec2 size, double stepFactor) {
+                         glm::ivec2 size, double stepFactor, const PackedLight& around) {
     const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
     CastJob job;
     job.size = size;
@@ -360,11 +360,15 @@ CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, co
     job.focus.any = !brushes_.empty() || !lenses_.empty();
     job.stencil = volume::gradientStencil(lattice.kind, scene.render.gradient);
     lighting_ = scene.lighting;
-    lights_ = placeLights(scene.lighting, scene.camera);
-    job.surface = &lighting_;
+    lights_ = ownLights(scene.lighting, scene.camera);
+    job.light.surface = &lighting_;
+    job.light.lights = lights_;
+    job.light.maps = around.diffuse.edge > 0;
+    job.light.fromWorld = around.fromWorld;
+    if (!around.visible.empty()) job.light.setVolume(around.grid, !around.scattered.empty());
+    job.around = &around;
     job.middle = middle.direction;
     if (!looks_.empty()) job.look = lookView(scene, frame.halfSize, job.cell, size);
-    job.lights = lights_;
     job.jitterStarts = scene.render.jitter;
     if (empty()) return job;
     job.bcc = volumes_[0]->bcc;

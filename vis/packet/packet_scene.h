@@ -25,9 +25,9 @@ public:
 
     bool empty() const { return layers_.empty() && slices_.empty(); }
     /// A job without a picture. `scene` may differ from that of the constructor in its camera, clips, lighting, steps
-    /// and the places of its lenses and slices.
+    /// and the places of its lenses and slices. The job refers to `around`.
     CastJob job(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice, glm::ivec2 size,
-                double stepFactor);
+                double stepFactor, const PackedLight& around);
 
 private:
     void addBrushes(const Scene& scene, const volume::DatasetInfo& info);
