@@ -102,8 +102,11 @@ const Mode kInSurroundings[] = {
     {"a picture, with ambient occlusion",
      [](Scene& s) {
          s.layers = {surface("a", 317)};
-         s.lighting = {
-             .model = LightModel::Physical, .lights = {}, .ambient = 0, .roughness = 0.22f, .metalness = 0.35f};
+         s.lighting.model = LightModel::Physical;
+         s.lighting.lights = {};
+         s.lighting.ambient = 0;
+         s.lighting.roughness = 0.22f;
+         s.lighting.metalness = 0.35f;
          s.lighting.environment.kind = Environment::Picture;
          s.lighting.shadows.occlusion = 0.6f;
      }},

@@ -196,7 +196,9 @@ TEST(PacketRefusal, NamesWhatIsNotDrawn) {
     EXPECT_EQ(refusal(other), "");
     other = scene;
     std::get<VolumeLayer>(other.layers[0].technique).classification = Classification::PreIntegrated;
-    EXPECT_EQ(refusal(other), "classification before or over samples");
+    EXPECT_EQ(refusal(other), "");
+    other.transfer["a"].kind = TransferKind::Regions;
+    EXPECT_EQ(refusal(other), "");
 }
 
 /// A mean reconstructs every sample of every ray once; counts say so.

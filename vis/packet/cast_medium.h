@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vis/optics/light_medium.h"
-#include "vis/packet/cast_layers.h"
+#include "vis/packet/cast_sample.h"
 
 /// Extinction of the cells of a light grid, one in each lane. Only for cast_*.cpp.
 namespace tessera::vis::packet::TESSERA_LANES {
@@ -41,12 +41,12 @@ template <bool Bcc, bool Exact> struct MediumScene {
     };
     Point read(int i, const Vec& world) const {
         Packet packet = packetAt(job, world);
-        Caster<Bcc, Exact> caster{job, packet};
+        SampleCaster<Bcc, Exact> caster{job, packet};
         const auto reader = caster.reader(of(i), true);
         const Found found = reader(packet.first, all());
         return {found.value, found.present, reader.part(packet.first, all())};
     }
-    glm::vec<4, Floats> after(Caster<Bcc, Exact>& caster, const LayerView& layer, Vec color, Floats opacity,
+    glm::vec<4, Floats> after(SampleCaster<Bcc, Exact>& caster, const LayerView& layer, Vec color, Floats opacity,
                               Mask lanes) const {
         const Vec& cells = caster.packet.first;
         color = caster.tinted(layer, color, cells, lanes);
@@ -59,15 +59,19 @@ template <bool Bcc, bool Exact> struct MediumScene {
     }
     glm::vec<4, Floats> at(int i, const Point& found, const Vec& world) const {
         Packet packet = packetAt(job, world);
-        Caster<Bcc, Exact> caster{job, packet};
+        SampleCaster<Bcc, Exact> caster{job, packet};
         const Floats place = caster.placeAt(of(i), true, {found.value, found.present}, Floats(0), found.present);
+        if (of(i).byRegions) {
+            const auto own = caster.onPlane(of(i), caster.reader(of(i), true), place, packet.first, found.present);
+            return after(caster, of(i), own.color, own.opacity, found.present);
+        }
         const TablePlace entry = tablePlace(place);
         return after(caster, of(i), colorAt(of(i).table, entry, found.present), opacityAt(of(i), entry, found.present),
                      found.present);
     }
     glm::vec<4, Floats> surface(int i, const Vec& world) const {
         Packet packet = packetAt(job, world);
-        Caster<Bcc, Exact> caster{job, packet};
+        SampleCaster<Bcc, Exact> caster{job, packet};
         return after(caster, of(i), spreadOut<Floats>(of(i).isoColor), Floats(of(i).isoOpacity), all());
     }
 };

@@ -32,6 +32,7 @@ public:
 private:
     void addBrushes(const Scene& scene, const volume::DatasetInfo& info);
     LayerView viewOfLayer(const Layer& layer, glm::vec2 places, std::size_t index) const;
+    IntegralView integralsOf(const TransferFunction& function, Range range);
     const std::int32_t* keep(std::vector<std::int32_t> entries);
     ColorView colorsOf(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
                        std::size_t index);
@@ -43,6 +44,8 @@ private:
     std::vector<VolumeView> views_;
     std::vector<std::vector<VolumeView>> partViews_; ///< of each volume
     std::deque<Look> looks_;                         ///< of layers
+    std::deque<std::vector<TransferRegion>> regions_;
+    std::deque<std::vector<float>> integrals_;
     std::vector<std::vector<std::int32_t>> tables_;
     std::vector<std::vector<std::uint32_t>> packed_;
     std::vector<LayerView> layers_;
