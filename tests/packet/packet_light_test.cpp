@@ -15,7 +15,7 @@ const Mode kWithShadows[] = {
     {"shadows of a volume",
      [](Scene& s) {
          s.layers = {composite("a")};
-         s.lighting.shadows.strength = 0.8f;
+         s.lighting.shadows = {.strength = 0.8f, .resolution = 24};
      }},
     {"shadows of several lights on a surface",
      [](Scene& s) {
@@ -25,7 +25,7 @@ const Mode kWithShadows[] = {
              Light{.kind = LightKind::World, .color = {1, 0.9f, 0.7f}, .azimuth = 60, .elevation = 20},
              Light{.kind = LightKind::Point, .color = {0.4f, 0.6f, 1}, .position = {0.6f, 0.2f, -0.4f}},
              Light{.intensity = 0.5f, .azimuth = -70}, Light{.intensity = 0.3f, .elevation = -30}};
-         s.lighting.shadows.strength = 1;
+         s.lighting.shadows = {.strength = 1, .resolution = 24};
      }},
     {"ambient occlusion",
      [](Scene& s) {
@@ -36,14 +36,15 @@ const Mode kWithShadows[] = {
     {"translucency without surfaces",
      [](Scene& s) {
          s.layers = {composite("a", false)};
-         s.lighting.shadows = {.strength = 0.7f, .occlusion = 0.3f, .translucency = 0.8f, .scatter = 0.6f};
+         s.lighting.shadows = {
+             .strength = 0.7f, .occlusion = 0.3f, .translucency = 0.8f, .scatter = 0.6f, .resolution = 27};
      }},
     {"shadows of parts and labels",
      [](Scene& s) {
          s.layers = {surface("parted", 4, 0.8f), composite("label"), composite("parted")};
          s.transfer["label"].opacity = {{0, 0}, {0.3f, 0}, {0.31f, 0.2f}, {1, 0.2f}};
          s.transfer["parted"].opacity = {{0, 0}, {0.6f, 0}, {1, 0.1f}};
-         s.lighting.shadows.strength = 1;
+         s.lighting.shadows = {.strength = 1, .resolution = 24};
      }},
     {"shadows of what brushes, lenses and clips leave",
      [](Scene& s) {
@@ -55,26 +56,26 @@ const Mode kWithShadows[] = {
          s.clips = {
              {.axis = {0.6f, 0.7f, 0.2f}},
              {.kind = ClipKind::Sphere, .keep = ClipKeep::Outside, .center = {0.4f, 0.3f, 0.6f}, .radius = 0.2f}};
-         s.lighting.shadows = {.strength = 0.9f, .occlusion = 0.5f};
+         s.lighting.shadows = {.strength = 0.9f, .occlusion = 0.5f, .resolution = 24};
      }},
     {"shadows in the colours of another channel",
      [](Scene& s) {
          s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 3, .colorBy = "b"})};
-         s.lighting.shadows = {.strength = 0.9f, .translucency = 0.5f};
+         s.lighting.shadows = {.strength = 0.9f, .translucency = 0.5f, .resolution = 24};
      }},
     {"shadows behind a magnifying lens",
      [](Scene& s) {
          s.layers = {composite("a")};
          s.lenses = {
              Lens{.name = "near", .effect = LensEffect::Magnify, .center = {9, 8, 12}, .size = glm::vec3(0.3f)}};
-         s.lighting.shadows.strength = 1;
+         s.lighting.shadows = {.strength = 1, .resolution = 24};
      }},
     {"a look in shadows",
      [](Scene& s) {
          s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 3, .look = *Look::preset("illustration")}),
                      layerOf(VolumeLayer{
                          .channel = "whole", .shaded = false, .density = 0.5f, .look = *Look::preset("glass")})};
-         s.lighting.shadows = {.strength = 0.9f, .occlusion = 0.6f};
+         s.lighting.shadows = {.strength = 0.9f, .occlusion = 0.6f, .resolution = 30};
      }},
 };
 
@@ -88,7 +89,7 @@ const Mode kInSurroundings[] = {
      [](Scene& s) {
          s.layers = {composite("a")};
          s.lighting.model = LightModel::Physical;
-         s.lighting.roughness = 0.25f;
+         s.lighting.roughness = 0.4f;
          s.lighting.metalness = 0.6f;
          s.lighting.environment = {.kind = Environment::Studio, .follows = true};
      }},
@@ -108,7 +109,7 @@ const Mode kInSurroundings[] = {
          s.lighting.roughness = 0.22f;
          s.lighting.metalness = 0.35f;
          s.lighting.environment.kind = Environment::Picture;
-         s.lighting.shadows.occlusion = 0.6f;
+         s.lighting.shadows = {.occlusion = 0.6f, .resolution = 24};
      }},
 };
 
