@@ -6,6 +6,7 @@
 #include "volume/base/vectors.h"
 
 #include <memory>
+#include <type_traits>
 
 /// Lighting of one sample by lights, cube maps and light volume. Templates over the number (volume/base/numbers.h).
 /// Twin: vis/shaders/lib/shade.glsl.
@@ -45,6 +46,9 @@ struct ShadedBy {
 };
 ShadedBy shadedBy(const Illumination& light);
 
+/// A lookup for pictures with neither maps nor a light volume.
+struct NothingAround {};
+
 /// Light that reaches a position: fractions of the first three lights and of ambient light, and scattered light.
 template <class N> struct ReachingOf {
     glm::vec<3, N> lights{N(1), N(1), N(1)};
@@ -60,6 +64,11 @@ ReachingOf<N> reachingLight(const ShadedBy& by, const Lookup& lookup, const glm:
     at.everywhere = blended(N(1), seen.w, N(shadows.occlusion));
     if (by.scatters) at.scattered = lookup.scattered(place);
     return at;
+}
+
+/// The part of uniform light that reaches a sample without a surface.
+template <class N> N unshadowed(const FlatShares& shares, const ReachingOf<N>& reach) {
+    return inner(spreadOut<N>(shares.lights), reach.lights) + reach.everywhere * N(shares.everywhere) + N(shares.rest);
 }
 
 /// Light from the maps that a surface reflects.
@@ -82,7 +91,7 @@ glm::vec<3, N> reflectedMaps(const ShadedBy& by, const Lookup& lookup, const Fac
 /// The lit colour of a sample. `gradient` in world axes, any length. `weight` 0..1 blends from a sample without a
 /// surface to the shaded one: 1 on iso-surfaces; in composite layers min(1, g / kFlatGradient), g the change over one
 /// worldCell edge per axis (length of that vector), in transfer-function ranges. `place` in world space. `lookup` has
-/// visible(place), scattered(place), diffuse(direction) and specular(direction) of what `by` says.
+/// visible(place), scattered(place), diffuse(direction) and specular(direction) of what `by` says, or is NothingAround.
 ///
 /// V_i, V_a = mix(1, fraction in the light volume, strength or occlusion), S its scattered light; 1, 1 and 0 without a
 /// volume. They are looked up 1.5 light cells (of their longest edge) off the surface towards the viewer, weight (2
@@ -96,6 +105,7 @@ template <class N, class Lookup>
 glm::vec<3, N> shade(const ShadedBy& by, const Lookup& lookup, const glm::vec<3, N>& albedo,
                      const glm::vec<3, N>& gradient, N weight, const glm::vec<3, N>& place,
                      const glm::vec<3, N>& toViewer) {
+    constexpr bool kAround = !std::is_same_v<Lookup, NothingAround>;
     const auto surface = (inner(gradient, gradient) > N(0)) & (weight > N(0));
     const bool any = anyOf(surface);
     weight = choose(surface, weight, N(0));
@@ -103,19 +113,21 @@ glm::vec<3, N> shade(const ShadedBy& by, const Lookup& lookup, const glm::vec<3,
     if (any) at = facing(choose(surface, gradient, glm::vec<3, N>(N(0), N(0), N(1))), toViewer);
     ReachingOf<N> reach;
     glm::vec<3, N> flat = albedo;
-    if (by.volume) {
-        const N off = (at.front - N(0.5)) * weight * N(3 * by.cell);
-        reach = reachingLight(by, lookup, any ? place + at.normal * off : place);
-        const N direct =
-            inner(spreadOut<N>(by.shares.lights), reach.lights) + reach.everywhere * N(by.shares.everywhere);
-        flat = albedo * (reach.scattered + (direct + N(by.shares.rest)));
+    if constexpr (kAround) {
+        if (by.volume) {
+            const N off = (at.front - N(0.5)) * weight * N(3 * by.cell);
+            reach = reachingLight(by, lookup, any ? place + at.normal * off : place);
+            flat = albedo * (reach.scattered + unshadowed(by.shares, reach));
+        }
     }
     if (!any) return flat;
     const ReflectedOf<N> even = evenLight(at, albedo, *by.surface);
     glm::vec<3, N> lit = (even.diffuse + even.specular) * N(by.surface->ambient);
-    if (by.maps) lit = lit + reflectedMaps(by, lookup, at, even);
-    if (by.volume) lit = lit * reach.everywhere + albedo * reach.scattered;
-    const auto seen = [&](int i) { return by.volume && i < kShadowLights ? reach.lights[i] : N(1); };
+    if constexpr (kAround) {
+        if (by.maps) lit = lit + reflectedMaps(by, lookup, at, even);
+        if (by.volume) lit = lit * reach.everywhere + albedo * reach.scattered;
+    }
+    const auto seen = [&](int i) { return kAround && i < kShadowLights ? reach.lights[i] : N(1); };
     lit = lit + reflectedLights<N>(by.lights, *by.surface, at, albedo, even, place, seen);
     return blended(flat, lit, weight);
 }

@@ -11,7 +11,7 @@ void castAvx512(const CastJob& job, glm::ivec2 begin, glm::ivec2 end); ///< not 
 void castAvx2(const CastJob& job, glm::ivec2 begin, glm::ivec2 end);   ///< the same
 void castPlain(const CastJob& job, glm::ivec2 begin, glm::ivec2 end);
 
-/// The extinction of a row of cells of a light grid, y + z * size.y (vis/optics/light_medium.h).
+/// The extinction of a row of cells of a light grid, y + z * size.y (vis/optics/light_volume.h).
 void mediumAvx512(const CastJob& job, const LightGrid& grid, int row, glm::vec4* out);
 void mediumAvx2(const CastJob& job, const LightGrid& grid, int row, glm::vec4* out);
 void mediumPlain(const CastJob& job, const LightGrid& grid, int row, glm::vec4* out);

@@ -44,15 +44,19 @@ private:
 };
 
 /// The lit colour of samples with surfaces of weight 0..1. `gradient` in world axes.
-inline Vec litColor(const CastJob& job, const Vec& albedo, const Vec& gradient, Floats weight, const Vec& place,
-                    const Vec& toViewer) {
+[[gnu::noinline]] inline Vec litAround(const CastJob& job, const Vec& albedo, const Vec& gradient, Floats weight,
+                                       const Vec& place, const Vec& toViewer) {
     return shade<Floats>(job.light, LightAt{*job.around}, albedo, gradient, weight, place, toViewer);
 }
-
+inline Vec litColor(const CastJob& job, const Vec& albedo, const Vec& gradient, Floats weight, const Vec& place,
+                    const Vec& toViewer) {
+    if (job.light.maps || job.light.volume) return litAround(job, albedo, gradient, weight, place, toViewer);
+    return shade<Floats>(job.light, NothingAround{}, albedo, gradient, weight, place, toViewer);
+}
 /// The same of samples without a surface.
-[[gnu::noinline]] inline Vec flatColor(const CastJob& job, const Vec& albedo, const Vec& place) {
+inline Vec flatColor(const CastJob& job, const Vec& albedo, const Vec& place) {
     const Vec none(Floats(0), Floats(0), Floats(0));
-    return litColor(job, albedo, none, Floats(0), place, none);
+    return litAround(job, albedo, none, Floats(0), place, none);
 }
 
 } // namespace tessera::vis::packet::TESSERA_LANES

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "vis/optics/light_medium.h"
 #include "vis/packet/cast_sample.h"
 
 /// Extinction of the cells of a light grid, one in each lane. Only for cast_*.cpp.

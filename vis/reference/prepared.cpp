@@ -1,6 +1,5 @@
 #include "vis/reference/prepared.h"
 
-#include "vis/optics/light_medium.h"
 #include "vis/optics/mesh_medium.h"
 #include "vis/optics/surface_light.h"
 #include "volume/base/parallel.h"
