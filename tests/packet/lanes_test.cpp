@@ -1,4 +1,4 @@
-#include "vis/packet/lanes.h"
+#include "vis/lanes/lanes.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
+#include <map>
 #include <span>
+#include <tuple>
 
 /// Pictures of the packet ray caster against the double-precision reference, for the tests of each kind of picture.
 namespace tessera::vis::packet {
@@ -115,9 +117,21 @@ inline std::vector<Case> cases() {
     return out;
 }
 
-/// The pictures of all modes, parallel and perspective.
+/// What a mode should look like: computed once for all instruction sets.
+inline const reference::Image& truthOf(const Case& param, const Mode& mode, const Scene& scene,
+                                       const volume::BrickSource& data,
+                                       const std::shared_ptr<const CubeMap>& surroundings) {
+    using Key = std::tuple<const Mode*, LatticeKind, bool, Projection>;
+    static std::map<Key, reference::Image> known;
+    const Key key(&mode, param.kind, param.masked, scene.camera.projection);
+    if (!known.contains(key))
+        known[key] = reference::render(scene, data, kSize, {.flaws = {}, .surroundings = surroundings});
+    return known[key];
+}
+
+/// The pictures of all modes, parallel and perspective; each mode has the same data for all instruction sets.
 inline void expectAgreement(const Case& param, const std::shared_ptr<const volume::BrickSource>& data,
-                            std::span<const Mode> modes) {
+                            std::span<const Mode> modes, const std::shared_ptr<const CubeMap>& surroundings = {}) {
     PacketRenderer renderer(param.with);
     renderer.setSource(data);
     for (const Mode& mode : modes)
@@ -125,8 +139,8 @@ inline void expectAgreement(const Case& param, const std::shared_ptr<const volum
             Scene scene = baseScene(perspective);
             mode.apply(scene);
             ASSERT_EQ(packetRefusal(scene, data->info(), data->grid().lattice), "") << mode.name;
-            const reference::Image wanted = reference::render(scene, *data, kSize);
-            const reference::Image got = asImage(renderer.render(scene, kSize));
+            const reference::Image& wanted = truthOf(param, mode, scene, *data, surroundings);
+            const reference::Image got = asImage(renderer.render(scene, kSize, surroundings.get()));
             double most = 0;
             for (const glm::dvec4& pixel : wanted.pixels) most = std::max(most, pixel.a);
             EXPECT_GT(most, 0.2) << mode.name << " shows next to nothing";

@@ -184,8 +184,8 @@ TEST(PacketRefusal, NamesWhatIsNotDrawn) {
     scene.layers = {layerOf(VolumeLayer{.channel = "a"})};
     EXPECT_EQ(refusal(scene), "");
     Scene other = scene;
-    other.lighting.shadows.strength = 1;
-    EXPECT_EQ(refusal(other), "shadows");
+    other.render.adaptiveStep = 0.5f;
+    EXPECT_EQ(refusal(other), "adaptive steps");
     other = scene;
     for (int i = 0; i <= kMostPacketSlices; ++i) {
         EXPECT_EQ(refusal(other), "");
@@ -196,7 +196,9 @@ TEST(PacketRefusal, NamesWhatIsNotDrawn) {
     EXPECT_EQ(refusal(other), "");
     other = scene;
     std::get<VolumeLayer>(other.layers[0].technique).classification = Classification::PreIntegrated;
-    EXPECT_EQ(refusal(other), "classification before or over samples");
+    EXPECT_EQ(refusal(other), "");
+    other.transfer["a"].kind = TransferKind::Regions;
+    EXPECT_EQ(refusal(other), "");
 }
 
 /// A mean reconstructs every sample of every ray once; counts say so.

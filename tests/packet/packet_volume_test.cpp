@@ -128,8 +128,8 @@ TEST(PacketJobs, HaveTheStepsAskedFor) {
     PacketScene drawn(scene, data->info(), {});
     EXPECT_TRUE(drawn.empty());
     const volume::Lattice& lattice = data->grid().lattice;
-    EXPECT_FLOAT_EQ(drawn.job(scene, data->info(), lattice, {8, 6}, 1).stepVoxels, 0.4f);
-    EXPECT_FLOAT_EQ(drawn.job(scene, data->info(), lattice, {8, 6}, 3).stepVoxels, 1.2f) << "coarser in motion";
+    EXPECT_FLOAT_EQ(drawn.job(scene, data->info(), lattice, {8, 6}, 1, {}).stepVoxels, 0.4f);
+    EXPECT_FLOAT_EQ(drawn.job(scene, data->info(), lattice, {8, 6}, 3, {}).stepVoxels, 1.2f) << "coarser in motion";
 }
 
 // Floats take twice the memory: they are for functions over a small part of the data's range.

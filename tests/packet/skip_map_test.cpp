@@ -66,5 +66,18 @@ TEST(SkipMaps, AreUnited) {
     EXPECT_EQ(united({}, b).full, b.full);
 }
 
+/// The neighbours of full blocks become full, those at their corners, too.
+TEST(SkipMaps, AreWidened) {
+    SkipMap map;
+    map.count = {5, 4, 3};
+    map.full.assign(map.blocks(), 0);
+    map.full[std::size_t((2 * 4 + 0) * 5 + 1)] = 1; // (1, 0, 2)
+    widen(map);
+    for (int z = 0; z < 3; ++z)
+        for (int y = 0; y < 4; ++y)
+            for (int x = 0; x < 5; ++x)
+                EXPECT_EQ(map.full[std::size_t((z * 4 + y) * 5 + x)], x <= 2 && y <= 1 && z >= 1) << x << y << z;
+}
+
 } // namespace
 } // namespace tessera::vis::packet

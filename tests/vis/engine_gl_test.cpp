@@ -102,12 +102,11 @@ TEST_F(EngineGl, OpenGlTakesOverAndSaysWhy) {
     Scene scene = wavesScene(Engine::Processor);
     test::renderAll(renderer, *target, scene, {48, 48});
     const std::vector<glm::vec4> before = renderer.readLinear(*target);
-    scene.lighting.shadows.strength = 1;
-    const FrameStatus shadowed = test::renderAll(renderer, *target, scene, {48, 48});
-    EXPECT_FALSE(shadowed.engine.byProcessor);
-    EXPECT_EQ(shadowed.engine.refusal, "shadows");
-    EXPECT_GT(rms(before, renderer.readLinear(*target)), 1e-3);
-    scene.lighting.shadows.strength = 0;
+    scene.render.adaptiveStep = 0.5f;
+    const FrameStatus other = test::renderAll(renderer, *target, scene, {48, 48});
+    EXPECT_FALSE(other.engine.byProcessor);
+    EXPECT_EQ(other.engine.refusal, "adaptive steps");
+    scene.render.adaptiveStep = 0;
     EXPECT_TRUE(test::renderAll(renderer, *target, scene, {48, 48}).engine.byProcessor);
     EXPECT_LT(rms(before, renderer.readLinear(*target)), 1e-6);
     // Data that do not fit into the memory for bricks.
@@ -132,9 +131,9 @@ TEST_F(EngineGl, PicturesOfSectionsSayNothingOfRays) {
     scene.layers.back().visible = true;
     test::renderAll(renderer, *volume, scene, {32, 32});
     EXPECT_TRUE(renderer.engine().byProcessor) << "a slice in the volume's picture";
-    scene.lighting.shadows.strength = 1;
+    scene.render.adaptiveStep = 0.5f;
     test::renderAll(renderer, *volume, scene, {32, 32});
-    EXPECT_EQ(renderer.engine().refusal, "shadows");
+    EXPECT_EQ(renderer.engine().refusal, "adaptive steps");
 }
 
 /// OpenGL rasterises meshes and lines for both engines.
@@ -188,6 +187,61 @@ TEST_F(EngineGl, MeshesAndSlicesAmongLayersAreAlike) {
             EXPECT_LT(apart.rms, 5e-4);
             EXPECT_TRUE(renderer.takeMessages().empty());
         }
+}
+
+/// A mesh casts its shadow, and gets shadows and light from its surroundings, as the volume does.
+TEST_F(EngineGl, LightIsAlike) {
+    for (const bool maps : {false, true}) {
+        Renderer renderer({.exactTextures = true});
+        renderer.setSource(waves(volume::LatticeKind::BCC));
+        std::vector<std::vector<glm::vec4>> pictures, unlit;
+        for (const Engine engine : {Engine::OpenGl, Engine::Processor}) {
+            Scene scene = wavesScene(engine);
+            scene.geometry = {GeometryLayer{.geometry = crossedRectangles()}};
+            const ViewTargetPtr target = renderer.makeTarget();
+            test::renderAll(renderer, *target, scene, {161, 121});
+            unlit.push_back(renderer.readLinear(*target));
+            if (maps) scene.lighting.environment.kind = Environment::Studio;
+            scene.lighting.shadows = {
+                .strength = maps ? 0.0f : 0.9f, .occlusion = 0.5f, .translucency = maps ? 0.0f : 0.4f};
+            const FrameStatus status = test::renderAll(renderer, *target, scene, {161, 121});
+            EXPECT_EQ(status.engine.byProcessor, engine == Engine::Processor) << status.engine.refusal;
+            pictures.push_back(renderer.readLinear(*target));
+            EXPECT_GT(rms(pictures.back(), unlit.back()), 0.01) << "the light is seen";
+            if (maps) continue;
+            scene.lighting.shadows.meshes = false;
+            test::renderAll(renderer, *target, scene, {161, 121});
+            EXPECT_GT(rms(pictures.back(), renderer.readLinear(*target)), 0.003) << "the mesh casts a shadow";
+        }
+        const Apart apart = apartBy(pictures[0], pictures[1]);
+        EXPECT_LE(apart.outliers, 25);
+        EXPECT_LT(apart.rms, 5e-4);
+        EXPECT_TRUE(renderer.takeMessages().empty());
+    }
+}
+
+/// While shadows are computed, the picture comes without them; then with them. Lights that move move shadows.
+TEST_F(EngineGl, ShadowsComeWithoutWaiting) {
+    Renderer renderer;
+    renderer.setSource(waves(volume::LatticeKind::CC));
+    Scene scene = wavesScene(Engine::Processor);
+    scene.lighting.shadows.strength = 1;
+    const ViewTargetPtr target = renderer.makeTarget(), whole = renderer.makeTarget();
+    for (const float azimuth : {-30.0f, 60.0f}) {
+        scene.lighting.lights = {Light{.azimuth = azimuth}};
+        bool complete = false;
+        for (int i = 0; i < 4000 && !complete; ++i) {
+            complete = renderer.render(*target, scene, {.size = {160, 120}, .budgetMs = 4}).complete;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        EXPECT_TRUE(complete);
+        renderer.render(*whole, scene, {.size = {160, 120}, .wait = true});
+        EXPECT_LT(test::maxDifference(renderer.readLinear(*target), renderer.readLinear(*whole)), 2e-3);
+    }
+    Scene plain = scene;
+    plain.lighting.shadows.strength = 0;
+    renderer.render(*target, plain, {.size = {160, 120}, .wait = true});
+    EXPECT_GT(rms(renderer.readLinear(*target), renderer.readLinear(*whole)), 0.01);
 }
 
 /// Without waiting, the picture comes once its samples are read; a moving view gets a reduced one that is current.

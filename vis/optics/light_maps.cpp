@@ -74,40 +74,21 @@ double CubeMap::solidAngle(std::size_t index) const {
     return 4.0 / (edge * edge) / std::pow(1 + u * u + v * v, 1.5);
 }
 
-glm::dvec3 CubeMap::at(glm::dvec3 d) const {
-    // Face and coordinates on it, in GL's convention.
-    const auto onFace = [](glm::dvec3 w, double& u, double& v) {
-        const glm::dvec3 a = glm::abs(w);
-        if (a.x >= a.y && a.x >= a.z) {
-            u = (w.x > 0 ? -w.z : w.z) / a.x, v = -w.y / a.x;
-            return w.x > 0 ? 0 : 1;
-        }
-        if (a.y >= a.z) {
-            u = w.x / a.y, v = (w.y > 0 ? w.z : -w.z) / a.y;
-            return w.y > 0 ? 2 : 3;
-        }
-        u = (w.z > 0 ? w.x : -w.x) / a.z, v = -w.y / a.z;
-        return w.z > 0 ? 4 : 5;
-    };
-    double u = 0, v = 0;
-    const int face = onFace(d, u, v);
-    const double x = (u + 1) / 2 * edge - 0.5, y = (v + 1) / 2 * edge - 0.5;
-    const double x0 = std::floor(x), y0 = std::floor(y);
-    glm::dvec3 sum(0);
-    for (int c = 0; c < 4; ++c) {
-        const double i = x0 + (c & 1), j = y0 + (c >> 1);
-        const double weight = ((c & 1) ? x - x0 : 1 - (x - x0)) * ((c >> 1) ? y - y0 : 1 - (y - y0));
-        int f = face;
-        double p = i, q = j;
-        if (i < 0 || j < 0 || i >= edge || j >= edge) {
-            f = onFace(direction(face, (2 * i + 1) / edge - 1, (2 * j + 1) / edge - 1), u, v);
-            p = std::clamp(std::floor((u + 1) / 2 * edge), 0.0, edge - 1.0);
-            q = std::clamp(std::floor((v + 1) / 2 * edge), 0.0, edge - 1.0);
-        }
-        sum +=
-            weight * texels[(std::size_t(f) * std::size_t(edge) + std::size_t(q)) * std::size_t(edge) + std::size_t(p)];
+glm::dvec3 CubeMap::texel(int face, int i, int j) const {
+    if (i < 0 || j < 0 || i >= edge || j >= edge) {
+        const CubePlaceOf<double> other =
+            placeOnCube(direction(face, (2.0 * i + 1) / edge - 1, (2.0 * j + 1) / edge - 1));
+        const auto within = [&](double along) { return std::clamp(int((along + 1) / 2 * edge), 0, edge - 1); };
+        face = int(other.face);
+        i = within(other.u);
+        j = within(other.v);
     }
-    return sum;
+    return texels[(std::size_t(face) * std::size_t(edge) + std::size_t(j)) * std::size_t(edge) + std::size_t(i)];
+}
+
+glm::dvec3 CubeMap::at(glm::dvec3 d) const {
+    return bilinearOnCube<double>(edge, d,
+                                  [&](double face, double i, double j) { return texel(int(face), int(i), int(j)); });
 }
 
 glm::dvec3 surroundings(Environment environment, glm::dvec3 d) {

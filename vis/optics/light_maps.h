@@ -1,12 +1,36 @@
 #pragma once
 
 #include "vis/scene/lighting.h"
+#include "volume/base/vectors.h"
 
 #include <array>
 
 /// Cube maps of incoming light: diffuse, indexed by the normal, and specular, indexed by the mirrored direction. A
 /// sample costs two texture lookups, however many lights there are.
 namespace tessera::vis {
+
+/// Where a direction meets a cube around the origin, by GL's convention: face 0..5, and u, v on it, -1..1.
+template <class N> struct CubePlaceOf { N face, u, v; };
+template <class N> CubePlaceOf<N> placeOnCube(const glm::vec<3, N>& direction) {
+    const auto& [x, y, z] = std::array{direction.x, direction.y, direction.z};
+    const N wide = magnitude(x), high = magnitude(y), deep = magnitude(z);
+    const auto alongX = (wide >= high) & (wide >= deep), alongY = high >= deep;
+    const auto of = [&](N onX, N onY, N onZ) { return choose(alongX, onX, choose(alongY, onY, onZ)); };
+    const auto bySign = [](N sign, N above, N below) { return choose(sign > N(0), above, below); };
+    return {of(bySign(x, N(0), N(1)), bySign(y, N(2), N(3)), bySign(z, N(4), N(5))),
+            of(bySign(x, -z, z) / wide, x / high, bySign(z, x, -x) / deep),
+            of(-y / wide, bySign(y, z, -z) / high, -y / deep)};
+}
+/// Bilinear value of a cube map in a direction; `texel(face, i, j)` gives those of a face, -1 .. edge each: what lies
+/// beyond the face in the direction of the texel that would be there.
+template <class N, class Texel>
+glm::vec<3, N> bilinearOnCube(int edge, const glm::vec<3, N>& direction, const Texel& texel) {
+    const CubePlaceOf<N> place = placeOnCube(direction);
+    const N x = (place.u + N(1)) * N(0.5 * edge) - N(0.5), y = (place.v + N(1)) * N(0.5 * edge) - N(0.5);
+    const N i = roundDown(x), j = roundDown(y);
+    const auto row = [&](N of) { return blended(texel(place.face, i, of), texel(place.face, i + N(1), of), x - i); };
+    return blended(row(j), row(j + N(1)), y - j);
+}
 
 /// A map of directions on the faces of a cube, in GL's order and orientation (+x, -x, +y, -y, +z, -z).
 struct CubeMap {
@@ -18,6 +42,8 @@ struct CubeMap {
     glm::dvec3 texelDirection(std::size_t index) const;
     /// Solid angle of a texel, in steradians.
     double solidAngle(std::size_t index) const;
+    /// Texel of a face, -1 .. edge each, see bilinearOnCube().
+    glm::dvec3 texel(int face, int i, int j) const;
     /// Bilinear, also across edges of faces.
     glm::dvec3 at(glm::dvec3 direction) const;
 };

@@ -160,29 +160,14 @@ template <class Number> struct Spreader {
     }
 };
 
-/// The eight cells around a position, and their trilinear weights.
-template <class Value, class Number>
-Value trilinear(const LightGrid& grid, const std::vector<Value>& of, glm::dvec3 world) {
-    const glm::dvec3 p =
-        glm::clamp((world + grid.halfSize) / grid.cell() - 0.5, glm::dvec3(0), glm::dvec3(grid.size - 1));
-    const glm::ivec3 lo = glm::min(glm::ivec3(p), glm::max(grid.size - 2, glm::ivec3(0)));
-    const glm::dvec3 w = p - glm::dvec3(lo);
-    Value sum(0);
-    for (int c = 0; c < 8; ++c) {
-        const glm::ivec3 up(c & 1, c >> 1 & 1, c >> 2);
-        const glm::dvec3 parts = glm::mix(1.0 - w, w, glm::dvec3(up));
-        sum += Number(parts.x * parts.y * parts.z) * of[grid.index(glm::min(lo + up, grid.size - 1))];
-    }
-    return sum;
-}
-
 } // namespace
 
 template <class Number> auto LightVolume<Number>::visibleAt(glm::dvec3 world) const -> Vec4 {
-    return trilinear<Vec4, Number>(grid, visible, world);
+    return Vec4(betweenCells<double>(grid, world, [&](double i) { return glm::dvec4(visible[std::size_t(i)]); }));
 }
 template <class Number> auto LightVolume<Number>::scatteredAt(glm::dvec3 world) const -> Vec3 {
-    return scattered.empty() ? Vec3(0) : trilinear<Vec3, Number>(grid, scattered, world);
+    if (scattered.empty()) return Vec3(0);
+    return Vec3(betweenCells<double>(grid, world, [&](double i) { return glm::dvec3(scattered[std::size_t(i)]); }));
 }
 
 template <class Number>

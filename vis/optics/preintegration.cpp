@@ -12,33 +12,24 @@ namespace tessera::vis {
 namespace {
 
 constexpr double kMostOpaque = 1 - 1e-12; ///< opacity 1 would mean infinite extinction
-constexpr double kSame =
-    1e-7; ///< closer positions are treated as equal, since their difference has no significant digits
+constexpr double kSame = 1e-7;            ///< closer positions are treated as equal
 
-/// A position between two nodes.
-struct NodePlace {
-    std::size_t below;
-    double along;
+/// As preintegrated() wants them.
+struct Nodes {
+    const IntegralFunctions& functions;
+    double last() const { return functions.last(); }
+    const glm::dvec4& density(double node) const { return functions.density[std::size_t(node)]; }
+    glm::dvec4 between(double a, double b) const {
+        return functions.integral[std::size_t(b)] - functions.integral[std::size_t(a)];
+    }
 };
-NodePlace nodePlace(const IntegralFunctions& functions, double x) {
-    const auto last = double(functions.density.size() - 1);
-    const double at = std::clamp(x, 0.0, 1.0) * last;
-    const double below = std::min(std::floor(at), last - 1);
-    return {std::size_t(below), at - below};
-}
 
 /// Integral from 0 to a position.
-glm::dvec4 integralAt(const IntegralFunctions& functions, NodePlace at) {
-    const glm::dvec4 a = functions.density[at.below], b = functions.density[at.below + 1];
-    const double node = 1 / double(functions.density.size() - 1);
-    return functions.integral[at.below] + node * at.along * (a + 0.5 * at.along * (b - a));
-}
-
-/// Colour and opacity from the means of t * colour and t.
-glm::dvec4 fromDensity(glm::dvec4 mean) {
-    // Rounding dominates if there is next to no extinction.
-    if (!(mean.a > 1e-11)) return glm::dvec4(0);
-    return {glm::clamp(glm::dvec3(mean) / mean.a, 0.0, 1.0), -std::expm1(-mean.a)};
+glm::dvec4 integralAt(const IntegralFunctions& functions, double x) {
+    const NodePlaceOf<double> at = nodePlace(functions.last(), x);
+    const auto below = std::size_t(at.below);
+    return functions.integral[below] +
+           integralBeyond(functions.density[below], functions.density[below + 1], at.along, functions.last());
 }
 
 } // namespace
@@ -61,25 +52,13 @@ IntegralFunctions integralFunctions(const TransferFunction& function, Range rang
 }
 
 glm::dvec4 preintegrated(const IntegralFunctions& functions, double front, double back) {
-    const double a = std::clamp(std::min(front, back), 0.0, 1.0), b = std::clamp(std::max(front, back), 0.0, 1.0);
-    const NodePlace lo = nodePlace(functions, a), hi = nodePlace(functions, b);
-    if (b - a < kSame) {
-        const glm::dvec4 here = glm::mix(functions.density[lo.below], functions.density[lo.below + 1], lo.along);
-        return fromDensity(here);
-    }
-    return fromDensity((integralAt(functions, hi) - integralAt(functions, lo)) / (b - a));
-}
-
-glm::dvec4 inHalves(glm::dvec4 front, glm::dvec4 back) {
-    const glm::dvec3 sum = glm::dvec3(front) * front.a + glm::dvec3(back) * back.a;
-    return {sum / std::max(front.a + back.a, 1e-12), 1 - std::sqrt((1 - front.a) * (1 - back.a))};
+    return preintegrated<double>(Nodes{functions}, front, back, kSame);
 }
 
 std::vector<glm::vec4> preintegrationTable(const IntegralFunctions& functions, int size) {
     std::vector<glm::dvec4> integrals;
     std::vector<glm::vec4> table(std::size_t(size) * std::size_t(size));
-    for (int i = 0; i < size; ++i)
-        integrals.push_back(integralAt(functions, nodePlace(functions, double(i) / (size - 1))));
+    for (int i = 0; i < size; ++i) integrals.push_back(integralAt(functions, double(i) / (size - 1)));
     parallelFor(std::size_t(size), [&](std::size_t y) {
         for (std::size_t x = 0; x <= y; ++x) {
             const glm::dvec4 mean =

@@ -1,8 +1,10 @@
 #pragma once
 
 #include "vis/transfer/transfer_function.h"
+#include "volume/base/vectors.h"
 
 #include <glm/vec4.hpp>
+#include <numbers>
 #include <vector>
 
 /// Pre-integrated classification: colour and opacity of a ray segment along which the value changes linearly between
@@ -20,19 +22,65 @@ namespace tessera::vis {
 struct IntegralFunctions {
     std::vector<glm::dvec4> density;  ///< t * colour, t at the nodes
     std::vector<glm::dvec4> integral; ///< integral of density from 0 to the node
+
+    double last() const { return double(density.size() - 1); }
 };
 
 inline constexpr int kIntegralNodes = 4096;
 /// From a function's opacity curve and colours over a range; O(nodes).
 IntegralFunctions integralFunctions(const TransferFunction& function, Range range, int nodes = kIntegralNodes);
 
+/// A position between two nodes, `last` the number of the last one.
+template <class N> struct NodePlaceOf { N below, along; };
+template <class N> NodePlaceOf<N> nodePlace(double last, N x) {
+    const N at = clamped(x, N(0), N(1)) * N(last), below = smaller(roundDown(at), N(last - 1));
+    return {below, at - below};
+}
+/// The integral from a node, where the density is `here`, to a place between it and the next one.
+template <class N>
+glm::vec<4, N> integralBeyond(const glm::vec<4, N>& here, const glm::vec<4, N>& next, N along, double last) {
+    return (here + (next - here) * (along * N(0.5))) * (along * N(1 / last));
+}
+/// Colour and opacity from the means of t * colour and t.
+template <class N> glm::vec<4, N> fromDensity(const glm::vec<4, N>& mean) {
+    const auto some = mean.w > N(1e-11); // rounding dominates if there is next to no extinction
+    const N whole = choose(some, N(1) / choose(some, mean.w, N(1)), N(0));
+    const auto color = [&](N part) { return clamped(part * whole, N(0), N(1)); };
+    const N opacity = N(1) - powerOfTwo(mean.w * N(-std::numbers::log2e));
+    return {color(mean.x), color(mean.y), color(mean.z), choose(some, opacity, N(0))};
+}
+
 /// Colour (linear light, not premultiplied: mean weighted by extinction) and opacity of the segment between two
-/// positions, clamped to 0..1; symmetric in both. For equal positions, the values of that position.
+/// positions, clamped to 0..1; symmetric in both. For equal positions (closer than `same`, so that their difference has
+/// significant digits), the values of that position. `functions` has last(), the number of the last node,
+/// density(node), and between(a, b), the integral from one node to another. A template over the number
+/// (volume/base/numbers.h).
+template <class N, class Functions>
+glm::vec<4, N> preintegrated(const Functions& functions, N front, N back, double same) {
+    using Vec4 = glm::vec<4, N>;
+    const double last = functions.last();
+    const N a = clamped(smaller(front, back), N(0), N(1)), b = clamped(larger(front, back), N(0), N(1));
+    const NodePlaceOf<N> lo = nodePlace(last, a), hi = nodePlace(last, b);
+    const Vec4 low = functions.density(lo.below), lowNext = functions.density(lo.below + N(1));
+    const Vec4 high = functions.density(hi.below), highNext = functions.density(hi.below + N(1));
+    const auto equal = b - a < N(same);
+    const Vec4 sum = functions.between(lo.below, hi.below) + integralBeyond(high, highNext, hi.along, last) -
+                     integralBeyond(low, lowNext, lo.along, last);
+    const Vec4 within = blended(low, lowNext, (a + b) * N(0.5 * last) - lo.below);
+    const N share = N(1) / choose(equal, N(1), b - a);
+    const auto of = [&](N apart, N here) { return choose(equal, here, apart * share); };
+    return fromDensity(Vec4(of(sum.x, within.x), of(sum.y, within.y), of(sum.z, within.z), of(sum.w, within.w)));
+}
 glm::dvec4 preintegrated(const IntegralFunctions& functions, double front, double back);
 
 /// Colour and opacity of a segment whose two halves have their own, where the value jumps between two parts. Twin:
 /// lib/classify.glsl.
-glm::dvec4 inHalves(glm::dvec4 front, glm::dvec4 back);
+template <class N> glm::vec<4, N> inHalves(const glm::vec<4, N>& front, const glm::vec<4, N>& back) {
+    const N whole = N(1) / larger(front.w + back.w, N(1e-12));
+    const auto color = [&](N a, N b) { return (a * front.w + b * back.w) * whole; };
+    return {color(front.x, back.x), color(front.y, back.y), color(front.z, back.z),
+            N(1) - squareRoot((N(1) - front.w) * (N(1) - back.w))};
+}
 
 /// preintegrated() for front = x / (size - 1), back = y / (size - 1), x fastest, with premultiplied colours so that
 /// entries can be interpolated; O(size^2).

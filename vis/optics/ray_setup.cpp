@@ -58,10 +58,6 @@ Plane slicePlane(const SliceLayer& layer, const WorldFrame& frame, glm::dvec3 cu
     return plane;
 }
 
-double linearFromSrgb(double encoded) {
-    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
-
 double srgbFromLinear(double linear) {
     return linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }

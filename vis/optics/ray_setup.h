@@ -139,7 +139,13 @@ template <class N> N planeDistance(const Plane& plane, const glm::vec<3, N>& ori
     return (N(plane.offset) - inner(normal, origin)) / choose(magnitude(slope) < N(1e-9), N(1e-9), slope);
 }
 
-double linearFromSrgb(double encoded);
+template <class N> N linearFromSrgb(N encoded) {
+    return choose(encoded <= N(0.04045), encoded * N(1 / 12.92),
+                  power(larger((encoded + N(0.055)) * N(1 / 1.055), N(0)), N(2.4)));
+}
+inline double linearFromSrgb(double encoded) {
+    return linearFromSrgb<double>(encoded);
+}
 double srgbFromLinear(double linear);
 glm::dvec3 linearFromSrgb(glm::dvec3 encoded);
 inline constexpr glm::dvec3 kLuminance{0.2126, 0.7152, 0.0722}; ///< Rec. 709

@@ -24,6 +24,10 @@ struct PlacedLight {
 glm::dvec3 lightDirection(const Light& light, const Camera& camera);
 /// The first `limit` enabled lights.
 std::vector<PlacedLight> placeLights(const Lighting& lighting, const Camera& camera, int limit = kMaxLights);
+/// Those that samples are lit by one by one: none if they are in cube maps.
+inline std::vector<PlacedLight> ownLights(const Lighting& lighting, const Camera& camera) {
+    return lighting.inMaps ? std::vector<PlacedLight>() : placeLights(lighting, camera);
+}
 /// Whether samples use cube maps.
 inline bool usesMaps(const Lighting& lighting) {
     return lighting.inMaps || lighting.environment.kind != Environment::None;

@@ -3,24 +3,30 @@
 #include "volume/base/parallel.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace tessera::vis::packet {
 
 namespace {
 
+/// Calls visit(index) for the small blocks [first, last) of a volume.
+template <class Visit>
+void forBlocks(const PacketVolume& volume, glm::ivec3 first, glm::ivec3 last, const Visit& visit) {
+    for (int z = first.z; z < last.z; ++z)
+        for (int y = first.y; y < last.y; ++y)
+            for (int x = first.x; x < last.x; ++x)
+                visit((std::size_t(z) * std::size_t(volume.blocks.y) + std::size_t(y)) * std::size_t(volume.blocks.x) +
+                      std::size_t(x));
+}
+
 bool blockShows(const PacketVolume& volume, glm::ivec3 first, glm::ivec3 last,
                 const std::function<bool(float, float)>& shows) {
     float lo = std::numeric_limits<float>::infinity(), hi = -lo;
-    for (int z = first.z; z < last.z; ++z)
-        for (int y = first.y; y < last.y; ++y)
-            for (int x = first.x; x < last.x; ++x) {
-                const std::size_t block =
-                    (std::size_t(z) * std::size_t(volume.blocks.y) + std::size_t(y)) * std::size_t(volume.blocks.x) +
-                    std::size_t(x);
-                lo = std::min(lo, volume.lo[block]);
-                hi = std::max(hi, volume.hi[block]);
-            }
+    forBlocks(volume, first, last, [&](std::size_t block) {
+        lo = std::min(lo, volume.lo[block]);
+        hi = std::max(hi, volume.hi[block]);
+    });
     return lo <= hi && shows(lo, hi);
 }
 
@@ -106,6 +112,44 @@ SkipMap united(SkipMap a, const SkipMap& b) {
     if (a.full.empty()) return b;
     for (std::size_t i = 0; i < a.full.size(); ++i) a.full[i] = std::uint8_t(a.full[i] | b.full[i]);
     return a;
+}
+
+std::vector<std::uint8_t> scoreBounds(const PacketVolume& volume, const SkipMap& map,
+                                      const std::function<double(float)>& score) {
+    std::vector<std::uint8_t> out(map.blocks() + 3);
+    std::size_t i = 0;
+    const int factor = map.edge / kFine;
+    for (int z = 0; z < map.count.z; ++z)
+        for (int y = 0; y < map.count.y; ++y)
+            for (int x = 0; x < map.count.x; ++x, ++i) {
+                double best = 0;
+                const glm::ivec3 first = glm::ivec3(x, y, z) * factor, last = glm::min(first + factor, volume.blocks);
+                forBlocks(volume, first, last, [&](std::size_t block) {
+                    if (!(volume.lo[block] <= volume.hi[block])) return;
+                    best = std::max({best, score(volume.lo[block]), score(volume.hi[block])});
+                });
+                out[i] = std::uint8_t(std::min(255.0, std::ceil(best * 255 + 0.01)));
+            }
+    return out;
+}
+
+void widen(SkipMap& map) {
+    const auto index = [&](glm::ivec3 at) {
+        return (std::size_t(at.z) * std::size_t(map.count.y) + std::size_t(at.y)) * std::size_t(map.count.x) +
+               std::size_t(at.x);
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::vector<std::uint8_t> before = map.full;
+        for (glm::ivec3 at(0); at.z < map.count.z; ++at.z)
+            for (at.y = 0; at.y < map.count.y; ++at.y)
+                for (at.x = 0; at.x < map.count.x; ++at.x)
+                    for (const int way : {-1, 1}) {
+                        glm::ivec3 other = at;
+                        other[axis] += way;
+                        if (other[axis] < 0 || other[axis] >= map.count[axis]) continue;
+                        map.full[index(at)] = std::uint8_t(map.full[index(at)] | before[index(other)]);
+                    }
+    }
 }
 
 void countAlike(SkipMap& map, unsigned octants) {

@@ -32,6 +32,12 @@ struct SkipMap {
 SkipMap fullBlocks(const PacketVolume& volume, int edge, const std::function<bool(float, float)>& shows);
 /// Blocks that are full in either of two maps of the same blocks; a map without blocks gives the other.
 SkipMap united(SkipMap a, const SkipMap& b);
+/// Largest score, 0..1, of the samples of each block, rounded up, 255 = 1; it must lie at one of the bounds of a block.
+/// With 3 bytes more, because they are read four at a time.
+std::vector<std::uint8_t> scoreBounds(const PacketVolume& volume, const SkipMap& map,
+                                      const std::function<double(float)>& score);
+/// Makes the neighbours of full blocks full.
+void widen(SkipMap& map);
 /// Counts alike blocks in these octants (a bit each), where that is not done.
 void countAlike(SkipMap& map, unsigned octants);
 

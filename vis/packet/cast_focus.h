@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/packet/cast_light.h"
 #include "vis/packet/cast_skip.h"
 
 /// Brushes and lenses at packets of samples: focus and context. Only for cast_*.cpp.
@@ -17,10 +18,6 @@ struct Focus {
     Interest interest;
     Floats opacity{1}, saturation{1}; ///< factors
 };
-
-inline Vec choose(Mask m, const Vec& a, const Vec& b) {
-    return {choose(m, a.x, b.x), choose(m, a.y, b.y), choose(m, a.z, b.z)};
-}
 
 /// Twin: LassoTable::at in vis/scene/selection.h; u and v are -1 .. 1 in the table.
 inline Floats lassoDoi(const float* table, Floats u, Floats v, Mask lanes) {

@@ -3,7 +3,8 @@
 #include "vis/optics/brush_tests.h"
 #include "vis/optics/look_shading.h"
 #include "vis/optics/ray_setup.h"
-#include "vis/optics/surface_light.h"
+#include "vis/optics/shade.h"
+#include "vis/packed/packed_light.h"
 #include "vis/scene/brush_effect.h"
 #include "vis/scene/clipping.h"
 #include "vis/scene/geometry.h"
@@ -40,6 +41,13 @@ inline constexpr int kShowBins = 256;      ///< of its places, one bit each
 /// of exponent and 10 of mantissa; 0 is 0.
 inline constexpr int kPackedEntries = 4096, kExtinctionShift = 13, kExtinctionLeast = 127 - 20;
 
+/// IntegralFunctions of a layer: of each node density (4 numbers), and integral (4 numbers, then 4 with what rounding
+/// left of them, because differences of integrals count).
+struct IntegralView {
+    int last = 0;
+    const float *density = nullptr, *integral = nullptr;
+};
+
 /// Another channel that colours a layer.
 struct ColorView {
     const VolumeView* volume = nullptr; ///< null: none
@@ -60,6 +68,13 @@ struct LayerView {
     float surfaceScale = 0;                ///< weight of the surface = change of samples over a cell * this, at most 1
     const std::int32_t* table = nullptr;
     const std::uint32_t* packed = nullptr;
+    /// Regions of value and gradient magnitude that have opacity. Then colours of the table are sRGB, and its opacity
+    /// is 1 where a region may have some; place in the range = place * x + y.
+    std::span<const TransferRegion> regions;
+    bool byRegions = false;
+    glm::vec2 toRange{1, 0};
+    Classification classification = Classification::Post;
+    IntegralView integrals;     ///< of pre-integration
     const Look* look = nullptr; ///< null: plain
     float smooth = 0;           ///< of the look, in cells of a sublattice
     ColorView colors = {};
@@ -150,9 +165,9 @@ struct CastJob {
     volume::GradientStencil stencil;
     LookView look;               ///< of looks, when there are any
     glm::dvec3 middle{0, 0, -1}; ///< direction of the ray in the middle of the picture
-    const Lighting* surface = nullptr;
-    std::span<const PlacedLight> lights;
-    std::uint64_t* samples = nullptr; ///< counts samples taken, when not null
+    ShadedBy light;
+    const PackedLight* around = nullptr; ///< what `light` looks up
+    std::uint64_t* samples = nullptr;    ///< counts samples taken, when not null
 };
 
 } // namespace tessera::vis::packet

@@ -1,18 +1,15 @@
 #pragma once
 
-#include "vis/packet/cast_look.h"
+#include "vis/packet/cast_sample.h"
 
 /// Packets of rays through the layers of a scene, sample by sample as vis/optics/ray_setup.h says. Only for cast_*.cpp.
 namespace tessera::vis::packet::TESSERA_LANES {
 
-/// What all layers of a packet share.
-template <bool Bcc, bool Exact> struct Caster {
-    const CastJob& job;
-    Packet& packet;
-    const Skip skip{job, packet};
-    std::uint64_t taken = 0; ///< samples
-
-    using Read = Reader<Bcc, Exact>;
+template <bool Bcc, bool Exact> struct Caster : SampleCaster<Bcc, Exact> {
+    using Base = SampleCaster<Bcc, Exact>;
+    using Base::count, Base::drawOtherwise, Base::drawSample, Base::focusOf, Base::gradient, Base::inPart, Base::job,
+        Base::looked, Base::packet, Base::placeAt, Base::reader, Base::skip, Base::tint, Base::tinted;
+    using typename Base::Drawn, typename Base::Read;
 
     /// A projection, and the sample that it shows.
     struct Projected : ProjectionSums<Floats, Mask> {
@@ -21,144 +18,6 @@ template <bool Bcc, bool Exact> struct Caster {
         Floats tint{0}, tintWeight{0}; ///< of sums: weighted sum of the colouring channel, and its weight
         Projected() : ProjectionSums<Floats, Mask>{.found = maskOf(0)} {}
     };
-
-    /// `masked`: samples of some layer may be absent here.
-    Read reader(const VolumeView& volume, bool masked) const {
-        return {volume, (masked || packet.bends) && volume.present != nullptr, packet.bends ? &job : nullptr};
-    }
-    Read reader(const LayerView& layer, bool masked) const { return reader(*layer.volume, masked); }
-
-    /// Where the data are that are shown at a position, which is what brushes in space know.
-    Vec shown(const Vec& cells) const { return packet.bends ? bent(job, cells) : cells; }
-
-    Focus focusOf(const LayerView& layer, const Vec& cells, Floats k, bool masked, Mask lanes) const {
-        const auto read = [&](const VolumeView& field) { return reader(field, masked)(cells, lanes); };
-        return focusAt(job.focus, layer, shown(cells), packet.world(k), lanes, read);
-    }
-
-    /// Degree of interest of places that are no samples of rays.
-    Interest interestAt(const Vec& cells, const Vec& world, Mask lanes) const {
-        Found values[kMostBrushFields];
-        for (std::size_t i = 0; i < job.focus.fields.size(); ++i)
-            values[i] = reader(*job.focus.fields[i], true)(cells, lanes);
-        return interestOf(job.focus, values, shown(cells), world, lanes);
-    }
-
-    /// Counts reconstructions of a value.
-    void count(Mask lanes, int reads = 1) {
-        if (job.samples != nullptr) taken += std::uint64_t(__builtin_popcount(bitsOf(lanes)) * reads);
-    }
-
-    /// Gradient in world axes, of samples.
-    Vec gradient(const Read& read, const Vec& cells, Mask lanes) {
-        const auto value = [&](const Vec& at) __attribute__((always_inline)) {
-            return read.next(fixedOf(at), lanes);
-        };
-        if (read.volume.partCount > 0) return gradientOfParts(read, cells, lanes);
-        count(lanes, 2 * job.stencil.count);
-        if (packet.bends) return gradientBehindLenses(read, cells, lanes);
-        if (!Exact && !read.masked && sharesReads(job.stencil, Bcc))
-            return sharedGradient<Bcc>(read.volume, cells, job.stencil.reach, lanes) / spreadOut<Floats>(job.edges);
-        return volume::gradientOf<Floats>(value, cells, job.stencil) / spreadOut<Floats>(job.edges);
-    }
-
-    [[gnu::noinline]] Vec gradientBehindLenses(const Read& read, const Vec& cells, Mask lanes) {
-        const auto value = [&](const Vec& at) { return read(at, lanes); };
-        return volume::gradientOf<Floats>(value, cells, job.stencil) / spreadOut<Floats>(job.edges);
-    }
-    /// The same within the part that each place belongs to.
-    [[gnu::noinline]] Vec gradientOfParts(const Read& read, const Vec& cells, Mask lanes) {
-        const Floats part = read.part(cells, lanes);
-        Vec out(Floats(0), Floats(0), Floats(0));
-        for (int i = 0; i < read.volume.partCount; ++i) {
-            const Mask own = lanes & (part >= Floats(i)) & (part <= Floats(i));
-            if (anyOf(own)) out = choose(own, gradient(read.ofPart(i), cells, own), out);
-        }
-        return out;
-    }
-
-    /// Change over a cell, of a gradient of samples in world axes.
-    Floats steepness(const Vec& slope) const { return lengthOf(slope * spreadOut<Floats>(job.cell)); }
-
-    /// Places of samples in a layer's transfer function, not clamped.
-    Floats placeAt(const LayerView& layer, bool masked, const Found& found, Floats k, Mask lanes) {
-        if (!layer.gradient) return multiplyAdd(found.value, Floats(layer.placeScale), Floats(layer.placeOffset));
-        if (!anyOf(lanes)) return Floats(0);
-        return steepness(gradient(reader(layer, masked), packet.cells(k), lanes)) * Floats(layer.gradientScale);
-    }
-
-    /// Colours by a value of the channel that colours a layer.
-    static Vec tint(const ColorView& colors, const Found& found) {
-        const Floats place = multiplyAdd(found.value, Floats(colors.placeScale), Floats(colors.placeOffset));
-        return choose(found.present, colorAt(colors.table, tablePlace(place), found.present),
-                      spreadOut<Floats>(colors.absent));
-    }
-    /// Colours of a layer; `own` if no other channel gives them.
-    Vec tinted(const LayerView& layer, const Vec& own, const Vec& cells, Mask lanes) const {
-        return layer.colors.volume == nullptr ? own : colorsAt(layer.colors, cells, lanes);
-    }
-    [[gnu::noinline]] Vec colorsAt(const ColorView& colors, const Vec& cells, Mask lanes) const {
-        return tint(colors, reader(*colors.volume, true)(cells, lanes));
-    }
-
-    /// The colour of samples of a composite layer after light.
-    Vec lit(const LayerView& layer, const Read& read, const Vec& albedo, const Vec& cells, Floats k, Mask lanes) {
-        const Vec slope = gradient(read, cells, lanes);
-        const Floats weight = smaller(Floats(1), steepness(slope) * Floats(layer.surfaceScale));
-        return litColor(job, albedo, slope, weight, packet.world(k), -packet.ray.direction);
-    }
-
-    /// Colours and opacities after light and look, of samples of one part each.
-    struct Drawn {
-        Vec color;
-        Floats opacity;
-    };
-    [[gnu::noinline]] Drawn looked(const LayerView& layer, const Read& read, const Vec& albedo, Floats opacity,
-                                   Floats doi, const Vec& cells, Floats k, Mask lanes) {
-        const bool iso = layer.style == RayStyle::Iso;
-        const Vec none(Floats(0), Floats(0), Floats(0));
-        const Look& look = *layer.look;
-        Vec narrow = none; // labels have none
-        if (!layer.volume->labels) narrow = choose(lanes, gradient(read, cells, lanes), none);
-        const Floats steep = steepness(narrow), weight = smaller(Floats(1), steep * Floats(layer.surfaceScale));
-        const Looked at{
-            layer, cells,  packet.world(k), packet.ray.direction,    packet.enter + (k + packet.phase) * packet.step,
-            doi,   narrow, steep,           iso ? Floats(1) : weight};
-        const Floats part = read.part(cells, lanes);
-        const auto value = [&](const Vec& place) {
-            count(lanes);
-            return inPart(read, part, withinBox(job, place), lanes);
-        };
-        const Vec slope = lookGradient(job, at, value);
-        const LookSampleOf<Floats> sample = lookSample(job, at, value, slope);
-        if (!iso) opacity = solidOpacity(look, opacity, sample.share);
-        Vec color = lookAlbedo(look, albedo, sample.share);
-        if (iso || layer.shaded) color = litColor(job, color, slope, at.weight, at.world, -packet.ray.direction);
-        color = lookColor(look, albedo, color, sample, job.look.ground);
-        return {choose(lanes, color, none), choose(lanes, lookOpacity(look, opacity, sample), Floats(0))};
-    }
-
-    /// Shades samples of a composite layer and puts them behind what is there.
-    void drawSample(const LayerView& layer, bool masked, Floats place, Floats opacity, Floats k, Mask lanes) {
-        const Read read = reader(layer, masked);
-        const Vec cells = packet.cells(k);
-        Vec color = tinted(layer, colorAt(layer.table, tablePlace(place), lanes), cells, lanes);
-        Focus focus;
-        if (job.focus.any) {
-            focus = focusOf(layer, cells, k, masked, lanes);
-            color = focused(job.focus, layer, color, focus);
-            opacity = opacity * focus.opacity;
-        }
-        if (layer.look != nullptr) {
-            const Drawn own = looked(layer, read, color, opacity, focus.interest.doi, cells, k, lanes);
-            color = own.color;
-            opacity = own.opacity;
-        } else if (layer.shaded) {
-            color = lit(layer, read, color, cells, k, lanes);
-        }
-        const Floats thickness = Floats(layer.density) * (packet.holeCount > 0 ? packet.coverage(k) : Floats(1));
-        packet.blend(color, correctedOpacity(opacity, packet.step, thickness), k, lanes);
-    }
 
     void project(const LayerView& layer, bool masked, const Found& found, Projected& sums, Floats k, Mask lanes) {
         const Mask present = found.present & packet.shows(k);
@@ -223,18 +82,6 @@ template <bool Bcc, bool Exact> struct Caster {
         packet.blend(color, alpha, shownAt, some);
     }
 
-    /// The values from samples of one part each.
-    Found inPart(const Read& read, Floats part, const Vec& cells, Mask lanes) const {
-        if (read.volume.partCount == 0) return read(cells, lanes);
-        Found out{Floats(0), maskOf(0)};
-        for (int i = 0; i < read.volume.partCount; ++i) {
-            const Mask of = lanes & (part >= Floats(i)) & (part <= Floats(i));
-            if (!anyOf(of)) continue;
-            const Found own = read.ofPart(i)(cells, of);
-            out = {choose(of, own.value, out.value), out.present | (own.present & of)};
-        }
-        return out;
-    }
     /// The same as far as these have any weight.
     [[gnu::noinline]] Found continuedInPart(const Read& read, Floats part, const Vec& cells, Mask lanes) const {
         Found out{Floats(0), maskOf(0)};
@@ -304,7 +151,7 @@ template <bool Bcc, bool Exact> struct Caster {
         Projected sums[kMostPacketLayers];
         Found before[kMostPacketLayers], now[kMostPacketLayers];
         const int layers = int(job.layers.size());
-        for (int i = 0; i < layers; ++i) before[i] = {Floats(0), maskOf(0)};
+        for (int i = 0; i < layers; ++i) before[i] = now[i] = {Floats(0), maskOf(0)};
         Floats k(0), last(-2); // `last`: the sample that `before` holds
         Mask live = packet.meets;
         while (anyOf(live)) {
@@ -323,6 +170,7 @@ template <bool Bcc, bool Exact> struct Caster {
                 }
             for (int n = 0; n < look.run && anyOf(live); ++n) {
                 for (int i = 0; i < layers; ++i) {
+                    if (job.layers[i].classification != Classification::Post) continue;
                     count(live);
                     now[i] = reader(job.layers[i], masked)(packet.cells(k), live);
                 }
@@ -346,19 +194,20 @@ template <bool Bcc, bool Exact> struct Caster {
 
     void drawSurfaces(const Found* before, const Found* now, bool masked, Floats k, Mask lanes) {
         Met met[kMostPacketSurfaces];
-        int count = 0;
+        int crossed = 0;
         for (std::size_t i = 0; i < job.layers.size(); ++i) {
             const LayerView& layer = job.layers[i];
-            if (layer.style == RayStyle::Iso && count < kMostPacketSurfaces)
-                met[count++] = meetSurface(layer, masked, before[i], now[i], k, lanes);
+            if (layer.style == RayStyle::Iso && crossed < kMostPacketSurfaces)
+                met[crossed++] = meetSurface(layer, masked, before[i], now[i], k, lanes);
         }
-        sortByDistance(met, count);
-        for (int i = 0; i < count; ++i) packet.blend(met[i].color, met[i].opacity, met[i].at, lanes);
+        sortByDistance(met, crossed);
+        for (int i = 0; i < crossed; ++i) packet.blend(met[i].color, met[i].opacity, met[i].at, lanes);
     }
 
     void drawVolume(const LayerView& layer, const Found& now, Projected& sums, bool masked, Floats k, Mask lanes) {
         if (layer.style == RayStyle::Iso) return;
         if (layer.style != RayStyle::Composite) return project(layer, masked, now, sums, k, lanes);
+        if (layer.classification != Classification::Post) return drawOtherwise(layer, masked, k, lanes);
         const Floats place = placeAt(layer, masked, now, k, lanes & now.present);
         const Floats alpha = opacityAt(layer, tablePlace(place), now.present);
         const Mask hit = lanes & now.present & (alpha > Floats(0));

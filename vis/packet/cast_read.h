@@ -1,18 +1,20 @@
 #pragma once
 
+#include "vis/lanes/lanes.h"
 #include "vis/packed/packet_volume.h"
 #include "vis/packet/cast_job.h"
-#include "vis/packet/lanes.h"
 #include "vis/scene/lens_bend.h"
-#include "volume/base/numbers.h"
+#include "volume/base/vectors.h"
 #include "volume/reconstruct/part_choice.h"
 #include "volume/reconstruct/present_coverage.h"
 
-/// Packets of samples read from a PacketVolume: reconstruction, classification, light. Only for cast_*.cpp.
+/// Packets of samples read from a PacketVolume: reconstruction, classification. Only for cast_*.cpp.
 namespace tessera::vis::packet::TESSERA_LANES {
 
 using Vec = glm::vec<3, Floats>;
 using Found = volume::FoundValue<Floats, Mask>;
+
+using tessera::choose;
 
 inline Floats mix(Floats a, Floats b, Floats share) {
     return multiplyAdd(share, b - a, a);
@@ -132,7 +134,72 @@ template <bool Bcc, bool Exact> struct Reader {
                 lanes & (weight > Floats(0))};
     }
 
+    /// The mean of what samples around a position are classified as, `of(value)`, four numbers. Twin:
+    /// reference::Samples::blended.
+    struct Mean {
+        glm::vec<4, Floats> mean;
+        Mask present;
+    };
+    template <class Of> [[gnu::noinline]] Mean meanOf(const Vec& cells, Mask lanes, const Of& of) const {
+        const Fixed at = fixedOf(bends != nullptr ? bent(*bends, cells) : cells);
+        volume::PartChoiceOf<Floats, Mask> choice;
+        glm::vec<4, Floats> best(Floats(0), Floats(0), Floats(0), Floats(0));
+        for (int i = 0; i < (volume.partCount > 0 ? volume.partCount : 1); ++i) {
+            glm::vec<4, Floats> sum(Floats(0), Floats(0), Floats(0), Floats(0));
+            Floats coverage(0);
+            const Reader own = volume.partCount > 0 ? ofPart(i) : *this;
+            own.addCorners(at, 0, lanes, of, sum, coverage);
+            if constexpr (Bcc) own.addCorners(oddOf(at), volume.oddOffset, lanes, of, sum, coverage);
+            const Mask better = choice.add(i, coverage);
+            for (int c = 0; c < 4; ++c) best[c] = choose(better, sum[c], best[c]);
+        }
+        return {best * (Floats(1) / larger(choice.coverage, Floats(1e-9))),
+                lanes & (choice.total >= Floats(volume::kPresentCoverage))};
+    }
+
 private:
+    /// The eight samples around a position of one sublattice, of a volume with samples of its own.
+    template <class Of>
+    void addCorners(const Fixed& at, int offset, Mask lanes, const Of& of, glm::vec<4, Floats>& sum,
+                    Floats& coverage) const {
+        const Spread place = spread(pairAt(volume, at), lanes);
+        const auto share = [](Ints along) { return toFloats(along & Ints(0xffff)) * Floats(1.0 / (1 << 16)); };
+        const Floats x = share(at.x), y = share(at.y), z = share(at.z);
+        const auto halves = [&](const std::int16_t* samples, int slice, Floats* out) { // of x, then of y
+            const IntPair pairs = loadPairs<4>(samples + 2 * (offset + slice * kSlice), place, lanes);
+            const Ints low(0xffff);
+            out[0] = toFloats(pairs.low & low);
+            out[1] = toFloats(pairs.low >> 16);
+            out[2] = toFloats(pairs.high & low);
+            out[3] = toFloats(pairs.high >> 16);
+        };
+        for (int slice = 0; slice < 2; ++slice) {
+            Floats value[4], weight[4];
+            if constexpr (Exact) {
+                for (int column = 0; column < 2; ++column) {
+                    const IntPair pair =
+                        loadPairs<8>(volume.floats + 2 * (offset + slice * kSlice + column), place, lanes);
+                    value[2 * column] = sameBits(pair.low);
+                    value[2 * column + 1] = sameBits(pair.high);
+                }
+            } else {
+                halves(volume.shorts, slice, value);
+            }
+            if (masked) halves(volume.present, slice, weight);
+            for (int i = 0; i < 4; ++i) {
+                Floats part = (slice == 0 ? Floats(1) - z : z) * (i < 2 ? Floats(1) - x : x) *
+                              ((i & 1) == 0 ? Floats(1) - y : y) * Floats(Bcc ? 0.5f : 1.0f);
+                Floats own = value[i];
+                if (masked) { // between two times samples have the weight of those at which they are present
+                    const Floats there = weight[i] * Floats(1.0f / kQuantum);
+                    own = own / larger(there, Floats(1e-9));
+                    part = choose(there >= Floats(volume::kPresentCoverage), part, Floats(0));
+                }
+                sum = sum + of(own, lanes) * part;
+                coverage += part;
+            }
+        }
+    }
     /// Twin: reference::Samples::read.
     struct OfParts {
         Found found;
@@ -245,23 +312,6 @@ inline Floats opacityAt(const LayerView& layer, const TablePlace& at, Mask lanes
 }
 inline Vec colorAt(const std::int32_t* table, const TablePlace& at, Mask lanes) {
     return {tableValue(table, at, 0, lanes), tableValue(table, at, 1, lanes), tableValue(table, at, 2, lanes)};
-}
-
-/// The lit colour of samples with surfaces of weight 0..1, see vis/optics/shade.h (without maps and shadows).
-inline Vec litColor(const CastJob& job, const Vec& albedo, const Vec& gradient, Floats weight, const Vec& place,
-                    const Vec& toViewer) {
-    const Floats squared = inner(gradient, gradient);
-    const Mask surface = (squared > Floats(0)) & (weight > Floats(0));
-    if (!anyOf(surface)) return albedo;
-    // Gradients of samples may be tiny: the squares of their lengths must not vanish.
-    const Vec whole(choose(surface, gradient.x, Floats(0)), choose(surface, gradient.y, Floats(0)),
-                    choose(surface, gradient.z, Floats(1)));
-    const FacingOf<Floats> at = facing(whole, toViewer);
-    const ReflectedOf<Floats> even = evenLight(at, albedo, *job.surface);
-    const Vec around = (even.diffuse + even.specular) * Floats(job.surface->ambient);
-    const Vec lit = around + reflectedLights<Floats>(job.lights, *job.surface, at, albedo, even, place,
-                                                     [](int) { return Floats(1); });
-    return blended(albedo, lit, choose(surface, weight, Floats(0)));
 }
 
 } // namespace tessera::vis::packet::TESSERA_LANES

@@ -17,7 +17,7 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
     const LayerView& layer = job.layers[0];
     const Fixed advance = fixedOf(packet.advance);
 
-    explicit SingleCaster(const CastJob& j, Packet& p) : Base{j, p} {}
+    explicit SingleCaster(const CastJob& j, Packet& p) : Base{{j, p}} {}
 
     Floats placeOf(Floats value) const {
         return multiplyAdd(value, Floats(layer.placeScale), Floats(layer.placeOffset));
@@ -263,10 +263,11 @@ template <bool Bcc, bool Exact> void castLayersOf(SingleCaster<Bcc, Exact>& cast
     const CastJob& job = caster.job;
     const LayerView& layer = job.layers[0];
     const bool one = job.layers.size() == 1 && !layer.gradient && !layer.volume->labels &&
-                     layer.volume->partCount == 0 && !caster.packet.bends;
+                     layer.volume->partCount == 0 && !caster.packet.bends &&
+                     layer.classification == Classification::Post;
     const bool plain = !job.focus.any;
-    if (one && layer.style == RayStyle::Composite && plain && !layer.shaded && !layer.look &&
-        caster.packet.holeCount == 0 && layer.colors.volume == nullptr)
+    if (one && layer.style == RayStyle::Composite && plain && !layer.shaded && !layer.look && !layer.byRegions &&
+        !job.light.volume && caster.packet.holeCount == 0 && layer.colors.volume == nullptr)
         caster.castUnshaded();
     else if (one && layer.style == RayStyle::Composite)
         caster.castComposite();
@@ -286,7 +287,7 @@ std::uint64_t castPacket(const CastJob& job, Packet& packet, glm::ivec2 begin, g
         packet.showEvents();
         return caster.taken;
     };
-    if (job.layers.empty()) return cast(Caster<Bcc, Exact>{job, packet}, [](const auto&) {});
+    if (job.layers.empty()) return cast(Caster<Bcc, Exact>{{job, packet}}, [](const auto&) {});
     return cast(SingleCaster<Bcc, Exact>(job, packet), [](auto& caster) { castLayersOf(caster); });
 }
 

@@ -56,6 +56,19 @@ bool drawsMarks(const Look* look) {
 
 } // namespace
 
+bool byRegions(const Technique& technique, const TransferFunction& function) {
+    const auto* volume = std::get_if<VolumeLayer>(&technique);
+    return volume && volume->style == RayStyle::Composite && volume->quantity == Quantity::Value &&
+           function.kind == TransferKind::Regions;
+}
+
+Classification classificationOf(const Technique& technique, const TransferFunction& function, bool categorical) {
+    const auto* volume = std::get_if<VolumeLayer>(&technique);
+    const bool chooses = volume && volume->style == RayStyle::Composite && volume->quantity == Quantity::Value &&
+                         !categorical && function.kind == TransferKind::Curve;
+    return chooses ? volume->classification : Classification::Post;
+}
+
 std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::DatasetInfo& info) {
     std::vector<DrawnChannel> out;
     bool exact = false; // all have samples of the same kind
@@ -73,8 +86,15 @@ std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::Datase
         const auto wholeOf = [&](int of) { return info.channelRange(info.channel(of)); };
         const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
         exact = exact || isNarrow(transferOfLayer(scene, info, layer, *channel).range, wholeOf(*channel)) ||
-                (volume && volume->quantity == Quantity::Gradient) || drawsMarks(lookOf(layer.technique));
-        out.push_back({int(i), {*channel, timesOf(info, *channel, time), scene.render.filter, false}});
+                (volume && volume->quantity == Quantity::Gradient) || drawsMarks(lookOf(layer.technique)) ||
+                byRegions(layer.technique, transferOfLayer(scene, info, layer, *channel).function);
+        Filter filter = scene.render.filter;
+        const TransferFunction& function = transferOfLayer(scene, info, layer, *channel).function;
+        const bool labels = info.parameters[std::size_t(info.channel(*channel).parameter)].categorical;
+        if (classificationOf(layer.technique, function, labels) == Classification::Pre &&
+            filter == Filter::AverageQuasi)
+            filter = Filter::Average; // samples themselves are classified
+        out.push_back({int(i), {*channel, timesOf(info, *channel, time), filter, false}});
         const std::optional<int> colors = info.findChannel(colorByOf(layer.technique));
         if (!colors) continue;
         exact = exact || isNarrow(transferOfColors(scene, info, layer, *colors).range, wholeOf(*colors));

@@ -14,22 +14,10 @@ std::string refusalOfFocus(const Scene& scene, const volume::DatasetInfo& info) 
     return brushed.size() > std::size_t(kMostBrushFields) ? "brushes of so many parameters" : "";
 }
 
-std::string refusalOfLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn) {
-    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
-    const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
-    if (!volume || volume->style != RayStyle::Composite || volume->quantity == Quantity::Gradient) return "";
-    if (volume->classification != Classification::Post) return "classification before or over samples";
-    if (transferOfLayer(scene, info, layer, drawn.channel.channel).function.kind != TransferKind::Curve)
-        return "transfer functions of two dimensions";
-    return "";
-}
-
 } // namespace
 
 std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
     if (std::string why = refusalOfFocus(scene, info); !why.empty()) return why;
-    if (scene.lighting.shadows.any()) return "shadows";
-    if (usesMaps(scene.lighting)) return "light from maps";
     if (scene.render.proxy != Proxy::Rays) return "proxy geometry";
     if (scene.render.adaptiveStep > 0) return "adaptive steps";
     if (scene.render.normalBits > 0) return "quantised normals";
@@ -38,7 +26,6 @@ std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, c
     const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
     int surfaces = 0, slices = 0;
     for (const DrawnChannel& each : drawn) {
-        if (std::string refusal = refusalOfLayer(scene, info, each); !refusal.empty()) return refusal;
         const Technique& technique = scene.layers[std::size_t(each.layer)].technique;
         surfaces += std::holds_alternative<IsoLayer>(technique);
         slices += std::holds_alternative<SliceLayer>(technique);

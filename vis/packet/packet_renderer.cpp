@@ -1,6 +1,8 @@
 #include "vis/packet/packet_renderer.h"
 
 #include "vis/optics/jitter.h"
+#include "vis/optics/mesh_medium.h"
+#include "vis/optics/shade.h"
 #include "vis/packed/packet_blend.h"
 #include "vis/packet/cast.h"
 #include "volume/base/parallel.h"
@@ -21,6 +23,16 @@ CastPixels casterOf([[maybe_unused]] InstructionSet with) {
     if (with == InstructionSet::Avx2) return castAvx2;
 #endif
     return castPlain;
+}
+
+using FillRow = void (*)(const CastJob& job, const LightGrid& grid, int row, glm::vec4* out);
+
+FillRow fillerOf([[maybe_unused]] InstructionSet with) {
+#ifdef TESSERA_X86
+    if (with == InstructionSet::Avx512) return mediumAvx512;
+    if (with == InstructionSet::Avx2) return mediumAvx2;
+#endif
+    return mediumPlain;
 }
 
 bool isReady(const std::future<SharedVolume>& coming) {
@@ -174,7 +186,7 @@ void PacketRenderer::draw(const Scene& scene, int pass, int passes, double stepF
                           const PacketGeometry& geometry) {
     const PixelBox& box = picture.box;
     if (!scene_ || (scene_->empty() && geometry.peels == 0)) return;
-    CastJob job = scene_->job(scene, source().info(), source().grid().lattice, picture.size, stepFactor);
+    CastJob job = scene_->job(scene, source().info(), source().grid().lattice, picture.size, stepFactor, packedLight_);
     job.jitter = glm::vec2(pixelJitter(pass));
     job.pass = std::uint32_t(pass);
     job.share = 1 / float(passes);
@@ -196,10 +208,44 @@ void PacketRenderer::draw(const Scene& scene, int pass, int passes, double stepF
     });
 }
 
-PacketPicture PacketRenderer::render(const Scene& scene, glm::ivec2 size) {
+void PacketRenderer::setLight(const SceneLight& light) {
+    if (light.maps == light_.maps && light.volume == light_.volume) return;
+    light_ = light;
+    packedLight_ = packLight(light);
+}
+
+void PacketRenderer::fillMedium(const Scene& scene, const LightGrid& grid, int begin, int end, Medium<float>& out) {
+    if (!scene_) return;
+    const CastJob job = scene_->job(scene, source().info(), source().grid().lattice, {1, 1}, 1, packedLight_);
+    const FillRow fill = fillerOf(with_);
+    parallelFor(std::size_t(end - begin), [&](std::size_t i) {
+        const int row = begin + int(i);
+        fill(job, grid, row, out.data() + std::size_t(row) * std::size_t(grid.size.x));
+    });
+}
+
+/// The light of a scene, whose samples are prepared.
+SceneLight PacketRenderer::lightOf(const Scene& scene, const CubeMap* surroundings) {
+    const volume::DatasetInfo& info = source().info();
+    SceneLight out;
+    out.maps = illuminate(scene.lighting, scene.camera, surroundings).maps;
+    if (!scene.lighting.shadows.any()) return out;
+    const LightGrid grid = lightGrid(worldFrame(info.bounds, scene.stretch), scene.lighting.shadows);
+    Medium<float> medium(grid.count());
+    fillMedium(scene, grid, 0, grid.size.y * grid.size.z, medium);
+    const Medium<float> meshes = meshMedium<float>(grid, meshCasters(scene, info));
+    for (std::size_t i = 0; i < medium.size(); ++i) medium[i] += meshes[i];
+    const std::vector<PlacedLight> lights = placeLights(scene.lighting, scene.camera);
+    out.volume =
+        std::make_shared<const LightVolume<float>>(spreadLight<float>(grid, medium, lights, scene.lighting.shadows));
+    return out;
+}
+
+PacketPicture PacketRenderer::render(const Scene& scene, glm::ivec2 size, const CubeMap* surroundings) {
     PacketPicture picture;
     picture.begin(size, {{0, 0}, size}, false);
     prepare(scene);
+    setLight(lightOf(scene, surroundings));
     const int passes = std::max(scene.render.samples, 1);
     for (int pass = 0; pass < passes; ++pass) draw(scene, pass, passes, 1, picture);
     return picture;

@@ -88,11 +88,16 @@ public:
     bool prefetch(const Scene& scene);
     /// Reads samples and makes tables for a scene. Throws Error when the source does.
     void prepare(const Scene& scene);
+    /// What lights the next pictures besides lamps: nothing, until this is called. Their volume must be of the scenes.
+    void setLight(const SceneLight& light);
+    /// The extinction of rows [begin, end) of a light grid (y + z * size.y), each of which begins at cell row * size.x
+    /// of `out`; after prepare().
+    void fillMedium(const Scene& scene, const LightGrid& grid, int begin, int end, Medium<float>& out);
     /// Adds one pass of a picture with `passes` of them; after prepare(). `geometry`: of the same box.
     void draw(const Scene& scene, int pass, int passes, double stepFactor, PacketPicture& picture,
               const PacketGeometry& geometry = {});
-    /// The whole picture with all passes.
-    PacketPicture render(const Scene& scene, glm::ivec2 size);
+    /// The whole picture with all passes, lit as the scene says; `surroundings` of Environment::Picture.
+    PacketPicture render(const Scene& scene, glm::ivec2 size, const CubeMap* surroundings = nullptr);
 
     InstructionSet instructions() const { return with_; }
     std::size_t volumes() const { return held_.size(); }    ///< that the last scene draws
@@ -101,6 +106,7 @@ public:
     void countSamples(bool yes) { counts_ = yes, samples_ = 0; }
 
 private:
+    SceneLight lightOf(const Scene& scene, const CubeMap* surroundings);
     const volume::BrickSource& source() const { return *volumes_->source(); }
 
     InstructionSet with_;
@@ -108,6 +114,8 @@ private:
     std::vector<SharedVolume> held_; ///< of the last scene
     std::unique_ptr<PacketScene> scene_;
     Scene prepared_; ///< the scene of scene_
+    SceneLight light_;
+    PackedLight packedLight_; ///< of light_
     bool counts_ = false;
     std::uint64_t samples_ = 0;
 };

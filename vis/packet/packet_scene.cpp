@@ -1,5 +1,6 @@
 #include "vis/packet/packet_scene.h"
 
+#include "vis/optics/preintegration.h"
 #include "vis/optics/ray_setup.h"
 #include "vis/packet/packet_table.h"
 #include "vis/transfer/block_distance.h"
@@ -37,17 +38,18 @@ namespace {
 struct Tabled {
     Table table;
     glm::vec2 places;
+    glm::vec2 toRange{1, 0}; ///< LayerView::toRange
 };
 
 /// `alone`: each sample is classified by itself, as in composite layers and slices. Then a range without width
 /// separates values below and above, and labels lie on entries; else all places are those of the range.
-Tabled tabled(const Transfer& transfer, const PacketVolume& volume, bool alone) {
+Tabled tabled(const Transfer& transfer, const PacketVolume& volume, bool alone, bool regions = false) {
     const auto [function, range] = transfer;
     const double width = range.hi - range.lo;
     if (width == 0) {
         constexpr double kSteep = 1e12;
         if (!alone) return {makeTable(function, range), glm::vec2(0, 0.5f)};
-        return {makeTable(function, {0, 1}),
+        return {makeTable(function, {0, 1}, {}, regions),
                 glm::vec2(volume.scale * kSteep, 0.5 + (volume.offset - range.lo) * kSteep)};
     }
     Range domain = range;
@@ -55,7 +57,9 @@ Tabled tabled(const Transfer& transfer, const PacketVolume& volume, bool alone) 
     if (alone && volume.labels && labels > 0 && labels < kTableEntries)
         domain = {first, first + (kTableEntries - 1) / std::floor((kTableEntries - 1) / labels)};
     const double over = domain.hi - domain.lo;
-    return {makeTable(function, range, domain), glm::vec2(volume.scale / over, (volume.offset - domain.lo) / over)};
+    return {makeTable(function, range, domain, regions),
+            glm::vec2(volume.scale / over, (volume.offset - domain.lo) / over),
+            glm::vec2(over / width, (domain.lo - range.lo) / width)};
 }
 
 } // namespace
@@ -75,6 +79,18 @@ LayerView PacketScene::viewOfLayer(const Layer& layer, glm::vec2 places, std::si
 const std::int32_t* PacketScene::keep(std::vector<std::int32_t> entries) {
     tables_.push_back(std::move(entries));
     return tables_.back().data();
+}
+
+IntegralView PacketScene::integralsOf(const TransferFunction& function, Range range) {
+    const IntegralFunctions functions = integralFunctions(function, range);
+    std::vector<float>&density = integrals_.emplace_back(), &integral = integrals_.emplace_back();
+    for (const glm::dvec4& each : functions.density)
+        for (int c = 0; c < 4; ++c) density.push_back(float(each[c]));
+    for (const glm::dvec4& each : functions.integral) {
+        for (int c = 0; c < 4; ++c) integral.push_back(float(each[c]));
+        for (int c = 0; c < 4; ++c) integral.push_back(float(each[c] - double(float(each[c]))));
+    }
+    return {int(functions.last()), density.data(), integral.data()};
 }
 
 /// `index` of a volume: that of the colouring channel.
@@ -127,13 +143,19 @@ void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, 
     const auto* own = std::get_if<VolumeLayer>(&layer.technique);
     const bool gradient = own && own->quantity == Quantity::Gradient;
     const bool alone = own && own->style == RayStyle::Composite && !gradient;
-    const auto [table, places] = tabled(transfer, volume, alone);
+    const bool regions = byRegions(layer.technique, function);
+    const auto [table, places, toRange] = tabled(transfer, volume, alone, regions);
     LayerView out = viewOfLayer(layer, places, index);
     out.opacityScale = table.opacityScale;
     out.table = keep(table.entries);
     packed_.push_back(packedTable(function, alone && width == 0 ? Range{0, 1} : range));
     out.packed = packed_.back().data();
     markShown(table, out);
+    if (regions) out.regions = regions_.emplace_back(function.regions);
+    out.byRegions = regions;
+    out.toRange = toRange;
+    out.classification = classificationOf(layer.technique, function, volume.labels);
+    if (out.classification == Classification::PreIntegrated) out.integrals = integralsOf(function, range);
     const double perRange = width != 0 && !volume.labels ? std::abs(volume.scale / width) : 0;
     out.gradient = gradient;
     out.gradientScale = float(perRange / double(function.gradientTop));
@@ -168,41 +190,10 @@ void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, 
             };
     }
     layers_.push_back(out);
-    skip_ = united(std::move(skip_), fullBlocks(volume, edge, shows));
+    SkipMap full = fullBlocks(volume, edge, shows);
+    if (out.classification == Classification::PreIntegrated) widen(full); // half a step around samples counts
+    skip_ = united(std::move(skip_), full);
 }
-
-namespace {
-
-/// Largest score of each block of a maximum or minimum, rounded up.
-std::vector<std::uint8_t> scoreBounds(const PacketVolume& volume, const LayerView& layer, const SkipMap& map) {
-    std::vector<std::uint8_t> out(map.blocks() + 3); // they are read four at a time
-    std::size_t i = 0;
-    const int factor = map.edge / kFine;
-    for (int z = 0; z < map.count.z; ++z)
-        for (int y = 0; y < map.count.y; ++y)
-            for (int x = 0; x < map.count.x; ++x, ++i) {
-                double best = 0;
-                const glm::ivec3 first = glm::ivec3(x, y, z) * factor, last = glm::min(first + factor, volume.blocks);
-                for (int fz = first.z; fz < last.z; ++fz)
-                    for (int fy = first.y; fy < last.y; ++fy)
-                        for (int fx = first.x; fx < last.x; ++fx) {
-                            const std::size_t block =
-                                (std::size_t(fz) * std::size_t(volume.blocks.y) + std::size_t(fy)) *
-                                    std::size_t(volume.blocks.x) +
-                                std::size_t(fx);
-                            if (!(volume.lo[block] <= volume.hi[block])) continue;
-                            for (const float bound : {volume.lo[block], volume.hi[block]}) {
-                                const double place = std::clamp(
-                                    double(bound) * double(layer.placeScale) + double(layer.placeOffset), 0.0, 1.0);
-                                best = std::max(best, layer.style == RayStyle::Minimum ? 1 - place : place);
-                            }
-                        }
-                out[i] = std::uint8_t(std::min(255.0, std::ceil(best * 255 + 0.01)));
-            }
-    return out;
-}
-
-} // namespace
 
 /// Brushes in samples of the volumes that follow those of the layers.
 void PacketScene::addBrushes(const Scene& scene, const volume::DatasetInfo& info) {
@@ -279,7 +270,12 @@ PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, st
         next += each.colors ? 2 : 1;
     }
     if (layers_.size() == 1 && (layers_[0].style == RayStyle::Maximum || layers_[0].style == RayStyle::Minimum))
-        bound_ = scoreBounds(*sampled[0], layers_[0], skip_);
+        bound_ = scoreBounds(*sampled[0], skip_, [&](float sample) {
+            const LayerView& layer = layers_[0];
+            const double at = double(sample) * double(layer.placeScale) + double(layer.placeOffset);
+            const double place = std::clamp(at, 0.0, 1.0);
+            return layer.style == RayStyle::Minimum ? 1 - place : place;
+        });
     for (; next < volumes_.size(); ++next) sampled.push_back(volumes_[next].get());
     for (const PacketVolume* const volume : sampled) {
         if (volume->absent.empty()) continue;
@@ -323,7 +319,7 @@ unsigned octantsOf(const CastJob& job) {
 } // namespace
 
 CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice,
-                         glm::ivec2 size, double stepFactor) {
+                         glm::ivec2 size, double stepFactor, const PackedLight& around) {
     const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
     CastJob job;
     job.size = size;
@@ -360,11 +356,15 @@ CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, co
     job.focus.any = !brushes_.empty() || !lenses_.empty();
     job.stencil = volume::gradientStencil(lattice.kind, scene.render.gradient);
     lighting_ = scene.lighting;
-    lights_ = placeLights(scene.lighting, scene.camera);
-    job.surface = &lighting_;
+    lights_ = ownLights(scene.lighting, scene.camera);
+    job.light.surface = &lighting_;
+    job.light.lights = lights_;
+    job.light.maps = around.diffuse.edge > 0;
+    job.light.fromWorld = around.fromWorld;
+    if (!around.visible.empty()) job.light.setVolume(around.grid, !around.scattered.empty());
+    job.around = &around;
     job.middle = middle.direction;
     if (!looks_.empty()) job.look = lookView(scene, frame.halfSize, job.cell, size);
-    job.lights = lights_;
     job.jitterStarts = scene.render.jitter;
     if (empty()) return job;
     job.bcc = volumes_[0]->bcc;

@@ -25,13 +25,14 @@ public:
 
     bool empty() const { return layers_.empty() && slices_.empty(); }
     /// A job without a picture. `scene` may differ from that of the constructor in its camera, clips, lighting, steps
-    /// and the places of its lenses and slices.
+    /// and the places of its lenses and slices. The job refers to `around`.
     CastJob job(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice, glm::ivec2 size,
-                double stepFactor);
+                double stepFactor, const PackedLight& around);
 
 private:
     void addBrushes(const Scene& scene, const volume::DatasetInfo& info);
     LayerView viewOfLayer(const Layer& layer, glm::vec2 places, std::size_t index) const;
+    IntegralView integralsOf(const TransferFunction& function, Range range);
     const std::int32_t* keep(std::vector<std::int32_t> entries);
     ColorView colorsOf(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
                        std::size_t index);
@@ -43,6 +44,8 @@ private:
     std::vector<VolumeView> views_;
     std::vector<std::vector<VolumeView>> partViews_; ///< of each volume
     std::deque<Look> looks_;                         ///< of layers
+    std::deque<std::vector<TransferRegion>> regions_;
+    std::deque<std::vector<float>> integrals_;
     std::vector<std::vector<std::int32_t>> tables_;
     std::vector<std::vector<std::uint32_t>> packed_;
     std::vector<LayerView> layers_;

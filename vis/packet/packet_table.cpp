@@ -9,12 +9,32 @@
 
 namespace tessera::vis::packet {
 
-Table makeTable(const TransferFunction& function, Range range, std::optional<Range> domain) {
+namespace {
+
+/// Whether a region may have opacity at some place [lo, hi], whatever the gradient.
+bool anyRegion(const TransferFunction& function, double lo, double hi) {
+    return std::ranges::any_of(function.regions, [&](const TransferRegion& region) {
+        const double x = region.centre.x, y = region.centre.y, wide = 0.5 * double(region.size.x),
+                     high = 0.5 * double(region.size.y);
+        return region.opacity > 0 && hi >= x - wide && lo <= x + wide && y + high >= 0 && y - high <= 1;
+    });
+}
+
+} // namespace
+
+Table makeTable(const TransferFunction& function, Range range, std::optional<Range> domain, bool byRegions) {
     const Range over = domain.value_or(range);
+    const auto valueAt = [&](double entry) { return glm::mix(over.lo, over.hi, entry / (kTableEntries - 1)); };
+    const auto placeAt = [&](double entry) {
+        return std::clamp((valueAt(entry) - range.lo) / (range.hi - range.lo), 0.0, 1.0);
+    };
     std::vector<glm::dvec4> colors;
     for (int i = 0; i < kTableEntries; ++i) {
-        const glm::dvec4 srgb = evaluate(function, range, glm::mix(over.lo, over.hi, double(i) / (kTableEntries - 1)));
-        colors.emplace_back(linearFromSrgb(glm::dvec3(srgb)), srgb.a);
+        const glm::dvec4 srgb = evaluate(function, range, valueAt(i));
+        if (byRegions)
+            colors.emplace_back(glm::dvec3(srgb), anyRegion(function, placeAt(i - 1), placeAt(i + 1)) ? 1 : 0);
+        else
+            colors.emplace_back(linearFromSrgb(glm::dvec3(srgb)), srgb.a);
     }
     double most = 0;
     for (const glm::dvec4& color : colors) most = std::max(most, color.a);

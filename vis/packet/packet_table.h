@@ -15,8 +15,9 @@ struct Table {
     std::vector<float> opacity; ///< of each entry, in kQuantum
     float opacityScale = 1;
 };
-/// Its first and last entry are those of `domain`, by default of `range`.
-Table makeTable(const TransferFunction& function, Range range, std::optional<Range> domain = {});
+/// Its first and last entry are those of `domain`, by default of `range`. `byRegions`: see LayerView::regions.
+Table makeTable(const TransferFunction& function, Range range, std::optional<Range> domain = {},
+                bool byRegions = false);
 
 /// LayerView::packed.
 std::vector<std::uint32_t> packedTable(const TransferFunction& function, Range range);

@@ -300,7 +300,7 @@ void RenderStages::refine(ViewTarget& target, const RenderCall& call, Clock::tim
     ViewLight::Progress light;
     if (!probing) {
         sayLimits(call);
-        light = target.light.bind(tools, call, {residency.revision(), target.demand.time().value_or(0)});
+        light = target.light.bind(tools, call, {residency.revision(), target.demand.time().value_or(0), false});
         if (light.changed) target.redraw(target.buffers.everything());
     }
     if (!ready(target, call, call, answer, recipe) || !presents) return postpone(target, scene);

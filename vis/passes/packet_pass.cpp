@@ -47,7 +47,10 @@ std::string RenderStages::refusalOfPackets(const ViewTarget& target, const Rende
 bool RenderStages::chooseEngine(ViewTarget& target, const RenderCall& call, FrameStatus& status) {
     const Engine asked = call.scene.render.engine;
     const bool wanted = asked == Engine::Processor || (asked == Engine::Automatic && options.packets);
-    if (target.packets.renderer.setVolumes(volumes)) target.packets.failed = false;
+    if (target.packets.renderer.setVolumes(volumes)) {
+        target.packets.failed = false;
+        ++target.packets.revision;
+    }
     volumes->keep(std::min(options.memoryBudget, std::size_t(call.scene.render.limits.brickMemory) << 20) / 2);
     const bool rays = !call.plan.layers.empty(); // slices and meshes alone are quickly drawn
     const bool possible = wanted && rays && !options.countSamples;
@@ -109,11 +112,19 @@ void RenderStages::refineByPackets(ViewTarget& target, const RenderCall& call, C
     const bool moving = call.request.moving;
     if (state.full() ? state.converged() || moving : state.reduced() && moving) return;
     if (!call.request.wait && !presentable(target, call.scene)) return postpone(target, call.scene);
+    packet::PacketRenderer& renderer = target.packets.renderer;
+    const LightBaker::Rows rows = [&](const LightGrid& grid, int begin, int end, Medium<float>& out) {
+        renderer.fillMedium(call.scene, grid, begin, end, out);
+    };
+    const LightBaker::Medium medium{target.packets.revision, call.scene.time, true};
+    const ViewLight::Progress light = target.light.bind(tools, call, medium, rows);
+    if (light.changed) target.redraw(target.buffers.everything());
+    renderer.setLight(target.light.bound(call.scene.lighting));
     const RayPrograms programs{.packets = &target.packets,
                                .geometry = call.plan.peels > 0 ? &target.geometry.buffer() : nullptr,
                                .beyondPlan = {},
                                .beyondScene = {}};
-    drawWithin(target, call, programs, start, true);
+    drawWithin(target, call, programs, start, light.done);
 }
 
 namespace {

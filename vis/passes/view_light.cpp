@@ -4,13 +4,21 @@
 
 namespace tessera::vis {
 
-ViewLight::Progress ViewLight::bind(RenderTools& tools, const RenderCall& call, const LightBaker::Medium& medium) {
+ViewLight::Progress ViewLight::bind(RenderTools& tools, const RenderCall& call, const LightBaker::Medium& medium,
+                                    const LightBaker::Rows& rows) {
     const Lighting& lighting = call.scene.lighting;
     const GLuint first = GLuint(rayUnits(call.plan).light);
     Progress maps, volume;
     if (usesMaps(lighting)) maps = bindMaps(tools, call, first);
-    if (lighting.shadows.any()) volume = bindVolume(tools, call, medium, first + 2);
+    if (lighting.shadows.any()) volume = bindVolume(tools, call, medium, rows, first + 2);
     return {maps.done && volume.done, maps.changed || volume.changed};
+}
+
+packet::SceneLight ViewLight::bound(const Lighting& lighting) const {
+    packet::SceneLight out;
+    if (usesMaps(lighting)) out.maps = maps_.maps();
+    if (lighting.shadows.any()) out.volume = baker_.light();
+    return out;
 }
 
 ViewLight::Progress ViewLight::bindMaps(RenderTools& tools, const RenderCall& call, GLuint firstUnit) {
@@ -32,7 +40,7 @@ void ViewLight::bindTextures(const RenderTools& tools, GLuint firstUnit) const {
 }
 
 ViewLight::Progress ViewLight::bindVolume(RenderTools& tools, const RenderCall& call, const LightBaker::Medium& medium,
-                                          GLuint firstUnit) {
+                                          const LightBaker::Rows& rows, GLuint firstUnit) {
     const RayPlan& plan = call.plan;
     const FrameRequest& request = call.request;
     if (plan.layers.empty() && (plan.peels == 0 || !call.scene.lighting.shadows.meshes)) { // slices cast no shadow
@@ -40,13 +48,31 @@ ViewLight::Progress ViewLight::bindVolume(RenderTools& tools, const RenderCall& 
         glBindTextureUnit(firstUnit + 1, tools.noLight.name());
         return {};
     }
+    Progress progress;
+    bool updated = true;
+    if (rows)
+        baker_.update(call.scene, call.info(), medium, rows, request.budgetMs / 3, request.wait);
+    else
+        updated = drawVolume(tools, call, medium, progress);
+    bindTextures(tools, firstUnit);
+    if (!updated) return progress;
+    const bool changed = version_ != baker_.version();
+    version_ = baker_.version();
+    return {baker_.ready(), changed};
+}
+
+/// Continues with extinction that OpenGL draws; false, with `progress`, while its program is not ready.
+bool ViewLight::drawVolume(RenderTools& tools, const RenderCall& call, const LightBaker::Medium& medium,
+                           Progress& progress) {
+    const RayPlan& plan = call.plan;
+    const FrameRequest& request = call.request;
     ProgramRecipe recipe = rayRecipe(plan, call.scene, call.grid(), false);
     recipe.vertex = "screen.vert.glsl";
     recipe.fragment = "light_medium.frag.glsl";
     const ProgramAnswer answer = request.wait ? ProgramAnswer{tools.programs.find(recipe), ProgramStage::Ready}
                                               : tools.programs.request(recipe, request.budgetMs / 4);
-    bindTextures(tools, firstUnit);
-    if (!answer.program) return {request.wait || answer.stage == ProgramStage::Failed, false};
+    progress = {request.wait || answer.stage == ProgramStage::Failed, false};
+    if (!answer.program) return false;
     const std::function<void(const Program&)> setUniforms = [&](const Program& program) {
         setRayUniforms(program, plan, call.scene, call.info(), call.grid(), request.size, 1);
     };
@@ -54,14 +80,12 @@ ViewLight::Progress ViewLight::bindVolume(RenderTools& tools, const RenderCall& 
         setUniforms(*answer.program);
         const Texture like = makeTexture2D({1, 1}, kMediumFormat, GL_NEAREST, "like the light volume's medium");
         tools.programs.warmUp(recipe, makeFramebuffer({like.name()}, "like the light volume's medium"));
-        return {false, false};
+        progress = {false, false};
+        return false;
     }
     const LightBaker::Pass pass{*answer.program, setUniforms, tools.vertices.name(), !tools.driver.timerQueries};
     baker_.update(call.scene, call.info(), medium, pass, request.budgetMs / 3, request.wait);
-    const bool changed = version_ != baker_.version();
-    version_ = baker_.version();
-    bindTextures(tools, firstUnit);
-    return {baker_.ready(), changed};
+    return true;
 }
 
 } // namespace tessera::vis

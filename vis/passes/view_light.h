@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/packed/packed_light.h"
 #include "vis/passes/render_tools.h"
 #include "vis/raycast/light_baker.h"
 #include "vis/raycast/light_uniforms.h"
@@ -14,12 +15,17 @@ public:
         bool changed = false; ///< pictures drawn with the former light are out of date
     };
     /// Updates and binds the cube maps and the light volume. `medium`: inputs of the volume's extinction besides the
-    /// scene.
-    Progress bind(RenderTools& tools, const RenderCall& call, const LightBaker::Medium& medium);
+    /// scene. `rows`: the processor computes it; else OpenGL draws it.
+    Progress bind(RenderTools& tools, const RenderCall& call, const LightBaker::Medium& medium,
+                  const LightBaker::Rows& rows = {});
+    /// What is bound, as far as the scene uses it.
+    packet::SceneLight bound(const Lighting& lighting) const;
 
 private:
     Progress bindMaps(RenderTools& tools, const RenderCall& call, GLuint firstUnit);
-    Progress bindVolume(RenderTools& tools, const RenderCall& call, const LightBaker::Medium& medium, GLuint firstUnit);
+    Progress bindVolume(RenderTools& tools, const RenderCall& call, const LightBaker::Medium& medium,
+                        const LightBaker::Rows& rows, GLuint firstUnit);
+    bool drawVolume(RenderTools& tools, const RenderCall& call, const LightBaker::Medium& medium, Progress& progress);
     void bindTextures(const RenderTools& tools, GLuint firstUnit) const;
 
     LightMapTextures maps_;

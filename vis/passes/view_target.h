@@ -49,6 +49,7 @@ struct PacketView {
     packet::PacketGeometry geometry; ///< that its rays met
     Pace pace{false};                ///< of rays cast by the processor, measured by the clock
     int time = -1, step = 0;         ///< index of the stored time drawn last, and the way from the one before
+    std::uint64_t revision = 0;      ///< increases with each data set
     bool failed = false; ///< its samples could not be read: OpenGL draws these data, without what is damaged
 };
 

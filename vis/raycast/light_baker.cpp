@@ -42,8 +42,8 @@ bool LightBaker::ready() const {
     return version_ > 0 && same(wanted_, shown_);
 }
 
-void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, const Medium& medium, const Pass& pass,
-                        double budgetMs, bool wait) {
+void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, const Medium& medium,
+                        const std::variant<Pass, Rows>& how, double budgetMs, bool wait) {
     const LightGrid grid = lightGrid(worldFrame(info.bounds, scene.stretch), scene.lighting.shadows);
     if (MediumKey key = keyOf(scene, grid, medium); mediumOf_ != key) {
         mediumOf_ = std::move(key);
@@ -59,8 +59,12 @@ void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, con
     }
     wanted_.lights = placeLights(scene.lighting, scene.camera);
     wanted_.shadows = scene.lighting.shadows;
-    if (!mediumReady_) drawMedium(pass, budgetMs, wait);
-    if (!mediumReady_ && !readMedium(wait)) return;
+    if (const auto* rows = std::get_if<Rows>(&how)) {
+        if (!mediumReady_ && !computeMedium(*rows, budgetMs, wait)) return;
+    } else {
+        if (!mediumReady_) drawMedium(std::get<Pass>(how), budgetMs, wait);
+        if (!mediumReady_ && !readMedium(wait)) return;
+    }
     // A running propagation is finished and shown even if a light has moved since, so that light updates while the
     // camera turns.
     while (true) {
@@ -113,6 +117,24 @@ bool LightBaker::readMedium(bool wait) {
     return true;
 }
 
+/// Computes some rows of the extinction; false while some are missing.
+bool LightBaker::computeMedium(const Rows& rows, double budgetMs, bool wait) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point begin = Clock::now();
+    const int all = grid_.size.y * grid_.size.z, together = wait ? all : 2 * grid_.size.y;
+    if (rows_ == 0) read_ = std::make_shared<vis::Medium<float>>(grid_.count());
+    while (rows_ < all) {
+        const int end = std::min(rows_ + together, all);
+        rows(grid_, rows_, end, *read_);
+        rows_ = end;
+        if (!wait && std::chrono::duration<double, std::milli>(Clock::now() - begin).count() > budgetMs) break;
+    }
+    if (rows_ < all) return false;
+    medium_ = std::move(read_);
+    mediumReady_ = true;
+    return true;
+}
+
 void LightBaker::start() {
     job_ = std::make_shared<Job>();
     job_->key = wanted_;
@@ -125,27 +147,28 @@ void LightBaker::start() {
                 for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += (*job->medium)[i];
                 job->medium = std::make_shared<const vis::Medium<float>>(std::move(sum));
             }
-            job->result = spreadLight<float>(grid, *job->medium, job->key.lights, job->key.shadows, stop);
+            job->result = std::make_shared<const LightVolume<float>>(
+                spreadLight<float>(grid, *job->medium, job->key.lights, job->key.shadows, stop));
             job->done = !stop.stop_requested();
         });
 }
 
 /// Uploads the light of a finished job.
 void LightBaker::take() {
-    const LightVolume<float>& light = job_->result;
+    const LightVolume<float>& light = *job_->result;
     const glm::ivec3 size = light.grid.size;
-    if (!visible_ || shownGrid_.size != size) visible_ = makeTexture3D(size, GL_RGBA16, GL_LINEAR, "light volume");
+    const bool other = !light_ || light_->grid.size != size;
+    if (!visible_ || other) visible_ = makeTexture3D(size, GL_RGBA16, GL_LINEAR, "light volume");
     glTextureSubImage3D(visible_.name(), 0, 0, 0, 0, size.x, size.y, size.z, GL_RGBA, GL_FLOAT, light.visible.data());
     if (!light.scattered.empty()) {
-        if (!scattered_ || shownGrid_.size != size)
-            scattered_ = makeTexture3D(size, GL_RGBA32F, GL_LINEAR, "scattered light");
+        if (!scattered_ || other) scattered_ = makeTexture3D(size, GL_RGBA32F, GL_LINEAR, "scattered light");
         std::vector<glm::vec4> texels;
         for (const glm::vec3& each : light.scattered) texels.emplace_back(each, 0);
         glTextureSubImage3D(scattered_.name(), 0, 0, 0, 0, size.x, size.y, size.z, GL_RGBA, GL_FLOAT, texels.data());
     } else {
         scattered_ = {};
     }
-    shownGrid_ = light.grid;
+    light_ = job_->result;
     shown_ = job_->key;
     medium_ = job_->medium;
     casting_ = false;

@@ -10,19 +10,22 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <variant>
 
 namespace tessera::vis {
 
 inline constexpr GLenum kMediumFormat = GL_RGBA32F; ///< of the texture of extinction
 
-/// Updates the light volume textures of a picture (vis/optics/light_volume.h) without blocking the window: extinction
-/// is drawn a few rows per call; a thread adds meshes and propagates light. The former volume is used until then.
+/// Updates the light volume of a picture and its textures (vis/optics/light_volume.h) without blocking the window:
+/// extinction is drawn or computed a few rows per call; a thread adds meshes and propagates light. The former volume is
+/// used until then.
 class LightBaker {
 public:
     /// Inputs of the extinction besides the scene.
     struct Medium {
         std::uint64_t revision = 0; ///< of the resident data
         double time = 0;            ///< of the data
+        bool computed = false;      ///< by Rows, not drawn by a Pass
         bool operator==(const Medium&) const = default;
     };
 
@@ -33,17 +36,20 @@ public:
         GLuint vertices = 0;
         bool waits = true; ///< wait for the driver after some rows, to stay within the budget
     };
-    /// Continues the work for about `budgetMs`, or until it is finished if `wait`. Changes the framebuffer, viewport
-    /// and scissor.
-    void update(const Scene& scene, const volume::DatasetInfo& info, const Medium& medium, const Pass& pass,
-                double budgetMs, bool wait);
+    /// Computes rows [begin, end) of the extinction, y + z * size.y, into their places of `out`.
+    using Rows = std::function<void(const LightGrid& grid, int begin, int end, vis::Medium<float>& out)>;
+    /// Continues the work for about `budgetMs`, or until it is finished if `wait`. With a Pass it changes the
+    /// framebuffer, viewport and scissor.
+    void update(const Scene& scene, const volume::DatasetInfo& info, const Medium& medium,
+                const std::variant<Pass, Rows>& how, double budgetMs, bool wait);
     /// Whether the textures are up to date.
     bool ready() const;
     /// Number of finished volumes; 0: none yet.
     std::uint64_t version() const { return version_; }
+    /// The volume of the textures; null: none yet.
+    const std::shared_ptr<const LightVolume<float>>& light() const { return light_; }
     GLuint visible() const { return visible_.name(); }
     GLuint scattered() const { return scattered_.name(); }
-    const LightGrid& grid() const { return shownGrid_; }
 
 private:
     /// Inputs of one light propagation.
@@ -55,12 +61,13 @@ private:
     struct Job {
         Spread key;
         std::shared_ptr<const vis::Medium<float>> medium; ///< including the meshes
-        LightVolume<float> result;
+        std::shared_ptr<const LightVolume<float>> result;
         std::atomic<bool> done = false;
     };
     static bool same(const Spread& a, const Spread& b);
     void drawMedium(const Pass& pass, double budgetMs, bool wait);
     bool readMedium(bool wait);
+    bool computeMedium(const Rows& rows, double budgetMs, bool wait);
     void start();
     void take();
 
@@ -86,10 +93,10 @@ private:
     MeshCasters casters_;
     bool casting_ = false; ///< `casters_` are not yet added to the extinction
     std::shared_ptr<const vis::Medium<float>> medium_;
-    std::shared_ptr<vis::Medium<float>> read_; ///< being read back
+    std::shared_ptr<vis::Medium<float>> read_; ///< being read back or computed
     std::shared_ptr<Job> job_;
     Texture visible_, scattered_;
-    LightGrid shownGrid_;
+    std::shared_ptr<const LightVolume<float>> light_;
     std::uint64_t version_ = 0;
     std::jthread worker_; ///< last member: joined before the data it uses are destroyed
 };

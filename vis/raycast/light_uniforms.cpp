@@ -10,11 +10,6 @@ namespace tessera::vis {
 
 namespace {
 
-/// The lights that the shader evaluates individually.
-std::vector<PlacedLight> ownLights(const Scene& scene) {
-    return scene.lighting.inMaps ? std::vector<PlacedLight>() : placeLights(scene.lighting, scene.camera);
-}
-
 void upload(Texture& texture, const CubeMap& map, const char* label) {
     if (!texture) texture = makeTextureCube(map.edge, GL_RGBA32F, label);
     std::vector<glm::vec4> texels;
@@ -25,7 +20,7 @@ void upload(Texture& texture, const CubeMap& map, const char* label) {
 } // namespace
 
 void addLighting(ProgramRecipe& recipe, const Scene& scene) {
-    const std::vector<PlacedLight> lights = ownLights(scene);
+    const std::vector<PlacedLight> lights = ownLights(scene.lighting, scene.camera);
     const bool points = std::any_of(lights.begin(), lights.end(), [](const PlacedLight& light) { return light.point; });
     recipe.slots["shade"] =
         scene.lighting.model == LightModel::Phong ? "slots/shade_phong.glsl" : "slots/shade_physical.glsl";
@@ -38,12 +33,10 @@ void addLighting(ProgramRecipe& recipe, const Scene& scene) {
 
 void setLightUniforms(const Program& program, const Scene& scene, const WorldFrame& frame, int firstUnit) {
     const Lighting& lighting = scene.lighting;
-    Illumination light;
-    light.surface = lighting;
-    light.lights = ownLights(scene);
+    const std::vector<PlacedLight> lights = ownLights(lighting, scene.camera);
     std::vector<glm::vec4> places;
     std::vector<glm::vec3> colors;
-    for (const PlacedLight& each : light.lights) {
+    for (const PlacedLight& each : lights) {
         places.emplace_back(each.place, each.point ? 1 : 0);
         colors.emplace_back(each.color);
     }
@@ -61,7 +54,7 @@ void setLightUniforms(const Program& program, const Scene& scene, const WorldFra
     program.set("mapShare", glm::vec2(lighting.diffuse, lighting.specular));
     program.set("mapFromWorld", glm::mat3(mapFromWorld(lighting, scene.camera)));
     program.set("shadowStrength", glm::vec2(lighting.shadows.strength, lighting.shadows.occlusion));
-    const FlatShares shares = flatShares(light);
+    const FlatShares shares = flatShares(lighting, lights);
     program.set("flatShares", glm::vec4(shares.lights, shares.everywhere));
     const glm::dvec3 cell = lightGrid(frame, lighting.shadows).cell();
     program.set("lightCell", float(std::max({cell.x, cell.y, cell.z})));
@@ -98,9 +91,9 @@ bool LightMapTextures::update(const Lighting& lighting, const Camera& camera, bo
     if (same) return here;
     if (!madeFor_ || !sameEnvironment(*madeFor_, lighting))
         environment_ = environmentMaps(lighting, picture_ ? &*picture_ : nullptr);
-    const LightMaps maps = lightMaps(lighting, camera, environment_);
-    upload(diffuse_, maps.diffuse, "diffuse light");
-    upload(specular_, maps.specular, "mirrored light");
+    maps_ = std::make_shared<const LightMaps>(lightMaps(lighting, camera, environment_));
+    upload(diffuse_, maps_->diffuse, "diffuse light");
+    upload(specular_, maps_->specular, "mirrored light");
     madeFor_ = lighting;
     camera_ = camera;
     ++version_;

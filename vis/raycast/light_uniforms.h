@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <future>
+#include <memory>
 #include <optional>
 
 /// Program constants and uniforms for lighting (vis/shaders/lib/light_bindings.glsl).
@@ -26,6 +27,8 @@ public:
                 const std::function<void(const std::string&)>& say);
     /// Number of changes of the maps.
     std::uint64_t version() const { return version_; }
+    /// Those of the textures; null: none yet.
+    const std::shared_ptr<const LightMaps>& maps() const { return maps_; }
     GLuint diffuse() const { return diffuse_.name(); }
     GLuint specular() const { return specular_.name(); }
 
@@ -39,6 +42,7 @@ private:
     std::uint64_t version_ = 0;
     Camera camera_;
     LightMaps environment_;
+    std::shared_ptr<const LightMaps> maps_;
     Texture diffuse_, specular_;
 };
 

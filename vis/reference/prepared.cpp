@@ -143,49 +143,44 @@ double Prepared::stepAt(glm::ivec3 block) const {
 
 namespace {
 
-glm::dvec4 mediumAt(const Prepared& scene, const LightGrid& grid, glm::dvec3 center) {
-    constexpr int kPoints = kMediumSamples * kMediumSamples * kMediumSamples;
-    const glm::dvec3 edges = grid.cell();
-    const double longest = std::max({edges.x, edges.y, edges.z});
-    glm::dvec4 sum(0);
-    for (const DrawnLayer& layer : scene.layers) {
-        double mean = 0;
-        int present = 0;
-        glm::dvec3 slope(0);
-        int part = 0; // of the first point; a surface lies within one part
-        const auto* volume = std::get_if<VolumeLayer>(layer.technique);
-        const auto* iso = std::get_if<IsoLayer>(layer.technique);
-        if (!iso && (!volume || volume->style != RayStyle::Composite)) continue;
-        for (int n = 0; n < kPoints; ++n) {
-            const glm::dvec3 way = glm::dvec3(n & 1, n >> 1 & 1, n >> 2) - 0.5, world = center + 0.5 * way * edges;
-            const std::optional<Reading> found = layer.samples->read(scene.cells(world));
-            if (n == 0 && found) part = found->part;
-            if (!found) continue;
-            const double value = found->value;
-            present += found->part == part;
-            mean += value / kPoints;
-            slope += way * value / edges; // kPoints (1/2) / 4 (upper mean - lower mean) / (edge / 2)
-            if (!volume || !kept(scene.clips, world)) continue;
-            const Interest doi = scene.interest(world);
-            glm::dvec4 color = scene.colorAt(layer, value, world);
-            color = {scene.tinted(layer, glm::dvec3(color), world), color.a};
-            const LensAction lens = scene.lensAction(layer, world);
-            const double own =
-                -std::log(1 - std::min(color.a * scene.opacityFactor(layer, doi) * lens.opacity, kThickest)) *
-                double(volume->density) / kReferenceLength / kPoints;
-            sum += glm::dvec4(scene.focused(layer, glm::dvec3(color), doi, lens.saturation), 1) * own;
-        }
-        if (!iso || present < kPoints || !kept(scene.clips, center)) continue;
-        const Interest doi = scene.interest(center);
-        const double away = std::abs(mean - iso->value) / std::max(glm::length(slope), 1e-20);
-        const LensAction lens = scene.lensAction(layer, center);
-        const double alpha = std::min(double(iso->opacity) * scene.opacityFactor(layer, doi) * lens.opacity, kThickest);
-        const double own = -std::log(1 - alpha) * std::max(0.0, 1 - away / longest) / longest;
-        const glm::dvec3 color = scene.tinted(layer, linearFromSrgb(glm::dvec3(iso->color)), center);
-        sum += glm::dvec4(scene.focused(layer, color, doi, lens.saturation), 1) * own;
+/// The layers of a scene as mediumAt() wants them.
+struct MediumScene {
+    const Prepared& scene;
+
+    int layers() const { return int(scene.layers.size()); }
+    const DrawnLayer& of(int i) const { return scene.layers[std::size_t(i)]; }
+    MediumLayer layer(int i) const {
+        if (const auto* iso = std::get_if<IsoLayer>(of(i).technique)) return {MediumKind::Surface, 1, iso->value};
+        const auto* volume = std::get_if<VolumeLayer>(of(i).technique);
+        if (!volume || volume->style != RayStyle::Composite) return {};
+        return {MediumKind::Volume, double(volume->density), 0};
     }
-    return sum;
-}
+    bool kept(glm::dvec3 world) const { return vis::kept(scene.clips, world); }
+    struct Point {
+        double value = 0;
+        bool present = false;
+        double part = 0;
+    };
+    Point read(int i, glm::dvec3 world) const {
+        const std::optional<Reading> found = of(i).samples->read(scene.cells(world));
+        return found ? Point{found->value, true, double(found->part)} : Point{};
+    }
+    glm::dvec4 after(const DrawnLayer& layer, glm::dvec3 color, double opacity, glm::dvec3 world) const {
+        const Interest doi = scene.interest(world);
+        const LensAction lens = scene.lensAction(layer, world);
+        return {scene.focused(layer, scene.tinted(layer, color, world), doi, lens.saturation),
+                opacity * scene.opacityFactor(layer, doi) * lens.opacity};
+    }
+    glm::dvec4 at(int i, const Point& found, glm::dvec3 world) const {
+        if (!found.present) return glm::dvec4(0);
+        const glm::dvec4 color = scene.colorAt(of(i), found.value, world);
+        return after(of(i), glm::dvec3(color), color.a, world);
+    }
+    glm::dvec4 surface(int i, glm::dvec3 world) const {
+        const auto& iso = std::get<IsoLayer>(*of(i).technique);
+        return after(of(i), linearFromSrgb(glm::dvec3(iso.color)), double(iso.opacity), world);
+    }
+};
 
 } // namespace
 
@@ -194,7 +189,8 @@ Medium<double> Prepared::medium(const LightGrid& grid) const {
     parallelFor(std::size_t(grid.size.z), [&](std::size_t z) {
         for (int y = 0; y < grid.size.y; ++y)
             for (int x = 0; x < grid.size.x; ++x)
-                out[grid.index({x, y, int(z)})] = mediumAt(*this, grid, grid.center({x, y, int(z)}));
+                out[grid.index({x, y, int(z)})] =
+                    mediumAt<double>(MediumScene{*this}, grid, grid.center({x, y, int(z)}));
     });
     return out;
 }

@@ -6,22 +6,6 @@
 
 namespace tessera::vis {
 
-bool PlacedClip::contains(glm::dvec3 p) const {
-    const glm::dvec3 d = p - center;
-    const double along = glm::dot(d, axis);
-    switch (kind) {
-    case ClipKind::Plane:
-        return along <= 0;
-    case ClipKind::Box:
-        return glm::all(glm::lessThanEqual(glm::abs(d), half));
-    case ClipKind::Sphere:
-        return glm::length(d) <= half.x;
-    case ClipKind::Cylinder:
-        return glm::length(d - along * axis) <= half.x && std::abs(along) <= half.y;
-    }
-    return true;
-}
-
 RaySegment PlacedClip::inside(const Ray& ray) const {
     const SegmentOf<double> in = insideClip<double>(*this, {ray.origin, ray.direction});
     return {in.enter, in.exit};
@@ -44,11 +28,6 @@ std::vector<PlacedClip> placeClips(const std::vector<Clip>& clips, const WorldFr
         placed.push_back(one);
     }
     return placed;
-}
-
-bool kept(const std::vector<PlacedClip>& clips, glm::dvec3 p) {
-    return std::all_of(clips.begin(), clips.end(),
-                       [&](const PlacedClip& clip) { return clip.contains(p) != clip.hole; });
 }
 
 double coverage(const std::vector<RaySegment>& holes, double k) {

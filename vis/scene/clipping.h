@@ -4,6 +4,7 @@
 #include "vis/scene/ray_segment.h"
 #include "volume/base/numbers.h"
 
+#include <span>
 #include <vector>
 
 /// Clip planes and bodies; only what lies on the kept side of all is drawn. All are convex, so the inside of each is
@@ -71,7 +72,22 @@ struct PlacedClip {
     bool hole = false; ///< the inside is removed
     glm::dvec3 center{0}, axis{1, 0, 0}, half{0};
 
-    bool contains(glm::dvec3 p) const;
+    template <class N> auto contains(const glm::vec<3, N>& p) const -> decltype(p.x <= p.x) {
+        const glm::vec<3, N> d = p - spreadOut<N>(center), size = spreadOut<N>(half);
+        const N along = inner(d, spreadOut<N>(axis));
+        const glm::vec<3, N> across = d - spreadOut<N>(axis) * along;
+        switch (kind) {
+        case ClipKind::Box:
+            return (magnitude(d.x) <= size.x) & (magnitude(d.y) <= size.y) & (magnitude(d.z) <= size.z);
+        case ClipKind::Sphere:
+            return lengthOf(d) <= size.x;
+        case ClipKind::Cylinder:
+            return (lengthOf(across) <= size.x) & (magnitude(along) <= size.y);
+        case ClipKind::Plane:
+            break;
+        }
+        return along <= N(0);
+    }
     /// The interval of a line inside; empty (enter >= exit) if there is none.
     RaySegment inside(const Ray& ray) const;
 };
@@ -126,7 +142,17 @@ template <class N> SegmentOf<N> insideClip(const PlacedClip& clip, const RayOf<N
 /// The enabled clips, at most kMaxClips; a plane is never a hole (its axis is inverted instead).
 std::vector<PlacedClip> placeClips(const std::vector<Clip>& clips, const WorldFrame& frame);
 /// Whether all clips keep a world point.
-bool kept(const std::vector<PlacedClip>& clips, glm::dvec3 p);
+template <class N> auto kept(std::span<const PlacedClip> clips, const glm::vec<3, N>& p) {
+    auto out = p.x <= p.x;
+    for (const PlacedClip& clip : clips) {
+        const auto in = clip.contains(p);
+        out = clip.hole ? out & !in : out & in;
+    }
+    return out;
+}
+inline bool kept(const std::vector<PlacedClip>& clips, glm::dvec3 p) {
+    return kept<double>(clips, p);
+}
 
 /// The part of the segment [k - 1/2, k + 1/2], in samples, that lies in no hole (intervals in samples; where two holes
 /// overlap both are subtracted, down to 0). Composite layers weight sample k's optical depth by it; every other ray

@@ -129,35 +129,7 @@ glm::dvec4 evaluate(const TransferFunction& function, Range range, double value,
     const glm::dvec4 curve = evaluate(function, range, value);
     if (function.kind == TransferKind::Curve) return curve;
     const glm::dvec2 place(placeIn(range, value), clamp01(gradient / double(function.gradientTop)));
-    double through = 1, weights = 0;
-    glm::dvec3 colors{0};
-    for (const TransferRegion& region : function.regions) {
-        const double opacity = regionOpacity(region, place);
-        through *= 1 - opacity;
-        weights += opacity;
-        colors += opacity * (region.ownColor ? glm::dvec3(region.color) : glm::dvec3(curve));
-    }
-    return weights > 0 ? glm::dvec4(colors / weights, 1 - through) : glm::dvec4(glm::dvec3(curve), 0);
-}
-
-double regionOpacity(const TransferRegion& region, glm::dvec2 place) {
-    // -1..1 inside the box around the region
-    const glm::dvec2 at = (place - glm::dvec2(region.centre)) / (0.5 * glm::dvec2(region.size));
-    const double opacity = clamp01(double(region.opacity)), soft = std::max(double(region.soft), 1e-6);
-    if (!(std::abs(at.x) <= 1 && std::abs(at.y) <= 1)) return 0;
-    switch (region.shape) {
-    case RegionShape::Rectangle:
-        return opacity * std::min(1.0, (1 - std::max(std::abs(at.x), std::abs(at.y))) / soft);
-    case RegionShape::Triangle: {
-        const double half = 0.5 * (at.y + 1); // half the triangle's width at this height, as a fraction
-        return half > 0 ? opacity * clamp01((1 - std::abs(at.x) / half) / soft) : 0;
-    }
-    case RegionShape::Gaussian: {
-        const double edge = std::exp(-4.5); // value at three standard deviations
-        return opacity * clamp01((std::exp(-4.5 * glm::dot(at, at)) - edge) / (1 - edge));
-    }
-    }
-    return 0;
+    return colorOfRegions<double>(function.regions, glm::dvec3(curve), place.x, place.y);
 }
 
 double curveAt(std::span<const glm::vec2> curve, double x) {

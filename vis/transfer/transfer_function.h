@@ -1,10 +1,12 @@
 #pragma once
 
 #include "volume/base/describe.h"
+#include "volume/base/vectors.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
@@ -151,8 +153,54 @@ glm::dvec4 evaluate(const TransferFunction& function, Range range, double value)
 /// curves; otherwise all regions together: opacity 1 - prod(1 - a), colour the mean weighted by opacity.
 glm::dvec4 evaluate(const TransferFunction& function, Range range, double value, double gradient);
 
-/// Opacity of a single region at a position, 0..1 each.
-double regionOpacity(const TransferRegion& region, glm::dvec2 place);
+/// Opacity of a single region at a position, 0..1 each. A template over the number (volume/base/numbers.h).
+template <class N> N regionOpacity(const TransferRegion& region, N value, N gradient) {
+    // -1..1 inside the box around the region
+    const N x = (value - N(region.centre.x)) / N(0.5 * double(region.size.x));
+    const N y = (gradient - N(region.centre.y)) / N(0.5 * double(region.size.y));
+    const N wide = magnitude(x), high = magnitude(y), sharp(1 / std::max(double(region.soft), 1e-6));
+    N own(0);
+    switch (region.shape) {
+    case RegionShape::Rectangle:
+        own = smaller(N(1), (N(1) - larger(wide, high)) * sharp);
+        break;
+    case RegionShape::Triangle: {
+        const N half = N(0.5) * (y + N(1)); // half the triangle's width at this height, as a fraction
+        const auto some = half > N(0);
+        own = choose(some, clamped((N(1) - wide / choose(some, half, N(1))) * sharp, N(0), N(1)), N(0));
+        break;
+    }
+    case RegionShape::Gaussian: {
+        const double edge = std::exp(-4.5); // value at three standard deviations
+        const N bell = powerOfTwo((x * x + y * y) * N(-4.5 * std::numbers::log2e));
+        own = clamped((bell - N(edge)) * N(1 / (1 - edge)), N(0), N(1));
+        break;
+    }
+    }
+    const double opacity = std::clamp(double(region.opacity), 0.0, 1.0);
+    return choose((wide <= N(1)) & (high <= N(1)), own * N(opacity), N(0));
+}
+inline double regionOpacity(const TransferRegion& region, glm::dvec2 place) {
+    return regionOpacity<double>(region, place.x, place.y);
+}
+
+/// Colour and opacity of all regions together at a position, 0..1 each; `curve`: the colour of regions without their
+/// own, and of places outside of all.
+template <class N>
+glm::vec<4, N> colorOfRegions(std::span<const TransferRegion> regions, const glm::vec<3, N>& curve, N value,
+                              N gradient) {
+    N through(1), weights(0);
+    glm::vec<3, N> colors(N(0), N(0), N(0));
+    for (const TransferRegion& region : regions) {
+        const N opacity = regionOpacity(region, value, gradient);
+        through = through * (N(1) - opacity);
+        weights += opacity;
+        colors = colors + (region.ownColor ? spreadOut<N>(region.color) : curve) * opacity;
+    }
+    const auto some = weights > N(0);
+    const glm::vec<3, N> mean = choose(some, colors * (N(1) / choose(some, weights, N(1))), curve);
+    return {mean.x, mean.y, mean.z, choose(some, N(1) - through, N(0))};
+}
 
 /// Piecewise-linear curve through points sorted by x; constant beyond its ends, at a jump the later value; 0 without
 /// points.

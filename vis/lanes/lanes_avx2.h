@@ -1,4 +1,4 @@
-// AVX2 with FMA: the operations of vis/packet/lanes.h that vector extensions of the compiler lack.
+// AVX2 with FMA: the operations of vis/lanes/lanes.h that vector extensions of the compiler lack.
 using F = float __attribute__((vector_size(32)));
 using I = std::int32_t __attribute__((vector_size(32)));
 using M = I; ///< all bits of a lane, or none

@@ -22,11 +22,11 @@ namespace tessera::vis::packet::TESSERA_LANES {
 
 namespace raw {
 #if defined(__AVX512F__)
-#include "vis/packet/lanes_avx512.h"
+#include "vis/lanes/lanes_avx512.h"
 #elif defined(__AVX2__)
-#include "vis/packet/lanes_avx2.h"
+#include "vis/lanes/lanes_avx2.h"
 #else
-#include "vis/packet/lanes_plain.h"
+#include "vis/lanes/lanes_plain.h"
 #endif
 } // namespace raw
 

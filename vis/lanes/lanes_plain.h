@@ -1,4 +1,4 @@
-// Any processor: the operations of vis/packet/lanes.h that vector extensions of the compiler lack, as loops.
+// Any processor: the operations of vis/lanes/lanes.h that vector extensions of the compiler lack, as loops.
 using F = float __attribute__((vector_size(16)));
 using I = std::int32_t __attribute__((vector_size(16)));
 using M = I; ///< all bits of a lane, or none

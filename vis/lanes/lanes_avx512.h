@@ -1,4 +1,4 @@
-// AVX-512: the operations of vis/packet/lanes.h that vector extensions of the compiler lack.
+// AVX-512: the operations of vis/lanes/lanes.h that vector extensions of the compiler lack.
 using F = float __attribute__((vector_size(64)));
 using I = std::int32_t __attribute__((vector_size(64)));
 using M = __mmask16;
