@@ -3,8 +3,6 @@
 #include "app/session/shown_scene.h"
 
 #include <algorithm>
-#include <cmath>
-#include <glm/gtc/quaternion.hpp>
 
 namespace tessera::app {
 
@@ -33,18 +31,6 @@ void dropForeignVariants(Session& session, const DataRef& made, std::vector<std:
     }
 }
 
-/// Turns a camera that looks nearly along the length of a long body.
-void lookAcross(vis::Camera& camera, const vis::WorldFrame& world) {
-    constexpr double kLong = 2, kAlong = 0.6; // the longest edge by the next one; cosine of the angle to it
-    const glm::dvec3 half = world.halfSize;
-    int longest = 0;
-    for (int axis = 1; axis < 3; ++axis)
-        if (half[axis] > half[longest]) longest = axis;
-    if (half[longest] < kLong * std::max(half[(longest + 1) % 3], half[(longest + 2) % 3])) return;
-    const glm::dvec3 back = glm::conjugate(glm::normalize(glm::dquat(camera.orientation))) * glm::dvec3(0, 0, 1);
-    if (std::abs(back[longest]) > kAlong) camera.orientation = vis::firstOrientation(world);
-}
-
 bool isField(const volume::DatasetInfo& info) {
     return std::ranges::any_of(info.parameters, [](const volume::Parameter& parameter) {
         return !parameter.categorical && parameter.type == volume::ScalarType::F32;
@@ -56,14 +42,9 @@ bool isField(const volume::DatasetInfo& info) {
 void suitOtherData(Session& session, const volume::DatasetInfo& info, const DataRef& made,
                    std::vector<std::string>& messages) {
     dropForeignVariants(session, made, messages);
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
-    lookAcross(session.camera, world);
-    for (auto& [pane, view] : session.views) {
-        auto* const volume = std::get_if<VolumeView>(&view);
-        if (!volume) continue;
-        if (volume->camera) lookAcross(*volume->camera, world);
-        if (onlyDrawings(session) && isField(info)) volume->showBox = volume->drawingBox = true;
-    }
+    if (!onlyDrawings(session) || !isField(info)) return;
+    for (auto& [pane, view] : session.views)
+        if (auto* const volume = std::get_if<VolumeView>(&view)) volume->showBox = volume->drawingBox = true;
 }
 
 } // namespace tessera::app
