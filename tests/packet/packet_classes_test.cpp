@@ -105,6 +105,18 @@ const Mode kOver[] = {
      }},
 };
 
+/// Shells at both ends of a block, which segments around samples of the empty blocks beside it meet.
+const Mode kBesideBlocks[] = {
+    {"shells beside empty blocks",
+     [](Scene& s) {
+         s.layers = {composite("z", Classification::PreIntegrated, false)};
+         const auto at = [](double z) { return float(z / 24); };
+         s.transfer["z"].opacity = {{0, 0},        {at(6.2), 0},     {at(6.5), 0.9f}, {at(6.8), 0},
+                                    {at(13.2), 0}, {at(13.5), 0.9f}, {at(13.8), 0},   {1, 0}};
+         s.render.stepVoxels = 2;
+     }},
+};
+
 class PacketClasses : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(All, PacketClasses, testing::ValuesIn(cases()), nameOf);
 
@@ -118,6 +130,13 @@ TEST_P(PacketClasses, BeforeInterpolationAgreesWithTheReference) {
 
 TEST_P(PacketClasses, OverSegmentsAgreesWithTheReference) {
     expectAgreement(GetParam(), kOver);
+}
+
+TEST_P(PacketClasses, SegmentsReachIntoOtherBlocks) {
+    const auto height = [](glm::dvec3 p) -> std::optional<double> { return p.z; };
+    const auto data = std::make_shared<FunctionSource>(GetParam().kind, glm::ivec3(12, 12, 25), glm::dvec3(1),
+                                                       std::vector<FunctionSource::Channel>{{"z", height, {0, 24}}});
+    expectAgreement(GetParam(), data, kBesideBlocks);
 }
 
 } // namespace

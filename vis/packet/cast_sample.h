@@ -156,21 +156,21 @@ template <bool Bcc, bool Exact> struct SampleCaster {
     void drawSample(const LayerView& layer, bool masked, Floats place, Floats opacity, Floats k, Mask lanes) {
         if (!layer.byRegions) {
             const Vec color = colorAt(layer.table, tablePlace(place), lanes);
-            return drawClassified(layer, reader(layer, masked), color, opacity, Floats(1), k, lanes);
+            return drawClassified(layer, masked, color, opacity, Floats(1), k, lanes);
         }
-        const Read read = reader(layer, masked);
-        const OnPlane own = onPlane(layer, read, place, packet.cells(k), lanes);
+        const OnPlane own = onPlane(layer, reader(layer, masked), place, packet.cells(k), lanes);
         lanes &= own.opacity > Floats(0);
-        if (anyOf(lanes)) drawClassified(layer, read, own.color, own.opacity, Floats(1), k, lanes, &own.slope);
+        if (anyOf(lanes)) drawClassified(layer, masked, own.color, own.opacity, Floats(1), k, lanes, &own.slope);
     }
     /// `slope`: their gradient, where it is known. `share`: present fraction of their segments.
-    [[gnu::always_inline]] void drawClassified(const LayerView& layer, const Read& read, const Vec& own, Floats opacity,
+    [[gnu::always_inline]] void drawClassified(const LayerView& layer, bool masked, const Vec& own, Floats opacity,
                                                Floats share, Floats k, Mask lanes, const Vec* slope = nullptr) {
+        const Read read = reader(layer, masked);
         const Vec cells = packet.cells(k);
         Vec color = tinted(layer, own, cells, lanes);
         Focus focus;
         if (job.focus.any) {
-            focus = focusOf(layer, cells, k, read.masked, lanes);
+            focus = focusOf(layer, cells, k, masked, lanes);
             color = focused(job.focus, layer, color, focus);
             opacity = opacity * focus.opacity;
         }
@@ -207,7 +207,7 @@ template <bool Bcc, bool Exact> struct SampleCaster {
             own = preintegrated(layer, read(front, lanes), read(back, lanes), same);
         }
         const Mask hit = lanes & (own.opacity > Floats(0)) & (own.share > Floats(0));
-        if (anyOf(hit)) drawClassified(layer, reader(layer, masked), own.color, own.opacity, own.share, k, hit);
+        if (anyOf(hit)) drawClassified(layer, masked, own.color, own.opacity, own.share, k, hit);
     }
     /// Moved to where there are samples around.
     static Vec withinVolume(const VolumeView& volume, const Vec& cells) {
