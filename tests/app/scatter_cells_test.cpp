@@ -255,8 +255,10 @@ TEST_F(ScatterTitles, ALoneHistogramHasAnAxisOfCounts) {
     EXPECT_EQ(drawn.count("2000"), 1);
     const PlotFrame cell = matrix.cell(0, 0);
     const float high = cell.max.y - float(2000 / drawn.titles.counts.hi) * cell.height();
-    for (const DrawnText& text : drawn.texts)
-        if (text.text == "2000") EXPECT_NEAR(text.middle().y, high, em() * 0.5f);
+    for (const DrawnText& text : drawn.texts) {
+        if (text.text != "2000") continue;
+        EXPECT_NEAR(text.middle().y, high, em() * 0.5f);
+    }
     EXPECT_NEAR(4000 / drawn.titles.counts.hi, kHighestBar, 1e-9) << "as high as its bar";
     drawn = axesIn({400, 300}, 9999, true);
     EXPECT_EQ(drawn.count("log10(1 + samples)"), 1);

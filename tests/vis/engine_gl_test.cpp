@@ -114,6 +114,21 @@ TEST_F(EngineGl, OpenGlTakesOverAndSaysWhy) {
     EXPECT_FALSE(test::renderAll(renderer, *target, scene, {48, 48}).engine.byProcessor);
 }
 
+TEST_F(EngineGl, BothSayWhatExceedsALimit) {
+    for (const Engine engine : {Engine::OpenGl, Engine::Processor}) {
+        Renderer renderer;
+        renderer.setSource(waves(volume::LatticeKind::CC));
+        const ViewTargetPtr target = renderer.makeTarget();
+        Scene scene = wavesScene(engine);
+        scene.clips.assign(kMaxClips, Clip{.center = glm::vec3(0.1f)});
+        test::renderAll(renderer, *target, scene, {32, 32});
+        EXPECT_TRUE(renderer.takeMessages().empty());
+        scene.clips.push_back(scene.clips.back());
+        test::renderAll(renderer, *target, scene, {32, 32});
+        EXPECT_EQ(renderer.takeMessages(), std::vector<std::string>{"the first 8 clips are used"}) << int(engine);
+    }
+}
+
 /// What a window says of its volume is not what its slices are drawn by.
 TEST_F(EngineGl, PicturesOfSectionsSayNothingOfRays) {
     Renderer renderer;

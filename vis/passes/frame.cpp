@@ -50,8 +50,8 @@ void RenderStages::giveUp(ViewTarget& target, const RenderCall& call) {
     target.state.setDone(PictureState::Done::Converged);
 }
 
-/// Reports once which lights, clips, lenses or channel parts exceed a limit.
-void RenderStages::sayLimits(const RenderCall& call) {
+/// Reports once which lights, clips and lenses exceed a limit, and what exceeds one of the engine's own.
+void RenderStages::sayLimits(const RenderCall& call, const std::string& ofEngine) {
     const Scene& scene = call.scene;
     const auto enabled = [](const auto& all) {
         return std::count_if(all.begin(), all.end(), [](const auto& each) { return each.enabled; });
@@ -63,7 +63,7 @@ void RenderStages::sayLimits(const RenderCall& call) {
         now += (now.empty() ? "" : "; ") + ("the first " + std::to_string(kMaxClips)) + " clips are used";
     if (enabled(scene.lenses) > kMaxLenses)
         now += (now.empty() ? "" : "; ") + ("the first " + std::to_string(kMaxLenses)) + " lenses are used";
-    if (!call.plan.limit.empty()) now += (now.empty() ? "" : "; ") + call.plan.limit;
+    if (!ofEngine.empty()) now += (now.empty() ? "" : "; ") + ofEngine;
     if (now != limits && !now.empty()) tools.messages.push_back(now);
     limits = now;
 }
@@ -299,7 +299,7 @@ void RenderStages::refine(ViewTarget& target, const RenderCall& call, Clock::tim
     bindPlan(target, call);
     ViewLight::Progress light;
     if (!probing) {
-        sayLimits(call);
+        sayLimits(call, call.plan.limit);
         light = target.light.bind(tools, call, {residency.revision(), target.demand.time().value_or(0), false});
         if (light.changed) target.redraw(target.buffers.everything());
     }

@@ -112,6 +112,7 @@ void RenderStages::refineByPackets(ViewTarget& target, const RenderCall& call, C
     const bool moving = call.request.moving;
     if (state.full() ? state.converged() || moving : state.reduced() && moving) return;
     if (!call.request.wait && !presentable(target, call.scene)) return postpone(target, call.scene);
+    sayLimits(call, {});
     packet::PacketRenderer& renderer = target.packets.renderer;
     const LightBaker::Rows rows = [&](const LightGrid& grid, int begin, int end, Medium<float>& out) {
         renderer.fillMedium(call.scene, grid, begin, end, out);

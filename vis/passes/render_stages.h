@@ -65,7 +65,7 @@ struct RenderStages {
                     bool lit);
     void postpone(ViewTarget& target, const Scene& scene);
     void giveUp(ViewTarget& target, const RenderCall& call);
-    void sayLimits(const RenderCall& call);
+    void sayLimits(const RenderCall& call, const std::string& ofEngine);
     void bindPlan(const ViewTarget& target, const RenderCall& call);
     bool ready(ViewTarget& target, const RenderCall& call, const RenderCall& own, const ProgramAnswer& answer,
                const ProgramRecipe& recipe);
