@@ -192,8 +192,6 @@ LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, in
     return entry;
 }
 
-namespace {} // namespace
-
 std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info, bool drawings) {
     std::vector<LegendEntry> entries;
     std::set<std::string> seen;

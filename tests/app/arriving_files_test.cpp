@@ -1,4 +1,4 @@
-#include "app/data/arriving_files.h"
+#include "app/growing/arriving_files.h"
 
 #include "volume/base/error.h"
 

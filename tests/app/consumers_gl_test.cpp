@@ -40,11 +40,12 @@ enum Input {
 
 /// Every part of a session by its key, and the input that changes it; kInputs: no part of what views show of the data.
 const std::map<std::string, Input> kSessionParts = {
-    {"schema", kInputs},     {"title", kInputs},      {"data", kLattice},  {"time", kTime},
-    {"cursor", kCursor},     {"stretch", kStretch},   {"camera", kCamera}, {"selection", kBrush},
-    {"transfer", kTransfer}, {"layers", kLayers},     {"render", kRender}, {"lighting", kLighting},
-    {"clips", kClips},       {"lenses", kLenses},     {"tone", kTone},     {"paper", kPaper},
-    {"animation", kInputs},  {"appearance", kInputs}, {"views", kInputs},  {"dock", kInputs}};
+    {"schema", kInputs},       {"title", kInputs},      {"data", kLattice},  {"time", kTime},
+    {"cursor", kCursor},       {"stretch", kStretch},   {"camera", kCamera}, {"selection", kBrush},
+    {"transfer", kTransfer},   {"layers", kLayers},     {"render", kRender}, {"lighting", kLighting},
+    {"clips", kClips},         {"lenses", kLenses},     {"tone", kTone},     {"paper", kPaper},
+    {"animation", kInputs},    {"appearance", kInputs}, {"views", kInputs},  {"dock", kInputs},
+    {"layoutBrushes", kInputs}};
 
 /// By kind of view: F where what it shows follows the input, a dot where it must stay as it is. Of views that can be
 /// exported that is the table, of the others the picture.

@@ -195,6 +195,18 @@ TEST_F(ScatterTitles, KeepTheirUnitsOnASecondLineOrAcrossTheirCells) {
     EXPECT_EQ(drawn.count("[mol/m³]"), 1);
 }
 
+TEST_F(ScatterTitles, AreLeftOutWhereTheyWouldLeaveNoPlots) {
+    call("H2", "H2O", "mol/m3");
+    for (const ImVec2 room : {ImVec2{130, 110}, ImVec2{150, 100}, ImVec2{110, 200}}) {
+        const DrawnAxes drawn = axesIn(room);
+        const bool narrow = matrix.cellX < em() * 2.6f || matrix.cellY < em() * 1.9f;
+        EXPECT_FALSE(narrow) << room.x << ' ' << room.y;
+        EXPECT_EQ(drawn.titles.shown, drawn.count("[mol/m³]") + drawn.count("H2O [mol/m³]") > 0);
+    }
+    EXPECT_FALSE(axesIn({110, 200}).titles.shown);
+    EXPECT_TRUE(axesIn({190, 230}).titles.shown);
+}
+
 TEST_F(ScatterTitles, CutOffLongNamesAndLeaveMostOfTheRoomToThePlots) {
     const std::string name = "mean temperature of the cathode side of the channel";
     call(name, name, "K");

@@ -263,8 +263,10 @@ MatrixTitles matrixTitles(const ScatterLayout& matrix, ImVec2 room, double most,
     const auto n = static_cast<float>(matrix.size());
     const bool lone = matrix.size() == 1;
     titles.left = em() * 4, titles.bottom = em() * 3;
-    titles.shown = lone || ((room.x - titles.left) / n >= em() * 2.6f && (room.y - titles.bottom) / n >= em() * 1.9f);
-    if (!titles.shown) titles.left = titles.bottom = 0;
+    const auto leavesRoom = [&] {
+        return lone || ((room.x - titles.left) / n >= em() * 2.6f && (room.y - titles.bottom) / n >= em() * 1.9f);
+    };
+    titles.shown = leavesRoom();
     if (lone) {
         titles.counts = {0, (logCounts ? std::log10(1 + most) : std::max(1.0, most)) / kHighestBar};
         titles.countTitle = room.y < em() * 8 ? "" : logCounts ? "log10(1 + samples)" : "samples";
@@ -287,7 +289,9 @@ MatrixTitles matrixTitles(const ScatterLayout& matrix, ImVec2 room, double most,
         if (titles.beside == TitleWay::TwoLines) titles.left += em();
         if (titles.beside == TitleWay::Across)
             titles.left += std::min(up.part, mostAcross(room.x, up.rest)) + em() * 0.5f;
+        titles.shown = leavesRoom();
     }
+    if (!titles.shown) titles.left = titles.bottom = 0;
     return titles;
 }
 
@@ -319,8 +323,10 @@ void drawTitleBeside(ImDrawList& draw, const PlotFrame& frame, const TitleParts&
     const float middle = (frame.min.y + frame.max.y) / 2, left = frame.min.x - titles.left;
     if (titles.beside == TitleWay::Across) {
         const float most = titles.left - axisRoom(AxisSide::Left, frame.y, false) - em() * 0.4f;
-        float y = middle - em() * (title.rest.empty() ? 0.5f : 1.0f);
-        for (const std::string& line : {title.name, title.rest}) {
+        const bool two = !title.rest.empty() && frame.height() >= em() * 2.2f;
+        float y = middle - em() * (two ? 1.0f : 0.5f);
+        for (const std::string& line :
+             {two ? title.name : fittedTitle(title, most), two ? title.rest : std::string()}) {
             addFittedText(draw, {std::round(left), std::round(y)}, colors.text, line, most);
             y += em();
         }

@@ -1,4 +1,4 @@
-#include "app/command/growing_output.h"
+#include "app/growing/growing_output.h"
 
 #include "app/data/format.h"
 #include "app/user_files/import_memory.h"

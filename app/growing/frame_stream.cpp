@@ -1,6 +1,6 @@
-#include "app/command/frame_stream.h"
+#include "app/growing/frame_stream.h"
 
-#include "app/command/held_signals.h"
+#include "app/growing/held_signals.h"
 #include "codec/archive/archive.h"
 #include "volume/base/error.h"
 #include "volume/import/files/raw.h"

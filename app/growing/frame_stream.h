@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/command/growing_output.h"
+#include "app/growing/growing_output.h"
 
 namespace tessera::app {
 

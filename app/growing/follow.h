@@ -1,7 +1,7 @@
 #pragma once
 
-#include "app/command/growing_output.h"
-#include "app/data/arriving_files.h"
+#include "app/growing/arriving_files.h"
+#include "app/growing/growing_output.h"
 
 #include <optional>
 #include <string>

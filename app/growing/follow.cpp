@@ -1,6 +1,6 @@
-#include "app/command/follow.h"
+#include "app/growing/follow.h"
 
-#include "app/command/held_signals.h"
+#include "app/growing/held_signals.h"
 #include "codec/archive/archive.h"
 #include "volume/base/error.h"
 #include "volume/import/growing_series.h"
