@@ -11,12 +11,14 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <poll.h>
 #include <span>
 #include <unistd.h>
+#include <vector>
 
 namespace tessera::app {
 

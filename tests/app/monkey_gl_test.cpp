@@ -1,6 +1,7 @@
 #include "app/history/session_file.h"
 #include "app/platform/headless.h"
 #include "tests/app/workbench_fixture.h"
+#include "tests/resident_memory.h"
 #include "volume/system/confine.h"
 
 #include <algorithm>
@@ -191,14 +192,6 @@ protected:
         ASSERT_TRUE(printSession(again, path) == text) << "after input " << step_;
     }
 
-    /// Resident memory of the process, MB.
-    static double memory() {
-        std::ifstream statistics("/proc/self/statm");
-        double pages = 0;
-        statistics >> pages >> pages;
-        return pages * double(::sysconf(_SC_PAGESIZE)) / 1e6;
-    }
-
     std::mt19937 random_{unsigned(numberFrom("TESSERA_MONKEY_SEED", 1))};
     std::optional<OffscreenFrames> window_;
     std::ofstream log_;
@@ -228,7 +221,7 @@ TEST_F(Monkey, AnyInputLeavesAStateThatIsTheSameWhenReopened) {
             if (HasFatalFailure()) return;
         }
         workbench.jobs().wait();
-        std::printf("%.1f min, %d inputs, %.0f MB\n", passed(), step_, memory());
+        std::printf("%.1f min, %d inputs, %.0f MB\n", passed(), step_, tessera::test::residentMemory());
         std::fflush(stdout);
     } while (passed() < minutes);
 }

@@ -1,4 +1,5 @@
 #include "tests/app/workbench_fixture.h"
+#include "tests/resident_memory.h"
 
 #include <filesystem>
 #include <fstream>
@@ -239,23 +240,15 @@ TEST_F(WorkbenchData, AnotherFileStandsBeside) {
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
 
-/// Resident memory of the process, MB.
-double residentMegabytes() {
-    std::ifstream statistics("/proc/self/statm");
-    double pages = 0;
-    statistics >> pages >> pages;
-    return pages * double(::sysconf(_SC_PAGESIZE)) / 1e6;
-}
-
 TEST_F(WorkbenchData, WhatWorkLeftBehindIsGivenBackOnceNothingIsBusy) {
     // As data leave that are no longer shown: free memory below blocks in use.
     std::vector<std::unique_ptr<std::vector<char>>> blocks;
     for (int i = 0; i < 12'000; ++i) blocks.push_back(std::make_unique<std::vector<char>>(32'000, 'x'));
     for (std::size_t i = 0; i + 1 < blocks.size(); ++i) blocks[i].reset();
-    const double held = residentMegabytes();
+    const double held = tessera::test::residentMemory();
     workbench.install(smallData());
     settle();
-    EXPECT_LT(residentMegabytes(), held - 200);
+    EXPECT_LT(tessera::test::residentMemory(), held - 200);
 }
 
 #endif

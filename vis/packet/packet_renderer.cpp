@@ -15,24 +15,18 @@ namespace {
 
 constexpr int kTile = 32; ///< pixels along the edge of what one core draws in one go
 
-using CastPixels = void (*)(const CastJob& job, glm::ivec2 begin, glm::ivec2 end);
+/// What is compiled for one instruction set.
+struct Compiled {
+    void (*castPixels)(const CastJob& job, glm::ivec2 begin, glm::ivec2 end);
+    void (*fillRow)(const CastJob& job, const LightGrid& grid, int row, glm::vec4* out);
+};
 
-CastPixels casterOf([[maybe_unused]] InstructionSet with) {
+Compiled compiledFor([[maybe_unused]] InstructionSet with) {
 #ifdef TESSERA_X86
-    if (with == InstructionSet::Avx512) return castAvx512;
-    if (with == InstructionSet::Avx2) return castAvx2;
+    if (with == InstructionSet::Avx512) return {castAvx512, mediumAvx512};
+    if (with == InstructionSet::Avx2) return {castAvx2, mediumAvx2};
 #endif
-    return castPlain;
-}
-
-using FillRow = void (*)(const CastJob& job, const LightGrid& grid, int row, glm::vec4* out);
-
-FillRow fillerOf([[maybe_unused]] InstructionSet with) {
-#ifdef TESSERA_X86
-    if (with == InstructionSet::Avx512) return mediumAvx512;
-    if (with == InstructionSet::Avx2) return mediumAvx2;
-#endif
-    return mediumPlain;
+    return {castPlain, mediumPlain};
 }
 
 bool isReady(const std::future<SharedVolume>& coming) {
@@ -200,7 +194,7 @@ void PacketRenderer::draw(const Scene& scene, int pass, int passes, double stepF
     job.peelColor = geometry.color.data();
     job.samples = counts_ ? &samples_ : nullptr;
     const glm::ivec2 tiles = (box.extent() + kTile - 1) / kTile;
-    const CastPixels cast = casterOf(with_);
+    const auto cast = compiledFor(with_).castPixels;
     parallelFor(std::size_t(tiles.x) * std::size_t(tiles.y), [&](std::size_t i) {
         const glm::ivec2 begin =
             box.begin + kTile * glm::ivec2(int(i % std::size_t(tiles.x)), int(i / std::size_t(tiles.x)));
@@ -217,7 +211,7 @@ void PacketRenderer::setLight(const SceneLight& light) {
 void PacketRenderer::fillMedium(const Scene& scene, const LightGrid& grid, int begin, int end, Medium<float>& out) {
     if (!scene_) return;
     const CastJob job = scene_->job(scene, source().info(), source().grid().lattice, {1, 1}, 1, packedLight_);
-    const FillRow fill = fillerOf(with_);
+    const auto fill = compiledFor(with_).fillRow;
     parallelFor(std::size_t(end - begin), [&](std::size_t i) {
         const int row = begin + int(i);
         fill(job, grid, row, out.data() + std::size_t(row) * std::size_t(grid.size.x));
