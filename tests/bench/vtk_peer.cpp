@@ -5,16 +5,18 @@
 //   size N              timed pictures of N x N pixels
 //   compare N           size of the picture that is written, seen by the camera as given
 //   frames N            timed pictures, the camera turned by a tenth of a degree about its up axis before each
+//   clock processor|wall    times are processor time of all threads, or time that passes
 //   style composite|maximum|minimum|average|iso VALUE
 //   shaded 0|1          with ambient, diffuse, specular, shininess, and the light's direction (world) after it
 //   step D              world units between samples;   unit D   world length an opacity stands for
 //   camera PX PY PZ  TX TY TZ  UX UY UZ  ANGLE       vertical field of view in degrees
 //   table N  R G B A ...   colours as they are to be composited (linear light) over stored values 0..255
-// Prints for each mapper "gpu|cpu MEDIAN_MS CHANGED_MS", CPU time of all threads of a picture and of the first one
-// after the samples have changed, and writes a picture as JOB.gpu, JOB.cpu (RGBA bytes, rows bottom up). Composites
+// Prints for each mapper "gpu|cpu MEDIAN_MS CHANGED_MS", of a picture and of the first one after the samples have
+// changed, and writes a picture as JOB.gpu, JOB.cpu (RGBA bytes, rows bottom up). Composites
 // over black.
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <ctime>
 #include <fstream>
@@ -42,15 +44,17 @@ namespace {
 struct Job {
     std::array<int, 3> dims{};
     int size = 512, compare = 64, frames = 5, shaded = 0;
-    std::string style = "composite";
+    std::string style = "composite", clock = "processor";
     double iso = 0, ambient = 0, diffuse = 0, specular = 0, shininess = 1, step = 0.01, unit = 0.01, angle = 30;
     std::array<double, 3> light{}, position{}, target{}, up{};
     std::vector<std::array<double, 4>> table;
 };
 
-/// Of all threads of the process.
-double cpuMilliseconds() {
-    return 1000 * double(std::clock()) / CLOCKS_PER_SEC;
+/// So far, by the clock named in the job.
+double milliseconds(const std::string& clock) {
+    if (clock == "processor") return 1000 * double(std::clock()) / CLOCKS_PER_SEC;
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    return std::chrono::duration<double, std::milli>(now).count();
 }
 
 bool read(const std::string& path, Job& job) {
@@ -64,6 +68,8 @@ bool read(const std::string& path, Job& job) {
             in >> job.compare;
         else if (word == "frames")
             in >> job.frames;
+        else if (word == "clock")
+            in >> job.clock;
         else if (word == "style") {
             in >> job.style;
             if (job.style == "iso") in >> job.iso;
@@ -167,9 +173,9 @@ void run(const char* name, vtkVolumeMapper& mapper, vtkImageData& image, const J
         return std::vector<unsigned char>(pixels->GetPointer(0), pixels->GetPointer(0) + pixels->GetNumberOfValues());
     };
     const auto timed = [&] {
-        const double begin = cpuMilliseconds();
+        const double begin = milliseconds(job.clock);
         draw(job.size);
-        return cpuMilliseconds() - begin;
+        return milliseconds(job.clock) - begin;
     };
     timed(); // warms up
     std::vector<double> times;

@@ -1,4 +1,5 @@
 #include "tests/vis/shader_probe.h"
+#include "vis/gl/driver.h"
 #include "vis/optics/look_shading.h"
 #include "vis/optics/ray_setup.h"
 #include "vis/raycast/look_uniforms.h"
@@ -152,12 +153,14 @@ TEST_F(LookLib, GrainAgrees) {
     const std::string head = "#include \"lib/grain.glsl\"\n#include \"lib/paper.glsl\"\nuniform sampler2D tile;\n"
                              "vec3 unit(vec4 v) { return normalize(v.xyz); }\n"
                              "vec3 way(int i, vec4 n, vec4 c) { return strokeDirection(unit(n), c.yzw, 0.8, 0.3); }\n";
+    vis::ProgramRecipe reads;
+    vis::addDriver(reads, vis::currentDriver());
     const auto got = evaluate(
         head,
         "vec4(grainAt(tile, 0.5 * a[i].xyz, unit(b[i]), 0.004 + 0.003 * c[i].x, true), paperShade(tile, 300.0 * "
         "c[i].xy, "
         "0.8), strokesAt(tile, 0.5 * a[i].xyz, unit(b[i]), way(i, b[i], c[i]), 0.004 + 0.003 * c[i].x, 137.0, true))",
-        {}, prepare);
+        reads, prepare);
     const auto ways = evaluate(head, "vec4(way(i, b[i], c[i]), 0.0)");
     const auto tile = vis::grainTile();
     double least = 1, most = 0;

@@ -1,4 +1,5 @@
 #include "tests/vis/shader_probe.h"
+#include "vis/gl/driver.h"
 #include "vis/optics/contour.h"
 #include "vis/optics/jitter.h"
 #include "vis/optics/ray_setup.h"
@@ -207,6 +208,7 @@ TEST_F(ShaderLib, TablesAreLookedUpAlike) {
     recipe.defines = {{"FIELDS", "1"},       {"LAYERS", "1"},        {"SLICES", "0"},     {"PLANES", "2"},
                       {"PLANE_SIZE", "256"}, {"TABLE_SIZE", "2048"}, {"TABLE_ROWS", "1"}, {"TABLE_ROW(i)", "(i)"}};
     recipe.defines.emplace_back("LAYER_INTERVAL(i)", "0");
+    vis::addDriver(recipe, vis::currentDriver());
     const auto prepare = [&](const vis::Program& program) {
         program.set("transferTable", 1);
         program.set("planeTable", 2);

@@ -37,6 +37,7 @@ Driver currentDriver() {
     if (driver.software) {
         constexpr int kTile = 64; // tile size of llvmpipe in pixels
         driver.compilesAtFirstDraw = true;
+        driver.exactFilter = true;
         driver.sharedTile = kTile;
         driver.textureBytes = std::size_t(1) << 30; // Mesa's software GL refuses larger textures
         return driver;
@@ -45,6 +46,10 @@ Driver currentDriver() {
     glGetQueryiv(GL_TIME_ELAPSED, GL_QUERY_COUNTER_BITS, &bits);
     driver.timerQueries = bits > 0;
     return driver;
+}
+
+void addDriver(ProgramRecipe& recipe, const Driver& driver) {
+    if (!driver.exactFilter) recipe.defines.emplace_back("FILTER_IN_SHADER", "1");
 }
 
 } // namespace tessera::vis

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "vis/gl/program.h"
+
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -15,6 +17,9 @@ struct Driver {
     /// Compiles machine code at the first draw of a program, specialised for the formats bound then, and keeps it in a
     /// disk cache (Mesa's software GL); see vis/gl/warm_up.h.
     bool compilesAtFirstDraw = false;
+    /// Interpolated reads of textures have the precision of floats. GPUs place them between two texels in steps of
+    /// 1/256; the ray caster then interpolates by itself (vis/shaders/lib/filtered.glsl).
+    bool exactFilter = false;
     /// Edge in pixels of the tiles that are distributed to CPU cores; 0: not applicable.
     int sharedTile = 0;
     /// GL_TIME_ELAPSED works; otherwise times are measured by waiting.
@@ -30,5 +35,8 @@ bool isSoftware(std::string_view renderer);
 
 /// Queries the driver of the current context.
 Driver currentDriver();
+
+/// Adds what shaders have to do themselves with this driver.
+void addDriver(ProgramRecipe& recipe, const Driver& driver);
 
 } // namespace tessera::vis

@@ -272,6 +272,7 @@ void RenderStages::drawWithin(ViewTarget& target, const RenderCall& call, const 
         drawReduced(target, call, programs, target.pace().reduction(state.changed().area(), left, call.plan.peels > 0));
         if (request.moving) return;
     }
+    if (!request.wait && !target.pace().known()) return; // with timer queries the first time comes with a later frame
     const bool slow = !fast && target.pace().expected(state.stale().area()) > kQuick * request.budgetMs;
     if (!request.wait && !state.full() && !state.half() && state.tilesDone() == 0 &&
         (slow || state.halfTilesDone() > 0))

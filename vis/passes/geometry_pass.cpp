@@ -148,6 +148,7 @@ const Program& GeometryPass::program(const GeometryJob& job, bool lines, int loo
                          "geometry.frag.glsl",
                          {},
                          {{"LINES", lines ? "1" : "0"}, {"LAYERS", "1"}, {"LOOKS", bits}, {"LAYER_LOOK(i)", bits}}};
+    addDriver(recipe, driver_);
     addLighting(recipe, job.scene);
     addClipping(recipe, job.scene);
     addLenses(recipe, job.lenses, job.scene);

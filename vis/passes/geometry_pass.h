@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/gl/driver.h"
 #include "vis/gl/handles.h"
 #include "vis/gl/program.h"
 #include "vis/raycast/look_uniforms.h"
@@ -42,6 +43,8 @@ struct GeometryJob {
 /// previous pass. Vertex buffers are kept as long as the geometry is referenced elsewhere.
 class GeometryPass {
 public:
+    explicit GeometryPass(const Driver& driver) : driver_(driver) {}
+
     /// Does nothing, and allocates nothing, if the scene has no geometry. `grain`: used only if a look needs it.
     void draw(GeometryBuffer& buffer, const GeometryJob& job, GrainTexture& grain);
 
@@ -67,6 +70,7 @@ private:
     std::vector<Draw> collect(const GeometryJob& job, GrainTexture& grain);
     void drawOne(const Draw& each, const GeometryJob& job, int peel) const;
 
+    Driver driver_;
     std::map<std::string, Program> programs_; ///< by recipe: variants for lights, clips and looks
     std::map<const Geometry*, Uploaded> uploaded_;
     Texture table_;

@@ -29,6 +29,12 @@ Pace::Reduction Pace::reduction(double area, double budget, bool geometry) const
     return kReductions[std::size(kReductions) - 1];
 }
 
+/// A time too short for the driver's clock is known all the same.
+void Pace::learn(double perPixel) {
+    constexpr double kLeast = 1e-12;
+    perPixel_ = std::max(known() ? 0.5 * (perPixel_ + perPixel) : perPixel, kLeast);
+}
+
 void Pace::timeGeometry(const std::function<void()>& draw) {
     given_ += geometry_;
     timer_.measure(draw, [this](double milliseconds) { geometry_ = milliseconds; });

@@ -49,7 +49,7 @@ public:
     double pass() const { return pass_ * scale_; }
 
 private:
-    void learn(double perPixel) { perPixel_ = known() ? 0.5 * (perPixel_ + perPixel) : perPixel; }
+    void learn(double perPixel);
     void tookTile(double milliseconds, double area, int pass);
     void settle();
 

@@ -15,6 +15,7 @@ namespace tessera::vis {
 ProgramRecipe RenderStages::variant(const ViewTarget& target, const Scene& scene, const RayPlan& plan) const {
     const TablesContent& tables = target.tables.content();
     ProgramRecipe made = rayRecipe(plan, scene, source->grid(), tables.skip && !lensesBend(scene));
+    addDriver(made, tools.driver);
     if (options.countSamples) made.defines.emplace_back("COUNT_SAMPLES", "1");
     if (tables.adaptive && made.slots["skip"] == "slots/skip_distance.glsl") made.defines.emplace_back("ADAPTIVE", "1");
     if (findsHidden(scene)) made.defines.emplace_back("REACH", "1");

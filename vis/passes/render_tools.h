@@ -39,7 +39,7 @@ struct RenderTools {
     VertexArray vertices = makeVertexArray("no vertices");
     ProgramCache programs{driver.compilesAtFirstDraw};
     BrushTables brushes;
-    GeometryPass geometryPass;
+    GeometryPass geometryPass{driver};
     GrainTexture grain;
     Texture noShadow = makeUniform3D(glm::vec4(1), "no shadow"), noLight = makeUniform3D(glm::vec4(0), "no light");
     std::vector<std::string> messages;

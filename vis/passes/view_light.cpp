@@ -69,6 +69,7 @@ bool ViewLight::drawVolume(RenderTools& tools, const RenderCall& call, const Lig
     ProgramRecipe recipe = rayRecipe(plan, call.scene, call.grid(), false);
     recipe.vertex = "screen.vert.glsl";
     recipe.fragment = "light_medium.frag.glsl";
+    addDriver(recipe, tools.driver);
     const ProgramAnswer answer = request.wait ? ProgramAnswer{tools.programs.find(recipe), ProgramStage::Ready}
                                               : tools.programs.request(recipe, request.budgetMs / 4);
     progress = {request.wait || answer.stage == ProgramStage::Failed, false};

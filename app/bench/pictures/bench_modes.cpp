@@ -90,7 +90,7 @@ void measure(const BenchVolume& volume, bool peers, BenchTable& table) {
             if (peers) {
                 const PeerResults peer = kind == volume::LatticeKind::CC && peerDraws(mode.scene)
                                              ? runVtkPeer(volume.bytes, volume.size, mode.scene,
-                                                          {kBenchPicture, kBenchCompared, kBenchFrames})
+                                                          {kBenchPicture, kBenchCompared, kBenchFrames, benchClock()})
                                              : PeerResults();
                 for (const auto& result : {peer.gpu, peer.cpu})
                     table.rows.back().push_back(result ? decimals(result->milliseconds, 1) : "");
@@ -105,12 +105,13 @@ void measure(const BenchVolume& volume, bool peers, BenchTable& table) {
 } // namespace
 
 BenchTable benchModes(const std::string& only) {
+    const vis::HeadlessContext context;
     BenchTable table;
     table.name = "render: modes";
-    table.columns = {"volume", "lattice", "mode", "CPU ms", "samples per pixel", "texture MB", "PSNR dB"};
+    table.columns = {"volume",     "lattice", "mode", timeColumn(benchClock()), "samples per pixel",
+                     "texture MB", "PSNR dB"};
     const bool peers = vtkPeerAtHand();
     if (peers) table.columns.insert(table.columns.end(), {"VTK GPU ms", "VTK CPU ms"});
-    const vis::HeadlessContext context;
     const auto wanted = [&](std::string_view name) { return name.find(only) != name.npos; };
     if (wanted("CT phantom 64^3")) measure(phantomVolume(64), peers, table);
     if (wanted("CT phantom 256^3")) measure(phantomVolume(256), peers, table);

@@ -133,7 +133,8 @@ void measure(const BenchVolume& volume, bool peers, std::map<std::string, Means>
             scene.render.stepVoxels = style.step;
             const bool drawn = i > 0 && all[i - 1].technique == style.technique && all[i - 1].opacity == style.opacity;
             if (peers && cc && !drawn)
-                peer = runVtkPeer(volume.bytes, volume.size, theirs, {kBenchPicture, kBenchCompared, kBenchFrames});
+                peer = runVtkPeer(volume.bytes, volume.size, theirs,
+                                  {kBenchPicture, kBenchCompared, kBenchFrames, benchClock()});
             const vis::reference::Image limit = converged(scene, *source);
             const vis::reference::Image same = vis::reference::render(scene, *source, {kBenchCompared, kBenchCompared});
             for (const vis::Engine engine : {vis::Engine::OpenGl, vis::Engine::Processor}) {
@@ -177,11 +178,13 @@ std::string ratio(const Mean& mean) {
 } // namespace
 
 BenchTable benchRender(const std::string& only) {
+    const vis::HeadlessContext context;
     const bool peers = vtkPeerAtHand();
     BenchTable table;
     table.name = "render: beside VTK";
-    table.columns = {"volume",      "lattice",         "engine and style", "CPU ms", "million samples / s",
-                     "new data ms", "same samples dB", "converged dB"};
+    table.columns = {
+        "volume",      "lattice",         "engine and style", timeColumn(benchClock()), "million samples / s",
+        "new data ms", "same samples dB", "converged dB"};
     if (peers)
         for (const char* column : {"VTK GPU ms", "VTK GPU dB", "VTK GPU / ours", "VTK CPU ms", "VTK CPU dB",
                                    "VTK CPU / ours", "VTK GPU new data ms", "VTK GPU / ours"})
@@ -189,7 +192,6 @@ BenchTable benchRender(const std::string& only) {
     else
         std::fprintf(stderr, "VTK is not available: its columns are omitted\n");
 
-    const vis::HeadlessContext context;
     std::map<std::string, Means> means;
     const auto wanted = [&](std::string_view name) { return name.find(only) != name.npos; };
     if (wanted("CT phantom")) measure(phantomVolume(kEdge), peers, means, table);

@@ -8,8 +8,8 @@
 namespace tessera::app {
 
 BenchTable benchStyles() {
-    BenchTable table{"styles", {"look", "ms CPU", "plain", "ratio"}, {}};
     const vis::HeadlessContext context;
+    BenchTable table{"styles", {"look", timeColumn(benchClock()), "plain", "ratio"}, {}};
     vis::Renderer renderer{vis::RendererOptions{}};
     renderer.setSource(
         volume::makeMemorySource(volume::makeModel("fuel-cell", {}), {.lattice = volume::LatticeKind::BCC}));

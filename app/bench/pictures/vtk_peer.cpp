@@ -58,7 +58,8 @@ std::string jobText(glm::ivec3 size, const vis::Scene& scene, PeerSizes sizes) {
     const auto* iso = std::get_if<vis::IsoLayer>(&scene.layers.front().technique);
     const std::string channel = volume != nullptr ? volume->channel : iso != nullptr ? iso->channel : "";
     out << "raw " << size.x << ' ' << size.y << ' ' << size.z << "\nsize " << sizes.timed << "\ncompare "
-        << sizes.compared << "\nframes " << sizes.frames << "\nstyle ";
+        << sizes.compared << "\nframes " << sizes.frames << "\nclock "
+        << (sizes.clock == BenchClock::Wall ? "wall" : "processor") << "\nstyle ";
     if (iso != nullptr)
         out << "iso " << iso->value;
     else

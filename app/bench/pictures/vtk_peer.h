@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/bench/pictures/bench_frames.h"
 #include "vis/reference/raycast.h"
 
 #include <cstdint>
@@ -24,6 +25,7 @@ struct PeerResults {
 
 struct PeerSizes {
     int timed = 512, compared = 64, frames = 5;
+    BenchClock clock = BenchClock::Processor;
 };
 
 /// Whether VTK has the layer's ray style, classification and light.

@@ -1,4 +1,5 @@
 // Object-space paper grain, strokes and dots; formulas in the twin vis/optics/grain.h.
+#include "lib/filtered.glsl"
 
 const int kStrokeTurns = 8;
 const float kCrossingShift = 137.0;
@@ -21,12 +22,12 @@ vec2 onPlane(vec3 place, int axis) {
 vec2 grainAt(sampler2D tile, vec3 place, vec3 normal, float size, bool needed) {
     float octave = log2(max(size, 1e-9)), whole = floor(octave), part = octave - whole;
     vec3 planes = grainPlanes(normal);
-    float edge = float(textureSize(tile, 0).x), sum = 0.0, squares = 0.0, dots = 1.0;
+    float sum = 0.0, squares = 0.0, dots = 1.0;
     for (int axis = 0; axis < (needed ? grainPlaneCount : 0); ++axis) {
         for (int scale = 0; scale < 2; ++scale) {
             vec3 texel = place * exp2(-whole - float(scale));
             float weight = planes[axis] * (scale == 0 ? 1.0 - part : part);
-            vec3 found = textureLod(tile, (onPlane(texel, axis) + 17.3 * float(axis + 1)) / edge, 0.0).rgb;
+            vec3 found = filteredTile(tile, onPlane(texel, axis) + 17.3 * float(axis + 1)).rgb;
             sum += weight * (found.r - 0.5);
             squares += weight * weight;
             dots = min(dots, 1.0 - pow(max(1.0 - found.b, 0.0), 1.0 / max(weight, 1e-3)));
@@ -39,7 +40,7 @@ vec2 grainAt(sampler2D tile, vec3 place, vec3 normal, float size, bool needed) {
 float strokesAt(sampler2D tile, vec3 place, vec3 normal, vec3 along, float size, float shift, bool needed) {
     float octave = log2(max(size, 1e-9)), whole = floor(octave), part = octave - whole;
     vec3 planes = grainPlanes(normal);
-    float edge = float(textureSize(tile, 0).x), sum = 0.0, squares = 0.0;
+    float sum = 0.0, squares = 0.0;
     for (int axis = 0; axis < (needed ? grainPlaneCount : 0); ++axis) {
         vec2 way = onPlane(along, axis);
         float turns = atan(way.y, way.x + 1e-9) / kHalfTurn * float(kStrokeTurns), first = floor(turns);
@@ -52,7 +53,7 @@ float strokesAt(sampler2D tile, vec3 place, vec3 normal, vec3 along, float size,
                 vec2 on = onPlane(place * exp2(-whole - float(scale)), axis) + 17.3 * float(axis + 1);
                 vec2 at = vec2(cosine * on.x - sine * on.y, sine * on.x + cosine * on.y) + shift;
                 float weight = planes[axis] * (next == 0 ? 1.0 - second : second) * (scale == 0 ? 1.0 - part : part);
-                sum += weight * (textureLod(tile, at / edge, 0.0).g - 0.5);
+                sum += weight * (filteredTile(tile, at).g - 0.5);
                 squares += weight * weight;
             }
         }

@@ -1,13 +1,14 @@
 // Lighting of a sample with the uniforms of lib/light_bindings.glsl. Formulas in the twin: vis/optics/shade.h.
+#include "lib/filtered.glsl"
 
 #if LIGHT_VOLUME
 // Transmitted fractions of the lights at a world point, and scattered light.
 void reachingLight(vec3 world, out vec4 shares, out vec3 scattered) {
     vec3 at = 0.5 + 0.5 * world / halfSize;
-    shares = mix(vec4(1.0), textureLod(lightVisible, at, 0.0), shadowStrength.xxxy);
+    shares = mix(vec4(1.0), filtered(lightVisible, at), shadowStrength.xxxy);
     scattered = vec3(0.0);
 #if LIGHT_VOLUME == 2
-    scattered = textureLod(lightScattered, at, 0.0).rgb;
+    scattered = filtered(lightScattered, at).rgb;
 #endif
 }
 

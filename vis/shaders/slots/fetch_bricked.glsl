@@ -1,6 +1,7 @@
 // Slot fetch: bricks of any level in an atlas. A page table with one entry per full-resolution brick stores the atlas
 // position and the level of the resident brick: one fetch each, whatever the level. Both sublattices use the brick that
 // contains p; its halo holds the samples that either needs.
+#include "lib/filtered.glsl"
 uniform usampler3D pageTable[FIELDS];
 uniform sampler3D atlas[FIELDS];
 
@@ -48,12 +49,12 @@ Page pageFor(int field, vec3 p) {
 
 vec4 fetchEven(int field, vec3 p) {
     Page page = pageFor(field, p);
-    vec4 texel = textureLod(atlas[field], page.texel * atlasInverse[field], 0.0);
+    vec4 texel = filtered(atlas[field], page.texel * atlasInverse[field]);
     return page.scale > 0.0 ? texel : vec4(0.0);
 }
 vec4 fetchOdd(int field, vec3 p) {
     Page page = pageFor(field, p);
-    vec4 texel = textureLod(atlas[field], (page.texel - 0.5 * page.scale) * atlasInverse[field], 0.0);
+    vec4 texel = filtered(atlas[field], (page.texel - 0.5 * page.scale) * atlasInverse[field]);
     return page.scale > 0.0 ? texel : vec4(0.0);
 }
 

@@ -1,11 +1,12 @@
 // Slot fetch: each channel is a single texture.
+#include "lib/filtered.glsl"
 
 // Filtered texel at p on the even sublattice (fetchOdd: odd). CC: value, coverage; BCC: see vis/bricks/texels.h.
 vec4 fetchEven(int field, vec3 p) {
-    return textureLod(fieldTexture[field], p * fieldScale[field] + fieldOffset[field], 0.0);
+    return filtered(fieldTexture[field], p * fieldScale[field] + fieldOffset[field]);
 }
 vec4 fetchOdd(int field, vec3 p) {
-    return textureLod(fieldTexture[field], p * fieldScale[field] + fieldOffset[field] + fieldOdd[field], 0.0);
+    return filtered(fieldTexture[field], p * fieldScale[field] + fieldOffset[field] + fieldOdd[field]);
 }
 
 // Announces reads within two texels of p, until releasePage().
