@@ -4,6 +4,7 @@
 #include "codec/archive/archive.h"
 #include "volume/base/error.h"
 #include "volume/import/files/raw.h"
+#include "volume/system/part_file.h"
 
 #include <algorithm>
 #include <array>
@@ -13,10 +14,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <poll.h>
 #include <span>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
 
@@ -28,17 +32,24 @@ namespace fs = std::filesystem;
 
 constexpr const char* kInput = "standard input";
 
-/// A folder for frames as numbered files of one series, which the importer reads; removed in the end.
+/// A folder for frames as numbered files of one series, which the importer reads; removed in the end, or by the next
+/// one where the process was killed.
 class FrameFolder {
 public:
     explicit FrameFolder(std::string series) : series_(std::move(series)) {
-        std::string name = (fs::temp_directory_path() / "tessera-frames-XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr) throw MachineError(std::strerror(errno), name);
-        folder_ = name;
+        const std::string common = (fs::temp_directory_path() / "tessera-frames").string();
+        removeLeftParts(common);
+        folder_ = partFileOf(common);
+        std::error_code ignored;
+        fs::remove_all(folder_, ignored); // of a former process with this number
+        if (::mkdir(folder_.c_str(), S_IRWXU) != 0) throw MachineError(std::strerror(errno), folder_.string());
+        lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        ::flock(lock_, LOCK_EX | LOCK_NB); // says to leftParts(), also in other containers, that it is in use
     }
     ~FrameFolder() {
         std::error_code ignored;
         fs::remove_all(folder_, ignored);
+        ::close(lock_);
     }
     FrameFolder(const FrameFolder&) = delete;
     FrameFolder& operator=(const FrameFolder&) = delete;
@@ -48,6 +59,7 @@ public:
 private:
     fs::path folder_;
     std::string series_;
+    int lock_ = -1;
 };
 
 /// Standard input, read while SIGINT and SIGTERM are held.

@@ -4,6 +4,9 @@
 tessera=$1 source=$2
 source "$source/tests/e2e/common.bash"
 
+export TMPDIR=$work/tmp
+mkdir "$TMPDIR"
+
 cat > solver.py << 'END'
 """Frames of T (4 x 3 x 2 samples, floats) and U (a vector) for the steps named, or with "timed" with their times before them."""
 import struct, sys, time
@@ -92,7 +95,22 @@ kill -TERM $pid
 wait $pid || fail "SIGTERM: $(cat err)"
 exec 3>&-
 holds held.tsr "[0]" "[0]"
-ls "${TMPDIR:-/tmp}"/tessera-frames-* 2> /dev/null && fail "frames are left"
+ls -d "$TMPDIR"/tessera-frames* 2> /dev/null && fail "frames are left"
+
+# A killed one leaves the frame that it was reading, which the next one removes; not that of one that runs.
+"$tessera" pack - -o killed.tsr --raw form.json "${exact[@]}" < pipe > lines 2> err &
+pid=$!
+exec 3> pipe
+head -c 100 frames >&3
+for i in $(seq 100); do [ -n "$(ls "$TMPDIR"/tessera-frames.part-$pid 2> /dev/null)" ] && break; sleep 0.1; done
+python3 solver.py 7 | "$tessera" pack - -o beside.tsr --raw form.json "${exact[@]}" > lines || fail "a stream beside another"
+[ -d "$TMPDIR"/tessera-frames.part-$pid ] || fail "frames of a stream that runs are removed"
+kill -KILL $pid
+wait $pid 2> /dev/null
+exec 3>&-
+[ -d "$TMPDIR"/tessera-frames.part-$pid ] || fail "nothing was left to remove"
+python3 solver.py 7 | "$tessera" pack - -o beside.tsr --raw form.json "${exact[@]}" > lines || fail "a stream after a kill"
+ls -d "$TMPDIR"/tessera-frames* 2> /dev/null && fail "frames of a killed stream are left"
 
 # What cannot be a stream.
 bad() { # bad TEXT OPTIONS...

@@ -59,6 +59,19 @@ TEST_F(PartFile, IsKeptWhileAWriterElsewhereLocksIt) {
     EXPECT_THAT(leftParts(target_), ElementsAre(left));
 }
 
+TEST_F(PartFile, MayBeAFolderWithFiles) {
+    const fs::path left = folder_ / ("a.tsr.part-" + gone()), elsewhere = folder_ / "elsewhere";
+    fs::create_directories(left);
+    std::ofstream(left / "frame") << "begun";
+    fs::create_directories(elsewhere);
+    const fs::path link = folder_ / ("a.tsr.part-" + gone());
+    fs::create_directory_symlink(elsewhere, link);
+    EXPECT_THAT(leftParts(target_), ElementsAre(left.string()));
+    removeLeftParts(target_);
+    EXPECT_FALSE(fs::exists(left));
+    EXPECT_TRUE(fs::exists(link)) << "links are nobody's parts";
+}
+
 TEST_F(PartFile, TheNextWriterOfTheSameFileRemovesIt) {
     const std::string left = touch("a.tsr.part-" + gone());
     const std::string other = touch("b.tsr.part-" + gone());

@@ -50,7 +50,10 @@ std::vector<std::string> leftParts(const std::string& path) {
         const char* const last = name.data() + name.size();
         const auto [read, failed] = std::from_chars(name.data() + begin.size(), last, pid);
         std::error_code unknown;
-        if (failed != std::errc() || read != last || pid <= 0 || !at->is_regular_file(unknown)) continue;
+        if (failed != std::errc() || read != last || pid <= 0) continue;
+        if (const fs::file_type type = at->symlink_status(unknown).type();
+            type != fs::file_type::regular && type != fs::file_type::directory)
+            continue;
         if (!processRuns(pid) && !isLocked(at->path().string())) left.push_back(at->path().string());
     }
     std::sort(left.begin(), left.end());
@@ -59,7 +62,7 @@ std::vector<std::string> leftParts(const std::string& path) {
 
 void removeLeftParts(const std::string& path) {
     std::error_code ignored;
-    for (const std::string& part : leftParts(path)) fs::remove(part, ignored);
+    for (const std::string& part : leftParts(path)) fs::remove_all(part, ignored);
 }
 
 } // namespace tessera

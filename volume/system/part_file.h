@@ -5,7 +5,8 @@
 
 namespace tessera {
 
-/// The name under which this process writes a file until it is complete: PATH.part-PID, beside it.
+/// The name under which this process writes a file, or a folder of them, until it is complete: PATH.part-PID, beside
+/// it.
 std::string partFileOf(const std::string& path);
 
 /// The parts of `path` that lie in its folder although the processes that wrote them are gone, as after a kill: no
@@ -13,7 +14,7 @@ std::string partFileOf(const std::string& path);
 /// does).
 std::vector<std::string> leftParts(const std::string& path);
 
-/// Removes these. What cannot be removed stays.
+/// Removes these, folders with what they hold. What cannot be removed stays.
 void removeLeftParts(const std::string& path);
 
 } // namespace tessera
