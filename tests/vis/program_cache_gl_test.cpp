@@ -1,6 +1,7 @@
 #include "tests/vis/function_source.h"
 #include "tests/vis/gl_fixture.h"
 
+#include "vis/gl/driver.h"
 #include "vis/gl/program_cache.h"
 #include "vis/gl/warm_up.h"
 #include "vis/raycast/ray_uniforms.h"
@@ -184,17 +185,43 @@ TEST_F(ProgramCacheTest, ShadowsAreCompiledInTheBackground) {
 
 // What a second context is to draw with: every unit that anything is bound to.
 TEST_F(ProgramCacheTest, DrawStatesHoldAllUnits) {
-    const vis::Texture high = vis::makeTexture2D({4, 4}, GL_RG32F, GL_NEAREST, "high"),
+    const vis::Program program = vis::makeProgram(numbered(0));
+    program.set("source", 3);
+    const vis::Texture high = vis::makeTexture2D({4, 5}, GL_RG32F, GL_LINEAR, "high"),
                        color = vis::makeTexture2D({4, 4}, GL_RGBA16F, GL_NEAREST, "color");
     const vis::Framebuffer framebuffer = vis::makeFramebuffer({color.name()}, "framebuffer");
+    glTextureParameteri(high.name(), GL_TEXTURE_WRAP_S, GL_REPEAT);
     for (const int at : {1, vis::RayUnits::kGeometry, vis::RayUnits::kPaper}) {
         const auto unit = GLuint(at);
         glBindTextureUnit(unit, high.name());
-        const vis::DrawState state = vis::captureDrawState(framebuffer);
+        const vis::DrawState state = vis::captureDrawState(program, framebuffer);
         ASSERT_EQ(state.textures.size(), 1u);
-        EXPECT_EQ(state.textures[0], std::make_pair(unit, high.name()));
+        const vis::BoundTexture& found = state.textures[0];
+        EXPECT_EQ(found.unit, unit);
+        EXPECT_EQ(found.target, GLenum(GL_TEXTURE_2D));
+        EXPECT_EQ(found.format, GLenum(GL_RG32F));
+        EXPECT_EQ(found.size, glm::ivec3(4, 5, 1));
+        EXPECT_EQ(found.sampling,
+                  (std::array<GLint, 5>{GL_LINEAR, GL_LINEAR, GL_REPEAT, GL_CLAMP_TO_EDGE, GL_CLAMP_TO_EDGE}));
+        EXPECT_EQ(state.samplers, (std::vector<std::pair<std::string, int>>{{"source", 3}, {"sourceTermination", 0}}));
         EXPECT_EQ(state.colorFormats, std::vector<GLenum>{GL_RGBA16F});
         glBindTextureUnit(unit, 0);
+    }
+}
+
+// Contexts of one display of Mesa's software GL are not safe beside each other; elsewhere programs are shared.
+TEST_F(ProgramCacheTest, TheWorkersContextSharesNothingOrEverything) {
+    const vis::Texture texture = vis::makeTexture2D({4, 4}, GL_RG32F, GL_LINEAR, "texture");
+    for (const bool apart : {true, false}) {
+        const std::unique_ptr<vis::WorkerContext> context = vis::WorkerContext::make(apart);
+        ASSERT_TRUE(context) << apart;
+        EXPECT_TRUE(glIsTexture(texture.name())) << "the first context is current as before";
+        const std::string renderer = vis::currentDriver().renderer;
+        std::thread([&] {
+            const vis::WorkerContext::Use use(*context);
+            EXPECT_EQ(bool(glIsTexture(texture.name())), !apart);
+            EXPECT_EQ(vis::currentDriver().renderer, renderer);
+        }).join();
     }
 }
 

@@ -4,6 +4,7 @@
 #include "vis/gl/shader_files.h"
 #include "volume/base/error.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <set>
@@ -157,6 +158,26 @@ Program linkProgram(const ProgramText& text) {
         glGetProgramInfoLog(object.name(), length, &length, log.data());
         throw Error("does not link: " + log, text.fragment);
     }
+    glObjectLabel(GL_PROGRAM, object.name(), -1, text.fragment.c_str());
+    return Program(std::move(object));
+}
+
+ProgramBinary binaryOf(const Program& program) {
+    ProgramBinary out;
+    GLint length = 0;
+    glGetProgramiv(program.name(), GL_PROGRAM_BINARY_LENGTH, &length);
+    out.bytes.resize(std::size_t(std::max(length, 0)));
+    if (length > 0) glGetProgramBinary(program.name(), length, &length, &out.format, out.bytes.data());
+    return out;
+}
+
+Program loadProgram(const ProgramBinary& binary, const ProgramText& text) {
+    if (binary.bytes.empty()) return linkProgram(text);
+    ProgramObject object(glCreateProgram());
+    glProgramBinary(object.name(), binary.format, binary.bytes.data(), GLsizei(binary.bytes.size()));
+    GLint ok = 0;
+    glGetProgramiv(object.name(), GL_LINK_STATUS, &ok);
+    if (!ok) return linkProgram(text);
     glObjectLabel(GL_PROGRAM, object.name(), -1, text.fragment.c_str());
     return Program(std::move(object));
 }

@@ -2,6 +2,7 @@
 
 #include "vis/gl/handles.h"
 
+#include <cstddef>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
@@ -96,5 +97,14 @@ private:
 Program makeProgram(const ProgramRecipe& recipe);
 /// Compiles and links composed shaders.
 Program linkProgram(const ProgramText& text);
+
+/// A linked program as the driver stores it, which contexts that share nothing can exchange. Empty: it stores none.
+struct ProgramBinary {
+    GLenum format = GL_NONE;
+    std::vector<std::byte> bytes;
+};
+ProgramBinary binaryOf(const Program& program);
+/// The program of a binary, with the uniforms of a new one; from `text` where the driver does not take the binary.
+Program loadProgram(const ProgramBinary& binary, const ProgramText& text);
 
 } // namespace tessera::vis

@@ -20,7 +20,8 @@ struct ProgramCache::Shared {
 
 struct ProgramCache::Entry {
     ProgramText text;
-    Program program;                            ///< used only by the thread that owns the current stage
+    Program program;                            ///< of the cache's own context
+    ProgramBinary binary;                       ///< what the worker compiled apart; complete from Linked on
     ProgramStage stage = ProgramStage::Linking; ///< guarded by the mutex
     Clock::time_point used = {};                ///< read and written by the cache's own thread
 };
@@ -47,7 +48,7 @@ bool underWay(ProgramStage stage) {
 } // namespace
 
 ProgramCache::ProgramCache(bool warmsUp, ProgramLimit limit)
-    : warmsUp_(warmsUp), limit_(limit), shared_(std::make_shared<Shared>()), context_(SharedContext::make()) {
+    : warmsUp_(warmsUp), limit_(limit), shared_(std::make_shared<Shared>()), context_(WorkerContext::make(warmsUp)) {
     if (context_) worker_ = std::make_unique<JobQueue>(1, JobThreads::Equal);
 }
 
@@ -60,11 +61,15 @@ ProgramCache::Entry& ProgramCache::make(const ProgramRecipe& recipe, bool backgr
     entry->used = Clock::now();
     if (!isNew) return *entry;
     dropUnused();
-    const auto link = [entry, shared = shared_](ProgramStage next) {
+    const auto link = [entry, shared = shared_](bool apart) {
         try {
-            entry->program = linkProgram(entry->text);
+            Program program = linkProgram(entry->text);
+            if (apart)
+                entry->binary = binaryOf(program);
+            else
+                entry->program = std::move(program);
             glFinish(); // before another context uses it
-            shared->reach(*entry, next);
+            shared->reach(*entry, apart ? ProgramStage::Linked : ProgramStage::Ready);
         } catch (const Error& error) {
             shared->fail(*entry, error.what());
         }
@@ -76,12 +81,11 @@ ProgramCache::Entry& ProgramCache::make(const ProgramRecipe& recipe, bool backgr
         return *entry;
     }
     if (!background || !worker_) {
-        link(ProgramStage::Ready);
+        link(false);
     } else {
-        const ProgramStage next = warmsUp_ ? ProgramStage::Linked : ProgramStage::Ready;
-        worker_->add(0, [link, next, context = context_.get()](std::stop_token) {
-            const SharedContext::Use use(*context);
-            link(next);
+        worker_->add(0, [link, apart = warmsUp_, context = context_.get()](std::stop_token) {
+            const WorkerContext::Use use(*context);
+            link(apart);
         });
     }
     return *entry;
@@ -99,34 +103,53 @@ void ProgramCache::dropUnused() {
     }
 }
 
+/// The program of an entry that is linked or ready; null if it cannot be made in this context.
+const Program* ProgramCache::own(Entry& entry) {
+    if (entry.program) return &entry.program;
+    try {
+        entry.program = loadProgram(entry.binary, entry.text);
+        return &entry.program;
+    } catch (const Error& error) {
+        shared_->fail(entry, error.what());
+        return nullptr;
+    }
+}
+
 const Program* ProgramCache::find(const ProgramRecipe& recipe) {
     Entry& entry = make(recipe, false);
-    std::unique_lock lock(shared_->mutex);
-    shared_->changed.wait(lock, [&] { return !underWay(entry.stage); });
-    if (entry.stage == ProgramStage::Linked) entry.stage = ProgramStage::Ready; // the caller draws it first
-    return entry.stage == ProgramStage::Ready ? &entry.program : nullptr;
+    {
+        std::unique_lock lock(shared_->mutex);
+        shared_->changed.wait(lock, [&] { return !underWay(entry.stage); });
+        if (entry.stage == ProgramStage::Linked) entry.stage = ProgramStage::Ready; // the caller draws it first
+        if (entry.stage != ProgramStage::Ready) return nullptr;
+    }
+    return own(entry);
 }
 
 ProgramAnswer ProgramCache::request(const ProgramRecipe& recipe, double milliseconds) {
     Entry& entry = make(recipe, true);
-    std::unique_lock lock(shared_->mutex);
-    shared_->changed.wait_for(lock, std::chrono::duration<double, std::milli>(milliseconds),
-                              [&] { return !underWay(entry.stage); });
-    const bool usable = entry.stage == ProgramStage::Linked || entry.stage == ProgramStage::Ready;
-    return {usable ? &entry.program : nullptr, entry.stage};
+    ProgramStage stage;
+    {
+        std::unique_lock lock(shared_->mutex);
+        shared_->changed.wait_for(lock, std::chrono::duration<double, std::milli>(milliseconds),
+                                  [&] { return !underWay(entry.stage); });
+        stage = entry.stage;
+    }
+    if (stage != ProgramStage::Linked && stage != ProgramStage::Ready) return {nullptr, stage};
+    const Program* const program = own(entry);
+    return {program, program ? stage : ProgramStage::Failed};
 }
 
 void ProgramCache::warmUp(const ProgramRecipe& recipe, const Framebuffer& framebuffer) {
     const auto found = programs_.find(recipe.key());
-    if (found == programs_.end() || !worker_) return;
-    const DrawState state = captureDrawState(framebuffer);
-    glFlush(); // makes these uniforms visible to the other context
+    if (found == programs_.end() || !worker_ || !found->second->program) return;
+    const DrawState state = captureDrawState(found->second->program, framebuffer);
     shared_->reach(*found->second, ProgramStage::Warming);
     worker_->add(-1, [this, entry = found->second, state](std::stop_token) {
         double firstDraw = 0;
         try {
-            const SharedContext::Use use(*context_);
-            firstDraw = drawOnePixel(entry->program, state);
+            const WorkerContext::Use use(*context_);
+            firstDraw = drawNothing(loadProgram(entry->binary, entry->text), state);
         } catch (const std::exception&) { // for example out of memory: then the first draw happens in the first context
         }
         constexpr double kWorthIt = 25; // ms; hardware drivers and code already in the disk cache stay below
@@ -140,9 +163,7 @@ void ProgramCache::warmUp(const ProgramRecipe& recipe, const Framebuffer& frameb
 /// Mesa writes its disk cache on a low-priority thread. Whether the code has been written shows in a second copy of the
 /// program: its first draw is then many times faster.
 bool ProgramCache::inDiskCache(const Drawn& drawn) {
-    const Program copy = linkProgram(drawn.entry->text);
-    copySamplerUnits(drawn.entry->program, copy);
-    return drawOnePixel(copy, drawn.state) < 0.4 * drawn.firstDraw;
+    return drawNothing(loadProgram(drawn.entry->binary, drawn.entry->text), drawn.state) < 0.4 * drawn.firstDraw;
 }
 
 /// Checks repeatedly, at growing intervals, whether the driver has cached a drawn program; other jobs run in between.
@@ -154,7 +175,7 @@ void ProgramCache::awaitDiskCache(const Drawn& drawn, std::size_t trial, Clock::
         if (!due) std::this_thread::sleep_for(10ms);
         if (!due && !stop.stop_requested()) return awaitDiskCache(drawn, trial, since);
         try {
-            const SharedContext::Use use(*context_);
+            const WorkerContext::Use use(*context_);
             if (!stop.stop_requested() && trial + 1 < std::size(kPauses) && !inDiskCache(drawn))
                 return awaitDiskCache(drawn, trial + 1, Clock::now());
         } catch (const std::exception&) { // as above

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "vis/gl/job_queue.h"
-#include "vis/gl/shared_context.h"
 #include "vis/gl/warm_up.h"
+#include "vis/gl/worker_context.h"
 
 #include <chrono>
 #include <condition_variable>
@@ -39,7 +39,8 @@ struct ProgramLimit {
 
 class ProgramCache {
 public:
-    /// `warmsUp`: programs need warmUp() (Driver::compilesAtFirstDraw); otherwise they are ready once linked.
+    /// `warmsUp`: programs need warmUp() (Driver::compilesAtFirstDraw), and are compiled in a context that shares
+    /// nothing; otherwise they are ready once linked, in one that shares them.
     explicit ProgramCache(bool warmsUp = true, ProgramLimit limit = {});
     ~ProgramCache(); ///< waits for a running compilation
 
@@ -58,6 +59,7 @@ private:
     struct Entry;
     struct Shared;
     Entry& make(const ProgramRecipe& recipe, bool background);
+    const Program* own(Entry& entry);
     void dropUnused();
     /// A program drawn by the other context, its draw state, and the time of that draw in milliseconds.
     struct Drawn {
@@ -74,7 +76,7 @@ private:
     std::map<std::string, std::shared_ptr<Entry>> programs_;
     std::shared_ptr<Shared> shared_;
     std::set<GLuint> drawn_;
-    std::unique_ptr<SharedContext> context_; ///< null: everything runs synchronously in the current context
+    std::unique_ptr<WorkerContext> context_; ///< null: everything runs synchronously in the current context
     std::unique_ptr<JobQueue> worker_;       ///< last member: its jobs end before the other members are destroyed
 };
 

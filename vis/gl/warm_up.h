@@ -2,24 +2,35 @@
 
 #include "vis/gl/program.h"
 
+#include <array>
+
 /// Software GL compiles machine code at the first draw of a program, specialised for the formats bound then. These
-/// functions let a second context make that draw: Mesa puts the code into its disk cache, where the first context finds
-/// it.
+/// functions let a context on a worker thread make that draw with textures alike: Mesa puts the code into its disk
+/// cache, where the first context finds it.
 namespace tessera::vis {
+
+/// What machine code depends on of a texture. Of its size that is whether edges are powers of two.
+struct BoundTexture {
+    GLuint unit = 0;
+    GLenum target = GL_NONE;
+    GLenum format = GL_NONE;
+    glm::ivec3 size{1};
+    std::array<GLint, 5> sampling{}; ///< filters and wrap modes
+};
 
 /// State that the machine code depends on, besides the program.
 struct DrawState {
-    std::vector<std::pair<GLuint, GLuint>> textures; ///< unit, name
+    std::vector<BoundTexture> textures;
     std::vector<GLenum> colorFormats;
+    std::vector<std::pair<std::string, int>> samplers; ///< uniform, unit
+    bool seamless = false;                             ///< GL_TEXTURE_CUBE_MAP_SEAMLESS
 };
 
-/// Captures the bound textures and the formats of a framebuffer.
-DrawState captureDrawState(const Framebuffer& framebuffer);
+/// Captures the bound textures, the sampler units of a program and the formats of a framebuffer.
+DrawState captureDrawState(const Program& program, const Framebuffer& framebuffer);
 
-/// Draws one pixel with that state and waits. Returns the CPU time of this thread in milliseconds.
-double drawOnePixel(const Program& program, const DrawState& state);
-
-/// Copies the sampler units of `from` to `to`, a program of the same source.
-void copySamplerUnits(const Program& from, const Program& to);
+/// Draws with that state, in any context, but discards what it draws, and waits. Returns the CPU time of this thread in
+/// milliseconds.
+double drawNothing(const Program& program, const DrawState& state);
 
 } // namespace tessera::vis
