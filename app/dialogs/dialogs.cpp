@@ -25,13 +25,13 @@ bool beginDialog(const char* title, bool& open, float width) {
     ImGui::SetNextWindowSize({width, 0});
     if (!ImGui::BeginPopupModal(title, &open, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoResize))
         return false;
-    keepInView();
     if (escapePressed() && !ImGui::IsWindowAppearing()) open = false; // not by the key that asked
     return true;
 }
 
 void endDialog(bool open) {
     if (!open) ImGui::CloseCurrentPopup();
+    keepInView();
     ImGui::EndPopup();
 }
 

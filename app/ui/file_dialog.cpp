@@ -291,7 +291,6 @@ std::optional<FileDialog::Answer> FileDialog::draw() {
         shown_ = false;
         return {};
     }
-    keepInView();
     // The folders of the path as buttons.
     std::string into;
     fs::path walked;
@@ -330,6 +329,7 @@ std::optional<FileDialog::Answer> FileDialog::draw() {
         shown_ = false;
         ImGui::CloseCurrentPopup();
     }
+    keepInView();
     ImGui::EndPopup();
     return answer;
 }

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <imgui_internal.h>
 #include <unistd.h>
 
 namespace tessera::app {
@@ -64,6 +65,22 @@ TEST_F(FileDialogTest, TheStemOfTheNameIsSelectedEachTime) {
     type("bone");
     press(key::kEnter);
     EXPECT_EQ(answered(), "bone.ply");
+}
+
+// Its place is set after its list has been laid out: ImGui fails an assertion about tables in windows that move before.
+TEST_F(FileDialogTest, DraggedOutOfTheWindowItComesBack) {
+    std::ofstream(folder / "there.txt") << "x";
+    show(FileMode::Open);
+    const ImGuiWindow* window = ImGui::GetCurrentContext()->NavWindow->RootWindow;
+    ASSERT_NE(std::string(window->Name).find("###files"), std::string::npos);
+    for (const ImVec2 away : {ImVec2(-3000, 20), ImVec2(3000, 30), ImVec2(40, 3000), ImVec2(-2000, 2500)}) {
+        ImGui::SetWindowPos(window->Name, away);
+        frames(2);
+        EXPECT_GE(window->Pos.x, 0);
+        EXPECT_GE(window->Pos.y, 0);
+        EXPECT_LE(window->Pos.x + window->Size.x, 1200);
+        EXPECT_LE(window->Pos.y + window->Size.y, 800);
+    }
 }
 
 TEST_F(FileDialogTest, EnterOpensWhatAClickChoseInTheList) {
