@@ -5,6 +5,7 @@
 #include "app/platform/input_queue.h"
 #include "app/ui/keys.h"
 #include "app/workbench/workbench.h"
+#include "app/workbench/workbench_commands.h"
 #include "codec/remote/fetch_queue.h"
 #include "vis/gl/requirements.h"
 #include "volume/base/error.h"
@@ -123,9 +124,7 @@ struct Window {
         glfwSetWindowContentScaleCallback(handle, [](GLFWwindow* w, float, float) { wake(w); });
         glfwSetDropCallback(handle, [](GLFWwindow* w, int count, const char** paths) {
             wake(w);
-            OpenRequest request;
-            for (int i = 0; i < count; ++i) request.paths.emplace_back(paths[i]);
-            if (of(w).workbench && !request.paths.empty()) of(w).workbench->open(std::move(request));
+            if (of(w).workbench) dropFiles(*of(w).workbench, {paths, paths + count});
         });
     }
     ~Window() { glfwDestroyWindow(handle); }

@@ -143,6 +143,7 @@ void Workbench::install(Opened opened) {
     data_.reset();
     if (const auto& files = session().data.files; !files.empty() && !codec::isRemote(files.front().absolutePath))
         files_.startIn(fs::absolute(files.front().absolutePath).parent_path().string());
+    messages_.setAside();
     for (const std::string& text : said) message(text);
     if (autosaver_) autosaver_->clear(document_);
 }
