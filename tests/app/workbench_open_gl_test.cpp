@@ -175,6 +175,28 @@ TEST_F(WorkbenchOpening, FilesDroppedBesideADialogAreNotOpened) {
     EXPECT_EQ(news(), 0u) << "what is told of former data is no news of these";
 }
 
+// A session whose data are other ones now is not the one that was saved: that stands longer than what was done.
+TEST_F(WorkbenchOpening, ChangedDataAreWarnedOf) {
+    write("told.raw", std::string(48, '\x42'));
+    write("told.json", R"({"dims":[4,4,3],"dtype":"uint8"})");
+    OpenRequest request;
+    request.paths = {(folder / "told.raw").string()};
+    workbench.open(request);
+    settle();
+    workbench.document().save("kept.tessera.json");
+    request.paths = {(folder / "kept.tessera.json").string()};
+    workbench.open(request);
+    settle();
+    EXPECT_EQ(news(), 0u);
+    write("told.raw", std::string(48, '\x43'));
+    workbench.open(request);
+    settle();
+    ASSERT_EQ(news(), 1u);
+    EXPECT_TRUE(workbench.messages().news().front()->failure);
+    EXPECT_NE(workbench.messages().news().front()->text.find("told.raw has changed since the session was saved (xxh64"),
+              std::string::npos);
+}
+
 // Over a view they would cover its axes or its legend.
 TEST_F(WorkbenchOpening, MessagesStandInTheStatusLineAndAreClosedByTheirCross) {
     workbench.install(smallData());
