@@ -92,7 +92,7 @@ struct Window {
         });
         glfwSetScrollCallback(handle, [](GLFWwindow* w, double x, double y) {
             wake(w);
-            ImGui_ImplGlfw_ScrollCallback(w, x, y);
+            of(w).input.add({.kind = InputQueue::Event::Wheel, .at = {float(x), float(y)}});
         });
         glfwSetKeyCallback(handle, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
             wake(w);
@@ -218,6 +218,7 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
         ImGui_ImplGlfw_NewFrame();
         ImGuiIO& io = ImGui::GetIO();
         feedMouse(io, window.input.mouse, window.input.buttons);
+        ImGui_ImplGlfw_ScrollCallback(window.handle, double(window.input.wheel.x), double(window.input.wheel.y));
         // The back end reads the current modifiers from GLFW; replace them by those that belong to the keys of this
         // frame.
         feedModifiers(io, window.input.held(InputQueue::kControl), window.input.held(InputQueue::kShift),
