@@ -190,7 +190,8 @@ Opened openForPicture(const PictureOptions& options, const Progress& progress) {
         for (const std::string& words : options.transfer)
             applyNamed(opened.document.session, *opened.source, words, own.list);
     }
-    for (const std::string& message : opened.messages) std::fprintf(stderr, "tessera: %s\n", message.c_str());
+    for (const auto* const texts : {&opened.messages, &opened.warnings})
+        for (const std::string& text : *texts) std::fprintf(stderr, "tessera: %s\n", text.c_str());
     return opened;
 }
 

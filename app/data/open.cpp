@@ -81,7 +81,7 @@ Opened openDocument(SessionDocument document, const std::string& folder, const O
         return openWith(std::move(opened), data, progress);
     }
     ResolvedData found = resolveData(opened.document.session.data, folder);
-    opened.messages.insert(opened.messages.end(), found.warnings.begin(), found.warnings.end());
+    opened.warnings = std::move(found.warnings);
     if (!found.missing.empty()) {
         opened.missing = std::move(found.missing);
         return opened;

@@ -31,6 +31,7 @@ struct Opened {
     std::string sessionPath; ///< where Save writes; "" for data, layouts and pictures
     std::string folder;      ///< that data paths are relative to
     std::vector<std::string> messages;
+    std::vector<std::string> warnings; ///< data have changed since the session was saved
 
     Sources sources() const { return {source, numbers, origin}; }
 };

@@ -1,6 +1,7 @@
 #include "app/data/sources.h"
 
 #include "app/history/session_file.h"
+#include "app/ui/file_dialog.h"
 
 #include "codec/archive/archive.h"
 #include "codec/pack/unpack.h"
@@ -15,6 +16,7 @@
 #include "volume/sources/memory_source.h"
 #include "volume/sources/originals.h"
 #include "volume/synthetic/models.h"
+#include "volume/system/free_memory.h"
 
 #include <algorithm>
 #include <cctype>
@@ -130,6 +132,19 @@ Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
 
 namespace {
 
+/// Frames of files are held in memory as a whole. Throws Error where one of them has no room, with the way out.
+void checkMemory(const volume::DatasetInfo& info, const std::string& path) {
+    const glm::dvec3 size(info.lattice.size);
+    std::size_t most = 0; // bytes a sample
+    for (const volume::Parameter& parameter : info.parameters)
+        most = std::max(most, std::size_t(parameter.components) * volume::byteSize(parameter.type));
+    const double needed = size.x * size.y * size.z * double(most), available = volume::availableMemory();
+    if (needed > available)
+        throw Error("needs " + textOfBytes(needed) + " of memory, and " + textOfBytes(available) +
+                        " are free; tessera pack makes an archive of it, which is read in parts",
+                    path);
+}
+
 Sources openWhole(const DataRef& data, std::vector<std::string>& messages, const Progress& progress) {
     if (!hasData(data)) throw Error("contains no data: open data first, or give a data file", {}, "/data");
     if (isArchive(data)) {
@@ -147,6 +162,7 @@ Sources openWhole(const DataRef& data, std::vector<std::string>& messages, const
         std::vector<std::string> paths;
         for (const DataFile& file : data.files) paths.push_back(file.absolutePath);
         dataset = volume::openFiles(paths, data.import, progress.part(0, 0.3));
+        checkMemory(dataset.info, paths.front());
         const bool known = std::all_of(dataset.info.parameters.begin(), dataset.info.parameters.end(),
                                        [](const volume::Parameter& parameter) { return !parameter.ranges.empty(); });
         if (!known) volume::scanRanges(dataset, progress.part(0.3, 0.95));

@@ -26,6 +26,10 @@ void FileQuestions::askData(std::function<void(const std::vector<std::string>&, 
     dialog_.show(FileMode::Open, "Open", kData, dialog_.folder());
 }
 
+bool FileQuestions::asksData() const {
+    return dialog_.shown() && dialog_.purpose() == kData;
+}
+
 void FileQuestions::askOpen(const std::string& title, std::function<void(const std::vector<std::string>&)> answer,
                             const std::string& folder) {
     answer_ = std::move(answer);

@@ -56,10 +56,7 @@ bool isHeaderless(const std::string& path) {
 
 /// Advice for a file whose layout is not stated anywhere; "" for others.
 std::string formMissing(const std::string& path, const volume::ImportOptions& import) {
-    std::error_code unknown;
-    if (fs::path(path).extension() != ".raw" || !import.raw.empty() || volume::hasSidecar(path) ||
-        fs::file_size(path, unknown) == 0)
-        return {};
+    if (!lacksLayout(path, import)) return {};
     return "No sidecar " + fs::path(path).filename().replace_extension(".json").string() +
            " states the layout of this file.\n\nState it below in Raw layout, such as dims=64x64x64,type=u8";
 }
@@ -128,6 +125,12 @@ std::map<std::string, std::string> pairsIn(const std::string& text) {
 }
 
 } // namespace
+
+bool lacksLayout(const std::string& path, const volume::ImportOptions& import) {
+    std::error_code unknown;
+    return fs::path(path).extension() == ".raw" && import.raw.empty() && !volume::hasSidecar(path) &&
+           fs::file_size(path, unknown) > 0 && !unknown;
+}
 
 FilePreview ImportForm::previewOf(const std::string& path) {
     const auto known = previews_.find(path);

@@ -10,6 +10,9 @@
 
 namespace tessera::app {
 
+/// Whether nothing states the layout of a raw file: neither `import` nor a sidecar.
+bool lacksLayout(const std::string& path, const volume::ImportOptions& import);
+
 /// The form of the open dialog: a preview of the files, and options that state what they do not contain.
 class ImportForm {
 public:

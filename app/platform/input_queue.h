@@ -15,11 +15,11 @@ namespace tessera::app {
 class InputQueue {
 public:
     struct Event {
-        enum Kind { Move, Button, Key, Letter } kind = Move;
+        enum Kind { Move, Button, Wheel, Key, Letter } kind = Move;
         int code = 0; ///< of a button or key; of a letter its Unicode number
         int scancode = 0, mods = 0;
         bool down = false;
-        ImVec2 at{0, 0};
+        ImVec2 at{0, 0}; ///< of a wheel: how far it was turned
     };
 
     /// Queues an event. A button press is placed at the last queued move, not at the current mouse position.
@@ -33,21 +33,26 @@ public:
     }
 
     /// Takes the events of this frame; `key(event)` is called for each key event and letter. Afterwards `mouse` and
-    /// `buttons` hold the states of this frame. `typing`: a text field has the keyboard.
+    /// `buttons` hold the states of this frame, `wheel` its turns. `typing`: a text field has the keyboard.
     template <class Function> void take(Function&& key, bool typing = false) {
-        bool moved = false, clicked = false, pressed = false;
+        bool moved = false, clicked = false, wheeled = false, pressed = false;
+        wheel = {0, 0};
         std::array<bool, 512> changed{};
         while (!events_.empty()) {
             const Event event = events_.front();
             if (event.kind == Event::Move) {
-                if (clicked) break; // the click happened before the move
+                if (clicked || wheeled) break; // they happened before the move
                 moved = true;
                 mouse = event.at;
             } else if (event.kind == Event::Button) {
-                if (clicked || moved) break; // show a drag at its end before its release
+                if (clicked || moved || wheeled) break; // show a drag at its end before its release
                 clicked = true;
                 mouse = event.at;
                 if (event.code >= 0 && event.code < 5) buttons[static_cast<std::size_t>(event.code)] = event.down;
+            } else if (event.kind == Event::Wheel) {
+                if (clicked) break;
+                wheeled = true;
+                wheel = {wheel.x + event.at.x, wheel.y + event.at.y};
             } else if (event.kind == Event::Letter) {
                 key(event);
             } else {
@@ -59,8 +64,8 @@ public:
                     continue;
                 }
                 const std::size_t code = event.code < 0 ? 0 : static_cast<std::size_t>(event.code) % changed.size();
-                // Keep the modifiers of a key press: their release waits for the next frame too.
-                if (changed[code] || pressed) break;
+                // Keep the modifiers of a key press and of the wheel: their release waits for the next frame too.
+                if (changed[code] || pressed || wheeled) break;
                 changed[code] = true;
                 const bool modifier = event.code >= kFirstModifier && event.code < kFirstModifier + 8;
                 if (modifier) modifiers_[static_cast<std::size_t>(event.code - kFirstModifier)] = event.down;
@@ -79,6 +84,7 @@ public:
 
     ImVec2 mouse{-FLT_MAX, -FLT_MAX};
     std::array<bool, 5> buttons{};
+    ImVec2 wheel{0, 0};
 
 private:
     static constexpr int kFirstModifier = 340; ///< in GLFW: the left keys in the order of Modifier, then the right ones

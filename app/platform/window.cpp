@@ -5,6 +5,7 @@
 #include "app/platform/input_queue.h"
 #include "app/ui/keys.h"
 #include "app/workbench/workbench.h"
+#include "app/workbench/workbench_commands.h"
 #include "codec/remote/fetch_queue.h"
 #include "vis/gl/requirements.h"
 #include "volume/base/error.h"
@@ -91,7 +92,7 @@ struct Window {
         });
         glfwSetScrollCallback(handle, [](GLFWwindow* w, double x, double y) {
             wake(w);
-            ImGui_ImplGlfw_ScrollCallback(w, x, y);
+            of(w).input.add({.kind = InputQueue::Event::Wheel, .at = {float(x), float(y)}});
         });
         glfwSetKeyCallback(handle, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
             wake(w);
@@ -123,9 +124,7 @@ struct Window {
         glfwSetWindowContentScaleCallback(handle, [](GLFWwindow* w, float, float) { wake(w); });
         glfwSetDropCallback(handle, [](GLFWwindow* w, int count, const char** paths) {
             wake(w);
-            OpenRequest request;
-            for (int i = 0; i < count; ++i) request.paths.emplace_back(paths[i]);
-            if (of(w).workbench && !request.paths.empty()) of(w).workbench->open(std::move(request));
+            if (of(w).workbench) dropFiles(*of(w).workbench, {paths, paths + count});
         });
     }
     ~Window() { glfwDestroyWindow(handle); }
@@ -219,6 +218,7 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
         ImGui_ImplGlfw_NewFrame();
         ImGuiIO& io = ImGui::GetIO();
         feedMouse(io, window.input.mouse, window.input.buttons);
+        ImGui_ImplGlfw_ScrollCallback(window.handle, double(window.input.wheel.x), double(window.input.wheel.y));
         // The back end reads the current modifiers from GLFW; replace them by those that belong to the keys of this
         // frame.
         feedModifiers(io, window.input.held(InputQueue::kControl), window.input.held(InputQueue::kShift),

@@ -11,6 +11,7 @@
 #include <ctime>
 #include <filesystem>
 #include <imgui.h>
+#include <imgui_internal.h> // ClearActiveID
 #include <imgui_stdlib.h>
 #include <sys/stat.h>
 #include <utility>
@@ -51,6 +52,17 @@ void FileDialog::show(FileMode mode, std::string title, std::string purpose, std
     if (mode_ == FileMode::Open && filesChosen) filesChosen({});
     std::error_code problem;
     enter(folder.empty() || !fs::is_directory(folder, problem) ? fs::current_path(problem).string() : folder);
+}
+
+void FileDialog::choose(const std::vector<std::string>& paths) {
+    if (paths.empty()) return;
+    ImGui::ClearActiveID(); // a field that has the keyboard keeps its own text
+    enter(fs::path(paths.front()).parent_path().string());
+    for (const std::string& path : paths) chosen_.push_back(fs::path(path).filename().string());
+    name_ = chosen_.front();
+    filter_.clear();
+    problem_.clear();
+    confirm_ = deciding_ = false;
 }
 
 void FileDialog::enter(const std::string& folder) {

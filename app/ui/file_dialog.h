@@ -22,6 +22,9 @@ public:
     void show(FileMode mode, std::string title, std::string purpose, std::string folder, std::string name = {},
               std::string suffix = {});
 
+    /// Shown or about to be: chooses files in it, as clicks would. They lie in one folder.
+    void choose(const std::vector<std::string>& paths);
+
     struct Answer {
         std::string purpose;
         std::vector<std::string> paths;

@@ -27,6 +27,10 @@ void Messages::add(const std::string& text, bool failure) {
     if (echo_ && failure) std::fprintf(stderr, "tessera: %s\n", text.c_str());
 }
 
+void Messages::setAside() {
+    for (Message& each : messages_) each.gone = true;
+}
+
 std::vector<Messages::Message*> Messages::news() {
     std::vector<Message*> shown;
     for (auto each = messages_.rbegin(); each != messages_.rend(); ++each) {

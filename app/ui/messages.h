@@ -27,6 +27,8 @@ public:
     explicit Messages(std::function<double()> now, bool echo = false);
 
     void add(const std::string& text, bool failure = false);
+    /// Takes all out of the status line: they are about what was shown before.
+    void setAside();
     const std::deque<Message>& list() const { return messages_; }
     /// The messages in the status line at this time, newest first. Sets `gone` for those that are too old or too many.
     std::vector<Message*> news();

@@ -51,11 +51,12 @@ struct NumberRow {
     bool whole = true;    ///< with unit and all digits
 };
 
-/// The first way to write them that fits, from the whole to two digits.
-NumberRow numberRow(const std::string& format, std::string_view unit, const double* values, int count, bool integer) {
+/// The first way to write them that fits a row `room` wide, from the whole to two digits.
+NumberRow numberRow(const std::string& format, std::string_view unit, const double* values, int count, bool integer,
+                    float room) {
     const ImGuiStyle& style = ImGui::GetStyle();
     const float gaps = style.ItemInnerSpacing.x * static_cast<float>(count - 1);
-    const float width = (ImGui::CalcItemWidth() - gaps) / static_cast<float>(count) - 2 * style.FramePadding.x;
+    const float width = (room - gaps) / static_cast<float>(count) - 2 * style.FramePadding.x;
     const std::string whole = withUnit(format, unit);
     std::vector<std::string> formats{whole, format};
     if (!integer) formats.insert(formats.end(), {"%.3g", "%.2g"});
@@ -72,6 +73,11 @@ std::string idOf(const FieldInfo& info) {
     return "##" + std::string(info.key);
 }
 
+/// Where the control beside a label begins.
+float controlColumn(const WidgetContext& context) {
+    return std::floor(ImGui::GetContentRegionAvail().x * context.labelShare);
+}
+
 } // namespace
 
 std::string labelOf(std::string_view key) {
@@ -81,9 +87,8 @@ std::string labelOf(std::string_view key) {
 }
 
 void drawLabel(const WidgetContext& context, std::string_view label, std::string_view help) {
-    const float width = ImGui::GetContentRegionAvail().x;
     const float start = ImGui::GetCursorPosX();
-    const float column = std::floor(width * context.labelShare);
+    const float column = controlColumn(context);
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     // A label that is slightly too long is drawn smaller instead of shortened.
     const float room = column - ImGui::GetStyle().ItemInnerSpacing.x;
@@ -120,12 +125,16 @@ LengthUnit dataLength(const WidgetContext& context) {
 
 bool drawNumber(const WidgetContext& context, const FieldInfo& info, std::optional<Range> scale, double* values,
                 int count, bool integer) {
-    drawLabel(context, labelOf(info.key), info.doc);
     std::optional<Range> range = info.range;
     if (!range && scale && scale->hi > scale->lo) range = scale;
     const std::string format = numberFormat(range, info.logScale, integer);
     NumberRow row{withUnit(format, info.unit)};
-    if (count > 1) row = numberRow(format, info.unit, values, count, integer);
+    if (count > 1)
+        row = numberRow(format, info.unit, values, count, integer,
+                        ImGui::GetContentRegionAvail().x - controlColumn(context));
+    std::string label = labelOf(info.key);
+    if (!row.whole && !info.unit.empty()) label = titleWithUnit(label, std::string(info.unit));
+    drawLabel(context, label, info.doc);
     ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
     if (info.logScale) flags |= ImGuiSliderFlags_Logarithmic;
     const double lo = range ? range->lo : 0, hi = range ? range->hi : 0;

@@ -45,7 +45,7 @@ std::string labelOf(std::string_view key);
 
 bool drawBool(const WidgetContext& context, const FieldInfo& info, bool& value);
 /// A slider where a range is known, else a field to drag or type in. `scale`: range of the parameter it refers to.
-/// Several numbers stand side by side, without their unit or with fewer digits where there is little room, and else
+/// Several numbers stand side by side, with the unit in the label or fewer digits where there is little room, else
 /// below each other; the whole is in a tooltip.
 bool drawNumber(const WidgetContext& context, const FieldInfo& info, std::optional<Range> scale, double* values,
                 int count, bool integer);

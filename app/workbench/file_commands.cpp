@@ -1,3 +1,4 @@
+#include "app/dialogs/import_form.h"
 #include "app/document/surface_export.h"
 #include "app/ui/keys.h"
 #include "app/workbench/workbench.h"
@@ -5,6 +6,7 @@
 #include "volume/base/error.h"
 #include "volume/synthetic/models.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <imgui.h>
 
@@ -14,6 +16,23 @@ namespace tessera::app {
 namespace fs = std::filesystem;
 
 namespace {
+
+void askWhatToOpen(Workbench& workbench) {
+    workbench.files().askData([&workbench](const std::vector<std::string>& paths, const volume::ImportOptions& stated) {
+        OpenRequest request;
+        request.paths = paths;
+        request.import = stated;
+        workbench.open(std::move(request));
+    });
+}
+
+/// Whether the dialog can show these as chosen: files of one folder.
+bool areFilesOfOneFolder(const std::vector<std::string>& paths) {
+    return std::ranges::all_of(paths, [&](const fs::path& path) {
+        std::error_code unknown;
+        return fs::is_regular_file(path, unknown) && path.parent_path() == fs::path(paths.front()).parent_path();
+    });
+}
 
 void askPack(Workbench& workbench) {
     const std::string stem = fs::path(workbench.session().data.files.front().absolutePath).stem().string();
@@ -51,6 +70,22 @@ void pasteSession(Workbench& workbench) {
 
 } // namespace
 
+void dropFiles(Workbench& workbench, const std::vector<std::string>& paths) {
+    if (paths.empty()) return;
+    FileQuestions& files = workbench.files();
+    const bool choosable = areFilesOfOneFolder(paths);
+    if (files.asksData() && choosable) return files.choose(paths);
+    if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup))
+        return workbench.message("Close the dialog before you drop files", true);
+    if (choosable && lacksLayout(paths.front(), {})) {
+        askWhatToOpen(workbench);
+        return files.choose(paths);
+    }
+    OpenRequest request;
+    request.paths = paths;
+    workbench.open(std::move(request));
+}
+
 std::vector<Command> fileCommands(Workbench& workbench) {
     const auto loaded = [&workbench] { return workbench.document().loaded(); };
     return {{.menu = "File",
@@ -58,16 +93,7 @@ std::vector<Command> fileCommands(Workbench& workbench) {
              .help = "Open a session, an archive, a picture exported by Tessera, or data files",
              .words = "load import read file data",
              .shortcut = {.key = 'O', .ctrl = true},
-             .run =
-                 [&workbench] {
-                     workbench.files().askData(
-                         [&workbench](const std::vector<std::string>& paths, const volume::ImportOptions& stated) {
-                             OpenRequest request;
-                             request.paths = paths;
-                             request.import = stated;
-                             workbench.open(std::move(request));
-                         });
-                 }},
+             .run = [&workbench] { askWhatToOpen(workbench); }},
             {.menu = "File",
              .name = "-Save session",
              .help = "Save the session to its file",

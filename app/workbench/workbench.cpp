@@ -64,8 +64,8 @@ void Workbench::open(OpenRequest request) {
     for (const std::string& path : request.paths) {
         const bool pattern = path.find_first_of("*?[") != std::string::npos;
         std::error_code unknown;
-        const bool model = request.paths.size() == 1 && namesModel(path);
-        if (!options_.headless && !pattern && !model && !codec::isRemote(path) && !fs::exists(path, unknown))
+        if (!options_.headless && !pattern && !codec::isRemote(path) && !fs::exists(path, unknown) &&
+            (request.paths.size() > 1 || !namesModel(path)))
             return message(path + ": no such file", true);
     }
     if (document_.loaded() && !options_.headless && request.paths.size() == 1 && !request.import &&
@@ -112,7 +112,7 @@ void Workbench::openWhole(const std::shared_ptr<Opened>& opened, const std::stri
         auto done = std::make_shared<Opened>(*opened);
         done->missing = found.missing;
         if (done->missing.empty()) *done = openWith(std::move(*done), found.data, progress);
-        done->messages.insert(done->messages.end(), found.warnings.begin(), found.warnings.end());
+        done->warnings = found.warnings;
         return [this, done] {
             if (!done->missing.empty()) return missing_.show(std::move(*done));
             install(std::move(*done));
@@ -138,12 +138,14 @@ void Workbench::recover(const Recovery& recovery) {
 }
 
 void Workbench::install(Opened opened) {
-    const std::vector<std::string> said = std::move(opened.messages);
+    const std::vector<std::string> said = std::move(opened.messages), warned = std::move(opened.warnings);
     document_.install(std::move(opened));
     data_.reset();
     if (const auto& files = session().data.files; !files.empty() && !codec::isRemote(files.front().absolutePath))
         files_.startIn(fs::absolute(files.front().absolutePath).parent_path().string());
+    messages_.setAside();
     for (const std::string& text : said) message(text);
+    for (const std::string& text : warned) message(text, true);
     if (autosaver_) autosaver_->clear(document_);
 }
 
@@ -210,10 +212,7 @@ void Workbench::frame() {
     data_.follow(ImGui::IsAnyItemActive(), ImGui::IsMouseDown(ImGuiMouseButton_Left));
     keyboard_.begin();
     const bool givenUp = givenUp_.begin() && document_.loaded();
-    if (givenUp)
-        document_.giveUpEdit();
-    else
-        pressKeys();
+    givenUp ? document_.giveUpEdit() : pressKeys();
     drawWindow();
     if (givenUp) document_.giveUpEdit(); // views that saw the key have their own ways of taking a drag back
     for (const std::string& text : panes_.takeMessages()) message(text, true);

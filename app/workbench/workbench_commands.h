@@ -2,6 +2,7 @@
 
 #include "app/ui/commands.h"
 
+#include <string>
 #include <vector>
 
 /// The commands of the workbench, one list for each menu, with their names and keys. They refer to the workbench they
@@ -20,5 +21,10 @@ std::vector<Command> volumeViewCommands(Workbench& workbench);
 /// Commands that add to the scene and hide parts of it; they are in no menu of the window.
 std::vector<Command> sceneCommands(Workbench& workbench);
 std::vector<Command> helpCommands(Workbench& workbench);
+
+/// Opens files that were dropped on the window. If the dialog for opening is shown they are chosen in it, and it is
+/// shown for a raw file whose layout must be stated. Below other dialogs nothing is opened: they ask about what is
+/// shown.
+void dropFiles(Workbench& workbench, const std::vector<std::string>& paths);
 
 } // namespace tessera::app

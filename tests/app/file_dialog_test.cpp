@@ -149,6 +149,25 @@ TEST_F(FileDialogTest, OneFileIsLookedAtBeforeItIsOpened) {
     EXPECT_EQ(chosen.size(), 4u) << "told again when shown again";
 }
 
+// Files that are dropped on the dialog stand in its list as chosen, whatever was typed before.
+TEST_F(FileDialogTest, ChosenFilesReplaceWhatWasTyped) {
+    fs::create_directories(folder / "run");
+    std::ofstream(folder / "typed.txt") << "x";
+    for (const char* name : {"a.txt", "b.txt"}) std::ofstream(folder / "run" / name) << "x";
+    std::vector<std::string> chosen;
+    dialog.filesChosen = [&](const std::vector<std::string>& paths) { chosen = paths; };
+    show(FileMode::Open);
+    type("typed.txt");
+    const std::string a = (folder / "run/a.txt").string(), b = (folder / "run/b.txt").string();
+    dialog.choose({a, b});
+    frames();
+    EXPECT_EQ(chosen, (std::vector<std::string>{a, b}));
+    EXPECT_EQ(fs::path(dialog.folder()), fs::canonical(folder / "run"));
+    press(key::kEnter);
+    ASSERT_EQ(answers.size(), 1u);
+    EXPECT_EQ(answers[0].paths, (std::vector<std::string>{a, b}));
+}
+
 // Another machine is not asked for a preview of each address that is typed.
 TEST_F(FileDialogTest, AnAddressIsOpenedAsItIsTyped) {
     int asked = 0, noticed = 0;

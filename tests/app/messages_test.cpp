@@ -41,6 +41,14 @@ TEST_F(MessagesTest, FailuresStandLonger) {
     EXPECT_EQ(messages.secondsToChange(), std::numeric_limits<double>::infinity());
 }
 
+TEST_F(MessagesTest, WhatIsSetAsideLeavesTheStatusLineAlone) {
+    messages.add("of the former data", true);
+    messages.setAside();
+    messages.add("new");
+    EXPECT_EQ(news(), Texts{"new"});
+    EXPECT_EQ(messages.list().size(), 2u) << "the pane keeps it";
+}
+
 TEST_F(MessagesTest, TheOldestAreForgotten) {
     for (std::size_t i = 0; i < Messages::kKept + 1; ++i) messages.add(std::to_string(i));
     EXPECT_EQ(messages.list().size(), Messages::kKept);

@@ -42,6 +42,23 @@ protected:
     fs::path folder;
 };
 
+// Before anything is allocated: the system may give memory that it does not have, and end the program later.
+TEST_F(OpenTest, FilesLargerThanMemoryNameTheWayOut) {
+    std::ofstream(folder / "vast.raw") << "x";
+    std::error_code refused;
+    fs::resize_file(folder / "vast.raw", std::uintmax_t(1) << 42, refused); // 4 TiB with nothing in it
+    if (refused) GTEST_SKIP() << "no such large files here";
+    OpenRequest request = rawRequest(in("vast.raw"));
+    request.import->raw = "dims=16384x16384x16384,type=u8";
+    try {
+        open(request);
+        FAIL() << "it was opened";
+    } catch (const Error& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("vast.raw: needs 4.4 TB of memory, and "));
+        EXPECT_THAT(error.what(), testing::HasSubstr("tessera pack"));
+    }
+}
+
 TEST_F(OpenTest, ProgressRunsFromNoughtToOne) {
     OpenRequest request;
     request.data.emplace();

@@ -101,10 +101,10 @@ TEST_F(ScenariosGl, ASessionOpensOnAnotherMachine) {
     volume::Dataset other = volume::makeModel("planted", {{"nx", 9}, {"ny", 9}, {"nz", 25}, {"times", 2}});
     codec::pack(other, {}, in("two/cell.tsr"));
     const Opened changed = open(request);
-    ASSERT_FALSE(changed.messages.empty());
-    EXPECT_NE(changed.messages[0].find("cell.tsr has changed"), std::string::npos) << changed.messages[0];
-    EXPECT_NE(changed.messages[0].find(lost.missing[0].wanted.hash), std::string::npos);
-    EXPECT_NE(changed.messages[0].find(describeFile(in("two/cell.tsr")).hash), std::string::npos);
+    ASSERT_FALSE(changed.warnings.empty());
+    EXPECT_NE(changed.warnings[0].find("cell.tsr has changed"), std::string::npos) << changed.warnings[0];
+    EXPECT_NE(changed.warnings[0].find(lost.missing[0].wanted.hash), std::string::npos);
+    EXPECT_NE(changed.warnings[0].find(describeFile(in("two/cell.tsr")).hash), std::string::npos);
 }
 
 // The first look at data never seen before: every parameter with its range and unit, a picture of several views.

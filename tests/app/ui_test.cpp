@@ -481,5 +481,31 @@ TEST(InputQueueTest, ADragBeginsWhereTheButtonWentDown) {
     EXPECT_TRUE(queue.empty());
 }
 
+// Alt and the wheel over a lens would else zoom the picture where frames are slow.
+TEST(InputQueueTest, TheWheelTurnsWhereTheMouseWasWithTheKeysThatWereHeld) {
+    InputQueue queue;
+    using Event = InputQueue::Event;
+    const auto none = [](const Event&) {};
+    queue.add({.kind = Event::Key, .code = 342, .down = true});
+    queue.add({.kind = Event::Move, .at = {10, 10}});
+    for (int i = 0; i < 3; ++i) queue.add({.kind = Event::Wheel, .at = {0, 1}});
+    queue.add({.kind = Event::Key, .code = 342, .down = false});
+    queue.add({.kind = Event::Wheel, .at = {0.5f, -1}});
+    queue.add({.kind = Event::Move, .at = {90, 90}});
+    queue.add({.kind = Event::Button, .down = true});
+    const auto expect = [&](float turned, bool alt, float x, bool down) {
+        queue.take(none);
+        EXPECT_EQ(queue.wheel.y, turned);
+        EXPECT_EQ(queue.held(InputQueue::kAlt), alt);
+        EXPECT_EQ(queue.mouse.x, x);
+        EXPECT_EQ(queue.buttons[0], down);
+    };
+    expect(3, true, 10, false);
+    expect(-1, false, 10, false);
+    expect(0, false, 90, false);
+    expect(0, false, 90, true);
+    EXPECT_TRUE(queue.empty());
+}
+
 } // namespace
 } // namespace tessera::app

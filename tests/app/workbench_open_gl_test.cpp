@@ -1,3 +1,4 @@
+#include "app/workbench/workbench_commands.h"
 #include "tests/app/drawn_text.h"
 #include "workbench_fixture.h"
 
@@ -132,6 +133,68 @@ TEST_F(WorkbenchOpening, AFileThatFailedItsPreviewIsNotOpened) {
     EXPECT_FALSE(dialogOpen());
     EXPECT_EQ(news(), 1u);
     EXPECT_EQ(workbench.session().selection.brushes.back().name, "not saved");
+}
+
+// The layout of a raw file can be stated only in the dialog; files dropped on that are chosen in it.
+TEST_F(WorkbenchOpening, ADroppedRawFileIsShownWhereItsLayoutIsStated) {
+    write("plain.raw", std::string(210, '\x21'));
+    write("told_4x4x3_uint8.raw", std::string(48, '\x42'));
+    const auto path = [&](const char* name) { return (folder / name).string(); };
+    dropFiles(workbench, {path("plain.raw")});
+    settle();
+    EXPECT_TRUE(workbench.files().asksData());
+    EXPECT_EQ(news(), 0u);
+    press(key::kEnter);
+    settle();
+    EXPECT_TRUE(dialogOpen()) << "its layout is not known yet";
+    dropFiles(workbench, {path("told_4x4x3_uint8.raw")});
+    settle();
+    press(key::kEnter);
+    settle();
+    EXPECT_FALSE(dialogOpen());
+    EXPECT_EQ(shown(), "told_4x4x3_uint8.raw");
+}
+
+// Else what a dialog asks about would be gone from under it.
+TEST_F(WorkbenchOpening, FilesDroppedBesideADialogAreNotOpened) {
+    workbench.install(smallData());
+    write("told_4x4x3_uint8.raw", std::string(48, '\x42'));
+    write("told_4x4x3_uint8.json", R"({"dims":[4,4,3],"dtype":"uint8"})");
+    settle();
+    ASSERT_TRUE(run("Save session as..."));
+    settle();
+    dropFiles(workbench, {(folder / "told_4x4x3_uint8.raw").string()});
+    settle();
+    EXPECT_EQ(shown(), "");
+    EXPECT_EQ(news(), 1u);
+    press(key::kEscape);
+    settle();
+    dropFiles(workbench, {(folder / "told_4x4x3_uint8.raw").string()});
+    settle();
+    EXPECT_EQ(shown(), "told_4x4x3_uint8.raw");
+    EXPECT_EQ(news(), 0u) << "what is told of former data is no news of these";
+}
+
+// A session whose data are other ones now is not the one that was saved: that stands longer than what was done.
+TEST_F(WorkbenchOpening, ChangedDataAreWarnedOf) {
+    write("told.raw", std::string(48, '\x42'));
+    write("told.json", R"({"dims":[4,4,3],"dtype":"uint8"})");
+    OpenRequest request;
+    request.paths = {(folder / "told.raw").string()};
+    workbench.open(request);
+    settle();
+    workbench.document().save("kept.tessera.json");
+    request.paths = {(folder / "kept.tessera.json").string()};
+    workbench.open(request);
+    settle();
+    EXPECT_EQ(news(), 0u);
+    write("told.raw", std::string(48, '\x43'));
+    workbench.open(request);
+    settle();
+    ASSERT_EQ(news(), 1u);
+    EXPECT_TRUE(workbench.messages().news().front()->failure);
+    EXPECT_NE(workbench.messages().news().front()->text.find("told.raw has changed since the session was saved (xxh64"),
+              std::string::npos);
 }
 
 // Over a view they would cover its axes or its legend.

@@ -63,6 +63,17 @@ if command -v python3 >/dev/null; then
     await 30 fresh || fail "a broken file dropped draws nothing"
     title() { xdotool getwindowname "$window" | grep -q "$1"; }
     title session || fail "a broken file dropped replaces the session"
+    # A raw file whose layout nothing states is shown where that is stated.
+    head -c 210 /dev/zero >"$work/plain.raw"
+    mark
+    drop "$work/plain.raw"
+    await 30 fresh || fail "a raw file dropped draws nothing"
+    xdotool mousemove 595 641 click 1
+    sleep 0.5
+    xdotool type --delay 30 "dims=5x6x7,type=u8"
+    sleep 1.5
+    xdotool mousemove 1033 704 click 1
+    await 30 title plain || fail "a raw file does not open with the layout that was typed"
     drop "$work/brushed.tessera.json"
     await 30 title brushed || fail "a session dropped does not open"
     drop "$work/session.tessera.json"

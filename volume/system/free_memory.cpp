@@ -1,6 +1,10 @@
 #include "volume/system/free_memory.h"
 
+#include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <string>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -11,6 +15,14 @@ void giveBackFreeMemory() {
 #ifdef __GLIBC__
     malloc_trim(0);
 #endif
+}
+
+double availableMemory() {
+    std::ifstream in("/proc/meminfo");
+    double kibibytes = 0;
+    for (std::string line; std::getline(in, line);)
+        if (std::sscanf(line.c_str(), "MemAvailable: %lf kB", &kibibytes) == 1) return kibibytes * 1024;
+    return std::numeric_limits<double>::infinity();
 }
 
 } // namespace tessera::volume

@@ -7,4 +7,7 @@ namespace tessera::volume {
 /// Does nothing where the C library cannot.
 void giveBackFreeMemory();
 
+/// Bytes that the system can give to programs without swapping; infinity where it does not say.
+double availableMemory();
+
 } // namespace tessera::volume
