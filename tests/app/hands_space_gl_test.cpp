@@ -140,6 +140,30 @@ TEST_F(SpaceHands, WheelAndRightButtonZoom) {
     EXPECT_EQ(camera().distance, 100.0f);
 }
 
+TEST_F(SpaceHands, AltIsForTheLensAlsoBelowAnotherDot) {
+    showVolume();
+    const glm::dvec3 middle = (cellBox().lo + cellBox().hi) / 2.0;
+    vis::Brush ball;
+    ball.region = vis::SphereRegion{.center = middle, .radius = cellBox().size() * 0.2};
+    session().selection.brushes = {ball};
+    vis::Lens lens;
+    lens.center = middle;
+    session().lenses = {lens};
+    settle();
+    const ImVec2 from = pixel(middle), to{from.x + 30, from.y};
+    const auto ballAt = [&] { return std::get<vis::SphereRegion>(session().selection.brushes[0].region).center; };
+    alt = true;
+    drag(from, to);
+    alt = false;
+    frame();
+    EXPECT_GT(glm::length(session().lenses[0].center - middle), 1e-4);
+    EXPECT_EQ(ballAt(), middle);
+    const glm::dvec3 moved = session().lenses[0].center;
+    drag(from, to);
+    EXPECT_GT(glm::length(ballAt() - middle), 1e-4) << "without it the dot";
+    EXPECT_EQ(session().lenses[0].center, moved);
+}
+
 TEST_F(SpaceHands, TheFacesOfTheCubeAreBrushed) {
     ShadowCubeView cube;
     cube.brushing = true;

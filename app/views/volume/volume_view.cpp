@@ -182,8 +182,9 @@ private:
             hasTriad_ && hovered && std::hypot(mouse.x - triadAt_.x, mouse.y - triadAt_.y) < triad_ + em() * 0.5f;
         const SpaceFrame before = spaceFrame(picture_.min, max(), session_.camera, info_.bounds, session_.stretch);
         const bool free = hovered && !cache_.hand.dragging() && !cache_.hand.blocked, lenses = view_.showLenses;
+        const bool forLens = ImGui::GetIO().KeyAlt; // also where a dot of something else lies over it
         const bool onHandle = lenses && !cache_.lens.active &&
-                              editHandles(cache_.handles, session_, info_, before, free, view_.showLights);
+                              editHandles(cache_.handles, session_, info_, before, free && !forLens, view_.showLights);
         const bool onLens =
             lenses && !onHandle && cache_.handles.object.empty() && editLenses(cache_.lens, session_, before, free);
         const bool follows = lenses && followPointer(session_, before, free);
