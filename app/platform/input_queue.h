@@ -20,7 +20,9 @@ public:
         int scancode = 0, mods = 0;
         bool down = false;
         ImVec2 at{0, 0}; ///< of a wheel: how far it was turned
+        double time = 0; ///< when it came, in seconds
     };
+    static constexpr double kDoubleClick = 0.3; ///< longest time between both presses, in seconds
 
     /// Queues an event. A button press is placed at the last queued move, not at the current mouse position.
     void add(Event event) {
@@ -33,10 +35,13 @@ public:
     }
 
     /// Takes the events of this frame; `key(event)` is called for each key event and letter. Afterwards `mouse` and
-    /// `buttons` hold the states of this frame, `wheel` its turns. `typing`: a text field has the keyboard.
+    /// `buttons` hold the states of this frame, `wheel` its turns, and `twice` whether a button went down soon after
+    /// the last time: by when the presses came, since a frame takes one of them and may be slow. `typing`: a text field
+    /// has the keyboard.
     template <class Function> void take(Function&& key, bool typing = false) {
         bool moved = false, clicked = false, wheeled = false, pressed = false;
         wheel = {0, 0};
+        twice = false;
         std::array<bool, 512> changed{};
         while (!events_.empty()) {
             const Event event = events_.front();
@@ -48,7 +53,12 @@ public:
                 if (clicked || moved || wheeled) break; // show a drag at its end before its release
                 clicked = true;
                 mouse = event.at;
-                if (event.code >= 0 && event.code < 5) buttons[static_cast<std::size_t>(event.code)] = event.down;
+                const auto button = static_cast<std::size_t>(event.code);
+                if (button < buttons.size()) buttons[button] = event.down;
+                if (button < buttons.size() && event.down) {
+                    twice = event.time - pressed_[button] < kDoubleClick;
+                    pressed_[button] = event.time;
+                }
             } else if (event.kind == Event::Wheel) {
                 if (clicked) break;
                 wheeled = true;
@@ -85,10 +95,12 @@ public:
     ImVec2 mouse{-FLT_MAX, -FLT_MAX};
     std::array<bool, 5> buttons{};
     ImVec2 wheel{0, 0};
+    bool twice = false;
 
 private:
     static constexpr int kFirstModifier = 340; ///< in GLFW: the left keys in the order of Modifier, then the right ones
     std::array<bool, 8> modifiers_{};
+    std::array<double, 5> pressed_{-kDoubleClick, -kDoubleClick, -kDoubleClick, -kDoubleClick, -kDoubleClick};
     std::deque<Event> events_;
     ImVec2 last_{-FLT_MAX, -FLT_MAX};
 };

@@ -87,8 +87,11 @@ struct Window {
         });
         glfwSetMouseButtonCallback(handle, [](GLFWwindow* w, int button, int action, int mods) {
             wake(w);
-            of(w).input.add(
-                {.kind = InputQueue::Event::Button, .code = button, .mods = mods, .down = action == GLFW_PRESS});
+            of(w).input.add({.kind = InputQueue::Event::Button,
+                             .code = button,
+                             .mods = mods,
+                             .down = action == GLFW_PRESS,
+                             .time = glfwGetTime()});
         });
         glfwSetScrollCallback(handle, [](GLFWwindow* w, double x, double y) {
             wake(w);
@@ -218,6 +221,7 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
         ImGui_ImplGlfw_NewFrame();
         ImGuiIO& io = ImGui::GetIO();
         feedMouse(io, window.input.mouse, window.input.buttons);
+        io.MouseDoubleClickTime = window.input.twice ? FLT_MAX : 0; // not by when frames see the presses
         ImGui_ImplGlfw_ScrollCallback(window.handle, double(window.input.wheel.x), double(window.input.wheel.y));
         // The back end reads the current modifiers from GLFW; replace them by those that belong to the keys of this
         // frame.

@@ -481,6 +481,24 @@ TEST(InputQueueTest, ADragBeginsWhereTheButtonWentDown) {
     EXPECT_TRUE(queue.empty());
 }
 
+TEST(InputQueueTest, TwoPressesAreADoubleClickByWhenTheyCame) {
+    InputQueue queue;
+    using Event = InputQueue::Event;
+    std::vector<bool> twice;
+    const auto click = [&](int button, double time) {
+        queue.add({.kind = Event::Button, .code = button, .down = true, .time = time});
+        queue.add({.kind = Event::Button, .code = button, .down = false, .time = time + 0.05});
+    };
+    for (const double time : {10.0, 10.2, 11.0}) click(0, time);
+    click(1, 11.1);
+    click(7, 11.1); // one that the program has no use for
+    while (!queue.empty()) {
+        queue.take([](const Event&) {});
+        if (queue.buttons[0] || queue.buttons[1]) twice.push_back(queue.twice);
+    }
+    EXPECT_EQ(twice, (std::vector<bool>{false, true, false, false}));
+}
+
 // Alt and the wheel over a lens would else zoom the picture where frames are slow.
 TEST(InputQueueTest, TheWheelTurnsWhereTheMouseWasWithTheKeysThatWereHeld) {
     InputQueue queue;

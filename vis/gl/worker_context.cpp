@@ -1,6 +1,6 @@
 #include "vis/gl/worker_context.h"
 
-#include "vis/gl/egl_displays.h"
+#include "vis/gl/headless.h"
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
