@@ -3,7 +3,6 @@
 #include "vis/gl/draw_timer.h"
 #include "vis/gl/driver.h"
 #include "vis/gl/program.h"
-#include "vis/passes/view_target.h"
 #include "vis/raycast/ray_plan.h"
 
 #include <set>
@@ -91,33 +90,6 @@ TEST_F(DriverTest, PicturesAreTheSameWhereTheDriverIsNotWaitedFor) {
     EXPECT_GT(status.milliseconds, 0);
     EXPECT_EQ(test::maxDifference(renderer.readLinear(*target), wanted), 0);
     EXPECT_TRUE(renderer.takeMessages().empty());
-}
-
-// In motion such a driver reads by its own filter; what it drew, whole or in part, is drawn again at rest.
-TEST_F(DriverTest, MotionReadsCoarselyAndRestExactly) {
-    const auto data = test::brickedSource(volume::LatticeKind::BCC);
-    vis::Scene scene = test::richScene();
-    scene.render.samples = 1;
-    const glm::ivec2 size(150, 140);
-    vis::RendererOptions options = test::exact();
-    options.driver = gpu();
-    const std::vector<glm::vec4> wanted = test::picture(data, options, scene, size);
-    vis::Renderer renderer(options);
-    renderer.setSource(data);
-    const vis::ViewTargetPtr target = renderer.makeTarget();
-    const auto frames = [&](bool moving, double budgetMs, auto&& done) {
-        for (int i = 0; i < 20000; ++i) {
-            if (done(renderer.render(*target, scene, {.size = size, .moving = moving, .budgetMs = budgetMs})))
-                return true;
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-        return false;
-    };
-    ASSERT_TRUE(frames(true, 10000, [&](const vis::FrameStatus&) { return target->state.full(); }));
-    const double inMotion = test::maxDifference(renderer.readLinear(*target), wanted);
-    EXPECT_GT(inMotion, 0) << "the driver's filter rounds otherwise";
-    ASSERT_TRUE(frames(false, 5, [](const vis::FrameStatus& status) { return status.complete; }));
-    EXPECT_EQ(test::maxDifference(renderer.readLinear(*target), wanted), 0);
 }
 
 /// Sampler uniforms of a program that the driver did not drop.

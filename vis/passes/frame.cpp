@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace tessera::vis {
 
@@ -125,20 +124,13 @@ void RenderStages::addBeyond(RayPrograms& programs, ViewTarget& target, const Re
     if (ready(target, call, beyond, answer, recipe)) programs.beyond = answer.program;
 }
 
-/// In motion, filters of GPUs are exact enough and several times as fast.
-bool RenderStages::readsCoarsely(const RenderCall& call) const {
-    return call.request.moving && !tools.driver.exactFilter;
-}
-
 /// Step lengths scale with the cells of the finest level wanted: there is no detail between coarser samples.
 void RenderStages::setUniforms(const RayPrograms& programs, const ViewTarget& target, const RenderCall& call,
                                double stepFactor) {
     if (programs.packets) return;
     const double factor = stepFactor * target.demand.cell();
     const auto set = [&](const Program* program, const RayPlan& plan, const Scene& scene) {
-        if (!program) return;
-        setRayUniforms(*program, plan, scene, call.info(), call.grid(), target.buffers.size, factor);
-        program->set("coarseReads", int(readsCoarsely(call)));
+        if (program) setRayUniforms(*program, plan, scene, call.info(), call.grid(), target.buffers.size, factor);
     };
     set(programs.program, call.plan, call.scene);
     set(programs.beyond, programs.beyondPlan, programs.beyondScene);
@@ -249,7 +241,6 @@ void RenderStages::drawTiles(ViewTarget& target, const RenderCall& call, const R
     if (state.tilesDone() == 0) target.pace().beginPass(request.wait, request.budgetMs);
     const std::vector<Tile> tiles = tilesFromMiddle(state.stale(), target.pace().tileEdge());
     setUniforms(programs, target, call, 1);
-    target.coarse = target.coarse || (readsCoarsely(call) && !programs.packets);
     const int perPass = int(tiles.size()), wanted = perPass * raysPerPixel(call.scene);
     for (bool first = true; state.tilesDone() < wanted; first = false) {
         const Tile& tile = tiles[std::size_t(state.tilesDone() % perPass)];
@@ -295,8 +286,6 @@ void RenderStages::refine(ViewTarget& target, const RenderCall& call, Clock::tim
     const FrameRequest& request = call.request;
     const PictureState& state = target.state;
     const bool probing = target.demand.probing();
-    if (!request.moving && std::exchange(target.coarse, false) && (state.full() || state.tilesDone() > 0))
-        target.redraw(state.stale());
     const bool done = state.full() ? state.converged() || request.moving : state.reduced() && request.moving;
     if (done && !probing) return;
     if (!target.pace().beginCall() && !request.wait) return;

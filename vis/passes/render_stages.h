@@ -70,7 +70,6 @@ struct RenderStages {
     bool ready(ViewTarget& target, const RenderCall& call, const RenderCall& own, const ProgramAnswer& answer,
                const ProgramRecipe& recipe);
     void addBeyond(RayPrograms& programs, ViewTarget& target, const RenderCall& call);
-    bool readsCoarsely(const RenderCall& call) const;
     void setUniforms(const RayPrograms& programs, const ViewTarget& target, const RenderCall& call, double stepFactor);
     void drawReduced(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, Pace::Reduction how);
     void drawHalf(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, Clock::time_point start);

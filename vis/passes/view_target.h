@@ -69,7 +69,6 @@ public:
     ViewHidden hidden;
     PacketView packets;
     bool byProcessor = false; ///< casts rays of the current picture
-    bool coarse = false;      ///< tiles were drawn in motion, by a coarse filter of the driver
 
     Pace& pace() { return byProcessor ? packets.pace : glPace; }
     /// Throws MachineError, leaving the target unchanged, when the driver has no memory for it.

@@ -1,14 +1,9 @@
 // Interpolated reads. GPUs place such a read between two texels in steps of 1/256, which shows where opacity is steep
-// and at surfaces. FILTER_IN_SHADER interpolates with the precision of floats (Driver::exactFilter), volumes only where
-// coarseReads is 0: in motion speed counts.
-#ifdef FILTER_IN_SHADER
-uniform int coarseReads;
-#endif
+// and at surfaces. FILTER_IN_SHADER interpolates with the precision of floats (Driver::exactFilter).
 
 // Trilinear; `place` in 0..1, clamped to the border texels.
 vec4 filtered(sampler3D from, vec3 place) {
 #ifdef FILTER_IN_SHADER
-    if (coarseReads == 1) return textureLod(from, place, 0.0);
     ivec3 last = textureSize(from, 0) - 1;
     vec3 at = place * vec3(last + 1) - 0.5, below = floor(at), share = at - below;
     ivec3 lo = clamp(ivec3(below), ivec3(0), last), hi = clamp(ivec3(below) + 1, ivec3(0), last);
