@@ -54,7 +54,8 @@ BoundTexture describe(GLuint unit, GLenum target, GLuint name) {
     return out;
 }
 
-/// A small texture like that one. Not by makeTexture2D() and the like, which may fill it.
+/// A small texture like that one. Not by makeTexture2D() and the like, which clear it when debugging: see
+/// drawNothing().
 Texture alike(const BoundTexture& of) {
     const auto edge = [](int texels) { return std::has_single_bit(unsigned(std::max(texels, 1))) ? 4 : 3; };
     const glm::ivec3 size(edge(of.size.x), edge(of.size.y), edge(of.size.z));

@@ -30,7 +30,7 @@ struct DrawState {
 DrawState captureDrawState(const Program& program, const Framebuffer& framebuffer);
 
 /// Draws with that state, in any context, but discards what it draws, and waits. Returns the CPU time of this thread in
-/// milliseconds.
+/// milliseconds. What is rasterised, cleared or copied here would not be safe beside the other context (WorkerContext).
 double drawNothing(const Program& program, const DrawState& state);
 
 } // namespace tessera::vis
