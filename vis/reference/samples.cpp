@@ -69,6 +69,18 @@ struct Samples::View {
     }
 };
 
+/// All samples, for positions far from the border: the same without clamping.
+struct Samples::Inside {
+    const double* values;
+    const std::uint8_t* present; // null: all
+    glm::ivec3 first, size;
+
+    volume::Sample operator()(glm::ivec3 at) const {
+        const std::size_t i = linearIndex(size, at - first);
+        return {values[i], present == nullptr || present[i] != 0};
+    }
+};
+
 Samples::Samples(const volume::BrickSource& source, int channel, volume::TimePair time, Filter filter,
                  const Flaws& flaws)
     : Samples(source, channel, time, filter, flaws, std::nullopt) {}
@@ -104,6 +116,8 @@ Samples::Samples(const volume::BrickSource& source, int channel, volume::TimePai
     const glm::ivec3 margin(kMargin, kMargin, kMargin * slices);
     first_ = -margin;
     size_ = whole.lattice.texels() * glm::ivec3(1, 1, slices) + 2 * margin;
+    innerLo_ = glm::dvec3(2 - kMargin);
+    innerHi_ = glm::dvec3(whole.lattice.texels() + kMargin - 3);
     values_.resize(std::size_t(size_.x) * std::size_t(size_.y) * std::size_t(size_.z));
     if (!whole.present.empty()) present_.resize(values_.size());
     const bool prefiltered = filter == Filter::AverageQuasi && !categorical_ && !flaws.unfiltered;
@@ -151,22 +165,31 @@ Samples::View Samples::view() const {
     return {*this, first_, first_ + size_ - 1, geometry_.kind == volume::LatticeKind::BCC ? 2 : 1};
 }
 
-volume::Blend Samples::blend(glm::dvec3 cells) const {
-    const int slices = geometry_.kind == volume::LatticeKind::BCC ? 2 : 1;
-    View here = view();
-    if (flaws_.clampedBricks) {
-        const glm::ivec3 brick = glm::ivec3(glm::floor(cells / double(brickSize_))), steps(1, 1, slices);
-        here.lo = glm::clamp(brick * brickSize_ * steps, here.lo, here.hi);
-        here.hi = glm::clamp((brick + 1) * brickSize_ * steps - 1, here.lo, here.hi);
-    }
+template <class Read> volume::Blend Samples::filtered(const Read& samples, glm::dvec3 cells) const {
     volume::Blend blend;
     if (categorical_) {
-        blend.add(1, volume::nearest(geometry_, here, cells));
-    } else if (flaws_.unmovedSublattice && slices == 2) {
-        for (int s = 0; s < 2; ++s) volume::addTrilinear(blend, here, geometry_.toSublattice(cells, 0), s, 2, 0.5);
+        blend.add(1, volume::nearest(geometry_, samples, cells));
+    } else if (flaws_.unmovedSublattice && geometry_.kind == volume::LatticeKind::BCC) {
+        for (int s = 0; s < 2; ++s) volume::addTrilinear(blend, samples, geometry_.toSublattice(cells, 0), s, 2, 0.5);
     } else {
-        blend = filter_ == Filter::Tetrahedral ? volume::tetrahedral(geometry_, here, cells)
-                                               : volume::linear(geometry_, here, cells);
+        blend = filter_ == Filter::Tetrahedral ? volume::tetrahedral(geometry_, samples, cells)
+                                               : volume::linear(geometry_, samples, cells);
+    }
+    return blend;
+}
+
+volume::Blend Samples::blend(glm::dvec3 cells) const {
+    volume::Blend blend;
+    if (!flaws_.clampedBricks && glm::clamp(cells, innerLo_, innerHi_) == cells) {
+        blend = filtered(Inside{values_.data(), present_.empty() ? nullptr : present_.data(), first_, size_}, cells);
+    } else {
+        View here = view();
+        if (flaws_.clampedBricks) {
+            const glm::ivec3 brick = glm::ivec3(glm::floor(cells / double(brickSize_))), steps(1, 1, here.slices);
+            here.lo = glm::clamp(brick * brickSize_ * steps, here.lo, here.hi);
+            here.hi = glm::clamp((brick + 1) * brickSize_ * steps - 1, here.lo, here.hi);
+        }
+        blend = filtered(here, cells);
     }
     if (!later_) return blend;
     const volume::Blend later = later_->blend(cells);
@@ -219,11 +242,22 @@ Samples::ColorBlend Samples::colorBlend(glm::dvec3 cells, const std::function<gl
         const std::optional<double> value = both.value();
         return volume::Sample{value.value_or(0), value.has_value()};
     };
+    struct Colored {
+        glm::dvec4 color;
+        bool present;
+    };
+    std::vector<Colored> around; // the samples that linear() reads, in its order, which is the same for each component
+    around.reserve(16);
     ColorBlend out;
     for (int c = 0; c < 4; ++c) {
+        std::size_t next = 0;
         const auto component = [&](glm::ivec3 at) {
-            const volume::Sample sample = sampleAt(at);
-            return volume::Sample{sample.present ? of(sample.value)[c] : 0, sample.present};
+            if (c == 0) {
+                const volume::Sample sample = sampleAt(at);
+                around.push_back({sample.present ? of(sample.value) : glm::dvec4(0), sample.present});
+            }
+            const Colored& one = around[next++];
+            return volume::Sample{one.color[c], one.present};
         };
         const volume::Blend blend = volume::linear(geometry_, component, cells);
         out.sum[c] = blend.sum;

@@ -60,6 +60,7 @@ public:
 
 private:
     struct View;
+    struct Inside;
     struct ColorBlend {
         glm::dvec4 sum{0};
         double coverage = 0;
@@ -73,6 +74,7 @@ private:
             std::optional<OnePart> only);
     ColorBlend colorBlend(glm::dvec3 cells, const std::function<glm::dvec4(double)>& of) const;
     View view() const;
+    template <class Read> volume::Blend filtered(const Read& samples, glm::dvec3 cells) const;
     volume::Blend blend(glm::dvec3 cells) const;
     volume::LevelGeometry geometry_;
     Filter filter_;
@@ -83,7 +85,8 @@ private:
     std::unique_ptr<Samples> later_;
     double laterWeight_ = 0;
     int brickSize_ = 0;
-    glm::ivec3 first_{0}, size_{0}; ///< range of storage indices held
+    glm::ivec3 first_{0}, size_{0};      ///< range of storage indices held
+    glm::dvec3 innerLo_{0}, innerHi_{0}; ///< cells between which no filter reads beyond it
     std::vector<double> values_;
     std::vector<std::uint8_t> present_; ///< empty: all
 };
