@@ -136,7 +136,7 @@ TEST_P(PacketClasses, SegmentsReachIntoOtherBlocks) {
     const auto height = [](glm::dvec3 p) -> std::optional<double> { return p.z; };
     const auto data = std::make_shared<FunctionSource>(GetParam().kind, glm::ivec3(12, 12, 25), glm::dvec3(1),
                                                        std::vector<FunctionSource::Channel>{{"z", height, {0, 24}}});
-    expectAgreement(GetParam(), data, kBesideBlocks);
+    expectAgreement(data, kBesideBlocks);
 }
 
 } // namespace

@@ -97,8 +97,7 @@ INSTANTIATE_TEST_SUITE_P(All, PacketGeometryPictures, testing::ValuesIn(cases())
 
 TEST_P(PacketGeometryPictures, AgreeWithSlicesOfTheReference) {
     const auto data = source(GetParam().kind, GetParam().masked);
-    PacketRenderer renderer(GetParam().with);
-    renderer.setSource(data);
+    std::vector<PacketRenderer> renderers = everyRenderer(data);
     for (const GeometryMode& mode : kGeometryModes)
         for (const bool perspective : {false, true}) {
             Scene scene = baseScene(perspective);
@@ -115,15 +114,15 @@ TEST_P(PacketGeometryPictures, AgreeWithSlicesOfTheReference) {
                 sliced.layers.back().brushes = plane.brushes;
             }
             const reference::Image wanted = reference::render(sliced, *data, kSize);
-            PacketPicture picture;
-            picture.begin(kSize, {{0, 0}, kSize}, false);
-            renderer.prepare(scene);
-            renderer.draw(scene, 0, 1, 1, picture, rasterised(scene, data->info(), planes));
-            const reference::Difference apart = reference::compare(asImage(picture), wanted, kOutlier);
-            EXPECT_TRUE(apart.beyond <= 2 * kOutliers && apart.rmseWithin <= std::pow(10, -kPsnr / 20))
-                << mode.name << (perspective ? " perspective" : " parallel") << ": " << apart.beyond
-                << " outliers, RMSE of the others " << apart.rmseWithin << ", maximum " << apart.maximum << " at "
-                << apart.worst.x << "," << apart.worst.y;
+            const PacketGeometry surfaces = rasterised(scene, data->info(), planes);
+            for (PacketRenderer& renderer : renderers) {
+                PacketPicture picture;
+                picture.begin(kSize, {{0, 0}, kSize}, false);
+                renderer.prepare(scene);
+                renderer.draw(scene, 0, 1, 1, picture, surfaces);
+                expectAlike(renderer, picture, wanted, 2 * kOutliers,
+                            std::string(mode.name) + (perspective ? " perspective" : " parallel"));
+            }
         }
 }
 

@@ -132,8 +132,7 @@ TEST_P(PacketLightTest, ShadowsAgreeWithTheReference) {
 }
 
 TEST_P(PacketLightTest, SurroundingsAgreeWithTheReference) {
-    const Case& param = GetParam();
-    expectAgreement(param, source(param.kind, param.masked), kInSurroundings, stripes());
+    expectAgreement(source(GetParam().kind, GetParam().masked), kInSurroundings, stripes());
 }
 
 } // namespace
