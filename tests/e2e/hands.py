@@ -16,13 +16,13 @@ def xdo(*words):
     subprocess.run(["xdotool", *map(str, words)], check=True)
 
 
-def save():
-    """Saves by shortcut, when the events before it have been answered, and returns the session."""
-    time.sleep(0.4)
+def save(after=0.4):
+    """Saves by shortcut, some seconds after the events before it, which are answered first, and returns the session."""
+    time.sleep(after)
     before = os.stat(SESSION).st_mtime_ns if os.path.exists(SESSION) else 0
     xdo("key", "ctrl+s")
-    for _ in range(900):
-        time.sleep(0.05)
+    for _ in range(4500):
+        time.sleep(0.01)
         if os.path.exists(SESSION) and os.stat(SESSION).st_mtime_ns != before:
             with open(SESSION, encoding="utf-8") as file:
                 return json.load(file)
@@ -30,30 +30,25 @@ def save():
 
 
 def drag(start, end, button=1, modifier=None, steps=6):
-    if modifier:
-        xdo("keydown", modifier)
-    xdo("mousemove", *start)
-    time.sleep(0.15)
-    xdo("mousedown", button)
+    words = ["keydown", modifier] if modifier else []
+    words += ["mousemove", *start, "sleep", 0.15, "mousedown", button]
     for step in range(1, steps + 1):
-        xdo("mousemove", *(round(a + (b - a) * step / steps) for a, b in zip(start, end)))
-        time.sleep(0.04)
-    xdo("mouseup", button)
-    if modifier:
-        xdo("keyup", modifier)
+        words += ["mousemove", *(round(a + (b - a) * step / steps) for a, b in zip(start, end)), "sleep", 0.04]
+    words += ["mouseup", button]
+    xdo(*words, *(["keyup", modifier] if modifier else []))
 
 
 def click(at, button=1, times=1):
-    xdo("mousemove", *at)
-    time.sleep(0.15)
-    xdo("click", "--repeat", times, "--delay", 60, button)
+    xdo("mousemove", *at, "sleep", 0.15, "click", "--repeat", times, "--delay", 60, button)
 
 
 def press(*keys, at=None):
-    if at:
-        xdo("mousemove", *at)
-        time.sleep(0.15)
-    xdo("key", *keys)
+    xdo(*(["mousemove", *at, "sleep", 0.15] if at else []), "key", *keys)
+
+
+def apart():
+    """Between two edits of one kind, which in quick succession are one step, or two clicks, which are a double one."""
+    time.sleep(0.7)
 
 
 def check(what, holds, found=""):
@@ -63,11 +58,11 @@ def check(what, holds, found=""):
 
 
 def until(what, holds, found=lambda s: ""):
-    """Saves until the session is as it should be, for 10 seconds at most, and returns it."""
-    for _ in range(20):
-        session = save()
-        if holds(session):
-            break
+    """Saves until the session is as it should be, for 10 seconds at least, and returns it."""
+    end = time.monotonic() + 10
+    session = save(0.05)
+    while not holds(session) and time.monotonic() < end:
+        session = save(0.2)
     check(what, holds(session), found(session))
     return session
 
@@ -76,11 +71,11 @@ def palette(text):
     """Runs the first command that the palette finds, when the pictures before it are drawn."""
     save()
     press("ctrl+shift+p")
-    time.sleep(1)
+    time.sleep(0.8)
     xdo("type", "--delay", 30, text)
-    time.sleep(0.5)
+    time.sleep(0.3)
     press("Return")
-    time.sleep(0.5)
+    time.sleep(0.4)  # until it is closed, no other key is heard
 
 
 def brushes(session):
@@ -103,7 +98,7 @@ def turned(session, axis):
 
 def undone(what, part, before):
     """Ctrl+Z takes the step back: this part of the session is what it was."""
-    time.sleep(0.8)  # edits of one kind in quick succession are one step
+    time.sleep(0.2)
     xdo("key", "ctrl+z")
     return until(f"undo of {what}", lambda s: s[part] == before[part], lambda s: s[part])
 
@@ -159,14 +154,12 @@ press("1", at=VOLUME)
 s = until("1 looks along z", lambda s: near(abs(turned(s, "z")[2]), 1, 1e-3) or near(abs(turned(s, "x")[2]), 1, 1e-3),
           lambda s: s["camera"])
 press("r", at=VOLUME)
-time.sleep(0.8)
 s = until("R shows everything from the standard direction",
           lambda s: near(turned(s, "y")[1], turned(start, "y")[1], 0.2), lambda s: turned(s, "y"))
 
 # The cross-hair: a double click in the volume, a drag in a slice.
 before = save()
 click((330, 330), times=2)
-time.sleep(0.5)
 s = until("a double click in the volume moves the cross-hair", lambda s: s["cursor"] != before["cursor"],
           lambda s: s["cursor"])
 (x0, y0), (x1, y1) = BOX_ZY
@@ -184,7 +177,6 @@ s = until("a drag in the slice across z moves x and y", lambda s: near(s["cursor
 check("and leaves z", s["cursor"][2] == held, s["cursor"])
 
 # Time: the slider, arrows, Home and End, playing.
-time.sleep(0.8)
 middle = (TIMELINE_FIRST + TIMELINE_LAST) // 2
 drag((TIMELINE_LAST, TIMELINE_Y), (middle, TIMELINE_Y))
 s = until("the middle of the timeline is the middle of the times", lambda s: near(s["time"], 0.345, 0.016),
@@ -208,7 +200,6 @@ press("End")
 s = until("End is the last time", lambda s: near(s["time"], 0.69, 1e-9), lambda s: s["time"])
 
 # Brushes in a plot: a rectangle, moved, another by Shift, removed by a right click, and Esc.
-time.sleep(0.8)
 (x0, y0), (x1, y1) = DENSITY_PLOT
 drag((x0 + 15, y0 + 10), (x0 + 45, y0 + 30))
 s = until("a drag in a plot makes one brush", lambda s: len(s["selection"]["brushes"]) == 1)
@@ -227,17 +218,15 @@ s = until("a right click removes the brush under the mouse",
           lambda s: len(s["selection"]["brushes"]) == 1 and intervals(s) == later, lambda s: s["selection"]["brushes"])
 
 # What was clicked last does not answer to the keys of time.
-time.sleep(0.8)
 views = save()["views"]
 press("Home", at=(middle, 820))
-time.sleep(0.5)
-press("space")
-time.sleep(1.5)
+until("Home after a drag in a plot", lambda s: s["time"] == 0, lambda s: s["time"])
 press("space")
 s = until("after a drag in a plot the keys of time change nothing else",
           lambda s: s["views"] == views and s["time"] > 0, lambda s: s["time"])
+press("space")
 press("End")
-time.sleep(0.8)
+until("End after a drag in a plot", lambda s: near(s["time"], 0.69, 1e-9), lambda s: s["time"])
 press("Escape")
 s = until("Esc clears the brush", lambda s: s["selection"]["brushes"] == [], lambda s: s["selection"]["brushes"])
 
@@ -248,7 +237,7 @@ s = until("a point of the opacity curve dragged upwards becomes more opaque",
           lambda s: near(opacities(s)[1] - opacity[1], 40 / 205, 0.02), opacities)
 later = opacities(s)
 check("and no other point", [later[0], *later[2:]] == [opacity[0], *opacity[2:]], later)
-time.sleep(0.8)
+time.sleep(0.2)
 xdo("key", "ctrl+z")
 s = until("undo of the curve", lambda s: opacities(s) == opacity, opacities)
 press("ctrl+shift+z")
@@ -256,7 +245,7 @@ s = until("redo of the curve", lambda s: opacities(s) == later, opacities)
 click((1208, 97))
 s = until("the eye hides its layer", lambda s: [layer["visible"] for layer in s["layers"]] == [False, False],
           lambda s: [layer["visible"] for layer in s["layers"]])
-time.sleep(0.8)
+apart()
 click((1208, 97))
 s = until("and shows it again", lambda s: s["layers"][0]["visible"] and not s["layers"][1]["visible"])
 density = s["layers"][0]["technique"]["density"]
@@ -307,7 +296,7 @@ last = save()
 for key in ("ctrl+z", "ctrl+shift+z"):
     for _ in range(15):
         xdo("key", key)
-        time.sleep(0.2)
+        time.sleep(0.1)
 parts = ("camera", "selection", "layers", "lenses", "views", "dock")
 until("15 undos and 15 redos lead back", lambda s: all(s[part] == last[part] for part in parts),
       lambda s: [part for part in parts if s[part] != last[part]])
