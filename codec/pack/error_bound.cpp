@@ -6,9 +6,6 @@
 #include <cmath>
 #include <concepts>
 #include <limits>
-#include <map>
-#include <utility>
-#include <vector>
 
 namespace tessera::codec {
 
@@ -30,65 +27,9 @@ template <class SquareOf> double rmsOf(const FrameSamples& samples, SquareOf&& s
     return count > 0 ? std::sqrt(squares / count) : 0;
 }
 
-/// Histogram of the numbers of a frame's present samples.
-struct NumberCounts {
-    std::vector<std::pair<double, double>> counts; ///< number and count, ascending
-    double samples = 0;
-
-    double rms(std::int64_t step) const {
-        double squares = 0;
-        for (const auto& [number, count] : counts) {
-            const std::int64_t over = std::abs(std::int64_t(number)) % step;
-            const auto apart = double(std::min(over, step - over));
-            squares += count * apart * apart;
-        }
-        return samples > 0 ? std::sqrt(squares / samples) : 0;
-    }
-    double least() const { return counts.empty() ? 0 : counts.front().first; }
-    double most() const { return counts.empty() ? 0 : counts.back().first; }
-};
-
-/// For 32-bit types with many different numbers, a representative part of the samples is counted.
-NumberCounts countNumbers(const FrameSamples& samples) {
-    constexpr std::size_t kMost = 1 << 20; // 32-bit samples examined
-    const std::size_t stride = samples.type() == volume::ScalarType::I32 ? samples.count() / kMost + 1 : 1;
-    std::map<double, double> wide;
-    std::vector<double> narrow(1 << 17, 0);
-    constexpr int kZero = 1 << 16; // index of 0 for the narrow types
-    double lo = 0, hi = 0;
-    samples.forSlabs([&](const volume::Field& part, Slab) {
-        volume::dispatch(part.type, [&]<class T>(T) {
-            if constexpr (!std::same_as<T, float>) {
-                const auto numbers = part.as<T>();
-                for (std::size_t i = 0; i < numbers.size(); ++i) {
-                    if (!part.present(i)) continue;
-                    const auto number = std::int64_t(numbers[i]);
-                    if constexpr (sizeof(T) > 2) {
-                        lo = std::min(lo, double(number)), hi = std::max(hi, double(number));
-                        if (i % stride == 0) wide[double(number)] += 1;
-                    } else {
-                        narrow[std::size_t(number + kZero)] += 1;
-                    }
-                }
-            }
-        });
-        return true;
-    });
-    NumberCounts out;
-    for (std::size_t i = 0; i < narrow.size(); ++i)
-        if (narrow[i] > 0) wide[double(i) - kZero] += narrow[i];
-    for (const double end : {lo, hi})
-        if (end != 0) wide.try_emplace(end, 0);
-    for (const auto& [number, count] : wide) {
-        out.counts.emplace_back(number, count);
-        out.samples += count;
-    }
-    return out;
-}
-
 /// The largest step with an RMS error of at most `wanted`, among all small steps and some larger ones (0.14 dB apart).
 /// Searches up to four times that error.
-std::int64_t largestStep(volume::ScalarType type, const NumberCounts& counts, double wanted) {
+std::int64_t largestStep(volume::ScalarType type, NumberCounts& counts, double wanted) {
     constexpr std::int64_t kMost = 1 << 29, kEvery = 64;
     constexpr double kFar = 4;
     const double reach = std::max(std::abs(counts.least()), std::abs(counts.most()));
@@ -101,8 +42,9 @@ std::int64_t largestStep(volume::ScalarType type, const NumberCounts& counts, do
     return best;
 }
 
-FrameBound integerBoundForPsnr(const FrameSamples& samples, double wanted) {
-    const std::int64_t step = largestStep(samples.type(), countNumbers(samples), wanted);
+FrameBound integerBoundForPsnr(const FrameSamples& samples, std::optional<NumberCounts>& counts, double wanted) {
+    if (!counts) counts.emplace(samples);
+    const std::int64_t step = largestStep(samples.type(), *counts, wanted);
     return {double(step / 2), step};
 }
 
@@ -136,15 +78,71 @@ double floatBoundForPsnr(const FrameSamples& samples, double wanted, double exte
     return best;
 }
 
-FrameBound boundForPsnr(const FrameSamples& samples, double extent, double psnr) {
+FrameBound boundForPsnr(const FrameSamples& samples, std::optional<NumberCounts>& counts, double extent, double psnr) {
     const double wanted = extent * std::pow(10.0, -psnr / 20);
-    if (samples.type() != volume::ScalarType::F32) return integerBoundForPsnr(samples, wanted);
+    if (samples.type() != volume::ScalarType::F32) return integerBoundForPsnr(samples, counts, wanted);
     return {floatBoundForPsnr(samples, wanted, extent), 1};
 }
 
 } // namespace
 
+/// For 32-bit types with many different numbers, a representative part of the samples is counted.
+NumberCounts::NumberCounts(const FrameSamples& samples) {
+    constexpr std::size_t kMost = 1 << 20; // 32-bit samples examined
+    const std::size_t stride = samples.type() == volume::ScalarType::I32 ? samples.count() / kMost + 1 : 1;
+    std::map<double, double> wide;
+    std::vector<double> narrow(1 << 17, 0);
+    constexpr int kZero = 1 << 16; // index of 0 for the narrow types
+    double lo = 0, hi = 0;
+    samples.forSlabs([&](const volume::Field& part, Slab) {
+        volume::dispatch(part.type, [&]<class T>(T) {
+            if constexpr (!std::same_as<T, float>) {
+                const auto numbers = part.as<T>();
+                for (std::size_t i = 0; i < numbers.size(); ++i) {
+                    if (!part.present(i)) continue;
+                    const auto number = std::int64_t(numbers[i]);
+                    if constexpr (sizeof(T) > 2) {
+                        lo = std::min(lo, double(number)), hi = std::max(hi, double(number));
+                        if (i % stride == 0) wide[double(number)] += 1;
+                    } else {
+                        narrow[std::size_t(number + kZero)] += 1;
+                    }
+                }
+            }
+        });
+        return true;
+    });
+    for (const double end : {lo, hi})
+        if (end != 0) wide.try_emplace(end, 0);
+    counts_.assign(wide.begin(), wide.end());
+    for (std::size_t i = 0; i < narrow.size(); ++i)
+        if (narrow[i] > 0) counts_.emplace_back(double(i) - kZero, narrow[i]);
+    for (const auto& [number, count] : counts_) samples_ += count;
+}
+
+double NumberCounts::rms(std::int64_t step) {
+    if (const auto known = rms_.find(step); known != rms_.end()) return known->second;
+    double squares = 0;
+    std::int64_t over = 0, last = 0; // the last number lies `over` above a multiple of the step
+    for (const auto& [number, count] : counts_) {
+        const auto whole = std::int64_t(number);
+        over += whole - last;
+        last = whole;
+        if (over >= step) over -= step;
+        if (over < 0 || over >= step) over = (over % step + step) % step; // numbers far apart
+        const auto apart = double(std::min(over, step - over));
+        squares += count * apart * apart;
+    }
+    return rms_[step] = samples_ > 0 ? std::sqrt(squares / samples_) : 0;
+}
+
 FrameBound boundFor(const PackOptions& options, const volume::Parameter& parameter, const FrameSamples& samples) {
+    std::optional<NumberCounts> counts;
+    return boundFor(options, parameter, samples, counts);
+}
+
+FrameBound boundFor(const PackOptions& options, const volume::Parameter& parameter, const FrameSamples& samples,
+                    std::optional<NumberCounts>& counts) {
     if (parameter.categorical) return {};
     double error = std::numeric_limits<double>::infinity();
     const double scale = std::abs(samples.scale()), extent = extentOf(parameter);
@@ -152,7 +150,7 @@ FrameBound boundFor(const PackOptions& options, const volume::Parameter& paramet
     if (options.absError > 0) error = std::min(error, options.absError / scale);
     const FrameBound stated{error, stepWithin(samples.type(), error)};
     if (!(options.psnr > 0)) return std::isfinite(error) ? stated : FrameBound();
-    const FrameBound bound = boundForPsnr(samples, extent / scale, options.psnr);
+    const FrameBound bound = boundForPsnr(samples, counts, extent / scale, options.psnr);
     const bool stricter =
         samples.type() == volume::ScalarType::F32 ? stated.error < bound.error : stated.step < bound.step;
     return std::isfinite(error) && stricter ? stated : bound;

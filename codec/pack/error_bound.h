@@ -5,6 +5,10 @@
 #include "volume/field/dataset.h"
 
 #include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
 
 /// Rounding of a frame according to the packing options.
 namespace tessera::codec {
@@ -18,5 +22,24 @@ struct FrameBound {
 /// The strictest of the requested bounds. A PSNR is converted by trial on the frame to the coarsest rounding that
 /// reaches it; for integers to the largest step, odd or even.
 FrameBound boundFor(const PackOptions& options, const volume::Parameter& parameter, const FrameSamples& samples);
+
+/// Histogram of the integers of a frame's present samples, and what rounding them to multiples of a step changes.
+class NumberCounts {
+public:
+    explicit NumberCounts(const FrameSamples& samples);
+    /// Root of the mean square of the changes; remembered.
+    double rms(std::int64_t step);
+    double least() const { return counts_.empty() ? 0 : counts_.front().first; }
+    double most() const { return counts_.empty() ? 0 : counts_.back().first; }
+
+private:
+    std::vector<std::pair<double, double>> counts_; ///< number and count, ascending
+    double samples_ = 0;
+    std::map<std::int64_t, double> rms_;
+};
+
+/// The same for several options; `counts`: of these samples, made when they are needed.
+FrameBound boundFor(const PackOptions& options, const volume::Parameter& parameter, const FrameSamples& samples,
+                    std::optional<NumberCounts>& counts);
 
 } // namespace tessera::codec

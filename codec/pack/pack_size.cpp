@@ -77,8 +77,9 @@ void addEstimates(const volume::BrickGrid& grid, const volume::Field& part, cons
     frame.wavelet = parameter.categorical ? Wavelet::N1 : waveletOf(options.wavelet).value_or(Wavelet::W22);
     double bytes = 0;
     std::int64_t lastStep = 0;
+    std::optional<NumberCounts> counts;
     for (SizeAtBound& point : curve) {
-        const FrameBound bound = boundFor(withBound(PackOptions(), control, point.bound), parameter, part);
+        const FrameBound bound = boundFor(withBound(PackOptions(), control, point.bound), parameter, part, counts);
         if (bounded && !isFloat) {
             if (bound.step != lastStep) bytes = estimateFrameBytes(grid, countedIn(part, bound.step), frame, bricks);
             lastStep = bound.step;
