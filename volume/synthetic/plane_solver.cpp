@@ -26,22 +26,35 @@ bool samePlane(const StencilSystem& s, std::size_t a, std::size_t b) {
     return true;
 }
 
-// Factorises a banded matrix in place; columns of 2 band + 1 entries with the diagonal in the middle.
-void factorBand(std::vector<float>& columns, int n, int band) {
-    const std::size_t stride = std::size_t(2 * band + 1);
+// Factorises a banded matrix in place; columns of 2 width + 1 entries with the diagonal in the middle.
+void factorBand(std::vector<float>& columns, int n, int band, int width) {
+    const std::size_t stride = std::size_t(2 * width + 1);
     for (int k = 0; k < n; ++k) {
-        float* pivot = columns.data() + std::size_t(k) * stride + band;
+        float* pivot = columns.data() + std::size_t(k) * stride + width;
         const int below = std::min(band, n - 1 - k);
         const float inverse = 1.0f / pivot[0];
         pivot[0] = inverse;
         for (int i = 1; i <= below; ++i) pivot[i] *= inverse;
         for (int j = 1; j <= below; ++j) {
-            float* column = columns.data() + std::size_t(k + j) * stride + band - j;
+            float* column = columns.data() + std::size_t(k + j) * stride + width - j;
             const float factor = column[0];
             if (factor == 0.0f) continue;
             for (int i = 1; i <= below; ++i) column[i] -= factor * pivot[i];
         }
     }
+}
+
+constexpr int kBlock = 4; // columns that are eliminated together
+
+// Subtracts multiples of the columns of a block, which begin at `columns`, from `count` (a multiple of kBlock) numbers,
+// for each of them in the order given.
+void subtract(float* __restrict from, const float* __restrict columns, std::ptrdiff_t stride, int first, int step,
+              const float (&factors)[kBlock], int count) {
+    for (int i = 0; i < count; i += kBlock)
+        for (int c = 0; c < kBlock; ++c) {
+            const float* column = columns + (first + step * c) * stride + i;
+            for (int lane = 0; lane < kBlock; ++lane) from[i + lane] -= factors[first + step * c] * column[lane];
+        }
 }
 
 double dot(std::span<const double> a, std::span<const double> b) {
@@ -78,8 +91,10 @@ void multiply(const StencilSystem& s, std::span<const double> x, std::span<doubl
 
 PlanePreconditioner::PlanePreconditioner(const StencilSystem& s) {
     band_ = std::min(s.nx, s.ny);
+    width_ = (band_ + kBlock - 1) / kBlock * kBlock + kBlock;
     transposed_ = s.ny < s.nx;
-    const std::size_t nz = std::size_t(s.nz), plane = s.plane(), stride = std::size_t(2 * band_ + 1);
+    const std::size_t nz = std::size_t(s.nz), plane = s.plane(), stride = std::size_t(2 * width_ + 1);
+    const std::size_t columnCount = (plane + kBlock - 1) / kBlock * kBlock;
 
     std::vector<std::size_t> planes; // the planes with a factor of their own
     factorOf_.resize(nz);
@@ -90,10 +105,11 @@ PlanePreconditioner::PlanePreconditioner(const StencilSystem& s) {
     factors_.resize(planes.size());
     parallelFor(planes.size(), [&](std::size_t f) {
         std::vector<float>& columns = factors_[f];
-        columns.assign(plane * stride, 0.0f);
+        columns.assign(columnCount * stride, 0.0f);
+        for (std::size_t c = plane; c < columnCount; ++c) columns[c * stride + std::size_t(width_)] = 1.0f;
         const std::size_t base = planes[f] * plane;
         const auto at = [&](std::size_t row, std::size_t column) -> float& {
-            return columns[column * stride + std::size_t(band_) + row - column];
+            return columns[column * stride + std::size_t(width_) + row - column];
         };
         for (int y = 0; y < s.ny; ++y)
             for (int x = 0; x < s.nx; ++x) {
@@ -109,7 +125,7 @@ PlanePreconditioner::PlanePreconditioner(const StencilSystem& s) {
                 if (y > 0) at(row, row - stepY) = float(-s.south[p] * scale);
                 if (y + 1 < s.ny) at(row, row + stepY) = float(-s.north[p] * scale);
             }
-        factorBand(columns, int(plane), band_);
+        factorBand(columns, int(plane), band_, width_);
     });
 
     // Plane sums: one unknown per plane.
@@ -125,23 +141,28 @@ PlanePreconditioner::PlanePreconditioner(const StencilSystem& s) {
     }
 }
 
-void PlanePreconditioner::solvePlane(int z, std::span<float> v) const {
+void PlanePreconditioner::solvePlane(int z, float* values) const {
     const std::vector<float>& columns = factors_[factorOf_[std::size_t(z)]];
-    const int n = int(v.size()), band = band_;
-    const std::size_t stride = std::size_t(2 * band + 1);
-    for (int k = 0; k < n; ++k) {
-        const float* column = columns.data() + std::size_t(k) * stride + band;
-        const float value = v[std::size_t(k)];
-        const int below = std::min(band, n - 1 - k);
-        float* target = v.data() + k;
-        for (int i = 1; i <= below; ++i) target[i] -= value * column[i];
+    const std::ptrdiff_t stride = 2 * width_ + 1, n = std::ptrdiff_t(columns.size()) / stride;
+    const int reach = width_ - kBlock; // the band, and zeros
+    const float* diagonal = columns.data() + width_;
+    float v[kBlock];
+    for (std::ptrdiff_t k = 0; k < n; k += kBlock, diagonal += kBlock * stride) {
+        std::copy_n(values + k, kBlock, v);
+        for (int c = 0; c < kBlock; ++c)
+            for (int row = c + 1; row < kBlock; ++row) v[row] -= v[c] * diagonal[c * stride + row - c];
+        std::copy_n(v, kBlock, values + k);
+        subtract(values + k + kBlock, diagonal + kBlock, stride - 1, 0, 1, v, reach);
     }
-    for (int k = n - 1; k >= 0; --k) {
-        const float* column = columns.data() + std::size_t(k) * stride + band;
-        const float value = v[std::size_t(k)] *= column[0];
-        const int above = std::min(band, k);
-        float* target = v.data() + k;
-        for (int i = 1; i <= above; ++i) target[-i] -= value * column[-i];
+    for (std::ptrdiff_t k = n - kBlock; k >= 0; k -= kBlock) {
+        diagonal -= kBlock * stride;
+        std::copy_n(values + k, kBlock, v);
+        for (int c = kBlock - 1; c >= 0; --c) {
+            v[c] *= diagonal[c * stride];
+            for (int row = 0; row < c; ++row) v[row] -= v[c] * diagonal[c * stride + row - c];
+        }
+        std::copy_n(v, kBlock, values + k);
+        subtract(values + k - reach, diagonal - reach, stride - 1, kBlock - 1, -1, v, reach);
     }
 }
 
@@ -157,21 +178,23 @@ void PlanePreconditioner::apply(const StencilSystem& s, std::span<const double> 
         coarse[z] = (coarse[z] + (z + 1 < nz ? upper_[z] * coarse[z + 1] : 0.0)) / center_[z];
     for (std::size_t z = 0; z < nz; ++z) std::fill_n(result.begin() + long(z * plane), plane, coarse[z]);
 
-    std::vector<float> values(plane);
+    const std::size_t nx = std::size_t(s.nx), ny = std::size_t(s.ny);
+    const std::size_t stepX = transposed_ ? ny : 1, stepY = transposed_ ? 1 : nx;
+    std::vector<float> padded(plane + 3 * std::size_t(width_));
+    float* const values = padded.data() + width_;
     const auto relax = [&](std::size_t z) {
-        for (std::size_t q = 0; q < plane; ++q) {
-            const std::size_t p = z * plane + q;
-            double value = residual[p];
-            if (z > 0) value += s.down[p] * result[p - plane];
-            if (z + 1 < nz) value += s.up[p] * result[p + plane];
-            const std::size_t to =
-                transposed_ ? (q % std::size_t(s.nx)) * std::size_t(s.ny) + q / std::size_t(s.nx) : q;
-            values[to] = float(value / s.diag[p]);
-        }
+        std::size_t p = z * plane;
+        for (std::size_t y = 0; y < ny; ++y)
+            for (std::size_t x = 0; x < nx; ++x, ++p) {
+                double value = residual[p];
+                if (z > 0) value += s.down[p] * result[p - plane];
+                if (z + 1 < nz) value += s.up[p] * result[p + plane];
+                values[x * stepX + y * stepY] = float(value / s.diag[p]);
+            }
         solvePlane(int(z), values);
-        for (std::size_t q = 0; q < plane; ++q)
-            result[z * plane + q] =
-                double(values[transposed_ ? (q % std::size_t(s.nx)) * std::size_t(s.ny) + q / std::size_t(s.nx) : q]);
+        p = z * plane;
+        for (std::size_t y = 0; y < ny; ++y)
+            for (std::size_t x = 0; x < nx; ++x, ++p) result[p] = double(values[x * stepX + y * stepY]);
     };
     for (std::size_t z = 0; z < nz; ++z) relax(z);
     for (std::size_t z = nz; z-- > 0;) relax(z);

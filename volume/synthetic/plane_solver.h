@@ -47,12 +47,13 @@ public:
     void apply(const StencilSystem& system, std::span<const double> residual, std::span<double> result) const;
 
 private:
-    void solvePlane(int z, std::span<float> values) const;
+    /// `values` of a plane, with width_ zeros before and twice as many behind, which take part with weight 0.
+    void solvePlane(int z, float* values) const;
 
-    int band_ = 0;
-    bool transposed_ = false;                    // y is the inner index of the band
+    int band_ = 0, width_ = 0; // coefficients on each side of the diagonal; with zeros, for columns taken in blocks
+    bool transposed_ = false;  // y is the inner index of the band
     std::vector<std::size_t> factorOf_;          // per plane: its factor (equal planes share one)
-    std::vector<std::vector<float>> factors_;    // per factor: columns of 2 band + 1 entries
+    std::vector<std::vector<float>> factors_;    // per factor: columns of 2 width + 1 entries
     std::vector<double> lower_, center_, upper_; // the system along z, eliminated
 };
 
