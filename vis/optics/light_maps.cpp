@@ -4,6 +4,7 @@
 #include "volume/base/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -25,6 +26,27 @@ double lobe(const Lighting& surface, double c) {
     const double a2 = std::pow(double(surface.roughness), 4), spread = (1 + c) / 2 * (a2 - 1) + 1;
     return a2 / (kPi * spread * spread) * c;
 }
+
+/// The same between values of a table, which are denser near the peak: c = 1 - x^4. Twenty million weights make a map.
+class LobeTable {
+public:
+    explicit LobeTable(const Lighting& surface) {
+        for (std::size_t i = 0; i < values_.size(); ++i) {
+            const double x = double(i) / kSteps;
+            values_[i] = lobe(surface, 1 - x * x * x * x);
+        }
+    }
+    double operator()(double c) const {
+        if (c <= 0) return 0;
+        const double at = std::sqrt(std::sqrt(std::max(1 - c, 0.0))) * kSteps;
+        const auto i = std::size_t(at);
+        return glm::mix(values_[i], values_[i + 1], at - double(i));
+    }
+
+private:
+    static constexpr int kSteps = 4096;
+    std::array<double, kSteps + 2> values_{};
+};
 
 /// Integral of the lobe over all directions.
 double lobeIntegral(const Lighting& surface) {
@@ -154,6 +176,7 @@ LightMaps environmentMaps(const Lighting& lighting, const CubeMap* picture) {
         }
         maps.diffuse.texels[i] = sum / weights;
     });
+    const LobeTable weightAt(lighting);
     parallelFor(maps.specular.texels.size(), [&](std::size_t i) {
         const glm::dvec3 mirrored = maps.specular.texelDirection(i);
         // If the lobe is narrower than a texel of the environment, sample the environment directly.
@@ -161,7 +184,7 @@ LightMaps environmentMaps(const Lighting& lighting, const CubeMap* picture) {
         double weights = lobe(lighting, 1) * 1e-3;
         sum *= weights;
         for (const Source& source : sources) {
-            const double weight = lobe(lighting, glm::dot(mirrored, source.direction)) * source.angle;
+            const double weight = weightAt(glm::dot(mirrored, source.direction)) * source.angle;
             sum += weight * source.light;
             weights += weight;
         }
