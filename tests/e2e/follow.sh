@@ -13,13 +13,16 @@ mkdir whole
 "$tessera" info cell.tsr --json | python3 -c 'import json, sys; print(*json.load(sys.stdin)["times"])' > times
 number=0
 for time in $(cat times); do # a raw file has one time and a sidecar; numbers of one and of two digits
-    "$tessera" unpack cell.tsr -o whole/step.raw -t "$time" > /dev/null || die "unpack"
-    mv whole/step.raw whole/run_$number.raw
-    python3 -c 'import json, sys; about = json.load(open("whole/step.json")); del about["times"]
-json.dump(about, open(sys.argv[1], "w"))' whole/run_$number.json
-    rm whole/step.json
+    "$tessera" unpack cell.tsr -o whole/run_$number.raw -t "$time" > /dev/null || die "unpack"
     number=$((number + 1))
 done
+python3 - whole/run_*.json << 'END' || die "sidecars"
+import json, sys
+for name in sys.argv[1:]:
+    about = json.load(open(name))
+    del about["times"]
+    json.dump(about, open(name, "w"))
+END
 [ $number = $times ] || die "not $times times"
 
 same() { # same ARCHIVE ARCHIVE: intact, of the same times, and every sample the same
@@ -51,12 +54,12 @@ follow_and_kill() {
     solver=$!
     : > lines
     start() {
-        "$tessera" pack --follow "out/run_*.$kind" -o live.tsr --settle 0.1 --until-idle 3 "$@" >> lines 2> err &
+        "$tessera" pack --follow "out/run_*.$kind" -o live.tsr --settle 0.1 --until-idle 2 "$@" >> lines 2> err &
         pid=$!
     }
     while [ $kills -lt 12 ] && kill -0 $solver 2> /dev/null; do
         start "$@"
-        sleep "$((RANDOM % 2)).$((RANDOM % 10))$((RANDOM % 10))"
+        sleep "0.$((RANDOM % 10))$((RANDOM % 10))"
         kill -KILL $pid 2> /dev/null && kills=$((kills + 1))
         wait $pid 2> /dev/null
         [ ! -e live.tsr ] || "$tessera" verify live.tsr > /dev/null || fail "a kill left a damaged archive"

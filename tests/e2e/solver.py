@@ -11,5 +11,5 @@ for path in files:
         cuts = sorted(random.randrange(len(content)) for _ in range(random.choice([0, 1, 3])))
         for begin, end in zip([0] + cuts, cuts + [len(content)]):
             out.write(content[begin:end])
-            time.sleep(random.choice([0, 0.05, 0.3]))
+            time.sleep(random.choice([0, 0.05, 0.2]))
     time.sleep(random.choice([0, 0.1]))
