@@ -5,4 +5,4 @@ cd "$(dirname "$0")/.." || exit 1
 format=$(command -v clang-format-14 || command -v clang-format) && "$format" --version | grep -q 'version 14\.' ||
     { echo "skipped: no clang-format 14"; exit 77; }
 files=$(git ls-files '*.cpp' '*.h') && [ -n "$files" ] || { echo "skipped: not a git checkout"; exit 77; }
-xargs "$format" --dry-run -Werror <<<"$files"
+xargs -P "$(nproc)" -n 40 "$format" --dry-run -Werror <<<"$files"

@@ -196,7 +196,7 @@ check "a negative bound" 1 "$tessera" pack wave.json -o x.tsr --psnr -3
 # frames go through in slabs.
 python3 - <<'EOF'
 import array, json, os, random
-n = 112
+n = 96
 frame = [random.random() for _ in range(n * n * n)]
 with open("noise.raw", "wb") as file:
     for t in range(3): array.array("f", frame[t:] + frame[:t]).tofile(file)
@@ -208,7 +208,7 @@ json.dump({"dims": dims, "dtype": "uint16", "times": [0, 1], "components": [{"na
 EOF
 for what in "noise --lattice cc" "noise --lattice bcc" "noise --lattice bcc --resample.filter bspline5" \
     "noise --lattice d4" "noise --lattice d4 --resample.filter sinc" "noise --lattice cc --max-error 0.001" \
-    "noise --lattice bcc --resample.sharpen 1" "noise --lattice bcc --target-size 7" \
+    "noise --lattice bcc --resample.sharpen 1" "noise --lattice bcc --target-size 4.4" \
     "tall --lattice cc" "tall --lattice bcc --resample.filter bspline5" "tall --lattice d4" \
     "tall --lattice d4 --resample.filter bspline5" "tall --lattice cc --target-size 4" \
     "tall --lattice d4 --target-size 4"; do
