@@ -11,6 +11,7 @@
 #include <imgui.h>
 #include <iterator>
 #include <thread>
+#include <utility>
 
 namespace tessera::app {
 
@@ -121,13 +122,23 @@ struct OffscreenFrames::Impl {
     glm::ivec2 size;
     Framebuffer target;
     bool smooth;
+    Framebuffer speck{{1, 1}}; ///< what frames are drawn into that nobody looks at: the same calls, next to no pixels
+    Theme theme = Theme::Dark; ///< of the last frame
+    bool shown = false;        ///< `target` shows it
+
+    void show() {
+        if (std::exchange(shown, true)) return;
+        target.bind();
+        Gui::draw(size, theme);
+    }
 
     /// Draws some triangles of the last frame on nothing.
-    vis::Image drawParts(const std::vector<DrawnPart>& parts, glm::ivec2 lo, glm::ivec2 hi) const {
+    vis::Image drawParts(const std::vector<DrawnPart>& parts, glm::ivec2 lo, glm::ivec2 hi) {
         ImDrawData& frame = *ImGui::GetDrawData();
         std::vector<ImVector<ImDrawCmd>> all(static_cast<std::size_t>(frame.CmdListsCount));
         for (int n = 0; n < frame.CmdListsCount; ++n) all[std::size_t(n)].swap(frame.CmdLists[n]->CmdBuffer);
         for (const DrawnPart& part : parts) part.list->CmdBuffer.push_back(part.command);
+        shown = false;
         target.bind();
         glViewport(0, 0, size.x, size.y);
         glDisable(GL_SCISSOR_TEST);
@@ -157,11 +168,14 @@ void OffscreenFrames::draw(Workbench& workbench, float scale, const std::functio
     ImGui::NewFrame();
     workbench.frame();
     ImGui::Render();
-    impl_->target.bind();
-    Gui::draw(impl_->size, workbench.session().appearance.theme);
+    impl_->theme = workbench.session().appearance.theme;
+    impl_->shown = false;
+    impl_->speck.bind();
+    Gui::draw(impl_->size, impl_->theme);
 }
 
 vis::Image OffscreenFrames::read() const {
+    impl_->show();
     impl_->target.bind();
     vis::Image image = readPixels({0, 0}, impl_->size, impl_->size.y);
     for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
@@ -176,6 +190,10 @@ VectorPage OffscreenFrames::page(const Workbench& workbench, double points) cons
     const glm::vec4 ground(windowGround(workbench.session().appearance.theme), 1);
     page.marks.insert(page.marks.begin(), {shapes::Rect{.box = {{0, 0}, page.size}, .color = ground}});
     return page;
+}
+
+void OffscreenFrames::show() {
+    impl_->show();
 }
 
 void OffscreenFrames::finish() {

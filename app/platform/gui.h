@@ -47,11 +47,15 @@ public:
     OffscreenFrames(const OffscreenFrames&) = delete;
     OffscreenFrames& operator=(const OffscreenFrames&) = delete;
 
-    /// Draws one frame; `input` may set mouse and keys; without it the mouse is outside and nothing is pressed.
+    /// Draws one frame, whose pixels are found when they are read; `input` may set mouse and keys; without it the mouse
+    /// is outside and nothing is pressed.
     void draw(Workbench& workbench, float scale, const std::function<void(ImGuiIO&)>& input = {});
+    /// The last frame, before the workbench draws another.
     vis::Image read() const;
     /// The last frame as vector graphics, `points` of the page per pixel; it must not be smooth.
     VectorPage page(const Workbench& workbench, double points) const;
+    /// Draws the pixels of the last frame now.
+    void show();
     /// Waits until GL has drawn everything so far.
     static void finish();
 

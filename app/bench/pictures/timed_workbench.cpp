@@ -61,6 +61,7 @@ std::map<std::string, double> TimedWorkbench::untilShown() {
             if (!late) first.try_emplace(pane, millisecondsSince(begin));
         };
         frames_.draw(workbench_, 1);
+        frames_.show();
     }
     paneDrawn_ = nullptr;
     return first;
@@ -68,7 +69,10 @@ std::map<std::string, double> TimedWorkbench::untilShown() {
 
 double TimedWorkbench::untilRest() {
     const Clock::time_point begin = Clock::now();
-    for (int frame = 0; frame == 0 || (workbench_.busy() && frame < kMostAtRest); ++frame) frames_.draw(workbench_, 1);
+    for (int frame = 0; frame == 0 || (workbench_.busy() && frame < kMostAtRest); ++frame) {
+        frames_.draw(workbench_, 1);
+        frames_.show();
+    }
     return millisecondsSince(begin);
 }
 
@@ -96,6 +100,7 @@ Followed TimedWorkbench::drag(const std::function<void(Session&, double)>& edit)
                 before = Clock::now();
             };
             frames_.draw(workbench_, 1, held);
+            frames_.show();
             OffscreenFrames::finish();
         }
         paneDrawn_ = nullptr;
