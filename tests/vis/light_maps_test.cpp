@@ -91,6 +91,31 @@ TEST(LightMaps, EvenSurroundingsGiveEvenLight) {
     }
 }
 
+// The powers of very many directions are looked up; here they are computed.
+TEST(LightMaps, AHighlightIsTheSumOverWhatIsAround) {
+    for (const float shininess : {4.0f, 30.0f, 400.0f}) {
+        Lighting lighting;
+        lighting.environment.kind = Environment::Studio;
+        lighting.shininess = shininess;
+        const CubeMap found = environmentMaps(lighting).specular;
+        CubeMap around;
+        around.edge = kSurroundingsEdge;
+        for (const std::size_t i : {std::size_t(0), std::size_t(777), found.texels.size() - 40}) {
+            const glm::dvec3 mirrored = found.texelDirection(i);
+            double weights = 1e-3;
+            glm::dvec3 sum = weights * surroundings(Environment::Studio, mirrored);
+            for (std::size_t k = 0; k < 6 * kSurroundingsEdge * kSurroundingsEdge; ++k) {
+                const double along = std::max(glm::dot(mirrored, around.texelDirection(k)), 0.0);
+                const double weight = std::pow(along, shininess / 4) * around.solidAngle(k);
+                sum += weight * surroundings(Environment::Studio, around.texelDirection(k));
+                weights += weight;
+            }
+            const glm::dvec3 wanted = double(lighting.environment.reflection) * sum / weights;
+            EXPECT_NEAR(glm::length(found.texels[i] - wanted), 0, 1e-5 * glm::length(wanted)) << shininess;
+        }
+    }
+}
+
 TEST(LightMaps, SurroundingsDoNotGlare) {
     for (const Environment kind : {Environment::Sky, Environment::Studio, Environment::SoftBox}) {
         Lighting lighting;
