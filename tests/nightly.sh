@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What takes too long for every commit, one step after another; what failed is said at the end.
 #   tests/nightly.sh                  all of it
-#   tests/nightly.sh clang asan       some steps of: clang tidy asan fuzz second-driver load
+#   tests/nightly.sh clang asan       some steps of: clang tidy asan fuzz second-driver optimised load
 # FUZZ_SECONDS: how long each fuzz target searches (600). LOAD_RUNS, LOAD_TESTS: how many times tests run beside busy cores (50), and
 # arguments of ctest that choose them (all).
 set -uo pipefail
@@ -54,6 +54,12 @@ second_driver() {
         build/release/vis_gl_tests --gtest_brief=1
 }
 
+# The tests that draw, by shaders as users have them; otherwise Mesa compiles them for tests without optimising.
+optimised() {
+    ./setup.sh --tests && cmake --preset release -DBUILD_TESTING=ON -DTESSERA_WERROR=ON && cmake --build --preset release &&
+        GALLIVM_PERF='' ctest --preset release -L gl -j "$(nproc)"
+}
+
 # Every test again and again while all cores are busy with something else: a test that depends on time fails now and then.
 load() {
     local busy=() good=0
@@ -67,10 +73,10 @@ load() {
     return "$good"
 }
 
-[ $# -gt 0 ] || set -- clang tidy asan fuzz second-driver load
+[ $# -gt 0 ] || set -- clang tidy asan fuzz second-driver optimised load
 for name in "$@"; do
     case $name in
-    clang | tidy | asan | fuzz | load) step "$name" "$name" ;;
+    clang | tidy | asan | fuzz | optimised | load) step "$name" "$name" ;;
     second-driver) step "$name" second_driver ;;
     *) echo "nightly: there is no step \"$name\"" >&2; exit 2 ;;
     esac

@@ -1,11 +1,10 @@
 #include "app/data/sources.h"
 
 #include "app/history/session_file.h"
-#include "app/ui/file_dialog.h"
-
 #include "codec/archive/archive.h"
 #include "codec/pack/unpack.h"
 #include "codec/remote/address.h"
+#include "volume/base/byte_text.h"
 #include "volume/base/error.h"
 #include "volume/derived/other_source.h"
 #include "volume/field/quantities.h"

@@ -5,6 +5,7 @@
 #include "app/ui/file_dialog.h"
 #include "app/ui/fitted_text.h"
 #include "app/ui/widgets.h"
+#include "volume/base/byte_text.h"
 #include "volume/base/error.h"
 
 #include <algorithm>

@@ -5,6 +5,7 @@
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "codec/remote/address.h"
+#include "volume/base/byte_text.h"
 #include "volume/base/error.h"
 #include "volume/import/files/raw.h"
 #include "volume/import/import.h"

@@ -2,11 +2,11 @@
 
 #include "app/data/pack_child.h"
 #include "app/pane/view_parts.h"
-#include "app/ui/file_dialog.h"
 #include "app/user_files/import_memory.h"
 #include "app/user_files/state_dir.h"
 #include "app/views/data/derived_list.h"
 #include "volume/base/background.h"
+#include "volume/base/byte_text.h"
 #include "volume/import/over_time.h"
 
 #include <filesystem>

@@ -5,6 +5,7 @@
 #include "app/ui/theme.h"
 #include "app/ui/widgets.h"
 #include "codec/remote/address.h"
+#include "volume/base/byte_text.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -25,18 +26,6 @@ namespace {
 constexpr const char* kRefused = "This file cannot be opened; the preview shows the reason.";
 
 } // namespace
-
-std::string textOfBytes(double bytes) {
-    static constexpr const char* units[] = {"B", "kB", "MB", "GB", "TB"};
-    std::size_t unit = 0;
-    while (bytes >= 1000 && unit + 1 < std::size(units)) {
-        bytes /= 1000;
-        ++unit;
-    }
-    char text[32];
-    std::snprintf(text, sizeof text, unit == 0 ? "%.0f %s" : "%.3g %s", bytes, units[unit]);
-    return text;
-}
 
 void FileDialog::show(FileMode mode, std::string title, std::string purpose, std::string folder, std::string name,
                       std::string suffix) {

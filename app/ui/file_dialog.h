@@ -74,9 +74,6 @@ private:
     std::vector<std::string> noticed_; ///< paths last passed to filesChosen
 };
 
-/// "12.3 MB".
-std::string textOfBytes(double bytes);
-
 /// For any dialog, just before it ends (a table in a window that has moved since its begin may fail an assertion of
 /// ImGui): moves it back into the program's window, which may have become smaller since; its buttons are at the lower
 /// right end.

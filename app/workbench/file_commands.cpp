@@ -135,6 +135,19 @@ std::vector<Command> fileCommands(Workbench& workbench) {
              .run = [&workbench] { askSurface(workbench); },
              .enabled = [&workbench, loaded] { return loaded() && chosenSurface(workbench.session()) >= 0; }},
             {.menu = "File",
+             .name = "Cancel jobs",
+             .help = "Cancel what runs in the background; what is shown does not change",
+             .words = "stop abort interrupt job background work",
+             .run =
+                 [&workbench] {
+                     for (const Jobs::Status& job : workbench.jobs().list())
+                         if (!job.quiet) workbench.jobs().cancel(job.key);
+                 },
+             .enabled =
+                 [&workbench] {
+                     return std::ranges::any_of(workbench.jobs().list(), [](auto& job) { return !job.quiet; });
+                 }},
+            {.menu = "File",
              .name = "Copy session",
              .help = "Copy the session as text, to send it to somebody",
              .words = "clipboard share send",

@@ -22,6 +22,7 @@ const std::set<std::string> kElsewhere = {
     "Compare with another file...", // WorkbenchData.AnotherFileStandsBeside
     "Save picture...",              // tests/e2e/window.sh
     "Export surface...",            // AsyncQueries, tests/e2e/mesh.sh
+    "Cancel jobs",                  // WorkbenchData.CancelJobsLeavesThoseThatAreNotListed
     "Copy session",                 // CommandTable.ASessionGoesThroughTheClipboard
     "Paste session",                // the same
     "Quit",                         // WorkbenchGl.WhatIsNotSavedIsNotGivenUpUnasked

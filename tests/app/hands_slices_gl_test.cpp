@@ -1,3 +1,4 @@
+#include "tests/app/drawn_text.h"
 #include "tests/app/hands_fixture.h"
 
 /// The mouse in pictures of planes: which axis a drag or the wheel moves, which way, and where it ends.
@@ -21,6 +22,23 @@ protected:
     }
     std::vector<ImRect> planes;
 };
+
+TEST_F(SliceHands, TitlesGiveUpDigitsBeforeTheAxisAndItsUnit) {
+    std::size_t shorter = 0;
+    for (const float width : {460.0f, 300.0f, 250.0f}) {
+        SlicesView slices;
+        slices.channel = "T";
+        show(slices, {width, 300});
+        const std::vector<std::string> words = drawnWords();
+        for (const std::string axis : {"x", "y", "z"}) {
+            const auto title = std::ranges::find_if(
+                words, [&](const std::string& word) { return word.starts_with(axis + " ") && word.ends_with(" mm"); });
+            ASSERT_NE(title, words.end()) << axis << " at " << width;
+            shorter += !title->starts_with(axis + " = ");
+        }
+    }
+    EXPECT_GT(shorter, 0u) << "none of these panes is narrow";
+}
 
 TEST_F(SliceHands, TheCrossHairGoesUnderTheMouse) {
     for (const double stretch : {1.0, 0.4}) {

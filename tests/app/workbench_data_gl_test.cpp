@@ -1,9 +1,11 @@
 #include "tests/app/workbench_fixture.h"
 #include "tests/resident_memory.h"
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <thread>
 #include <unistd.h>
 #include <vector>
 
@@ -173,7 +175,7 @@ TEST_F(WorkbenchData, AParameterWhoseMakingWasCancelledComesWhenItIsWantedAgain)
     workbench.session().data.derived = {{"twice", "", volume::ExpressionRecipe{"2*rho"}}};
     frame();
     ASSERT_TRUE(workbench.jobs().running("derive"));
-    workbench.jobs().cancel("derive");
+    ASSERT_TRUE(run("Cancel jobs"));
     settle();
     EXPECT_FALSE(known());
     ASSERT_TRUE(run("Undo"));
@@ -187,6 +189,28 @@ TEST_F(WorkbenchData, AParameterWhoseMakingWasCancelledComesWhenItIsWantedAgain)
     ASSERT_TRUE(run("Redo"));
     settle();
     EXPECT_TRUE(known());
+}
+
+TEST_F(WorkbenchData, CancelJobsLeavesThoseThatAreNotListed) {
+    workbench.install(smallData());
+    settle();
+    const auto untilStopped = [](const Progress& progress) -> Jobs::Finish {
+        while (true) {
+            progress.advance(0.5);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    };
+    const auto start = [&](const char* key, bool quiet) { workbench.jobs().start(key, key, untilStopped, quiet); };
+    start("unlisted", true);
+    EXPECT_FALSE(run("Cancel jobs")) << "nothing that a user sees runs";
+    start("one", false);
+    start("other", false);
+    EXPECT_TRUE(run("Cancel jobs"));
+    for (const char* key : {"one", "other"}) EXPECT_FALSE(workbench.jobs().running(key)) << key;
+    EXPECT_TRUE(workbench.jobs().running("unlisted"));
+    workbench.jobs().cancel("unlisted");
+    settle();
+    EXPECT_TRUE(workbench.jobs().list().empty());
 }
 
 // Two clicks or a word in the palette: a parameter, its colours, and one step to take both back.

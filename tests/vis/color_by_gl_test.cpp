@@ -159,10 +159,13 @@ TEST_P(ColorBy, AgreesWithTheReference) {
     for (std::size_t i = 0; i < std::size(kModes); ++i)
         for (const bool perspective : {false, true}) {
             const Mode& mode = kModes[i];
+            // Each mode on one lattice in one texture, on the other in bricks: every program takes long to compile.
+            const bool inBricks = (i % 2 == 0) == GetParam().masked;
             Scene scene = baseScene(perspective);
             mode.apply(scene);
-            const Linear wanted = dense.truth(scene), got = (perspective ? bricked : dense).draw(scene);
-            const std::string name = GetParam().name() + " by " + mode.name + (perspective ? " in bricks" : "");
+            const Linear wanted = dense.truth(scene), got = (inBricks ? bricked : dense).draw(scene);
+            const std::string name = GetParam().name() + " by " + mode.name + (inBricks ? " in bricks" : "") +
+                                     (perspective ? " perspective" : " parallel");
             const reference::Difference difference = reference::compare(got, wanted, kOutlier);
             EXPECT_TRUE(difference.rmseWithin <= mode.rmse && difference.beyond <= mode.outliers)
                 << name << ": " << words(difference) << "; " << evidence(name, got, wanted);
@@ -259,7 +262,8 @@ TEST_P(PartsColorBy, AgreesWithTheReference) {
         {"in a lens",
          {{"", true, VolumeLayer{.channel = "heat", .colorBy = "smooth"}},
           {"", true, IsoLayer{.channel = "smooth", .value = 0.6, .colorBy = "gas"}, "inner"}}}};
-    for (const auto& [name, layers] : scenes) {
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const auto& [name, layers] = scenes[i];
         Scene scene = regionScene();
         scene.transfer["gas"] = scene.transfer["heat"] = scene.transfer["three"] = fog();
         scene.transfer["three"].range = {0.8, 3.2};
@@ -268,9 +272,13 @@ TEST_P(PartsColorBy, AgreesWithTheReference) {
             scene.lenses = {{.name = "inner", .center = scene.cursor, .size = glm::vec3(0.3f)}};
         const Linear wanted = dense.truth(scene);
         dense.check("coloured " + name, scene, wanted, 2 * kRmse);
-        bricked.check("coloured " + name + " in bricks", scene, wanted, 2 * kRmse);
-        scene.time = 0.37;
-        series.check("coloured " + name + " between times", scene, 2 * kRmse);
+        // Each scene on one lattice in bricks, on the other between times: every program takes long to compile.
+        if ((i % 2 == 0) == (GetParam() == LatticeKind::BCC)) {
+            bricked.check("coloured " + name + " in bricks", scene, wanted, 2 * kRmse);
+        } else {
+            scene.time = 0.37;
+            series.check("coloured " + name + " between times", scene, 2 * kRmse);
+        }
     }
 }
 

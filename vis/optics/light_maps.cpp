@@ -4,7 +4,6 @@
 #include "volume/base/parallel.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -12,6 +11,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/trigonometric.hpp>
 #include <tuple>
+#include <vector>
 
 namespace tessera::vis {
 
@@ -20,42 +20,47 @@ namespace {
 constexpr double kPi = glm::pi<double>();
 
 /// Specular weight of light at cosine c to the mirrored direction.
-double lobe(const Lighting& surface, double c) {
-    if (c <= 0) return 0;
-    if (surface.model == LightModel::Phong) return std::pow(c, double(surface.shininess) / 4);
-    const double a2 = std::pow(double(surface.roughness), 4), spread = (1 + c) / 2 * (a2 - 1) + 1;
-    return a2 / (kPi * spread * spread) * c;
-}
-
-/// The same between values of a table, which are denser near the peak: c = 1 - x^4. Twenty million weights make a map.
-class LobeTable {
-public:
-    explicit LobeTable(const Lighting& surface) {
-        for (std::size_t i = 0; i < values_.size(); ++i) {
-            const double x = double(i) / kSteps;
-            values_[i] = lobe(surface, 1 - x * x * x * x);
-        }
-    }
+struct Lobe {
+    explicit Lobe(const Lighting& surface)
+        : phong(surface.model == LightModel::Phong), exponent(double(surface.shininess) / 4),
+          a2(std::pow(double(surface.roughness), 4)) {}
     double operator()(double c) const {
         if (c <= 0) return 0;
-        const double at = std::sqrt(std::sqrt(std::max(1 - c, 0.0))) * kSteps;
-        const auto i = std::size_t(at);
-        return glm::mix(values_[i], values_[i + 1], at - double(i));
+        if (phong) return std::pow(c, exponent);
+        const double spread = (1 + c) / 2 * (a2 - 1) + 1;
+        return a2 / (kPi * spread * spread) * c;
     }
+    bool phong;
+    double exponent, a2;
+};
 
-private:
-    static constexpr int kSteps = 4096;
-    std::array<double, kSteps + 2> values_{};
+/// The same for very many directions: powers are interpolated in a table, within 1e-4 of the peak.
+struct QuickLobe {
+    explicit QuickLobe(const Lobe& exact) : lobe(exact) {
+        if (!lobe.phong) return;
+        table.resize(kSteps + 2);
+        for (std::size_t i = 0; i < table.size(); ++i) table[i] = lobe(double(i) / kSteps);
+    }
+    double operator()(double c) const {
+        if (!lobe.phong) return lobe(c);
+        if (c <= 0) return 0;
+        const double at = std::min(c, 1.0) * kSteps;
+        const auto i = std::size_t(at);
+        return table[i] + (at - double(i)) * (table[i + 1] - table[i]);
+    }
+    static constexpr int kSteps = 16384;
+    Lobe lobe;
+    std::vector<double> table;
 };
 
 /// Integral of the lobe over all directions.
-double lobeIntegral(const Lighting& surface) {
+double lobeIntegral(const Lobe& lobe) {
     double sum = 0;
     constexpr int kSteps = 4096;
     // Denser near the peak: c = 1 - x^4.
     for (int i = 0; i < kSteps; ++i) {
         const double x = (i + 0.5) / kSteps;
-        sum += lobe(surface, 1 - x * x * x * x) * 4 * x * x * x / kSteps;
+        sum += lobe(1 - x * x * x * x) * 4 * x * x * x / kSteps;
     }
     return 2 * kPi * sum;
 }
@@ -176,15 +181,15 @@ LightMaps environmentMaps(const Lighting& lighting, const CubeMap* picture) {
         }
         maps.diffuse.texels[i] = sum / weights;
     });
-    const LobeTable weightAt(lighting);
+    const QuickLobe lobe{Lobe(lighting)};
     parallelFor(maps.specular.texels.size(), [&](std::size_t i) {
         const glm::dvec3 mirrored = maps.specular.texelDirection(i);
         // If the lobe is narrower than a texel of the environment, sample the environment directly.
         glm::dvec3 sum = around(mirrored);
-        double weights = lobe(lighting, 1) * 1e-3;
+        double weights = lobe(1) * 1e-3;
         sum *= weights;
         for (const Source& source : sources) {
-            const double weight = weightAt(glm::dot(mirrored, source.direction)) * source.angle;
+            const double weight = lobe(glm::dot(mirrored, source.direction)) * source.angle;
             sum += weight * source.light;
             weights += weight;
         }
@@ -203,7 +208,8 @@ glm::dmat3 mapFromWorld(const Lighting& lighting, const Camera& camera) {
 LightMaps lightMaps(const Lighting& lighting, const Camera& camera, LightMaps maps) {
     maps.fromWorld = mapFromWorld(lighting, camera);
     if (!lighting.inMaps) return maps;
-    const double norm = lighting.model == LightModel::Phong ? 1 : kPi / lobeIntegral(lighting);
+    const Lobe lobe(lighting);
+    const double norm = lobe.phong ? 1 : kPi / lobeIntegral(lobe);
     for (const PlacedLight& light : placeLights(lighting, camera, int(lighting.lights.size()))) {
         const double squared = glm::dot(light.place, light.place);
         const glm::dvec3 color = light.color * (light.point ? 1 / std::max(squared, 1e-4) : 1.0);
@@ -211,7 +217,7 @@ LightMaps lightMaps(const Lighting& lighting, const Camera& camera, LightMaps ma
         for (std::size_t i = 0; i < maps.diffuse.texels.size(); ++i)
             maps.diffuse.texels[i] += color * std::max(glm::dot(maps.diffuse.texelDirection(i), to), 0.0);
         for (std::size_t i = 0; i < maps.specular.texels.size(); ++i)
-            maps.specular.texels[i] += color * (norm * lobe(lighting, glm::dot(maps.specular.texelDirection(i), to)));
+            maps.specular.texels[i] += color * (norm * lobe(glm::dot(maps.specular.texelDirection(i), to)));
     }
     return maps;
 }

@@ -93,8 +93,10 @@ void drawPlaneTitle(const PlaneFrame& frame, const Session& session, const volum
     const double at = session.cursor[axis] * unit.perUnit, digits = info.bounds.size()[axis] * unit.perUnit / 1000;
     const std::string whole = name + " = " + formatQuantity(at, unit.name, digits);
     const float room = frame.hi.x - frame.min.x + 1;
+    // The name of the axis and its unit stay longest: a narrow slice has few pixels to tell places apart.
+    const auto shorter = [&](double fewer) { return name + " " + formatQuantity(at, unit.name, digits * fewer); };
     const std::string place = firstThatFits(
-        {whole, formatQuantity(at, unit.name, digits), name + " " + formatNumber(at, digits * 10), name}, room);
+        {whole, shorter(1), shorter(10), shorter(100), name + " " + formatNumber(at, digits * 100), name}, room);
     const ImVec2 size = ImGui::CalcTextSize(place.c_str()), from{std::round(frame.hi.x - size.x), frame.min.y};
     ImGui::GetWindowDrawList()->AddText(from, axisColor(axis), place.c_str());
     tellWhole(from, {from.x + size.x, from.y + size.y}, whole, place);
