@@ -13,12 +13,6 @@ namespace {
 
 constexpr int kMaximumDepth = 100;
 
-std::string brief(double value) {
-    char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-    return {text, end};
-}
-
 bool flat(const Json& json) {
     return std::all_of(json.begin(), json.end(), [](const Json& element) { return element.is_primitive(); });
 }
@@ -76,52 +70,6 @@ Json numberToJson(int value) {
     return value;
 }
 
-std::optional<double> numberFromJson(const Json& json, const FieldInfo& info, bool integer,
-                                     std::vector<JsonIssue>& issues, const std::string& path) {
-    double value = 0;
-    if (json.is_number()) {
-        value = json.get<double>();
-    } else if (json == "nan" && !integer) {
-        value = std::numeric_limits<double>::quiet_NaN();
-    } else if (json == "inf" && !integer) {
-        value = std::numeric_limits<double>::infinity();
-    } else if (json == "-inf" && !integer) {
-        value = -std::numeric_limits<double>::infinity();
-    } else {
-        wrongType(json, "a number", issues, path);
-        return {};
-    }
-    if (integer && (value != std::floor(value) || std::abs(value) > 2147483647.0)) {
-        issues.push_back({path, brief(value) + " is not a whole number in the range of 32 bits", false, {}});
-        return {};
-    }
-    if (info.range && !(value >= info.range->lo && value <= info.range->hi)) {
-        issues.push_back(
-            {path, brief(value) + " is not in " + brief(info.range->lo) + " .. " + brief(info.range->hi), false, {}});
-        return {};
-    }
-    return value;
-}
-
-std::optional<std::size_t> nameFromJson(const Json& json, std::span<const std::string_view> names,
-                                        std::vector<JsonIssue>& issues, const std::string& path) {
-    if (!json.is_string()) {
-        wrongType(json, "a name", issues, path);
-        return {};
-    }
-    const auto& word = json.get_ref<const std::string&>();
-    const auto found = std::find(names.begin(), names.end(), word);
-    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-    std::string all;
-    for (const std::string_view name : names) all += (all.empty() ? "" : ", ") + std::string(name);
-    issues.push_back({path, "unknown name \"" + word + "\"; known are " + all, false, {}});
-    return {};
-}
-
-void wrongType(const Json& json, std::string_view wanted, std::vector<JsonIssue>& issues, const std::string& path) {
-    issues.push_back({path, "needs " + std::string(wanted) + ", found " + json.type_name(), false, {}});
-}
-
 std::string joinPointer(const std::string& path, std::string_view key) {
     std::string out = path + "/";
     for (const char c : key) {
@@ -133,13 +81,6 @@ std::string joinPointer(const std::string& path, std::string_view key) {
             out += c;
     }
     return out;
-}
-
-void reportUnknown(const Json& json, const std::vector<std::string_view>& known, std::vector<JsonIssue>& issues,
-                   const std::string& path) {
-    for (const auto& [key, value] : json.items())
-        if (std::find(known.begin(), known.end(), key) == known.end())
-            issues.push_back({joinPointer(path, key), "unknown key", true, value});
 }
 
 } // namespace detail

@@ -231,11 +231,11 @@ std::optional<PictureRequest> PictureDialog::drawForm() {
         ImGui::TextDisabled("%d x %d pixels", request->size.x, request->size.y);
     else
         ImGui::TextWrapped("%s", problem.c_str());
-    PictureForm::describe(form, [&](auto& member, const FieldInfo& field) {
+    valueOf(form).visitMembers([&](Value member, const FieldInfo& field) {
         std::optional<Range> scale;
         std::string unit;
         bool changed = false;
-        if (field.key != "size") detail::MemberToWidget{widgets, changed, scale, unit}(member, field);
+        if (field.key != "size") MemberToWidget{widgets, changed, scale, unit}(member, field);
     });
     return request;
 }

@@ -1,6 +1,6 @@
 #include "app/history/parameter_path.h"
 
-#include "app/session/session.h"
+#include "app/session/session_types.h"
 #include "codec/remote/address.h"
 #include "volume/base/error.h"
 
@@ -34,37 +34,67 @@ std::size_t indexOf(const std::string& key, std::size_t size) {
 namespace {
 
 /// Collects the pointers of single parameters.
-struct Paths {
-    std::vector<std::string>& out;
-    std::string prefix;
-
-    template <class T> void operator()(const T& value, const FieldInfo& info) const {
-        collect(value, joinPointer(prefix, info.key));
+void collectPaths(Value value, const std::string& path, std::vector<std::string>& out) {
+    switch (value.kind()) {
+    case ValueKind::Struct:
+        return value.visitMembers(
+            [&](Value member, const FieldInfo& info) { collectPaths(member, joinPointer(path, info.key), out); });
+    case ValueKind::Variant:
+    case ValueKind::Optional:
+        if (value.inside().at) collectPaths(value.inside(), path, out);
+        return;
+    case ValueKind::List:
+        if (value.type->elementType().kind == ValueKind::Struct)
+            for (std::size_t i = 0; i < value.size(); ++i)
+                collectPaths(value.element(i), joinPointer(path, std::to_string(i)), out);
+        return;
+    case ValueKind::Map:
+        return value.type->visitElements(value.at, [&](const std::string& key, Value element) {
+            collectPaths(element, joinPointer(path, key), out);
+        });
+    default:
+        out.push_back(path);
     }
-    template <class T> void collect(const T& value, const std::string& path) const {
-        if constexpr (Described<T>) {
-            T::describe(value, Paths{out, path});
-        } else if constexpr (IsVariant<T>::value) {
-            std::visit([&](const auto& own) { collect(own, path); }, value);
-        } else if constexpr (IsOptional<T>::value) {
-            if (value) collect(*value, path);
-        } else if constexpr (IsVector<T>::value) {
-            if constexpr (Described<typename T::value_type>)
-                for (std::size_t i = 0; i < value.size(); ++i) collect(value[i], joinPointer(path, std::to_string(i)));
-        } else if constexpr (IsMap<T>::value) {
-            for (const auto& [key, element] : value) collect(element, joinPointer(path, key));
-        } else {
-            out.push_back(path);
-        }
-    }
-};
+}
 
 } // namespace
+
+bool visitPath(Value value, const FieldInfo& info, std::string_view pointer, const VisitMember& visit) {
+    if (pointer.empty()) {
+        visit(value, info);
+        return true;
+    }
+    std::string_view rest;
+    switch (value.kind()) {
+    case ValueKind::Struct: {
+        const std::string key = firstKey(pointer, rest);
+        bool found = false;
+        value.visitMembers([&](Value member, const FieldInfo& each) {
+            if (!found && each.key == key) found = visitPath(member, each, rest, visit);
+        });
+        return found;
+    }
+    case ValueKind::List: {
+        const std::size_t index = indexOf(firstKey(pointer, rest), value.size());
+        return index < value.size() && visitPath(value.element(index), info, rest, visit);
+    }
+    case ValueKind::Map: {
+        const Value element = value.type->find(value.at, firstKey(pointer, rest));
+        return element.at && visitPath(element, info, rest, visit);
+    }
+    case ValueKind::Variant:
+    case ValueKind::Optional:
+        return value.inside().at && visitPath(value.inside(), info, pointer, visit);
+    default:
+        return false; // components of vectors are no parameters of their own
+    }
+}
+
 } // namespace detail
 
 std::vector<std::string> parameterPaths(const Session& session) {
     std::vector<std::string> all, out;
-    detail::Paths{all, ""}.collect(session, "");
+    detail::collectPaths(valueOf(session), "", all);
     for (const std::string& path : all) {
         const auto under = [&](std::string_view place) { return path.starts_with(place); };
         if (under("/views/") || under("/dock/") || under("/appearance/") || under("/animation/") || under("/data/") ||
@@ -79,7 +109,7 @@ std::vector<std::string> parameterPaths(const Session& session) {
 
 std::vector<std::string> parameterPathsBelow(const Session& session, const std::string& place) {
     std::vector<std::string> all;
-    detail::Paths{all, ""}.collect(session, "");
+    detail::collectPaths(valueOf(session), "", all);
     std::erase_if(all, [&](const std::string& path) { return !path.starts_with(place + "/"); });
     return all;
 }

@@ -15,56 +15,14 @@ std::string firstKey(std::string_view pointer, std::string_view& rest);
 /// A key as an index below `size`, else `size`.
 std::size_t indexOf(const std::string& key, std::size_t size);
 
-template <class T, class Visit> struct MemberAt {
-    const std::string& key;
-    std::string_view rest;
-    Visit& visit;
-    bool& found;
-    template <class M> void operator()(M& member, const FieldInfo& info) const;
-};
-
-template <class T, class Visit>
-bool visitPath(T& value, const FieldInfo& info, std::string_view pointer, Visit& visit) {
-    using V = std::remove_const_t<T>;
-    if (pointer.empty()) {
-        visit(value, info);
-        return true;
-    }
-    if constexpr (Described<V>) {
-        std::string_view rest;
-        const std::string key = firstKey(pointer, rest);
-        bool found = false;
-        V::describe(value, MemberAt<V, Visit>{key, rest, visit, found});
-        return found;
-    } else if constexpr (IsVariant<V>::value) {
-        return std::visit([&](auto& alternative) { return visitPath(alternative, info, pointer, visit); }, value);
-    } else if constexpr (IsVector<V>::value) {
-        std::string_view rest;
-        const std::size_t index = indexOf(firstKey(pointer, rest), value.size());
-        return index < value.size() && visitPath(value[index], info, rest, visit);
-    } else if constexpr (IsMap<V>::value) {
-        std::string_view rest;
-        const auto at = value.find(firstKey(pointer, rest));
-        return at != value.end() && visitPath(at->second, info, rest, visit);
-    } else if constexpr (IsOptional<V>::value) {
-        return value && visitPath(*value, info, pointer, visit);
-    } else {
-        return false; // components of vectors are no parameters of their own
-    }
-}
-
-template <class T, class Visit>
-template <class M>
-void MemberAt<T, Visit>::operator()(M& member, const FieldInfo& info) const {
-    if (!found && info.key == key) found = visitPath(member, info, rest, visit);
-}
+bool visitPath(Value value, const FieldInfo& info, std::string_view pointer, const VisitMember& visit);
 
 } // namespace detail
 
 /// Calls visit(member, FieldInfo) for the member that a JSON pointer names; false if there is none. Lists and maps are
 /// entered by index and key, variants directly.
-template <class T, class Visit> bool visitParameter(T& value, std::string_view pointer, Visit&& visit) {
-    return detail::visitPath(value, FieldInfo{.key = "", .unit = "", .doc = ""}, pointer, visit);
+template <class T> bool visitParameter(T& value, std::string_view pointer, const VisitMember& visit) {
+    return detail::visitPath(valueOf(value), FieldInfo{.key = "", .unit = "", .doc = ""}, pointer, visit);
 }
 
 struct Session;

@@ -1,6 +1,6 @@
 #include "app/session/describe_markdown.h"
 
-#include "app/session/session.h"
+#include "app/session/session_types.h"
 
 namespace tessera::app {
 
@@ -21,13 +21,30 @@ std::string rangeText(const FieldInfo& info) {
     return text + (info.logScale ? " (log)" : "");
 }
 
-} // namespace
-
+/// One row of a table: key, default, range or choices, unit, help.
 void appendRow(std::string& out, const std::string& key, const FieldInfo& info, const Json& value) {
     std::string shown = value.dump();
     if (value.is_structured() && shown.size() > 40) shown = "...";
     out += "| `" + key + "` | `" + cell(shown) + "` | " + cell(rangeText(info)) + " | " + std::string(info.unit) +
            " | " + cell(std::string(info.doc)) + " |\n";
+}
+
+void appendRows(std::string& out, const std::string& prefix, Value value) {
+    value.visitMembers([&](Value member, const FieldInfo& info) {
+        const std::string key = prefix + std::string(info.key);
+        if (member.kind() == ValueKind::Struct)
+            appendRows(out, key + ".", member);
+        else
+            appendRow(out, key, info, valueToJson(member, info));
+    });
+}
+
+} // namespace
+
+std::string markdownRows(Value value) {
+    std::string rows;
+    appendRows(rows, "", value);
+    return rows;
 }
 
 } // namespace detail

@@ -4,9 +4,6 @@
 
 namespace tessera::app {
 
-template Json toJson(const Session& session);
-template void fromJson(Session& session, const Json& json, std::vector<JsonIssue>& issues, const std::string& path);
-
 Session sessionFromJson(const Json& document, const std::string& file, std::vector<JsonIssue>* unknown) {
     Session session;
     std::vector<JsonIssue> issues;

@@ -21,7 +21,7 @@ template <class T> bool drawMember(T& value, const std::string& path, const Widg
     std::optional<Range> scale;
     std::string unit;
     ImGui::PushID(path.c_str());
-    visitParameter(value, path, detail::MemberToWidget{context, changed, scale, unit});
+    visitParameter(value, path, MemberToWidget{context, changed, scale, unit});
     ImGui::PopID();
     return changed;
 }

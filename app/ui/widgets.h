@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/described/describe_json.h"
+#include "app/session/session_types.h"
 #include "app/ui/ticks.h"
 #include "volume/field/dataset.h"
 
@@ -69,43 +69,25 @@ bool drawListButton(const char* label);
 /// word wider than a line stays whole, as do the groups of digits of a number.
 std::string wrappedAtSpaces(const std::string& text, float width);
 
-template <class T> bool drawDescribed(T& value, const WidgetContext& context);
+/// Draws a widget for each member that is not hidden and applies; returns true when one changed.
+bool drawMembers(Value value, const WidgetContext& context);
+template <class T> bool drawDescribed(T& value, const WidgetContext& context) {
+    return drawMembers(valueOf(value), context);
+}
 
 /// A section per element, with buttons to add and to remove.
+bool drawList(const WidgetContext& context, const FieldInfo& info, Value list);
 template <class T> bool drawDescribedList(const WidgetContext& context, const FieldInfo& info, std::vector<T>& values) {
-    bool changed = false;
-    std::size_t removed = values.size();
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const std::string id = std::string(info.key) + std::to_string(i);
-        if (!beginSection(id.c_str(), labelOf(info.key) + " " + std::to_string(i + 1), info.doc)) continue;
-        changed |= drawDescribed(values[i], context.under(std::to_string(i)));
-        if (drawListButton("Remove")) removed = i;
-        endSection();
-    }
-    if (removed < values.size()) {
-        values.erase(values.begin() + static_cast<std::ptrdiff_t>(removed));
-        changed = true;
-    }
-    if (!drawListButton(("Add to " + std::string(info.key)).c_str())) return changed;
-    values.emplace_back();
-    return true;
+    return drawList(context, info, valueOf(values));
 }
 
 /// A choice of presets; the one that equals `value` is selected.
+bool choosePreset(const WidgetContext& context, Value value);
 template <class T> bool drawPresets(const WidgetContext& context, T& value) {
-    static constexpr std::string_view kOwn = "own settings";
-    std::vector<std::string_view> names(std::begin(T::kPresetNames), std::end(T::kPresetNames));
-    const auto found = std::find_if(names.begin(), names.end(), [&](auto name) { return T::preset(name) == value; });
-    int index = static_cast<int>(found - names.begin());
-    if (found == names.end()) names.push_back(kOwn);
-    const FieldInfo field{.key = "preset", .unit = "", .doc = "Presets to start from", .names = names};
-    if (!drawChoice(context, field, index) || names[static_cast<std::size_t>(index)] == kOwn) return false;
-    value = *T::preset(names[static_cast<std::size_t>(index)]);
-    return true;
+    return choosePreset(context, valueOf(value));
 }
 
-namespace detail {
-
+/// Draws members of one struct (app/ui/parameter_widget.cpp).
 struct MemberToWidget {
     const WidgetContext& outer;
     bool& changed;
@@ -113,103 +95,12 @@ struct MemberToWidget {
     std::optional<Range>& scale;
     std::string& unit;
 
-    template <class T> void operator()(T& value, const FieldInfo& field) const {
-        if (field.hidden) return;
-        draw(outer.under(field.key), value, field);
-    }
+    void operator()(Value value, const FieldInfo& field) const;
 
-    template <class T> void draw(const WidgetContext& context, T& value, const FieldInfo& field) const {
-        FieldInfo info = field;
-        if (!info.range && info.unit.empty() && scale) info.unit = unit;
-        if constexpr (std::is_same_v<T, bool>) {
-            changed |= drawBool(context, info, value);
-        } else if constexpr (std::is_enum_v<T>) {
-            int index = static_cast<int>(value);
-            if (drawChoice(context, info, index)) {
-                value = static_cast<T>(index);
-                changed = true;
-            }
-        } else if constexpr (std::is_same_v<T, std::string>) {
-            changed |= drawText(context, info, value);
-            if (info.refersTo == "channel" && context.info) {
-                if (const auto index = context.info->findChannel(value)) {
-                    const volume::Channel channel = context.info->channel(*index);
-                    scale = context.info->channelRange(channel);
-                    unit = channel.unit;
-                }
-            }
-        } else if constexpr (std::is_same_v<T, std::vector<std::string>>) {
-            changed |= drawTexts(context, info, value);
-        } else if constexpr (std::is_arithmetic_v<T>) {
-            double number = static_cast<double>(value);
-            if (drawNumber(context, info, scale, &number, 1, std::is_integral_v<T>)) {
-                value = static_cast<T>(number);
-                changed = true;
-            }
-        } else if constexpr (std::is_same_v<T, Range>) {
-            double ends[2] = {value.lo, value.hi};
-            if (drawNumber(context, info, scale, ends, 2, false)) {
-                value = {ends[0], ends[1]};
-                changed = true;
-            }
-        } else if constexpr (GlmLength<T>::value > 0) {
-            using V = typename T::value_type;
-            if constexpr (GlmLength<T>::value == 3 && std::is_same_v<V, float>) {
-                if (info.key.ends_with("olor")) {
-                    changed |= drawColor(context, info, &value.x);
-                    return;
-                }
-            }
-            const LengthUnit length = info.unit == "m" ? dataLength(context) : LengthUnit{std::string(info.unit), 1};
-            info.unit = length.name;
-            double parts[4] = {}, before[4] = {};
-            for (int i = 0; i < GlmLength<T>::value; ++i)
-                parts[i] = before[i] = static_cast<double>(value[i]) * length.perUnit;
-            if (drawNumber(context, info, {}, parts, GlmLength<T>::value, std::is_integral_v<V>)) {
-                for (int i = 0; i < GlmLength<T>::value; ++i)
-                    if (parts[i] != before[i]) value[i] = static_cast<V>(parts[i] / length.perUnit);
-                changed = true;
-            }
-        } else if constexpr (Described<T>) {
-            const std::string id(info.key);
-            if (beginSection(id.c_str(), labelOf(info.key), info.doc)) {
-                if constexpr (HasPresets<T>) changed |= drawPresets(context, value);
-                changed |= drawDescribed(value, context);
-                endSection();
-            }
-        } else if constexpr (IsVariant<T>::value) {
-            changed |= std::visit([&](auto& alternative) { return drawDescribed(alternative, context); }, value);
-        } else if constexpr (IsOptional<T>::value) {
-            bool present = value.has_value();
-            if (drawBool(context, info, present)) {
-                if (present)
-                    value.emplace();
-                else
-                    value.reset();
-                changed = true;
-            }
-            if (value) draw(context, *value, info);
-        } else if constexpr (IsVector<T>::value) {
-            if constexpr (Described<typename T::value_type>) {
-                changed |= drawDescribedList(context, info, value);
-            }
-        }
-        // Maps and quaternions are edited in the views that know what they mean.
-    }
+private:
+    void draw(const WidgetContext& context, Value value, const FieldInfo& field) const;
+    void drawText(const WidgetContext& context, Value value, const FieldInfo& field) const;
+    void drawNumbers(const WidgetContext& context, Value value, FieldInfo field) const;
 };
-
-} // namespace detail
-
-/// Draws a widget for each member that is not hidden and applies; returns true when one changed.
-template <class T> bool drawDescribed(T& value, const WidgetContext& context) {
-    bool changed = false;
-    std::optional<Range> scale;
-    std::string unit;
-    const detail::MemberToWidget draw{context, changed, scale, unit};
-    T::describe(value, [&](auto& member, const FieldInfo& field) {
-        if (field.applies) draw(member, field);
-    });
-    return changed;
-}
 
 } // namespace tessera::app

@@ -1,5 +1,5 @@
 #include "app/session/picture_form.h"
-#include "app/session/session.h"
+#include "app/session/session_json.h"
 #include "randomise.h"
 #include "vis/transfer/transfer_recipe.h"
 #include "volume/base/error.h"
@@ -22,69 +22,22 @@
 namespace tessera::app {
 namespace {
 
-/// What must hold of one described struct; `name` as the compiler gives it.
+const FieldInfo kWhole{.key = "", .unit = "", .doc = ""};
+
+/// One described struct; `name` as the compiler gives it.
 struct DescribedStruct {
     std::string name;
-    void (*roundTrips)();
-    void (*defaultsAreValid)();
-    void (*missingKeysKeepTheValue)();
-    void (*wrongTypesAreReported)();
+    const ValueType* type = nullptr;
+    std::shared_ptr<void> (*make)() = nullptr; ///< with its defaults
+    bool (*equal)(const void* a, const void* b) = nullptr;
 };
 void PrintTo(const DescribedStruct& each, std::ostream* out) {
     *out << each.name;
 }
 
-template <Described T> void roundTrips() {
-    std::mt19937 random(7);
-    for (int i = 0; i < 1000; ++i) {
-        const T value = randomValue<T>(random);
-        const std::string text = printJson(toJson(value));
-        T back{};
-        std::vector<JsonIssue> issues;
-        fromJson(back, parseJson(text, "test"), issues);
-        ASSERT_TRUE(issues.empty()) << issues.front().path << ": " << issues.front().reason << "\n" << text;
-        ASSERT_TRUE(back == value) << text;
-        ASSERT_EQ(printJson(toJson(back)), text);
-    }
-}
-
-template <Described T> void defaultsAreValid() {
-    T value{};
-    std::vector<JsonIssue> issues;
-    fromJson(value, toJson(T{}), issues);
-    EXPECT_TRUE(issues.empty()) << issues.front().path << ": " << issues.front().reason;
-    std::set<std::string> keys;
-    T::describe(value, [&](auto&, const FieldInfo& info) {
-        EXPECT_TRUE(keys.insert(std::string(info.key)).second) << "key used twice: " << info.key;
-        EXPECT_NE(info.key, "type") << "taken by variants";
-        EXPECT_FALSE(info.doc.empty()) << info.key;
-    });
-}
-
-template <Described T> void missingKeysKeepTheValue() {
-    std::mt19937 random(11);
-    const T value = randomValue<T>(random);
-    T back = value;
-    std::vector<JsonIssue> issues;
-    fromJson(back, Json::object(), issues);
-    EXPECT_TRUE(issues.empty());
-    EXPECT_TRUE(back == value);
-}
-
-/// Every leaf in turn becomes an object nobody knows: an issue at its path, nothing thrown.
-template <Described T> void wrongTypesAreReported() {
-    const Json document = toJson(T{});
-    for (const auto& [key, member] : document.items()) {
-        Json broken = document;
-        broken[key] = member.is_boolean() ? Json(3) : Json(true);
-        T value{};
-        std::vector<JsonIssue> issues;
-        fromJson(value, broken, issues);
-        ASSERT_EQ(issues.size(), 1u) << key;
-        EXPECT_EQ(issues[0].path, "/" + key);
-        EXPECT_FALSE(issues[0].unknownKey);
-        EXPECT_TRUE(value == T{}) << key;
-    }
+template <Described T> DescribedStruct describedStruct(const std::string& name) {
+    return {name, &valueType<T>(), [] { return std::shared_ptr<void>(std::make_shared<T>()); },
+            [](const void* a, const void* b) { return *static_cast<const T*>(a) == *static_cast<const T*>(b); }};
 }
 
 /// "VolumeLayer", without its namespaces.
@@ -102,11 +55,7 @@ struct Lister {
     template <class T> void add() const {
         if constexpr (Described<T>) {
             const std::string name = nameOf<T>();
-            if (!found
-                     .try_emplace(name, DescribedStruct{name, roundTrips<T>, defaultsAreValid<T>,
-                                                        missingKeysKeepTheValue<T>, wrongTypesAreReported<T>})
-                     .second)
-                return;
+            if (!found.try_emplace(name, describedStruct<T>(name)).second) return;
             const T value{};
             T::describe(value, [&]<class Member>(const Member&, const FieldInfo&) { add<Member>(); });
         } else if constexpr (detail::IsVector<T>::value || detail::IsOptional<T>::value) {
@@ -136,20 +85,73 @@ std::vector<DescribedStruct> everyStruct() {
     return all;
 }
 
-class DescribeTest : public testing::TestWithParam<DescribedStruct> {};
+class DescribeTest : public testing::TestWithParam<DescribedStruct> {
+protected:
+    std::shared_ptr<void> made() const { return GetParam().make(); }
+    std::shared_ptr<void> randomised(std::mt19937& random) const {
+        std::shared_ptr<void> value = made();
+        Randomise{random}({GetParam().type, value.get()}, kWhole);
+        return value;
+    }
+    Json json(const std::shared_ptr<void>& value) const {
+        return detail::valueToJson({GetParam().type, value.get()}, kWhole);
+    }
+    std::vector<JsonIssue> read(const std::shared_ptr<void>& value, const Json& document) const {
+        std::vector<JsonIssue> issues;
+        detail::valueFromJson({GetParam().type, value.get()}, document, kWhole, issues, "");
+        return issues;
+    }
+    bool equal(const std::shared_ptr<void>& a, const std::shared_ptr<void>& b) const {
+        return GetParam().equal(a.get(), b.get());
+    }
+};
 
 TEST_P(DescribeTest, RoundTripsRandomValues) {
-    GetParam().roundTrips();
+    std::mt19937 random(7);
+    for (int i = 0; i < 1000; ++i) {
+        const auto value = randomised(random), back = made();
+        const std::string text = printJson(json(value));
+        const auto issues = read(back, parseJson(text, "test"));
+        ASSERT_TRUE(issues.empty()) << issues.front().path << ": " << issues.front().reason << "\n" << text;
+        ASSERT_TRUE(equal(back, value)) << text;
+        ASSERT_EQ(printJson(json(back)), text);
+    }
 }
+
 TEST_P(DescribeTest, DefaultsAreValidKeysUniqueAndDocumented) {
-    GetParam().defaultsAreValid();
+    const auto value = made();
+    const auto issues = read(value, json(made()));
+    EXPECT_TRUE(issues.empty()) << issues.front().path << ": " << issues.front().reason;
+    std::set<std::string> keys;
+    GetParam().type->visitMembers(value.get(), [&](Value, const FieldInfo& info) {
+        EXPECT_TRUE(keys.insert(std::string(info.key)).second) << "key used twice: " << info.key;
+        EXPECT_NE(info.key, "type") << "taken by variants";
+        EXPECT_FALSE(info.doc.empty()) << info.key;
+    });
 }
+
 TEST_P(DescribeTest, MissingKeysKeepTheValue) {
-    GetParam().missingKeysKeepTheValue();
+    std::mt19937 random(11), same(11);
+    const auto value = randomised(random), back = randomised(same);
+    EXPECT_TRUE(read(back, Json::object()).empty());
+    EXPECT_TRUE(equal(back, value));
 }
+
+/// Every leaf in turn becomes an object nobody knows: an issue at its path, nothing thrown.
 TEST_P(DescribeTest, WrongTypesAreReportedAndLeaveTheValue) {
-    GetParam().wrongTypesAreReported();
+    const Json document = json(made());
+    for (const auto& [key, member] : document.items()) {
+        Json broken = document;
+        broken[key] = member.is_boolean() ? Json(3) : Json(true);
+        const auto value = made();
+        const auto issues = read(value, broken);
+        ASSERT_EQ(issues.size(), 1u) << key;
+        EXPECT_EQ(issues[0].path, "/" + key);
+        EXPECT_FALSE(issues[0].unknownKey);
+        EXPECT_TRUE(equal(value, made())) << key;
+    }
 }
+
 INSTANTIATE_TEST_SUITE_P(EveryStruct, DescribeTest, testing::ValuesIn(everyStruct()),
                          [](const auto& each) { return each.param.name; });
 

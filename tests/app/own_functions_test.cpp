@@ -88,7 +88,7 @@ TEST(OwnFunctions, ComeBackUnchangedFromTheirText) {
     for (int round = 0; round < 300; ++round) {
         OwnFunctions some;
         vis::TransferRecipe made;
-        vis::TransferRecipe::describe(made, Randomise{random});
+        valueOf(made).visitMembers(Randomise{random});
         made.name = "n" + std::to_string(round);
         made.opacity.push_back({});
         made.opacity.push_back({});

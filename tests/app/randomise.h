@@ -29,61 +29,54 @@ struct Randomise {
         return words[random() % std::size(words)];
     }
 
-    template <class T> void operator()(T& value, const FieldInfo& info) const {
-        if constexpr (Described<T>) {
-            if (depth < 5) T::describe(value, Randomise{random, depth + 1});
-        } else if constexpr (std::is_same_v<T, bool>) {
-            value = (random() & 1) != 0;
-        } else if constexpr (std::is_same_v<T, std::string>) {
-            value = text();
-        } else if constexpr (std::is_enum_v<T>) {
-            value = static_cast<T>(random() % info.names.size());
-        } else if constexpr (std::is_integral_v<T>) {
-            value = info.range ? static_cast<T>(std::uniform_int_distribution<long>(
-                                     static_cast<long>(info.range->lo), static_cast<long>(info.range->hi))(random))
-                               : static_cast<T>(random());
-        } else if constexpr (std::is_floating_point_v<T>) {
-            value = static_cast<T>(number(info));
-        } else if constexpr (std::is_same_v<T, Range>) {
-            value = {number(info), number(info)};
-        } else if constexpr (detail::GlmLength<T>::value > 0) {
-            for (int i = 0; i < detail::GlmLength<T>::value; ++i)
-                value[i] = static_cast<typename T::value_type>(number(info));
-        } else if constexpr (detail::IsQuat<T>::value) {
-            for (int i = 0; i < 4; ++i) value[i] = static_cast<typename T::value_type>(number(info));
-        } else if constexpr (detail::IsVector<T>::value) {
-            value.clear();
+    void operator()(Value value, const FieldInfo& info) const {
+        switch (value.kind()) {
+        case ValueKind::Struct:
+            if (depth < 5) value.visitMembers(Randomise{random, depth + 1});
+            break;
+        case ValueKind::Text:
+            value.text() = text();
+            break;
+        case ValueKind::List: {
             const std::size_t count = depth > 3 ? 0 : random() % 4;
-            for (std::size_t i = 0; i < count; ++i) {
-                typename T::value_type element{};
-                Randomise{random, depth + 1}(element, info);
-                value.push_back(element);
-            }
-        } else if constexpr (detail::IsMap<T>::value) {
-            value.clear();
-            for (std::size_t i = random() % 4; i-- > 0;) Randomise{random, depth + 1}(value[text()], info);
-        } else if constexpr (detail::IsOptional<T>::value) {
-            value.reset();
-            if (random() & 1) (*this)(value.emplace(), info);
-        } else {
-            static_assert(detail::IsVariant<T>::value);
-            alternative(value, random() % std::variant_size_v<T>);
+            value.type->resize(value.at, 0);
+            value.type->resize(value.at, count);
+            for (std::size_t i = 0; i < count; ++i) Randomise{random, depth + 1}(value.element(i), info);
+            break;
+        }
+        case ValueKind::Map:
+            value.type->clear(value.at);
+            for (std::size_t i = random() % 4; i-- > 0;)
+                Randomise{random, depth + 1}(value.type->insert(value.at, text()), info);
+            break;
+        case ValueKind::Optional:
+            value.type->clear(value.at);
+            if ((random() & 1) == 0) break;
+            value.type->emplace(value.at);
+            (*this)(value.inside(), info);
+            break;
+        case ValueKind::Variant:
+            value.type->hold(value.at, random() % value.type->names.size());
+            (*this)(value.inside(), info);
+            break;
+        default:
+            for (int i = 0; i < value.type->numbers; ++i) value.setNumber(numberFor(value, info), i);
         }
     }
 
-    template <std::size_t I = 0, class V> void alternative(V& value, std::size_t wanted) const {
-        if constexpr (I < std::variant_size_v<V>) {
-            if (I != wanted) return alternative<I + 1>(value, wanted);
-            std::variant_alternative_t<I, V> made{};
-            (*this)(made, FieldInfo{.key = "", .unit = "", .doc = ""});
-            value = made;
-        }
+    double numberFor(Value value, const FieldInfo& info) const {
+        if (value.kind() == ValueKind::Flag) return (random() & 1) != 0 ? 1 : 0;
+        if (value.kind() == ValueKind::Choice) return double(random() % info.names.size());
+        if (value.kind() != ValueKind::Number || !value.type->whole) return number(info);
+        return info.range ? double(std::uniform_int_distribution<long>(static_cast<long>(info.range->lo),
+                                                                       static_cast<long>(info.range->hi))(random))
+                          : double(static_cast<int>(random()));
     }
 };
 
 template <class T> T randomValue(std::mt19937& random) {
     T value{};
-    Randomise{random}(value, FieldInfo{.key = "", .unit = "", .doc = ""});
+    Randomise{random}(valueOf(value), FieldInfo{.key = "", .unit = "", .doc = ""});
     return value;
 }
 

@@ -164,8 +164,8 @@ void drawPlace(const WidgetContext& widgets, Session& session, vis::Layer& layer
     bool changed = false;
     std::optional<Range> scale;
     std::string unit;
-    const detail::MemberToWidget draw{widgets, changed, scale, unit};
-    vis::Layer::describe(layer, [&](auto& value, const FieldInfo& field) {
+    const MemberToWidget draw{widgets, changed, scale, unit};
+    valueOf(layer).visitMembers([&](Value value, const FieldInfo& field) {
         if (field.key == "timeShift" || field.key == "brushes") draw(value, field);
     });
 }
