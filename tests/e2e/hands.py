@@ -71,11 +71,11 @@ def palette(text):
     """Runs the first command that the palette finds, when the pictures before it are drawn."""
     save()
     press("ctrl+shift+p")
-    time.sleep(0.8)
+    time.sleep(1)
     xdo("type", "--delay", 30, text)
-    time.sleep(0.3)
+    time.sleep(0.5)
     press("Return")
-    time.sleep(0.4)  # until it is closed, no other key is heard
+    time.sleep(0.5)  # until it is closed, no other key is heard
 
 
 def brushes(session):
