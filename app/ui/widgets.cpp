@@ -143,9 +143,16 @@ bool drawNumber(const WidgetContext& context, const FieldInfo& info, std::option
     const double span = range ? hi - lo : std::max(largest, 1e-3);
     const bool slides = info.range || (range && count == 1);
     const auto draw = [&](const std::string& id, double* from, int fields) {
-        if (slides)
-            return ImGui::SliderScalarN(id.c_str(), ImGuiDataType_Double, from, fields, &lo, &hi, row.format.c_str(),
-                                        flags);
+        if (slides) {
+            // A slider takes the keyboard only by Ctrl+click: a double click is one, as in numbers without limits.
+            ImGuiIO& io = ImGui::GetIO();
+            const bool ctrl = io.KeyCtrl;
+            io.KeyCtrl = ctrl || ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+            const bool moved = ImGui::SliderScalarN(id.c_str(), ImGuiDataType_Double, from, fields, &lo, &hi,
+                                                    row.format.c_str(), flags);
+            io.KeyCtrl = ctrl;
+            return moved;
+        }
         return ImGui::DragScalarN(id.c_str(), ImGuiDataType_Double, from, fields, static_cast<float>(span * 0.004),
                                   nullptr, nullptr, row.format.c_str(), ImGuiSliderFlags_NoRoundToFormat);
     };
@@ -173,7 +180,7 @@ bool drawNumber(const WidgetContext& context, const FieldInfo& info, std::option
             whole += (whole.empty() ? "" : ", ") + printed(withUnit(format, info.unit), value);
         ImGui::SetTooltip("%s", whole.c_str());
     } else if (ImGui::GetIO().KeyCtrl) {
-        ImGui::SetTooltip("Ctrl+click to type a number");
+        ImGui::SetTooltip("Double click or Ctrl+click to type a number");
     }
     return changed;
 }

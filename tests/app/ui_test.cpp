@@ -372,6 +372,41 @@ TEST_F(UiTest, ATypedNumberIsFinite) {
     }
 }
 
+TEST_F(UiTest, ADoubleClickTypesANumber) {
+    const FieldInfo limited{.key = "gain", .unit = "", .doc = "", .range = Range{0, 1}};
+    const FieldInfo free{.key = "place", .unit = "m", .doc = ""};
+    for (const FieldInfo& info : {limited, free})
+        for (const int clicks : {1, 2}) {
+            double value = 0.5;
+            ImVec2 at;
+            const auto body = [&] {
+                ImGui::SetNextWindowPos({0, 0});
+                ImGui::SetNextWindowSize({400, 100});
+                ImGui::Begin("test");
+                drawNumber({}, info, {}, &value, 1, false);
+                const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
+                at = {(lo.x + hi.x) / 2, (lo.y + hi.y) / 2};
+                ImGui::End();
+            };
+            for (int i = 0; i < 60; ++i) frame(body); // long after the clicks before
+            mouse = at;
+            for (int click = 0; click < clicks; ++click)
+                for (const bool down : {false, true, false}) {
+                    held = down;
+                    frame(body);
+                }
+            EXPECT_EQ(ImGui::GetIO().WantTextInput, clicks == 2) << info.key;
+            ImGui::GetIO().AddInputCharactersUTF8("0.25");
+            for (const bool down : {true, false}) {
+                frame(body);
+                feedKey(ImGui::GetIO(), key::kEnter, down);
+                frame(body);
+            }
+            EXPECT_EQ(std::abs(value - 0.25) < 1e-12, clicks == 2) << info.key << " by " << clicks;
+            EXPECT_FALSE(ImGui::GetIO().KeyCtrl) << "no key is held";
+        }
+}
+
 TEST_F(UiTest, AMenuHasRoomForTheListOfSettings) {
     Session session;
     std::string search, path;
