@@ -27,5 +27,6 @@ if [ "$preset" = asan ]; then
     export ASAN_OPTIONS=detect_leaks=1 LSAN_OPTIONS="suppressions=$here/tests/lsan.supp:print_suppressions=0"
     ctest --preset asan -j "$(nproc)" -LE e2e "$@"
 else
-    ctest --preset "$preset" -j "$(nproc)" "$@"
+    # One more than there are cores: some tests mostly wait.
+    ctest --preset "$preset" -j "$(($(nproc) + 1))" "$@"
 fi
