@@ -14,7 +14,8 @@ template <class N> struct CubePlaceOf { N face, u, v; };
 template <class N> CubePlaceOf<N> placeOnCube(const glm::vec<3, N>& direction) {
     const auto& [x, y, z] = std::array{direction.x, direction.y, direction.z};
     const N wide = magnitude(x), high = magnitude(y), deep = magnitude(z);
-    const auto alongX = (wide >= high) & (wide >= deep), alongY = high >= deep;
+    const auto alongX = (wide >= high) & (wide >= deep);
+    const auto alongY = high >= deep;
     const auto of = [&](N onX, N onY, N onZ) { return choose(alongX, onX, choose(alongY, onY, onZ)); };
     const auto bySign = [](N sign, N above, N below) { return choose(sign > N(0), above, below); };
     return {of(bySign(x, N(0), N(1)), bySign(y, N(2), N(3)), bySign(z, N(4), N(5))),
