@@ -331,6 +331,17 @@ TEST(CommandsTest, WhatIsTypedAsItIsComesFirstThoughItIsNotPossible) {
     EXPECT_EQ(matchingCommands("flow", {commands[0], commands[1]}).front()->name, "Add flow layer");
 }
 
+/// Draws a number in a window of its own; gives the middle of its field.
+ImVec2 middleOfNumber(const FieldInfo& info, double& value) {
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize({400, 100});
+    ImGui::Begin("test");
+    drawNumber({}, info, {}, &value, 1, false);
+    const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
+    ImGui::End();
+    return {(lo.x + hi.x) / 2, (lo.y + hi.y) / 2};
+}
+
 // Dear ImGui reads 1e999 as infinity, whose differences are not numbers.
 TEST_F(UiTest, ATypedNumberIsFinite) {
     const FieldInfo limited{.key = "gain", .unit = "", .doc = "", .range = Range{0, 1}};
@@ -338,15 +349,7 @@ TEST_F(UiTest, ATypedNumberIsFinite) {
     for (const FieldInfo& info : {limited, free}) {
         double value = 0.5;
         ImVec2 at;
-        const auto body = [&] {
-            ImGui::SetNextWindowPos({0, 0});
-            ImGui::SetNextWindowSize({400, 100});
-            ImGui::Begin("test");
-            drawNumber({}, info, {}, &value, 1, false);
-            const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
-            at = {(lo.x + hi.x) / 2, (lo.y + hi.y) / 2};
-            ImGui::End();
-        };
+        const auto body = [&] { at = middleOfNumber(info, value); };
         const auto type = [&](const char* text) {
             ImGuiIO& io = ImGui::GetIO();
             for (int i = 0; i < 2; ++i) frame(body);
@@ -379,15 +382,7 @@ TEST_F(UiTest, ADoubleClickTypesANumber) {
         for (const int clicks : {1, 2}) {
             double value = 0.5;
             ImVec2 at;
-            const auto body = [&] {
-                ImGui::SetNextWindowPos({0, 0});
-                ImGui::SetNextWindowSize({400, 100});
-                ImGui::Begin("test");
-                drawNumber({}, info, {}, &value, 1, false);
-                const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
-                at = {(lo.x + hi.x) / 2, (lo.y + hi.y) / 2};
-                ImGui::End();
-            };
+            const auto body = [&] { at = middleOfNumber(info, value); };
             for (int i = 0; i < 60; ++i) frame(body); // long after the clicks before
             mouse = at;
             for (int click = 0; click < clicks; ++click)
