@@ -16,7 +16,7 @@ step() { # step NAME COMMAND...
 
 clang() { ./test.sh clang -LE e2e; }
 
-# clang-tidy over the sources as the preset "clang" compiles them (six in one unit, which reads each header once for them).
+# clang-tidy over the sources as the preset "clang" compiles them (twelve in one unit, which reads each header once for them).
 tidy() {
     ./setup.sh --clang && cmake --preset clang -B build/tidy -DBUILD_TESTING=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON || return 1
     local newest

@@ -1,6 +1,7 @@
 #include "app/bench/bench.h"
 #include "app/command/command.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>

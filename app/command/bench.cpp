@@ -3,6 +3,7 @@
 #include "volume/base/error.h"
 #include "volume/system/own_path.h"
 
+#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstring>
 #include <string>

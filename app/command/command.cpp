@@ -2,6 +2,7 @@
 
 #include "volume/base/error.h"
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <csignal>
 #include <cstdio>

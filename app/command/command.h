@@ -2,11 +2,14 @@
 
 #include "volume/base/progress.h"
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
+
+namespace CLI {
+class App;
+}
 
 /// The command line. Each subcommand is one file of app/command with one add function; its callback does the work and
 /// throws: Error ends with status 2, MachineError with 3, Cancelled with 130, wrong usage with 1.

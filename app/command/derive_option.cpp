@@ -4,6 +4,7 @@
 #include "volume/reconstruct/sample_grid.h"
 #include "volume/sources/memory_source.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 

@@ -11,6 +11,7 @@
 #include "volume/export/export.h"
 #include "volume/system/atomic_file.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -8,6 +8,7 @@
 #include "volume/synthetic/marschner_lobb.h"
 #include "volume/synthetic/models.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 

@@ -14,6 +14,7 @@
 #include "volume/import/find_parts.h"
 #include "volume/import/import.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

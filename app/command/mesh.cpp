@@ -6,6 +6,7 @@
 #include "volume/base/error.h"
 #include "volume/mesh/mesh_file.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -11,6 +11,7 @@
 #include "codec/pack/unpack.h"
 #include "codec/remote/address.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -9,6 +9,7 @@
 #include "codec/remote/address.h"
 #include "volume/base/error.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>

@@ -5,6 +5,7 @@
 #include "volume/base/error.h"
 #include "volume/system/atomic_file.h"
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 

@@ -4,6 +4,7 @@
 #include "app/history/animated_session.h"
 #include "volume/base/error.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -10,6 +10,7 @@
 #include "volume/base/error.h"
 #include "volume/system/atomic_file.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 

@@ -6,6 +6,7 @@
 #include "volume/export/export.h"
 #include "volume/resample/hyperplane.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <memory>

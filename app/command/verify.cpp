@@ -4,6 +4,7 @@
 #include "codec/archive/archive.h"
 #include "codec/remote/remote_file.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>

@@ -6,6 +6,7 @@
 #include "codec/remote/address.h"
 #include "volume/base/error.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <memory>

@@ -5,6 +5,7 @@
 #include "tests/app/formula_cell.h"
 #include "tests/app/table_text.h"
 
+#include <CLI/CLI.hpp>
 #include <cstring>
 #include <filesystem>
 #include <fstream>

@@ -8,6 +8,7 @@
 #include "volume/sources/memory_source.h"
 #include "volume/synthetic/models.h"
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>

@@ -5,6 +5,7 @@
 #include "app/dialogs/picture_request.h"
 #include "volume/base/error.h"
 
+#include <CLI/CLI.hpp>
 #include <gtest/gtest.h>
 
 namespace tessera::app {

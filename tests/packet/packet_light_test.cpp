@@ -4,22 +4,22 @@
 namespace tessera::vis::packet {
 namespace {
 
-Layer composite(const char* channel, bool shaded = true) {
+Layer litVolume(const char* channel, bool shaded = true) {
     return layerOf(VolumeLayer{.channel = channel, .shaded = shaded, .density = 3});
 }
-Layer surface(const char* channel, double value, float opacity = 1) {
+Layer litSurface(const char* channel, double value, float opacity = 1) {
     return layerOf(IsoLayer{.channel = channel, .value = value, .color = {0.8f, 0.6f, 0.4f}, .opacity = opacity});
 }
 
 const Mode kWithShadows[] = {
     {"shadows of a volume",
      [](Scene& s) {
-         s.layers = {composite("a")};
+         s.layers = {litVolume("a")};
          s.lighting.shadows = {.strength = 0.8f, .resolution = 24};
      }},
     {"shadows of several lights on a surface",
      [](Scene& s) {
-         s.layers = {surface("a", 317), composite("whole", false)};
+         s.layers = {litSurface("a", 317), litVolume("whole", false)};
          s.lighting.model = LightModel::Physical;
          s.lighting.lights = {
              Light{.kind = LightKind::World, .color = {1, 0.9f, 0.7f}, .azimuth = 60, .elevation = 20},
@@ -29,26 +29,26 @@ const Mode kWithShadows[] = {
      }},
     {"ambient occlusion",
      [](Scene& s) {
-         s.layers = {surface("a", 317)};
+         s.layers = {litSurface("a", 317)};
          s.lighting.ambient = 0.7f;
          s.lighting.shadows = {.occlusion = 0.9f, .reach = 0.2f, .resolution = 37};
      }},
     {"translucency without surfaces",
      [](Scene& s) {
-         s.layers = {composite("a", false)};
+         s.layers = {litVolume("a", false)};
          s.lighting.shadows = {
              .strength = 0.7f, .occlusion = 0.3f, .translucency = 0.8f, .scatter = 0.6f, .resolution = 27};
      }},
     {"shadows of parts and labels",
      [](Scene& s) {
-         s.layers = {surface("parted", 4, 0.8f), composite("label"), composite("parted")};
+         s.layers = {litSurface("parted", 4, 0.8f), litVolume("label"), litVolume("parted")};
          s.transfer["label"].opacity = {{0, 0}, {0.3f, 0}, {0.31f, 0.2f}, {1, 0.2f}};
          s.transfer["parted"].opacity = {{0, 0}, {0.6f, 0}, {1, 0.1f}};
          s.lighting.shadows = {.strength = 1, .resolution = 24};
      }},
     {"shadows of what brushes, lenses and clips leave",
      [](Scene& s) {
-         s.layers = {composite("a"), surface("whole", 0.9, 0.6f)};
+         s.layers = {litVolume("a"), litSurface("whole", 0.9, 0.6f)};
          s.selection.brushes = {rangeBrush({{.channel = "b", .lo = 0.2, .hi = 0.9, .soft = 0.2}})};
          s.selection.contextOpacity = 0.2f;
          s.lenses = {
@@ -65,7 +65,7 @@ const Mode kWithShadows[] = {
      }},
     {"shadows behind a magnifying lens",
      [](Scene& s) {
-         s.layers = {composite("a")};
+         s.layers = {litVolume("a")};
          s.lenses = {
              Lens{.name = "near", .effect = LensEffect::Magnify, .center = {9, 8, 12}, .size = glm::vec3(0.3f)}};
          s.lighting.shadows = {.strength = 1, .resolution = 24};
@@ -82,12 +82,12 @@ const Mode kWithShadows[] = {
 const Mode kInSurroundings[] = {
     {"sky",
      [](Scene& s) {
-         s.layers = {surface("a", 317)};
+         s.layers = {litSurface("a", 317)};
          s.lighting.environment = {.kind = Environment::Sky, .turn = 40};
      }},
     {"studio around a volume",
      [](Scene& s) {
-         s.layers = {composite("a")};
+         s.layers = {litVolume("a")};
          s.lighting.model = LightModel::Physical;
          s.lighting.roughness = 0.4f;
          s.lighting.metalness = 0.6f;
@@ -95,14 +95,14 @@ const Mode kInSurroundings[] = {
      }},
     {"lamps in maps",
      [](Scene& s) {
-         s.layers = {surface("a", 317)};
+         s.layers = {litSurface("a", 317)};
          s.lighting.inMaps = true;
          s.lighting.lights = {Light{.azimuth = 50}, Light{.color = {1, 0.3f, 0.2f}, .azimuth = -80, .elevation = 70},
                               Light{.kind = LightKind::Point, .position = {0.6f, 0.2f, -0.4f}}};
      }},
     {"a picture, with ambient occlusion",
      [](Scene& s) {
-         s.layers = {surface("a", 317)};
+         s.layers = {litSurface("a", 317)};
          s.lighting.model = LightModel::Physical;
          s.lighting.lights = {};
          s.lighting.ambient = 0;

@@ -4,10 +4,10 @@
 namespace tessera::vis::packet {
 namespace {
 
-Layer composite(const char* channel, const Look& look) {
+Layer volumeIn(const char* channel, const Look& look) {
     return layerOf(VolumeLayer{.channel = channel, .density = 3, .look = look});
 }
-Layer surface(const char* channel, double value, const Look& look) {
+Layer surfaceIn(const char* channel, double value, const Look& look) {
     return layerOf(IsoLayer{.channel = channel, .value = value, .opacity = 0.8f, .look = look});
 }
 
@@ -17,18 +17,18 @@ const Mode kInVolumes[] = {
          Look look = *Look::preset("illustration");
          look.boundary = BoundaryEnhancement{};
          look.distance = DistanceColor{};
-         s.layers = {composite("a", look)};
+         s.layers = {volumeIn("a", look)};
      }},
     {"glass",
      [](Scene& s) {
          Look look = *Look::preset("glass");
          look.silhouette->ink = 0.5f;
-         s.layers = {composite("whole", look), surface("a", 317, look)};
+         s.layers = {volumeIn("whole", look), surfaceIn("a", 317, look)};
          s.background = {1, 1, 1};
      }},
     {"stippled volume",
      [](Scene& s) {
-         s.layers = {composite("a", *Look::preset("stipple"))};
+         s.layers = {volumeIn("a", *Look::preset("stipple"))};
          s.transfer["a"].opacity = {{0, 0}, {0.5f, 0}, {0.8f, 0.8f}, {1, 0.8f}};
          s.background = {1, 1, 1};
      }},
@@ -39,10 +39,10 @@ const Mode kInVolumes[] = {
 };
 
 const Mode kOnSurfaces[] = {
-    {"cartoon", [](Scene& s) { s.layers = {surface("a", 317, *Look::preset("cartoon"))}; }},
+    {"cartoon", [](Scene& s) { s.layers = {surfaceIn("a", 317, *Look::preset("cartoon"))}; }},
     {"charcoal",
      [](Scene& s) {
-         s.layers = {surface("a", 317, *Look::preset("charcoal"))};
+         s.layers = {surfaceIn("a", 317, *Look::preset("charcoal"))};
          s.background = {1, 1, 1};
      }},
     {"hatching",
@@ -52,16 +52,16 @@ const Mode kOnSurfaces[] = {
          look.charcoal->crossing = 0.4f;
          look.charcoal->angle = 20;
          look.charcoal->grain = 6;
-         s.layers = {surface("a", 317, look)};
+         s.layers = {surfaceIn("a", 317, look)};
          s.background = {1, 1, 1};
          s.lighting.lights = {Light{.kind = LightKind::Point, .position = {0.6f, 0.2f, 0.7f}}};
      }},
-    {"wire", [](Scene& s) { s.layers = {surface("b", 0.5, *Look::preset("wire"))}; }},
+    {"wire", [](Scene& s) { s.layers = {surfaceIn("b", 0.5, *Look::preset("wire"))}; }},
     {"drawn context",
      [](Scene& s) {
          Look look = *Look::preset("cartoon");
          look.part = LookPart::Context;
-         s.layers = {surface("parted", 4, look)};
+         s.layers = {surfaceIn("parted", 4, look)};
          s.selection.brushes = {rangeBrush({{.channel = "whole", .lo = 0.6, .hi = 1.1, .soft = 0.2}})};
          s.selection.contextOpacity = 0.7f;
      }},

@@ -9,7 +9,7 @@ namespace tessera::vis::packet {
 
 namespace {
 
-constexpr std::size_t kTogether = std::size_t(1) << 16; ///< samples that one core blends in one go
+constexpr std::size_t kInOneGo = std::size_t(1) << 16; ///< samples that one core blends in one go
 
 /// Smallest and largest value that samples of a volume can have.
 struct Held {
@@ -63,8 +63,8 @@ private:
     template <class T> void blend(const std::vector<T>& from, const std::vector<T>& to, std::vector<T>& out) {
         out.resize(from.size());
         if (!whole_) out_.present.resize(from.size());
-        parallelFor((from.size() + kTogether - 1) / kTogether, [&](std::size_t part) {
-            const std::size_t begin = part * kTogether, end = std::min(begin + kTogether, from.size());
+        parallelFor((from.size() + kInOneGo - 1) / kInOneGo, [&](std::size_t part) {
+            const std::size_t begin = part * kInOneGo, end = std::min(begin + kInOneGo, from.size());
             if (whole_)
                 blendWhole(from.data(), to.data(), out.data(), begin, end);
             else

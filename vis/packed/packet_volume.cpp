@@ -40,8 +40,8 @@ template <class T, class Op> std::vector<T> inBlocks(const std::vector<T>& from,
     return inWindows(bars, kWindows * kWindows, kRow, 1, op);
 }
 
-constexpr auto least = [](auto a, auto b) { return std::min(a, b); };
-constexpr auto most = [](auto a, auto b) { return std::max(a, b); };
+constexpr auto kLesser = [](auto a, auto b) { return std::min(a, b); };
+constexpr auto kGreater = [](auto a, auto b) { return std::max(a, b); };
 
 /// Writes one brick, and the bounds of its blocks.
 class BrickWriter {
@@ -83,10 +83,10 @@ public:
     /// The odd sublattice lies half a cell further: its cells around a block begin one earlier, which may lie in the
     /// brick before. Its first samples stand for them here; `spreadOdd` joins the neighbours' bounds.
     void bounds() const {
-        const std::vector<float> lo = inBlocks(bounded(Extent{}.lo), slices_, least),
-                                 hi = inBlocks(bounded(Extent{}.hi), slices_, most);
+        const std::vector<float> lo = inBlocks(bounded(Extent{}.lo), slices_, kLesser),
+                                 hi = inBlocks(bounded(Extent{}.hi), slices_, kGreater);
         std::vector<std::uint8_t> whole;
-        if (!present_.empty()) whole = inBlocks(present_, slices_, least);
+        if (!present_.empty()) whole = inBlocks(present_, slices_, kLesser);
         const auto scaled = [&](float value) { return float((double(value) - out_.offset) / out_.scale); };
         constexpr int kWindows = kBrick / kFine;
         for (std::size_t i = 0; i < lo.size(); ++i) {
@@ -153,14 +153,14 @@ void spread(std::vector<T>& values, glm::ivec3 count, int before, int after, con
 
 /// Bounds of BCC blocks take those before them in (the odd sublattice reads half a cell earlier).
 void spreadOdd(PacketVolume& volume) {
-    spread(volume.lo, volume.blocks, 1, 0, least);
-    spread(volume.hi, volume.blocks, 1, 0, most);
+    spread(volume.lo, volume.blocks, 1, 0, kLesser);
+    spread(volume.hi, volume.blocks, 1, 0, kGreater);
 }
 
 /// A block with an absent sample in a neighbour counts as having one: gradients read there, and so do the few samples
 /// that are taken before blocks are looked up again.
 void spreadAbsent(PacketVolume& volume) {
-    spread(volume.absent, volume.blocks, 2, 2, most);
+    spread(volume.absent, volume.blocks, 2, 2, kGreater);
 }
 
 void setScale(PacketVolume& out, const Extent& range) {

@@ -5,19 +5,12 @@
 #include "vis/passes/frame_request.h"
 #include "vis/passes/geometry_pass.h"
 #include "vis/raycast/brush_uniforms.h"
+#include "vis/raycast/clock.h"
 #include "vis/raycast/look_uniforms.h"
 #include "vis/raycast/ray_plan.h"
 
-#include <chrono>
-
 /// Parameters of the stages of a picture.
 namespace tessera::vis {
-
-using Clock = std::chrono::steady_clock;
-
-inline double millisecondsSince(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 /// Input of one call of Renderer::render(). ViewDemand::bind() binds `plan` to resident data.
 struct RenderCall {

@@ -1,9 +1,9 @@
 #include "vis/raycast/light_baker.h"
 
+#include "vis/raycast/clock.h"
 #include "volume/base/background.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace tessera::vis {
 
@@ -78,7 +78,6 @@ void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, con
 
 /// Draws some rows of the extinction; starts reading it back after the last one.
 void LightBaker::drawMedium(const Pass& pass, double budgetMs, bool wait) {
-    using Clock = std::chrono::steady_clock;
     const Clock::time_point begin = Clock::now();
     const glm::ivec2 size(grid_.size.x, grid_.size.y * grid_.size.z);
     if (atlasSize_ != size) {
@@ -102,7 +101,7 @@ void LightBaker::drawMedium(const Pass& pass, double budgetMs, bool wait) {
         glDrawArrays(GL_TRIANGLES, 0, 3);
         rows_ += count;
         if (pass.waits) glFinish();
-        if (!wait && std::chrono::duration<double, std::milli>(Clock::now() - begin).count() > budgetMs) break;
+        if (!wait && millisecondsSince(begin) > budgetMs) break;
     }
     if (rows_ < size.y) return;
     reader_.start(atlas_.name(), size, GL_RGBA);
@@ -119,7 +118,6 @@ bool LightBaker::readMedium(bool wait) {
 
 /// Computes some rows of the extinction; false while some are missing.
 bool LightBaker::computeMedium(const Rows& rows, double budgetMs, bool wait) {
-    using Clock = std::chrono::steady_clock;
     const Clock::time_point begin = Clock::now();
     const int all = grid_.size.y * grid_.size.z, together = wait ? all : 2 * grid_.size.y;
     if (rows_ == 0) read_ = std::make_shared<vis::Medium<float>>(grid_.count());
@@ -127,7 +125,7 @@ bool LightBaker::computeMedium(const Rows& rows, double budgetMs, bool wait) {
         const int end = std::min(rows_ + together, all);
         rows(grid_, rows_, end, *read_);
         rows_ = end;
-        if (!wait && std::chrono::duration<double, std::milli>(Clock::now() - begin).count() > budgetMs) break;
+        if (!wait && millisecondsSince(begin) > budgetMs) break;
     }
     if (rows_ < all) return false;
     medium_ = std::move(read_);
