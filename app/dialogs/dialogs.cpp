@@ -4,7 +4,7 @@
 #include "app/pane/pane_title.h"
 #include "app/ui/file_dialog.h"
 #include "app/ui/fitted_text.h"
-#include "app/ui/widgets.h"
+#include "app/ui/parameter_widget.h"
 #include "volume/base/byte_text.h"
 #include "volume/base/error.h"
 
