@@ -292,6 +292,33 @@ TEST_F(SpaceHands, TheSwipeLineGoesWithTheMouse) {
     EXPECT_EQ(swipe(), 0.5f);
 }
 
+TEST_F(SpaceHands, TheWheelZoomsTheShadowCubeAndTheTesseract) {
+    showSpace(ShadowCubeView{});
+    const float distance = camera().distance;
+    moveTo(within(picture, 0.5, 0.5));
+    turnWheel(2);
+    EXPECT_NEAR(camera().distance, distance / (1.15f * 1.15f), 1e-5f) << "away from the hand: nearer";
+    turnWheel(-2);
+    EXPECT_NEAR(camera().distance, distance, 1e-5f);
+    moveTo({picture.Max.x + 30, 5});
+    turnWheel(1);
+    EXPECT_NEAR(camera().distance, distance, 1e-5f) << "not over the picture";
+
+    showSpace(TesseractView{}, {500, 500});
+    const auto zoom = [&] { return std::get<TesseractView>(session().views.at("pane")).zoom; };
+    const float before = zoom();
+    moveTo(within(picture, 0.5, 0.5));
+    turnWheel(2);
+    EXPECT_NEAR(zoom(), before * 1.15f * 1.15f, 1e-5f) << "away from the hand: larger";
+    turnWheel(-60);
+    EXPECT_EQ(zoom(), 0.2f);
+    turnWheel(60);
+    EXPECT_EQ(zoom(), 10.0f);
+    moveTo({picture.GetCenter().x, picture.Max.y + 20}); // over the sliders
+    turnWheel(-1);
+    EXPECT_EQ(zoom(), 10.0f);
+}
+
 TEST_F(SpaceHands, ADragInOnePictureOfAComparisonTurnsAll) {
     showSpace(twoVariants(CompareMode::Grid), {500, 260});
     const std::vector<ImRect> both = pictures();
