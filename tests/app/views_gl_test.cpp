@@ -134,6 +134,20 @@ TEST_F(Views, FlowComesAtOnceOrFromTheBackground) {
     EXPECT_TRUE(later.get(context, "b").empty());
 }
 
+// In a wide pane the body stands at the left, the legends and what is near at the right.
+TEST_F(Views, TheTextsOfATesseractStandBesideIt) {
+    show(fuelCell(volume::LatticeKind::BCC));
+    for (int i = 0; i < 2; ++i) frame([&] { draw("tesseract", tesseractView, drawTesseractView, {800, 400}); });
+    int found = 0;
+    for (const DrawnText& text : drawnTexts()) {
+        if (text.text.find("near in 4D") == std::string::npos) continue;
+        ++found;
+        EXPECT_GT(text.min.x, 500);
+        EXPECT_LT(text.max.y, 120);
+    }
+    EXPECT_EQ(found, 1);
+}
+
 // Drags turn the tesseract in the planes they say, the angles stay those of a rotation, R turns back.
 TEST_F(Views, ATesseractTurnsByHand) {
     show(fuelCell(volume::LatticeKind::BCC));
