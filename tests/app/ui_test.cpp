@@ -424,6 +424,7 @@ TEST_F(UiTest, EscAfterADoubleClickLeavesTheValueAsItWas) {
         feedKey(ImGui::GetIO(), key::kEscape, down);
         frame(body);
     }
+    frame(body);
     EXPECT_FALSE(ImGui::GetIO().WantTextInput);
     EXPECT_EQ(value, 0.125);
 }
