@@ -1,5 +1,8 @@
 #include "app/pane/axes3d.h"
+#include "tests/app/drawn_text.h"
 #include "tests/app/hands_fixture.h"
+
+#include <algorithm>
 
 /// The mouse in views of space: volume, shadow cube, comparisons. The camera's own hand: camera_hand_gl_test.cpp.
 namespace tessera::app {
@@ -317,6 +320,15 @@ TEST_F(SpaceHands, TheWheelZoomsTheShadowCubeAndTheTesseract) {
     moveTo({picture.GetCenter().x, picture.Max.y + 20}); // over the sliders
     turnWheel(-1);
     EXPECT_EQ(zoom(), 10.0f);
+}
+
+TEST_F(SpaceHands, InALowPictureTheReferenceIsToldByTheTableAlone) {
+    for (const int height : {300, 110}) {
+        showSpace(twoVariants(CompareMode::Grid), {500, height});
+        const std::vector<std::string> words = drawnWords();
+        EXPECT_EQ(std::ranges::count(words, "reference"), height > 200) << height;
+        EXPECT_EQ(std::ranges::count(words, "other"), 1);
+    }
 }
 
 TEST_F(SpaceHands, ADragInOnePictureOfAComparisonTurnsAll) {
