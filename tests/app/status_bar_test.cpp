@@ -75,6 +75,19 @@ TEST_F(StatusLine, AClickTakesTheNewestMessageAway) {
     EXPECT_EQ(messages.list().size(), 3u) << "they stay in the pane";
 }
 
+TEST_F(StatusLine, TheMouseOnAMessageShowsAllThatAreNewWhole) {
+    messages.add("an earlier one");
+    messages.add("begin " + std::string(300, 'x') + " end of it");
+    draw();
+    for (const DrawnText& each : drawnTexts())
+        if (each.text.starts_with("begin")) mouse = {each.min.x + 20, each.middle().y};
+    for (int i = 0; i < 3; ++i) draw(); // a tooltip has its size in the second picture
+    std::string said;
+    for (const std::string& word : drawnWords()) said += word + "|";
+    for (const char* text : {"end of it", "an earlier one"})
+        EXPECT_NE(said.find(text), std::string::npos) << text << " in " << said;
+}
+
 // The cross of a job is beside its own bar, not beside the title of the next.
 TEST_F(StatusLine, JobsAreApart) {
     Jobs working;
