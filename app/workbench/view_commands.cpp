@@ -183,6 +183,13 @@ void showLayout(Workbench& workbench, const std::string& name, const std::string
     try {
         std::vector<std::string> messages;
         const SessionDocument layout = loadSession(findLayout(name));
+        // Errors of packing exist only where data were opened together with their originals.
+        const DataRef &wanted = layout.session.data, &shown = workbench.session().data;
+        if (wanted.originals && !shown.originals && shown.files.empty() && shown.model == wanted.model) {
+            OpenRequest request;
+            request.layout = name;
+            return workbench.open(std::move(request));
+        }
         workbench.document().replace(changeLayout(layout, *workbench.source(), workbench.session(), messages),
                                      "Layout: " + title);
         for (const std::string& text : messages) workbench.message(text);

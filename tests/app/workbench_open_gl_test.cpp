@@ -252,6 +252,22 @@ TEST_F(WorkbenchOpening, APictureIsProposedOfAViewThatShowsData) {
     EXPECT_EQ(proposed, "Volume");
 }
 
+// On the cell as it is there are no errors to show.
+TEST_F(WorkbenchOpening, TheLayoutOfErrorsOpensTheCellBesideItsOriginals) {
+    OpenRequest request;
+    request.data.emplace();
+    request.data->model = "fuel-cell";
+    request.data->settings = {{"nx", 5}, {"ny", 7}, {"nz", 9}, {"times", 2}};
+    workbench.install(open(request));
+    settle();
+    ASSERT_TRUE(run("Compression error"));
+    settle();
+    EXPECT_TRUE(workbench.session().data.originals);
+    EXPECT_TRUE(workbench.source()->info().findChannel("T error"));
+    EXPECT_EQ(std::get<SlicesView>(workbench.session().views.at("slices")).channel, "T error");
+    EXPECT_EQ(news(), 0u);
+}
+
 // A session whose data are other ones now is not the one that was saved: that stands longer than what was done.
 TEST_F(WorkbenchOpening, ChangedDataAreWarnedOf) {
     write("told.raw", std::string(48, '\x42'));
