@@ -290,8 +290,7 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
     const volume::DatasetInfo& info = context.source->info();
     const PlotColors colors = plotColors();
     if (context.decoration.axes) drawAxisNames4(draw, frame);
-    // Above the legends: at the left it would lie over the body.
-    if (context.decoration.title)
+    if (context.decoration.title) // above the legends: at the left it would lie over the body
         addFittedWithBackdrop(draw, {max.x - em() * 0.5f, frame.min.y + em() * 0.4f}, {1, 0}, colors.faint,
                               nearText(frame), max.x - frame.min.x - em());
     if (!view.showLegend || !context.decoration.legend) return;
