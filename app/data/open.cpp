@@ -286,6 +286,9 @@ void fitSurfaces(Session& session, const volume::BrickSource& source, const Sess
 Session changeLayout(const SessionDocument& layout, const volume::BrickSource& source, const Session& shown,
                      std::vector<std::string>& messages) {
     Session next = applyLayout(layout, source.info(), shown.data, messages);
+    if (layout.session.data.originals && !shown.data.originals)
+        messages.push_back("the layout shows packed data beside their originals, which these are not: it has other "
+                           "parameters in place of their errors");
     next.appearance = shown.appearance;
     next.time = shown.time;
     next.cursor = shown.cursor;

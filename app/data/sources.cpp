@@ -87,12 +87,11 @@ Sources openPacked(volume::Dataset dataset, const DataRef& data, const Progress&
     origin.originals = true;
     origin.parameters = 2 * int(dataset.info.parameters.size());
     const auto original = volume::makeMemorySource(std::move(dataset), onGrid());
-    const auto beside = volume::onLattice(
-        original,
-        {.lattice = packed->info().lattice.kind, .brickSize = packed->grid().brickSize, .budget = kFramesMade});
-    // Numbers refer to points of the file's grid, as after unpacking.
+    // Pictures too refer to points of the file's grid, as after unpacking: on the lattice of the archive, the originals
+    // would be resampled as what was packed is, and their difference would lack the error of that.
     auto unpacked = volume::makeMemorySource(codec::gridDataset(archive, 0), onGrid());
-    return {volume::withOriginals(packed, beside), volume::withOriginals(std::move(unpacked), original), origin};
+    const auto both = volume::withOriginals(std::move(unpacked), original);
+    return {both, both, origin};
 }
 
 /// Applies the user's options about times to an archive or a model; files were opened with them.

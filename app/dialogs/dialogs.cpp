@@ -4,7 +4,7 @@
 #include "app/pane/pane_title.h"
 #include "app/ui/file_dialog.h"
 #include "app/ui/fitted_text.h"
-#include "app/ui/widgets.h"
+#include "app/ui/parameter_widget.h"
 #include "volume/base/byte_text.h"
 #include "volume/base/error.h"
 
@@ -64,13 +64,20 @@ int dialogButtons(std::initializer_list<const char*> names) {
 
 std::optional<Opened> MissingFilesDialog::draw(const Ask& ask) {
     if (!opened_) return {};
-    if (opened_->missing.empty()) return std::exchange(opened_, {});
+    const char* const title = "Data not found";
+    if (opened_->missing.empty() && !ImGui::IsPopupOpen(title)) return std::exchange(opened_, {});
     bool open = true;
-    if (!beginDialog("Data not found", open, ImGui::GetFontSize() * 40)) {
+    if (!beginDialog(title, open, ImGui::GetFontSize() * 40)) {
         if (!open) opened_.reset();
         return {};
     }
-    ImGui::TextWrapped("Files of the session have moved. What is open now stays open until they are found.");
+    if (opened_->missing.empty()) { // the last one was dropped on the dialog
+        endDialog(false);
+        return std::exchange(opened_, {});
+    }
+    ImGui::TextWrapped(
+        "Files of the session have moved: choose them, or drop them here. What is open now stays open until "
+        "they are found.");
     ImGui::Spacing();
     for (std::size_t i = 0; i < opened_->missing.size(); ++i) drawFile(i, ask);
     if (dialogButtons({"Cancel"}) == 0) open = false;
@@ -105,6 +112,23 @@ void MissingFilesDialog::found(std::size_t index, const std::string& path) {
     if (!opened_ || index >= opened_->missing.size()) return;
     locate(opened_->document.session.data, opened_->missing[index], path);
     opened_->missing.erase(opened_->missing.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
+bool MissingFilesDialog::found(const std::vector<std::string>& paths) {
+    if (!opened_) return false;
+    const auto nameOf = [](const std::string& path) { return fs::path(path).filename(); };
+    const std::size_t before = opened_->missing.size();
+    if (before == 1 && paths.size() == 1) {
+        found(0, paths.front());
+        return true;
+    }
+    for (const std::string& path : paths)
+        for (std::size_t i = 0; i < opened_->missing.size(); ++i)
+            if (nameOf(opened_->missing[i].wanted.path) == nameOf(path)) {
+                found(i, path);
+                break;
+            }
+    return opened_->missing.size() < before;
 }
 
 std::optional<Recovery> RecoveryDialog::draw() {

@@ -28,6 +28,9 @@ public:
     std::optional<Opened> draw(const Ask& ask);
     /// Sets the new path of a missing file.
     void found(std::size_t index, const std::string& path);
+    /// Takes files for the missing ones that are called the same; one file also for the only one that is missing,
+    /// whatever it is called. False where none is taken.
+    bool found(const std::vector<std::string>& paths);
 
 private:
     void drawFile(std::size_t index, const Ask& ask);

@@ -47,6 +47,18 @@ std::string named(const std::string& kind, const std::string& name) {
     return name.empty() ? kind : name.starts_with(kind) ? name : kind + " " + name;
 }
 
+/// What users call a part of the session where that is not its key; "" = nothing else.
+std::string partWord(std::string_view part) {
+    static constexpr std::pair<std::string_view, std::string_view> kWords[] = {
+        {"stretch", "proportions"}, {"render", "quality"},    {"appearance", "look of the window"},
+        {"lighting", "light"},      {"clips", "clipping"},    {"tone", "tone curve"},
+        {"animation", "animation"}, {"cursor", "cross-hair"}, {"views", "views"},
+        {"layers", "layers"},       {"lenses", "lenses"},     {"paper", "paper"}};
+    for (const auto& [key, word] : kWords)
+        if (part == key) return std::string(word);
+    return {};
+}
+
 /// The thing that a path leads into, as users call it, and how many parts of the path it takes; 0: none with a name.
 struct NamedThing {
     std::string name;
@@ -82,20 +94,40 @@ NamedThing thingAt(const Session& session, const std::vector<std::string>& path)
         if (const auto* derived = at(2, session.data.derived)) return {"parameter " + derived->name, 3};
         return {"derived parameters", 2};
     }
-    static constexpr std::pair<std::string_view, std::string_view> kWords[] = {
-        {"stretch", "proportions"}, {"render", "quality"},    {"appearance", "look of the window"},
-        {"lighting", "light"},      {"clips", "clipping"},    {"tone", "tone curve"},
-        {"animation", "animation"}, {"cursor", "cross-hair"}, {"views", "views"},
-        {"layers", "layers"},       {"lenses", "lenses"},     {"paper", "paper"}};
-    for (const auto& [key, word] : kWords)
-        if (first == key) return {std::string(word), 1};
+    if (const std::string word = partWord(first); !word.empty()) return {word, 1};
     return {};
+}
+
+/// Without the arrangement of panes, which changes with the panes that are opened and closed, if there is more.
+Json withoutDock(const Json& patch) {
+    Json rest = Json::array();
+    for (const Json& each : patch)
+        if (const auto parts = splitPointer(each.value("path", std::string())); parts.empty() || parts[0] != "dock")
+            rest.push_back(each);
+    return rest.empty() ? patch : rest;
+}
+
+/// The parts of a session that a patch changes: "camera and time".
+std::string changedParts(const Json& patch) {
+    std::vector<std::string> words;
+    for (const Json& each : patch) {
+        const auto path = splitPointer(each.value("path", std::string()));
+        if (path.empty()) return "several changes";
+        const std::string word = partWord(path[0]).empty() ? keyWords(path[0]) : partWord(path[0]);
+        if (std::ranges::find(words, word) == words.end()) words.push_back(word);
+    }
+    if (words.size() > 3) return "several changes";
+    std::string text;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        text += (i == 0 ? "" : i + 1 < words.size() ? ", " : " and ") + words[i];
+    return text;
 }
 
 } // namespace
 
-std::string editTitle(const Json& patch, const Session& before, const Session& after) {
-    if (patch.empty()) return describePatch(patch);
+std::string editTitle(const Json& whole, const Session& before, const Session& after) {
+    if (whole.empty()) return describePatch(whole);
+    const Json patch = withoutDock(whole);
     const std::vector<std::string> path = commonPath(patch);
     const std::string operation = patch[0].value("op", std::string());
     const bool removed = operation == "remove";
@@ -115,7 +147,7 @@ std::string describePatch(const Json& patch) {
     if (patch.empty()) return "nothing";
     const std::vector<std::string> common = commonPath(patch);
     const std::string operation = patch[0].value("op", std::string());
-    if (common.empty()) return "several changes";
+    if (common.empty()) return changedParts(patch);
     if (common[0] == "dock") return "arrangement of panes";
     if (common[0] == "camera") return "camera";
     std::string name = keyWords(common[0]);

@@ -187,14 +187,16 @@ void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& ca
             placed = place(besides(at, edge.outward, size), color, title);
             if (placed) break;
         }
-        // No room beside the edge: beyond one of its ends.
-        for (const float sign : {1.0f, -1.0f}) {
+        // No room beside the edge: beyond one of its ends, at last moved into the picture, where it may lie over the
+        // box.
+        for (const auto& [sign, moved] : {std::pair(1.0f, false), {-1.0f, false}, {1.0f, true}, {-1.0f, true}}) {
             if (placed) break;
             const ImVec2 end = sign > 0 ? edge.b : edge.a;
             const ImVec2 on{sign * (edge.b.x - edge.a.x) / pixels, sign * (edge.b.y - edge.a.y) / pixels};
             auto box = besides({end.x + on.x * em() * 0.6f, end.y + on.y * em() * 0.6f}, on, size);
             const float shift = std::max(0.0f, frame.min.x + em() * 0.5f - box.first.x) +
                                 std::min(0.0f, frame.max.x - em() * 0.5f - box.second.x);
+            if (shift != 0 && !moved) continue;
             box.first.x += shift;
             box.second.x += shift;
             placed = place(box, color, title);

@@ -115,9 +115,9 @@ ColumnHeights columnHeights(float room, std::size_t plots) {
     const float count = std::max(1.0f, static_cast<float>(plots)), gap = em() * 0.4f;
     ColumnHeights out{};
     out.bottom = axisRoom(AxisSide::Bottom, {0, 1}, true);
-    out.titled = room >= out.bottom + gap + em() * 2.2f * count;
+    out.titled = room >= out.bottom + gap + em() * 2.6f * count;
     if (!out.titled) out.bottom = axisRoom(AxisSide::Bottom, {0, 1}, false);
-    out.all = std::max(room, out.bottom + gap + em() * 1.7f * count);
+    out.all = std::max(room, out.bottom + gap + em() * 2.4f * count);
     out.each = (out.all - out.bottom - gap) / count;
     return out;
 }

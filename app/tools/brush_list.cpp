@@ -5,8 +5,8 @@
 #include "app/tools/lens_list.h"
 #include "app/tools/space_handles.h"
 #include "app/ui/fitted_text.h"
+#include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
-#include "app/ui/widgets.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 #include "app/pane/view_parts.h"
 #include "app/session/shown_scene.h"
 #include "app/ui/fitted_text.h"
+#include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
-#include "app/ui/widgets.h"
 
 #include <algorithm>
 #include <imgui_stdlib.h>

@@ -1,5 +1,6 @@
 #include "app/ui/choose_colormap.h"
 
+#include "app/ui/fitted_text.h"
 #include "app/ui/keys.h"
 #include "app/ui/theme.h"
 #include "app/ui/widgets.h"
@@ -120,13 +121,14 @@ bool chooseColormap(const char* id, std::string& value, bool reversed) {
     }
     const float right = corner.x + width - height;
     const float text = ImGui::CalcTextSize(value.c_str()).x + inset * 3;
-    const float split = std::max(corner.x + inset * 2, right - text);
+    // Where the strip has no room, the name begins at the left like that of any list.
+    const bool strip = right - text > corner.x + height;
+    const float split = strip ? right - text : corner.x + ImGui::GetStyle().FramePadding.x - inset;
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    if (split > corner.x + 3 * inset)
+    if (strip)
         drawPreview({corner.x + inset, corner.y + inset}, {split - inset, corner.y + height - inset}, value, reversed);
-    ImGui::PushClipRect(corner, {right, corner.y + height}, true);
-    list.AddText({split + inset, corner.y + (height - ImGui::GetFontSize()) / 2}, palette().text, value.c_str());
-    ImGui::PopClipRect();
+    const ImVec2 at{split + inset, corner.y + (height - ImGui::GetFontSize()) / 2};
+    list.AddText(at, palette().text, fitText(value, right - at.x).c_str());
     return changed;
 }
 

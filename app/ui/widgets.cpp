@@ -73,6 +73,33 @@ std::string idOf(const FieldInfo& info) {
     return "##" + std::string(info.key);
 }
 
+/// The slider clicked last and its values before: the first click of a double click moves it.
+struct ClickedSlider {
+    ImGuiID id = 0;
+    std::vector<double> before;
+};
+ClickedSlider& clickedSlider() {
+    static ClickedSlider clicked;
+    return clicked;
+}
+
+/// Sliders of `count` numbers. A slider takes the keyboard only by Ctrl+click: a double click is one, as in numbers
+/// without limits, and puts back what its first click has moved.
+bool drawSliders(const char* id, double* values, int count, Range range, const char* format, ImGuiSliderFlags flags) {
+    const std::vector<double> before(values, values + count);
+    const ImGuiID self = ImGui::GetID(id);
+    const bool types = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+    if (types && clickedSlider().id == self && clickedSlider().before.size() == before.size())
+        std::ranges::copy(clickedSlider().before, values);
+    ImGuiIO& io = ImGui::GetIO();
+    const bool ctrl = io.KeyCtrl;
+    io.KeyCtrl = ctrl || types;
+    ImGui::SliderScalarN(id, ImGuiDataType_Double, values, count, &range.lo, &range.hi, format, flags);
+    io.KeyCtrl = ctrl;
+    if (!types && ImGui::IsItemActivated()) clickedSlider() = {self, before};
+    return !std::equal(before.begin(), before.end(), values);
+}
+
 /// Where the control beside a label begins.
 float controlColumn(const WidgetContext& context) {
     return std::floor(ImGui::GetContentRegionAvail().x * context.labelShare);
@@ -137,22 +164,12 @@ bool drawNumber(const WidgetContext& context, const FieldInfo& info, std::option
     drawLabel(context, label, info.doc);
     ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
     if (info.logScale) flags |= ImGuiSliderFlags_Logarithmic;
-    const double lo = range ? range->lo : 0, hi = range ? range->hi : 0;
     double largest = 0;
     for (int i = 0; i < count; ++i) largest = std::max(largest, std::abs(values[i]));
-    const double span = range ? hi - lo : std::max(largest, 1e-3);
+    const double span = range ? range->hi - range->lo : std::max(largest, 1e-3);
     const bool slides = info.range || (range && count == 1);
     const auto draw = [&](const std::string& id, double* from, int fields) {
-        if (slides) {
-            // A slider takes the keyboard only by Ctrl+click: a double click is one, as in numbers without limits.
-            ImGuiIO& io = ImGui::GetIO();
-            const bool ctrl = io.KeyCtrl;
-            io.KeyCtrl = ctrl || ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
-            const bool moved = ImGui::SliderScalarN(id.c_str(), ImGuiDataType_Double, from, fields, &lo, &hi,
-                                                    row.format.c_str(), flags);
-            io.KeyCtrl = ctrl;
-            return moved;
-        }
+        if (slides) return drawSliders(id.c_str(), from, fields, *range, row.format.c_str(), flags);
         return ImGui::DragScalarN(id.c_str(), ImGuiDataType_Double, from, fields, static_cast<float>(span * 0.004),
                                   nullptr, nullptr, row.format.c_str(), ImGuiSliderFlags_NoRoundToFormat);
     };

@@ -69,38 +69,4 @@ bool drawListButton(const char* label);
 /// word wider than a line stays whole, as do the groups of digits of a number.
 std::string wrappedAtSpaces(const std::string& text, float width);
 
-/// Draws a widget for each member that is not hidden and applies; returns true when one changed.
-bool drawMembers(Value value, const WidgetContext& context);
-template <class T> bool drawDescribed(T& value, const WidgetContext& context) {
-    return drawMembers(valueOf(value), context);
-}
-
-/// A section per element, with buttons to add and to remove.
-bool drawList(const WidgetContext& context, const FieldInfo& info, Value list);
-template <class T> bool drawDescribedList(const WidgetContext& context, const FieldInfo& info, std::vector<T>& values) {
-    return drawList(context, info, valueOf(values));
-}
-
-/// A choice of presets; the one that equals `value` is selected.
-bool choosePreset(const WidgetContext& context, Value value);
-template <class T> bool drawPresets(const WidgetContext& context, T& value) {
-    return choosePreset(context, valueOf(value));
-}
-
-/// Draws members of one struct (app/ui/parameter_widget.cpp).
-struct MemberToWidget {
-    const WidgetContext& outer;
-    bool& changed;
-    /// Range and unit of the parameter that the struct names, for members without a range of their own.
-    std::optional<Range>& scale;
-    std::string& unit;
-
-    void operator()(Value value, const FieldInfo& field) const;
-
-private:
-    void draw(const WidgetContext& context, Value value, const FieldInfo& field) const;
-    void drawText(const WidgetContext& context, Value value, const FieldInfo& field) const;
-    void drawNumbers(const WidgetContext& context, Value value, FieldInfo field) const;
-};
-
 } // namespace tessera::app

@@ -52,6 +52,16 @@ void askSurface(Workbench& workbench) {
     });
 }
 
+/// The pane that a picture is proposed of: the current one if it shows data, else the scene. Lists beside them are
+/// seldom meant, and at first one of them has the keyboard.
+std::string paneForPicture(Workbench& workbench) {
+    const Session& session = workbench.session();
+    const std::string current = workbench.panes().current(session), scene = workbench.panes().space(session);
+    const auto view = session.views.find(current);
+    const bool shows = view != session.views.end() && (traitsOf(view->second).inSpace || traitsOf(view->second).figure);
+    return shows || scene.empty() ? current : scene;
+}
+
 void copySession(Workbench& workbench) {
     const std::string folder = fs::current_path().string();
     ImGui::SetClipboardText(printSession(workbench.document().snapshot(), folder + "/clipboard").c_str());
@@ -72,11 +82,18 @@ void pasteSession(Workbench& workbench) {
 
 void dropFiles(Workbench& workbench, const std::vector<std::string>& paths) {
     if (paths.empty()) return;
+    std::error_code unknown;
+    for (const std::string& path : paths)
+        if (!fs::exists(path, unknown)) return workbench.message(path + ": no such file", true);
     FileQuestions& files = workbench.files();
     const bool choosable = areFilesOfOneFolder(paths);
     if (files.asksData() && choosable) return files.choose(paths);
-    if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup))
-        return workbench.message("Close the dialog before you drop files", true);
+    if (workbench.missingFiles().shown() && !files.shown()) {
+        if (!workbench.missingFiles().found(paths))
+            workbench.message("None of the files dropped is called like one that is missing", true);
+        return;
+    }
+    if (!KeyboardFocus::closeMenus()) return workbench.message("Close the dialog before you drop files", true);
     if (choosable && lacksLayout(paths.front(), {})) {
         askWhatToOpen(workbench);
         return files.choose(paths);
@@ -126,7 +143,7 @@ std::vector<Command> fileCommands(Workbench& workbench) {
              .help = "Save the window, one view, or several as a figure: PNG, SVG or PDF, which contain the session",
              .words = "screenshot image png export figure print capture",
              .shortcut = {.key = key::kF12},
-             .run = [&workbench] { workbench.pictureDialog().show(workbench.panes().current(workbench.session())); },
+             .run = [&workbench] { workbench.pictureDialog().show(paneForPicture(workbench)); },
              .enabled = loaded},
             {.menu = "File",
              .name = "Export surface...",

@@ -63,6 +63,15 @@ void KeyboardFocus::openMenus() {
     letter_ = 0;
 }
 
+bool KeyboardFocus::closeMenus() {
+    const auto& open = GImGui->OpenPopupStack;
+    if (open.empty()) return true;
+    for (const ImGuiPopupData& each : open)
+        if (!each.Window || (each.Window->Flags & ImGuiWindowFlags_Modal) != 0) return false;
+    ImGui::ClosePopupToLevel(0, true);
+    return true;
+}
+
 /// Puts the mark on the item of a window that was used last, or its first.
 void KeyboardFocus::place(ImGuiWindow* window) {
     ImGui::NavMoveRequestCancel();

@@ -18,6 +18,8 @@ public:
     void openMenus();
     /// Goes to the next (or previous) pane or list on screen, in the order of reading.
     void nextPart(int direction);
+    /// Closes menus and lists that are open; false where a dialog is.
+    static bool closeMenus();
     /// The window has lost the keyboard: letting go of Alt elsewhere opens nothing.
     void lostWindow() { altAlone_ = false; }
     /// At the end of a frame: draws the mark.

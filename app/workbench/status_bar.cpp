@@ -74,13 +74,14 @@ void drawNews(Messages& messages, float room, float scale, bool icons) {
 /// The jobs at the right, the newest last, as many as fit. Returns where they begin.
 float drawJobs(Jobs& jobs, float scale, bool icons) {
     const float whole = ImGui::GetMainViewport()->Size.x, bar = 120 * scale, cross = ImGui::GetFontSize() * 1.4f;
-    float x = whole - 10 * scale;
+    float x = whole - 10 * scale, end = x;
     for (const Jobs::Status& job : jobs.list()) {
         if (job.quiet || job.seconds < 0.15) continue;
         const std::string text = job.title + (job.what.empty() ? "" : ": " + job.what);
-        const float left = x - (ImGui::CalcTextSize(text.c_str()).x + bar + cross + 16 * scale);
+        const float left = end - (ImGui::CalcTextSize(text.c_str()).x + bar + cross + 16 * scale);
         if (left < whole * 0.35f) break;
         x = left;
+        end = left - ImGui::GetFontSize(); // so that the cross belongs to the job before it
         ImGui::PushID(job.key.c_str());
         ImGui::SameLine(x);
         drawJob(jobs, job, text, bar, scale, icons);

@@ -14,7 +14,14 @@ namespace tessera::app {
 
 namespace {
 
-/// Opens a view. A hidden one of the same kind is shown instead of a second one.
+/// Two views without settings show the same.
+bool hasSettings(ViewState& view) {
+    bool any = false;
+    std::visit([&](auto& state) { state.describe(state, [&](auto&, const FieldInfo&) { any = true; }); }, view);
+    return any;
+}
+
+/// Opens a view. A hidden one of the same kind is shown instead of a second one, and so is one that has no settings.
 void openView(Workbench& workbench, ViewState view) {
     Session& session = workbench.session();
     auto* const timeline = std::get_if<TimelineView>(&view);
@@ -26,6 +33,9 @@ void openView(Workbench& workbench, ViewState view) {
                 return;
             }
     }
+    if (!hasSettings(view))
+        for (const auto& [pane, other] : session.views)
+            if (other.index() == view.index()) return workbench.panes().show(session, pane);
     workbench.panes().open(session, view, workbench.look().scale());
 }
 
@@ -173,6 +183,13 @@ void showLayout(Workbench& workbench, const std::string& name, const std::string
     try {
         std::vector<std::string> messages;
         const SessionDocument layout = loadSession(findLayout(name));
+        // Errors of packing exist only where data were opened together with their originals.
+        const DataRef &wanted = layout.session.data, &shown = workbench.session().data;
+        if (wanted.originals && !shown.originals && shown.files.empty() && shown.model == wanted.model) {
+            OpenRequest request;
+            request.layout = name;
+            return workbench.open(std::move(request));
+        }
         workbench.document().replace(changeLayout(layout, *workbench.source(), workbench.session(), messages),
                                      "Layout: " + title);
         for (const std::string& text : messages) workbench.message(text);

@@ -88,6 +88,7 @@ public:
     DataFollower& data() { return data_; }
     PaneHost& panes() { return panes_; }
     FileQuestions& files() { return files_; }
+    MissingFilesDialog& missingFiles() { return missing_; }
     PictureDialog& pictureDialog() { return pictures_; }
     HelpDialogs& help() { return help_; }
     CommandPalette& palette() { return palette_; }

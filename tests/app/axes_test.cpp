@@ -4,6 +4,7 @@
 #include "tests/app/fed_imgui.h"
 
 #include <algorithm>
+#include <array>
 
 /// Axes and the triad of pictures in space, and the lines of the cross-hair.
 namespace tessera::app {
@@ -52,6 +53,28 @@ TEST_F(AxesTest, AnAxisWithoutRoomBesideItHasItsTitleBeyondItsEnd) {
     ASSERT_EQ(above.size(), 1u);
     EXPECT_LT(above[0].max.y, 36) << "beyond its end";
     EXPECT_NEAR(above[0].middle().x, 186, em / 2);
+}
+
+// At an end where it has no room it would be moved over the edge of the box.
+TEST_F(AxesTest, ATitleGoesToTheEndOfItsAxisThatHasRoom) {
+    vis::Camera camera = vis::planeCamera(0, 1, vis::worldFrame(kBox, glm::dvec3(1)));
+    camera.distance *= 1.08f; // nothing below it
+    for (const float side : {1.0f, -1.0f}) {
+        camera.target.x = -0.1f * side;
+        std::array<float, 2> box{};
+        feedWindow([&] {
+            const SpaceFrame frame = spaceFrame({0, 0}, {560, 500}, camera, kBox, glm::dvec3(1));
+            box = {frame.pixel({0, 0, 2})->x, frame.pixel({4, 0, 2})->x};
+            drawAxes3d(*ImGui::GetWindowDrawList(), frame, camera, kLabels, {});
+        });
+        const auto titles = called("x [mm]");
+        ASSERT_EQ(titles.size(), 1u);
+        EXPECT_LT(side > 0 ? 560 - box[1] : box[0], titles[0].max.x - titles[0].min.x) << "no room here";
+        if (side > 0)
+            EXPECT_LT(titles[0].max.x, box[0]);
+        else
+            EXPECT_GT(titles[0].min.x, box[1]);
+    }
 }
 
 TEST_F(AxesTest, ACornerIsCoveredAsFarAsTheBoxReachesIntoIt) {

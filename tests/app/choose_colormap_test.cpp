@@ -2,6 +2,7 @@
 #include "app/ui/keys.h"
 #include "app/ui/theme.h"
 #include "app/ui/widgets.h"
+#include "tests/app/drawn_text.h"
 #include "tests/app/fed_imgui.h"
 
 /// The list of colour maps: what is typed, arrows and Enter.
@@ -49,6 +50,27 @@ protected:
     }
     std::string value = "viridis";
 };
+
+TEST_F(ChooseColormap, WithoutRoomForTheStripTheNameBeginsAtTheLeftAndIsCutOff) {
+    value = "blue-orange";
+    for (const float width : {300.0f, 110.0f, 70.0f}) {
+        ImVec2 corner;
+        feedWindow([&] {
+            corner = ImGui::GetCursorScreenPos();
+            ImGui::SetNextItemWidth(width);
+            chooseColormap("##map", value);
+        });
+        const std::vector<DrawnText> texts = drawnTexts();
+        ASSERT_EQ(texts.size(), 1u);
+        EXPECT_EQ(texts[0].text == value, width > 70) << texts[0].text;
+        EXPECT_EQ(texts[0].text.ends_with("..."), width <= 70) << texts[0].text;
+        EXPECT_LT(texts[0].max.x, corner.x + width - ImGui::GetFrameHeight() + 1) << width;
+        if (width > 200)
+            EXPECT_GT(texts[0].min.x, corner.x + 60) << "beside the strip";
+        else
+            EXPECT_LT(texts[0].min.x, corner.x + ImGui::GetStyle().FramePadding.x + 2) << width;
+    }
+}
 
 TEST_F(ChooseColormap, ATypedNameAndEnterPick) {
     open();

@@ -1,5 +1,8 @@
 #include "app/pane/axes3d.h"
+#include "tests/app/drawn_text.h"
 #include "tests/app/hands_fixture.h"
+
+#include <algorithm>
 
 /// The mouse in views of space: volume, shadow cube, comparisons. The camera's own hand: camera_hand_gl_test.cpp.
 namespace tessera::app {
@@ -290,6 +293,42 @@ TEST_F(SpaceHands, TheSwipeLineGoesWithTheMouse) {
     button(0, false);
     expectSame(turned); // beside the line the pictures are turned
     EXPECT_EQ(swipe(), 0.5f);
+}
+
+TEST_F(SpaceHands, TheWheelZoomsTheShadowCubeAndTheTesseract) {
+    showSpace(ShadowCubeView{});
+    const float distance = camera().distance;
+    moveTo(within(picture, 0.5, 0.5));
+    turnWheel(2);
+    EXPECT_NEAR(camera().distance, distance / (1.15f * 1.15f), 1e-5f) << "away from the hand: nearer";
+    turnWheel(-2);
+    EXPECT_NEAR(camera().distance, distance, 1e-5f);
+    moveTo({picture.Max.x + 30, 5});
+    turnWheel(1);
+    EXPECT_NEAR(camera().distance, distance, 1e-5f) << "not over the picture";
+
+    showSpace(TesseractView{}, {500, 500});
+    const auto zoom = [&] { return std::get<TesseractView>(session().views.at("pane")).zoom; };
+    const float before = zoom();
+    moveTo(within(picture, 0.5, 0.5));
+    turnWheel(2);
+    EXPECT_NEAR(zoom(), before * 1.15f * 1.15f, 1e-5f) << "away from the hand: larger";
+    turnWheel(-60);
+    EXPECT_EQ(zoom(), 0.2f);
+    turnWheel(60);
+    EXPECT_EQ(zoom(), 10.0f);
+    moveTo({picture.GetCenter().x, picture.Max.y + 20}); // over the sliders
+    turnWheel(-1);
+    EXPECT_EQ(zoom(), 10.0f);
+}
+
+TEST_F(SpaceHands, InALowPictureTheReferenceIsToldByTheTableAlone) {
+    for (const int height : {300, 110}) {
+        showSpace(twoVariants(CompareMode::Grid), {500, height});
+        const std::vector<std::string> words = drawnWords();
+        EXPECT_EQ(std::ranges::count(words, "reference"), height > 200) << height;
+        EXPECT_EQ(std::ranges::count(words, "other"), 1);
+    }
 }
 
 TEST_F(SpaceHands, ADragInOnePictureOfAComparisonTurnsAll) {

@@ -180,7 +180,7 @@ TEST(HistoryTest, AStepMayHaveAName) {
     ASSERT_EQ(history.steps().size(), 3u) << "none joins the one before";
     EXPECT_EQ(history.steps()[0].name, "Layout: Lens");
     EXPECT_EQ(history.steps()[1].name, "Layout: Flow");
-    EXPECT_EQ(history.steps()[2].name, "several changes");
+    EXPECT_EQ(history.steps()[2].name, "camera and time");
 }
 
 TEST(HistoryTest, ANameIsForTheNextEditNotForOneAfterUndo) {

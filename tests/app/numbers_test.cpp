@@ -198,6 +198,8 @@ TEST(Numbers, OfOriginalsBesideWhatWasPacked) {
             of.originals = true;
         }));
         EXPECT_EQ(sources.numbers->info().lattice, plain.numbers->info().lattice);
+        EXPECT_EQ(sources.pictures->info().lattice, plain.numbers->info().lattice)
+            << "on that of the archive an error would be drawn without that of resampling";
         for (const std::string name : {"O2", "H2O", "T"}) {
             const volume::DatasetInfo& info = plain.numbers->info();
             const Range range = info.channelRange(info.channel(info.findChannel(name).value()));

@@ -324,6 +324,19 @@ TEST_F(OpenTest, ASurfaceThatCannotBeIsToldOf) {
         messages, [](const std::string& text) { return text.find("surface is empty") != std::string::npos; }));
 }
 
+TEST_F(OpenTest, ALayoutOfErrorsOnDataWithoutOriginalsIsToldOf) {
+    const Opened opened = open(smallCell(2));
+    Session shown = opened.document.session;
+    for (const bool originals : {false, true}) {
+        shown.data.originals = originals;
+        std::vector<std::string> messages;
+        changeLayout(loadSession(findLayout("compression_error")), *opened.source, shown, messages);
+        EXPECT_EQ(std::ranges::count_if(
+                      messages, [](const std::string& text) { return text.find("originals") != std::string::npos; }),
+                  originals ? 0 : 1);
+    }
+}
+
 TEST_F(OpenTest, ALayoutChosenKeepsTheBrushesOfTheUser) {
     const Opened opened = open(smallCell(3));
     const auto change = [&](const Session& from, const char* name, std::vector<std::string>& messages) {

@@ -4,6 +4,12 @@
 #include "tests/app/drawn_text.h"
 #include "tests/app/fed_imgui.h"
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <map>
+#include <thread>
+
 namespace tessera::app {
 namespace {
 
@@ -39,9 +45,10 @@ struct StatusLine : FedImGui {
     }
     std::vector<std::string> draw(bool down = false) {
         ImGui::GetIO().MouseDown[0] = down;
-        feed([&] { drawStatusBar("data", nullptr, &messages, 24, 1, false); });
+        feed([&] { drawStatusBar("data", jobs, &messages, 24, 1, false); });
         return drawnWords();
     }
+    Jobs* jobs = nullptr;
     Messages messages{[] { return 0.0; }};
 };
 
@@ -66,6 +73,43 @@ TEST_F(StatusLine, AClickTakesTheNewestMessageAway) {
     EXPECT_EQ(click(), "first");
     EXPECT_EQ(click(), "data");
     EXPECT_EQ(messages.list().size(), 3u) << "they stay in the pane";
+}
+
+TEST_F(StatusLine, TheMouseOnAMessageShowsAllThatAreNewWhole) {
+    messages.add("an earlier one");
+    messages.add("begin " + std::string(300, 'x') + " end of it");
+    draw();
+    for (const DrawnText& each : drawnTexts())
+        if (each.text.starts_with("begin")) mouse = {each.min.x + 20, each.middle().y};
+    for (int i = 0; i < 3; ++i) draw(); // a tooltip has its size in the second picture
+    std::string said;
+    for (const std::string& word : drawnWords()) said += word + "|";
+    for (const char* text : {"end of it", "an earlier one"})
+        EXPECT_NE(said.find(text), std::string::npos) << text << " in " << said;
+}
+
+// The cross of a job is beside its own bar, not beside the title of the next.
+TEST_F(StatusLine, JobsAreApart) {
+    Jobs working;
+    std::atomic<bool> done = false;
+    for (const char* title : {"one", "two"})
+        working.start(title, title, [&done](const Progress&) {
+            while (!done) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            return Jobs::Finish();
+        });
+    std::this_thread::sleep_for(std::chrono::milliseconds(200)); // shorter ones are not listed
+    jobs = &working;
+    draw();
+    draw();
+    std::map<std::string, std::vector<DrawnText>> found;
+    for (const DrawnText& text : drawnTexts()) found[text.text].push_back(text);
+    done = true;
+    working.wait();
+    ASSERT_EQ(found["one"].size() + found["two"].size(), 2u);
+    ASSERT_EQ(found["x"].size(), 2u);
+    const float title = std::max(found["one"][0].min.x, found["two"][0].min.x);
+    const float cross = std::min(found["x"][0].max.x, found["x"][1].max.x);
+    EXPECT_GT(title - cross, 1.3f * ImGui::GetFontSize());
 }
 
 } // namespace

@@ -402,6 +402,33 @@ TEST_F(UiTest, ADoubleClickTypesANumber) {
         }
 }
 
+TEST_F(UiTest, EscAfterADoubleClickLeavesTheValueAsItWas) {
+    const FieldInfo info{.key = "gain", .unit = "", .doc = "", .range = Range{0, 1}};
+    double value = 0.125;
+    ImVec2 at;
+    const auto body = [&] { at = middleOfNumber(info, value); };
+    const auto click = [&] {
+        for (const bool down : {false, true, false}) {
+            held = down;
+            frame(body);
+        }
+    };
+    for (int i = 0; i < 60; ++i) frame(body);
+    mouse = at;
+    click();
+    EXPECT_NEAR(value, 0.5, 0.02) << "one click moves it";
+    click();
+    EXPECT_TRUE(ImGui::GetIO().WantTextInput);
+    EXPECT_EQ(value, 0.125) << "what is typed over is the value before the first click";
+    for (const bool down : {true, false}) {
+        feedKey(ImGui::GetIO(), key::kEscape, down);
+        frame(body);
+    }
+    frame(body);
+    EXPECT_FALSE(ImGui::GetIO().WantTextInput);
+    EXPECT_EQ(value, 0.125);
+}
+
 TEST_F(UiTest, AMenuHasRoomForTheListOfSettings) {
     Session session;
     std::string search, path;

@@ -1,11 +1,14 @@
 #include "app/queries/flow_query.h"
+#include "app/views/compare/compare_questions.h"
 #include "app/views/tesseract/tesseract_wire.h"
 #include "tests/app/drawn_text.h"
 #include "tests/app/views_fixture.h"
 #include "volume/base/error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <thread>
 
 namespace tessera::app {
@@ -132,6 +135,81 @@ TEST_F(Views, FlowComesAtOnceOrFromTheBackground) {
     EXPECT_EQ(later.get(context, "b")[0].channel, "T");
     session.layers[0].visible = false;
     EXPECT_TRUE(later.get(context, "b").empty());
+}
+
+/// The place in the list of corners of the first one of a colour, and of the last one; nothing where there is none.
+std::optional<std::pair<int, int>> cornersOf(ImU32 color) {
+    std::optional<std::pair<int, int>> found;
+    for (int list = 0, at = 0; list < ImGui::GetDrawData()->CmdListsCount; ++list)
+        for (const ImDrawVert& corner : ImGui::GetDrawData()->CmdLists[list]->VtxBuffer) {
+            if (corner.col == color) found = {found ? found->first : at, at};
+            ++at;
+        }
+    return found;
+}
+
+// A low plot has no corner that is free of its curve.
+TEST_F(Views, ACurveIsDrawnOverTheTitleOfItsPlot) {
+    show(fuelCell(volume::LatticeKind::CC));
+    profileView.channels = {"T"};
+    const ImU32 curve = plotColors().focus, backdrop = plotColors().backdrop;
+    for (const ProfileOver over : {ProfileOver::Line, ProfileOver::Time}) {
+        profileView.over = over;
+        for (int i = 0; i < 2; ++i) frame([&] { draw("profile", profileView, drawProfileView, {400, 140}); });
+        ASSERT_TRUE(cornersOf(curve) && cornersOf(backdrop));
+        EXPECT_GT(cornersOf(curve)->first, cornersOf(backdrop)->second);
+    }
+    curvesView.y = {"mean(T)"};
+    for (int i = 0; i < 2; ++i) frame([&] { draw("curves", curvesView, drawCurvesView, {400, 140}); });
+    ASSERT_TRUE(cornersOf(curve) && cornersOf(backdrop));
+    EXPECT_GT(cornersOf(curve)->first, cornersOf(backdrop)->first) << "the ring around the time has a rim";
+}
+
+TEST_F(Views, AQuestionOfAComparisonIsRemovedByItsButton) {
+    CompareView compare;
+    compare.questions.resize(2);
+    compare.questions[0].text = "Which one is hotter, and is it so at the outlet of the channel as well?";
+    compare.questions[1].text = "b";
+    QuestionClock clock;
+    const auto draws = [&] {
+        ViewContext context{session, source, renderer, jobs, caches};
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({400, 200});
+        ImGui::Begin("questions", nullptr, ImGuiWindowFlags_NoDecoration);
+        drawQuestions(context, compare, clock, {"one", "other"});
+        ImGui::End();
+    };
+    for (int i = 0; i < 2; ++i) frame(draws);
+    std::vector<DrawnText> crosses = drawnTexts(); // without the font of icons: words
+    std::erase_if(crosses, [](const DrawnText& text) { return text.text != "x"; });
+    ASSERT_EQ(crosses.size(), 2u);
+    mouse = {30, crosses[0].middle().y};
+    for (int i = 0; i < 2; ++i) frame(draws);
+    const std::vector<std::string> told = drawnWords();
+    EXPECT_EQ(
+        std::ranges::count_if(told, [](const std::string& word) { return word.find("channel as well?") + 1 > 0; }), 1)
+        << "the end of what is cut off";
+    mouse = crosses[0].middle();
+    for (const bool down : {false, true, false}) {
+        ImGui::GetIO().MouseDown[0] = down;
+        frame(draws);
+    }
+    ASSERT_EQ(compare.questions.size(), 1u);
+    EXPECT_EQ(compare.questions[0].text, "b");
+}
+
+// In a wide pane the body stands at the left, the legends and what is near at the right.
+TEST_F(Views, TheTextsOfATesseractStandBesideIt) {
+    show(fuelCell(volume::LatticeKind::BCC));
+    for (int i = 0; i < 2; ++i) frame([&] { draw("tesseract", tesseractView, drawTesseractView, {800, 400}); });
+    int found = 0;
+    for (const DrawnText& text : drawnTexts()) {
+        if (text.text.find("near in 4D") == std::string::npos) continue;
+        ++found;
+        EXPECT_GT(text.min.x, 500);
+        EXPECT_LT(text.max.y, 120);
+    }
+    EXPECT_EQ(found, 1);
 }
 
 // Drags turn the tesseract in the planes they say, the angles stay those of a rotation, R turns back.

@@ -175,6 +175,99 @@ TEST_F(WorkbenchOpening, FilesDroppedBesideADialogAreNotOpened) {
     EXPECT_EQ(news(), 0u) << "what is told of former data is no news of these";
 }
 
+// What is dropped beside an open menu is meant for the window: the menu closes.
+TEST_F(WorkbenchOpening, ADroppedFileClosesAMenuAndIsOpened) {
+    write("told_4x4x3_uint8.raw", std::string(48, '\x42'));
+    write("told_4x4x3_uint8.json", R"({"dims":[4,4,3],"dtype":"uint8"})");
+    workbench.install(smallData());
+    settle();
+    press(key::kF10);
+    for (int i = 0; i < 3; ++i) frame();
+    ASSERT_TRUE(dialogOpen()) << "the first menu";
+    dropFiles(workbench, {(folder / "told_4x4x3_uint8.raw").string()});
+    settle();
+    EXPECT_FALSE(dialogOpen());
+    EXPECT_EQ(shown(), "told_4x4x3_uint8.raw");
+    EXPECT_EQ(news(), 0u);
+}
+
+// The dialog that asks for moved files takes them when they are dropped on it: by their names, the only one by any.
+TEST_F(WorkbenchOpening, MissingFilesAreDroppedOnTheDialogThatAsksForThem) {
+    for (const char* name : {"a_4x4x3_uint8", "b_4x4x3_uint8"}) {
+        write(name + std::string(".raw"), std::string(48, '\x42'));
+        write(name + std::string(".json"), R"({"dims":[4,4,3],"dtype":"uint8"})");
+    }
+    OpenRequest request;
+    request.paths = {(folder / "a_4x4x3_uint8.raw").string(), (folder / "b_4x4x3_uint8.raw").string()};
+    workbench.open(request);
+    settle();
+    ASSERT_EQ(workbench.session().data.files.size(), 2u);
+    workbench.document().save("kept.tessera.json");
+    fs::create_directories(folder / "moved");
+    for (const char* name : {"a_4x4x3_uint8", "b_4x4x3_uint8"})
+        for (const char* ending : {".raw", ".json"})
+            fs::rename(folder / (name + std::string(ending)), folder / "moved" / (name + std::string(ending)));
+    workbench.install(smallData());
+    request.paths = {(folder / "kept.tessera.json").string()};
+    workbench.open(request);
+    settle();
+    ASSERT_TRUE(workbench.missingFiles().shown());
+    ASSERT_TRUE(dialogOpen());
+    write("other.raw", "other");
+    dropFiles(workbench, {(folder / "other.raw").string()});
+    settle();
+    EXPECT_EQ(news(), 1u) << "neither of the two";
+    dropFiles(workbench, {(folder / "gone.raw").string()});
+    settle();
+    ASSERT_EQ(news(), 2u);
+    EXPECT_NE(workbench.messages().news().front()->text.find("gone.raw: no such file"), std::string::npos);
+    EXPECT_TRUE(workbench.missingFiles().shown());
+    dropFiles(workbench, {(folder / "moved" / "b_4x4x3_uint8.raw").string()});
+    settle();
+    EXPECT_TRUE(workbench.missingFiles().shown()) << "one more";
+    fs::rename(folder / "moved" / "a_4x4x3_uint8.raw", folder / "moved" / "renamed_4x4x3_uint8.raw");
+    fs::rename(folder / "moved" / "a_4x4x3_uint8.json", folder / "moved" / "renamed_4x4x3_uint8.json");
+    dropFiles(workbench, {(folder / "moved" / "renamed_4x4x3_uint8.raw").string()});
+    settle();
+    EXPECT_FALSE(workbench.missingFiles().shown());
+    EXPECT_FALSE(dialogOpen());
+    EXPECT_EQ(shown(), "renamed_4x4x3_uint8.raw");
+}
+
+// At first a list has the keyboard, of which nobody wants a picture.
+TEST_F(WorkbenchOpening, APictureIsProposedOfAViewThatShowsData) {
+    workbench.install(smallData());
+    settle();
+    for (int i = 0; i < 3; ++i) frame([](ImGuiIO& io) { io.MousePos = {-FLT_MAX, -FLT_MAX}; });
+    const std::string current = workbench.panes().current(workbench.session());
+    ASSERT_FALSE(traitsOf(workbench.session().views.at(current)).inSpace) << current;
+    ASSERT_TRUE(run("Save picture..."));
+    for (int i = 0; i < 3; ++i) frame();
+    std::string proposed;
+    const std::vector<DrawnText> texts = drawnTexts();
+    for (const DrawnText& label : texts)
+        for (const DrawnText& text : texts)
+            if (label.text == "What" && text.min.x > label.min.x && std::abs(text.min.y - label.min.y) < 3)
+                proposed = proposed.empty() ? text.text : proposed;
+    EXPECT_EQ(proposed, "Volume");
+}
+
+// On the cell as it is there are no errors to show.
+TEST_F(WorkbenchOpening, TheLayoutOfErrorsOpensTheCellBesideItsOriginals) {
+    OpenRequest request;
+    request.data.emplace();
+    request.data->model = "fuel-cell";
+    request.data->settings = {{"nx", 5}, {"ny", 7}, {"nz", 9}, {"times", 2}};
+    workbench.install(open(request));
+    settle();
+    ASSERT_TRUE(run("Compression error"));
+    settle();
+    EXPECT_TRUE(workbench.session().data.originals);
+    EXPECT_TRUE(workbench.source()->info().findChannel("T error"));
+    EXPECT_EQ(std::get<SlicesView>(workbench.session().views.at("slices")).channel, "T error");
+    EXPECT_EQ(news(), 0u);
+}
+
 // A session whose data are other ones now is not the one that was saved: that stands longer than what was done.
 TEST_F(WorkbenchOpening, ChangedDataAreWarnedOf) {
     write("told.raw", std::string(48, '\x42'));

@@ -168,7 +168,9 @@ TEST(HistoryWords, SayWhatAStepChanged) {
     EXPECT_EQ(said({}), "nothing");
     EXPECT_EQ(said({"/dock/root/ratio"}), "arrangement of panes");
     EXPECT_EQ(said({"/camera/zoom", "/camera/orientation"}), "camera");
-    EXPECT_EQ(said({"/camera/zoom", "/time"}), "several changes");
+    EXPECT_EQ(said({"/camera/zoom", "/time"}), "camera and time");
+    EXPECT_EQ(said({"/cursor/0", "/cursor/1", "/layers/0", "/time"}), "cross-hair, layers and time");
+    EXPECT_EQ(said({"/cursor/0", "/camera/zoom", "/layers/0", "/time"}), "several changes");
     EXPECT_EQ(said({"/time"}), "time");
     EXPECT_EQ(said({"/layers/1/technique/opacity"}), "layers 2: opacity");
     EXPECT_EQ(said({"/layers/2"}, "add"), "layers 3 added");
@@ -210,6 +212,14 @@ TEST(HistoryWords, CallThingsByTheirNames) {
     EXPECT_EQ(both("/transfer/O2/range/0", "/transfer/O2/range/1"), "transfer function of O2: range");
     EXPECT_EQ(both("/transfer/O2/range/0", "/transfer/T/range/0"), "transfer") << "of several";
     EXPECT_EQ(both("/lenses/0/center/2", "/lenses/1/center/2"), "lenses");
+    const auto withPanes = [&](const char* operation, const Session& then) {
+        return editTitle(Json::array({{{"op", "replace"}, {"path", "/dock/root/ratio"}},
+                                      {{"op", operation}, {"path", "/views/scatterMatrix-2"}},
+                                      {{"op", operation}, {"path", "/dock/root/tabs/1"}}}),
+                         before, then);
+    };
+    EXPECT_EQ(withPanes("add", after), "Scatterplots 2 opened") << "panes move where one is opened";
+    EXPECT_EQ(withPanes("remove", {}), "Scatterplots 2 closed");
     after.layers.pop_back();
     EXPECT_EQ(said("/layers/1", "remove"), "O2 surface removed") << "as it was called";
 }

@@ -15,20 +15,25 @@ float questionsHeight(const CompareView& view) {
     return ImGui::GetFrameHeightWithSpacing() * static_cast<float>(view.questions.size() + 1) + em() * 0.4f;
 }
 
-void drawQuestions(CompareView& view, QuestionClock& clock, const std::vector<std::string>& variants) {
+void drawQuestions(const ViewContext& context, CompareView& view, QuestionClock& clock,
+                   const std::vector<std::string>& variants) {
     if (view.questions.empty()) {
         clock = {};
         return;
     }
     if (clock.shown < 0) clock.shown = ImGui::GetTime();
     const float width = ImGui::GetContentRegionAvail().x, answer = std::min(em() * 14, width * 0.35f);
+    const float remove = iconButtonWidth(context, icons::kTrash), time = em() * 5;
     const auto answered = [&](CompareQuestion& question) { question.seconds = ImGui::GetTime() - clock.shown; };
     std::size_t removed = view.questions.size();
     for (std::size_t i = 0; i < view.questions.size(); ++i) {
         CompareQuestion& question = view.questions[i];
         ImGui::PushID(static_cast<int>(i));
-        ImGui::SetNextItemWidth(std::max(em() * 4, width - answer - em() * 9));
+        ImGui::SetNextItemWidth(std::max(em() * 4, width - answer - ImGui::GetFrameHeight() - time - remove));
         ImGui::InputTextWithHint("##question", "A question, such as: which spot is hotter?", &question.text);
+        const float shown = ImGui::GetItemRectSize().x - 2 * ImGui::GetStyle().FramePadding.x;
+        if (ImGui::IsItemHovered() && !ImGui::IsItemActive() && ImGui::CalcTextSize(question.text.c_str()).x > shown)
+            tooltip(question.text.c_str());
         ImGui::SameLine(0, em() * 0.4f);
         ImGui::SetNextItemWidth(answer);
         if (ImGui::InputTextWithHint("##answer", "answer", &question.answer)) answered(question);
@@ -42,9 +47,11 @@ void drawQuestions(CompareView& view, QuestionClock& clock, const std::vector<st
             ImGui::EndCombo();
         }
         ImGui::SameLine(0, em() * 0.4f);
+        ImGui::AlignTextToFramePadding();
         ImGui::TextDisabled("%s", question.seconds > 0 ? formatQuantity(question.seconds, "s", 0.1).c_str() : "-");
-        ImGui::SameLine(width - em() * 1.4f);
-        if (ImGui::SmallButton("x")) removed = i;
+        if (ImGui::IsItemHovered()) tooltip("Time to the answer");
+        ImGui::SameLine(width - remove);
+        if (iconButton(context, "remove", icons::kTrash, "Remove the question")) removed = i;
         ImGui::PopID();
     }
     if (removed < view.questions.size())

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/pane/controls.h"
 #include "app/session/view_state.h"
 
 #include <string>
@@ -18,6 +19,7 @@ struct QuestionClock {
 float questionsHeight(const CompareView& view);
 
 /// A row for each: the question, the answer (one of the variants' names, or any words), the time it took.
-void drawQuestions(CompareView& view, QuestionClock& clock, const std::vector<std::string>& variants);
+void drawQuestions(const ViewContext& context, CompareView& view, QuestionClock& clock,
+                   const std::vector<std::string>& variants);
 
 } // namespace tessera::app

@@ -4,6 +4,7 @@
 #include "app/pane/view_parts.h"
 #include "app/ui/ticks.h"
 #include "app/views/compare/compare_panes.h"
+#include "volume/base/byte_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,8 +27,8 @@ float cellPadding() {
     return 2 * ImGui::GetStyle().CellPadding.x + 1;
 }
 
-std::string mebibytes(double bytes) {
-    return bytes <= 0 ? std::string("-") : formatNumber(bytes / (1 << 20), 0.01) + " MiB";
+std::string bytesOrDash(double bytes) {
+    return bytes <= 0 ? std::string("-") : textOfBytes(bytes);
 }
 
 /// A number of two pictures' difference, of which the reference has none.
@@ -137,10 +138,10 @@ std::vector<CompareColumn> compareColumns(const CompareView& view, const std::ve
             return row.milliseconds > 0 ? formatNumber(row.milliseconds, row.milliseconds < 10 ? 0.1 : 1) : "-";
         });
         add("Samples", 5, [](const CompareRow& row) { return row.samples > 0 ? formatCount(row.samples) : "-"; });
-        add("Texture", 8, [](const CompareRow& row) { return mebibytes(row.bytes); });
+        add("Texture", 8, [](const CompareRow& row) { return bytesOrDash(row.bytes); });
     }
     if (any([](const CompareRow& row) { return row.storedBytes > 0; }))
-        add("File", 1, [](const CompareRow& row) { return mebibytes(row.storedBytes); });
+        add("File", 1, [](const CompareRow& row) { return bytesOrDash(row.storedBytes); });
     if (any([](const CompareRow& row) { return row.data.has_value(); }))
         add("Differ", 4, [](const CompareRow& row) {
             return row.data ? formatCount(static_cast<double>(row.data->differing)) : "-";

@@ -55,7 +55,8 @@ void drawOver(const Frame& frame, const PictureBox& box, const Session& session,
     const float pad = em() * 0.5f;
     addFittedWithBackdrop(draw, {left ? box.min.x + pad : box.max().x - pad, box.min.y + em() * 0.4f},
                           {left ? 0.0f : 1.0f, 0}, colors.text, caption, box.size.x * (left ? 1.0f : 0.5f) - 2 * pad);
-    if (marked)
+    // In a low picture it would cover what is compared; the table says it as well.
+    if (marked && box.size.y > em() * 7)
         addTextWithBackdrop(draw, {box.min.x + pad, box.min.y + em() * 1.7f}, {0, 0}, colors.faint, "reference");
 }
 
@@ -360,7 +361,7 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
     ImGui::SetCursorScreenPos({at.x, at.y + area.y + table});
     std::vector<std::string> names;
     for (std::size_t i = 0; i < count; ++i) names.push_back(nameOf(frame, i));
-    drawQuestions(view, cache.questions, names);
+    drawQuestions(context, view, cache.questions, names);
 }
 
 } // namespace tessera::app

@@ -202,6 +202,16 @@ void drawPlot(ViewContext& context, const volume::Curves& curves, const std::vec
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotColors colors = plotColors();
     const ImVec2 mouse = ImGui::GetIO().MousePos;
+    // Below the curves, which a low plot has no room beside.
+    float top = frame.min.y + em() * 0.2f;
+    for (std::size_t n = 0; n < group.size(); ++n, top += em() * 1.15f) {
+        const volume::Curve& curve = curves.y[group[n]];
+        std::string text = curveTitle(curve);
+        const double value = curvePoint(curves, group[n], session.time).y;
+        if (std::isfinite(value)) text += "  " + groupedNumber(value);
+        addFittedWithBackdrop(draw, {frame.max.x - em() * 0.4f, top}, {1, 0}, group.size() > 1 ? inkOf(n) : colors.text,
+                              text, frame.width() - em());
+    }
     draw.PushClipRect({frame.min.x - em(), frame.min.y}, {frame.max.x + em(), frame.max.y}, true);
     for (std::size_t n = 0; n < group.size(); ++n)
         drawCurve(curves, curves.y[group[n]].values, frame, inkOf(n), mouse, near);
@@ -215,15 +225,6 @@ void drawPlot(ViewContext& context, const volume::Curves& curves, const std::vec
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, colors.frame);
     drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
-    float top = frame.min.y + em() * 0.2f;
-    for (std::size_t n = 0; n < group.size(); ++n, top += em() * 1.15f) {
-        const volume::Curve& curve = curves.y[group[n]];
-        std::string text = curveTitle(curve);
-        const double value = curvePoint(curves, group[n], session.time).y;
-        if (std::isfinite(value)) text += "  " + groupedNumber(value);
-        addFittedWithBackdrop(draw, {frame.max.x - em() * 0.4f, top}, {1, 0}, group.size() > 1 ? inkOf(n) : colors.text,
-                              text, frame.width() - em());
-    }
 }
 
 /// The plots below each other over one axis; a click on a point goes to its time.

@@ -85,28 +85,17 @@ void drawCurve(const std::string& title, Range range, const Profile& profile, st
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotColors colors = plotColors();
     const std::vector<double>& values = profile.values[c];
-    draw.PushClipRect(frame.min, frame.max, true);
-    std::vector<ImVec2> run, line;
-    const auto flush = [&] {
-        line.insert(line.end(), run.begin(), run.end());
-        if (run.size() > 1)
-            draw.AddPolyline(run.data(), static_cast<int>(run.size()), colors.focus, 0, std::max(1.2f, em() * 0.11f));
-        else if (run.size() == 1)
-            draw.AddCircleFilled(run.front(), em() * 0.12f, colors.focus);
-        run.clear();
-    };
+    std::vector<std::vector<ImVec2>> runs(1);
+    std::vector<ImVec2> line;
     for (std::size_t i = 0; i < values.size(); ++i) {
-        if (std::isnan(values[i]))
-            flush();
-        else
-            run.push_back(frame.pixel(across.values[i], values[i]));
+        if (std::isnan(values[i])) {
+            runs.emplace_back();
+            continue;
+        }
+        line.push_back(frame.pixel(across.values[i], values[i]));
+        runs.back().push_back(line.back());
     }
-    flush();
     const std::optional<std::size_t> marked = across.marked;
-    if (marked) drawCrosshair(draw, frame, across.values[*marked], values[*marked]);
-    draw.PopClipRect();
-    draw.AddRect(frame.min, frame.max, colors.frame);
-    drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
     std::string text = title;
     if (marked) text += "  " + formatNumber(values[*marked], (range.hi - range.lo) / 1000);
     const ImVec2 size{std::min(ImGui::CalcTextSize(text.c_str()).x, frame.width() - em()), em()};
@@ -116,6 +105,17 @@ void drawCurve(const std::string& title, Range range, const Profile& profile, st
         draw,
         {inset(frame.min.x, frame.max.x, pivot.x, em() * 0.4f), inset(frame.min.y, frame.max.y, pivot.y, em() * 0.2f)},
         pivot, colors.text, text, frame.width() - em());
+    // Over the title: a low plot has no corner without the curve.
+    draw.PushClipRect(frame.min, frame.max, true);
+    for (const std::vector<ImVec2>& run : runs)
+        if (run.size() > 1)
+            draw.AddPolyline(run.data(), static_cast<int>(run.size()), colors.focus, 0, std::max(1.2f, em() * 0.11f));
+        else if (run.size() == 1)
+            draw.AddCircleFilled(run.front(), em() * 0.12f, colors.focus);
+    if (marked) drawCrosshair(draw, frame, across.values[*marked], values[*marked]);
+    draw.PopClipRect();
+    draw.AddRect(frame.min, frame.max, colors.frame);
+    drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
 }
 
 void updatePictures(ProfileCache& cache, const Session& session, const volume::DatasetInfo& info,

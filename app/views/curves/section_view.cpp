@@ -139,9 +139,32 @@ std::optional<std::size_t> nearestPoint(const FigureSeries& series, double place
     return best;
 }
 
+/// What the panel shows, and the values at the place that is marked. The curves are drawn over it.
+void writeTitles(const FigurePanel& panel, const PlotFrame& frame, std::optional<double> marked) {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    ImVec2 at{frame.min.x + em() * 0.4f, frame.min.y + em() * 0.2f};
+    const auto write = [&](const std::string& text, ImU32 color) {
+        const float width = ImGui::CalcTextSize(text.c_str()).x;
+        if (at.x + width > frame.max.x && at.x > frame.min.x + em())
+            at = {frame.min.x + em() * 0.4f, at.y + em() * 1.1f};
+        if (at.y + em() > frame.max.y) return;
+        addTextWithBackdrop(draw, at, {0, 0}, color, text.c_str());
+        at.x += width + em() * 0.8f;
+    };
+    write(panel.y.title, plotColors().text);
+    for (const FigureSeries& series : panel.series) {
+        std::string text = series.name;
+        if (marked)
+            if (const auto point = nearestPoint(series, *marked))
+                text += "  " + formatNumber(series.points[*point].y, (panel.y.range.hi - panel.y.range.lo) / 1000);
+        write(text, toColor({series.color.r, series.color.g, series.color.b}));
+    }
+}
+
 void drawPanel(const FigurePanel& panel, const PlotFrame& frame, std::optional<double> marked) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotColors colors = plotColors();
+    writeTitles(panel, frame, marked);
     draw.PushClipRect(frame.min, frame.max, true);
     std::vector<ImVec2> run;
     for (const FigureSeries& series : panel.series) {
@@ -165,23 +188,6 @@ void drawPanel(const FigurePanel& panel, const PlotFrame& frame, std::optional<d
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, colors.frame);
     drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
-    ImVec2 at{frame.min.x + em() * 0.4f, frame.min.y + em() * 0.2f};
-    const auto write = [&](const std::string& text, ImU32 color) {
-        const float width = ImGui::CalcTextSize(text.c_str()).x;
-        if (at.x + width > frame.max.x && at.x > frame.min.x + em())
-            at = {frame.min.x + em() * 0.4f, at.y + em() * 1.1f};
-        if (at.y + em() > frame.max.y) return;
-        addTextWithBackdrop(draw, at, {0, 0}, color, text.c_str());
-        at.x += width + em() * 0.8f;
-    };
-    write(panel.y.title, colors.text);
-    for (const FigureSeries& series : panel.series) {
-        std::string text = series.name;
-        if (marked)
-            if (const auto point = nearestPoint(series, *marked))
-                text += "  " + formatNumber(series.points[*point].y, (panel.y.range.hi - panel.y.range.lo) / 1000);
-        write(text, toColor({series.color.r, series.color.g, series.color.b}));
-    }
 }
 
 } // namespace

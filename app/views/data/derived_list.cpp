@@ -1,7 +1,7 @@
 #include "app/views/data/derived_list.h"
 
 #include "app/pane/view_parts.h"
-#include "app/ui/widgets.h"
+#include "app/ui/parameter_widget.h"
 #include "volume/derived/other_source.h"
 
 #include <algorithm>

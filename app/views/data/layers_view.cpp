@@ -5,8 +5,8 @@
 #include "app/session/shown_scene.h"
 #include "app/tools/brush_list.h"
 #include "app/tools/lens_list.h"
+#include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
-#include "app/ui/widgets.h"
 #include "app/views/timeline/keyframes.h"
 
 #include <algorithm>

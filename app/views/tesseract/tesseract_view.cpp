@@ -1,8 +1,8 @@
 #include "app/pane/view_parts.h"
 #include "app/ui/keys.h"
+#include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
-#include "app/ui/widgets.h"
 #include "app/views/tesseract/tesseract_query.h"
 #include "app/views/tesseract/tesseract_wire.h"
 #include "vis/passes/point_cloud.h"
@@ -290,9 +290,9 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
     const volume::DatasetInfo& info = context.source->info();
     const PlotColors colors = plotColors();
     if (context.decoration.axes) drawAxisNames4(draw, frame);
-    if (context.decoration.title)
-        addFittedWithBackdrop(draw, {frame.min.x + em() * 0.5f, frame.max.y - em() * 0.4f}, {0, 1}, colors.faint,
-                              nearText(frame), frame.max.x - frame.min.x - em());
+    if (context.decoration.title) // above the legends: at the left it would lie over the body
+        addFittedWithBackdrop(draw, {max.x - em() * 0.5f, frame.min.y + em() * 0.4f}, {1, 0}, colors.faint,
+                              nearText(frame), max.x - frame.min.x - em());
     if (!view.showLegend || !context.decoration.legend) return;
     const std::optional<int> fourth = fourthChannel(info, view);
     std::vector<LegendEntry> entries;

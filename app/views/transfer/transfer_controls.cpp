@@ -213,7 +213,9 @@ void drawOwnColors(ViewContext& context, vis::TransferFunction& function, const 
 void drawColorTools(ViewContext& context, vis::TransferFunction& function, const std::string& name, float width) {
     ImGui::SetNextItemWidth(width);
     if (chooseColormap("##colormap", function.colormap, function.reversed)) function.colors.clear();
-    if (ImGui::IsItemHovered()) tooltip("Colour map; type to search, perceptually uniform ones are listed first");
+    if (ImGui::IsItemHovered())
+        tooltip(
+            (function.colormap + ": colour map; type to search, perceptually uniform ones are listed first").c_str());
     ImGui::SameLine();
     if (iconButton(context, "reverse", icons::kReverse, "Reverse the colour map", true, function.reversed)) {
         if (function.colors.empty())

@@ -1,8 +1,8 @@
 #include "app/views/transfer/transfer_pages.h"
 
 #include "app/pane/view_parts.h"
+#include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
-#include "app/ui/widgets.h"
 #include "vis/transfer/boundary_opacity.h"
 #include "vis/transfer/region_guess.h"
 
