@@ -243,11 +243,11 @@ vis::Scene sceneWithLimits(const ViewContext& context) {
     return scene;
 }
 
-ImTextureID textureId(std::uint32_t name) {
-    return (ImTextureID)(std::intptr_t)name;
+ImTextureID textureId(vis::TextureName name) {
+    return (ImTextureID)name;
 }
 
-void addPicture(ImDrawList& draw, std::uint32_t texture, ImVec2 min, ImVec2 max) {
+void addPicture(ImDrawList& draw, vis::TextureName texture, ImVec2 min, ImVec2 max) {
     draw.AddImage(textureId(texture), min, max, {0, 1}, {1, 0});
 }
 

@@ -72,8 +72,8 @@ std::vector<LegendEntry> sceneLegends(const Session& session, const volume::Data
 vis::Scene sceneWithLimits(const ViewContext& context);
 
 /// A texture of GL as ImGui names it: by a pointer before 1.91.4, by a number after.
-ImTextureID textureId(std::uint32_t name);
+ImTextureID textureId(vis::TextureName name);
 /// A picture of the renderer between two corners; its rows run upwards, as GL has them.
-void addPicture(ImDrawList& draw, std::uint32_t texture, ImVec2 min, ImVec2 max);
+void addPicture(ImDrawList& draw, vis::TextureName texture, ImVec2 min, ImVec2 max);
 
 } // namespace tessera::app

@@ -2,6 +2,7 @@
 
 #include "app/drawing/drawing.h"
 #include "app/session/session.h"
+#include "vis/gl/texture_name.h"
 #include "vis/image/image_io.h"
 
 #include <functional>
@@ -15,30 +16,35 @@ namespace tessera::app {
 
 class Workbench;
 
-/// An ImGui context with the OpenGL back end, for the GL context that is current. Restores the previously current ImGui
-/// context when destroyed.
+/// An ImGui context with the OpenGL back end, for the GL context that is current, or without OpenGL. Restores the
+/// previously current ImGui context when destroyed.
 class Gui {
 public:
-    Gui();
+    explicit Gui(vis::TexturesIn where = vis::TexturesIn::OpenGl);
     ~Gui();
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
 
-    /// Draws ImGui's draw data into the bound framebuffer.
+    /// Where the current ImGui context has its textures.
+    static vis::TexturesIn textures();
+    /// Begins a frame of ImGui.
+    static void newFrame();
+    /// Draws ImGui's draw data into the bound framebuffer of OpenGL.
     static void draw(glm::ivec2 framebuffer, Theme theme);
-    /// Uploads the font atlas after a rebuild.
+    /// Takes the font atlas after a rebuild.
     static void uploadFonts();
 
 private:
     ImGuiContext* context_ = nullptr;
     ImGuiContext* former_ = nullptr;
+    vis::MemoryTexture letters_{.rgba = {}}; ///< without OpenGL
 };
 
 /// The colour behind all panes.
 glm::vec3 windowGround(Theme theme);
 
-/// Frames of a workbench in a framebuffer of its own, as a window of this size would show them. Needs an ImGui context
-/// (Gui) and a GL context.
+/// Frames of a workbench in a framebuffer of its own, or in memory, as a window of this size would show them. Needs an
+/// ImGui context (Gui), and a GL context if that has one.
 class OffscreenFrames {
 public:
     /// `smooth`: edges of shapes are antialiased. Throws MachineError when the size is too large.
@@ -65,7 +71,7 @@ private:
 };
 
 /// Runs frames of a workbench in a framebuffer of its own, as a window of this size would, until nothing is busy, and
-/// reads the last one. Needs an ImGui context (Gui) and a GL context. Throws MachineError when the size is too large,
+/// reads the last one. Needs what OffscreenFrames does. Throws MachineError when the size is too large,
 /// Cancelled.
 vis::Image drawUntilDone(Workbench& workbench, glm::ivec2 size, float scale);
 

@@ -6,6 +6,9 @@
 #include "volume/base/error.h"
 #include "volume/system/atomic_file.h"
 
+#include <cstdio>
+#include <optional>
+
 namespace tessera::app {
 
 namespace {
@@ -19,7 +22,7 @@ auto withWorkbench(const SessionDocument& document, const Sources& sources, std:
         for (const std::string& pane : paneKeys(document.session)) known += (known.empty() ? "" : ", ") + pane;
         throw Error("no view named " + request.pane + "; there are " + known);
     }
-    const Gui gui;
+    const Gui gui(renderer->textures());
     const bool white = request.ground == PictureGround::White;
     Workbench workbench({.renderer = std::move(renderer),
                          .headless = true,
@@ -140,12 +143,19 @@ void writePicture(const SessionDocument& document, const Sources& sources, std::
 }
 
 struct PictureMaker::Impl {
-    vis::HeadlessContext context;
+    std::optional<vis::HeadlessContext> context;
     std::shared_ptr<vis::Renderer> renderer;
 };
 
 PictureMaker::PictureMaker(const vis::RendererOptions& options) : impl_(std::make_unique<Impl>()) {
-    impl_->renderer = std::make_shared<vis::Renderer>(vis::quickestOptions(options));
+    vis::RendererOptions own = options;
+    try {
+        if (own.openGl) impl_->context.emplace();
+    } catch (const MachineError& error) {
+        std::fprintf(stderr, "tessera: the processor draws without OpenGL: %s\n", error.what());
+        own.openGl = false;
+    }
+    impl_->renderer = std::make_shared<vis::Renderer>(vis::quickestOptions(own));
 }
 
 PictureMaker::~PictureMaker() = default;

@@ -9,15 +9,17 @@ namespace tessera::app {
 /// Called with the workbench after it has drawn its picture.
 using Inspect = std::function<void(const Workbench&)>;
 
-/// Writes a picture of a session to a file, in the GL context that is current: what the window would show. Its suffix
+/// Writes a picture of a session to a file, in the GL context that is current if the renderer needs one: what the
+/// window would show. Its suffix
 /// says the form; its file contains the session. Throws Error, MachineError.
 void writePicture(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
                   const PictureRequest& request, const std::string& path, const Inspect& inspect = {});
 
-/// A GL context without a window together with a renderer: makes any number of pictures of one data set.
+/// A renderer with a GL context without a window, or where there is no OpenGL the processor alone: makes any number of
+/// pictures of one data set.
 class PictureMaker {
 public:
-    /// Throws MachineError when there is no GL.
+    /// Says on stderr that there is no OpenGL.
     explicit PictureMaker(const vis::RendererOptions& options = {});
     ~PictureMaker();
     PictureMaker(const PictureMaker&) = delete;

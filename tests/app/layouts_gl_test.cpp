@@ -3,6 +3,8 @@
 #include "app/platform/headless.h"
 #include "app/ui/ticks.h"
 
+#include "vis/image/image_metrics.h"
+
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <ostream>
@@ -214,6 +216,23 @@ TEST_P(Layouts, AreDrawnByTheProcessorBut) {
                  [&](const Workbench& workbench) { use = workbench.renderer()->engine(); });
     EXPECT_EQ(use.refusal, GetParam().refusal);
     EXPECT_EQ(use.byProcessor, GetParam().refusal == std::string_view());
+}
+
+/// Pictures are the same without OpenGL, but for single pixels at edges: of the 3D views of all layouts, and of each
+/// other kind of view once.
+TEST_P(Layouts, AreDrawnWithoutOpenGl) {
+    const std::string name = GetParam().name;
+    std::vector<std::string> panes = {"volume", "tesseract", "shadowCube"};
+    if (name == "overview") panes.insert(panes.end(), {"slices", "scatterMatrix"});
+    if (name == "compare_techniques") panes.push_back("compare");
+    PictureMaker without({.openGl = false});
+    for (const std::string& pane : panes) {
+        if (!session().views.contains(pane)) continue;
+        opened.document.history.reset(session());
+        const PictureRequest request{.pane = pane, .size = {320, 240}, .scale = 1};
+        const vis::Image ours = without.render(opened.document, opened.sources(), request);
+        EXPECT_GE(vis::difference(ours, picture(pane)).psnr, 50) << pane;
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Shipped, Layouts, testing::ValuesIn(shipped()),

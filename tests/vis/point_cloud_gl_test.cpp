@@ -16,8 +16,8 @@ protected:
 
     std::vector<glm::vec4> picture(std::span<const CloudPoint> points, CloudView view) {
         view.size = kSize;
-        cloud.upload(points);
-        const GLuint texture = cloud.draw(view);
+        cloud.upload(TexturesIn::OpenGl, points);
+        const auto texture = GLuint(cloud.draw(view));
         std::vector<std::uint8_t> bytes(std::size_t(kSize.x * kSize.y * 4));
         glGetTextureImage(texture, 0, GL_RGBA, GL_UNSIGNED_BYTE, GLsizei(bytes.size()), bytes.data());
         std::vector<glm::vec4> out;

@@ -220,7 +220,7 @@ TEST_F(RendererTest, APictureTooLargeIsRefused) {
     vis::Renderer renderer;
     renderer.setSource(brickedSource(volume::LatticeKind::CC));
     const vis::ViewTargetPtr target = renderer.makeTarget();
-    const std::uint32_t former = test::renderAll(renderer, *target, richScene(), {20, 10}).texture;
+    const vis::TextureName former = test::renderAll(renderer, *target, richScene(), {20, 10}).texture;
     const std::vector<glm::vec4> pixels = renderer.readLinear(*target);
     vis::FrameRequest request;
     request.size = {1 << 20, 8};

@@ -16,6 +16,7 @@ struct RendererOptions {
     /// into bricks.
     std::size_t denseTexels = std::size_t(32) << 20;
     bool packets = false;       ///< Engine::Automatic is the processor
+    bool openGl = true;         ///< else there is none: the processor draws everything
     bool exactTextures = false; ///< store bricks as 32-bit float instead of 16-bit, for comparison with the reference
     /// Simulated memory of the driver for data textures in bytes; larger allocations are refused. For tests.
     std::size_t driverMemory = ~std::size_t(0);

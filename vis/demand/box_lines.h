@@ -7,6 +7,8 @@
 
 namespace tessera::vis {
 
+inline constexpr double kBoxLineWidth = 1.3; ///< pixels
+
 /// The edges of the box as 2D lines (x, y, x, y) in pixels, y up; edges in front of everything inside the box come
 /// last.
 struct BoxLines {

@@ -94,6 +94,7 @@ struct HeadlessContext::Impl {
 };
 
 HeadlessContext::HeadlessContext(bool debug) : impl_(std::make_unique<Impl>()) {
+    if (!epoxy_has_egl()) throw MachineError("the library EGL is not installed");
     std::string tried;
     for (const EglDisplay& each : eglDisplays()) {
         const EglContext made = makeEglContext(each.display, debug);

@@ -1,14 +1,14 @@
 #pragma once
 
-#include <cstdint>
-#include <glm/vec2.hpp>
+#include "vis/gl/texture_name.h"
+
 #include <memory>
 #include <span>
 
 namespace tessera::vis {
 
-/// An RGBA8 picture for a 2D plot: minified smoothly, magnified without interpolation. Needs a current GL context from
-/// the first upload until its destruction.
+/// An RGBA8 picture for a 2D plot: minified smoothly, magnified without interpolation. In OpenGL it needs a current
+/// context from the first upload until its destruction.
 class PlotTexture {
 public:
     PlotTexture();
@@ -17,9 +17,9 @@ public:
     PlotTexture& operator=(PlotTexture&&) noexcept;
 
     /// Replaces the picture; rows top down, not premultiplied.
-    void upload(glm::ivec2 size, std::span<const std::uint8_t> rgba);
-    /// GL name, 0 before the first upload.
-    std::uint32_t name() const;
+    void upload(TexturesIn where, glm::ivec2 size, std::span<const std::uint8_t> rgba);
+    /// 0 before the first upload.
+    TextureName name() const;
 
 private:
     struct Impl;

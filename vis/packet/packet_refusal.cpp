@@ -3,6 +3,8 @@
 #include "vis/packet/cast_job.h"
 #include "vis/packet/packet_channels.h"
 
+#include <algorithm>
+
 namespace tessera::vis::packet {
 
 namespace {
@@ -33,6 +35,26 @@ std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, c
     if (drawn.size() > std::size_t(kMostPacketLayers) || surfaces > kMostPacketSurfaces || slices > kMostPacketSlices)
         return "so many layers";
     return "";
+}
+
+double packetBytes(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
+    constexpr double kShared = 2.69; // pairs, and samples that several bricks hold
+    std::vector<PacketChannel> channels;
+    const auto add = [&](const PacketChannel& channel) {
+        if (std::ranges::find(channels, channel) == channels.end()) channels.push_back(channel);
+    };
+    for (const PacketChannel& channel : packetChannels(scene, info)) {
+        add(channel);
+        add(channel.at(channel.time.earlier));
+        add(channel.at(channel.time.later));
+    }
+    const double samples = double(lattice.size.x) * double(lattice.size.y) * double(lattice.size.z);
+    double bytes = 0;
+    for (const PacketChannel& channel : channels) {
+        const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(channel.channel).parameter)];
+        bytes += samples * kShared * (channel.exact ? 4 : 2) * double(parameter.parts.count());
+    }
+    return bytes;
 }
 
 } // namespace tessera::vis::packet

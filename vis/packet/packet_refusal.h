@@ -11,4 +11,7 @@ namespace tessera::vis::packet {
 /// OpenGL.
 std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice);
 
+/// Bytes that the samples of a scene take, as PacketVolume lays them out.
+double packetBytes(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice);
+
 } // namespace tessera::vis::packet

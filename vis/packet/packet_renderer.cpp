@@ -218,7 +218,6 @@ void PacketRenderer::fillMedium(const Scene& scene, const LightGrid& grid, int b
     });
 }
 
-/// The light of a scene, whose samples are prepared.
 SceneLight PacketRenderer::lightOf(const Scene& scene, const CubeMap* surroundings) {
     const volume::DatasetInfo& info = source().info();
     SceneLight out;

@@ -90,6 +90,8 @@ public:
     void prepare(const Scene& scene);
     /// What lights the next pictures besides lamps: nothing, until this is called. Their volume must be of the scenes.
     void setLight(const SceneLight& light);
+    /// All that lights a scene besides lamps; after prepare(). `surroundings` of Environment::Picture.
+    SceneLight lightOf(const Scene& scene, const CubeMap* surroundings);
     /// The extinction of rows [begin, end) of a light grid (y + z * size.y), each of which begins at cell row * size.x
     /// of `out`; after prepare().
     void fillMedium(const Scene& scene, const LightGrid& grid, int begin, int end, Medium<float>& out);
@@ -106,7 +108,6 @@ public:
     void countSamples(bool yes) { counts_ = yes, samples_ = 0; }
 
 private:
-    SceneLight lightOf(const Scene& scene, const CubeMap* surroundings);
     const volume::BrickSource& source() const { return *volumes_->source(); }
 
     InstructionSet with_;

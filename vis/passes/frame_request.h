@@ -1,8 +1,8 @@
 #pragma once
 
+#include "vis/gl/texture_name.h"
+
 #include <cstddef>
-#include <cstdint>
-#include <glm/vec2.hpp>
 #include <string>
 #include <string_view>
 
@@ -28,8 +28,9 @@ struct EngineUse {
 
 /// Result of render(). The texture belongs to the target and is valid until its next frame.
 struct FrameStatus {
-    std::uint32_t texture = 0; ///< GL name, RGBA8, `request.size` large (upscaled if reduced), sRGB encoded, opaque
-    bool current = false;      ///< the texture shows this scene, possibly at reduced resolution
+    TextureName texture =
+        0;                ///< RGBA8, `request.size` large (upscaled if reduced), sRGB encoded, opaque, rows bottom up
+    bool current = false; ///< the texture shows this scene, possibly at reduced resolution
     bool complete =
         false; ///< converged: full resolution and all bricks at the wanted level; nothing to do until the scene changes
     bool compiling = false; ///< the program is being compiled; meanwhile a former picture or the background is shown

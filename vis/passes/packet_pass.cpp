@@ -9,38 +9,14 @@
 /// Pictures whose rays the processor casts: the same buffers, tiles and passes as those of OpenGL, which presents them.
 namespace tessera::vis {
 
-namespace {
-
-/// Bytes that the samples of a scene take, as PacketVolume lays them out.
-double packetBytes(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
-    constexpr double kShared = 2.69; // pairs, and samples that several bricks hold
-    std::vector<packet::PacketChannel> channels;
-    const auto add = [&](const packet::PacketChannel& channel) {
-        if (std::ranges::find(channels, channel) == channels.end()) channels.push_back(channel);
-    };
-    for (const packet::PacketChannel& channel : packet::packetChannels(scene, info)) {
-        add(channel);
-        add(channel.at(channel.time.earlier));
-        add(channel.at(channel.time.later));
-    }
-    const double samples = double(lattice.size.x) * double(lattice.size.y) * double(lattice.size.z);
-    double bytes = 0;
-    for (const packet::PacketChannel& channel : channels) {
-        const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(channel.channel).parameter)];
-        bytes += samples * kShared * (channel.exact ? 4 : 2) * double(parameter.parts.count());
-    }
-    return bytes;
-}
-
-} // namespace
-
 /// Why OpenGL must cast the rays, in words for users; empty: the processor can.
 std::string RenderStages::refusalOfPackets(const ViewTarget& target, const RenderCall& call) const {
     if (target.packets.failed) return "damaged samples";
     if (std::string why = packet::packetRefusal(call.scene, call.info(), call.grid().lattice); !why.empty()) return why;
     const double most = double(std::min(options.memoryBudget, std::size_t(call.scene.render.limits.brickMemory) << 20));
-    return packetBytes(call.scene, call.info(), call.grid().lattice) > most ? "data larger than the memory for bricks"
-                                                                            : "";
+    return packet::packetBytes(call.scene, call.info(), call.grid().lattice) > most
+               ? "data larger than the memory for bricks"
+               : "";
 }
 
 /// Whether the processor casts the rays of a call.

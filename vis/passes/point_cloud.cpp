@@ -17,6 +17,9 @@ struct PointCloud::Impl {
     Texture sums, throughs, picture;
     Framebuffer splats, shown;
     glm::ivec2 size{0};
+    std::vector<CloudPoint> points; ///< without OpenGL
+    MemoryTexture drawn{.rgba = {}};
+    bool inMemory = false;
 
     void resize(glm::ivec2 wanted) {
         if (size == wanted) return;
@@ -38,8 +41,10 @@ std::size_t PointCloud::count() const {
     return impl_->count;
 }
 
-void PointCloud::upload(std::span<const CloudPoint> points) {
+void PointCloud::upload(TexturesIn where, std::span<const CloudPoint> points) {
     impl_->count = points.size();
+    impl_->inMemory = where == TexturesIn::Memory;
+    if (impl_->inMemory) return impl_->points.assign(points.begin(), points.end());
     if (points.empty()) return;
     impl_->buffer = makeBuffer(GLsizeiptr(points.size_bytes()), points.data(), 0, "points");
     impl_->array = makeVertexArray("points");
@@ -52,8 +57,12 @@ void PointCloud::upload(std::span<const CloudPoint> points) {
     }
 }
 
-std::uint32_t PointCloud::draw(const CloudView& view) {
+TextureName PointCloud::draw(const CloudView& view) {
     Impl& own = *impl_;
+    if (own.inMemory) {
+        own.drawn = drawnCloud(own.points, view);
+        return own.drawn.name();
+    }
     if (!own.splat) {
         own.splat = makeProgram({"points.vert.glsl", "points.frag.glsl", {}, {}});
         own.resolve = makeProgram({"screen.vert.glsl", "points_resolve.frag.glsl", {}, {}});

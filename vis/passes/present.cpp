@@ -51,7 +51,7 @@ void RenderStages::setPresented(const Program& resolve, const ViewTarget& target
         glBindTextureUnit(GLuint(RayUnits::kPaper), tools.grain.get());
     }
     resolve.set("boxColor", glm::vec3(linearFromSrgb(glm::dvec3(scene.boxColor))));
-    resolve.set("lineWidth", 1.3f);
+    resolve.set("lineWidth", float(kBoxLineWidth));
     resolve.set("toneCurve", int(scene.tone.curve));
     resolve.set("seen", kSeenUnit);
     resolve.set("blurRadius", scene.selection.contextBlur * float(target.buffers.size.y));

@@ -1,6 +1,8 @@
 #include "vis/passes/renderer.h"
 
+#include "vis/demand/changed_pixels.h"
 #include "vis/passes/render_stages.h"
+#include "vis/processor/processor_renderer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,15 +45,28 @@ void ViewTargetDeleter::operator()(ViewTarget* target) const {
 }
 
 RendererOptions quickestOptions(RendererOptions options) {
-    options.packets = (options.driver ? *options.driver : currentDriver()).software;
+    if (options.openGl) options.packets = (options.driver ? *options.driver : currentDriver()).software;
     return options;
 }
 
-Renderer::Renderer(const RendererOptions& options)
-    : stages_(std::make_unique<RenderStages>(options, options.driver ? *options.driver : currentDriver())) {}
+Renderer::Renderer(const RendererOptions& options) {
+    if (options.openGl)
+        stages_ = std::make_unique<RenderStages>(options, options.driver ? *options.driver : currentDriver());
+    else
+        processor_ = std::make_unique<ProcessorRenderer>(options);
+}
 Renderer::~Renderer() = default;
 
+std::unique_ptr<Renderer> Renderer::another() const {
+    return std::make_unique<Renderer>(processor_ ? processor_->options() : stages_->options);
+}
+
+TexturesIn Renderer::textures() const {
+    return processor_ ? TexturesIn::Memory : TexturesIn::OpenGl;
+}
+
 void Renderer::setSource(std::shared_ptr<const volume::BrickSource> source, SameSamples same) {
+    if (processor_) return processor_->setSource(std::move(source));
     if (source == stages_->source) return;
     stages_->formerSource = same.channels > 0 && same.times > 0 ? stages_->source.get() : nullptr;
     stages_->source = source;
@@ -60,11 +75,11 @@ void Renderer::setSource(std::shared_ptr<const volume::BrickSource> source, Same
 }
 
 const volume::BrickSource* Renderer::source() const {
-    return stages_->source.get();
+    return processor_ ? processor_->source() : stages_->source.get();
 }
 
 ViewTargetPtr Renderer::makeTarget() {
-    return ViewTargetPtr(new ViewTarget(stages_->tools.driver));
+    return ViewTargetPtr(new ViewTarget(processor_ ? Driver{} : stages_->tools.driver));
 }
 
 namespace {
@@ -77,6 +92,17 @@ bool hasVolumes(const Scene& scene) {
     });
 }
 
+/// What the processor has drawn as a whole since `start`.
+FrameStatus statusAlone(const ProcessorPicture& picture, Clock::time_point start) {
+    FrameStatus status;
+    status.complete = status.current = true;
+    status.texture = picture.texture().name();
+    status.engine.byProcessor = true;
+    status.engine.instructions = packet::kInstructionSetNames[std::size_t(picture.instructions())];
+    status.milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    return status;
+}
+
 } // namespace
 
 FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const FrameRequest& wanted) {
@@ -86,6 +112,12 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     if (request.budgetMs <= 0) request.budgetMs = scene.render.limits.frameTime;
     if (request.size.x <= 0 || request.size.y <= 0) {
         status.complete = status.current = true;
+        return status;
+    }
+    if (processor_) {
+        processor_->draw(target.alone, scene, request.size);
+        status = statusAlone(target.alone, start);
+        alone_ = status.engine;
         return status;
     }
     const SavedState saved;
@@ -117,6 +149,10 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
 }
 
 std::optional<Pick> Renderer::pick(ViewTarget& target, glm::ivec2 pixel) {
+    if (processor_) {
+        const std::optional<glm::dvec3> position = processor_->pick(target.alone, pixel);
+        return position ? std::optional(Pick{*position}) : std::nullopt;
+    }
     const PictureBuffers& buffers = target.buffers;
     const PictureState& state = target.state;
     const glm::ivec2 place(pixel.x, buffers.size.y - 1 - pixel.y);
@@ -140,6 +176,7 @@ std::optional<Pick> Renderer::pick(ViewTarget& target, glm::ivec2 pixel) {
 }
 
 std::vector<glm::vec4> Renderer::readLinear(ViewTarget& target) {
+    if (processor_) return linearRows(target.alone);
     const std::size_t width(static_cast<std::size_t>(target.buffers.size.x)),
         height(static_cast<std::size_t>(target.buffers.size.y));
     std::vector<glm::vec4> pixels(width * height), out(pixels.size());
@@ -153,6 +190,10 @@ std::vector<glm::vec4> Renderer::readLinear(ViewTarget& target) {
 }
 
 std::vector<std::uint8_t> Renderer::readPixels(ViewTarget& target, glm::ivec2& size) {
+    if (processor_) {
+        size = target.alone.texture().size;
+        return shownRows(target.alone);
+    }
     size = target.buffers.size;
     const std::size_t row = static_cast<std::size_t>(size.x) * 4, height = static_cast<std::size_t>(size.y);
     std::vector<std::uint8_t> pixels(row * height), out(pixels.size());
@@ -166,14 +207,15 @@ std::vector<std::uint8_t> Renderer::readPixels(ViewTarget& target, glm::ivec2& s
 }
 
 const EngineUse& Renderer::engine() const {
-    return stages_->engine;
+    return processor_ ? alone_ : stages_->engine;
 }
 
 ResidencyInfo Renderer::residency() const {
-    return stages_->residency.info();
+    return processor_ ? ResidencyInfo{} : stages_->residency.info();
 }
 
 std::vector<std::string> Renderer::takeMessages() {
+    if (processor_) return processor_->takeMessages();
     std::vector<std::string> all = stages_->tools.programs.takeMessages();
     for (std::string& message : stages_->residency.takeMessages()) all.push_back(std::move(message));
     for (std::string& message : std::exchange(stages_->tools.messages, {})) all.push_back(std::move(message));

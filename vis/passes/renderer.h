@@ -13,7 +13,8 @@
 #include <vector>
 
 /// The renderer, shared by all views of a GL context. Every call, including the destructor, needs a current GL 4.5 core
-/// context.
+/// context, unless the options say that there is none: then the processor draws whole pictures, and refuses by a
+/// MachineError what only OpenGL can draw.
 namespace tessera::vis {
 
 /// Options of renderers that users look at: the processor casts rays where OpenGL runs on it. Needs a current context.
@@ -32,6 +33,7 @@ struct ViewTargetDeleter {
 using ViewTargetPtr = std::unique_ptr<ViewTarget, ViewTargetDeleter>;
 
 struct RenderStages;
+class ProcessorRenderer;
 
 class Renderer {
 public:
@@ -43,6 +45,10 @@ public:
     /// Changes the data set and drops the bricks of the former one, except those that both share. Null: shows nothing.
     void setSource(std::shared_ptr<const volume::BrickSource> source, SameSamples same = {});
     const volume::BrickSource* source() const;
+    /// A renderer of the same kind, without data.
+    std::unique_ptr<Renderer> another() const;
+    /// Where its pictures are.
+    TexturesIn textures() const;
 
     /// Creates an empty target for a view.
     ViewTargetPtr makeTarget();
@@ -65,7 +71,9 @@ public:
     std::vector<std::string> takeMessages();
 
 private:
-    std::unique_ptr<RenderStages> stages_;
+    std::unique_ptr<RenderStages> stages_;         ///< null: without OpenGL
+    std::unique_ptr<ProcessorRenderer> processor_; ///< instead of these
+    EngineUse alone_;                              ///< of its last picture
 };
 
 } // namespace tessera::vis

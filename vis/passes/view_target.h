@@ -7,6 +7,7 @@
 #include "vis/passes/view_hidden.h"
 #include "vis/passes/view_light.h"
 #include "vis/passes/view_tables.h"
+#include "vis/processor/processor_picture.h"
 
 namespace tessera::vis {
 
@@ -69,6 +70,7 @@ public:
     ViewHidden hidden;
     PacketView packets;
     bool byProcessor = false; ///< casts rays of the current picture
+    ProcessorPicture alone;   ///< instead of all others, without OpenGL
 
     Pace& pace() { return byProcessor ? packets.pace : glPace; }
     /// Throws MachineError, leaving the target unchanged, when the driver has no memory for it.

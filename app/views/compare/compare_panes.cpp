@@ -48,7 +48,7 @@ void drawComparedPane(ViewContext& context, const std::string& pane, const std::
     }
     CompareData* data = cell.data.get();
     if (data && !data->renderer) {
-        data->renderer = std::make_unique<vis::Renderer>(vis::quickestOptions());
+        data->renderer = context.renderer.another();
         data->renderer->setSource(data->source);
     }
     Session edited = cell.session;

@@ -96,7 +96,7 @@ bool ComparePictures::openCell(ViewContext& context, const std::string& pane, st
             return false;
         }
         if (!data->renderer) {
-            data->renderer = std::make_unique<vis::Renderer>(vis::quickestOptions());
+            data->renderer = context.renderer.another();
             data->renderer->setSource(data->source);
         }
     } else if (cell.data) {
@@ -280,7 +280,7 @@ double ComparePictures::differenceTop(double top) const {
     return top > 0 ? top : 1;
 }
 
-void ComparePictures::showDifferences(double top, std::size_t reference) {
+void ComparePictures::showDifferences(vis::TexturesIn where, double top, std::size_t reference) {
     top = differenceTop(top);
     static const vis::TransferFunction scale = [] {
         vis::TransferFunction made;
@@ -303,7 +303,7 @@ void ComparePictures::showDifferences(double top, std::size_t reference) {
             rgba.insert(rgba.end(), colors[value].begin(), colors[value].end());
             rgba.push_back(255);
         }
-        cell.differencePicture.upload(cell.image->size, rgba);
+        cell.differencePicture.upload(where, cell.image->size, rgba);
         cell.shownOf = cell.measured;
         cell.shownTop = top;
     }

@@ -111,7 +111,7 @@ public:
     /// The difference of 255 that is brightest: `top`, or the largest where `top` is 0.
     double differenceTop(double top) const;
     /// Fills the pictures of the differences, brightest at differenceTop.
-    void showDifferences(double top, std::size_t reference);
+    void showDifferences(vis::TexturesIn where, double top, std::size_t reference);
     /// Finds how the values of the first layers differ from the reference's; returns the largest difference of all.
     double findValues(ViewContext& context, const std::string& pane, std::size_t reference);
     /// The same, as far as it is found.

@@ -68,7 +68,7 @@ void CompareValues::find(ViewContext& context, const std::string& jobKey, const 
 
 bool CompareValues::draw(ViewContext& context, const Session& session, double top, glm::ivec2 size, bool moving) {
     if (!difference()) return false;
-    if (!renderer_) renderer_ = std::make_unique<vis::Renderer>(vis::quickestOptions());
+    if (!renderer_) renderer_ = context.renderer.another();
     if (drawnOf_ != found_->result.difference) {
         drawnOf_ = found_->result.difference;
         renderer_->setSource(drawnOf_);

@@ -43,7 +43,7 @@ public:
     double largest() const;
     /// Why there is none: not the same unit, or nothing that differs.
     std::string failure() const { return found_ ? found_->result.failure : query_.failure(); }
-    std::uint32_t texture() const { return status_.texture; }
+    vis::TextureName texture() const { return status_.texture; }
     bool hasRenderer() const { return renderer_ != nullptr; }
 
 private:

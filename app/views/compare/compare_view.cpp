@@ -99,7 +99,9 @@ std::string nameOf(const Frame& frame, std::size_t index) {
 
 void drawGrid(const Frame& frame, const std::vector<PictureBox>& boxes, bool differences) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    if (differences) frame.cache.pictures.showDifferences(double(frame.view.differenceTop), frame.reference);
+    if (differences)
+        frame.cache.pictures.showDifferences(frame.context.renderer.textures(), double(frame.view.differenceTop),
+                                             frame.reference);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         const PictureBox& box = boxes[i];
         const CompareCell& cell = *frame.cache.pictures.cells()[i];

@@ -118,14 +118,15 @@ void drawCurve(const std::string& title, Range range, const Profile& profile, st
     drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
 }
 
-void updatePictures(ProfileCache& cache, const Session& session, const volume::DatasetInfo& info,
+void updatePictures(vis::TexturesIn where, ProfileCache& cache, const Session& session, const volume::DatasetInfo& info,
                     const std::shared_ptr<const Profile>& profile) {
     if (cache.pictured == profile && cache.picturedWith == session.transfer) return;
     cache.pictured = profile;
     cache.picturedWith = session.transfer;
     cache.pictures.resize(profile->values.size());
     for (std::size_t c = 0; c < profile->values.size(); ++c)
-        cache.pictures[c].upload({static_cast<int>(profile->positions.size()), static_cast<int>(profile->times.size())},
+        cache.pictures[c].upload(where,
+                                 {static_cast<int>(profile->positions.size()), static_cast<int>(profile->times.size())},
                                  profileImage(info, session, *profile, c));
 }
 
@@ -212,7 +213,7 @@ public:
         const double share = std::clamp(double((ImGui::GetIO().MousePos.x - x0) / (x1 - x0)), 0.0, 1.0);
         across_.marked = marked(ImGui::IsItemHovered() || taken, share);
         if (taken && across_.marked) takePlace(*across_.marked);
-        if (pictures()) updatePictures(cache_, session_, info_, profile_);
+        if (pictures()) updatePictures(context_.renderer.textures(), cache_, session_, info_, profile_);
         for (std::size_t c = 0; c < profile_->values.size(); ++c) {
             const float top = origin.y + em() * 0.2f + height * static_cast<float>(c);
             const PlotFrame frame{{x0, std::round(top)},

@@ -57,8 +57,8 @@ MeanColors meanColors(const Session& session, const volume::DatasetInfo& info, c
     return {function, vis::effectiveRange(function, info.channelRange(info.channel(*channel)))};
 }
 
-void updateTextures(ScatterCache& cache, const std::shared_ptr<const StatisticsResult>& result, bool logDensity,
-                    float cell, int large, ImU32 focus, const MeanColors& colors) {
+void updateTextures(vis::TexturesIn where, ScatterCache& cache, const std::shared_ptr<const StatisticsResult>& result,
+                    bool logDensity, float cell, int large, ImU32 focus, const MeanColors& colors) {
     const bool dark = darkTheme();
     const int merge =
         std::max(1, static_cast<int>(std::lround(static_cast<float>(result->query.bins) / std::max(8.0f, cell))));
@@ -82,10 +82,10 @@ void updateTextures(ScatterCache& cache, const std::shared_ptr<const StatisticsR
                                 joint.bins, step, logDensity, dark, focus, cache.pixels);
         };
         const int pixels = paint(merge);
-        cache.textures[i].upload({pixels, pixels}, cache.pixels);
+        cache.textures[i].upload(where, {pixels, pixels}, cache.pixels);
         if (static_cast<int>(i) != large) continue;
         paint(1);
-        cache.large.upload({joint.bins, joint.bins}, cache.pixels);
+        cache.large.upload(where, {joint.bins, joint.bins}, cache.pixels);
     }
 }
 
@@ -336,7 +336,8 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
     cache.layout = matrix;
     const Enlarged large = enlargedPlot(matrix, view);
     if (result)
-        updateTextures(cache, result, view.logDensity, std::min(matrix.cellX, matrix.cellY),
+        updateTextures(context.renderer.textures(), cache, result, view.logDensity,
+                       std::min(matrix.cellX, matrix.cellY),
                        large.cells > 0 ? jointIndex(result->statistics, large.column, large.row) : -1,
                        focusColor(context.session), meanColors(context.session, info, view.colorBy));
     drawCells(context, cache, view, matrix, large, result.get());

@@ -27,7 +27,7 @@ void outlineOnFace(ImDrawList& draw, const CubeFrame& frame, const CubeFace& fac
 
 } // namespace
 
-void drawFace(ImDrawList& draw, const CubeFrame& frame, const CubeFace& face, std::uint32_t texture) {
+void drawFace(ImDrawList& draw, const CubeFrame& frame, const CubeFace& face, vis::TextureName texture) {
     const auto corner = [&](double s, double t) { return frame.pixel(face.at(s, t, frame.half)); };
     const double right = frame.half[face.right()], up = frame.half[face.up()];
     const auto a = corner(-right, -up), b = corner(right, -up), c = corner(right, up), d = corner(-right, up);

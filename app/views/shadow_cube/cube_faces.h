@@ -34,7 +34,7 @@ struct CubeFrame {
 };
 
 /// The face itself, and its projection (a GL texture) in patches, so that perspective is seen.
-void drawFace(ImDrawList& draw, const CubeFrame& frame, const CubeFace& face, std::uint32_t texture);
+void drawFace(ImDrawList& draw, const CubeFrame& frame, const CubeFace& face, vis::TextureName texture);
 
 /// Cursor, brushes in space and title of a face, by its index in kCubeFaces, as far as `shown` has them.
 void drawMarks(ImDrawList& draw, const CubeFrame& frame, const Session& session, const Decoration& shown,

@@ -29,7 +29,7 @@ struct TesseractCache : ViewCache {
     bool clicked = false;                            ///< it came up again near there
     std::optional<vis::CloudStyle> style;
     std::optional<vis::CloudView> drawn;
-    std::uint32_t texture = 0;
+    vis::TextureName texture = 0;
     Drag drag = Drag::None;
     double tour = 0; ///< degrees so far: not saved, the angles of the session are those it starts from
 };
@@ -233,7 +233,7 @@ bool updateCloud(ViewContext& context, const std::string& pane, TesseractCache& 
     if (!fits) return cache.style.has_value(); // samples of other parameters: keep drawing the former cloud
     if (samples != cache.samples || !cache.style || *cache.style != style) {
         cache.points = vis::makeCloud(*samples, style);
-        cache.cloud.upload(cache.points);
+        cache.cloud.upload(context.renderer.textures(), cache.points);
         cache.samples = samples;
         cache.style = style;
         cache.drawn.reset();

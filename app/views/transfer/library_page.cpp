@@ -24,7 +24,7 @@ struct Grid {
 };
 
 /// A picture with its name below; true when it was clicked. `texture` 0: its colours as a strip.
-bool drawCell(const vis::TransferRecipe& recipe, const vis::TransferFunction& function, std::uint32_t texture,
+bool drawCell(const vis::TransferRecipe& recipe, const vis::TransferFunction& function, vis::TextureName texture,
               float side, bool chosen) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float line = ImGui::GetTextLineHeight(), strip = std::round(em() * 0.3f);

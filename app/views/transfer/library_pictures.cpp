@@ -34,7 +34,7 @@ void LibraryPictures::begin(const ViewContext& context, int channel, int side) {
     for (Picture& picture : pictures_) picture.wanted = false;
 }
 
-std::uint32_t LibraryPictures::get(const vis::TransferFunction& function) {
+vis::TextureName LibraryPictures::get(const vis::TransferFunction& function) {
     const auto same = [&](const Picture& picture) { return picture.of == subject_ && picture.function == function; };
     const auto found = std::ranges::find_if(pictures_, same);
     if (found != pictures_.end())
@@ -73,7 +73,7 @@ bool LibraryPictures::draw(ViewContext& context, Picture& picture) {
     if (!context.renderer.render(*target_, sceneOf(context, picture), request).complete) return false;
     glm::ivec2 size(0);
     const std::vector<std::uint8_t> rgba = context.renderer.readPixels(*target_, size);
-    picture.texture.upload(size, rgba);
+    picture.texture.upload(context.renderer.textures(), size, rgba);
     return true;
 }
 

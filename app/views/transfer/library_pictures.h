@@ -15,7 +15,7 @@ public:
     /// What the pictures of this frame show, `side` pixels wide and high. Pictures of other data are forgotten.
     void begin(const ViewContext& context, int channel, int side);
     /// GL name of the picture of a function, 0 while there is none; it will be drawn.
-    std::uint32_t get(const vis::TransferFunction& function);
+    vis::TextureName get(const vis::TransferFunction& function);
     /// Draws on one that was asked for in this frame; sets context.waiting while there are more. Headless, draws all.
     void work(ViewContext& context);
 

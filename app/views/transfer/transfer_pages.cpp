@@ -123,7 +123,8 @@ void drawRegionPage(ViewContext& context, RegionPage& page, vis::TransferFunctio
         if (page.shown != result || page.dark != darkTheme()) {
             page.shown = result;
             page.dark = darkTheme();
-            page.picture.upload({result->histogram.valueBins, result->histogram.gradientBins},
+            page.picture.upload(context.renderer.textures(),
+                                {result->histogram.valueBins, result->histogram.gradientBins},
                                 derivativeImage(result->histogram, page.dark));
         }
         // Drawn over the ranges it was counted for, which may have changed since.

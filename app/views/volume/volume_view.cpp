@@ -334,7 +334,7 @@ void drawSpace(ViewContext& context, const std::string& pane, VolumeView& view) 
 void drawBeside(ViewContext& context, const std::string& pane, VolumeView& view,
                 const std::shared_ptr<const volume::BrickSource>& space) {
     SpaceCache& cache = cacheOf<SpaceCache>(context, pane);
-    if (!cache.renderer) cache.renderer = std::make_unique<vis::Renderer>(vis::quickestOptions());
+    if (!cache.renderer) cache.renderer = context.renderer.another();
     if (cache.renderer->source() != space.get()) {
         cache.caches.clear();
         cache.renderer->setSource(space);

@@ -1,0 +1,72 @@
+#include "vis/processor/processor_picture.h"
+
+#include "vis/demand/box_lines.h"
+#include "vis/image/light_picture.h"
+#include "vis/optics/jitter.h"
+#include "vis/packet/packet_refusal.h"
+#include "vis/processor/presented.h"
+#include "vis/processor/rasterized.h"
+#include "volume/base/error.h"
+
+#include <utility>
+
+namespace tessera::vis {
+
+namespace {
+
+/// Throws what keeps the processor from drawing a scene.
+void refuse(const Scene& scene, const volume::BrickSource& source, std::size_t bytes) {
+    const volume::DatasetInfo& info = source.info();
+    const volume::Lattice& lattice = source.grid().lattice;
+    std::string why = packet::packetRefusal(scene, info, lattice);
+    if (why.empty() && packet::packetBytes(scene, info, lattice) > double(bytes))
+        why = "data larger than the memory for bricks";
+    if (!why.empty()) throw MachineError("without OpenGL " + why + " cannot be drawn");
+}
+
+/// The picture that lights a scene; none if it cannot be read.
+std::optional<CubeMap> surroundingsOf(const EnvironmentLight& light, const std::function<void(std::string)>& say) {
+    if (light.kind != Environment::Picture || light.picture.empty()) return std::nullopt;
+    try {
+        return readSurroundings(light.picture);
+    } catch (const Error& error) {
+        say(std::string("The surroundings cannot be shown: ") + error.what());
+        return std::nullopt;
+    }
+}
+
+} // namespace
+
+void ProcessorPicture::draw(const Scene& scene, glm::ivec2 size, const Data& data,
+                            const std::function<void(std::string)>& say) {
+    if (scene_ == scene && volumes_ == data.volumes && linear_.size == size) return;
+    linear_.size = {}; // until it is whole
+    packet::PacketPicture made{.box = {}, .rgba = {}};
+    made.begin(size, {{0, 0}, size}, true);
+    BoxLines lines;
+    if (data.volumes) {
+        const volume::BrickSource& source = *data.volumes->source();
+        refuse(scene, source, data.bytes);
+        renderer_.setVolumes(data.volumes);
+        renderer_.prepare(scene);
+        const std::optional<CubeMap> surroundings = surroundingsOf(scene.lighting.environment, say);
+        const packet::SceneLight light = renderer_.lightOf(scene, surroundings ? &*surroundings : nullptr);
+        renderer_.setLight(light);
+        const int passes = raysPerPixel(scene);
+        for (int pass = 0; pass < passes; ++pass) {
+            Scene seen = scene;
+            seen.camera = lensCamera(seen.camera, pass, passes);
+            renderer_.draw(seen, pass, passes, 1, made,
+                           rasterized(seen, source.info(), light, size, pixelJitter(pass)));
+        }
+        if (scene.showBox)
+            lines = boxLines(scene.camera, worldFrame(source.info().bounds, scene.stretch).halfSize, size);
+    }
+    texture_.size = size;
+    texture_.rgba = presented(made, scene, lines);
+    volumes_ = data.volumes;
+    scene_ = scene;
+    linear_ = std::move(made);
+}
+
+} // namespace tessera::vis
