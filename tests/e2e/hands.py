@@ -68,14 +68,17 @@ def until(what, holds, found=lambda s: ""):
 
 
 def palette(text):
-    """Runs the first command that the palette finds, when the pictures before it are drawn."""
+    """Runs the first command that the palette finds, when the pictures before it are drawn. On a busy machine all takes
+    longer, as saving does; keys that come before it is open, or before it is closed, are lost."""
+    begin = time.monotonic()
     save()
+    slow = time.monotonic() - begin
     press("ctrl+shift+p")
-    time.sleep(1)
+    time.sleep(max(1, 2 * slow))
     xdo("type", "--delay", 30, text)
-    time.sleep(0.5)
+    time.sleep(max(0.5, slow))
     press("Return")
-    time.sleep(0.5)  # until it is closed, no other key is heard
+    time.sleep(max(0.5, slow))
 
 
 def brushes(session):
