@@ -19,7 +19,7 @@ TEST(MatchingColormaps, EveryWordIsInNameOrKind) {
 
 class ChooseColormap : public FedImGui {
 protected:
-    ChooseColormap() : FedImGui({600, 800}) {}
+    ChooseColormap() : FedImGui({600, 800}) { applyTheme(Theme::Dark, 1); }
     bool draw() {
         bool changed = false;
         feedWindow([&] {
