@@ -9,6 +9,8 @@
 #include <cmath>
 #include <epoxy/gl.h>
 #include <glm/common.hpp>
+#include <glm/ext/vector_uint4_sized.hpp>
+#include <glm/vec4.hpp>
 #include <utility>
 
 namespace tessera::app {
@@ -111,9 +113,8 @@ public:
     void rehearse(Theme) override {}
     void show(Theme theme) override {
         const ImDrawData& frame = *ImGui::GetDrawData();
-        const auto ground = std::uint8_t(windowGround(theme).x * 255 + 0.5f);
-        std::ranges::fill(image_.rgba, ground);
-        for (std::size_t i = 3; i < image_.rgba.size(); i += 4) image_.rgba[i] = 255;
+        const glm::u8vec4 ground(glm::vec4(windowGround(theme), 1) * 255.0f + 0.5f);
+        for (std::size_t i = 0; i < image_.rgba.size(); ++i) image_.rgba[i] = ground[int(i % 4)];
         for (int n = 0; n < frame.CmdListsCount; ++n)
             for (const ImDrawCmd& command : frame.CmdLists[n]->CmdBuffer)
                 if (!command.UserCallback) drawPixels(*frame.CmdLists[n], command, {0, 0}, image_);

@@ -25,7 +25,7 @@ void refuse(const Scene& scene, const volume::BrickSource& source, std::size_t b
 }
 
 /// The picture that lights a scene; none if it cannot be read.
-std::optional<CubeMap> surroundingsOf(const EnvironmentLight& light, const std::function<void(std::string)>& say) {
+std::optional<CubeMap> surroundingsIn(const EnvironmentLight& light, const std::function<void(std::string)>& say) {
     if (light.kind != Environment::Picture || light.picture.empty()) return std::nullopt;
     try {
         return readSurroundings(light.picture);
@@ -49,7 +49,7 @@ void ProcessorPicture::draw(const Scene& scene, glm::ivec2 size, const Data& dat
         refuse(scene, source, data.bytes);
         renderer_.setVolumes(data.volumes);
         renderer_.prepare(scene);
-        const std::optional<CubeMap> surroundings = surroundingsOf(scene.lighting.environment, say);
+        const std::optional<CubeMap> surroundings = surroundingsIn(scene.lighting.environment, say);
         const packet::SceneLight light = renderer_.lightOf(scene, surroundings ? &*surroundings : nullptr);
         renderer_.setLight(light);
         const int passes = raysPerPixel(scene);
