@@ -19,9 +19,9 @@ struct Nodes {
     const IntegralFunctions& functions;
     double last() const { return functions.last(); }
     const glm::dvec4& density(double node) const { return functions.density[std::size_t(node)]; }
-    glm::dvec4 between(double a, double b) const {
-        return functions.integral[std::size_t(b)] - functions.integral[std::size_t(a)];
-    }
+    using Sum = glm::dvec4;
+    const Sum& sum(double node) const { return functions.integral[std::size_t(node)]; }
+    static glm::dvec4 apart(const Sum& a, const Sum& b) { return b - a; }
 };
 
 /// Integral from 0 to a position.
@@ -52,7 +52,8 @@ IntegralFunctions integralFunctions(const TransferFunction& function, Range rang
 }
 
 glm::dvec4 preintegrated(const IntegralFunctions& functions, double front, double back) {
-    return preintegrated<double>(Nodes{functions}, front, back, kSame);
+    const Nodes nodes{functions};
+    return preintegrated(nodes, segmentEnd(nodes, front), segmentEnd(nodes, back), kSame);
 }
 
 std::vector<glm::vec4> preintegrationTable(const IntegralFunctions& functions, int size) {

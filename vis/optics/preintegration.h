@@ -50,24 +50,36 @@ template <class N> glm::vec<4, N> fromDensity(const glm::vec<4, N>& mean) {
     return {color(mean.x), color(mean.y), color(mean.z), choose(some, opacity, N(0))};
 }
 
-/// Colour (linear light, not premultiplied: mean weighted by extinction) and opacity of the segment between two
-/// positions, clamped to 0..1; symmetric in both. For equal positions (closer than `same`, so that their difference has
-/// significant digits), the values of that position. `functions` has last(), the number of the last node,
-/// density(node), and between(a, b), the integral from one node to another. A template over the number
-/// (volume/base/numbers.h).
+/// One end of a ray segment: a position, clamped to 0..1, and what `Functions` say of the nodes around it.
+template <class N, class Functions> struct SegmentEnd {
+    N position;
+    NodePlaceOf<N> at;
+    glm::vec<4, N> density, next; ///< at the node below and the one above
+    typename Functions::Sum sum;  ///< from node 0 to the node below
+};
+template <class N, class Functions> SegmentEnd<N, Functions> segmentEnd(const Functions& functions, N position) {
+    const N inside = clamped(position, N(0), N(1));
+    const NodePlaceOf<N> at = nodePlace(functions.last(), inside);
+    return {inside, at, functions.density(at.below), functions.density(at.below + N(1)), functions.sum(at.below)};
+}
+
+/// Colour (linear light, not premultiplied: mean weighted by extinction) and opacity of the segment between two ends;
+/// symmetric in both. For equal positions (closer than `same`, so that their difference has significant digits), the
+/// values of that position. `functions` has last(), the number of the last node, density(node), sum(node), the integral
+/// up to it, and apart(a, b), the difference of two of these. A template over the number (volume/base/numbers.h).
 template <class N, class Functions>
-glm::vec<4, N> preintegrated(const Functions& functions, N front, N back, double same) {
+glm::vec<4, N> preintegrated(const Functions& functions, const SegmentEnd<N, Functions>& front,
+                             const SegmentEnd<N, Functions>& back, double same) {
     using Vec4 = glm::vec<4, N>;
     const double last = functions.last();
-    const N a = clamped(smaller(front, back), N(0), N(1)), b = clamped(larger(front, back), N(0), N(1));
-    const NodePlaceOf<N> lo = nodePlace(last, a), hi = nodePlace(last, b);
-    const Vec4 low = functions.density(lo.below), lowNext = functions.density(lo.below + N(1));
-    const Vec4 high = functions.density(hi.below), highNext = functions.density(hi.below + N(1));
-    const auto equal = b - a < N(same);
-    const Vec4 sum = functions.between(lo.below, hi.below) + integralBeyond(high, highNext, hi.along, last) -
-                     integralBeyond(low, lowNext, lo.along, last);
-    const Vec4 within = blended(low, lowNext, (a + b) * N(0.5 * last) - lo.below);
-    const N share = N(1) / choose(equal, N(1), b - a);
+    const N length = back.position - front.position;
+    const auto equal = larger(length, N(0) - length) < N(same);
+    const Vec4 sum = functions.apart(front.sum, back.sum) +
+                     integralBeyond(back.density, back.next, back.at.along, last) -
+                     integralBeyond(front.density, front.next, front.at.along, last);
+    const N middle = (front.position + back.position) * N(0.5 * last);
+    const Vec4 within = blended(front.density, front.next, middle - front.at.below);
+    const N share = N(1) / choose(equal, N(1), length);
     const auto of = [&](N apart, N here) { return choose(equal, here, apart * share); };
     return fromDensity(Vec4(of(sum.x, within.x), of(sum.y, within.y), of(sum.z, within.z), of(sum.w, within.w)));
 }

@@ -20,11 +20,14 @@ struct Nodes {
     const IntegralView& functions;
     double last() const { return functions.last; }
     glm::vec<4, Floats> density(Floats node) const { return four(functions.density, toInts(node) << 2); }
-    glm::vec<4, Floats> between(Floats a, Floats b) const {
-        const Ints from = toInts(a) << 3, to = toInts(b) << 3;
-        const float* const rest = functions.integral + 4;
-        return (four(functions.integral, to) - four(functions.integral, from)) + (four(rest, to) - four(rest, from));
+    struct Sum {
+        glm::vec<4, Floats> whole, rest; ///< two floats for each number
+    };
+    Sum sum(Floats node) const {
+        const Ints at = toInts(node) << 3;
+        return {four(functions.integral, at), four(functions.integral + 4, at)};
     }
+    static glm::vec<4, Floats> apart(const Sum& a, const Sum& b) { return (b.whole - a.whole) + (b.rest - a.rest); }
 
 private:
     static glm::vec<4, Floats> four(const float* from, Ints at) {
@@ -41,8 +44,9 @@ inline constexpr double kSamePlace = 1e-5; ///< places closer than this count as
     const auto place = [&](const Found& of) {
         return multiplyAdd(of.value, Floats(layer.placeScale), Floats(layer.placeOffset));
     };
+    const Nodes nodes{layer.integrals};
     const auto of = [&](Floats a, Floats b) {
-        return vis::preintegrated<Floats>(Nodes{layer.integrals}, a, b, kSamePlace);
+        return vis::preintegrated(nodes, segmentEnd(nodes, a), segmentEnd(nodes, b), kSamePlace);
     };
     const Floats first = place(front), last = place(back);
     const Floats a = choose(front.present, first, last), b = choose(back.present, last, first);

@@ -188,6 +188,9 @@ template <bool Bcc, bool Exact> struct SampleCaster {
         packet.blend(color, correctedOpacity(opacity, packet.step, thickness), k, lanes);
     }
 
+    /// Where the segments around samples begin and end.
+    Vec endOf(const LayerView& layer, Floats k) const { return withinVolume(*layer.volume, packet.cells(k)); }
+
     /// Classifies samples of a layer before or over interpolation, and draws them.
     [[gnu::noinline]] void drawOtherwise(const LayerView& layer, bool masked, Floats k, Mask lanes) {
         Classified own;
@@ -196,8 +199,7 @@ template <bool Bcc, bool Exact> struct SampleCaster {
             own = preclassified(layer, reader(layer, masked), packet.cells(k), lanes);
         } else {
             const Read read = reader(layer, true); // they may lie in other blocks
-            const Vec front = withinVolume(*layer.volume, packet.cells(k - Floats(0.5))),
-                      back = withinVolume(*layer.volume, packet.cells(k + Floats(0.5)));
+            const Vec front = endOf(layer, k - Floats(0.5)), back = endOf(layer, k + Floats(0.5));
             count(lanes, 2);
             Mask same = lanes;
             if (layer.volume->partCount > 0) {

@@ -137,6 +137,65 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         }
     }
 
+    /// The end of segments, which is where the next ones begin.
+    struct End {
+        Found found{Floats(0), maskOf(0)};
+        SegmentEnd<Floats, Nodes> integral = {};
+    };
+    End endAt(const Read& read, Floats k, Mask lanes) {
+        count(lanes);
+        const Found found = read(this->endOf(layer, k), lanes);
+        return {found, segmentEnd(Nodes{layer.integrals}, placeOf(found.value))};
+    }
+    [[gnu::noinline]] static void replace(End& end, const End& by, Mask lanes) {
+        const auto vec = [&](glm::vec<4, Floats>& own, const glm::vec<4, Floats>& other) {
+            for (int c = 0; c < 4; ++c) own[c] = choose(lanes, other[c], own[c]);
+        };
+        end.found = {choose(lanes, by.found.value, end.found.value),
+                     (end.found.present & !lanes) | (by.found.present & lanes)};
+        end.integral.position = choose(lanes, by.integral.position, end.integral.position);
+        end.integral.at = {choose(lanes, by.integral.at.below, end.integral.at.below),
+                           choose(lanes, by.integral.at.along, end.integral.at.along)};
+        vec(end.integral.density, by.integral.density);
+        vec(end.integral.next, by.integral.next);
+        vec(end.integral.sum.whole, by.integral.sum.whole);
+        vec(end.integral.sum.rest, by.integral.sum.rest);
+    }
+
+    /// A composite layer classified over interpolation.
+    void castSegments() {
+        Floats k(0), last(-2); // `last`: the sample whose segment ends at `front`
+        End front;
+        Mask live = packet.meets;
+        while (anyOf(live)) {
+            const Skip::Look look = skip(k, live);
+            Mask open = look.full;
+            if (!anyOf(open)) continue;
+            const bool masked = someAbsent(job, packet, k, open);
+            const Read read = reader(layer, true); // ends may lie in other blocks
+            const Mask leapt = open & (k > last + Floats(1));
+            if (anyOf(leapt)) replace(front, endAt(read, k - Floats(0.5), leapt), leapt);
+            for (int n = 0; n < look.run && anyOf(open); ++n) {
+                const End back = endAt(read, k + Floats(0.5), open);
+                const Classified own = between(front, back, open);
+                const Mask hit = open & (own.opacity > Floats(0)) & (own.share > Floats(0));
+                if (anyOf(hit)) this->drawClassified(layer, masked, own.color, own.opacity, own.share, k, hit);
+                replace(front, back, open);
+                last = choose(open, k, last);
+                k = choose(open, k + Floats(1), k);
+                open &= (k < packet.count) & packet.seeThrough();
+            }
+            live &= (k < packet.count) & packet.seeThrough();
+        }
+    }
+    /// Colours and opacities of segments.
+    Classified between(const End& front, const End& back, Mask lanes) const {
+        if (anyOf(lanes & !(front.found.present & back.found.present)))
+            return preintegrated(layer, front.found, back.found, lanes);
+        const Nodes nodes{layer.integrals};
+        return classified(vis::preintegrated(nodes, front.integral, back.integral, kSamePlace), Floats(1));
+    }
+
     /// A maximum or minimum without brushes and lenses: blocks that cannot exceed what a ray has found are passed over.
     void castExtremum() {
         constexpr int kSeed = 16; // samples apart that are taken first, so that more blocks can be passed over
@@ -263,17 +322,21 @@ template <bool Bcc, bool Exact> void castLayersOf(SingleCaster<Bcc, Exact>& cast
     const CastJob& job = caster.job;
     const LayerView& layer = job.layers[0];
     const bool one = job.layers.size() == 1 && !layer.gradient && !layer.volume->labels &&
-                     layer.volume->partCount == 0 && !caster.packet.bends &&
-                     layer.classification == Classification::Post;
+                     layer.volume->partCount == 0 && !caster.packet.bends;
+    const bool post = layer.classification == Classification::Post;
     const bool plain = !job.focus.any;
-    if (one && layer.style == RayStyle::Composite && plain && !layer.shaded && !layer.look && !layer.byRegions &&
-        !job.light.volume && caster.packet.holeCount == 0 && layer.colors.volume == nullptr)
+    if (one && layer.style == RayStyle::Composite && layer.classification == Classification::PreIntegrated)
+        caster.castSegments();
+    else if (!one || !post)
+        caster.castLayers();
+    else if (layer.style == RayStyle::Composite && plain && !layer.shaded && !layer.look && !layer.byRegions &&
+             !job.light.volume && caster.packet.holeCount == 0 && layer.colors.volume == nullptr)
         caster.castUnshaded();
-    else if (one && layer.style == RayStyle::Composite)
+    else if (layer.style == RayStyle::Composite)
         caster.castComposite();
-    else if (one && layer.style == RayStyle::Iso)
+    else if (layer.style == RayStyle::Iso)
         caster.castSurface();
-    else if (one && plain && (layer.style == RayStyle::Maximum || layer.style == RayStyle::Minimum))
+    else if (plain && (layer.style == RayStyle::Maximum || layer.style == RayStyle::Minimum))
         caster.castExtremum();
     else
         caster.castLayers();

@@ -151,9 +151,13 @@ void PacketRenderer::setSource(std::shared_ptr<const volume::BrickSource> source
 bool PacketRenderer::setVolumes(std::shared_ptr<PacketVolumes> volumes) {
     if (volumes == volumes_) return false;
     volumes_ = std::move(volumes);
+    release();
+    return true;
+}
+
+void PacketRenderer::release() {
     held_.clear();
     scene_.reset();
-    return true;
 }
 
 bool PacketRenderer::request(const Scene& scene) {

@@ -82,6 +82,8 @@ public:
     void setSource(std::shared_ptr<const volume::BrickSource> source);
     /// A source whose samples other renderers use, too; false if it is the former one.
     bool setVolumes(std::shared_ptr<PacketVolumes> volumes);
+    /// Lets go of samples and tables.
+    void release();
     /// Whether prepare() need not wait for samples; begins to read them in the background otherwise.
     bool request(const Scene& scene);
     /// Begins to read the samples of a scene that may come next; whether they are there.
