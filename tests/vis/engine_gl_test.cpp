@@ -82,15 +82,83 @@ TEST_F(EngineGl, BothEnginesDrawTheSamePicture) {
 }
 
 TEST_F(EngineGl, AutomaticIsWhatTheOptionsSay) {
-    for (const bool packets : {false, true}) {
+    for (const Packets packets : {Packets::Never, Packets::WhileCompiling, Packets::Always}) {
         Renderer renderer({.packets = packets});
         renderer.setSource(waves(volume::LatticeKind::CC));
         const ViewTargetPtr target = renderer.makeTarget();
         EXPECT_EQ(test::renderAll(renderer, *target, wavesScene(Engine::Automatic), {32, 32}).engine.byProcessor,
-                  packets);
+                  packets == Packets::Always);
         EXPECT_FALSE(test::renderAll(renderer, *target, wavesScene(Engine::OpenGl), {32, 32}).engine.byProcessor);
         EXPECT_TRUE(test::renderAll(renderer, *target, wavesScene(Engine::Processor), {32, 32}).engine.byProcessor);
         EXPECT_TRUE(renderer.engine().byProcessor);
+    }
+}
+
+/// Where OpenGL is to draw, the processor does while OpenGL compiles. With bricks its picture is then drawn again,
+/// since only OpenGL finds out which of them are occluded.
+TEST_F(EngineGl, TheProcessorDrawsWhileOpenGlCompiles) {
+    for (const bool bricks : {false, true}) {
+        RendererOptions options{.packets = Packets::WhileCompiling, .patience = 0};
+        if (bricks) options.denseTexels = 1000;
+        Renderer renderer(options);
+        renderer.setSource(waves(volume::LatticeKind::BCC));
+        const ViewTargetPtr target = renderer.makeTarget(), waited = renderer.makeTarget();
+        Scene scene = wavesScene(Engine::Automatic);
+        int compiling = 0;
+        const auto untilComplete = [&] {
+            int meanwhile = 0;
+            for (int frame = 0; frame < 20000; ++frame) {
+                const FrameStatus status = renderer.render(*target, scene, {.size = {64, 48}});
+                compiling += status.compiling ? 1 : 0;
+                meanwhile += status.compiling && status.current && status.engine.byProcessor ? 1 : 0;
+                if (status.complete) return meanwhile;
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            }
+            ADD_FAILURE() << "not complete";
+            return meanwhile;
+        };
+        const int meanwhile = untilComplete();
+        if (compiling == 0 && !currentDriver().compilesAtFirstDraw) GTEST_SKIP() << "the driver had the program";
+        EXPECT_GT(meanwhile, 0) << bricks;
+        const bool byProcessor = renderer.engine().byProcessor;
+        EXPECT_FALSE(bricks && byProcessor);
+        const std::vector<glm::vec4> first = renderer.readLinear(*target);
+        // The program of another scene of this kind is there.
+        scene.transfer["v"].opacity[1].y = 0.1f;
+        for (bool compiled = false; !compiled; std::this_thread::sleep_for(std::chrono::milliseconds(1)))
+            compiled = !renderer.render(*target, scene, {.size = {64, 48}}).compiling;
+        untilComplete();
+        EXPECT_FALSE(renderer.engine().byProcessor);
+        const std::vector<glm::vec4> second = renderer.readLinear(*target);
+        scene.render.engine = Engine::OpenGl;
+        test::renderAll(renderer, *waited, scene, {64, 48});
+        EXPECT_LT(rms(second, renderer.readLinear(*waited)), 1e-6) << bricks;
+        scene.transfer["v"].opacity[1].y = 0;
+        test::renderAll(renderer, *waited, scene, {64, 48});
+        EXPECT_LT(rms(first, renderer.readLinear(*waited)), byProcessor ? 3e-4 : 1e-6) << bricks;
+        EXPECT_TRUE(renderer.takeMessages().empty());
+    }
+}
+
+/// Users who ask for OpenGL wait for it, as they do where they have asked for patience.
+TEST_F(EngineGl, OpenGlIsWaitedForWhereItIsAskedFor) {
+    for (const bool asked : {false, true}) {
+        Renderer renderer({.packets = Packets::WhileCompiling, .patience = asked ? 0.0 : 1e9});
+        renderer.setSource(waves(volume::LatticeKind::CC));
+        const ViewTargetPtr target = renderer.makeTarget();
+        Scene scene = wavesScene(asked ? Engine::OpenGl : Engine::Automatic);
+        scene.render.samples = asked ? 1 : 3; // another program
+        int compiling = 0;
+        FrameStatus status;
+        for (int frame = 0; frame < 20000 && !status.complete; ++frame) {
+            status = renderer.render(*target, scene, {.size = {64, 48}});
+            compiling += status.compiling ? 1 : 0;
+            EXPECT_FALSE(status.engine.byProcessor);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        EXPECT_TRUE(status.complete);
+        if (compiling == 0 && !currentDriver().compilesAtFirstDraw) GTEST_SKIP() << "the driver had the program";
+        EXPECT_GT(compiling, 0);
     }
 }
 

@@ -8,6 +8,13 @@
 /// Memory limits of the renderer, and what is in use.
 namespace tessera::vis {
 
+/// When the processor casts the rays of scenes that leave this to the renderer (Engine::Automatic).
+enum class Packets {
+    Never,
+    WhileCompiling, ///< until OpenGL has compiled their program
+    Always
+};
+
 struct RendererOptions {
     /// Budgets in bytes for textures and for decoded bricks in RAM; they apply if lower than the scene's limits.
     std::size_t textureBudget = ~std::size_t(0), memoryBudget = ~std::size_t(0);
@@ -15,7 +22,8 @@ struct RendererOptions {
     /// Largest channel in texels that is kept as a single texture, which is cheapest to sample. Larger ones are divided
     /// into bricks.
     std::size_t denseTexels = std::size_t(32) << 20;
-    bool packets = false;       ///< Engine::Automatic is the processor
+    Packets packets = Packets::Never;
+    double patience = 250;      ///< how long the former picture stays while a program is compiled, milliseconds
     bool openGl = true;         ///< else there is none: the processor draws everything
     bool exactTextures = false; ///< store bricks as 32-bit float instead of 16-bit, for comparison with the reference
     /// Simulated memory of the driver for data textures in bytes; larger allocations are refused. For tests.

@@ -287,7 +287,8 @@ void RenderStages::refine(ViewTarget& target, const RenderCall& call, Clock::tim
     const PictureState& state = target.state;
     const bool probing = target.demand.probing();
     const bool done = state.full() ? state.converged() || request.moving : state.reduced() && request.moving;
-    if (done && !probing) return;
+    // What is occluded is known to pictures of OpenGL alone.
+    if (done && !probing && !(target.meanwhile && findsHidden(scene))) return;
     if (!target.pace().beginCall() && !request.wait) return;
     target.tables.update(call, residency.revision(), target.demand.frames());
     const ProgramRecipe recipe = variant(target, scene, call.plan);
@@ -295,7 +296,8 @@ void RenderStages::refine(ViewTarget& target, const RenderCall& call, Clock::tim
     const ProgramAnswer answer = request.wait ? ProgramAnswer{tools.programs.find(recipe), ProgramStage::Ready}
                                               : tools.programs.request(recipe, request.budgetMs / 4);
     if (!answer.program && (answer.stage == ProgramStage::Failed || request.wait)) return giveUp(target, call);
-    if (!answer.program) return postpone(target, scene);
+    if (!answer.program && (probing || !drawMeanwhile(target, call, start))) return postpone(target, scene);
+    if (!answer.program) return;
     const bool presents = request.wait || presentable(target, scene);
     bindPlan(target, call);
     ViewLight::Progress light;
@@ -306,6 +308,7 @@ void RenderStages::refine(ViewTarget& target, const RenderCall& call, Clock::tim
     }
     if (!ready(target, call, call, answer, recipe) || !presents) return postpone(target, scene);
     target.shown.compiling = false;
+    endMeanwhile(target);
     RayPrograms programs{.program = answer.program, .beyondPlan = {}, .beyondScene = {}};
     addBeyond(programs, target, call);
     if (probing) return drawReduced(target, call, programs, {kProbeShrink, 1});

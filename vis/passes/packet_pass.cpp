@@ -22,12 +22,14 @@ std::string RenderStages::refusalOfPackets(const ViewTarget& target, const Rende
 /// Whether the processor casts the rays of a call.
 bool RenderStages::chooseEngine(ViewTarget& target, const RenderCall& call, FrameStatus& status) {
     const Engine asked = call.scene.render.engine;
-    const bool wanted = asked == Engine::Processor || (asked == Engine::Automatic && options.packets);
+    const bool wanted =
+        asked == Engine::Processor || (asked == Engine::Automatic && options.packets == Packets::Always);
     if (target.packets.renderer.setVolumes(volumes)) {
         target.packets.failed = false;
         ++target.packets.revision;
     }
-    volumes->keep(std::min(options.memoryBudget, std::size_t(call.scene.render.limits.brickMemory) << 20) / 2);
+    const std::size_t limit = std::min(options.memoryBudget, std::size_t(call.scene.render.limits.brickMemory) << 20);
+    volumes->keep(wanted || target.meanwhile ? limit / 2 : 0);
     const bool rays = !call.plan.layers.empty(); // slices and meshes alone are quickly drawn
     const bool possible = wanted && rays && !options.countSamples;
     EngineUse& use = status.engine;
@@ -67,6 +69,38 @@ bool RenderStages::drawByPackets(ViewTarget& target, const RenderCall& call, Clo
     status.samples = renderer.volumes() * std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
     status.bytes = renderer.bytes();
     return true;
+}
+
+/// Draws a call whose program is being compiled, where the processor may and can and its samples are here; false if
+/// not.
+bool RenderStages::drawMeanwhile(ViewTarget& target, const RenderCall& call, Clock::time_point start) {
+    std::optional<Clock::time_point>& since = target.shown.compilingSince;
+    if (!since) since = start;
+    const bool may = options.packets == Packets::WhileCompiling && call.scene.render.engine == Engine::Automatic &&
+                     !call.plan.layers.empty() && !options.countSamples && !call.info().remote;
+    if (!may || millisecondsSince(*since) < options.patience || !refusalOfPackets(target, call).empty()) return false;
+    packet::PacketRenderer& renderer = target.packets.renderer;
+    try {
+        if (!renderer.request(call.scene)) return false;
+        renderer.prepare(call.scene);
+        if (!target.meanwhile) target.redraw(target.buffers.everything());
+        target.meanwhile = target.byProcessor = true;
+        refineByPackets(target, call, start);
+        return true;
+    } catch (const Error&) { // OpenGL says what is damaged
+        target.packets.failed = true;
+        target.meanwhile = target.byProcessor = false;
+        return false;
+    }
+}
+
+/// OpenGL draws what the processor began, in tiles of its own.
+void RenderStages::endMeanwhile(ViewTarget& target) {
+    target.shown.compilingSince.reset();
+    if (!target.meanwhile) return;
+    target.meanwhile = false;
+    target.packets.renderer.release();
+    target.redraw(target.buffers.everything());
 }
 
 /// While an animation runs, the samples of the next stored time are read in the background.

@@ -90,7 +90,7 @@ bool RenderStages::draw(ViewTarget& target, const RenderCall& call, Clock::time_
     target.shown.compiling = false;
     if (any) {
         refine(target, call, start);
-        if (findsHidden(call.scene))
+        if (findsHidden(call.scene) && !target.meanwhile)
             target.hidden.start(tools, call, target.buffers, target.state, target.shown.number);
     } else if (!target.state.full()) {
         const bool comes = !call.plan.empty() && !status.complete;

@@ -89,6 +89,8 @@ struct RenderStages {
     std::string refusalOfPackets(const ViewTarget& target, const RenderCall& call) const;
     bool chooseEngine(ViewTarget& target, const RenderCall& call, FrameStatus& status);
     bool drawByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start, FrameStatus& status);
+    bool drawMeanwhile(ViewTarget& target, const RenderCall& call, Clock::time_point start);
+    void endMeanwhile(ViewTarget& target);
     void refineByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start);
     void prefetchTime(PacketView& packets, const RenderCall& call);
     void castPackets(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer, const RayTile& what);

@@ -45,7 +45,9 @@ void ViewTargetDeleter::operator()(ViewTarget* target) const {
 }
 
 RendererOptions quickestOptions(RendererOptions options) {
-    if (options.openGl) options.packets = (options.driver ? *options.driver : currentDriver()).software;
+    if (!options.openGl) return options;
+    const bool software = (options.driver ? *options.driver : currentDriver()).software;
+    options.packets = software ? Packets::Always : Packets::WhileCompiling;
     return options;
 }
 
@@ -92,13 +94,16 @@ bool hasVolumes(const Scene& scene) {
     });
 }
 
+EngineUse byProcessor(packet::InstructionSet with) {
+    return {.byProcessor = true, .instructions = packet::kInstructionSetNames[std::size_t(with)], .refusal = {}};
+}
+
 /// What the processor has drawn as a whole since `start`.
 FrameStatus statusAlone(const ProcessorPicture& picture, Clock::time_point start) {
     FrameStatus status;
     status.complete = status.current = true;
     status.texture = picture.texture().name();
-    status.engine.byProcessor = true;
-    status.engine.instructions = packet::kInstructionSetNames[std::size_t(picture.instructions())];
+    status.engine = byProcessor(picture.instructions());
     status.milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     return status;
 }
@@ -142,6 +147,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     status.complete = status.complete && target.state.converged();
     status.current = status.complete || target.state.changed().empty();
     status.compiling = target.shown.compiling;
+    if (target.meanwhile) status.engine = byProcessor(target.packets.renderer.instructions());
     if (request.wait) target.pace().collect(true);
     status.milliseconds = target.pace().pass();
     if (hasVolumes(scene)) stages_->engine = status.engine;

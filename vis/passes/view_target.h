@@ -15,11 +15,12 @@ namespace tessera::vis {
 struct ShownScene {
     Scene scene;
     const volume::BrickSource* source = nullptr;
-    std::uint64_t resident = 0; ///< Residency::revision()
-    bool started = false;       ///< the buffers hold some of its picture
-    bool compiling = false;     ///< the program for the picture is being compiled
-    std::uint64_t number = 0;   ///< increases with each scene, or time of the data, drawn
-    std::uint64_t frame = 0;    ///< Residency::frame() of the last drawing
+    std::uint64_t resident = 0;                      ///< Residency::revision()
+    bool started = false;                            ///< the buffers hold some of its picture
+    bool compiling = false;                          ///< the program for the picture is being compiled
+    std::optional<Clock::time_point> compilingSince; ///< without a picture of it
+    std::uint64_t number = 0;                        ///< increases with each scene, or time of the data, drawn
+    std::uint64_t frame = 0;                         ///< Residency::frame() of the last drawing
 };
 
 /// The rasterised geometry of a view.
@@ -69,7 +70,8 @@ public:
     ViewLight light;
     ViewHidden hidden;
     PacketView packets;
-    bool byProcessor = false; ///< casts rays of the current picture
+    bool byProcessor = false; ///< casts rays in this call
+    bool meanwhile = false;   ///< cast rays of the current picture while a program was being compiled
     ProcessorPicture alone;   ///< instead of all others, without OpenGL
 
     Pace& pace() { return byProcessor ? packets.pace : glPace; }

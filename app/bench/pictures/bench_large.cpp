@@ -49,6 +49,8 @@ BenchTable benchLarge() {
     const Followed cursor =
         timed.drag([&](Session& session, double share) { session.cursor = box.lo + box.size() * (0.3 + 0.4 * share); });
     table.rows.push_back({"cursor dragged, ms until every view shows it", decimals(median(cursor.all), 0)});
+    for (const auto& [pane, milliseconds] : cursor.shown)
+        table.rows.push_back({"cursor dragged, ms until shown by " + pane, decimals(median(milliseconds), 0)});
     const vis::ResidencyInfo held = timed.workbench().renderer()->residency();
     table.rows.push_back({"textures, MB of budget", decimals(double(held.textureBytes) / 1e6, 0) + " of " +
                                                         decimals(double(held.textureBudget) / 1e6, 0)});

@@ -8,7 +8,8 @@
 #include <map>
 #include <thread>
 
-/// Latency of linked views while something is dragged, and of a scatterplot matrix of many samples.
+/// The time until linked views show their first pictures, their latency while something is dragged, and of a
+/// scatterplot matrix of many samples.
 namespace tessera::app {
 
 namespace {
@@ -102,9 +103,11 @@ std::pair<double, double> answered(AsyncStatistics& answers, ViewContext& contex
 } // namespace
 
 BenchTable benchLink() {
-    BenchTable table{"link", {"dragged", "view", "ms drawing", "ms until shown"}, {}};
+    BenchTable table{"link", {"what", "view", "ms drawing", "ms until shown"}, {}};
     TimedWorkbench timed;
     timed.workbench().install(shown());
+    for (const auto& [pane, milliseconds] : timed.untilShown())
+        table.rows.push_back({"first picture", pane, "", decimals(milliseconds, 1)});
     const volume::Box box = timed.workbench().source()->info().bounds;
     const Range heat = [&] {
         const volume::DatasetInfo& info = timed.workbench().source()->info();
