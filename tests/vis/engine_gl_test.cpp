@@ -94,49 +94,62 @@ TEST_F(EngineGl, AutomaticIsWhatTheOptionsSay) {
     }
 }
 
+/// A renderer whose processor draws while OpenGL compiles, beside one picture that waits for OpenGL.
+struct Meanwhile {
+    Renderer renderer;
+    ViewTargetPtr target = renderer.makeTarget(), waited = renderer.makeTarget();
+
+    explicit Meanwhile(bool bricks)
+        : renderer({.denseTexels = bricks ? 1000 : std::size_t(1) << 20,
+                    .packets = Packets::WhileCompiling,
+                    .patience = 0}) {
+        renderer.setSource(waves(volume::LatticeKind::BCC));
+    }
+    /// Draws until nothing is left to do. Returns in how many frames the processor's picture was there meanwhile.
+    int untilComplete(const Scene& scene) {
+        int meanwhile = 0;
+        for (int frame = 0; frame < 20000; ++frame) {
+            const FrameStatus status = renderer.render(*target, scene, {.size = {64, 48}, .budgetMs = 1});
+            meanwhile += status.compiling && status.current && status.engine.byProcessor ? 1 : 0;
+            if (status.complete) return meanwhile;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        ADD_FAILURE() << "not complete";
+        return meanwhile;
+    }
+    std::vector<glm::vec4> byOpenGl(Scene scene) {
+        scene.render.engine = Engine::OpenGl;
+        test::renderAll(renderer, *waited, scene, {64, 48});
+        return renderer.readLinear(*waited);
+    }
+};
+
 /// Where OpenGL is to draw, the processor does while OpenGL compiles. With bricks its picture is then drawn again,
 /// since only OpenGL finds out which of them are occluded.
 TEST_F(EngineGl, TheProcessorDrawsWhileOpenGlCompiles) {
     for (const bool bricks : {false, true}) {
-        RendererOptions options{.packets = Packets::WhileCompiling, .patience = 0};
-        if (bricks) options.denseTexels = 1000;
-        Renderer renderer(options);
-        renderer.setSource(waves(volume::LatticeKind::BCC));
-        const ViewTargetPtr target = renderer.makeTarget(), waited = renderer.makeTarget();
-        Scene scene = wavesScene(Engine::Automatic);
-        int compiling = 0;
-        const auto untilComplete = [&] {
-            int meanwhile = 0;
-            for (int frame = 0; frame < 20000; ++frame) {
-                const FrameStatus status = renderer.render(*target, scene, {.size = {64, 48}});
-                compiling += status.compiling ? 1 : 0;
-                meanwhile += status.compiling && status.current && status.engine.byProcessor ? 1 : 0;
-                if (status.complete) return meanwhile;
-                std::this_thread::sleep_for(std::chrono::milliseconds(1));
-            }
-            ADD_FAILURE() << "not complete";
-            return meanwhile;
-        };
-        const int meanwhile = untilComplete();
-        if (compiling == 0 && !currentDriver().compilesAtFirstDraw) GTEST_SKIP() << "the driver had the program";
+        Meanwhile drawing(bricks);
+        Scene scene = wavesScene(Engine::Processor);
+        int meanwhile = 0;
+        for (int tries = 0; tries < 8 && meanwhile == 0; ++tries) { // a driver may have a program at once
+            scene.layers.push_back(scene.layers.front());
+            scene.render.engine = Engine::Processor;
+            test::renderAll(drawing.renderer, *drawing.target, scene, {64, 48}); // now it has the samples
+            scene.render.engine = Engine::Automatic;
+            scene.transfer["v"].opacity[2].y *= 0.9f;
+            meanwhile = drawing.untilComplete(scene);
+            const bool byProcessor = drawing.renderer.engine().byProcessor;
+            EXPECT_FALSE(bricks && byProcessor);
+            const std::vector<glm::vec4> shown = drawing.renderer.readLinear(*drawing.target);
+            EXPECT_LT(rms(shown, drawing.byOpenGl(scene)), byProcessor ? 3e-4 : 1e-6) << bricks;
+        }
         EXPECT_GT(meanwhile, 0) << bricks;
-        const bool byProcessor = renderer.engine().byProcessor;
-        EXPECT_FALSE(bricks && byProcessor);
-        const std::vector<glm::vec4> first = renderer.readLinear(*target);
-        // The program of another scene of this kind is there.
-        scene.transfer["v"].opacity[1].y = 0.1f;
-        for (bool compiled = false; !compiled; std::this_thread::sleep_for(std::chrono::milliseconds(1)))
-            compiled = !renderer.render(*target, scene, {.size = {64, 48}}).compiling;
-        untilComplete();
-        EXPECT_FALSE(renderer.engine().byProcessor);
-        const std::vector<glm::vec4> second = renderer.readLinear(*target);
-        scene.render.engine = Engine::OpenGl;
-        test::renderAll(renderer, *waited, scene, {64, 48});
-        EXPECT_LT(rms(second, renderer.readLinear(*waited)), 1e-6) << bricks;
-        scene.transfer["v"].opacity[1].y = 0;
-        test::renderAll(renderer, *waited, scene, {64, 48});
-        EXPECT_LT(rms(first, renderer.readLinear(*waited)), byProcessor ? 3e-4 : 1e-6) << bricks;
-        EXPECT_TRUE(renderer.takeMessages().empty());
+        // The program is there now.
+        scene.transfer["v"].opacity[2].y *= 0.9f;
+        drawing.untilComplete(scene);
+        EXPECT_FALSE(drawing.renderer.engine().byProcessor);
+        EXPECT_LT(rms(drawing.renderer.readLinear(*drawing.target), drawing.byOpenGl(scene)), 1e-6) << bricks;
+        EXPECT_TRUE(drawing.renderer.takeMessages().empty());
     }
 }
 
@@ -148,17 +161,13 @@ TEST_F(EngineGl, OpenGlIsWaitedForWhereItIsAskedFor) {
         const ViewTargetPtr target = renderer.makeTarget();
         Scene scene = wavesScene(asked ? Engine::OpenGl : Engine::Automatic);
         scene.render.samples = asked ? 1 : 3; // another program
-        int compiling = 0;
         FrameStatus status;
         for (int frame = 0; frame < 20000 && !status.complete; ++frame) {
-            status = renderer.render(*target, scene, {.size = {64, 48}});
-            compiling += status.compiling ? 1 : 0;
+            status = renderer.render(*target, scene, {.size = {64, 48}, .budgetMs = 1});
             EXPECT_FALSE(status.engine.byProcessor);
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
         EXPECT_TRUE(status.complete);
-        if (compiling == 0 && !currentDriver().compilesAtFirstDraw) GTEST_SKIP() << "the driver had the program";
-        EXPECT_GT(compiling, 0);
     }
 }
 

@@ -41,6 +41,11 @@ void ProgramCache::Shared::reach(Entry& entry, ProgramStage stage) {
 
 namespace {
 
+/// How many programs are compiled at a time.
+unsigned compilers(bool warmsUp) {
+    return warmsUp ? 1 : std::clamp(std::thread::hardware_concurrency() / 2, 1u, 4u);
+}
+
 bool underWay(ProgramStage stage) {
     return stage == ProgramStage::Linking || stage == ProgramStage::Warming;
 }
@@ -48,8 +53,16 @@ bool underWay(ProgramStage stage) {
 } // namespace
 
 ProgramCache::ProgramCache(bool warmsUp, ProgramLimit limit)
-    : warmsUp_(warmsUp), limit_(limit), shared_(std::make_shared<Shared>()), context_(WorkerContext::make(warmsUp)) {
-    if (context_) worker_ = std::make_unique<JobQueue>(1, JobThreads::Equal);
+    : warmsUp_(warmsUp), limit_(limit), shared_(std::make_shared<Shared>()) {
+    for (unsigned i = 0; i < compilers(warmsUp); ++i)
+        if (std::unique_ptr<WorkerContext> context = WorkerContext::make(warmsUp))
+            compilers_.push_back({std::move(context), std::make_unique<JobQueue>(1, JobThreads::Equal)});
+}
+
+/// The compiler with the fewest programs to compile; null if there is none.
+ProgramCache::Compiler* ProgramCache::idlest() {
+    if (compilers_.empty()) return nullptr;
+    return &*std::ranges::min_element(compilers_, {}, [](const Compiler& each) { return each.worker->unfinished(); });
 }
 
 ProgramCache::~ProgramCache() = default;
@@ -80,10 +93,11 @@ ProgramCache::Entry& ProgramCache::make(const ProgramRecipe& recipe, bool backgr
         shared_->fail(*entry, error.what());
         return *entry;
     }
-    if (!background || !worker_) {
+    const Compiler* const compiler = background ? idlest() : nullptr;
+    if (!compiler) {
         link(false);
     } else {
-        worker_->add(0, [link, apart = warmsUp_, context = context_.get()](std::stop_token) {
+        compiler->worker->add(0, [link, apart = warmsUp_, context = compiler->context.get()](std::stop_token) {
             const WorkerContext::Use use(*context);
             link(apart);
         });
@@ -142,13 +156,13 @@ ProgramAnswer ProgramCache::request(const ProgramRecipe& recipe, double millisec
 
 void ProgramCache::warmUp(const ProgramRecipe& recipe, const Framebuffer& framebuffer) {
     const auto found = programs_.find(recipe.key());
-    if (found == programs_.end() || !worker_ || !found->second->program) return;
+    if (found == programs_.end() || compilers_.empty() || !found->second->program) return;
     const DrawState state = captureDrawState(found->second->program, framebuffer);
     shared_->reach(*found->second, ProgramStage::Warming);
-    worker_->add(-1, [this, entry = found->second, state](std::stop_token) {
+    compilers_.front().worker->add(-1, [this, entry = found->second, state](std::stop_token) {
         double firstDraw = 0;
         try {
-            const WorkerContext::Use use(*context_);
+            const WorkerContext::Use use(*compilers_.front().context);
             firstDraw = drawNothing(loadProgram(entry->binary, entry->text), state);
         } catch (const std::exception&) { // for example out of memory: then the first draw happens in the first context
         }
@@ -170,12 +184,12 @@ bool ProgramCache::inDiskCache(const Drawn& drawn) {
 void ProgramCache::awaitDiskCache(const Drawn& drawn, std::size_t trial, Clock::time_point since) {
     using namespace std::chrono_literals;
     static constexpr std::chrono::milliseconds kPauses[] = {60ms, 250ms, 800ms};
-    worker_->add(1, [this, drawn, trial, since](std::stop_token stop) {
+    compilers_.front().worker->add(1, [this, drawn, trial, since](std::stop_token stop) {
         const bool due = Clock::now() >= since + kPauses[trial];
         if (!due) std::this_thread::sleep_for(10ms);
         if (!due && !stop.stop_requested()) return awaitDiskCache(drawn, trial, since);
         try {
-            const WorkerContext::Use use(*context_);
+            const WorkerContext::Use use(*compilers_.front().context);
             if (!stop.stop_requested() && trial + 1 < std::size(kPauses) && !inDiskCache(drawn))
                 return awaitDiskCache(drawn, trial + 1, Clock::now());
         } catch (const std::exception&) { // as above

@@ -10,7 +10,7 @@
 
 namespace tessera::vis {
 
-/// A cache of programs by recipe. New ones are compiled on a thread with its own context, if available, without
+/// A cache of programs by recipe. New ones are compiled on threads with their own contexts, if available, without
 /// blocking the caller:
 ///
 ///     const ProgramAnswer answer = cache.request(recipe, 10);
@@ -40,7 +40,7 @@ struct ProgramLimit {
 class ProgramCache {
 public:
     /// `warmsUp`: programs need warmUp() (Driver::compilesAtFirstDraw), and are compiled in a context that shares
-    /// nothing; otherwise they are ready once linked, in one that shares them.
+    /// nothing; otherwise they are ready once linked, in one of several that share them.
     explicit ProgramCache(bool warmsUp = true, ProgramLimit limit = {});
     ~ProgramCache(); ///< waits for a running compilation
 
@@ -76,8 +76,13 @@ private:
     std::map<std::string, std::shared_ptr<Entry>> programs_;
     std::shared_ptr<Shared> shared_;
     std::set<GLuint> drawn_;
-    std::unique_ptr<WorkerContext> context_; ///< null: everything runs synchronously in the current context
-    std::unique_ptr<JobQueue> worker_;       ///< last member: its jobs end before the other members are destroyed
+    /// A thread that compiles in a context of its own.
+    struct Compiler {
+        std::unique_ptr<WorkerContext> context;
+        std::unique_ptr<JobQueue> worker; ///< last member: its jobs end before the context does
+    };
+    Compiler* idlest();
+    std::vector<Compiler> compilers_; ///< none: everything runs synchronously in the current context; last member, too
 };
 
 } // namespace tessera::vis

@@ -291,14 +291,15 @@ void RenderStages::refine(ViewTarget& target, const RenderCall& call, Clock::tim
     if (done && !probing && !(target.meanwhile && findsHidden(scene))) return;
     if (!target.pace().beginCall() && !request.wait) return;
     target.tables.update(call, residency.revision(), target.demand.frames());
+    const bool presents = request.wait || presentable(target, scene); // its small programs are compiled first
     const ProgramRecipe recipe = variant(target, scene, call.plan);
     target.shown.compiling = true;
-    const ProgramAnswer answer = request.wait ? ProgramAnswer{tools.programs.find(recipe), ProgramStage::Ready}
-                                              : tools.programs.request(recipe, request.budgetMs / 4);
+    const ProgramAnswer answer = request.wait
+                                     ? ProgramAnswer{tools.programs.find(recipe), ProgramStage::Ready}
+                                     : tools.programs.request(recipe, target.meanwhile ? 0 : request.budgetMs / 4);
     if (!answer.program && (answer.stage == ProgramStage::Failed || request.wait)) return giveUp(target, call);
     if (!answer.program && (probing || !drawMeanwhile(target, call, start))) return postpone(target, scene);
     if (!answer.program) return;
-    const bool presents = request.wait || presentable(target, scene);
     bindPlan(target, call);
     ViewLight::Progress light;
     if (!probing) {

@@ -77,7 +77,7 @@ bool RenderStages::drawMeanwhile(ViewTarget& target, const RenderCall& call, Clo
     std::optional<Clock::time_point>& since = target.shown.compilingSince;
     if (!since) since = start;
     const bool may = options.packets == Packets::WhileCompiling && call.scene.render.engine == Engine::Automatic &&
-                     !call.plan.layers.empty() && !options.countSamples && !call.info().remote;
+                     !options.countSamples && !call.info().remote;
     if (!may || millisecondsSince(*since) < options.patience || !refusalOfPackets(target, call).empty()) return false;
     packet::PacketRenderer& renderer = target.packets.renderer;
     try {
@@ -100,6 +100,7 @@ void RenderStages::endMeanwhile(ViewTarget& target) {
     if (!target.meanwhile) return;
     target.meanwhile = false;
     target.packets.renderer.release();
+    target.shown.resident = residency.revision();
     target.redraw(target.buffers.everything());
 }
 

@@ -86,7 +86,8 @@ void RenderStages::show(ViewTarget& target, const Scene& scene, std::uint64_t re
 /// Requests the data of the scene and draws or refines what is resident; false if nothing can be drawn.
 bool RenderStages::draw(ViewTarget& target, const RenderCall& call, Clock::time_point start, FrameStatus& status) {
     const bool any = !call.plan.empty() && bind(target, call, status);
-    show(target, call.scene, residency.revision());
+    // What the processor draws meanwhile has samples of its own.
+    show(target, call.scene, target.meanwhile ? target.shown.resident : residency.revision());
     target.shown.compiling = false;
     if (any) {
         refine(target, call, start);

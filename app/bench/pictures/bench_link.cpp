@@ -8,8 +8,7 @@
 #include <map>
 #include <thread>
 
-/// The time until linked views show their first pictures, their latency while something is dragged, and of a
-/// scatterplot matrix of many samples.
+/// Latency of linked views while something is dragged, and of a scatterplot matrix of many samples.
 namespace tessera::app {
 
 namespace {
@@ -103,11 +102,9 @@ std::pair<double, double> answered(AsyncStatistics& answers, ViewContext& contex
 } // namespace
 
 BenchTable benchLink() {
-    BenchTable table{"link", {"what", "view", "ms drawing", "ms until shown"}, {}};
+    BenchTable table{"link", {"dragged", "view", "ms drawing", "ms until shown"}, {}};
     TimedWorkbench timed;
     timed.workbench().install(shown());
-    for (const auto& [pane, milliseconds] : timed.untilShown())
-        table.rows.push_back({"first picture", pane, "", decimals(milliseconds, 1)});
     const volume::Box box = timed.workbench().source()->info().bounds;
     const Range heat = [&] {
         const volume::DatasetInfo& info = timed.workbench().source()->info();

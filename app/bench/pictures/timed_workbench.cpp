@@ -13,7 +13,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr glm::ivec2 kWindow{1500, 950};
 constexpr int kTimedSteps = 9;    // steps of a drag; the median is reported
-constexpr int kMostFrames = 60;   // limit until every view has followed
+constexpr double kLongest = 3000; // milliseconds until every view has followed
 constexpr int kMostAtRest = 5000; // until every view is refined
 
 double millisecondsSince(Clock::time_point begin) {
@@ -89,7 +89,7 @@ Followed TimedWorkbench::drag(const std::function<void(Session&, double)>& edit)
         edit(session(), double(step) / kTimedSteps);
         std::map<std::string, double> first;
         bool behind = true;
-        for (int frame = 0; frame < kMostFrames && behind; ++frame) {
+        for (int frame = 0; behind && millisecondsSince(begin) < kLongest; ++frame) {
             behind = false;
             Clock::time_point before = Clock::now();
             paneDrawn_ = [&](const std::string& pane, bool late) {
