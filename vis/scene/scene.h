@@ -95,7 +95,8 @@ struct RenderParams {
                         .unit = "",
                         .doc =
                             "What casts rays: OpenGL, or the vector units of the processor (auto: where OpenGL has no "
-                            "graphics card). OpenGL draws what the processor cannot; the status bar says which",
+                            "graphics card, or still compiles). OpenGL draws what the processor cannot; the status bar "
+                            "says which",
                         .names = kEngineNames});
         visit(self.jitter,
               FieldInfo{.key = "jitter",
