@@ -5,7 +5,7 @@ if(VTK_FOUND)
   file(GLOB_RECURSE import_sources CONFIGURE_DEPENDS app/importer/*.cpp)
   list(REMOVE_ITEM import_sources ${CMAKE_SOURCE_DIR}/app/importer/main.cpp)
   find_package(TIFF REQUIRED)
-  # The readers, which fuzz targets link too.
+  # The readers, which tests and fuzz targets link too.
   add_library(importer STATIC ${import_sources})
   target_link_libraries(importer PUBLIC volume nlohmann_json::nlohmann_json ${VTK_LIBRARIES} TIFF::TIFF ZLIB::ZLIB)
   target_include_directories(importer SYSTEM PUBLIC ${VTK_INCLUDE_DIRS})

@@ -6,6 +6,7 @@ source "$2/tests/e2e/common.bash"
 command -v glslangValidator > /dev/null || { echo "skipped: no glslangValidator"; exit 77; }
 mkdir shaders
 export MESA_SHADER_DUMP_PATH=$work/shaders MESA_SHADER_CACHE_DISABLE=1
+export GALLIVM_PERF=nopt LP_NATIVE_VECTOR_WIDTH=128 # for the pictures, which nothing looks at: see docs/testing.md
 "$tessera" generate fuel-cell -o cell.tsr --size 5x9x21 --times 2 > out.txt 2>&1 || { cat out.txt; die "generate"; }
 for layout in overview flow illustration lens evening shadowcube; do
     data=cell.tsr

@@ -175,7 +175,9 @@ LightMaps environmentMaps(const Lighting& lighting, const CubeMap* picture) {
         glm::dvec3 sum(0);
         double weights = 0;
         for (const Source& source : sources) {
-            const double weight = std::max(glm::dot(normal, source.direction), 0.0) * source.angle;
+            const double c = glm::dot(normal, source.direction);
+            if (c <= 0) continue;
+            const double weight = c * source.angle;
             sum += weight * source.light;
             weights += weight;
         }
@@ -189,7 +191,9 @@ LightMaps environmentMaps(const Lighting& lighting, const CubeMap* picture) {
         double weights = lobe(1) * 1e-3;
         sum *= weights;
         for (const Source& source : sources) {
-            const double weight = lobe(glm::dot(mirrored, source.direction)) * source.angle;
+            const double c = glm::dot(mirrored, source.direction);
+            if (c <= 0) continue; // as the lobe is 0
+            const double weight = lobe(c) * source.angle;
             sum += weight * source.light;
             weights += weight;
         }

@@ -72,11 +72,14 @@ struct Samples::View {
 /// All samples, for positions far from the border: the same without clamping.
 struct Samples::Inside {
     const double* values;
-    const std::uint8_t* present; // null: all
-    glm::ivec3 first, size;
+    const std::uint8_t* present;      // null: all
+    std::ptrdiff_t row, slice, first; ///< samples of each, and the place of index 0
 
+    Inside(const Samples& all)
+        : values(all.values_.data()), present(all.present_.empty() ? nullptr : all.present_.data()), row(all.size_.x),
+          slice(row * all.size_.y), first(-(all.first_.z * slice + all.first_.y * row + all.first_.x)) {}
     volume::Sample operator()(glm::ivec3 at) const {
-        const std::size_t i = linearIndex(size, at - first);
+        const std::ptrdiff_t i = first + at.z * slice + at.y * row + at.x;
         return {values[i], present == nullptr || present[i] != 0};
     }
 };
@@ -181,7 +184,7 @@ template <class Read> volume::Blend Samples::filtered(const Read& samples, glm::
 volume::Blend Samples::blend(glm::dvec3 cells) const {
     volume::Blend blend;
     if (!flaws_.clampedBricks && glm::clamp(cells, innerLo_, innerHi_) == cells) {
-        blend = filtered(Inside{values_.data(), present_.empty() ? nullptr : present_.data(), first_, size_}, cells);
+        blend = filtered(Inside(*this), cells);
     } else {
         View here = view();
         if (flaws_.clampedBricks) {

@@ -143,13 +143,17 @@ void addTrilinear(Blend& blend, const Samples& samples, glm::dvec3 index, int su
                   double weight) {
     const glm::dvec3 base = glm::floor(index), f = index - base;
     const glm::ivec3 first(base);
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::ivec3 c(corner & 1, corner >> 1 & 1, corner >> 2);
-        const double w = (c.x ? f.x : 1 - f.x) * (c.y ? f.y : 1 - f.y) * (c.z ? f.z : 1 - f.z);
-        if (w == 0) continue;
-        const glm::ivec3 at = first + c;
-        blend.add(w * weight, samples(glm::ivec3(at.x, at.y, at.z * sliceStep + sublattice)));
-    }
+    const double inX[2] = {1 - f.x, f.x}, inY[2] = {1 - f.y, f.y}, inZ[2] = {1 - f.z, f.z};
+    Blend sum = blend; // a variable of its own stays in registers
+    for (int z = 0; z < 2; ++z)
+        for (int y = 0; y < 2; ++y)
+            for (int x = 0; x < 2; ++x) {
+                const double w = inX[x] * inY[y] * inZ[z];
+                if (w == 0) continue;
+                sum.add(w * weight,
+                        samples(glm::ivec3(first.x + x, first.y + y, (first.z + z) * sliceStep + sublattice)));
+            }
+    blend = sum;
 }
 
 /// CC: trilinear. BCC: the average of the trilinear interpolations of both sublattices. Over Prefiltered samples these
