@@ -2,6 +2,7 @@
 
 #include "app/data/boundary_value.h"
 #include "app/data/first_view.h"
+#include "app/data/packing_errors.h"
 #include "app/data/picture_session.h"
 #include "app/edits/layout_brushes.h"
 #include "app/edits/other_data.h"
@@ -240,7 +241,8 @@ Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& in
     Session session = sessionFromJson(result, {});
     std::erase_if(session.transfer, [&](const auto& entry) { return !info.findChannel(entry.first); });
     fitSession(session, info, messages);
-    if (!own) suitOtherData(session, info, layout.session.data, messages);
+    if (!own || data.settings != layout.session.data.settings)
+        suitOtherData(session, info, layout.session.data, messages);
     session.layoutBrushes = session.selection.brushes;
     return session;
 }
@@ -286,9 +288,7 @@ void fitSurfaces(Session& session, const volume::BrickSource& source, const Sess
 Session changeLayout(const SessionDocument& layout, const volume::BrickSource& source, const Session& shown,
                      std::vector<std::string>& messages) {
     Session next = applyLayout(layout, source.info(), shown.data, messages);
-    if (layout.session.data.originals && !shown.data.originals)
-        messages.push_back("the layout shows packed data beside their originals, which these are not: it has other "
-                           "parameters in place of their errors");
+    if (layout.session.data.originals && !shown.data.originals) messages.emplace_back(kNoOriginals);
     next.appearance = shown.appearance;
     next.time = shown.time;
     next.cursor = shown.cursor;
@@ -366,8 +366,18 @@ Opened open(const OpenRequest& request, const Progress& progress) {
         if (request.lattice) data.lattice = *request.lattice;
     }
     if (request.remote) data.remote = *request.remote;
-    if (layout && data.derived.empty()) data.derived = layout->session.data.derived;
+    const bool errors = layout && packsForErrors(layout->session, data) && !sameData(layout->session.data, data);
+    if (errors) {
+        data.packed = layout->session.data.packed;
+        data.originals = true;
+    } else if (layout && data.derived.empty()) {
+        data.derived = layout->session.data.derived;
+    }
     Sources sources = openSources(data, opened.messages, progress);
+    if (errors)
+        showErrors(*layout, data, sources, opened.messages);
+    else if (layout && layout->session.data.originals && !data.originals)
+        opened.messages.emplace_back(kNoOriginals);
     opened.source = std::move(sources.pictures);
     opened.numbers = std::move(sources.numbers);
     opened.origin = std::move(sources.origin);

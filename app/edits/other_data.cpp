@@ -1,5 +1,6 @@
 #include "app/edits/other_data.h"
 
+#include "app/session/session_json.h"
 #include "app/session/shown_scene.h"
 
 #include <algorithm>
@@ -31,6 +32,30 @@ void dropForeignVariants(Session& session, const DataRef& made, std::vector<std:
     }
 }
 
+/// A variant that is another size of the layout's model is one of the model shown: settings that the layout's data have
+/// are those of the data shown.
+void keepSettings(Session& session, const DataRef& made) {
+    if (!session.data.files.empty() || session.data.model != made.model) return;
+    for (auto& [pane, view] : session.views) {
+        auto* compare = std::get_if<CompareView>(&view);
+        if (!compare) continue;
+        for (CompareVariant& variant : compare->variants) {
+            const auto found = variant.changes.find("/data/settings");
+            if (found == variant.changes.end()) continue;
+            Json settings = Json::parse(found->second, nullptr, false);
+            if (!settings.is_object()) continue;
+            for (const auto& [key, value] : made.settings) {
+                const auto shown = session.data.settings.find(key);
+                if (shown == session.data.settings.end())
+                    settings.erase(key);
+                else
+                    settings[key] = shown->second;
+            }
+            found->second = settings.dump();
+        }
+    }
+}
+
 bool isField(const volume::DatasetInfo& info) {
     return std::ranges::any_of(info.parameters, [](const volume::Parameter& parameter) {
         return !parameter.categorical && parameter.type == volume::ScalarType::F32;
@@ -42,6 +67,8 @@ bool isField(const volume::DatasetInfo& info) {
 void suitOtherData(Session& session, const volume::DatasetInfo& info, const DataRef& made,
                    std::vector<std::string>& messages) {
     dropForeignVariants(session, made, messages);
+    keepSettings(session, made);
+    if (session.data.files.empty() && session.data.model == made.model) return;
     if (!onlyDrawings(session) || !isField(info)) return;
     for (auto& [pane, view] : session.views)
         if (auto* const volume = std::get_if<VolumeView>(&view)) volume->showBox = volume->drawingBox = true;

@@ -219,6 +219,28 @@ vis::StandardView viewAgainst(int axis, bool positive) {
     return best;
 }
 
+float triadRadius(ImVec2 picture) {
+    return std::round(std::clamp(std::min(picture.x, picture.y) * 0.12f, em() * 2, em() * 2.6f));
+}
+
+ImVec2 triadMiddle(ImVec2 min, ImVec2 max, TriadCorner corner, float radius) {
+    const float away = radius + em() * (radius < em() * 2.2f ? 0.5f : 1.0f);
+    const bool left = corner == TriadCorner::BottomLeft || corner == TriadCorner::TopLeft;
+    const bool top = corner == TriadCorner::TopLeft || corner == TriadCorner::TopRight;
+    return {left ? min.x + away : max.x - away, top ? min.y + em() * 1.8f + away : max.y - away};
+}
+
+TriadCorner freeTriadCorner(const SpaceFrame& frame, float radius, const std::pair<ImVec2, ImVec2>& taken) {
+    for (const TriadCorner corner :
+         {TriadCorner::BottomLeft, TriadCorner::TopLeft, TriadCorner::BottomRight, TriadCorner::TopRight}) {
+        const ImVec2 at = triadMiddle(frame.min, frame.max, corner, radius);
+        const float reach = radius + em() * 0.3f;
+        const std::pair<ImVec2, ImVec2> own{{at.x - reach, at.y - reach}, {at.x + reach, at.y + reach}};
+        if (!overlaps(own, taken, 0) && coveredByBox(frame, own.first, own.second) <= 0) return corner;
+    }
+    return TriadCorner::BottomLeft;
+}
+
 std::optional<vis::StandardView> drawTriad(ImDrawList& draw, ImVec2 center, float radius, const vis::Camera& camera,
                                            const AxisLabels& labels, const ImVec2* mouse, bool clicked) {
     struct End {

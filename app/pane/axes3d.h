@@ -46,6 +46,14 @@ void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& ca
 /// The standard view that looks against an axis direction (0 = x, 1 = y, 2 = z).
 vis::StandardView viewAgainst(int axis, bool positive);
 
+/// The triad's radius in a picture of this size, pixels: smaller where that has little room.
+float triadRadius(ImVec2 picture);
+enum class TriadCorner { BottomLeft, TopLeft, BottomRight, TopRight };
+/// Its middle, within a picture.
+ImVec2 triadMiddle(ImVec2 min, ImVec2 max, TriadCorner corner, float radius);
+/// The first corner in which it touches neither the box nor what is `taken`; the first of all where there is none.
+TriadCorner freeTriadCorner(const SpaceFrame& frame, float radius, const std::pair<ImVec2, ImVec2>& taken);
+
 /// Axis triad around a point; returns the view whose end was clicked. `mouse` is null where the mouse is elsewhere.
 std::optional<vis::StandardView> drawTriad(ImDrawList& draw, ImVec2 center, float radius, const vis::Camera& camera,
                                            const AxisLabels& labels, const ImVec2* mouse, bool clicked);

@@ -13,10 +13,6 @@ namespace {
 
 constexpr int kStripParts = 64;
 
-float barHeight() {
-    return std::round(em() * 0.65f);
-}
-
 /// An arrow head in the end colour: the data extend beyond the bar.
 void drawArrow(ImDrawList& draw, ImVec2 at, float size, float direction, ImU32 color) {
     draw.AddTriangleFilled({at.x, at.y}, {at.x, at.y + size}, {at.x + direction * size * 0.6f, at.y + size / 2}, color);
@@ -24,7 +20,7 @@ void drawArrow(ImDrawList& draw, ImVec2 at, float size, float direction, ImU32 c
 
 float drawSwatch(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry) {
     const PlotColors colors = plotColors();
-    const float size = barHeight();
+    const float size = legendStripHeight();
     draw.AddRectFilled({min.x, min.y + em() * 0.25f}, {min.x + size, min.y + em() * 0.25f + size},
                        toColor(entry.color));
     draw.AddRect({min.x, min.y + em() * 0.25f}, {min.x + size, min.y + em() * 0.25f + size}, colors.frame);
@@ -34,25 +30,11 @@ float drawSwatch(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& e
     return em() * 1.25f;
 }
 
-/// The strip of a legend: its colours, or what else it shows.
-void drawStrip(ImDrawList& draw, ImVec2 lo, ImVec2 hi, const LegendEntry& entry) {
-    if (entry.opacity)
-        drawOpacityStrip(draw, lo, hi, entry.function);
-    else if (entry.regions)
-        drawRegionStrip(draw, lo, hi, entry.function);
-    else
-        drawColorStrip(draw, lo, hi, entry.function);
-}
-
-/// A line at the value of the cross-hair.
-void drawMarker(ImDrawList& draw, const PlotFrame& frame, const LegendEntry& entry) {
-    if (!entry.marker || *entry.marker < frame.x.lo || *entry.marker > frame.x.hi) return;
-    const float x = std::round(frame.pixel(*entry.marker, 0).x) + 0.5f, over = em() * 0.15f;
-    draw.AddLine({x, frame.min.y - over}, {x, frame.max.y + over}, plotColors().backdrop, 3);
-    draw.AddLine({x, frame.min.y - over}, {x, frame.max.y + over}, plotColors().cursor);
-}
-
 } // namespace
+
+float legendStripHeight() {
+    return std::round(em() * 0.65f);
+}
 
 void drawColorStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function, bool withOpacity) {
     const PlotColors colors = plotColors();
@@ -103,15 +85,31 @@ void drawOpacityStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::Trans
     draw.AddRect(min, max, colors.frame);
 }
 
+void drawLegendStrip(ImDrawList& draw, ImVec2 lo, ImVec2 hi, const LegendEntry& entry) {
+    if (entry.opacity)
+        drawOpacityStrip(draw, lo, hi, entry.function);
+    else if (entry.regions)
+        drawRegionStrip(draw, lo, hi, entry.function);
+    else
+        drawColorStrip(draw, lo, hi, entry.function);
+}
+
+void drawLegendMarker(ImDrawList& draw, const PlotFrame& frame, const LegendEntry& entry) {
+    if (!entry.marker || *entry.marker < frame.x.lo || *entry.marker > frame.x.hi) return;
+    const float x = std::round(frame.pixel(*entry.marker, 0).x) + 0.5f, over = em() * 0.15f;
+    draw.AddLine({x, frame.min.y - over}, {x, frame.max.y + over}, plotColors().backdrop, 3);
+    draw.AddLine({x, frame.min.y - over}, {x, frame.max.y + over}, plotColors().cursor);
+}
+
 float legendBarHeight() {
-    return barHeight() + em() * 2.75f;
+    return legendStripHeight() + em() * 2.75f;
 }
 
 float drawLegendBar(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry) {
     const PlotColors colors = plotColors();
-    const float height = barHeight(), arrow = height * 0.6f;
+    const float height = legendStripHeight(), arrow = height * 0.6f;
     const ImVec2 lo{min.x + arrow + 1, min.y + em() * 0.2f}, hi{min.x + width - arrow - 1, lo.y + height};
-    drawStrip(draw, lo, hi, entry);
+    drawLegendStrip(draw, lo, hi, entry);
     const auto end = [&](double x) {
         const glm::dvec4 c = vis::evaluate(entry.function, {0, 1}, x);
         return entry.opacity || entry.regions ? colors.frame : toColor({c.r, c.g, c.b});
@@ -121,7 +119,7 @@ float drawLegendBar(ImDrawList& draw, ImVec2 min, float width, const LegendEntry
     if (entry.data.hi > entry.range.hi + slack) drawArrow(draw, {hi.x + 1, lo.y}, height, 1, end(1));
     const PlotFrame frame{lo, hi, paddedRange(entry.range), {0, 1}};
     drawAxis(draw, frame, AxisSide::Bottom, entry.title, entry.unit, min.x, min.x + width);
-    drawMarker(draw, frame, entry);
+    drawLegendMarker(draw, frame, entry);
     return legendBarHeight();
 }
 
@@ -170,16 +168,19 @@ float drawNames(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& en
     return y - min.y;
 }
 
-float heightOf(const LegendEntry& entry) {
+} // namespace
+
+float legendHeight(const LegendEntry& entry) {
     if (!entry.names.empty()) return em() * 1.2f * static_cast<float>(1 + std::min(entry.names.size(), kMostNames));
     return entry.swatch ? em() * 1.25f : legendBarHeight();
 }
 
-/// Draws one legend; returns its height.
 float drawLegend(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry) {
     if (!entry.names.empty()) return drawNames(draw, min, width, entry);
     return entry.swatch ? drawSwatch(draw, min, width, entry) : drawLegendBar(draw, min, width, entry);
 }
+
+namespace {
 
 /// Visits the legends of drawLegendRows that fit, with their places; returns the height of their rows.
 template <class Visit>
@@ -193,7 +194,7 @@ float layRows(const std::vector<LegendEntry>& entries, float width, float most, 
     for (std::size_t first = 0; first < entries.size(); first += fit) {
         const std::size_t end = std::min(first + fit, entries.size());
         float height = 0;
-        for (std::size_t i = first; i < end; ++i) height = std::max(height, heightOf(entries[i]));
+        for (std::size_t i = first; i < end; ++i) height = std::max(height, legendHeight(entries[i]));
         if (y + height > most) break;
         for (std::size_t i = first; i < end; ++i)
             visit(entries[i], ImVec2{(own + gap) * static_cast<float>(i - first), y}, own);
@@ -212,103 +213,6 @@ void drawLegendRows(ImDrawList& draw, const std::vector<LegendEntry>& entries, I
     layRows(entries, width, most, [&](const LegendEntry& entry, ImVec2 at, float own) {
         drawLegend(draw, {min.x + at.x, min.y + at.y}, own, entry);
     });
-}
-
-bool legendsAsLines(float height, float room) {
-    return room < em() * 24 ? height > em() * 2 : height > room * 0.3f;
-}
-
-namespace {
-
-/// Legends whose bars are one line each, in columns: title, least value, bar, largest value.
-class LegendLines {
-public:
-    LegendLines(const std::vector<LegendEntry>& entries, float room) : width_(std::min(em() * 18, room * 0.65f)) {
-        for (const LegendEntry& entry : entries) {
-            if (!isBar(entry)) continue;
-            title_ = std::max(title_, ImGui::CalcTextSize(titleWithUnit(entry.title, entry.unit).c_str()).x);
-            for (const bool high : {false, true})
-                number_ = std::max(number_, ImGui::CalcTextSize(numberOf(entry, high).c_str()).x);
-        }
-        title_ = std::min(title_, width_ * 0.5f);
-    }
-    float width() const { return width_; }
-    float height(const LegendEntry& entry) const { return isBar(entry) ? em() * 1.3f : heightOf(entry); }
-    float draw(ImDrawList& draw, ImVec2 min, const LegendEntry& entry) const {
-        if (!isBar(entry)) return drawLegend(draw, min, width_, entry);
-        const PlotColors colors = plotColors();
-        const float gap = em() * 0.4f, top = min.y + em() * 0.3f;
-        const std::string whole = titleWithUnit(entry.title, entry.unit);
-        addFittedText(draw, min, colors.text, firstThatFits({whole, entry.title}, title_ + 1), title_ + 1);
-        const ImVec2 lo{min.x + title_ + number_ + 2 * gap, top}, hi{min.x + width_ - number_ - gap, top + barHeight()};
-        const auto write = [&](float x, const std::string& text) {
-            draw.AddText({std::round(x), min.y}, colors.text, text.c_str());
-        };
-        const std::string least = numberOf(entry, false);
-        write(lo.x - gap - ImGui::CalcTextSize(least.c_str()).x, least);
-        write(hi.x + gap, numberOf(entry, true));
-        drawStrip(draw, lo, hi, entry);
-        drawMarker(draw, {lo, hi, paddedRange(entry.range), {0, 1}}, entry);
-        return height(entry);
-    }
-
-private:
-    static bool isBar(const LegendEntry& entry) { return entry.names.empty() && !entry.swatch; }
-    static std::string numberOf(const LegendEntry& entry, bool high) {
-        return formatNumber(high ? entry.range.hi : entry.range.lo, (entry.range.hi - entry.range.lo) / 30);
-    }
-    float width_, title_ = 0, number_ = 0;
-};
-
-/// Which legends are shown in a corner, how and where.
-struct PlacedLegends {
-    LegendLines lines;
-    bool small = false;
-    float width = 0, pad = em() * 0.5f;
-    std::vector<const LegendEntry*> shown = {};
-    LegendArea area;
-};
-
-PlacedLegends placeLegends(const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max, LegendCorner corner,
-                           bool whole) {
-    PlacedLegends out{.lines = LegendLines(entries, max.x - min.x), .area = {max, max}};
-    const float pad = out.pad, room = max.y - min.y;
-    float all = 0;
-    for (const LegendEntry& entry : entries) all += heightOf(entry);
-    out.small = !whole && legendsAsLines(all, room);
-    out.width = out.small ? out.lines.width() : std::min(em() * 15, (max.x - min.x) * 0.45f);
-    if (out.width < em() * 7) return out;
-    float height = 0;
-    for (const LegendEntry& entry : entries) {
-        const float own = out.small ? out.lines.height(entry) : heightOf(entry);
-        if (height + own > room * 0.6f) break;
-        height += own;
-        out.shown.push_back(&entry);
-    }
-    if (out.shown.empty()) return out;
-    const float wide = out.width + 2 * pad, high = height + pad * 1.5f;
-    const bool bottom = corner == LegendCorner::BottomRight, left = corner == LegendCorner::TopLeft;
-    out.area.min = {left ? min.x : max.x - wide, bottom ? max.y - high : min.y};
-    out.area.max = {out.area.min.x + wide, out.area.min.y + high};
-    return out;
-}
-
-} // namespace
-
-LegendArea legendArea(const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max, LegendCorner corner,
-                      bool whole) {
-    return placeLegends(entries, min, max, corner, whole).area;
-}
-
-LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max,
-                       LegendCorner corner, bool whole) {
-    const PlacedLegends placed = placeLegends(entries, min, max, corner, whole);
-    if (placed.shown.empty()) return placed.area;
-    draw.AddRectFilled(placed.area.min, placed.area.max, plotColors().backdrop, em() * 0.25f);
-    ImVec2 at{placed.area.min.x + placed.pad, placed.area.min.y + placed.pad * 0.5f};
-    for (const LegendEntry* entry : placed.shown)
-        at.y += placed.small ? placed.lines.draw(draw, at, *entry) : drawLegend(draw, at, placed.width, *entry);
-    return placed.area;
 }
 
 } // namespace tessera::app

@@ -44,21 +44,14 @@ void drawRegionStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::Transf
 /// The same of the opacity alone, as parts of the greatest: regions count with their most at any gradient.
 void drawOpacityStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function);
 
-/// Whether legends that would be `height` pixels high together are one line each, to leave the object of a picture of
-/// `room` pixels in sight.
-bool legendsAsLines(float height, float room);
+/// One legend, whole; returns its height.
+float drawLegend(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry);
+float legendHeight(const LegendEntry& entry);
 
-/// Legends stacked in a corner of a rectangle, at most as many as fit; returns the pixels they cover. `whole`: never
-/// one line each.
-struct LegendArea {
-    ImVec2 min, max;
-};
-enum class LegendCorner { BottomRight, TopRight, TopLeft };
-/// The pixels that drawLegends() covers.
-LegendArea legendArea(const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max, LegendCorner corner,
-                      bool whole = false);
-LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max,
-                       LegendCorner corner = LegendCorner::BottomRight, bool whole = false);
+/// The strip of a bar alone: its colours, or what else it shows; and a line at the value of the cross-hair.
+void drawLegendStrip(ImDrawList& draw, ImVec2 lo, ImVec2 hi, const LegendEntry& entry);
+void drawLegendMarker(ImDrawList& draw, const PlotFrame& frame, const LegendEntry& entry);
+float legendStripHeight();
 
 /// Legends side by side in rows, as they are placed below a picture; those that do not fit into `most` are dropped.
 /// Returns the height, 0 if there are none.

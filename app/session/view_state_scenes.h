@@ -109,7 +109,8 @@ struct ShadowCubeView {
     static constexpr std::string_view kType = "shadowCube";
     Wall left, right{.kind = WallKind::Slice}, bottom, top{.kind = WallKind::Slice}, back,
         front{.kind = WallKind::Slice}; ///< at the lower and upper end of x, y and z
-    float gap = 0.22f;
+    float gap = 0.22f, zoom = 1;
+    glm::vec3 target{0};
     bool together = true;
     glm::quat orientation{1, 0, 0, 0};
     bool brushing = false;
@@ -125,6 +126,14 @@ struct ShadowCubeView {
                                   .unit = "",
                                   .doc = "Distance from the data to the faces; longest edge = 1",
                                   .range = Range{0, 1}});
+        visit(self.zoom, FieldInfo{.key = "zoom",
+                                   .unit = "",
+                                   .doc = "Magnification; at 1 the whole cube is in the picture",
+                                   .range = Range{0.2, 10},
+                                   .logScale = true});
+        visit(
+            self.target,
+            FieldInfo{.key = "target", .unit = "", .doc = "World point in the middle of the picture", .hidden = true});
         visit(self.together,
               FieldInfo{.key = "together", .unit = "", .doc = "Turn cube and data together; else each by itself"});
         visit(self.orientation, FieldInfo{.key = "orientation",

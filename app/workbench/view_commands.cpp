@@ -1,3 +1,4 @@
+#include "app/data/packing_errors.h"
 #include "app/session/shown_scene.h"
 #include "app/ui/keys.h"
 #include "app/workbench/workbench.h"
@@ -183,11 +184,11 @@ void showLayout(Workbench& workbench, const std::string& name, const std::string
     try {
         std::vector<std::string> messages;
         const SessionDocument layout = loadSession(findLayout(name));
-        // Errors of packing exist only where data were opened together with their originals.
-        const DataRef &wanted = layout.session.data, &shown = workbench.session().data;
-        if (wanted.originals && !shown.originals && shown.files.empty() && shown.model == wanted.model) {
+        // Errors of packing exist only where data were packed beside their originals.
+        if (const DataRef& shown = workbench.session().data; packsForErrors(layout.session, shown)) {
             OpenRequest request;
             request.layout = name;
+            if (!shown.files.empty() || shown.model != layout.session.data.model) request.data = shown;
             return workbench.open(std::move(request));
         }
         workbench.document().replace(changeLayout(layout, *workbench.source(), workbench.session(), messages),

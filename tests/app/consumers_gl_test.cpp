@@ -139,6 +139,7 @@ protected:
             break;
         case kCamera:
             session.camera.distance *= 0.8f;
+            vis::orbit(session.camera, {0, 0}, {0.2f, 0.1f}); // which the shadow cube follows alone
             break;
         case kBrush:
             session.selection.brushes = {hot()};

@@ -170,6 +170,81 @@ TEST_F(DrawnShapes, AFaceOfTheShadowCubeCoversItsCorners) {
     }
 }
 
+/// Cube and titles in pictures of any proportions and from any side.
+TEST_F(DrawnShapes, TheShadowCubeIsWholeWithItsTitles) {
+    volume::DatasetInfo info;
+    info.bounds = {glm::dvec3(0), {0.6, 1, 2.2}};
+    const vis::WorldFrame world = vis::worldFrame(info.bounds, glm::dvec3(1));
+    ShadowCubeView view;
+    feedWindow([&] {
+        for (const ImVec2 size : {ImVec2{446, 150}, ImVec2{150, 400}, ImVec2{600, 500}})
+            for (const vis::Projection projection : {vis::Projection::Perspective, vis::Projection::Orthographic})
+                for (int turn = 0; turn < 12; ++turn) {
+                    SCOPED_TRACE(std::to_string(size.x) + ", turn " + std::to_string(turn));
+                    vis::Camera camera;
+                    camera.projection = projection;
+                    camera.distance = 0.9f; // nearer than shows the box
+                    for (int i = 0; i < turn; ++i) vis::orbit(camera, {0, 0}, {0.37f, 0.21f});
+                    CubeFrame frame{info, {20, 10}, size, world, world.halfSize + double(view.gap), camera, {}};
+                    const auto look = [&] {
+                        frame.camera = cubeCamera(view, camera, frame.half, frame.aspect());
+                        frame.space = spaceFrame(frame.min, frame.max(), frame.camera, info.bounds, glm::dvec3(1));
+                    };
+                    const auto inside = [&](ImVec2 at) {
+                        return at.x >= frame.min.x && at.x <= frame.max().x && at.y >= frame.min.y &&
+                               at.y <= frame.max().y;
+                    };
+                    const auto corners = [&] {
+                        int count = 0;
+                        for (int i = 0; i < 8; ++i) {
+                            const glm::dvec3 sign(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+                            const auto at = frame.pixel(sign * frame.half);
+                            count += at && inside(*at);
+                        }
+                        return count;
+                    };
+                    view.zoom = 1;
+                    look();
+                    EXPECT_EQ(corners(), 8);
+                    std::vector<std::pair<ImVec2, ImVec2>> taken;
+                    for (std::size_t face = 0; face < kCubeFaces.size(); ++face) {
+                        if (!facesViewer(kCubeFaces[face], frame.half, frame.camera)) continue;
+                        const ImVec2 text{60, 15}, at = faceTitlePlace(frame, face, text, taken);
+                        const ImVec2 lo{at.x - 30, at.y - 7.5f}, hi{at.x + 30, at.y + 7.5f};
+                        EXPECT_TRUE(inside(lo) && inside(hi)) << face;
+                        taken.push_back({lo, hi});
+                    }
+                    view.zoom = 2;
+                    look();
+                    EXPECT_LT(corners(), 8) << "nearer";
+                }
+    });
+}
+
+TEST_F(DrawnShapes, TitlesOfTheShadowCubeKeepClearOfTheDataAndOfEachOther) {
+    volume::DatasetInfo info;
+    info.bounds = {glm::dvec3(0), {0.6, 1, 2.2}};
+    const vis::WorldFrame world = vis::worldFrame(info.bounds, glm::dvec3(1));
+    const ShadowCubeView view;
+    feedWindow([&] {
+        const ImVec2 size{446, 180};
+        CubeFrame frame{info, {0, 0}, size, world, world.halfSize + double(view.gap), {}, {}};
+        frame.camera = cubeCamera(view, {}, frame.half, frame.aspect());
+        frame.space = spaceFrame(frame.min, frame.max(), frame.camera, info.bounds, glm::dvec3(1));
+        std::vector<std::pair<ImVec2, ImVec2>> taken{{{300, 0}, {446, 30}}}; // legends
+        for (std::size_t face = 0; face < kCubeFaces.size(); ++face) {
+            if (!facesViewer(kCubeFaces[face], frame.half, frame.camera)) continue;
+            const ImVec2 at = faceTitlePlace(frame, face, {60, 15}, taken);
+            const ImVec2 lo{at.x - 30, at.y - 7.5f}, hi{at.x + 30, at.y + 7.5f};
+            EXPECT_LT(coveredByBox(frame.space, lo, hi), 0.05) << face;
+            for (const auto& [from, to] : taken)
+                EXPECT_FALSE(lo.x < to.x && from.x < hi.x && lo.y < to.y && from.y < hi.y) << face;
+            taken.push_back({lo, hi});
+        }
+        EXPECT_EQ(taken.size(), 4u);
+    });
+}
+
 TEST(WallScene, HasTheWallAlone) {
     vis::Scene scene;
     scene.showBox = scene.showGround = true;

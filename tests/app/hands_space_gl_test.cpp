@@ -1,4 +1,5 @@
 #include "app/pane/axes3d.h"
+#include "app/views/shadow_cube/wall_projection.h"
 #include "tests/app/drawn_text.h"
 #include "tests/app/hands_fixture.h"
 
@@ -42,8 +43,15 @@ protected:
         return {(at.x - picture.Min.x) / picture.GetWidth() * 2 - 1,
                 1 - (at.y - picture.Min.y) / picture.GetHeight() * 2};
     }
+    /// The camera that the view draws with.
+    vis::Camera drawnBy() {
+        const auto* cube = std::get_if<ShadowCubeView>(&session().views.at("pane"));
+        if (!cube) return camera();
+        const glm::dvec3 half = vis::worldFrame(cellBox(), session().stretch).halfSize + double(cube->gap);
+        return cubeCamera(*cube, camera(), half, aspect());
+    }
     ImVec2 pixel(glm::dvec3 physical) {
-        return *spaceFrame(picture.Min, picture.Max, camera(), cellBox(), session().stretch).pixel(physical);
+        return *spaceFrame(picture.Min, picture.Max, drawnBy(), cellBox(), session().stretch).pixel(physical);
     }
     /// Where a direction of the world points to for the viewer.
     static glm::dvec3 seen(const vis::Camera& by, glm::dvec3 direction) {
@@ -297,15 +305,21 @@ TEST_F(SpaceHands, TheSwipeLineGoesWithTheMouse) {
 
 TEST_F(SpaceHands, TheWheelZoomsTheShadowCubeAndTheTesseract) {
     showSpace(ShadowCubeView{});
-    const float distance = camera().distance;
+    const vis::Camera others = camera();
+    const auto magnified = [&] { return view<ShadowCubeView>().zoom; };
     moveTo(within(picture, 0.5, 0.5));
     turnWheel(2);
-    EXPECT_NEAR(camera().distance, distance / (1.15f * 1.15f), 1e-5f) << "away from the hand: nearer";
+    EXPECT_NEAR(magnified(), 1.15f * 1.15f, 1e-5f) << "away from the hand: nearer";
     turnWheel(-2);
-    EXPECT_NEAR(camera().distance, distance, 1e-5f);
+    EXPECT_NEAR(magnified(), 1, 1e-5f);
     moveTo({picture.Max.x + 30, 5});
     turnWheel(1);
-    EXPECT_NEAR(camera().distance, distance, 1e-5f) << "not over the picture";
+    EXPECT_NEAR(magnified(), 1, 1e-5f) << "not over the picture";
+    shift = true;
+    drag(within(picture, 0.5, 0.5), within(picture, 0.7, 0.5));
+    shift = false;
+    EXPECT_LT(view<ShadowCubeView>().target.x, -0.05) << "moves the cube to the right";
+    expectSame(others); // of other views
 
     showSpace(TesseractView{}, {500, 500});
     const auto zoom = [&] { return std::get<TesseractView>(session().views.at("pane")).zoom; };

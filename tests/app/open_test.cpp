@@ -1,8 +1,10 @@
 #include "app/data/open.h"
 #include "app/drawing/drawing.h"
 #include "app/user_files/state_dir.h"
+#include "codec/pack/pack.h"
 #include "vis/image/image_io.h"
 #include "volume/base/error.h"
+#include "volume/synthetic/models.h"
 #include "volume/system/atomic_file.h"
 
 #include <algorithm>
@@ -242,7 +244,8 @@ TEST_F(OpenTest, ALayoutFitsAnyData) {
         request.layout = name;
         const Opened opened = open(request);
         ASSERT_TRUE(opened.source) << name;
-        const std::string only = opened.source->info().channel(0).name;
+        const std::string only =
+            opened.source->info().channel(0).name + (opened.document.session.data.originals ? " error" : "");
         ASSERT_FALSE(opened.document.session.layers.empty()) << name;
         for (const vis::Layer& layer : opened.document.session.layers)
             std::visit([&](const auto& technique) { EXPECT_EQ(technique.channel, only) << name; }, layer.technique);
@@ -424,6 +427,56 @@ TEST_F(OpenTest, VariantsOfAnotherModelAreLeftOut) {
     const Opened own = open(request);
     const Session whole = changeLayout(layout, *own.source, own.document.session, messages);
     EXPECT_EQ(std::get<CompareView>(whole.views.at("compare")).variants.size(), 6u);
+    // The truth is one of the signal shown, not of the layout's.
+    const auto truth = [](const Session& from) {
+        const auto& variants = std::get<CompareView>(from.views.at("compare")).variants;
+        return Json::parse(variants.at(0).changes.at("/data/settings"));
+    };
+    EXPECT_EQ(truth(layout.session), (Json{{"fM", 3}, {"nx", 128}, {"ny", 128}, {"nz", 128}}));
+    EXPECT_EQ(truth(whole), (Json{{"nx", 128}, {"ny", 128}, {"nz", 128}}));
+    request.data->settings["fM"] = 5;
+    const Opened other = open(request);
+    EXPECT_EQ(truth(changeLayout(layout, *other.source, other.document.session, messages))["fM"], 5);
+}
+
+/// Data that are not packed are packed to show the errors of that; an archive has no originals.
+TEST_F(OpenTest, TheLayoutOfErrorsPacksOtherData) {
+    OpenRequest request;
+    request.data.emplace();
+    request.data->model = "marschner-lobb";
+    request.data->settings = {{"nx", 12}, {"ny", 12}, {"nz", 12}};
+    request.layout = "compression_error";
+    const Opened opened = open(request);
+    const Session& session = opened.document.session;
+    EXPECT_TRUE(session.data.originals);
+    ASSERT_TRUE(session.data.packed);
+    const volume::DatasetInfo& info = opened.numbers->info();
+    const auto error = info.findChannel("rho error");
+    ASSERT_TRUE(error);
+    EXPECT_FALSE(info.findChannel("T error"));
+    EXPECT_EQ(std::get<vis::VolumeLayer>(session.layers.at(0).technique).channel, "rho error");
+    EXPECT_EQ(std::get<HistogramView>(session.views.at("histogram")).channel, "rho error");
+    EXPECT_TRUE(session.transfer.at("rho error").aboutZero);
+    const Range errors = info.channelRange(info.channel(*error));
+    EXPECT_GT(errors.hi - errors.lo, 0);
+    const auto says = [](const Opened& what, const std::string& text) {
+        return std::ranges::any_of(what.messages, [&](const std::string& each) { return each.find(text) + 1 > 0; });
+    };
+    EXPECT_TRUE(says(opened, "samples are within 1.0 % of each parameter's range"));
+    EXPECT_TRUE(says(opened, "another lattice")) << "and these are not bounded";
+    EXPECT_FALSE(says(opened, "an archive has no originals"));
+    // A file of one's own, and as an archive.
+    request = rawRequest(raw("own.raw"));
+    request.layout = "compression_error";
+    EXPECT_TRUE(open(request).document.session.data.originals);
+    volume::Dataset signal = volume::makeModel("marschner-lobb", {{"nx", 12}, {"ny", 12}, {"nz", 12}});
+    codec::pack(signal, {}, in("own.tsr"));
+    request = {};
+    request.paths = {in("own.tsr")};
+    request.layout = "compression_error";
+    const Opened archive = open(request);
+    EXPECT_FALSE(archive.document.session.data.originals);
+    EXPECT_TRUE(says(archive, "an archive has no originals"));
 }
 
 TEST_F(OpenTest, ShippedLayoutsAreValid) {

@@ -1,5 +1,6 @@
 #include "app/pane/plot.h"
 #include "app/views/scatter/scatter_layout.h"
+#include "app/views/shadow_cube/wall_projection.h"
 #include "tests/app/beacon.h"
 #include "tests/app/formula_view.h"
 
@@ -135,7 +136,7 @@ TEST_F(Orientation, OfTheWallsOfTheShadowCubeIsThatOfTheDataBeforeThem) {
     ShadowCubeView view;
     view.left = view.right = view.bottom = view.top = view.back = view.front = wall;
     show(view, [](Session& session) { session.layers.clear(); });
-    constexpr glm::ivec2 kSize{300, 300};
+    constexpr glm::ivec2 kSize{300, 420}; // the legend has its place below the cube or above it
     const vis::WorldFrame world = vis::worldFrame(workbench.source()->info().bounds, glm::dvec3(1));
     const glm::dvec3 half = world.halfSize + double(view.gap);
     int seen = 0;
@@ -143,23 +144,23 @@ TEST_F(Orientation, OfTheWallsOfTheShadowCubeIsThatOfTheDataBeforeThem) {
         SCOPED_TRACE(time);
         Session session = start;
         session.time = beacon::kTimes[time];
-        session.camera.distance = 3.6f;
         // The second looks from the other side of everything.
         if (time == 1)
             session.camera.orientation =
                 glm::angleAxis(glm::radians(180.0f), glm::vec3(0, 1, 0)) * session.camera.orientation;
-        const glm::dvec3 eye(glm::inverse(vis::viewMatrix(session.camera)) * glm::dvec4(0, 0, 0, 1));
+        const vis::Camera camera = cubeCamera(view, session.camera, half, double(kSize.x) / kSize.y);
+        const glm::dvec3 eye(glm::inverse(vis::viewMatrix(camera)) * glm::dvec4(0, 0, 0, 1));
         std::vector<glm::dvec2> places;
         for (int axis = 0; axis < 3; ++axis)
             for (const int side : {-1, 1}) {
                 if (side * eye[axis] > half[axis]) continue; // seen from outside
                 glm::dvec3 place = world.toWorld(beacon::position(time));
                 place[axis] = side * half[axis];
-                places.push_back(pixelOf(session.camera, kSize, place));
+                places.push_back(pixelOf(camera, kSize, place));
                 seen |= 1 << (2 * axis + (side > 0));
             }
         const vis::Image image = picture(session, kSize);
-        beacon::expectBrightAt(image, {{0, 70}, kSize}, places, 24); // below the legend
+        beacon::expectBrightAt(image, {{0, 60}, {kSize.x, 340}}, places, 24);
     }
     EXPECT_EQ(seen, 63) << "all faces";
 }

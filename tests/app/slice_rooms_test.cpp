@@ -52,6 +52,54 @@ TEST(SliceRooms, ASmallPaneHasARowOrAColumn) {
     expectApart(tall, {0, 0}, {140, 420});
 }
 
+/// Pixels that the pictures of the slices cover, with axes of usual size.
+double shown(const SliceRooms& rooms, glm::dvec3 half) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+        const SliceMargins around = sliceMargins(rooms, i, 3.2f, 1.45f);
+        const ImVec2 size = rooms.planes[std::size_t(i)].size();
+        const SliceAxes& axes = rooms.turned[std::size_t(i)];
+        const double scale = std::min((size.x - (around.left + around.right) * kEm) / half[axes.right],
+                                      (size.y - (around.top + around.bottom) * kEm) / half[axes.up]);
+        sum += std::max(0.0, scale) * std::max(0.0, scale) * half[axes.right] * half[axes.up];
+    }
+    return sum;
+}
+
+TEST(SliceRooms, SlicesOfALongBoxLieAlongIt) {
+    for (int longest = 0; longest < 3; ++longest) {
+        SCOPED_TRACE(longest);
+        glm::dvec3 half(0.14);
+        half[longest] = 0.5;
+        half[(longest + 1) % 3] = 0.2;
+        const ImVec2 wide{446, 150}, tall{280, 600};
+        const SliceRooms rows = sliceRooms({0, 0}, wide, half, kEm);
+        EXPECT_EQ(rows.order, SliceOrder::Rows);
+        EXPECT_TRUE(rows.axes);
+        EXPECT_GT(rows.numbers.size().x, kEm * 5);
+        expectApart(rows, {0, 0}, wide);
+        EXPECT_GT(shown(rows, half), 2 * shown(sliceRooms({0, 0}, wide, half, kEm, true), half));
+        int shared = 0, along = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            EXPECT_EQ(rows.turned[i].normal, kSlicePlanes[i].normal);
+            EXPECT_EQ(rows.turned[i].right + rows.turned[i].up + rows.turned[i].normal, 3);
+            EXPECT_EQ(rows.turned[i].right == longest, rows.turned[i].normal != longest);
+            along += rows.turned[i].right == longest;
+            shared += rows.shared[i];
+        }
+        EXPECT_EQ(along, 2);
+        EXPECT_EQ(shared, 1) << "the lower one has the numbers of both";
+        if (longest == 1) continue; // quarters have both upright as well
+        const SliceRooms columns = sliceRooms({0, 0}, tall, half, kEm);
+        EXPECT_EQ(columns.order, SliceOrder::Columns);
+        expectApart(columns, {0, 0}, tall);
+        for (const SliceAxes& axes : columns.turned) EXPECT_EQ(axes.up == longest, axes.normal != longest);
+    }
+    // As thin as the built-in cell is without stretch, also in a large pane; not where it is stretched.
+    EXPECT_EQ(sliceRooms({0, 0}, {700, 420}, {0.14, 0.225, 0.5}, kEm).order, SliceOrder::Quarters);
+    EXPECT_EQ(sliceRooms({0, 0}, {700, 420}, {0.055, 0.065, 0.505}, kEm).order, SliceOrder::Rows);
+}
+
 TEST(SliceRooms, AFigureHasQuartersWithAxesAtAnySize) {
     const SliceRooms rooms = sliceRooms({0, 0}, {290, 128}, {1, 1, 1}, kEm, true);
     EXPECT_EQ(rooms.order, SliceOrder::Quarters);
@@ -59,7 +107,8 @@ TEST(SliceRooms, AFigureHasQuartersWithAxesAtAnySize) {
 }
 
 TEST(SliceRooms, EverySliceHasItsPlaceWhateverTheBox) {
-    for (const glm::dvec3 half : {glm::dvec3(1, 1, 1), glm::dvec3(0.02, 1, 0.3), glm::dvec3(1, 0, 1), glm::dvec3(0)})
+    for (const glm::dvec3 half : {glm::dvec3(1, 1, 1), glm::dvec3(0.02, 1, 0.3), glm::dvec3(1, 0, 1), glm::dvec3(0),
+                                  glm::dvec3(1, 0.1, 0.2), glm::dvec3(0.055, 0.065, 0.5)})
         for (float x = 100; x < 700; x += 37)
             for (float y = 90; y < 500; y += 41) {
                 SCOPED_TRACE(std::to_string(x) + " x " + std::to_string(y));

@@ -1,9 +1,12 @@
-#include "app/pane/legend.h"
+#include "app/pane/axes3d.h"
+#include "app/pane/corner_legends.h"
 #include "app/ui/theme.h"
+#include "app/views/transfer/library_page.h"
 #include "tests/app/drawn_text.h"
 #include "tests/app/fed_imgui.h"
 
 #include <algorithm>
+#include <functional>
 
 /// What plots and legends leave out where there is little room.
 namespace tessera::app {
@@ -54,7 +57,11 @@ TEST_F(SmallPlots, LegendsOfASmallPictureAreOneLineEach) {
     const auto drawn = [&](ImVec2 size, bool whole) {
         LegendArea area{};
         feedWindow([&] {
-            area = drawLegends(*ImGui::GetWindowDrawList(), entries, {0, 0}, size, LegendCorner::BottomRight, whole);
+            const LegendRoom room{{0, 0}, size};
+            const LegendPlace place = placeLegends(
+                entries, room, [](ImVec2, ImVec2) { return 0.0; }, whole);
+            EXPECT_EQ(place.corner, LegendCorner::BottomRight) << "where nothing is in the way";
+            area = drawLegends(*ImGui::GetWindowDrawList(), entries, room, place);
         });
         return area.max.y - area.min.y;
     };
@@ -69,6 +76,125 @@ TEST_F(SmallPlots, LegendsOfASmallPictureAreOneLineEach) {
         EXPECT_TRUE(legendsAsLines(em() * 3.4f, em() * 20));
         EXPECT_FALSE(legendsAsLines(em() * 3.4f, em() * 30));
         EXPECT_TRUE(legendsAsLines(em() * 13, em() * 30));
+    });
+}
+
+/// The share of a rectangle that another one covers.
+std::function<double(ImVec2, ImVec2)> objectAt(ImVec2 from, ImVec2 to) {
+    return [=](ImVec2 lo, ImVec2 hi) {
+        const float width = std::max(0.0f, std::min(hi.x, to.x) - std::max(lo.x, from.x));
+        const float height = std::max(0.0f, std::min(hi.y, to.y) - std::max(lo.y, from.y));
+        return double(width) * double(height) / std::max(1e-9, double(hi.x - lo.x) * double(hi.y - lo.y));
+    };
+}
+
+TEST_F(SmallPlots, LegendsGoWhereTheObjectIsNot) {
+    const std::vector<LegendEntry> entries{bar("T"), bar("density"), bar("O2")};
+    LegendArea area{};
+    LegendPlace place;
+    const auto drawn = [&](ImVec2 size, const std::function<double(ImVec2, ImVec2)>& covered) {
+        feedWindow([&] {
+            const LegendRoom room{{0, 0}, size, 20};
+            place = placeLegends(entries, room, covered);
+            area = drawLegends(*ImGui::GetWindowDrawList(), entries, room, place);
+        });
+        return drawnWords();
+    };
+    const auto has = [](const std::vector<std::string>& words, const std::string& word) {
+        return std::ranges::any_of(words, [&](const std::string& each) { return each.find(word) + 1 > 0; });
+    };
+    const ImVec2 small{450, 185};
+    std::vector<std::string> words = drawn(small, objectAt({0, 0}, {0, 0}));
+    EXPECT_EQ(place.form, LegendForm::Lines);
+    EXPECT_TRUE(has(words, "300"));
+    // An object over the middle: a line below it is left.
+    const auto middle = objectAt({60, 25}, {430, 150});
+    words = drawn(small, middle);
+    EXPECT_EQ(place.form, LegendForm::Names);
+    EXPECT_EQ(middle(area.min, area.max), 0);
+    for (const char* name : {"T", "density", "O2"}) EXPECT_TRUE(has(words, name)) << name;
+    EXPECT_TRUE(has(words, "density [K]")) << "with their units, which have room";
+    EXPECT_FALSE(has(words, "300"));
+    // The same in a large picture, where another corner is free.
+    const auto low = objectAt({100, 150}, {700, 590});
+    words = drawn({700, 590}, low);
+    EXPECT_EQ(place.form, LegendForm::Lines);
+    EXPECT_EQ(place.corner, LegendCorner::TopRight);
+    EXPECT_EQ(low(area.min, area.max), 0);
+    EXPECT_GE(area.min.y, 20) << "below what stands at the top";
+    // Where the object is everywhere, they take little of it.
+    const auto everywhere = [](ImVec2, ImVec2) { return 1.0; };
+    drawn(small, everywhere);
+    EXPECT_LT((area.max.x - area.min.x) * (area.max.y - area.min.y), small.x * small.y * 0.15f);
+    drawn({700, 590}, everywhere);
+    EXPECT_EQ(place.form, LegendForm::Whole);
+    EXPECT_EQ(place.corner, LegendCorner::BottomRight);
+}
+
+TEST_F(SmallPlots, WhatLegendsLeaveOutIsUnderTheMouse) {
+    const std::vector<LegendEntry> entries{bar("T"), bar("density")};
+    const LegendRoom room{{0, 0}, {450, 185}};
+    const auto at = [&](LegendPlace place, bool over) {
+        const LegendArea area = legendArea(entries, room, place);
+        mouse = over ? ImVec2{area.min.x + 5, area.min.y + 5} : ImVec2{5, 5};
+        for (int i = 0; i < 2; ++i) feedWindow([&] { drawLegends(*ImGui::GetWindowDrawList(), entries, room, place); });
+        const std::vector<std::string> words = drawnWords();
+        return std::ranges::count_if(words, [](const std::string& word) { return word.find("300") + 1 > 0; });
+    };
+    feedWindow([] {});
+    EXPECT_EQ(at({LegendForm::Names, LegendCorner::BottomRight}, false), 0);
+    EXPECT_EQ(at({LegendForm::Names, LegendCorner::BottomRight}, true), 2) << "of either";
+    EXPECT_EQ(at({LegendForm::Lines, LegendCorner::BottomRight}, true), 4) << "and in its line";
+}
+
+TEST_F(SmallPlots, NamesWithoutRoomAreCounted) {
+    std::vector<LegendEntry> entries;
+    for (int i = 0; i < 9; ++i) entries.push_back(bar("quantity " + std::to_string(i)));
+    const LegendRoom room{{0, 0}, {300, 150}};
+    LegendArea area{};
+    feedWindow([&] {
+        area = drawLegends(*ImGui::GetWindowDrawList(), entries, room, {LegendForm::Names, LegendCorner::TopLeft});
+    });
+    int names = 0, rest = -1;
+    for (const DrawnText& text : drawnTexts()) {
+        EXPECT_LE(text.max.x, area.max.x) << text.text;
+        names += text.text.starts_with("quantity");
+        if (text.text.find('+') != std::string::npos) rest = std::stoi(text.text.substr(text.text.find('+')));
+    }
+    EXPECT_GE(names, 1);
+    EXPECT_EQ(names + rest, 9);
+}
+
+TEST_F(SmallPlots, TheGizmoKeepsClearOfBoxAndLegends) {
+    volume::Box box{glm::dvec3(0), glm::dvec3(1)};
+    vis::Camera camera;
+    feedWindow([&] {
+        const ImVec2 size{450, 220};
+        EXPECT_LT(triadRadius(size), triadRadius({900, 900})) << "smaller in a small picture";
+        const float radius = triadRadius(size);
+        const auto free = [&](glm::vec2 moved, std::pair<ImVec2, ImVec2> taken) {
+            vis::Camera seen = camera;
+            vis::pan(seen, moved, size.x / size.y);
+            const SpaceFrame frame = spaceFrame({0, 0}, size, seen, box, glm::dvec3(1));
+            return freeTriadCorner(frame, radius, taken);
+        };
+        const std::pair<ImVec2, ImVec2> none{size, size};
+        EXPECT_EQ(free({0, 0}, none), TriadCorner::BottomLeft);
+        camera.distance = 5;
+        EXPECT_EQ(free({0, 0}, none), TriadCorner::BottomLeft);
+        EXPECT_EQ(free({-0.8f, -0.7f}, none), TriadCorner::TopLeft) << "the box lies at the lower left";
+        EXPECT_EQ(free({-0.8f, -0.7f}, {{0, 0}, {300, 90}}), TriadCorner::BottomRight) << "and legends above it";
+        EXPECT_EQ(free({0, 0}, {{0, 190}, size}), TriadCorner::TopLeft) << "legends at the lower edge";
+        camera.distance = 0.3f;
+        EXPECT_EQ(free({0, 0}, none), TriadCorner::BottomLeft) << "the box is everywhere";
+        for (const TriadCorner corner :
+             {TriadCorner::BottomLeft, TriadCorner::TopLeft, TriadCorner::BottomRight, TriadCorner::TopRight}) {
+            const ImVec2 at = triadMiddle({0, 0}, size, corner, radius);
+            EXPECT_GE(at.x, radius);
+            EXPECT_GE(at.y, radius);
+            EXPECT_LE(at.x, size.x - radius);
+            EXPECT_LE(at.y, size.y - radius);
+        }
     });
 }
 
@@ -111,6 +237,17 @@ TEST_F(SmallPlots, AnUprightLegendHasTheLargestValueOnTop) {
     ASSERT_FALSE(rows(0.005).empty());
     EXPECT_NEAR(rows(0.005)[0].y, 159, 1);
     EXPECT_TRUE(drawn(20).empty()) << "no room for both values";
+}
+
+TEST_F(SmallPlots, TheLibraryHasTwoPicturesBesideEachOther) {
+    feedWindow([&] {
+        for (float room = em() * 3; room < em() * 40; ++room) {
+            const LibraryGrid grid = libraryGrid(room);
+            const auto columns = static_cast<float>(grid.columns);
+            EXPECT_LE(columns * grid.side + (columns - 1) * em() * 0.5f, room) << room;
+            EXPECT_GE(grid.columns, room < em() * 8.6f ? 1 : 2) << room;
+        }
+    });
 }
 
 TEST_F(SmallPlots, ATextGivesUpWordsBeforeLetters) {

@@ -1,14 +1,17 @@
 #include "app/queries/flow_query.h"
 #include "app/views/compare/compare_questions.h"
+#include "app/views/curves/section_data.h"
 #include "app/views/tesseract/tesseract_wire.h"
 #include "tests/app/drawn_text.h"
 #include "tests/app/views_fixture.h"
 #include "volume/base/error.h"
+#include "volume/flow/flow_channels.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <thread>
 
 namespace tessera::app {
@@ -163,6 +166,47 @@ TEST_F(Views, ACurveIsDrawnOverTheTitleOfItsPlot) {
     for (int i = 0; i < 2; ++i) frame([&] { draw("curves", curvesView, drawCurvesView, {400, 140}); });
     ASSERT_TRUE(cornersOf(curve) && cornersOf(backdrop));
     EXPECT_GT(cornersOf(curve)->first, cornersOf(backdrop)->first) << "the ring around the time has a rim";
+}
+
+/// The places in the list of corners of those of a colour that are no letters.
+std::optional<std::pair<int, int>> linesOf(ImU32 color) {
+    std::set<std::pair<float, float>> letters; // corners of their pictures
+    for (const ImFont* font : ImGui::GetIO().Fonts->Fonts)
+        for (const ImFontGlyph& glyph : font->Glyphs)
+            for (const float u : {glyph.U0, glyph.U1})
+                for (const float v : {glyph.V0, glyph.V1}) letters.insert({u, v});
+    std::optional<std::pair<int, int>> found;
+    for (int list = 0, at = 0; list < ImGui::GetDrawData()->CmdListsCount; ++list)
+        for (const ImDrawVert& corner : ImGui::GetDrawData()->CmdLists[list]->VtxBuffer) {
+            if (corner.col == color && !letters.contains({corner.uv.x, corner.uv.y}))
+                found = {found ? found->first : at, at};
+            ++at;
+        }
+    return found;
+}
+
+TEST_F(Views, CurvesOfSectionAveragesAreDrawnOverTheTitlesOfTheirPlot) {
+    show(fuelCell(volume::LatticeKind::CC));
+    profileView.channels = {"T"};
+    profileView.over = ProfileOver::Sections;
+    for (int i = 0; i < 3; ++i) {
+        jobs.wait();
+        frame([&] { draw("profile", profileView, drawProfileView, {400, 140}); });
+    }
+    SectionCurvesQuery query;
+    query.channels = {source->info().findChannel("T").value()};
+    query.label = volume::labelChannel(source->info()).value_or(-1);
+    const std::vector<FigurePanel> panels =
+        sectionPanels(source->info(), readSections(source, query), SectionMeasure::Mean);
+    ASSERT_EQ(panels.size(), 1u);
+    ASSERT_FALSE(panels[0].series.empty());
+    const auto backdrop = cornersOf(plotColors().backdrop);
+    ASSERT_TRUE(backdrop);
+    for (const FigureSeries& series : panels[0].series) {
+        const auto curve = linesOf(toColor({series.color.r, series.color.g, series.color.b}));
+        ASSERT_TRUE(curve) << series.name;
+        EXPECT_GT(curve->first, backdrop->second) << series.name;
+    }
 }
 
 TEST_F(Views, AQuestionOfAComparisonIsRemovedByItsButton) {

@@ -49,6 +49,7 @@ TEST_F(SaidViews, WithDataAndRoomNothingIsMissing) {
 
 TEST_F(SaidViews, WithoutDataEachSaysSo) {
     show(nullptr);
+    EXPECT_THAT(of("volume", volumeView, drawVolumeView), HasSubstr("example data in the Help menu"));
     EXPECT_THAT(of("layers", layersView, drawLayersView), HasSubstr("No data"));
     EXPECT_THAT(of("timeline", timelineView, drawTimelineView), HasSubstr("No data"));
     EXPECT_THAT(of("data", dataView, drawDataView), HasSubstr("No data"));

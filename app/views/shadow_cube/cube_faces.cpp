@@ -50,8 +50,52 @@ void drawFace(ImDrawList& draw, const CubeFrame& frame, const CubeFace& face, vi
     draw.AddQuad(*a, *b, *c, *d, plotColors().frame);
 }
 
+double coveredByCube(const CubeFrame& frame, ImVec2 min, ImVec2 max) {
+    double covered = coveredByBox(frame.space, min, max);
+    for (const CubeFace& face : kCubeFaces) {
+        if (!facesViewer(face, frame.half, frame.camera)) continue;
+        // The projection: a box without depth, on the face.
+        SpaceFrame flat = frame.space;
+        const double at = frame.world.toPhysical(face.at(0, 0, frame.half))[face.axis];
+        flat.bounds.lo[face.axis] = flat.bounds.hi[face.axis] = at;
+        covered = std::max(covered, coveredByBox(flat, min, max));
+    }
+    return covered;
+}
+
+ImVec2 faceTitlePlace(const CubeFrame& frame, std::size_t index, ImVec2 size,
+                      const std::vector<std::pair<ImVec2, ImVec2>>& taken) {
+    const CubeFace& face = kCubeFaces[index];
+    const glm::dvec3 box = frame.world.halfSize;
+    const ImVec2 middle{frame.min.x + frame.size.x / 2, frame.min.y + frame.size.y / 2};
+    const auto keptIn = [](float at, float half, float lo, float hi) {
+        return std::clamp(at, lo + half + em() * 0.5f, std::max(lo + half + em() * 0.5f, hi - half - em() * 0.5f));
+    };
+    ImVec2 best = middle;
+    double bestScore = -1e30;
+    for (const int end : {-1, 1})
+        for (const bool along : {false, true})
+            for (const double out : {0.5, 1.0, 1.5}) { // in the margin, over the edge of the face, or beside it
+                const int axis = along ? face.right() : face.up();
+                const double place = end * glm::mix(box[axis], frame.half[axis], out);
+                const auto p = frame.pixel(along ? face.at(place, 0, frame.half) : face.at(0, place, frame.half));
+                if (!p) continue;
+                const ImVec2 at{keptIn(p->x, size.x / 2, frame.min.x, frame.max().x),
+                                keptIn(p->y, size.y / 2, frame.min.y, frame.max().y)};
+                const ImVec2 lo{at.x - size.x / 2 - em() * 0.3f, at.y - size.y / 2},
+                    hi{at.x + size.x / 2 + em() * 0.3f, at.y + size.y / 2};
+                double over = coveredByCube(frame, lo, hi);
+                for (const auto& [from, to] : taken)
+                    if (lo.x < to.x && from.x < hi.x && lo.y < to.y && from.y < hi.y) over += 1;
+                const double away = std::hypot(p->x - middle.x, p->y - middle.y) / std::max(1.0f, frame.size.x);
+                const double score = away - 2 * over - 0.1 * out;
+                if (score > bestScore) bestScore = score, best = at;
+            }
+    return best;
+}
+
 void drawMarks(ImDrawList& draw, const CubeFrame& frame, const Session& session, const Decoration& shown,
-               std::size_t index, const std::string& title) {
+               std::size_t index) {
     const CubeFace& face = kCubeFaces[index];
     const PlotColors colors = plotColors();
     for (const vis::Brush& brush : session.selection.brushes) {
@@ -71,25 +115,13 @@ void drawMarks(ImDrawList& draw, const CubeFrame& frame, const Session& session,
     line(face.at(-box[face.right()], t, frame.half), face.at(box[face.right()], t, frame.half), colors.cursor);
     line(face.at(s, -box[face.up()], frame.half), face.at(s, box[face.up()], frame.half), colors.cursor);
     line(cursor, face.at(s, t, frame.half), (colors.cursor & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 110));
-    if (!shown.title) return;
-    // The title stands in the margin at the outer edge that is furthest from the middle of the picture.
-    const ImVec2 middle{frame.min.x + frame.size.x / 2, frame.min.y + frame.size.y / 2};
-    float furthest = -1;
-    ImVec2 at = middle;
-    for (const int end : {-1, 1})
-        for (const bool along : {false, true}) {
-            const int axis = along ? face.right() : face.up();
-            const double place = end * (0.5 * frame.half[axis] + 0.5 * box[axis]);
-            const auto p = frame.pixel(along ? face.at(place, 0, frame.half) : face.at(0, place, frame.half));
-            if (!p) continue;
-            const float away = std::hypot(p->x - middle.x, p->y - middle.y);
-            if (away > furthest) furthest = away, at = *p;
-        }
-    const ImVec2 size = ImGui::CalcTextSize(title.c_str());
-    at.x = std::clamp(at.x, frame.min.x + size.x / 2 + em(),
-                      std::max(frame.min.x + size.x / 2 + em(), frame.max().x - size.x / 2 - em()));
-    at.y = std::clamp(at.y, frame.min.y + em(), std::max(frame.min.y + em(), frame.max().y - em()));
-    addTextWithBackdrop(draw, at, {0.5f, 0.5f}, colors.text, title.c_str());
+}
+
+void drawFaceTitle(ImDrawList& draw, const CubeFrame& frame, std::size_t index, const std::string& title,
+                   std::vector<std::pair<ImVec2, ImVec2>>& taken) {
+    const ImVec2 size = ImGui::CalcTextSize(title.c_str()), at = faceTitlePlace(frame, index, size, taken);
+    taken.push_back({{at.x - size.x / 2, at.y - size.y / 2}, {at.x + size.x / 2, at.y + size.y / 2}});
+    addTextWithBackdrop(draw, at, {0.5f, 0.5f}, plotColors().text, title.c_str());
 }
 
 } // namespace tessera::app

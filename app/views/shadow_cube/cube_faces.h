@@ -36,8 +36,20 @@ struct CubeFrame {
 /// The face itself, and its projection (a GL texture) in patches, so that perspective is seen.
 void drawFace(ImDrawList& draw, const CubeFrame& frame, const CubeFace& face, vis::TextureName texture);
 
-/// Cursor, brushes in space and title of a face, by its index in kCubeFaces, as far as `shown` has them.
+/// The share of a rectangle of the picture that the data and their projections on the visible faces cover, at most.
+double coveredByCube(const CubeFrame& frame, ImVec2 min, ImVec2 max);
+
+/// The middle of the title of a face, of this size: in the margin of the face or beside it, within the picture, where
+/// it covers least of the data and of what is `taken`, rather at the outer edges.
+ImVec2 faceTitlePlace(const CubeFrame& frame, std::size_t index, ImVec2 size,
+                      const std::vector<std::pair<ImVec2, ImVec2>>& taken);
+
+/// Cursor and brushes in space of a face, by its index in kCubeFaces, as far as `shown` has them.
 void drawMarks(ImDrawList& draw, const CubeFrame& frame, const Session& session, const Decoration& shown,
-               std::size_t index, const std::string& title);
+               std::size_t index);
+
+/// The title of a face at its place, which is added to what is `taken`.
+void drawFaceTitle(ImDrawList& draw, const CubeFrame& frame, std::size_t index, const std::string& title,
+                   std::vector<std::pair<ImVec2, ImVec2>>& taken);
 
 } // namespace tessera::app

@@ -1,4 +1,5 @@
 #include "app/pane/axes3d.h"
+#include "app/pane/corner_legends.h"
 #include "app/pane/view_parts.h"
 #include "app/queries/flow_query.h"
 #include "app/queries/surface_query.h"
@@ -30,6 +31,7 @@ enum class CubeDrag { None, Object, Cube, Both, Pan, Zoom, Brush };
 struct ShadowCubeCache : ViewCache {
     vis::ViewTargetPtr target;
     std::array<vis::ViewTargetPtr, 6> walls;
+    LegendPlace legend; ///< where it stays while something moves
     AsyncSurfaces surfaces;
     AsyncFlow flows;
     CubeDrag drag = CubeDrag::None;
@@ -157,8 +159,9 @@ bool handleMouse(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& 
     vis::Camera& camera = context.session.camera;
     const bool hovered = ImGui::IsItemHovered();
     bool moving = false;
+    const auto magnify = [&view](float factor) { view.zoom = std::clamp(view.zoom * factor, 0.2f, 10.0f); };
     if (hovered && io.MouseWheel != 0) {
-        vis::zoom(camera, std::pow(1.15f, io.MouseWheel));
+        magnify(std::pow(1.15f, io.MouseWheel));
         moving = true;
     }
     if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) click(context, frame, cache);
@@ -178,8 +181,12 @@ bool handleMouse(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& 
             vis::orbit(cube, from, to);
             view.orientation = cube.orientation;
         }
-        if (cache.drag == CubeDrag::Pan) vis::pan(camera, to - from, static_cast<float>(frame.aspect()));
-        if (cache.drag == CubeDrag::Zoom) vis::zoom(camera, std::exp((to.y - from.y) * 1.5f));
+        if (cache.drag == CubeDrag::Pan) {
+            vis::Camera cube = frame.camera;
+            vis::pan(cube, to - from, static_cast<float>(frame.aspect()));
+            view.target = cube.target;
+        }
+        if (cache.drag == CubeDrag::Zoom) magnify(std::exp((to.y - from.y) * 1.5f));
         moving = true;
     }
     cache.last = io.MousePos;
@@ -211,12 +218,23 @@ void drawToolbar(ViewContext& context, const volume::DatasetInfo& info, ShadowCu
     }
 }
 
-/// Draws the visible faces; returns the channels that need a legend.
-std::set<int> drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache,
-                        const ShadowCubeView& view, bool moving) {
+/// The legends of the visible faces, a parameter's once.
+std::vector<LegendEntry> wallLegends(const ViewContext& context, const CubeFrame& frame, const ShadowCubeView& view) {
+    std::set<int> channels;
+    for (std::size_t i = 0; i < kCubeFaces.size(); ++i)
+        if (wallOf(view, i).kind != WallKind::Shadow && facesViewer(kCubeFaces[i], frame.half, frame.camera))
+            if (const auto channel = resolveChannel(frame.info, context.session, wallOf(view, i).channel))
+                channels.insert(*channel);
+    std::vector<LegendEntry> legends;
+    for (const int channel : channels) legends.push_back(legendOf(context.session, frame.info, channel));
+    return legends;
+}
+
+/// Draws the visible faces.
+void drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache, const ShadowCubeView& view,
+               bool moving) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const vis::Scene scene = sceneWithLimits(context);
-    std::set<int> legends;
     for (std::size_t i = 0; i < kCubeFaces.size(); ++i) {
         const CubeFace& face = kCubeFaces[i];
         const Wall& wall = wallOf(view, i);
@@ -236,13 +254,23 @@ std::set<int> drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCube
             *cache.walls[i], wallScene(scene, name, wall.kind, face, frame.world, shadow), request);
         context.follow(status);
         drawFace(draw, frame, face, status.texture);
-        drawMarks(draw, frame, context.session, context.decoration, i,
-                  wall.kind == WallKind::Shadow && context.session.selection.active()
-                      ? "shadow of the selection"
-                      : kindName(wall.kind) + " " + name);
-        if (wall.kind != WallKind::Shadow) legends.insert(*channel);
+        drawMarks(draw, frame, context.session, context.decoration, i);
     }
-    return legends;
+}
+
+/// Writes what the visible faces show. `taken`: where titles do not go.
+void drawTitles(const ViewContext& context, const CubeFrame& frame, const ShadowCubeView& view,
+                std::vector<std::pair<ImVec2, ImVec2>> taken) {
+    for (std::size_t i = 0; i < kCubeFaces.size(); ++i) {
+        const Wall& wall = wallOf(view, i);
+        const auto channel = resolveChannel(frame.info, context.session, wall.channel);
+        if (!channel || !facesViewer(kCubeFaces[i], frame.half, frame.camera)) continue;
+        drawFaceTitle(*ImGui::GetWindowDrawList(), frame, i,
+                      wall.kind == WallKind::Shadow && context.session.selection.active()
+                          ? "shadow of the selection"
+                          : kindName(wall.kind) + " " + frame.info.channel(*channel).name,
+                      taken);
+    }
 }
 
 } // namespace
@@ -256,10 +284,10 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     const volume::DatasetInfo& info = context.source->info();
     Session& session = context.session;
     if (!context.figure) drawToolbar(context, info, view);
-    const ImVec2 room = ImGui::GetContentRegionAvail();
+    const ImVec2 left = ImGui::GetContentRegionAvail();
     CubeFrame frame{.info = info,
                     .min = ImGui::GetCursorScreenPos(),
-                    .size = {std::floor(room.x), std::floor(room.y)},
+                    .size = {std::floor(left.x), std::floor(left.y)},
                     .world = vis::worldFrame(info.bounds, session.stretch),
                     .half = {},
                     .camera = {},
@@ -269,6 +297,7 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     const auto look = [&] {
         frame.camera = session.camera;
         if (!view.together) frame.camera.orientation = view.orientation;
+        frame.camera = cubeCamera(view, frame.camera, frame.half, frame.aspect());
         frame.space = spaceFrame(frame.min, frame.max(), frame.camera, info.bounds, session.stretch);
     };
     look();
@@ -283,9 +312,19 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     draw.PushClipRect(frame.min, frame.max(), true);
     const bool moving = (moved || context.interacting || session.animation.playing) && !context.headless;
-    const std::set<int> walls = drawWalls(context, frame, cache, view, moving);
+    const std::vector<LegendEntry> legends = wallLegends(context, frame, view);
+    const LegendRoom room{frame.min, frame.max()};
+    const bool explained = context.decoration.legend && !legends.empty();
+    if (!moving) {
+        const auto covered = [&](ImVec2 lo, ImVec2 hi) { return coveredByCube(frame, lo, hi); };
+        cache.legend = placeLegends(legends, room, covered, context.figure);
+    }
+    drawWalls(context, frame, cache, view, moving);
 
     vis::Scene scene = sceneWithLimits(context);
+    vis::Camera seen = frame.camera;
+    seen.orientation = session.camera.orientation;
+    scene.camera = seen;
     scene.showGround = false;
     scene.paper.reset();
     if (!cache.target) cache.target = context.renderer.makeTarget();
@@ -298,18 +337,19 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     const vis::FrameStatus status = context.renderer.render(*cache.target, scene, request);
     context.follow(status);
     addPicture(draw, status.texture, frame.min, frame.max());
-    const SpaceFrame object = spaceFrame(frame.min, frame.max(), session.camera, info.bounds, session.stretch);
+    const SpaceFrame object = spaceFrame(frame.min, frame.max(), seen, info.bounds, session.stretch);
     if (context.decoration.outlines) drawSpaceBrushes(draw, object, session.selection);
     const PlotColors colors = plotColors();
     if (const auto at = object.pixel(session.cursor); at && context.decoration.cursor) {
         draw.AddCircle(*at, em() * 0.35f, colors.backdrop, 20, 3);
         draw.AddCircle(*at, em() * 0.35f, colors.cursor, 20, 1.5f);
     }
-    std::vector<LegendEntry> legends;
-    for (const int channel : walls) legends.push_back(legendOf(session, info, channel));
-    // At the top, where faces have no titles.
-    if (context.decoration.legend)
-        drawLegends(draw, legends, frame.min, frame.max(), LegendCorner::TopRight, context.figure);
+    std::vector<std::pair<ImVec2, ImVec2>> taken;
+    if (explained) {
+        const LegendArea area = drawLegends(draw, legends, room, cache.legend);
+        taken.push_back({area.min, area.max});
+    }
+    if (context.decoration.title) drawTitles(context, frame, view, std::move(taken));
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     if (const auto hit = hovered ? frame.hit(mouse) : std::nullopt; hit && frame.onData(*hit))
         drawReading(context, frame, cache, view, *hit, mouse);

@@ -83,6 +83,15 @@ std::optional<FaceHit> hitFace(const vis::Ray& ray, glm::dvec3 half, const vis::
     return std::nullopt;
 }
 
+vis::Camera cubeCamera(const ShadowCubeView& view, vis::Camera camera, glm::dvec3 half, double aspect) {
+    vis::WorldFrame cube;
+    cube.halfSize = half;
+    vis::fit(camera, cube, aspect);
+    camera.distance /= view.zoom;
+    camera.target = view.target;
+    return camera;
+}
+
 vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, WallKind kind, const CubeFace& face,
                      const vis::WorldFrame& world, glm::vec3 shadow) {
     vis::Scene out = scene;

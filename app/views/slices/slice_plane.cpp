@@ -31,6 +31,8 @@ struct PlaneFrame {
     AxisLabel right, up, normal;
     Range rangeX, rangeY; ///< of the box, in the units shown
     bool numbered = true; ///< has axes
+    bool beside = false;  ///< its place stands at its right
+    bool shared = false;  ///< the numbers of its lower axis are those of the slice below
     float left = 0;       ///< room of the vertical axis
     ImVec2 min, max;      ///< the pane
     ImVec2 lo, hi;        ///< what is left for the picture
@@ -41,7 +43,7 @@ struct PlaneFrame {
 
 PlaneFrame planeFrame(const Session& session, const volume::DatasetInfo& info, int index, const SliceRooms& rooms) {
     const auto& [min, max] = rooms.planes[static_cast<std::size_t>(index)];
-    const SliceAxes& axes = kSlicePlanes[index];
+    const SliceAxes& axes = rooms.turned[static_cast<std::size_t>(index)];
     const AxisLabels labels = axisLabels(session, info);
     PlaneFrame frame;
     frame.axes = axes;
@@ -49,33 +51,43 @@ PlaneFrame planeFrame(const Session& session, const volume::DatasetInfo& info, i
     frame.normal = labels[std::size_t(axes.normal)];
     frame.min = min, frame.max = max;
     frame.numbered = rooms.axes;
+    frame.beside = rooms.beside[static_cast<std::size_t>(index)];
+    frame.shared = rooms.shared[static_cast<std::size_t>(index)];
     frame.perUnit = {frame.right.unit.perUnit, frame.up.unit.perUnit};
     const auto range = [&](int axis, const LengthUnit& unit) {
         return Range{info.bounds.lo[axis] * unit.perUnit, info.bounds.hi[axis] * unit.perUnit};
     };
     frame.rangeX = range(axes.right, frame.right.unit), frame.rangeY = range(axes.up, frame.up.unit);
-    if (!frame.numbered) {
-        frame.lo = {min.x, min.y + em() * 1.35f}, frame.hi = max;
-        return frame;
-    }
     // Slices below each other begin at the same pixel, whatever their numbers.
-    frame.left = std::max(axisRoom(AxisSide::Left, frame.rangeY, false),
-                          axisRoom(AxisSide::Left, range(2, labels[2].unit), false));
+    for (const SliceAxes& each : rooms.turned) {
+        const AxisLabel& label = labels[std::size_t(each.up)];
+        frame.left = std::max(frame.left, axisRoom(AxisSide::Left, range(each.up, label.unit), false));
+    }
     const float bottom = axisRoom(AxisSide::Bottom, frame.rangeX, false);
-    frame.lo = {min.x + frame.left, min.y + em() * 1.35f}, frame.hi = {max.x - em() * 0.8f, max.y - bottom};
+    const SliceMargins around = sliceMargins(rooms, index, frame.left / em(), bottom / em());
+    frame.lo = {min.x + around.left * em(), min.y + around.top * em()};
+    frame.hi = {max.x - around.right * em(), max.y - around.bottom * em()};
     return frame;
 }
 
-/// The largest picture with the proportions of the stretched box; false if there is no room for one or the box is flat.
-bool placePlane(PlaneFrame& frame, const vis::WorldFrame& world) {
-    if (frame.hi.x - frame.lo.x < em() * 2 || frame.hi.y - frame.lo.y < em() * 2) return false;
+/// Pixels per length of the largest picture with the proportions of the stretched box; 0 if there is no room for one or
+/// the box is flat.
+double planeScale(const PlaneFrame& frame, const vis::WorldFrame& world) {
+    if (frame.hi.x - frame.lo.x < em() * 2 || frame.hi.y - frame.lo.y < em() * 2) return 0;
+    const double worldX = world.halfSize[frame.axes.right], worldY = world.halfSize[frame.axes.up];
+    if (!(worldX > 0) || !(worldY > 0)) return 0;
+    return std::min((frame.hi.x - frame.lo.x) / worldX, (frame.hi.y - frame.lo.y) / worldY);
+}
+
+/// Places the picture; false if there is none.
+bool placePlane(PlaneFrame& frame, const vis::WorldFrame& world, double scale) {
     const double worldX = world.halfSize[frame.axes.right], worldY = world.halfSize[frame.axes.up];
     if (!(worldX > 0) || !(worldY > 0)) {
         const std::string text = std::string("no extent along ") + (worldX > 0 ? frame.up : frame.right).name;
         ImGui::GetWindowDrawList()->AddText(frame.lo, plotColors().faint, text.c_str());
         return false;
     }
-    const double scale = std::min((frame.hi.x - frame.lo.x) / worldX, (frame.hi.y - frame.lo.y) / worldY);
+    if (!(scale > 0)) return false;
     frame.pixels = {std::max(1.0, std::floor(worldX * scale)), std::max(1.0, std::floor(worldY * scale))};
     const ImVec2 corner{std::floor(frame.lo.x), std::floor(frame.lo.y)};
     frame.plot = {corner,
@@ -85,19 +97,28 @@ bool placePlane(PlaneFrame& frame, const vis::WorldFrame& world) {
     return true;
 }
 
-/// The head line names the slice and its place, in the colour of the axis it is perpendicular to.
+/// The head line, or the line beside the picture, names the slice and its place, in the colour of the axis it is
+/// perpendicular to.
 void drawPlaneTitle(const PlaneFrame& frame, const Session& session, const volume::DatasetInfo& info) {
     const int axis = frame.axes.normal;
     const LengthUnit& unit = frame.normal.unit;
     const std::string name(frame.normal.name);
     const double at = session.cursor[axis] * unit.perUnit, digits = info.bounds.size()[axis] * unit.perUnit / 1000;
     const std::string whole = name + " = " + formatQuantity(at, unit.name, digits);
-    const float room = frame.hi.x - frame.min.x + 1;
+    const float left = frame.plot.max.x + em() * 0.5f; // where it stands beside the picture
     // The name of the axis and its unit stay longest: a narrow slice has few pixels to tell places apart.
     const auto shorter = [&](double fewer) { return name + " " + formatQuantity(at, unit.name, digits * fewer); };
+    // The title of the axis at the left stands at the other end of the head line; the unit matters more.
+    const auto widthOf = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
+    const float axisTitle =
+        frame.numbered ? widthOf(titleWithUnit(frame.up.name, frame.up.unit.name)) + em() * 0.6f : 0;
+    const float all = frame.beside ? frame.max.x - left : frame.hi.x - frame.min.x + 1;
+    const float room = frame.beside ? all : std::max(all - axisTitle, std::min(all, widthOf(shorter(100)) + 1));
     const std::string place = firstThatFits(
         {whole, shorter(1), shorter(10), shorter(100), name + " " + formatNumber(at, digits * 100), name}, room);
-    const ImVec2 size = ImGui::CalcTextSize(place.c_str()), from{std::round(frame.hi.x - size.x), frame.min.y};
+    const ImVec2 size = ImGui::CalcTextSize(place.c_str());
+    const ImVec2 from = frame.beside ? ImVec2{std::round(left), frame.plot.min.y}
+                                     : ImVec2{std::round(frame.hi.x - size.x), frame.min.y};
     ImGui::GetWindowDrawList()->AddText(from, axisColor(axis), place.c_str());
     tellWhole(from, {from.x + size.x, from.y + size.y}, whole, place);
 }
@@ -178,8 +199,9 @@ void drawOverPlane(ViewContext& context, SlicePlanes& planes, const std::string&
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     if (shown.box) draw.AddRect(frame.plot.min, frame.plot.max, plotColors().frame);
     if (shown.axes && frame.numbered) {
-        drawAxis(draw, frame.plot, AxisSide::Bottom, frame.right.name, frame.right.unit.name, frame.min.x,
-                 std::min(frame.max.x, frame.plot.max.x + em() * 4), {.inlineTitle = true});
+        if (!frame.shared)
+            drawAxis(draw, frame.plot, AxisSide::Bottom, frame.right.name, frame.right.unit.name, frame.min.x,
+                     std::min(frame.max.x, frame.plot.max.x + em() * 4), {.inlineTitle = true});
         drawAxis(draw, frame.plot, AxisSide::Left, frame.up.name, frame.up.unit.name, frame.min.y, frame.max.y,
                  {.inlineTitle = true, .room = frame.left});
     }
@@ -210,8 +232,14 @@ void drawSlicePlane(ViewContext& context, SlicePlanes& planes, const std::string
     const volume::DatasetInfo& info = context.source->info();
     const vis::WorldFrame world = vis::worldFrame(info.bounds, context.session.stretch);
     PlaneFrame frame = planeFrame(context.session, info, index, rooms);
-    if (context.decoration.title) drawPlaneTitle(frame, context.session, info);
-    if (!placePlane(frame, world)) return;
+    double scale = planeScale(frame, world);
+    for (int other = 0; other < 3; ++other) // those that share an axis have one scale
+        if (rooms.order == SliceOrder::Rows && rooms.turned[static_cast<std::size_t>(other)].right == frame.axes.right)
+            if (const double its = planeScale(planeFrame(context.session, info, other, rooms), world); its > 0)
+                scale = std::min(scale, its);
+    const bool placed = placePlane(frame, world, scale);
+    if (context.decoration.title && (placed || !frame.beside)) drawPlaneTitle(frame, context.session, info);
+    if (!placed) return;
     handlePlaneMouse(context, planes, frame, index);
     drawPlanePicture(context, planes.targets[static_cast<std::size_t>(index)], view, channel, frame, world);
     drawOverPlane(context, planes, pane, view, lines, frame, index);

@@ -1,20 +1,24 @@
 #include "app/views/slices/slice_rooms.h"
 
-#include "app/views/slices/slice_figure.h"
-
 #include <algorithm>
 #include <cmath>
 #include <glm/vec2.hpp>
+#include <optional>
+#include <vector>
 
 namespace tessera::app {
 
 namespace {
 
-constexpr glm::vec2 kRoomy{20, 14};       // em: from here on always quarters
-constexpr glm::vec2 kAround{4, 2.8f};     // em: what axes and head line of a slice take
-constexpr glm::vec2 kAroundBare{1, 1.6f}; // em: the head line alone
-constexpr float kNumbers = 26;            // em: width from which on there are numbers beside a row
+constexpr glm::vec2 kRoomy{20, 14};         // em: from here on always quarters
+constexpr glm::vec2 kAxesRoom{3.2f, 1.45f}; // em: what axes take at the left and below
+constexpr float kApart = 1;                 // em: between slices without axes
+constexpr float kPlaceBeside = 6.2f;        // em: the place of a slice at its right
+constexpr float kNumbers = 26;              // em: width from which on there are numbers beside a row
 constexpr double kMuchLarger = 1.3;
+// The longest edge of a box that is looked at along it, by the next: in a roomy pane, quarters have more room for
+// numbers.
+constexpr double kLongEdge = 1.8, kLongEdgeRoomy = 4;
 
 /// Size of the first of two columns or rows whose plots share `room` in proportion to the box, none too narrow to
 /// read; each has `around` pixels of axes besides.
@@ -70,34 +74,123 @@ SliceRooms inColumn(ImVec2 min, ImVec2 room, float em) {
     return out;
 }
 
-/// Pixels of the pictures of all slices.
-double area(const SliceRooms& rooms, glm::dvec3 half, float em, glm::vec2 around) {
-    double sum = 0;
+/// The slices along the longest edge, which all have to the right, below each other, beside the one across it with the
+/// numbers below. Nothing where there is no room for two columns.
+std::optional<SliceRooms> inRows(ImVec2 min, ImVec2 room, glm::dvec3 half, int longest, float em, bool beside) {
+    const float gap = em * 0.5f, column = std::clamp(room.x * 0.3f, em * 8, em * 16), across = room.y * 0.6f;
+    if (room.x < column + em * 12 || room.y < em * 7) return std::nullopt;
+    SliceRooms out{.order = SliceOrder::Rows, .planes = {}, .numbers = {}};
+    const ImVec2 max{min.x + room.x, min.y + room.y};
+    double halves = 0;
+    for (const SliceAxes& plane : kSlicePlanes)
+        if (plane.normal != longest) halves += half[plane.right + plane.up - longest];
+    const float around = (beside ? 0.3f : 1.35f) * em, axis = kAxesRoom.y * em,
+                pictures = room.y - gap - axis - 2 * around;
+    float y = min.y;
     for (std::size_t i = 0; i < 3; ++i) {
-        const ImVec2 size = rooms.planes[i].size();
-        const double wide = half[kSlicePlanes[i].right], high = half[kSlicePlanes[i].up];
+        const SliceAxes& plane = kSlicePlanes[i];
+        if (plane.normal == longest) {
+            out.planes[i] = {min, {min.x + column, min.y + across}};
+            continue;
+        }
+        const int other = plane.right + plane.up - longest;
+        const bool first = y == min.y;
+        const double share = halves > 0 ? half[other] / halves : 0.5;
+        const float own = first ? std::round(around + pictures * float(std::clamp(share, 0.25, 0.75))) : max.y - y;
+        out.turned[i] = {longest, other, plane.normal};
+        out.beside[i] = beside;
+        out.shared[i] = first;
+        out.planes[i] = {{min.x + column + gap, y}, {max.x, y + own}};
+        y += own + gap;
+    }
+    out.numbers = {{min.x, min.y + across + gap}, {min.x + column, max.y}};
+    return out;
+}
+
+/// The same upright: beside each other, above the slice across and the numbers.
+std::optional<SliceRooms> inColumns(ImVec2 min, ImVec2 room, int longest, float em) {
+    const float gap = em * 0.5f, low = std::clamp(room.y * 0.28f, em * 7, em * 14), width = (room.x - gap) / 2;
+    if (room.y < low + em * 12 || room.x < em * 12) return std::nullopt;
+    SliceRooms out{.order = SliceOrder::Columns, .planes = {}, .numbers = {}};
+    const ImVec2 max{min.x + room.x, min.y + room.y};
+    const float middle = max.y - low;
+    float x = min.x;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const SliceAxes& plane = kSlicePlanes[i];
+        if (plane.normal == longest) {
+            out.planes[i] = {{min.x, middle + gap}, {min.x + width, max.y}};
+            continue;
+        }
+        out.turned[i] = {plane.right + plane.up - longest, longest, plane.normal};
+        out.planes[i] = {{x, min.y}, {x + width, middle}};
+        x += width + gap;
+    }
+    out.numbers = {{min.x + width + gap, middle + gap}, max};
+    return out;
+}
+
+/// Pixels of the pictures of all slices.
+double area(const SliceRooms& rooms, glm::dvec3 half, float em) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+        const std::size_t at = std::size_t(i);
+        const ImVec2 size = rooms.planes[at].size();
+        const double wide = half[rooms.turned[at].right], high = half[rooms.turned[at].up];
         if (!(wide > 0) || !(high > 0)) continue;
-        const double scale =
-            std::min(std::max(0.0f, size.x - around.x * em) / wide, std::max(0.0f, size.y - around.y * em) / high);
+        const SliceMargins around = sliceMargins(rooms, i, kAxesRoom.x, kAxesRoom.y);
+        const float apart = rooms.axes ? 0 : kApart; // pictures without axes between them
+        const double scale = std::min(std::max(0.0f, size.x - (around.left + around.right + apart) * em) / wide,
+                                      std::max(0.0f, size.y - (around.top + around.bottom + apart / 4) * em) / high);
         sum += scale * scale * wide * high;
     }
     return sum;
 }
 
+/// The other arrangements of the box in a pane: along its longest edge where that is much longer than the others, and
+/// in a pane that is not `roomy` a row or a column.
+std::vector<SliceRooms> others(ImVec2 min, ImVec2 room, glm::dvec3 half, float em, bool roomy) {
+    std::vector<SliceRooms> out;
+    if (!roomy) {
+        out.push_back(inRow(min, room, half, em));
+        out.push_back(inColumn(min, room, em));
+    }
+    int longest = 0;
+    for (const int axis : {1, 2})
+        if (half[axis] > half[longest]) longest = axis;
+    if (half[longest] <
+        (roomy ? kLongEdgeRoomy : kLongEdge) * std::max(half[(longest + 1) % 3], half[(longest + 2) % 3]))
+        return out;
+    for (const bool beside : {true, false})
+        if (auto rows = inRows(min, room, half, longest, em, beside)) out.push_back(*rows);
+    if (auto columns = inColumns(min, room, longest, em)) out.push_back(*columns);
+    return out;
+}
+
 } // namespace
+
+SliceMargins sliceMargins(const SliceRooms& rooms, int index, float leftAxis, float bottomAxis) {
+    const bool beside = rooms.beside[std::size_t(index)], shared = rooms.shared[std::size_t(index)];
+    SliceMargins out{0, beside ? 0.3f : 1.35f, beside ? kPlaceBeside : 0, 0};
+    if (!rooms.axes) return out;
+    return {leftAxis, out.top, std::max(out.right, 0.8f), shared ? 0 : bottomAxis};
+}
 
 SliceRooms sliceRooms(ImVec2 min, ImVec2 room, glm::dvec3 half, float em, bool whole) {
     SliceRooms best = quarters(min, room, half, em);
     if (whole) return best;
-    if (room.x >= kRoomy.x * em && room.y >= kRoomy.y * em) return best;
-    double most = area(best, half, em, kAroundBare), least = most * kMuchLarger;
-    for (const SliceRooms& other : {inRow(min, room, half, em), inColumn(min, room, em)}) {
-        const double own = area(other, half, em, kAroundBare);
+    const bool roomy = room.x >= kRoomy.x * em && room.y >= kRoomy.y * em;
+    const auto bare = [&](SliceRooms rooms) {
+        rooms.axes = roomy;
+        return area(rooms, half, em);
+    };
+    double most = bare(best), least = most * kMuchLarger;
+    for (const SliceRooms& other : others(min, room, half, em, roomy)) {
+        const double own = bare(other);
         if (own < least) continue;
         best = other;
         most = least = own;
     }
-    best.axes = area(best, half, em, kAround) * 2 > most;
+    if (!roomy) best.axes = area(best, half, em) * 2 > most;
     return best;
 }
 

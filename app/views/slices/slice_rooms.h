@@ -1,5 +1,7 @@
 #pragma once
 
+#include "app/views/slices/slice_figure.h"
+
 #include <array>
 #include <glm/vec3.hpp>
 #include <imgui.h>
@@ -7,7 +9,7 @@
 /// Where the three slices of a pane lie, and the numbers at the cross-hair.
 namespace tessera::app {
 
-enum class SliceOrder { Quarters, Row, Column };
+enum class SliceOrder { Quarters, Row, Column, Rows, Columns };
 
 /// A part of the pane, pixels; without extent where nothing is shown.
 struct SliceRoom {
@@ -19,12 +21,22 @@ struct SliceRooms {
     SliceOrder order = SliceOrder::Quarters;
     std::array<SliceRoom, 3> planes; ///< by index of kSlicePlanes
     SliceRoom numbers;
-    bool axes = true; ///< numbers along the slices
+    bool axes = true;                                                                   ///< numbers along the slices
+    std::array<SliceAxes, 3> turned{kSlicePlanes[0], kSlicePlanes[1], kSlicePlanes[2]}; ///< to the right and up
+    std::array<bool, 3> beside{}; ///< the place of the slice stands at the right of it, not above
+    std::array<bool, 3> shared{}; ///< the slice below has the numbers of its lower axis
 };
 
-/// Places them in a pane of `room` pixels whose box has these half sizes. Quarters, so that slices share their axes,
-/// but in a small pane a row or a column where slices are much larger in it; without axes where these would take most
-/// of the room. `em`: height of the font. `whole`: always quarters with axes, as in figures.
+/// Places them in a pane of `room` pixels whose box has these half sizes. Quarters, so that slices share their axes. A
+/// box with one long edge has the slices along it below each other in rows, or upright in columns, and in a small pane
+/// slices lie in a row or a column, where they are much larger so; without axes where these would take most of the
+/// room. `em`: height of the font. `whole`: always quarters with axes, as in figures.
 SliceRooms sliceRooms(ImVec2 min, ImVec2 room, glm::dvec3 half, float em, bool whole = false);
+
+/// What the place of a slice and its axes take around its picture, in em, where the axes alone take this much.
+struct SliceMargins {
+    float left, top, right, bottom;
+};
+SliceMargins sliceMargins(const SliceRooms& rooms, int index, float leftAxis, float bottomAxis);
 
 } // namespace tessera::app

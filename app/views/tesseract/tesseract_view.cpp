@@ -1,3 +1,4 @@
+#include "app/pane/corner_legends.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/keys.h"
 #include "app/ui/parameter_widget.h"
@@ -312,7 +313,10 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
     }
     entries.push_back(along);
     if (view.colorBy == TesseractColor::Value) entries.push_back(legendOf(session, info, channel));
-    drawLegends(draw, entries, frame.min, max, LegendCorner::BottomRight, context.figure);
+    // The edges reach everywhere as it turns: the legends stay where they are.
+    const LegendRoom room{frame.min, max};
+    const auto nothing = [](ImVec2, ImVec2) { return 0.0; };
+    drawLegends(draw, entries, room, placeLegends(entries, room, nothing, context.figure));
 }
 
 } // namespace

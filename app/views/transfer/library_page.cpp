@@ -11,15 +11,16 @@ namespace tessera::app {
 
 namespace {
 
+float gridGap() {
+    return em() * 0.5f;
+}
+
 /// Lays cells out in rows that fill the width.
 struct Grid {
-    float cell, gap;
     int columns, next = 0;
 
-    Grid(float side, float room)
-        : cell(side), gap(em() * 0.5f), columns(std::max(1, int((room + gap) / (side + gap)))) {}
     void place() {
-        if (next++ % columns != 0) ImGui::SameLine(0, gap);
+        if (next++ % columns != 0) ImGui::SameLine(0, gridGap());
     }
 };
 
@@ -117,13 +118,13 @@ void drawOwnMenu(ViewContext& context, LibraryPage& page, const std::string& nam
     ImGui::EndPopup();
 }
 
-/// Side of a picture: two of them have room beside each other unless they would show nothing.
-float librarySide(float room) {
-    const float half = (room - em() * 0.5f) / 2;
-    return std::clamp(half < em() * 4 ? room : half, em(), em() * 6.5f);
-}
-
 } // namespace
+
+LibraryGrid libraryGrid(float room) {
+    const float gap = gridGap(), half = (room - gap) / 2;
+    const float side = std::floor(std::clamp(half < em() * 4 ? room : half, em(), em() * 6.5f));
+    return {side, std::max(1, int((room + gap) / (side + gap)))};
+}
 
 void drawLibraryPage(ViewContext& context, LibraryPage& page, const std::string& function, int index) {
     const volume::DatasetInfo& info = context.source->info();
@@ -143,15 +144,15 @@ void drawLibraryPage(ViewContext& context, LibraryPage& page, const std::string&
     if (!values) return drawHint("Reading values");
 
     ImGui::BeginChild("library", {0, 0}, false);
-    const float room = ImGui::GetContentRegionAvail().x, side = std::round(librarySide(room));
+    const auto [side, columns] = libraryGrid(ImGui::GetContentRegionAvail().x);
     page.pictures.begin(context, index, int(side));
-    const auto cell = [&](Grid& grid, const vis::TransferRecipe& recipe) {
+    const auto cell = [&, side = side](Grid& grid, const vis::TransferRecipe& recipe) {
         grid.place();
         const vis::TransferFunction made = vis::madeFrom(recipe, *values, channel.unit);
         vis::TransferFunction& used = transferOf(context.session, function);
         if (drawCell(recipe, made, page.pictures.get(made), side, used == made)) used = made;
     };
-    Grid shipped(side, room), own(side, room);
+    Grid shipped{columns}, own{columns};
     for (const bool scans : {isScan(info, channel), !isScan(info, channel)}) // the likelier ones first
         for (const vis::TransferRecipe& recipe : vis::transferLibrary())
             if (recipe.scan == scans && vis::suits(recipe, info.channelRange(channel))) cell(shipped, recipe);

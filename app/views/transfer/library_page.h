@@ -22,6 +22,14 @@ struct LibraryPage {
     std::string name;    ///< under which the function in use is being saved
 };
 
+/// Pictures in rows of a page of this width, pixels: two of them have room beside each other unless they would show
+/// nothing.
+struct LibraryGrid {
+    float side; ///< of a picture
+    int columns;
+};
+LibraryGrid libraryGrid(float room);
+
 /// `function`: the name in Session::transfer of what is edited, a function of the channel's values.
 void drawLibraryPage(ViewContext& context, LibraryPage& page, const std::string& function, int channel);
 

@@ -1,4 +1,5 @@
 #include "app/pane/axes3d.h"
+#include "app/pane/corner_legends.h"
 #include "app/pane/scale_bar.h"
 #include "app/pane/view_parts.h"
 #include "app/queries/scene_query.h"
@@ -29,7 +30,9 @@ struct VolumeCache : ViewCache {
     CameraHand hand;
     LensDrag lens;
     HandleDrag handles;
-    LegendCorner legend = LegendCorner::BottomRight; ///< where it stays while something moves
+    // Where they stay while something moves.
+    LegendPlace legend;
+    TriadCorner triad = TriadCorner::BottomLeft;
 };
 
 /// Of a view of the data in space beside a plane whose times run along an axis.
@@ -124,9 +127,9 @@ public:
     SpacePicture(ViewContext& context, VolumeCache& cache, VolumeView& view, PictureBox picture)
         : context_(context), cache_(cache), view_(view), picture_(picture), session_(context.session),
           shown_(context.decoration), info_(context.source->info()),
-          world_(vis::worldFrame(info_.bounds, session_.stretch)), triad_(em() * 2.6f),
-          triadAt_(picture.min.x + triad_ + em(), max().y - triad_ - em()),
-          hasTriad_(view.showGizmo && picture.size.x > em() * 14 && picture.size.y > em() * 12),
+          world_(vis::worldFrame(info_.bounds, session_.stretch)), triad_(triadRadius(picture.size)),
+          triadAt_(triadMiddle(picture.min, picture.max(), cache.triad, triad_)),
+          hasTriad_(view.showGizmo && picture.size.x > em() * 13 && picture.size.y > em() * 9),
           chain_(context, view, picture) {}
 
     void draw(const std::string& pane) {
@@ -150,7 +153,7 @@ public:
         addPicture(*list_, status.texture, picture_.min, max());
         const SpaceFrame space = spaceFrame(picture_.min, max(), session_.camera, info_.bounds, session_.stretch);
         drawObjects(space);
-        if (!request.moving) cache_.legend = freeCorner(space);
+        if (!request.moving) placeCorners(space);
         const AxisLabels labels = axisLabels(session_, info_);
         if (const auto chain = chain_.draw(*list_)) taken_.push_back(*chain);
         drawLegend();
@@ -208,35 +211,30 @@ private:
         drawHandles(*list_, cache_.handles, space, session_, info_, view_.showLights);
     }
 
-    /// The upper left corner of the legends' room: below what stands at the top of the picture.
-    ImVec2 legendTop(LegendCorner corner) const {
-        const bool bottom = corner == LegendCorner::BottomRight;
-        return {picture_.min.x, picture_.min.y + (bottom ? 0 : em() * 1.8f)};
-    }
+    LegendRoom legendRoom() const { return {picture_.min, max(), em() * 1.8f}; }
 
-    /// The corner in which the legends cover least of the data.
-    LegendCorner freeCorner(const SpaceFrame& space) const {
-        if (!showsLegend()) return LegendCorner::BottomRight;
-        const std::vector<LegendEntry> entries = sceneLegends(session_, info_, view_.drawingLegend);
-        LegendCorner best = LegendCorner::BottomRight;
-        double least = 2;
-        for (const LegendCorner corner : {LegendCorner::BottomRight, LegendCorner::TopRight, LegendCorner::TopLeft}) {
-            const LegendArea area = legendArea(entries, legendTop(corner), max(), corner, context_.figure);
-            const double covered = coveredByBox(space, area.min, area.max);
-            if (covered >= least - 0.02) continue; // rather one where it usually is
-            least = covered;
-            best = corner;
+    /// Legends and gizmo go where the box is not, nor the numbers beside it.
+    void placeCorners(const SpaceFrame& space) {
+        cache_.legend = {};
+        LegendArea legend{max(), max()};
+        if (showsLegend()) {
+            const std::vector<LegendEntry> entries = sceneLegends(session_, info_, view_.drawingLegend);
+            const auto covered = [&](ImVec2 lo, ImVec2 hi) {
+                return coveredByBox(space, {lo.x - em(), lo.y - em()}, {hi.x + em(), hi.y + em()});
+            };
+            cache_.legend = placeLegends(entries, legendRoom(), covered, context_.figure);
+            legend = legendArea(entries, legendRoom(), cache_.legend);
         }
-        return best;
+        cache_.triad = freeTriadCorner(space, triad_, {legend.min, legend.max});
+        triadAt_ = triadMiddle(picture_.min, max(), cache_.triad, triad_);
     }
 
     void drawLegend() {
         if (!showsLegend()) return;
         const std::vector<LegendEntry> entries = sceneLegends(session_, info_, view_.drawingLegend);
         if (view_.multiple && entries.size() == 1 && drawUprightLegend(entries.front())) return;
-        const LegendArea area =
-            drawLegends(*list_, entries, legendTop(cache_.legend), max(), cache_.legend, context_.figure);
-        if (cache_.legend == LegendCorner::BottomRight) legendLeft_ = area.min.x;
+        const LegendArea area = drawLegends(*list_, entries, legendRoom(), cache_.legend);
+        if (cache_.legend.corner == LegendCorner::BottomRight) legendLeft_ = area.min.x;
         taken_.push_back({area.min, area.max});
     }
 
@@ -268,8 +266,10 @@ private:
     }
 
     void drawBar() {
-        const float left = hasTriad_ ? triadAt_.x + triad_ + em() : picture_.min.x + em();
-        const float right = legendLeft_.value_or(max().x);
+        const bool beside = hasTriad_ && cache_.triad == TriadCorner::BottomLeft;
+        const float left = beside ? triadAt_.x + triad_ + em() : picture_.min.x + em();
+        const bool before = hasTriad_ && cache_.triad == TriadCorner::BottomRight;
+        const float right = before ? triadAt_.x - triad_ - em() : legendLeft_.value_or(max().x);
         const float most = std::min(em() * 9, right - left - em());
         const ScaleBar bar =
             scaleBar(session_.camera, world_, session_.stretch, info_.lengthUnit, picture_.size.y, most);
@@ -371,7 +371,7 @@ void drawBeside(ViewContext& context, const std::string& pane, VolumeView& view,
 
 void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& view) {
     if (!context.source) {
-        drawHint("No data", "Open a file, drop one onto the window, or choose built-in data in the File menu.");
+        drawHint("No data", "Open a file, drop one onto the window, or choose example data in the Help menu.");
         return;
     }
     {
