@@ -90,7 +90,7 @@ const std::vector<Shipped>& shipped() {
         {"lens",
          "data history layers scatterMatrix slices statistics timeline transfer volume",
          "T [K] 353.16 .. 356.85; O2 [mol/m³] 0.06 .. 6.22; O2 [mol/m³] = 2.2; |U| [m/s] 0.00 .. 2.76",
-         {{"volume", Cold, 0.0251}, {"volume", Warm, 0.0489}, {"scatterMatrix", Orange, 0}}},
+         {{"volume", Cold, 0.0317}, {"volume", Warm, 0.0489}, {"scatterMatrix", Orange, 0}}},
         {"over_time",
          "data layers profile profile-2 slices timeline transfer volume",
          "H2 [mol/m³] 24.48 .. 33.11",
