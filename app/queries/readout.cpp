@@ -55,7 +55,7 @@ std::optional<double> Readout::value(const std::string& channel) const {
     return std::nullopt;
 }
 
-void updateReadout(ViewContext& context, const std::string& pane, Readout& readout) {
+void updateReadout(ViewContext& context, Readout& readout) {
     if (readout.source != context.numbers) {
         readout.source = context.numbers;
         readout.cache = std::make_shared<volume::BrickCache>(context.numbers, kCacheBytes);
@@ -63,10 +63,9 @@ void updateReadout(ViewContext& context, const std::string& pane, Readout& reado
     }
     const auto values = readout.answers.get(
         context, context.numbers,
-        {.key = "cursor " + pane,
+        {.key = "cross-hair",
          .title = "Values at the cross-hair",
          .quiet = true,
-         .lowPriority = true,
          .duringEdits = true},
         {context.session.cursor, volume::timesAround(context.numbers->info().times, context.session.time)},
         [cache = readout.cache](const auto&, const Readout::Query& query, int, const Progress&) {
@@ -79,6 +78,21 @@ void updateReadout(ViewContext& context, const std::string& pane, Readout& reado
         readout.values = *values;
     else
         readout.values.clear();
+}
+
+namespace {
+
+struct ReadoutCache : ViewCache {
+    Readout readout;
+    bool shared() const override { return true; }
+};
+
+} // namespace
+
+const Readout& sharedReadout(ViewContext& context) {
+    Readout& readout = cacheOf<ReadoutCache>(context, "values at the cross-hair").readout;
+    updateReadout(context, readout);
+    return readout;
 }
 
 namespace {

@@ -31,7 +31,9 @@ struct Readout {
 };
 
 /// Starts reading if the cursor or time is new. Headless, reads at once; throws Error.
-void updateReadout(ViewContext& context, const std::string& pane, Readout& readout);
+void updateReadout(ViewContext& context, Readout& readout);
+/// The updated read-out that all views share: each value is read once.
+const Readout& sharedReadout(ViewContext& context);
 
 /// Table of position, index and values, with a button that copies it; without room for a table (compact) the values in
 /// running lines.

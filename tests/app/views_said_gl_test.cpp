@@ -188,7 +188,7 @@ TEST_F(SaidViews, TheReadOutHasWholeNumbersInAnyWidth) {
             ImGui::SetNextWindowPos({0, 0});
             ImGui::SetNextWindowSize({width, 560});
             ImGui::Begin("readout", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
-            updateReadout(context, "readout", readout);
+            updateReadout(context, readout);
             drawReadout(context, readout);
             ImGui::End();
         };

@@ -27,7 +27,6 @@ struct MeanColors {
 struct ScatterCache : ScatterLayoutCache {
     AsyncStatistics answers;
     BrushDrag drag;
-    Readout readout;
     std::vector<vis::PlotTexture> textures; ///< by pair
     vis::PlotTexture large;                 ///< of the enlarged plot, every bin a pixel
     std::vector<std::uint8_t> pixels;
@@ -207,7 +206,8 @@ bool drawPlot(ViewContext& context, ScatterCache& cache, ScatterMatrixView& view
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, colors.frame);
     drawBrushes(draw, session.selection, frame, channels);
-    const auto x = cache.readout.value(channels.x), y = histogram ? std::nullopt : cache.readout.value(channels.y);
+    const Readout& cursor = sharedReadout(context);
+    const auto x = cursor.value(channels.x), y = histogram ? std::nullopt : cursor.value(channels.y);
     draw.PushClipRect(frame.min, frame.max, true);
     if (x && histogram) drawCrosshair(draw, frame, *x, std::nan(""));
     if (x && y) {
@@ -315,7 +315,6 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
         matrix.ranges.front() = own.range;
         bins = own.count;
     }
-    updateReadout(context, pane, cache.readout);
     BrushedQuery query =
         brushedQuery(context.session, info, matrix.channels, matrix.ranges, bins, matrix.channels.size() > 1);
     query.meanOf = meanChannel(query, info, view.colorBy);

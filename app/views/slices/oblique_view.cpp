@@ -25,7 +25,6 @@ constexpr float kBelow = 8;   ///< em: their height below it
 
 struct ObliqueCache : ViewCache {
     vis::ViewTargetPtr target;
-    Readout readout;
     bool dragging = false;
     int lens = -1; ///< that is dragged instead of the cross-hair
     HandleDrag handles;
@@ -229,11 +228,11 @@ void drawOver(ViewContext& context, ObliqueCache& cache, const std::string& pane
 }
 
 /// Legend, axes in words, and the values at the cross-hair.
-void drawNumbersOf(ViewContext& context, const ObliqueView& view, ObliqueCache& cache, const DrawnContours& lines,
+void drawNumbersOf(ViewContext& context, const ObliqueView& view, const Readout& readout, const DrawnContours& lines,
                    const FlatSlice& flat, int channel) {
     const volume::DatasetInfo& info = context.source->info();
     LegendEntry legend = legendOf(context.session, info, channel);
-    if (const auto value = cache.readout.value(info.channel(channel).name); value && context.decoration.cursor)
+    if (const auto value = readout.value(info.channel(channel).name); value && context.decoration.cursor)
         legend.marker = *value;
     legendBarItem(legend, context.decoration.legend);
     if (context.decoration.legend) drawContourNote(contourNote(info, view.lines, lines));
@@ -243,7 +242,7 @@ void drawNumbersOf(ViewContext& context, const ObliqueView& view, ObliqueCache& 
         ImGui::PopTextWrapPos();
     }
     if (!view.showReadout || !context.decoration.cursor) return;
-    drawReadout(context, cache.readout, readoutHeight(cache.readout) > ImGui::GetContentRegionAvail().y);
+    drawReadout(context, readout, readoutHeight(readout) > ImGui::GetContentRegionAvail().y);
 }
 
 } // namespace
@@ -262,10 +261,10 @@ void drawObliqueView(ViewContext& context, const std::string& pane, ObliqueView&
     if (!(std::min({size.x, size.y, size.z}) > 0))
         return drawHint("No extent", "The data are flat: there is nothing to tilt a plane in.");
     ObliqueCache& cache = cacheOf<ObliqueCache>(context, pane);
-    updateReadout(context, pane, cache.readout);
+    const Readout& readout = sharedReadout(context);
     if (!context.figure) {
         ToolRow tools(context);
-        drawTools(context, tools, view, flatSlice(context.session, info, view.normal), cache.readout, *channel);
+        drawTools(context, tools, view, flatSlice(context.session, info, view.normal), readout, *channel);
     }
     const FlatSlice flat = flatSlice(context.session, info, view.normal);
     const DrawnContours lines = drawnContours(context.session, info, view.lines, *channel);
@@ -283,7 +282,7 @@ void drawObliqueView(ViewContext& context, const std::string& pane, ObliqueView&
     ImGui::SetCursorScreenPos(rooms.numbers);
     ImGui::BeginChild("readout", {rooms.numbersEnd.x - rooms.numbers.x, rooms.numbersEnd.y - rooms.numbers.y}, false,
                       context.figure ? ImGuiWindowFlags_NoScrollbar : ImGuiWindowFlags_None);
-    drawNumbersOf(context, view, cache, lines, flat, *channel);
+    drawNumbersOf(context, view, readout, lines, flat, *channel);
     ImGui::EndChild();
 }
 

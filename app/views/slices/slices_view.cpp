@@ -15,7 +15,6 @@ namespace {
 
 struct SlicesCache : ViewCache {
     SlicePlanes planes;
-    Readout readout;
 };
 
 /// Parameter, contour lines and export, and a copy of the values at the cross-hair.
@@ -63,25 +62,24 @@ void drawStretch(const ViewContext& context) {
 }
 
 /// Legend and read-out in the quarter that the three slices leave.
-void drawNumbers(ViewContext& context, const std::string& pane, const SlicesView& view, SlicesCache& cache, int channel,
+void drawNumbers(ViewContext& context, const SlicesView& view, const Readout& values, int channel,
                  const DrawnContours& lines) {
     const volume::DatasetInfo& info = context.source->info();
     LegendEntry legend = legendOf(context.session, info, channel);
-    updateReadout(context, pane, cache.readout);
-    if (const auto value = cache.readout.value(info.channel(channel).name); value && context.decoration.cursor)
+    if (const auto value = values.value(info.channel(channel).name); value && context.decoration.cursor)
         legend.marker = *value;
     // If the table does not fit below the legend, the values come first, as running text; after the legend, which is
     // whole, in figures and where both have no room, so that values scroll.
     const std::string note = contourNote(info, view.lines, lines);
     const float legends = legendBarHeight() + (note.empty() ? 0 : ImGui::GetTextLineHeightWithSpacing());
     const bool readout = view.showReadout && context.decoration.cursor;
-    const bool compact = readout && legends + readoutHeight(cache.readout) > ImGui::GetContentRegionAvail().y;
+    const bool compact = readout && legends + readoutHeight(values) > ImGui::GetContentRegionAvail().y;
     const bool first = compact && !context.figure && ImGui::GetScrollMaxY() <= 0;
-    if (first) drawReadout(context, cache.readout, true);
+    if (first) drawReadout(context, values, true);
     // What is left out keeps its place: the rest stays where it is.
     legendBarItem(legend, context.decoration.legend);
     if (context.decoration.legend) drawContourNote(note);
-    if (readout && !first) drawReadout(context, cache.readout, compact);
+    if (readout && !first) drawReadout(context, values, compact);
 }
 
 } // namespace
@@ -98,10 +96,11 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
         return;
     }
     SlicesCache& cache = cacheOf<SlicesCache>(context, pane);
+    const Readout& readout = sharedReadout(context);
     std::string name = info.channel(*channel).name;
     if (!context.figure) {
         ToolRow tools(context);
-        chooseShown(context, tools, view, cache.readout, *channel, name);
+        chooseShown(context, tools, view, readout, *channel, name);
     }
     const DrawnContours lines = drawnContours(context.session, info, view.lines, *channel);
     drawStretch(context);
@@ -112,10 +111,10 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
                    em(), context.figure);
     for (int i = 0; i < 3; ++i) drawSlicePlane(context, cache.planes, pane, view, name, lines, i, rooms);
     const ImVec2 size = rooms.numbers.size();
-    if (size.x < em() || size.y < em()) return updateReadout(context, pane, cache.readout);
+    if (size.x < em() || size.y < em()) return;
     ImGui::SetCursorScreenPos(rooms.numbers.min);
     ImGui::BeginChild("readout", size, false, context.figure ? ImGuiWindowFlags_NoScrollbar : ImGuiWindowFlags_None);
-    drawNumbers(context, pane, view, cache, *channel, lines);
+    drawNumbers(context, view, readout, *channel, lines);
     ImGui::EndChild();
 }
 

@@ -15,7 +15,6 @@ namespace {
 struct HistogramCache : ViewCache {
     AsyncStatistics answers;
     BrushDrag drag;
-    Readout readout;
 };
 
 std::string histogramCsv(const volume::Channel& channel, const volume::Histogram& histogram, bool brushed) {
@@ -111,7 +110,7 @@ void drawPlot(ViewContext& context, HistogramCache& cache, const HistogramView& 
         drawBars(draw, frame, all, colors.bars);
         if (result->brushed) drawBars(draw, frame, focus, focusColor(context.session));
     }
-    if (const auto value = cache.readout.value(channel.name)) drawCrosshair(draw, frame, *value, std::nan(""));
+    if (const auto value = sharedReadout(context).value(channel.name)) drawCrosshair(draw, frame, *value, std::nan(""));
     draw.PopClipRect();
     drawBrushes(draw, context.session.selection, frame, channels);
     draw.AddRect(frame.min, frame.max, colors.frame);
@@ -167,7 +166,6 @@ void drawHistogramView(ViewContext& context, const std::string& pane, HistogramV
     const HistogramBins bins = histogramBins(info, *index, paddedRange(info.channelRange(channel), 0.02), view.bins);
     const auto result = cache.answers.get(
         context, "histogram " + pane, brushedQuery(context.session, info, {*index}, {bins.range}, bins.count, false));
-    updateReadout(context, pane, cache.readout);
     if (!context.figure) drawToolbar(context, view, channel, result);
     drawPlot(context, cache, view, channel, bins.range, result.get());
     if (!cache.answers.failure().empty() && !result) ImGui::TextWrapped("%s", cache.answers.failure().c_str());

@@ -17,7 +17,6 @@ constexpr int kFineGradients = 1024;
 using AsyncDerivatives = AsyncQuery<DerivativesAtTime, DerivativeResult>;
 
 struct TransferCache : ViewCache {
-    Readout readout;
     AsyncDerivatives derivatives, everything{{.answers = 1}};
     CurvePage curve;
     RegionPage regions;
@@ -96,7 +95,6 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
         return;
     }
     TransferCache& cache = cacheOf<TransferCache>(context, pane);
-    updateReadout(context, pane, cache.readout);
     drawTransferControls(context, view, {cache.regions, cache.boundaries}, info, info.channel(*channel).name);
     const int now = channelNow().value_or(*channel);
     const volume::Channel shown = info.channel(now);
@@ -105,7 +103,7 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
     vis::TransferFunction& function = transferOf(context.session, name);
     const bool regions = function.kind == vis::TransferKind::Regions;
     if (!regions && !view.boundaries) {
-        drawCurvePage(context, cache.curve, view, function, now, cache.readout.value(shown.name), pane);
+        drawCurvePage(context, cache.curve, view, function, now, sharedReadout(context).value(shown.name), pane);
         return;
     }
     if (cache.shown != name) { // drop the state of the other function
