@@ -36,5 +36,38 @@ TEST(TileOrder, TilesCoverAllFromTheMiddleOutwards) {
     EXPECT_TRUE(tilesFromMiddle({}, 32).empty());
 }
 
+/// The small picture, taken in in two boxes, is dark but for one pixel of each that is a little brighter.
+TEST(TileOrder, TilesWithContrastComeFirst) {
+    constexpr glm::ivec2 kSmall(80, 64), kWhole(160, 128);
+    constexpr glm::ivec2 kWeak(70, 60), kStrong(11, 40);
+    PictureContrast contrast;
+    for (const Tile& box : {Tile{{0, 0}, {32, 64}}, Tile{{32, 0}, {80, 64}}}) {
+        std::vector<float> rgba;
+        for (int y = box.begin.y; y < box.end.y; ++y)
+            for (int x = box.begin.x; x < box.end.x; ++x)
+                for (int part = 0; part < 4; ++part)
+                    rgba.push_back(glm::ivec2(x, y) == kWeak && part == 1 ? 0.0225f
+                                   : glm::ivec2(x, y) == kStrong          ? 0.04f
+                                                                          : 0.01f);
+        contrast.add(kSmall, box, rgba);
+    }
+    const std::vector<Tile> tiles = tilesByContrast({{0, 0}, kWhole}, 16, kWhole, contrast);
+    ASSERT_EQ(tiles.size(), 80u);
+    EXPECT_TRUE(tiles[0].holds(2 * kStrong)) << tiles[0].begin.x << " " << tiles[0].begin.y;
+    EXPECT_TRUE(tiles[1].holds(2 * kWeak)) << tiles[1].begin.x << " " << tiles[1].begin.y;
+    const auto beside = [&](const Tile& tile) { // its pixels' differences may be counted there, too
+        const Tile wide{tile.begin - 4, tile.end + 4};
+        return wide.holds(2 * kStrong) || wide.holds(2 * kWeak);
+    };
+    std::vector<Tile> rest = tilesFromMiddle({{0, 0}, kWhole}, 16), others = tiles;
+    std::erase_if(rest, beside);
+    std::erase_if(others, beside);
+    EXPECT_EQ(others, rest) << "else from the middle";
+    EXPECT_NEAR(contrast.of({2 * kStrong, 2 * kStrong + 1}, kWhole), 0.1, 1e-6);
+    EXPECT_NEAR(contrast.of({2 * kWeak, 2 * kWeak + 1}, kWhole), 0.05, 1e-6);
+    contrast.clear();
+    EXPECT_EQ(contrast.of({{0, 0}, kWhole}, kWhole), 0);
+}
+
 } // namespace
 } // namespace tessera::vis

@@ -1,6 +1,7 @@
 #include "vis/demand/tile_order.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace tessera::vis {
 
@@ -14,6 +15,12 @@ std::vector<Tile> tilesFromMiddle(const Tile& whole, int edge) {
         return d.x * d.x + d.y * d.y;
     };
     std::ranges::stable_sort(tiles, {}, away);
+    return tiles;
+}
+
+std::vector<Tile> tilesByContrast(const Tile& whole, int edge, glm::ivec2 size, const PictureContrast& contrast) {
+    std::vector<Tile> tiles = tilesFromMiddle(whole, edge);
+    std::ranges::stable_sort(tiles, std::ranges::greater(), [&](const Tile& tile) { return contrast.of(tile, size); });
     return tiles;
 }
 
