@@ -6,7 +6,7 @@
 #include <map>
 #include <thread>
 
-/// How a picture refines at rest: reduced, then the whole at half resolution, then full resolution from the middle.
+/// How a picture refines at rest: reduced, then the whole at half resolution, then full resolution.
 namespace tessera::vis {
 namespace {
 
@@ -113,6 +113,48 @@ TEST_F(Refinement, EachPassGrowsFromTheMiddle) {
         for (std::size_t i = 1; i < far.size(); ++i) EXPECT_GT(far[i], far[i - 1] - 45) << full << " " << i;
         EXPECT_GT(far.back(), far.front()) << full;
     }
+}
+
+/// Mean difference of neighbouring pixels along rows within a box, of 255.
+double contrastIn(const std::vector<std::uint8_t>& pixels, const Tile& box, int width) {
+    double sum = 0;
+    for (int y = box.begin.y; y < box.end.y; ++y)
+        for (int x = box.begin.x + 1; x < box.end.x; ++x)
+            for (int part = 0; part < 3; ++part) {
+                const std::size_t at = std::size_t(y * width + x) * 4 + std::size_t(part);
+                sum += std::abs(int(pixels[at]) - int(pixels[at - 4]));
+            }
+    return sum / std::max(box.area(), 1.0);
+}
+
+/// The processor draws first where the picture at half resolution lacks most: here at the left, not in the middle.
+TEST_F(Refinement, TheProcessorBeginsWhereNeighboursDiffer) {
+    const auto stripes = [](glm::dvec3 p) { return p.x < 6 ? 0.5 + 0.5 * std::sin(3 * p.x) : 0.6; };
+    renderer.setSource(std::make_shared<FunctionSource>(volume::LatticeKind::CC, glm::ivec3(41, 27, 9), glm::dvec3(1),
+                                                        std::vector<FunctionSource::Channel>{{"v", stripes}}));
+    target = renderer.makeTarget();
+    Scene shown = scene(Engine::Processor);
+    shown.camera = test::frontCamera(1.1);
+    std::vector<std::uint8_t> last;
+    std::vector<Tile> boxes; // of what changes, once half resolution is complete
+    ASSERT_TRUE(frames(shown, [&](const FrameStatus& status) {
+        std::vector<std::uint8_t> now = pixels();
+        if (target->state.half() && target->state.tilesDone() > 0 && !last.empty() && last != now) {
+            Tile changed{kSize, {0, 0}};
+            for (int y = 0; y < kSize.y; ++y)
+                for (int x = 0; x < kSize.x; ++x)
+                    if (!std::equal(&now[std::size_t(y * kSize.x + x) * 4], &now[std::size_t(y * kSize.x + x) * 4 + 4],
+                                    &last[std::size_t(y * kSize.x + x) * 4]))
+                        changed = united(changed, {{x, y}, {x + 1, y + 1}});
+            boxes.push_back(changed);
+        }
+        last = std::move(now);
+        return status.complete;
+    }));
+    ASSERT_GE(boxes.size(), 4u);
+    const double first = contrastIn(last, boxes.front(), kSize.x), end = contrastIn(last, boxes.back(), kSize.x);
+    EXPECT_GT(first, 3 * end + 1) << boxes.front().begin.x;
+    EXPECT_LT(boxes.front().end.x, kSize.x / 2);
 }
 
 /// While something moves only the reduced picture is drawn, and a quick picture needs no half resolution.

@@ -74,9 +74,11 @@ int Residency::textureLevel() const {
 
 void Residency::add(double priority, LoadRequest request) {
     request.exact = options_.exactTextures;
-    jobs_.add(priority, [request = std::move(request), exchange = exchange_](std::stop_token stop) {
-        loadTexels(*exchange, request, stop);
-    });
+    jobs_.add(priority,
+              [request = std::move(request), exchange = exchange_, arrived = options_.arrived](std::stop_token stop) {
+                  loadTexels(*exchange, request, stop);
+                  if (arrived) arrived();
+              });
 }
 
 int Residency::bricksOfChannel() const {

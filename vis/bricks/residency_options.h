@@ -3,6 +3,7 @@
 #include "vis/gl/driver.h"
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 
 /// Memory limits of the renderer, and what is in use.
@@ -26,6 +27,8 @@ struct RendererOptions {
     double patience = 250;      ///< how long the former picture stays while a program is compiled, milliseconds
     bool openGl = true;         ///< else there is none: the processor draws everything
     bool exactTextures = false; ///< store bricks as 32-bit float instead of 16-bit, for comparison with the reference
+    /// Called from any thread when samples are there that were read in the background: another frame can show them.
+    std::function<void()> arrived = {};
     /// Simulated memory of the driver for data textures in bytes; larger allocations are refused. For tests.
     std::size_t driverMemory = ~std::size_t(0);
     std::optional<Driver> driver = {}; ///< replaces the detected driver profile, for tests

@@ -5,9 +5,11 @@
 #include "vis/optics/shade.h"
 #include "vis/packed/packet_blend.h"
 #include "vis/packet/cast.h"
+#include "volume/base/background.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>
+#include <exception>
 
 namespace tessera::vis::packet {
 
@@ -128,6 +130,17 @@ SharedVolume PacketVolumes::get(const PacketChannel& channel) {
     return use(volume);
 }
 
+bool PacketVolumes::has(const PacketChannel& channel) const {
+    const volume::TimePair& time = channel.time;
+    if (time.between()) return has(channel.at(time.earlier)) && has(channel.at(time.later));
+    const auto found = std::ranges::find_if(held_, [&](const Held& each) { return each.channel == channel; });
+    return found != held_.end() && (!found->volume.expired() || (found->coming.valid() && isReady(found->coming)));
+}
+
+bool PacketVolumes::reading() const {
+    return std::ranges::any_of(held_, [](const Held& each) { return each.coming.valid() && !isReady(each.coming); });
+}
+
 bool PacketVolumes::request(const PacketChannel& channel) {
     if (channel.time.between()) {
         const bool earlier = request(channel.at(channel.time.earlier)), later = request(channel.at(channel.time.later));
@@ -136,9 +149,18 @@ bool PacketVolumes::request(const PacketChannel& channel) {
     Held& own = entry(channel);
     if (!own.volume.expired()) return true;
     if (own.coming.valid()) return isReady(own.coming);
-    own.coming = std::async(std::launch::async, [source = source_, channel]() -> SharedVolume {
-        return std::make_shared<const PacketVolume>(readPacketVolume(*source, channel));
-    });
+    std::promise<SharedVolume> made;
+    own.coming = made.get_future();
+    own.reader =
+        std::async(std::launch::async, [source = source_, channel, how = how_, made = std::move(made)]() mutable {
+            if (!how.awaited) workInBackground();
+            try {
+                made.set_value(std::make_shared<const PacketVolume>(readPacketVolume(*source, channel)));
+            } catch (...) {
+                made.set_exception(std::current_exception());
+            }
+            if (how.arrived) how.arrived();
+        });
     return false;
 }
 
@@ -158,6 +180,12 @@ bool PacketRenderer::setVolumes(std::shared_ptr<PacketVolumes> volumes) {
 void PacketRenderer::release() {
     held_.clear();
     scene_.reset();
+}
+
+bool PacketRenderer::has(const Scene& scene) const {
+    return (scene_ && sameTables(scene, prepared_)) ||
+           std::ranges::all_of(packetChannels(scene, source().info()),
+                               [&](const PacketChannel& channel) { return volumes_->has(channel); });
 }
 
 bool PacketRenderer::request(const Scene& scene) {

@@ -3,6 +3,7 @@
 #include "vis/packet/packet_scene.h"
 
 #include <chrono>
+#include <functional>
 #include <future>
 #include <optional>
 
@@ -39,19 +40,30 @@ struct PacketGeometry {
     std::vector<float> distance = {}, color = {};
 };
 
+/// How samples are read in the background.
+struct PacketReading {
+    bool awaited = true;                ///< nothing else is shown until they are there
+    std::function<void()> arrived = {}; ///< called from another thread when they are
+};
+
 /// The samples that renderers of one data set share: those that one of them holds, and the last ones used as far as
 /// they fit a limit. Not for several threads at once.
 class PacketVolumes {
 public:
-    explicit PacketVolumes(std::shared_ptr<const volume::BrickSource> source) : source_(std::move(source)) {}
+    explicit PacketVolumes(std::shared_ptr<const volume::BrickSource> source, PacketReading how = {})
+        : source_(std::move(source)), how_(std::move(how)) {}
     /// Keeps the last ones used up to so many bytes.
     void keep(std::size_t bytes);
     const std::shared_ptr<const volume::BrickSource>& source() const { return source_; }
     /// The samples of a channel, between two stored times blended anew unless somebody holds them; waits until they are
     /// read. Throws Error when the source does.
     SharedVolume get(const PacketChannel& channel);
-    /// Whether get() would not wait; begins to read them in the background otherwise.
+    /// Whether get() would not wait.
+    bool has(const PacketChannel& channel) const;
+    /// The same; begins to read them in the background otherwise.
     bool request(const PacketChannel& channel);
+    /// Whether any are being read in the background.
+    bool reading() const;
 
 private:
     struct Held {
@@ -59,6 +71,7 @@ private:
         std::weak_ptr<const PacketVolume> volume;
         SharedVolume earlier = {}, later = {}; ///< what it was blended from
         std::future<SharedVolume> coming;      ///< valid until what is being read is taken
+        std::future<void> reader = {};         ///< the thread that reads it
         std::uint64_t asked = 0;               ///< value of asked_ when it was last asked for
     };
     Held& entry(const PacketChannel& channel);
@@ -66,6 +79,7 @@ private:
     SharedVolume use(const SharedVolume& volume);
 
     std::shared_ptr<const volume::BrickSource> source_;
+    PacketReading how_;
     std::vector<Held> held_;
     std::uint64_t asked_ = 0;
     std::vector<SharedVolume> recent_; ///< the last one used at the end
@@ -84,7 +98,9 @@ public:
     bool setVolumes(std::shared_ptr<PacketVolumes> volumes);
     /// Lets go of samples and tables.
     void release();
-    /// Whether prepare() need not wait for samples; begins to read them in the background otherwise.
+    /// Whether prepare() need not wait for samples.
+    bool has(const Scene& scene) const;
+    /// The same; begins to read them in the background otherwise.
     bool request(const Scene& scene);
     /// Begins to read the samples of a scene that may come next; whether they are there.
     bool prefetch(const Scene& scene);
@@ -103,6 +119,7 @@ public:
     /// The whole picture with all passes, lit as the scene says; `surroundings` of Environment::Picture.
     PacketPicture render(const Scene& scene, glm::ivec2 size, const CubeMap* surroundings = nullptr);
 
+    const volume::BrickSource& source() const { return *volumes_->source(); }
     InstructionSet instructions() const { return with_; }
     std::size_t volumes() const { return held_.size(); }    ///< that the last scene draws
     std::size_t bytes() const;                              ///< of samples
@@ -110,8 +127,6 @@ public:
     void countSamples(bool yes) { counts_ = yes, samples_ = 0; }
 
 private:
-    const volume::BrickSource& source() const { return *volumes_->source(); }
-
     InstructionSet with_;
     std::shared_ptr<PacketVolumes> volumes_;
     std::vector<SharedVolume> held_; ///< of the last scene

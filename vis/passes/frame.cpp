@@ -165,7 +165,10 @@ void RenderStages::drawHalf(ViewTarget& target, const RenderCall& call, const Ra
                             Clock::time_point start) {
     PictureState& state = target.state;
     const RayBuffer& half = target.buffers.half;
-    if (state.halfTilesDone() == 0) target.pace().beginPass(false, call.request.budgetMs);
+    if (state.halfTilesDone() == 0) {
+        target.pace().beginPass(false, call.request.budgetMs);
+        target.packets.contrast.clear();
+    }
     const std::vector<Tile> tiles = tilesFromMiddle(state.stale(), 2 * target.pace().tileEdge());
     const Tile all = reducedTile(state.stale(), half.used, target.buffers.size);
     setUniforms(programs, target, call, 1);
@@ -183,6 +186,10 @@ void RenderStages::drawHalf(ViewTarget& target, const RenderCall& call, const Ra
                            .parts = programs.packets ? nullptr : target.tables.covered(call, half.used),
                            .stepFactor = programs.packets ? 1 : target.demand.cell()};
         target.pace().timeTile([&] { rays(programs, call, half, what); }, small.area(), true);
+        if (programs.packets) {
+            const packet::PacketPicture& drawn = programs.packets->picture;
+            target.packets.contrast.add(drawn.size, {drawn.box.begin, drawn.box.end}, drawn.rgba);
+        }
         present(target, call.scene, half, tiles[i]);
         glBindTextureUnit(0, call.plan.fields[0].texture);
         state.drewHalfTile();
@@ -233,13 +240,16 @@ void RenderStages::drawTile(ViewTarget& target, const RenderCall& call, const Ra
 }
 
 /// Draws the stale area tile by tile within the budget: a first pass, then passes with jittered rays for the
-/// supersampled frame.
+/// supersampled frame. After a picture at half resolution by the processor its contrast gives the order.
 void RenderStages::drawTiles(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
                              Clock::time_point start, bool lit) {
     const FrameRequest& request = call.request;
     PictureState& state = target.state;
     if (state.tilesDone() == 0) target.pace().beginPass(request.wait, request.budgetMs);
-    const std::vector<Tile> tiles = tilesFromMiddle(state.stale(), target.pace().tileEdge());
+    const std::vector<Tile> tiles =
+        programs.packets && state.half()
+            ? tilesByContrast(state.stale(), target.pace().tileEdge(), target.buffers.size, target.packets.contrast)
+            : tilesFromMiddle(state.stale(), target.pace().tileEdge());
     setUniforms(programs, target, call, 1);
     const int perPass = int(tiles.size()), wanted = perPass * raysPerPixel(call.scene);
     for (bool first = true; state.tilesDone() < wanted; first = false) {
@@ -261,7 +271,7 @@ void RenderStages::drawTiles(ViewTarget& target, const RenderCall& call, const R
 }
 
 /// Draws a reduced picture if the whole does not fit the budget; at rest then the whole at half resolution, and tiles
-/// at full resolution from the middle outwards. `lit`: its light is final.
+/// at full resolution. `lit`: its light is final.
 void RenderStages::drawWithin(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
                               Clock::time_point start, bool lit) {
     const FrameRequest& request = call.request;

@@ -33,6 +33,7 @@ struct FrameStatus {
     bool current = false; ///< the texture shows this scene, possibly at reduced resolution
     bool complete =
         false; ///< converged: full resolution and all bricks at the wanted level; nothing to do until the scene changes
+    bool waits = false;     ///< nothing can be drawn until samples or a program are there
     bool compiling = false; ///< the program is being compiled: the processor draws, or what was shown stays
     EngineUse engine = {};
     int bricksMissing = 0;   ///< bricks drawn coarser than wanted

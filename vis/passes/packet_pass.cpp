@@ -2,12 +2,26 @@
 
 #include "vis/packet/packet_refusal.h"
 #include "volume/base/error.h"
+#include "volume/bricks/source_at_level.h"
 #include "volume/field/time_pair.h"
 
 #include <algorithm>
 
 /// Pictures whose rays the processor casts: the same buffers, tiles and passes as those of OpenGL, which presents them.
 namespace tessera::vis {
+
+/// Makes what views share of the source's samples.
+void RenderStages::setVolumes() {
+    constexpr double kSoonRead = double(1 << 21), kCoarse = double(1 << 20); // samples of a channel
+    volumes = coarseVolumes = nullptr;
+    if (!source) return;
+    const bool soon = double(source->grid().lattice.count()) <= kSoonRead;
+    const int level = soon ? 0 : source->grid().levelWithin(kCoarse);
+    packet::PacketReading how{.awaited = true, .arrived = options.arrived};
+    if (level > 0) coarseVolumes = std::make_shared<packet::PacketVolumes>(volume::sourceAtLevel(source, level), how);
+    how.awaited = !coarseVolumes;
+    volumes = std::make_shared<packet::PacketVolumes>(source, how);
+}
 
 /// Why OpenGL must cast the rays, in words for users; empty: the processor can.
 std::string RenderStages::refusalOfPackets(const ViewTarget& target, const RenderCall& call) const {
@@ -24,12 +38,17 @@ bool RenderStages::chooseEngine(ViewTarget& target, const RenderCall& call, Fram
     const Engine asked = call.scene.render.engine;
     const bool wanted =
         asked == Engine::Processor || (asked == Engine::Automatic && options.packets == Packets::Always);
-    if (target.packets.renderer.setVolumes(volumes)) {
-        target.packets.failed = false;
-        ++target.packets.revision;
+    PacketView& packets = target.packets;
+    packets.coarse.setVolumes(coarseVolumes);
+    if (packets.full.setVolumes(volumes)) {
+        packets.failed = false;
+        packets.lackingSince.reset();
+        ++packets.revision;
     }
     const std::size_t limit = std::min(options.memoryBudget, std::size_t(call.scene.render.limits.brickMemory) << 20);
-    volumes->keep(wanted || target.meanwhile ? limit / 2 : 0);
+    const std::size_t kept = wanted || target.meanwhile ? limit / 2 : 0;
+    volumes->keep(kept);
+    if (coarseVolumes) coarseVolumes->keep(kept / 8);
     const bool rays = !call.plan.layers.empty(); // slices and meshes alone are quickly drawn
     const bool possible = wanted && rays && !options.countSamples;
     EngineUse& use = status.engine;
@@ -37,37 +56,66 @@ bool RenderStages::chooseEngine(ViewTarget& target, const RenderCall& call, Fram
     if (asked == Engine::Automatic && call.info().remote && use.refusal.empty())
         use.refusal = "data on another machine as they come";
     target.byProcessor = use.byProcessor = possible && use.refusal.empty();
-    if (use.byProcessor)
-        use.instructions = packet::kInstructionSetNames[std::size_t(target.packets.renderer.instructions())];
+    if (use.byProcessor) use.instructions = packet::kInstructionSetNames[std::size_t(packets.full.instructions())];
     return use.byProcessor;
+}
+
+/// Lets the view be drawn from coarse samples, or from all.
+void RenderStages::useSamples(ViewTarget& target, bool coarse) {
+    if (target.packets.isCoarse == coarse) return;
+    target.packets.isCoarse = coarse;
+    ++target.packets.revision;
+    target.redraw(target.buffers.everything());
+}
+
+/// Chooses the samples that a call is drawn from, coarse ones until all are read; false if neither are there yet.
+bool RenderStages::findSamples(ViewTarget& target, const RenderCall& call) {
+    PacketView& packets = target.packets;
+    bool all = call.request.wait || packets.full.has(call.scene), some = false;
+    if (!all) {
+        if (!packets.lackingSince) packets.lackingSince = Clock::now();
+        const bool brief = target.state.presented() && !call.request.moving &&
+                           millisecondsSince(*packets.lackingSince) < options.patience;
+        if (coarseVolumes && !brief) some = packets.coarse.request(call.scene);
+        // Reading all of large data leaves little to others, so their picture is drawn first; and who drags through
+        // time must not start more reading than memory can hold.
+        const bool drawn =
+            some && packets.isCoarse && (target.state.full() || (call.request.moving && target.state.reduced()));
+        if (!coarseVolumes || ((drawn || brief) && !volumes->reading())) all = packets.full.request(call.scene);
+    }
+    if (all) packets.lackingSince.reset();
+    if (all || some) useSamples(target, !all);
+    return all || some;
 }
 
 /// Draws a call, or keeps the former picture while its samples are being read; false if they cannot be read.
 bool RenderStages::drawByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start,
                                  FrameStatus& status) {
-    packet::PacketRenderer& renderer = target.packets.renderer;
+    PacketView& packets = target.packets;
     try {
-        const bool here = call.request.wait || renderer.request(call.scene);
-        if (here) renderer.prepare(call.scene);
+        const bool here = findSamples(target, call);
+        if (here) packets.renderer().prepare(call.scene);
         show(target, call.scene, 0);
         target.shown.compiling = false;
-        status.complete = here;
+        status.complete = here && !packets.isCoarse;
         if (here) {
             refineByPackets(target, call, start);
-            if (!call.request.wait) prefetchTime(target.packets, call);
+            if (!call.request.wait && !packets.isCoarse) prefetchTime(packets, call);
         } else {
+            status.waits = true;
             postpone(target, call.scene);
         }
     } catch (const Error& error) {
         tools.messages.push_back(error.what());
-        target.packets.failed = true;
+        packets.failed = true;
         target.byProcessor = false;
         status.engine = {.byProcessor = false, .refusal = refusalOfPackets(target, call)};
         return false;
     }
-    const glm::ivec3 size = call.grid().lattice.size;
-    status.samples = renderer.volumes() * std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+    const packet::PacketRenderer& renderer = packets.renderer();
+    status.samples = renderer.volumes() * renderer.source().grid().lattice.count();
     status.bytes = renderer.bytes();
+    if (packets.isCoarse) status.bricksMissing = int(call.grid().brickCount());
     return true;
 }
 
@@ -79,10 +127,12 @@ bool RenderStages::drawMeanwhile(ViewTarget& target, const RenderCall& call, Clo
     const bool may = options.packets == Packets::WhileCompiling && call.scene.render.engine == Engine::Automatic &&
                      !options.countSamples && !call.info().remote;
     if (!may || millisecondsSince(*since) < options.patience || !refusalOfPackets(target, call).empty()) return false;
-    packet::PacketRenderer& renderer = target.packets.renderer;
+    // It draws too briefly to read all samples of large data.
+    packet::PacketRenderer& renderer = coarseVolumes ? target.packets.coarse : target.packets.full;
     try {
         if (!renderer.request(call.scene)) return false;
         renderer.prepare(call.scene);
+        useSamples(target, coarseVolumes != nullptr);
         if (!target.meanwhile) target.redraw(target.buffers.everything());
         target.meanwhile = target.byProcessor = true;
         refineByPackets(target, call, start);
@@ -99,7 +149,7 @@ void RenderStages::endMeanwhile(ViewTarget& target) {
     target.shown.compilingSince.reset();
     if (!target.meanwhile) return;
     target.meanwhile = false;
-    target.packets.renderer.release();
+    target.packets.release();
     target.shown.resident = residency.revision();
     target.redraw(target.buffers.everything());
 }
@@ -115,7 +165,7 @@ void RenderStages::prefetchTime(PacketView& packets, const RenderCall& call) {
     if (packets.step == 0 || next < 0 || next >= int(times.size())) return;
     Scene coming = call.scene;
     coming.time = times[std::size_t(next)];
-    packets.renderer.prefetch(coming);
+    packets.full.prefetch(coming);
 }
 
 void RenderStages::refineByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start) {
@@ -124,7 +174,7 @@ void RenderStages::refineByPackets(ViewTarget& target, const RenderCall& call, C
     if (state.full() ? state.converged() || moving : state.reduced() && moving) return;
     if (!call.request.wait && !presentable(target, call.scene)) return postpone(target, call.scene);
     sayLimits(call, {});
-    packet::PacketRenderer& renderer = target.packets.renderer;
+    packet::PacketRenderer& renderer = target.packets.renderer();
     const LightBaker::Rows rows = [&](const LightGrid& grid, int begin, int end, Medium<float>& out) {
         renderer.fillMedium(call.scene, grid, begin, end, out);
     };
@@ -167,7 +217,7 @@ void RenderStages::castPackets(const RayPrograms& programs, const RenderCall& ca
     picture.begin(what.size, {tile.begin, tile.end}, what.pass == 0);
     packets.geometry.peels = 0;
     if (programs.geometry) readGeometry(*programs.geometry, at, extent, packets.geometry);
-    packets.renderer.draw(call.scene, what.pass, 1, what.stepFactor, picture, packets.geometry);
+    packets.renderer().draw(call.scene, what.pass, 1, what.stepFactor, picture, packets.geometry);
     const auto store = [&](const Texture& texture, GLenum parts, const std::vector<float>& values) {
         glTextureSubImage2D(texture.name(), 0, at.x, at.y, extent.x, extent.y, parts, GL_FLOAT, values.data());
     };

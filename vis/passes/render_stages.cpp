@@ -95,6 +95,7 @@ bool RenderStages::draw(ViewTarget& target, const RenderCall& call, Clock::time_
             target.hidden.start(tools, call, target.buffers, target.state, target.shown.number);
     } else if (!target.state.full()) {
         const bool comes = !call.plan.empty() && !status.complete;
+        status.waits = comes;
         if (comes && !target.state.presented() && !call.request.wait)
             blank(target, call.scene);
         else if (!comes || !target.state.presented())

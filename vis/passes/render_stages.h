@@ -35,7 +35,8 @@ struct RenderStages {
     RendererOptions options;
     Residency residency;
     std::shared_ptr<const volume::BrickSource> source;
-    std::shared_ptr<packet::PacketVolumes> volumes; ///< samples of `source` for the processor
+    /// Samples of `source` for the processor, and those of a coarse level; null: it reads all as soon as these.
+    std::shared_ptr<packet::PacketVolumes> volumes, coarseVolumes;
     const volume::BrickSource* formerSource =
         nullptr; ///< the source that `source` replaced with shared samples: its pictures stay until new ones are drawn
     RenderTools tools;
@@ -86,8 +87,11 @@ struct RenderStages {
     void accumulate(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const RayTile& what);
 
     // packet_pass.cpp
+    void setVolumes();
     std::string refusalOfPackets(const ViewTarget& target, const RenderCall& call) const;
     bool chooseEngine(ViewTarget& target, const RenderCall& call, FrameStatus& status);
+    void useSamples(ViewTarget& target, bool coarse);
+    bool findSamples(ViewTarget& target, const RenderCall& call);
     bool drawByPackets(ViewTarget& target, const RenderCall& call, Clock::time_point start, FrameStatus& status);
     bool drawMeanwhile(ViewTarget& target, const RenderCall& call, Clock::time_point start);
     void endMeanwhile(ViewTarget& target);

@@ -72,7 +72,7 @@ void Renderer::setSource(std::shared_ptr<const volume::BrickSource> source, Same
     if (source == stages_->source) return;
     stages_->formerSource = same.channels > 0 && same.times > 0 ? stages_->source.get() : nullptr;
     stages_->source = source;
-    stages_->volumes = source ? std::make_shared<packet::PacketVolumes>(source) : nullptr;
+    stages_->setVolumes();
     stages_->residency.setSource(std::move(source), same);
 }
 
@@ -147,7 +147,9 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     status.complete = status.complete && target.state.converged();
     status.current = status.complete || target.state.changed().empty();
     status.compiling = target.shown.compiling;
-    if (target.meanwhile) status.engine = byProcessor(target.packets.renderer.instructions());
+    const bool drawn = target.state.converged() || (status.compiling && !target.meanwhile);
+    status.waits = !status.complete && (status.waits || drawn);
+    if (target.meanwhile) status.engine = byProcessor(target.packets.full.instructions());
     if (request.wait) target.pace().collect(true);
     status.milliseconds = target.pace().pass();
     if (hasVolumes(scene)) stages_->engine = status.engine;

@@ -1,0 +1,158 @@
+#include "tests/vis/function_source.h"
+#include "tests/vis/gl_fixture.h"
+
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+/// The processor draws large data from coarse samples until it has read all.
+namespace tessera::vis {
+namespace {
+
+class CoarseSamplesGl : public test::GlTest {};
+
+constexpr glm::ivec2 kSmallPicture(64, 48);
+
+/// Waves in the middle of a box of more than 2^21 samples, whose samples at full resolution can be held back.
+class HeldBack : public FunctionSource {
+public:
+    explicit HeldBack(volume::LatticeKind kind)
+        : FunctionSource(kind, kind == volume::LatticeKind::CC ? glm::ivec3(130, 120, 140) : glm::ivec3(150, 140, 150),
+                         glm::dvec3(1), {{"v", value}}, 32) {}
+    ~HeldBack() override = default;
+
+    volume::BrickSamples read(const volume::BrickKey& key) const override {
+        while (held_ && key.level == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        if (key.level == 0) ++fine_;
+        return FunctionSource::read(key);
+    }
+    void hold(bool yes) { held_ = yes; }
+    std::size_t fine() const { return fine_; }
+
+private:
+    static std::optional<double> value(glm::dvec3 p) {
+        return 0.3 + 0.25 * std::sin(0.06 * p.x) * std::cos(0.05 * p.y) + 0.4 * p.z / 150;
+    }
+    std::atomic<bool> held_ = false;
+    mutable std::atomic<std::size_t> fine_ = 0;
+};
+
+/// A renderer of such data; what is read in the background at its end must not be held back.
+struct CoarseDrawing {
+    std::shared_ptr<HeldBack> source;
+    std::atomic<int> arrivals = 0; ///< of samples read in the background
+    Renderer renderer;
+    ViewTargetPtr target = renderer.makeTarget();
+    Scene scene;
+
+    CoarseDrawing(volume::LatticeKind kind, double patience)
+        : source(std::make_shared<HeldBack>(kind)),
+          renderer({.packets = Packets::Always, .patience = patience, .exactTextures = true, .arrived = [this] {
+                        ++arrivals;
+                    }}) {
+        renderer.setSource(source);
+        scene.layers = {{.name = "waves", .technique = VolumeLayer{.channel = "v", .shaded = false, .density = 2}}};
+        scene.transfer["v"].opacity = {{0, 0}, {1, 0.2f}};
+    }
+    ~CoarseDrawing() { source->hold(false); }
+
+    FrameStatus frame(bool moving = false) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        return renderer.render(*target, scene, {.size = kSmallPicture, .moving = moving, .budgetMs = 4000});
+    }
+    /// Frames until one is as wanted.
+    template <class Wanted> FrameStatus until(const Wanted& wanted) {
+        FrameStatus status;
+        for (int i = 0; i < 20000; ++i)
+            if (status = frame(); wanted(status)) return status;
+        ADD_FAILURE() << "never";
+        return status;
+    }
+    std::vector<glm::vec4> shown() { return renderer.readLinear(*target); }
+    std::vector<glm::vec4> waited() {
+        const ViewTargetPtr other = renderer.makeTarget();
+        test::renderAll(renderer, *other, scene, kSmallPicture);
+        return renderer.readLinear(*other);
+    }
+};
+
+double rmsApart(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += double(glm::dot(a[i] - b[i], a[i] - b[i]));
+    return std::sqrt(sum / double(a.size() * 4));
+}
+
+constexpr auto isCurrent = [](const FrameStatus& status) { return status.current; };
+constexpr auto isComplete = [](const FrameStatus& status) { return status.complete; };
+
+TEST_F(CoarseSamplesGl, AreDrawnUntilAllAreRead) {
+    for (const volume::LatticeKind kind : {volume::LatticeKind::CC, volume::LatticeKind::BCC}) {
+        CoarseDrawing drawing(kind, 0);
+        drawing.source->hold(true);
+        drawing.until(isCurrent);
+        FrameStatus status;
+        for (int i = 0; i < 20; ++i) { // as far as it is refined without the others
+            status = drawing.frame();
+            EXPECT_FALSE(status.complete);
+        }
+        EXPECT_TRUE(status.waits) << "no need to draw on until they are here";
+        EXPECT_EQ(drawing.source->fine(), 0u);
+        EXPECT_EQ(drawing.arrivals, 1);
+        EXPECT_TRUE(status.engine.byProcessor);
+        EXPECT_EQ(status.bricksMissing, int(drawing.source->grid().brickCount())) << "it says that it is coarse";
+        EXPECT_LT(status.samples, drawing.source->grid().lattice.count() / 7);
+        const std::vector<glm::vec4> coarse = drawing.shown();
+        drawing.scene.camera.distance *= 0.8f; // what moves meanwhile is drawn, too
+        drawing.until(isCurrent);
+        for (int i = 0; i < 20; ++i) drawing.frame();
+        EXPECT_GT(rmsApart(coarse, drawing.shown()), 0.02);
+        drawing.source->hold(false);
+        status = drawing.until(isComplete);
+        EXPECT_EQ(status.bricksMissing, 0);
+        EXPECT_FALSE(status.waits);
+        for (int i = 0; i < 20000 && drawing.arrivals < 2; ++i) drawing.frame();
+        EXPECT_EQ(drawing.arrivals, 2);
+        EXPECT_EQ(status.samples, drawing.source->grid().lattice.count());
+        EXPECT_LT(rmsApart(drawing.shown(), drawing.waited()), 1e-6);
+        drawing.scene.camera.distance /= 0.8f;
+        EXPECT_EQ(drawing.frame().bricksMissing, 0) << "all stay";
+        drawing.until(isComplete);
+        const double apart = rmsApart(coarse, drawing.shown()),
+                     all = rmsApart(drawing.shown(), {drawing.shown().size(), glm::vec4(0)});
+        EXPECT_LT(apart, 0.01 * all) << int(kind) << ": samples at their places";
+        EXPECT_GT(apart, 1e-5);
+        EXPECT_TRUE(drawing.renderer.takeMessages().empty());
+    }
+}
+
+TEST_F(CoarseSamplesGl, OpenGlSaysWhenSamplesAreThere) {
+    CoarseDrawing drawing(volume::LatticeKind::CC, 0);
+    drawing.scene.render.engine = Engine::OpenGl;
+    drawing.until(isComplete);
+    EXPECT_GT(drawing.arrivals, 0);
+}
+
+/// A picture of all samples stays for a while if others are needed, unless something moves.
+TEST_F(CoarseSamplesGl, DoNotReplaceAPictureAtOnce) {
+    CoarseDrawing drawing(volume::LatticeKind::CC, 1e9);
+    drawing.until(isComplete);
+    const std::vector<glm::vec4> before = drawing.shown();
+    drawing.source->hold(true);
+    drawing.scene.render.filter = Filter::Average; // other samples
+    drawing.scene.camera.distance *= 0.8f;
+    for (int i = 0; i < 50; ++i) {
+        const FrameStatus status = drawing.frame();
+        EXPECT_FALSE(status.complete);
+        EXPECT_EQ(status.bricksMissing, 0);
+    }
+    EXPECT_EQ(test::maxDifference(before, drawing.shown()), 0);
+    bool coarse = false;
+    for (int i = 0; i < 20000 && !coarse; ++i) coarse = drawing.frame(true).bricksMissing > 0;
+    EXPECT_TRUE(coarse);
+    drawing.source->hold(false);
+    drawing.until(isComplete);
+    EXPECT_LT(rmsApart(drawing.shown(), drawing.waited()), 1e-6);
+}
+
+} // namespace
+} // namespace tessera::vis
