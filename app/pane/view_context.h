@@ -27,6 +27,8 @@ struct ViewCache {
     virtual ~ViewCache() = default;
     /// Renderers of its own beside the window's.
     virtual int renderers() const { return 0; }
+    /// Whether it belongs to all views, not to a pane.
+    virtual bool shared() const { return false; }
 };
 
 /// What a view can be exported as beside its picture; either may be empty.
@@ -42,8 +44,9 @@ struct ViewContext {
     Session& session;
     std::shared_ptr<const volume::BrickSource> source; ///< what pictures are drawn from; null while nothing is loaded
     vis::Renderer& renderer;
-    Jobs& jobs;                                                ///< background work
-    std::map<std::string, std::unique_ptr<ViewCache>>& caches; ///< by pane key; kept while data only grow
+    Jobs& jobs; ///< background work
+    /// By pane key, or by the name of what views share; kept while data only grow.
+    std::map<std::string, std::unique_ptr<ViewCache>>& caches;
     /// Source of numbers: the samples as computed where available, whatever lattice pictures use. It has the channels
     /// and times of `source`; null when that is.
     std::shared_ptr<const volume::BrickSource> numbers = source;
@@ -61,7 +64,7 @@ struct ViewContext {
     std::function<void(std::size_t position)> goToStep = {};
     const Messages* log = nullptr; ///< the program's messages; null in tests
     std::string stateFolder = {};  ///< of what the user keeps beyond sessions; "" = keeps nothing
-    bool idle = true;              ///< no view was busy in the last frame: time for work that can wait
+    bool idle = true;              ///< every view was finished in the last frame: time for work that can wait
     /// Asks the workbench to run a command of its table, by name, after this frame; null in tests.
     std::function<void(const std::string& command)> runCommand = {};
     /// Asks where to save, then writes what `make` returns, in the background; null in tests.
@@ -76,15 +79,26 @@ struct ViewContext {
     /// The key of a camera command picked in a menu for this view, 0 = none: acts as if pressed over its picture.
     int cameraKey = 0;
     std::vector<std::string> messages = {}; ///< failures that a view adds, for the log
-    bool busy = false;        ///< set by a view that needs another frame soon (refining, animating, waiting for a job)
+    bool busy = false;                      ///< set by a view that needs the next frame at once (refining, animating)
+    bool awaiting = false;    ///< set by a view that needs another frame once a job, samples or a program are there
     bool waiting = false;     ///< set by a view that has work left for frames that are idle
     bool behind = false;      ///< set by a view that shows an older state of the session until an answer is there
     bool compiling = false;   ///< set by a view whose picture waits for a program of the renderer
     bool interacting = false; ///< some edit is in progress (mouse held on a control): draw at reduced size
 
+    /// Whether what is shown is not final.
+    bool unfinished() const { return busy || awaiting; }
+    /// Takes the flags of a context for a part of the view over.
+    void join(const ViewContext& part) {
+        busy = busy || part.busy;
+        awaiting = awaiting || part.awaiting;
+        behind = behind || part.behind;
+        compiling = compiling || part.compiling;
+    }
     /// Updates the flags from the state of a view's picture.
     void follow(const vis::FrameStatus& status) {
-        busy = busy || !status.complete;
+        busy = busy || !(status.complete || status.waits);
+        awaiting = awaiting || status.waits;
         behind = behind || !status.current;
         compiling = compiling || status.compiling;
     }

@@ -172,10 +172,13 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
     Window window;
     const Gui gui;
     const GlfwBackEnd backEnd(window.handle);
-    Workbench workbench(
-        {.renderer = nullptr, .render = {}, .headless = false, .onlyPane = {}, .stateFolder = app::stateFolder()});
+    Workbench workbench({.renderer = nullptr,
+                         .render = {},
+                         .headless = false,
+                         .onlyPane = {},
+                         .stateFolder = app::stateFolder(),
+                         .wake = [] { glfwPostEmptyEvent(); }});
     window.workbench = &workbench;
-    workbench.jobs().wake = [] { glfwPostEmptyEvent(); };
     workbench.writePicture = [](const auto&... what) { writePicture(what...); };
     workbench.open(request);
 

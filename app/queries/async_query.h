@@ -64,7 +64,7 @@ public:
     explicit AsyncQuery(const Keep& keep) : keep_(keep) {}
 
     /// The most exact answer to `query`; while there is none, the previous answer at this place if
-    /// compatible(previousQuery, query), else null. Sets context.busy while a better answer is on its way and
+    /// compatible(previousQuery, query), else null. Sets context.awaiting while a better answer is on its way and
     /// context.behind while there is none to this very query; headless, computes the exact answer at once.
     ///
     /// `make(data, query, level, progress)` returns the Result, on another thread. It may take `level` by reference and
@@ -95,7 +95,7 @@ public:
             }
             return place.shown;
         }
-        context.busy = true;
+        context.awaiting = true;
         context.behind = context.behind || !current;
         if (mayStart(context, place, options, query, current != nullptr, compatible)) {
             const int next = current && options.nextLevel ? options.nextLevel(current->level) : 0;

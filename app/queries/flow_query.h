@@ -23,8 +23,8 @@ struct FlowQuery {
 class AsyncFlow {
 public:
     /// The session's visible flow layers as far as they are made; while one is not, its last geometry. Sets
-    /// context.busy while better ones are on their way; headless, makes them at once. A failure is reported once and
-    /// leaves the layer out.
+    /// context.awaiting while better ones are on their way; headless, makes them at once. A failure is reported once
+    /// and leaves the layer out.
     std::vector<vis::GeometryLayer> get(ViewContext& context, const std::string& pane);
 
 private:

@@ -22,7 +22,7 @@ struct SurfaceQuery {
 class AsyncSurfaces {
 public:
     /// The session's visible polygonal iso-layers as far as they are extracted; while one is not, its last shape. Sets
-    /// context.busy while better ones are on their way; headless, extracts to the end. `moving`: take coarse shapes
+    /// context.awaiting while better ones are on their way; headless, extracts to the end. `moving`: take coarse shapes
     /// that draw fast. A failure is reported once and leaves the layer out.
     std::vector<vis::GeometryLayer> get(ViewContext& context, const std::string& pane, bool moving);
 

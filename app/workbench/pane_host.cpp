@@ -73,12 +73,13 @@ const ViewExport* PaneHost::exported(const std::string& pane) const {
 
 void PaneHost::draw(const ViewContext& frame, const Area& area) {
     Session& session = frame.session;
-    std::erase_if(caches_, [&](const auto& entry) { return !session.views.contains(entry.first); });
+    std::erase_if(caches_,
+                  [&](const auto& entry) { return !entry.second->shared() && !session.views.contains(entry.first); });
     if (!session.views.contains(session.dock.volume)) session.dock.volume.clear();
     int renderers = 1;
     for (const auto& [pane, cache] : caches_) renderers += cache->renderers();
     idle_ = !working_;
-    busy_ = working_ = compiling_ = false;
+    busy_ = hurries_ = working_ = compiling_ = false;
     hovered_.clear();
     drawn_.clear();
     DockPanes panes;
@@ -145,8 +146,9 @@ void PaneHost::drawPane(const ViewContext& frame, const std::string& pane, int r
     });
     ImGui::PopID();
     messages_.insert(messages_.end(), context.messages.begin(), context.messages.end());
-    working_ = working_ || context.busy;
-    busy_ = busy_ || context.busy || context.waiting;
+    working_ = working_ || context.unfinished();
+    busy_ = busy_ || context.unfinished() || context.waiting;
+    hurries_ = hurries_ || context.busy || context.waiting;
     compiling_ = compiling_ || context.compiling;
     if (paneDrawn) paneDrawn(pane, context.behind);
 }

@@ -54,8 +54,9 @@ public:
     /// True if a view on screen advances the session's time itself.
     bool plays(const Session& session) const;
 
-    /// State of the last frame: a view needs another frame soon; a view waits for a shader program.
+    /// State of the last frame: a view is not finished; a view waits for a shader program.
     bool busy() const { return busy_; }
+    bool hurries() const { return hurries_; } ///< a view needs the next frame at once
     bool compiling() const { return compiling_; }
     /// Failures of views since the last call.
     std::vector<std::string> takeMessages() { return std::exchange(messages_, {}); }
@@ -74,8 +75,8 @@ private:
     std::set<std::string> drawn_, last_; ///< panes of the frame being drawn, and of the last
     std::string cameraPane_;             ///< the target of cameraKey_
     int cameraKey_ = 0;                  ///< key of a camera command, 0 = none
-    bool busy_ = true, compiling_ = false;
-    bool working_ = true, idle_ = false; ///< a view is busy with more than work that can wait; none was
+    bool busy_ = true, hurries_ = true, compiling_ = false;
+    bool working_ = true, idle_ = false; ///< a view is unfinished, but for work that can wait; none was
     std::vector<std::string> messages_;
 };
 

@@ -22,10 +22,21 @@ namespace tessera::app {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// Options of the workbench's own renderer.
+vis::RendererOptions waking(const WorkbenchOptions& options) {
+    vis::RendererOptions render = options.render;
+    render.arrived = options.wake;
+    return render;
+}
+
+} // namespace
+
 Workbench::Workbench(WorkbenchOptions options)
     : options_(std::move(options)),
       renderer_(options_.renderer ? options_.renderer
-                                  : std::make_shared<vis::Renderer>(vis::quickestOptions(options_.render))),
+                                  : std::make_shared<vis::Renderer>(vis::quickestOptions(waking(options_)))),
       messages_([this] { return now(); }, options_.headless),
       data_(document_, jobs_, messages_,
             {options_.headless, options_.stateFolder, options_.program, options_.growthInterval},
@@ -34,6 +45,7 @@ Workbench::Workbench(WorkbenchOptions options)
                 if (!grown) panes_.forget(); // views keep their caches if the data have only grown
             }),
       files_(jobs_) {
+    jobs_.wake = options_.wake;
     if (!options_.headless) {
         helpInBackground();
         autosaver_ = std::make_unique<Autosaver>(options_.stateFolder, options_.autosaveInterval);
@@ -217,6 +229,7 @@ void Workbench::frame() {
     if (givenUp) document_.giveUpEdit(); // views that saw the key have their own ways of taking a drag back
     for (const std::string& text : panes_.takeMessages()) message(text, true);
     busy_ = panes_.busy();
+    hurries_ = panes_.hurries();
     if (!options_.headless) {
         if (memory_.due(busy(), now())) volume::giveBackFreeMemory();
         drawDialogs();
@@ -371,7 +384,7 @@ void Workbench::drawDialogs() {
 
 void Workbench::play() {
     if (!document_.loaded() || !session().animation.playing) return;
-    busy_ = true;
+    busy_ = hurries_ = true;
     if (!panes_.plays(session())) document_.play(double(ImGui::GetIO().DeltaTime));
 }
 
@@ -388,8 +401,12 @@ void Workbench::afterFrame() {
 }
 
 double Workbench::idleSeconds() const {
-    if (busy_ || picture_ || chosen_ || history().pending()) return 0;
+    // Jobs and samples wake the platform, programs come without a word. Frames meanwhile would take time from what is
+    // waited for, above all where the processor draws them.
+    constexpr double kLook = 0.02, kWoken = 0.25;
+    if (hurries_ || picture_ || chosen_ || history().pending()) return 0;
     double wait = messages_.secondsToChange();
+    if (busy_) wait = std::min(wait, panes_.compiling() || !options_.wake ? kLook : kWoken);
     for (const Jobs::Status& job : jobs_.list()) wait = std::min(wait, job.quiet ? 0.25 : 0.1);
     if (autosaver_) wait = std::min(wait, autosaver_->secondsToNext(document_, now()));
     return wait;

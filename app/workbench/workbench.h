@@ -38,6 +38,8 @@ struct WorkbenchOptions {
     std::chrono::milliseconds growthInterval = std::chrono::seconds(1);
     /// Interval of autosaves.
     std::chrono::milliseconds autosaveInterval = std::chrono::seconds(10);
+    /// Called from any thread when there is something new for another frame: wakes the event loop.
+    std::function<void()> wake = {};
     /// Called after each pane is drawn, for measurements: `behind` while it still shows an older state of the session.
     std::function<void(const std::string& pane, bool behind)> paneDrawn = {};
 };
@@ -163,7 +165,7 @@ private:
     std::function<void()> chosen_; ///< command chosen in this frame, run before the next one
 
     std::optional<PictureJob> picture_;
-    bool quit_ = false, busy_ = true;
+    bool quit_ = false, busy_ = true, hurries_ = true;
     bool popupShown_ = false; ///< at the start of the last frame
     Jobs jobs_;               ///< last: its threads end before what they refer to
 };

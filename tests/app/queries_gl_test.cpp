@@ -6,6 +6,7 @@
 #include "app/queries/visibility_query.h"
 #include "app/views/compare/compare_pictures.h"
 #include "app/views/tesseract/tesseract_query.h"
+#include "app/workbench/pane_host.h"
 #include "codec/pack/pack.h"
 #include "tests/app/views_fixture.h"
 #include "volume/reconstruct/probe.h"
@@ -37,7 +38,7 @@ struct AsyncQueries : ViewsTest {
         for (int turn = 0; turn < 20 && asked > 0; ++turn) {
             ViewContext now = context();
             get(now);
-            busy = now.busy;
+            busy = now.unfinished();
             asked = 0;
             for (const Jobs::Status& job : jobs.list()) {
                 if (job.key.find(key) == std::string::npos) continue;
@@ -57,7 +58,7 @@ struct AsyncQueries : ViewsTest {
         while (busy && std::chrono::steady_clock::now() - begin < std::chrono::minutes(1)) {
             ViewContext now = context();
             get(now);
-            busy = now.busy;
+            busy = now.unfinished();
             jobs.wait();
             for (const std::string& text : jobs.collect()) messages.push_back(text);
         }
@@ -92,10 +93,79 @@ TEST_F(AsyncQueries, ReadTheSamplesThatNumbersComeFrom) {
     EXPECT_EQ(*samples, numbers->grid().lattice.count());
     Readout readout;
     session.cursor = numbers->info().bounds.lo + numbers->info().bounds.size() * glm::dvec3(0.37, 0.61, 0.43);
-    updateReadout(now, "pane", readout);
+    updateReadout(now, readout);
     const auto time = volume::timesAround(numbers->info().times, session.time);
     EXPECT_EQ(readout.value("T"), volume::probe(*numbers, session.cursor, time)[std::size_t(t)].interpolated);
     EXPECT_NE(readout.value("T"), volume::probe(*source, session.cursor, time)[std::size_t(t)].interpolated);
+}
+
+/// The views that show values at the cross-hair ask for them in one job, whose answer is that of all.
+TEST_F(AsyncQueries, ViewsShareWhatIsReadAtTheCrossHair) {
+    const std::size_t t = std::size_t(source->info().findChannel("T").value());
+    const volume::TimePair time = volume::timesAround(source->info().times, session.time);
+    for (const double share : {0.3, 0.6}) {
+        session.cursor = source->info().bounds.lo + source->info().bounds.size() * share;
+        std::size_t asked = 0;
+        bool behind = true;
+        for (int turn = 0; turn < 20 && behind; ++turn) {
+            frame([&] {
+                busy = behind = false;
+                ImGui::Begin("views");
+                for (const char* pane : {"slices", "other"}) {
+                    ViewContext now = context();
+                    SlicesView view = slicesView;
+                    drawSlicesView(now, pane, view);
+                    behind = behind || !sharedReadout(now).value("T");
+                }
+                ViewContext now = context();
+                drawTransferView(now, "transfer", transferView);
+                ImGui::End();
+                for (const Jobs::Status& job : jobs.list()) asked += job.title == "Values at the cross-hair" ? 1 : 0;
+            });
+            jobs.wait();
+            jobs.collect();
+        }
+        EXPECT_EQ(asked, 1u);
+        ViewContext now = context();
+        EXPECT_EQ(sharedReadout(now).value("T"), volume::probe(*source, session.cursor, time)[t].interpolated);
+    }
+}
+
+/// What views wait for is no reason to draw the next frame at once.
+TEST_F(AsyncQueries, AViewThatWaitsDoesNotHurry) {
+    PaneHost host;
+    session.views = {{"statistics", StatisticsView{}}};
+    session.dock = {};
+    session.dock.root.id = 1;
+    session.dock.root.tabs = {"statistics"};
+    bool waited = false;
+    for (int turn = 0; turn < 100 && (turn < 3 || host.busy()); ++turn) {
+        frame([&] { host.draw(context(), {{0, 0}, {600, 400}, {}, {}}); });
+        EXPECT_FALSE(host.hurries());
+        waited = waited || host.busy();
+        jobs.wait();
+    }
+    EXPECT_TRUE(waited);
+    EXPECT_FALSE(host.busy());
+}
+
+/// Caches of closed panes are dropped, but not what views share.
+TEST_F(AsyncQueries, WhatViewsShareOutlivesPanes) {
+    struct Some : ViewCache {
+        explicit Some(bool ofAll) : all(ofAll) {}
+        bool shared() const override { return all; }
+        bool all;
+    };
+    PaneHost host;
+    host.caches()["of all"] = std::make_unique<Some>(true);
+    host.caches()["of a closed pane"] = std::make_unique<Some>(false);
+    session.views.clear();
+    session.dock = {};
+    frame([&] { host.draw(context(), {{0, 0}, {600, 400}, {}, {}}); });
+    EXPECT_TRUE(host.cache("of all"));
+    EXPECT_FALSE(host.cache("of a closed pane"));
+    host.forget();
+    EXPECT_FALSE(host.cache("of all"));
 }
 
 // An answer that takes longer than a frame comes although the last one is of no use meanwhile.

@@ -36,7 +36,7 @@ protected:
         ImGui::Begin(pane, nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
         function(context, pane, view);
         ImGui::End();
-        busy = busy || context.busy;
+        busy = busy || context.unfinished();
     }
     void frame(const std::function<void()>& body) {
         busy = false;

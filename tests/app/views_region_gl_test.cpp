@@ -36,7 +36,7 @@ protected:
             ImGui::SetNextWindowSize(size);
             ImGui::Begin("view", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
             function(context, "view", view);
-            busy = context.busy;
+            busy = context.unfinished();
             ImGui::End();
         });
         drawn = ImGui::GetDrawData()->TotalVtxCount;

@@ -6,10 +6,12 @@
 #include "volume/base/error.h"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <imgui.h>
 #include <imgui_internal.h>
+#include <thread>
 #include <unistd.h>
 
 namespace tessera::app {
@@ -182,6 +184,29 @@ TEST(WorkbenchGl, DerivedParametersComeAndGo) {
     EXPECT_FALSE(known("twice"));
     while (!(workbench.session() == derived)) ASSERT_TRUE(run("Redo"));
     EXPECT_TRUE(known("twice"));
+}
+
+/// A window draws its next frame at once where there is something to draw, and looks again a little later where views
+/// wait for a job, samples or a program, which would otherwise share the processor with frames of the same picture.
+TEST(WorkbenchGl, WaitingIsNotDrawing) {
+    const vis::HeadlessContext gl;
+    const Gui gui;
+    Workbench workbench({.renderer = nullptr, .render = {}, .headless = false, .onlyPane = {}, .stateFolder = {}});
+    workbench.install(smallData());
+    OffscreenFrames frames({900, 600});
+    int atOnce = 0, later = 0;
+    const auto begin = std::chrono::steady_clock::now();
+    do {
+        frames.draw(workbench, 1);
+        if (!workbench.busy()) break;
+        const double idle = workbench.idleSeconds();
+        atOnce += idle == 0 ? 1 : 0;
+        later += idle > 0 && idle <= 0.02 ? 1 : 0;
+        std::this_thread::sleep_for(std::chrono::duration<double>(std::min(idle, 0.02)));
+    } while (std::chrono::steady_clock::now() - begin < std::chrono::minutes(2));
+    EXPECT_FALSE(workbench.busy());
+    EXPECT_GT(atOnce, 0);
+    EXPECT_GT(later, 0);
 }
 
 // Opening something else, as a dropped file does, asks before it gives up what was not saved; so does the end, also

@@ -43,11 +43,24 @@ TimedWorkbench::TimedWorkbench()
                   .headless = false,
                   .onlyPane = {},
                   .stateFolder = {},
+                  .wake =
+                      [this] {
+                          const std::lock_guard lock(mutex_);
+                          woke_ = true;
+                          woken_.notify_one();
+                      },
                   .paneDrawn =
                       [this](const std::string& pane, bool behind) {
                           if (paneDrawn_) paneDrawn_(pane, behind);
                       }}),
       frames_(kWindow) {}
+
+void TimedWorkbench::wait() {
+    std::unique_lock lock(mutex_);
+    const double longest = std::min(workbench_.idleSeconds(), 0.25);
+    if (longest > 0) woken_.wait_for(lock, std::chrono::duration<double>(longest), [this] { return woke_; });
+    woke_ = false;
+}
 
 std::map<std::string, double> TimedWorkbench::untilShown() {
     const Clock::time_point begin = Clock::now();
@@ -62,6 +75,7 @@ std::map<std::string, double> TimedWorkbench::untilShown() {
         };
         frames_.draw(workbench_, 1);
         frames_.show();
+        if (behind) wait();
     }
     paneDrawn_ = nullptr;
     return first;
@@ -72,6 +86,7 @@ double TimedWorkbench::untilRest() {
     for (int frame = 0; frame == 0 || (workbench_.busy() && frame < kMostAtRest); ++frame) {
         frames_.draw(workbench_, 1);
         frames_.show();
+        if (workbench_.busy()) wait();
     }
     return millisecondsSince(begin);
 }
@@ -102,6 +117,7 @@ Followed TimedWorkbench::drag(const std::function<void(Session&, double)>& edit)
             frames_.draw(workbench_, 1, held);
             frames_.show();
             OffscreenFrames::finish();
+            if (behind) wait();
         }
         paneDrawn_ = nullptr;
         if (!ImGui::IsAnyItemActive()) throw MachineError("the mouse holds nothing");

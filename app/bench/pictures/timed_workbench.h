@@ -5,8 +5,10 @@
 #include "app/workbench/workbench.h"
 #include "vis/gl/headless.h"
 
+#include <condition_variable>
 #include <functional>
 #include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -38,9 +40,15 @@ public:
     Followed drag(const std::function<void(Session&, double share)>& edit);
 
 private:
+    /// Waits as a window does for its next frame.
+    void wait();
+
     vis::HeadlessContext gl_;
     Gui gui_;
     std::function<void(const std::string&, bool)> paneDrawn_;
+    std::mutex mutex_;
+    std::condition_variable woken_;
+    bool woke_ = false; ///< by a job or samples
     Workbench workbench_;
     OffscreenFrames frames_;
 };

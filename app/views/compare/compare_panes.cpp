@@ -78,9 +78,7 @@ void drawComparedPane(ViewContext& context, const std::string& pane, const std::
     // Drawing may have changed the list of views.
     const auto kept = context.session.views.find(shows);
     if (kept != context.session.views.end() && !(state == kept->second)) kept->second = state;
-    context.busy = context.busy || own.busy;
-    context.behind = context.behind || own.behind;
-    context.compiling = context.compiling || own.compiling;
+    context.join(own);
     context.interacting = context.interacting || own.interacting;
     context.messages.insert(context.messages.end(), own.messages.begin(), own.messages.end());
 }

@@ -92,7 +92,7 @@ bool ComparePictures::openCell(ViewContext& context, const std::string& pane, st
             return false;
         }
         if (!data->source) {
-            context.busy = true;
+            context.awaiting = true;
             return false;
         }
         if (!data->renderer) {
@@ -149,10 +149,8 @@ void ComparePictures::drawCell(ViewContext& context, const std::string& pane, st
     cell.shows = cell.status.complete || cell.status.milliseconds > 0;
     cell.drawn = true;
     own.follow(cell.status);
-    context.busy = context.busy || own.busy;
-    context.behind = context.behind || own.behind;
-    context.compiling = context.compiling || own.compiling;
-    if (own.busy || request.moving) return;
+    context.join(own);
+    if (own.unfinished() || request.moving) return;
     if (cell.image && cell.image->size == size && cell.imageSource == own.source && cell.imageOf == scene) return;
     auto image = std::make_shared<vis::Image>();
     image->rgba = own.renderer.readPixels(*cell.target, image->size);

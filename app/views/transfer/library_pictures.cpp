@@ -79,7 +79,7 @@ bool LibraryPictures::draw(ViewContext& context, Picture& picture) {
 
 void LibraryPictures::work(ViewContext& context) {
     const auto missing = [](const Picture& picture) { return picture.wanted && picture.texture.name() == 0; };
-    const bool rests = context.headless || (context.idle && !context.busy && !context.interacting &&
+    const bool rests = context.headless || (context.idle && !context.unfinished() && !context.interacting &&
                                             !context.session.animation.playing && !handMoves());
     // The first one asked for lies last.
     for (auto next = pictures_.rbegin(); next != pictures_.rend(); ++next) {

@@ -361,9 +361,7 @@ void drawBeside(ViewContext& context, const std::string& pane, VolumeView& view,
     takeFromSpace(context.session, before, edited, space->info());
     for (std::string& text : cache.renderer->takeMessages()) own.messages.push_back(std::move(text));
     for (std::string& text : own.messages) context.messages.push_back("data in space: " + std::move(text));
-    context.busy = context.busy || own.busy;
-    context.behind = context.behind || own.behind;
-    context.compiling = context.compiling || own.compiling;
+    context.join(own);
     context.interacting = context.interacting || own.interacting;
 }
 
