@@ -63,10 +63,7 @@ void updateReadout(ViewContext& context, Readout& readout) {
     }
     const auto values = readout.answers.get(
         context, context.numbers,
-        {.key = "cross-hair",
-         .title = "Values at the cross-hair",
-         .quiet = true,
-         .duringEdits = true},
+        {.key = "cross-hair", .title = "Values at the cross-hair", .quiet = true, .duringEdits = true},
         {context.session.cursor, volume::timesAround(context.numbers->info().times, context.session.time)},
         [cache = readout.cache](const auto&, const Readout::Query& query, int, const Progress&) {
             return volume::probe(*cache, query.position, query.time);
