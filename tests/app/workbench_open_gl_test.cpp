@@ -313,6 +313,38 @@ TEST_F(WorkbenchOpening, CamerasOfLayoutsShowTheWholeBoxInTheirPanes) {
     expectWhole("gases from the menu");
 }
 
+// A file of one's own is packed beside itself, in the layout as it is chosen in the menu.
+TEST_F(WorkbenchOpening, TheLayoutOfErrorsPacksAFileOfOnesOwn) {
+    std::string bytes;
+    for (int z = 0; z < 8; ++z)
+        for (int y = 0; y < 9; ++y)
+            for (int x = 0; x < 10; ++x) {
+                const float value = std::sin(0.3f * float(x)) + std::cos(0.2f * float(y + z));
+                bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+            }
+    write("waves.raw", bytes);
+    write("waves.json", R"({"dims":[10,9,8],"dtype":"float32"})");
+    OpenRequest request;
+    request.paths = {"waves.raw"};
+    workbench.open(request);
+    settle();
+    ASSERT_EQ(shown(), "waves.raw");
+    const std::string own = workbench.source()->info().parameters.at(0).name;
+    ASSERT_TRUE(run("Compression error"));
+    settle();
+    EXPECT_EQ(shown(), "waves.raw");
+    EXPECT_TRUE(workbench.session().data.originals);
+    EXPECT_TRUE(workbench.session().data.packed);
+    EXPECT_EQ(std::get<SlicesView>(workbench.session().views.at("slices")).channel, own + " error");
+    const volume::DatasetInfo& info = workbench.source()->info();
+    const auto error = info.findChannel(own + " error"), value = info.findChannel(own);
+    ASSERT_TRUE(error);
+    ASSERT_TRUE(value);
+    const Range errors = info.channelRange(info.channel(*error)), values = info.channelRange(info.channel(*value));
+    EXPECT_GT(errors.hi - errors.lo, 0) << "it was packed with loss";
+    EXPECT_LT(errors.hi - errors.lo, 0.3 * (values.hi - values.lo));
+}
+
 // A session whose data are other ones now is not the one that was saved: that stands longer than what was done.
 TEST_F(WorkbenchOpening, ChangedDataAreWarnedOf) {
     write("told.raw", std::string(48, '\x42'));
