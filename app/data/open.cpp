@@ -393,6 +393,7 @@ Opened open(const OpenRequest& request, const Progress& progress) {
         aimFirstView(opened.document.session, *opened.source, firstAspect(info));
     }
     opened.document.history.reset(opened.document.session);
+    opened.firstView = true;
     return opened;
 }
 

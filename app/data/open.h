@@ -31,6 +31,7 @@ struct Opened {
     std::string sessionPath; ///< where Save writes; "" for data, layouts and pictures
     std::string folder;      ///< that data paths are relative to
     std::vector<std::string> messages;
+    bool firstView = false;            ///< its cameras are of a layout or of nobody, not of a saved session
     std::vector<std::string> warnings; ///< data have changed since the session was saved
 
     Sources sources() const { return {source, numbers, origin}; }

@@ -36,6 +36,35 @@ void endDialog(bool open) {
     ImGui::EndPopup();
 }
 
+/// A part of a dialog that scrolls where the dialog, with `below` pixels under that part, is higher than the window.
+class Scrolled {
+public:
+    explicit Scrolled(float below) : id_(ImGui::GetID("height")) {
+        const ImGuiStyle& style = ImGui::GetStyle();
+        const float room = ImGui::GetMainViewport()->Size.y - 2 * style.DisplaySafeAreaPadding.y -
+                           ImGui::GetCursorPosY() - below - style.WindowPadding.y;
+        child_ = ImGui::GetStateStorage()->GetFloat(id_) > room; // as high as in the last frame
+        if (child_) {                                            // Tab begins in it, and goes on to what is below
+            ImGui::BeginChild("scrolled", {0, std::max(room, ImGui::GetFrameHeight())}, false,
+                              ImGuiWindowFlags_NavFlattened);
+            if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
+        }
+        from_ = ImGui::GetCursorPosY();
+    }
+    Scrolled(const Scrolled&) = delete;
+    Scrolled& operator=(const Scrolled&) = delete;
+    ~Scrolled() {
+        const float height = ImGui::GetCursorPosY() - from_ - ImGui::GetStyle().ItemSpacing.y;
+        if (child_) ImGui::EndChild();
+        ImGui::GetStateStorage()->SetFloat(id_, height);
+    }
+
+private:
+    ImGuiID id_;
+    bool child_;
+    float from_;
+};
+
 /// Buttons at the right end of a dialog; returns the index of the one pressed, -1 for none. Enter presses the last.
 int dialogButtons(std::initializer_list<const char*> names) {
     const float width = ImGui::GetFontSize() * 7, gap = ImGui::GetStyle().ItemSpacing.x;
@@ -268,10 +297,17 @@ std::optional<PictureRequest> PictureDialog::draw(const Session& session, const 
                                                   const std::string& stateFolder) {
     if (!shown_ || !beginDialog("Save picture", shown_, ImGui::GetFontSize() * 30)) return {};
     if (!form_) form_ = rememberedForm(stateFolder);
-    drawWhat(session, info);
-    const std::optional<PictureRequest> request = drawForm();
+    const bool vectors = form_->format != PictureFormat::Png;
+    std::optional<PictureRequest> request;
+    {
+        // Two gaps, the lines of text, a gap and the buttons.
+        const Scrolled settings(3 * ImGui::GetStyle().ItemSpacing.y + ImGui::GetFrameHeight() +
+                                (vectors ? 2 : 1) * ImGui::GetTextLineHeightWithSpacing());
+        drawWhat(session, info);
+        request = drawForm();
+    }
     ImGui::Spacing();
-    if (form_->format != PictureFormat::Png) ImGui::TextDisabled("Texts and lines are vectors.");
+    if (vectors) ImGui::TextDisabled("Texts and lines are vectors.");
     ImGui::TextDisabled("The picture contains the session: open it in Tessera to continue from it.");
     const int button = dialogButtons({"Cancel", "Save..."});
     const bool save = button == 1 && request;

@@ -29,33 +29,35 @@ public:
             title_ = std::max(title_, ImGui::CalcTextSize(titleWithUnit(entry.title, entry.unit).c_str()).x);
             for (const bool high : {false, true})
                 number_ = std::max(number_, ImGui::CalcTextSize(endOf(entry, high).c_str()).x);
+            if (beyondLegend(entry, false) || beyondLegend(entry, true)) gap_ = em() * 0.3f + legendArrow();
         }
-        title_ = std::min(title_, width_ * 0.5f);
+        title_ = std::min({title_, width_ * 0.5f, std::max(0.0f, width_ - 2 * number_ - 3 * gap_ - em())});
     }
     float width() const { return width_; }
     float height(const LegendEntry& entry) const { return isBar(entry) ? em() * 1.3f : legendHeight(entry); }
     float draw(ImDrawList& draw, ImVec2 min, const LegendEntry& entry) const {
         if (!isBar(entry)) return drawLegend(draw, min, width_, entry);
         const PlotColors colors = plotColors();
-        const float gap = em() * 0.4f, top = min.y + em() * 0.3f;
+        const float top = min.y + em() * 0.3f;
         const std::string whole = titleWithUnit(entry.title, entry.unit);
         const std::string title = firstThatFits({whole, entry.title}, title_ + 1);
         draw.AddText(min, colors.text, title.c_str());
-        const ImVec2 lo{min.x + title_ + number_ + 2 * gap, top},
-            hi{min.x + width_ - number_ - gap, top + legendStripHeight()};
+        const ImVec2 lo{min.x + title_ + number_ + 2 * gap_, top},
+            hi{min.x + width_ - number_ - gap_, top + legendStripHeight()};
         const auto write = [&](float x, const std::string& text) {
             draw.AddText({std::round(x), min.y}, colors.text, text.c_str());
         };
         const std::string least = endOf(entry, false);
-        write(lo.x - gap - ImGui::CalcTextSize(least.c_str()).x, least);
-        write(hi.x + gap, endOf(entry, true));
+        write(lo.x - gap_ - ImGui::CalcTextSize(least.c_str()).x, least);
+        write(hi.x + gap_, endOf(entry, true));
         drawLegendStrip(draw, lo, hi, entry);
+        drawLegendArrows(draw, lo, hi, entry);
         drawLegendMarker(draw, {lo, hi, paddedRange(entry.range), {0, 1}}, entry);
         return height(entry);
     }
 
 private:
-    float width_, title_ = 0, number_ = 0;
+    float width_, title_ = 0, number_ = 0, gap_ = em() * 0.4f;
 };
 
 /// All legends in one line: what is coloured, each with a piece of its colours. Those without room are counted.
@@ -175,14 +177,13 @@ bool legendsAsLines(float height, float room) {
 }
 
 LegendPlace placeLegends(const std::vector<LegendEntry>& entries, const LegendRoom& room,
-                         const std::function<double(ImVec2, ImVec2)>& covered, bool whole) {
+                         const std::function<double(ImVec2, ImVec2)>& covered, bool figure) {
     const auto find = [&](LegendForm form) { return freestCorner(entries, room, covered, form); };
-    if (whole) return find(LegendForm::Whole).first;
     float height = 0;
     for (const LegendEntry& entry : entries) height += legendHeight(entry);
-    const bool lines = legendsAsLines(height, room.max.y - room.min.y);
-    std::vector<LegendForm> forms{LegendForm::Lines, LegendForm::Names};
-    if (!lines) forms.insert(forms.begin(), LegendForm::Whole);
+    std::vector<LegendForm> forms{LegendForm::Lines};
+    if (!figure) forms.push_back(LegendForm::Names);
+    if (figure || !legendsAsLines(height, room.max.y - room.min.y)) forms.insert(forms.begin(), LegendForm::Whole);
     std::optional<LegendPlace> over;
     const float most = (room.max.x - room.min.x) * (room.max.y - room.min.y) * kMostOverObject;
     for (const LegendForm form : forms) {
@@ -191,7 +192,7 @@ LegendPlace placeLegends(const std::vector<LegendEntry>& entries, const LegendRo
         const LegendArea area = legendArea(entries, room, place);
         if (!over && (area.max.x - area.min.x) * (area.max.y - area.min.y) <= most) over = place;
     }
-    return over.value_or(find(LegendForm::Names).first);
+    return over.value_or(find(forms.back()).first);
 }
 
 LegendArea legendArea(const std::vector<LegendEntry>& entries, const LegendRoom& room, LegendPlace place) {

@@ -33,9 +33,10 @@ bool legendsAsLines(float height, float room);
 
 /// The corner and the most telling form in which legends cover nothing of the object; where there is none, the form
 /// that suits the size of the picture, in the corner where it covers least. `covered`: the share of a rectangle that
-/// the object covers. `whole`: always whole, as in figures.
+/// the object covers. `figure`: with numbers at any size, as nobody can point at it, and whole where that covers
+/// nothing or is a small part.
 LegendPlace placeLegends(const std::vector<LegendEntry>& entries, const LegendRoom& room,
-                         const std::function<double(ImVec2 min, ImVec2 max)>& covered, bool whole = false);
+                         const std::function<double(ImVec2 min, ImVec2 max)>& covered, bool figure = false);
 
 /// The pixels that drawLegends() covers.
 LegendArea legendArea(const std::vector<LegendEntry>& entries, const LegendRoom& room, LegendPlace place);

@@ -94,6 +94,25 @@ void drawLegendStrip(ImDrawList& draw, ImVec2 lo, ImVec2 hi, const LegendEntry& 
         drawColorStrip(draw, lo, hi, entry.function);
 }
 
+float legendArrow() {
+    return legendStripHeight() * 0.6f + 1;
+}
+
+bool beyondLegend(const LegendEntry& entry, bool high) {
+    const double slack = (entry.range.hi - entry.range.lo) * 1e-6;
+    return high ? entry.data.hi > entry.range.hi + slack : entry.data.lo < entry.range.lo - slack;
+}
+
+void drawLegendArrows(ImDrawList& draw, ImVec2 lo, ImVec2 hi, const LegendEntry& entry) {
+    const auto end = [&](double x) {
+        const glm::dvec4 c = vis::evaluate(entry.function, {0, 1}, x);
+        return entry.opacity || entry.regions ? plotColors().frame : toColor({c.r, c.g, c.b});
+    };
+    const float height = hi.y - lo.y;
+    if (beyondLegend(entry, false)) drawArrow(draw, {lo.x - 1, lo.y}, height, -1, end(0));
+    if (beyondLegend(entry, true)) drawArrow(draw, {hi.x + 1, lo.y}, height, 1, end(1));
+}
+
 void drawLegendMarker(ImDrawList& draw, const PlotFrame& frame, const LegendEntry& entry) {
     if (!entry.marker || *entry.marker < frame.x.lo || *entry.marker > frame.x.hi) return;
     const float x = std::round(frame.pixel(*entry.marker, 0).x) + 0.5f, over = em() * 0.15f;
@@ -106,17 +125,10 @@ float legendBarHeight() {
 }
 
 float drawLegendBar(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry) {
-    const PlotColors colors = plotColors();
-    const float height = legendStripHeight(), arrow = height * 0.6f;
-    const ImVec2 lo{min.x + arrow + 1, min.y + em() * 0.2f}, hi{min.x + width - arrow - 1, lo.y + height};
+    const float arrow = legendArrow();
+    const ImVec2 lo{min.x + arrow, min.y + em() * 0.2f}, hi{min.x + width - arrow, lo.y + legendStripHeight()};
     drawLegendStrip(draw, lo, hi, entry);
-    const auto end = [&](double x) {
-        const glm::dvec4 c = vis::evaluate(entry.function, {0, 1}, x);
-        return entry.opacity || entry.regions ? colors.frame : toColor({c.r, c.g, c.b});
-    };
-    const double slack = (entry.range.hi - entry.range.lo) * 1e-6;
-    if (entry.data.lo < entry.range.lo - slack) drawArrow(draw, {lo.x - 1, lo.y}, height, -1, end(0));
-    if (entry.data.hi > entry.range.hi + slack) drawArrow(draw, {hi.x + 1, lo.y}, height, 1, end(1));
+    drawLegendArrows(draw, lo, hi, entry);
     const PlotFrame frame{lo, hi, paddedRange(entry.range), {0, 1}};
     drawAxis(draw, frame, AxisSide::Bottom, entry.title, entry.unit, min.x, min.x + width);
     drawLegendMarker(draw, frame, entry);

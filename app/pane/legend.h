@@ -51,6 +51,10 @@ float legendHeight(const LegendEntry& entry);
 /// The strip of a bar alone: its colours, or what else it shows; and a line at the value of the cross-hair.
 void drawLegendStrip(ImDrawList& draw, ImVec2 lo, ImVec2 hi, const LegendEntry& entry);
 void drawLegendMarker(ImDrawList& draw, const PlotFrame& frame, const LegendEntry& entry);
+/// Arrow heads at its ends where the data extend beyond it, at the low or the high end; so far do they reach.
+bool beyondLegend(const LegendEntry& entry, bool high);
+void drawLegendArrows(ImDrawList& draw, ImVec2 lo, ImVec2 hi, const LegendEntry& entry);
+float legendArrow();
 float legendStripHeight();
 
 /// Legends side by side in rows, as they are placed below a picture; those that do not fit into `most` are dropped.

@@ -166,7 +166,7 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
     if (options.inlineTitle) {
         const ImVec2 at =
             bottom ? ImVec2{hi - size.x, frame.max.y + tickLength() + em() * 0.1f}
-                   : ImVec2{frame.min.x - (options.room > 0 ? options.room : size.x), frame.min.y - em() * 1.25f};
+                   : ImVec2{frame.min.x - (options.room > 0 ? options.room : size.x), frame.min.y - em() * kTitleAbove};
         draw.AddText({std::round(at.x), std::round(at.y)}, colors.faint, label.c_str());
         tellWhole(at, {at.x + size.x, at.y + size.y}, whole, label);
         return;

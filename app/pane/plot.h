@@ -50,6 +50,9 @@ ImU32 toColor(std::array<double, 3> srgb, double alpha = 1);
 
 enum class AxisSide { Bottom, Left };
 
+/// What an inline title takes above the frame of a left axis, clear of a number at its upper end, in em.
+inline constexpr float kTitleAbove = 1.5f;
+
 struct AxisOptions {
     bool grid = false;        ///< faint lines across the frame
     bool inlineTitle = false; ///< the title in the row of the numbers (bottom) or above them (left): saves a line

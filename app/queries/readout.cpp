@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <imgui.h>
 #include <numeric>
 
@@ -94,18 +95,62 @@ const Readout& sharedReadout(ViewContext& context) {
 
 namespace {
 
-/// Texts in sequence; lines break between them, never within a number.
-void drawFlowing(const std::vector<std::string>& texts) {
+/// Where the cross-hair is: "x 1.10", "y 0.900", "z 20.0 mm"; the unit once, where all three axes have the same.
+std::vector<std::string> placeTexts(const ViewContext& context) {
+    const volume::DatasetInfo& info = context.numbers->info();
+    const AxisLabels labels = axisLabels(context.session, info);
+    std::vector<std::string> at;
+    std::string unitNow;
+    for (int axis = 2; axis >= 0; --axis) {
+        const auto& [name, unit] = labels[static_cast<std::size_t>(axis)];
+        std::string text =
+            name + " " +
+            formatNumber(context.session.cursor[axis] * unit.perUnit, info.bounds.size()[axis] * unit.perUnit / 200);
+        if (unit.name != unitNow) text += " " + prettyUnit(unit.name);
+        unitNow = unit.name;
+        at.insert(at.begin(), text);
+    }
+    return at;
+}
+
+/// "O2 3.854 mol/m3" of every parameter that is there.
+std::vector<std::string> valueTexts(const volume::DatasetInfo& info, const Readout& readout, bool units) {
+    std::vector<std::string> values;
+    for (std::size_t i = 0; i < readout.channels.size() && i < readout.values.size(); ++i) {
+        const volume::Channel& channel = readout.channels[i];
+        const std::optional<double>& value = readout.values[i].interpolated;
+        // Components say little beside the magnitude.
+        if (!value || channel.name.find('.') != std::string::npos) continue;
+        values.push_back(channel.name + " " + valueText(info, channel, value));
+        if (units && !channel.unit.empty()) values.back() += " " + prettyUnit(channel.unit);
+    }
+    return values;
+}
+
+/// Texts in sequence; lines break between them, never within a number. `visit(text, begins)`: whether it begins a line.
+void flow(const std::vector<std::string>& texts, const std::function<void(const std::string&, bool)>& visit) {
+    const float gap = em() * 0.8f;
     float room = 0;
     for (const std::string& text : texts) {
-        const float width = ImGui::CalcTextSize(text.c_str()).x + em() * 0.8f;
-        if (room > width)
-            ImGui::SameLine(0, em() * 0.8f);
-        else
-            room = ImGui::GetContentRegionAvail().x + em() * 0.8f;
+        const float width = ImGui::CalcTextSize(text.c_str()).x + gap;
+        const bool begins = room <= width;
+        if (begins) room = ImGui::GetContentRegionAvail().x + gap;
         room -= width;
-        ImGui::TextUnformatted(text.c_str());
+        visit(text, begins);
     }
+}
+
+int linesOf(const std::vector<std::string>& texts) {
+    int lines = 0;
+    flow(texts, [&](const std::string&, bool begins) { lines += begins; });
+    return lines;
+}
+
+void drawFlowing(const std::vector<std::string>& texts) {
+    flow(texts, [](const std::string& text, bool begins) {
+        if (!begins) ImGui::SameLine(0, em() * 0.8f);
+        ImGui::TextUnformatted(text.c_str());
+    });
 }
 
 constexpr float kColumnWeights[] = {1.4f, 1, 1, 1};
@@ -136,39 +181,43 @@ float readoutHeight(const Readout& readout) {
     return 2 * ImGui::GetTextLineHeightWithSpacing() + row * static_cast<float>(readout.channels.size() + 1);
 }
 
-void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
+std::string readoutText(const ViewContext& context, const Readout& readout) {
+    std::string all;
+    for (const std::string& text : placeTexts(context)) all += (all.empty() ? "" : "   ") + text;
+    for (const std::string& text : valueTexts(context.numbers->info(), readout, true)) all += "\n" + text;
+    return all;
+}
+
+void drawRunningReadout(const ViewContext& context, const Readout& readout, float height) {
     const volume::DatasetInfo& info = context.numbers->info();
-    const glm::dvec3 cursor = context.session.cursor, size = info.bounds.size();
-    const AxisLabels labels = axisLabels(context.session, info);
-    const glm::ivec3 index = info.lattice.nearest(cursor);
-    // The unit once, where all three axes have the same.
-    std::vector<std::string> at;
-    std::string unitNow;
-    for (int axis = 2; axis >= 0; --axis) {
-        const auto& [name, unit] = labels[static_cast<std::size_t>(axis)];
-        std::string text =
-            std::string(name) + " " + formatNumber(cursor[axis] * unit.perUnit, size[axis] * unit.perUnit / 200);
-        if (unit.name != unitNow) text += " " + prettyUnit(unit.name);
-        unitNow = unit.name;
-        at.insert(at.begin(), text);
+    const std::vector<std::string> place = placeTexts(context), whole = valueTexts(info, readout, true);
+    const float line = ImGui::GetTextLineHeightWithSpacing(), gap = ImGui::GetStyle().ItemSpacing.y;
+    const int most = std::max(1, static_cast<int>((height + gap) / line + 0.01f));
+    const bool placed = linesOf(place) + linesOf(whole) <= most;
+    if (placed) drawFlowing(place);
+    // What gives way: the place, the units, then values.
+    std::vector<std::string> values = whole, shown = whole;
+    if (!placed && linesOf(shown) > most) shown = values = valueTexts(info, readout, false);
+    while (linesOf(shown) > most && !values.empty()) {
+        values.pop_back();
+        shown = values;
+        shown.emplace_back("...");
     }
-    drawFlowing(at);
+    const ImVec2 min = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    drawFlowing(shown);
+    if (!placed)
+        tellWhole(min, {min.x + width, min.y + static_cast<float>(most) * line}, readoutText(context, readout), "");
+}
+
+void drawReadout(ViewContext& context, const Readout& readout) {
+    const volume::DatasetInfo& info = context.numbers->info();
+    const glm::ivec3 index = info.lattice.nearest(context.session.cursor);
     const std::vector<std::string> heads = readoutHeads(info);
     const std::vector<std::vector<std::string>> rows = readoutRows(info, readout);
     const std::size_t columns = columnsThatFit(info, readout, rows, heads.size());
-    if (compact || columns == 0) {
-        std::vector<std::string> values;
-        for (std::size_t i = 0; i < readout.channels.size() && i < readout.values.size(); ++i) {
-            const volume::Channel& channel = readout.channels[i];
-            const std::optional<double>& value = readout.values[i].interpolated;
-            // Components say little beside the magnitude.
-            const bool component = channel.name.find('.') != std::string::npos;
-            if (value && !component)
-                values.push_back(channel.name + " " + valueText(info, channel, value) + " " + prettyUnit(channel.unit));
-        }
-        drawFlowing(values);
-        return;
-    }
+    if (columns == 0) return drawRunningReadout(context, readout, ImGui::GetContentRegionAvail().y);
+    drawFlowing(placeTexts(context));
     ImGui::PushTextWrapPos(0);
     const double time = std::clamp(context.session.time, info.times.front(), info.times.back());
     const std::string origin = originText(context);

@@ -35,9 +35,13 @@ void updateReadout(ViewContext& context, Readout& readout);
 /// The updated read-out that all views share: each value is read once.
 const Readout& sharedReadout(ViewContext& context);
 
-/// Table of position, index and values, with a button that copies it; without room for a table (compact) the values in
-/// running lines.
-void drawReadout(ViewContext& context, const Readout& readout, bool compact = false);
+/// Table of position, index and values; in a narrow room the values in running lines.
+void drawReadout(ViewContext& context, const Readout& readout);
+/// Position and values in running lines. Where these need more than `height` pixels they lack the position, which
+/// titles of slices tell, then units, then values; all is under the mouse.
+void drawRunningReadout(const ViewContext& context, const Readout& readout, float height);
+/// Position and values, one in each line.
+std::string readoutText(const ViewContext& context, const Readout& readout);
 /// Pixels that the table needs.
 float readoutHeight(const Readout& readout);
 

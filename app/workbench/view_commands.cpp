@@ -1,6 +1,7 @@
 #include "app/data/packing_errors.h"
 #include "app/session/shown_scene.h"
 #include "app/ui/keys.h"
+#include "app/workbench/whole_box.h"
 #include "app/workbench/workbench.h"
 #include "app/workbench/workbench_commands.h"
 #include "volume/base/error.h"
@@ -191,8 +192,9 @@ void showLayout(Workbench& workbench, const std::string& name, const std::string
             if (!shown.files.empty() || shown.model != layout.session.data.model) request.data = shown;
             return workbench.open(std::move(request));
         }
-        workbench.document().replace(changeLayout(layout, *workbench.source(), workbench.session(), messages),
-                                     "Layout: " + title);
+        Session next = changeLayout(layout, *workbench.source(), workbench.session(), messages);
+        showWholeBox(next, vis::worldFrame(workbench.document().info().bounds, next.stretch), workbench.look().scale());
+        workbench.document().replace(std::move(next), "Layout: " + title);
         for (const std::string& text : messages) workbench.message(text);
     } catch (const Error& error) {
         workbench.message(error.what(), true);

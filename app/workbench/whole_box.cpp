@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <functional>
 #include <glm/common.hpp>
+#include <variant>
 
 namespace tessera::app {
 
@@ -19,6 +20,13 @@ double aspectOf(const Session& session, const std::string& pane, float scale) {
     stack.id = stackWith(session.dock.root, pane);
     const ImVec2 size = sizeOf(session, stack, scale);
     return double(size.x) / std::max(1.0, double(size.y) - kTabStrip * double(scale));
+}
+
+/// The part of the picture in a pane that the box covers, by width or height, whichever is more.
+double coveredShare(const Session& session, const std::string& pane, const vis::WorldFrame& world, float scale) {
+    const VolumeView* const view = volumeView(session, pane);
+    const glm::dvec2 extent = boxExtent(view && view->camera ? *view->camera : session.camera, world);
+    return std::max(extent.y, extent.x / aspectOf(session, pane, scale));
 }
 
 } // namespace
@@ -58,9 +66,13 @@ glm::dvec2 boxExtent(const vis::Camera& camera, const vis::WorldFrame& world) {
 }
 
 bool seesWholeBox(const Session& session, const std::string& pane, const vis::WorldFrame& world, float scale) {
-    const VolumeView* const view = volumeView(session, pane);
-    const glm::dvec2 extent = boxExtent(view && view->camera ? *view->camera : session.camera, world);
-    return extent.y <= kAlmost && extent.x <= kAlmost * aspectOf(session, pane, scale);
+    return coveredShare(session, pane, world, scale) <= kAlmost;
+}
+
+void showWholeBox(Session& session, const vis::WorldFrame& world, float scale) {
+    for (const auto& [pane, view] : session.views)
+        if (std::holds_alternative<VolumeView>(view) && coveredShare(session, pane, world, scale) > 1)
+            fitToPane(session, pane, world, scale);
 }
 
 void fitToPane(Session& session, const std::string& pane, const vis::WorldFrame& world, float scale) {

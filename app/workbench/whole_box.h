@@ -20,6 +20,10 @@ glm::dvec2 boxExtent(const vis::Camera& camera, const vis::WorldFrame& world);
 /// Whether the volume view of a pane shows the box from end to end, or all but its corners.
 bool seesWholeBox(const Session& session, const std::string& pane, const vis::WorldFrame& world, float scale);
 
+/// Fits the cameras of a layout, which were chosen for other panes, to those volume views where they do not show the
+/// whole box.
+void showWholeBox(Session& session, const vis::WorldFrame& world, float scale);
+
 /// Moves the camera of a volume view, or the one it shares, so that the box fits into its pane as the dock is now.
 void fitToPane(Session& session, const std::string& pane, const vis::WorldFrame& world, float scale);
 

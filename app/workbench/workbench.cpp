@@ -3,6 +3,7 @@
 #include "app/drawing/drawing.h"
 #include "app/user_files/import_memory.h"
 #include "app/workbench/status_bar.h"
+#include "app/workbench/whole_box.h"
 #include "app/workbench/workbench_commands.h"
 #include "codec/remote/address.h"
 #include "volume/base/background.h"
@@ -150,6 +151,11 @@ void Workbench::recover(const Recovery& recovery) {
 }
 
 void Workbench::install(Opened opened) {
+    if (opened.firstView && opened.source && !options_.headless) {
+        Session& session = opened.document.session;
+        showWholeBox(session, vis::worldFrame(opened.source->info().bounds, session.stretch), look_.scale());
+        opened.document.history.reset(session);
+    }
     const std::vector<std::string> said = std::move(opened.messages), warned = std::move(opened.warnings);
     document_.install(std::move(opened));
     data_.reset();

@@ -71,6 +71,34 @@ TEST_F(Dialogs, APictureSaysThatItHoldsItsSessionAndWhatAreVectors) {
     EXPECT_THAT(drawnWords(), Contains(holds));
 }
 
+// 640x360 at scale 1 are 1280x720 at scale 2.
+TEST_F(Dialogs, ButtonsOfAPictureAreInSightWhereItsSettingsScroll) {
+    Session session;
+    addView(session, *viewOfKind("volume"));
+    PictureDialog dialog;
+    dialog.show("volume");
+    const auto draw = [&] { dialog.draw(session, {}, ""); };
+    frames(5, draw);
+    const float whole = find("Save...").min.y - find("What").min.y;
+    EXPECT_NEAR(find("Save...").min.y - find("Decoration").max.y, 3 * ImGui::GetFrameHeight(), ImGui::GetFrameHeight())
+        << "no gap above the buttons of a window with room";
+    ImGui::GetIO().DisplaySize = {640, 360};
+    frames(5, draw);
+    for (const char* each : {"Cancel", "Save..."}) EXPECT_LT(find(each).max.y, 360) << each;
+    EXPECT_GT(find("What").min.y, 0);
+    EXPECT_THAT(drawnWords(), Not(Contains("Decoration"))) << "settings scroll";
+    mouse = find("Height").middle();
+    for (int i = 0; i < 9; ++i) {
+        ImGui::GetIO().MouseWheel = -2;
+        frames(2, draw);
+    }
+    EXPECT_LT(find("Decoration").max.y, find("Save...").min.y);
+    EXPECT_LT(find("Save...").max.y, 360);
+    ImGui::GetIO().DisplaySize = {900, 700};
+    frames(5, draw);
+    EXPECT_NEAR(find("Save...").min.y - find("What").min.y, whole, 1);
+}
+
 TEST_F(Dialogs, StayInAWindowThatBecomesSmaller) {
     HelpDialogs dialogs;
     const auto draw = [&] { dialogs.draw({}, fonts, {}); };

@@ -40,6 +40,44 @@ TEST_F(SliceHands, TitlesGiveUpDigitsBeforeTheAxisAndItsUnit) {
     EXPECT_GT(shorter, 0u) << "none of these panes is narrow";
 }
 
+TEST_F(SliceHands, TextsAroundSlicesAreClearOfEachOther) {
+    showSlices();
+    const auto drawnAt = [&](glm::ivec2 size, glm::dvec3 stretch) {
+        session().stretch = stretch;
+        frames.emplace(size);
+        settle();
+        std::size_t pairs = 0;
+        const std::vector<DrawnText> texts = drawnTexts();
+        for (std::size_t i = 0; i < texts.size(); ++i)
+            for (std::size_t k = 0; k < i; ++k, ++pairs)
+                EXPECT_TRUE(texts[i].min.x >= texts[k].max.x || texts[i].max.x <= texts[k].min.x ||
+                            texts[i].min.y >= texts[k].max.y + 1 || texts[i].max.y + 1 <= texts[k].min.y)
+                    << "'" << texts[i].text << "' touches '" << texts[k].text << "' at " << size.x << " x " << size.y
+                    << ", stretch " << stretch.x << " " << stretch.y << " " << stretch.z;
+        EXPECT_GT(pairs, 9u);
+    };
+    // The box of the cell is 7 x 12 x 4 mm; z goes from -2 to 2, whose numbers stand at the ends of the axis.
+    for (const glm::dvec3 stretch : {glm::dvec3(1, 1, 1), {1, 1, 12}, {8, 1, 1}, {1, 6, 1}})
+        for (const int width : {240, 330, 460, 700})
+            for (const int height : {150, 190, 260, 420, 560}) drawnAt({width, height}, stretch);
+}
+
+// Below each other: the heights of y and x, 12 and 7 mm, alone would give them other scales.
+TEST_F(SliceHands, SlicesThatShareAnAxisHaveOneScale) {
+    show(SlicesView{}, {460, 190}, [](Session& edited) { edited.stretch = {0.4, 1, 16}; });
+    for (const glm::ivec2 size : {glm::ivec2{460, 190}, {600, 220}}) {
+        frames.emplace(size);
+        settle();
+        planes = pictures();
+        ASSERT_EQ(planes.size(), 3u);
+        const ImRect &zy = planes[1], &zx = planes[2];
+        EXPECT_GT(zy.GetWidth(), 2 * zy.GetHeight());
+        EXPECT_EQ(zy.Min.x, zx.Min.x);
+        EXPECT_EQ(zy.GetWidth(), zx.GetWidth());
+        EXPECT_NEAR(zy.GetHeight() / 12, zx.GetHeight() / (7 * 0.4), 0.5) << "pixels per mm";
+    }
+}
+
 TEST_F(SliceHands, TheCrossHairGoesUnderTheMouse) {
     for (const double stretch : {1.0, 0.4}) {
         showSlices([&](Session& edited) { edited.stretch.y = stretch; });

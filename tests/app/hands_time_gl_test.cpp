@@ -10,7 +10,9 @@ namespace {
 
 class TimelineHands : public Hands {
 protected:
-    void showTimeline(const std::function<void(Session&)>& prepare = {}) { show(TimelineView{}, {1000, 280}, prepare); }
+    void showTimeline(const std::function<void(Session&)>& prepare = {}, glm::ivec2 size = {1000, 280}) {
+        show(TimelineView{}, size, prepare);
+    }
     /// Where the knob is drawn, at the end of what has the colour of the cursor.
     static float knob() {
         const ImRect ink = inked(plotColors().cursor);
@@ -82,6 +84,36 @@ TEST_F(TimelineHands, EveryStoredTimeHasItsMark) {
     };
     for (const double time : formula::kTimes) EXPECT_TRUE(marked(time / formula::kTimes[2])) << time;
     for (const double share : {0.1, 0.5, 0.9}) EXPECT_FALSE(marked(share)) << share;
+}
+
+// Below the track, beside it, or with the track among the buttons.
+TEST_F(TimelineHands, BothEndsHaveTheirTimesHoweverLowThePane) {
+    const auto apartFrom = [](const DrawnText& text, ImVec2 min, ImVec2 max) {
+        return text.min.x >= max.x || text.max.x <= min.x || text.min.y >= max.y || text.max.y <= min.y;
+    };
+    for (const glm::ivec2 size : {glm::ivec2{1000, 280}, {1000, 84}, {1000, 70}, {1000, 60}, {450, 46}}) {
+        SCOPED_TRACE(std::to_string(size.x) + " x " + std::to_string(size.y));
+        mouse = {-1000, -1000}; // no tooltip
+        showTimeline([](Session& session) { session.time = 0.5; }, size);
+        const ImRect ink = inked(plotColors().cursor);
+        EXPECT_GE(ink.Min.y, 0);
+        EXPECT_LE(ink.Max.y, size.y) << "the knob is in sight";
+        const std::vector<DrawnText> texts = drawnTexts();
+        int first = 0, last = 0;
+        for (std::size_t i = 0; i < texts.size(); ++i) {
+            EXPECT_TRUE(apartFrom(texts[i], ink.Min, ink.Max)) << texts[i].text;
+            EXPECT_LE(texts[i].max.y, size.y) << texts[i].text;
+            for (std::size_t k = 0; k < i; ++k)
+                EXPECT_TRUE(apartFrom(texts[i], texts[k].min, texts[k].max)) << texts[i].text << " " << texts[k].text;
+            first += texts[i].text.starts_with("0.0") && texts[i].min.x < ink.Max.x;
+            last += texts[i].text.starts_with("2.0") && texts[i].min.x > ink.Max.x;
+        }
+        EXPECT_EQ(first, 1);
+        EXPECT_EQ(last, 1);
+        const auto [begin, end] = ends();
+        click({(begin + end) / 2, ink.GetCenter().y});
+        EXPECT_NEAR(session().time, 1, 0.02) << "the middle of the track";
+    }
 }
 
 TEST_F(TimelineHands, TheWheelGoesFromTimeToTime) {

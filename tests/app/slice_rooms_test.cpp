@@ -10,7 +10,8 @@ constexpr float kEm = 15;
 
 void expectApart(const SliceRooms& rooms, ImVec2 min, ImVec2 room) {
     std::vector<SliceRoom> all(rooms.planes.begin(), rooms.planes.end());
-    if (rooms.numbers.size().x > 0) all.push_back(rooms.numbers);
+    for (const SliceRoom& each : {rooms.numbers, rooms.values})
+        if (each.size().x > 0) all.push_back(each);
     for (std::size_t i = 0; i < all.size(); ++i) {
         EXPECT_GE(all[i].min.x, min.x);
         EXPECT_GE(all[i].min.y, min.y);
@@ -98,6 +99,24 @@ TEST(SliceRooms, SlicesOfALongBoxLieAlongIt) {
     // As thin as the built-in cell is without stretch, also in a large pane; not where it is stretched.
     EXPECT_EQ(sliceRooms({0, 0}, {700, 420}, {0.14, 0.225, 0.5}, kEm).order, SliceOrder::Quarters);
     EXPECT_EQ(sliceRooms({0, 0}, {700, 420}, {0.055, 0.065, 0.505}, kEm).order, SliceOrder::Rows);
+}
+
+// What they leave of their column is for the values, and the slice across has all of its own but the legend.
+TEST(SliceRooms, ThinSlicesTakeNoMoreRoomThanTheirPictures) {
+    const glm::dvec3 half{0.065, 0.05, 1};
+    for (const ImVec2 room : {ImVec2{320, 150}, ImVec2{460, 190}, ImVec2{500, 200}}) {
+        SCOPED_TRACE(room.y);
+        const SliceRooms rooms = sliceRooms({0, 0}, room, half, kEm);
+        ASSERT_EQ(rooms.order, SliceOrder::Rows);
+        EXPECT_GE(rooms.values.size().y, 2.4f * kEm) << "two lines";
+        EXPECT_EQ(rooms.values.min.x, rooms.planes[1].min.x);
+        EXPECT_EQ(rooms.values.max.y, room.y);
+        EXPECT_NEAR(rooms.numbers.size().y, 3.7f * kEm, 0.3f * kEm) << "a legend";
+        expectApart(rooms, {0, 0}, room);
+        EXPECT_GT(shown(rooms, half), 0);
+    }
+    // A box that is less thin leaves nothing.
+    EXPECT_EQ(sliceRooms({0, 0}, {446, 150}, {0.2, 0.14, 0.5}, kEm).values.size().x, 0);
 }
 
 TEST(SliceRooms, AFigureHasQuartersWithAxesAtAnySize) {

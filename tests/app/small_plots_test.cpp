@@ -131,6 +131,49 @@ TEST_F(SmallPlots, LegendsGoWhereTheObjectIsNot) {
     EXPECT_EQ(place.corner, LegendCorner::BottomRight);
 }
 
+// In a figure nobody can point at what a legend leaves out.
+TEST_F(SmallPlots, LegendsOfASmallFigureAreLinesWithTheirNumbers) {
+    std::vector<LegendEntry> entries{bar("T"), bar("density"), bar("O2")};
+    entries[1].data = {200, 400};
+    const auto everywhere = [](ImVec2, ImVec2) { return 1.0; };
+    const auto nowhere = [](ImVec2, ImVec2) { return 0.0; };
+    LegendPlace place;
+    LegendArea area{};
+    std::vector<DrawnText> texts;
+    const auto drawn = [&](ImVec2 size, std::size_t count, const std::function<double(ImVec2, ImVec2)>& covered) {
+        const std::vector<LegendEntry> some(entries.begin(), entries.begin() + std::ptrdiff_t(count));
+        feedWindow([&] {
+            const LegendRoom room{{0, 0}, size, 20};
+            place = placeLegends(some, room, covered, true);
+            area = drawLegends(*ImGui::GetWindowDrawList(), some, room, place);
+        });
+        texts = drawnTexts();
+    };
+    const auto count = [&](const std::string& word) {
+        return std::ranges::count_if(texts, [&](const DrawnText& each) { return each.text.find(word) + 1 > 0; });
+    };
+    for (const std::size_t each : {std::size_t(1), std::size_t(3)}) {
+        drawn({320, 240}, each, everywhere);
+        EXPECT_EQ(place.form, LegendForm::Lines) << each;
+        EXPECT_LT((area.max.x - area.min.x) * (area.max.y - area.min.y), 320 * 240 * (each == 1 ? 0.1f : 0.25f));
+        EXPECT_EQ(count("300"), std::ptrdiff_t(each));
+        EXPECT_EQ(count("350"), std::ptrdiff_t(each));
+        EXPECT_EQ(count("[K]"), std::ptrdiff_t(each));
+    }
+    // Heads of arrows say that the data of the second extend beyond the colours, clear of the numbers.
+    const glm::dvec4 c = vis::evaluate(entries[1].function, {0, 1}, 1);
+    const ImU32 last = toColor({c.r, c.g, c.b});
+    const DrawnText number = *std::ranges::find_if(texts, [&](const DrawnText& each) { return each.text == "350"; });
+    float tip = 0;
+    for (const ImVec2 at : drawnIn(last)) tip = std::max(tip, at.x);
+    EXPECT_LT(tip, number.min.x);
+    EXPECT_GT(tip, number.min.x - em() * 0.5f);
+    drawn({320, 240}, 1, nowhere);
+    EXPECT_EQ(place.form, LegendForm::Whole) << "beside the object";
+    drawn({900, 700}, 1, everywhere);
+    EXPECT_EQ(place.form, LegendForm::Whole) << "a small part of the figure";
+}
+
 TEST_F(SmallPlots, WhatLegendsLeaveOutIsUnderTheMouse) {
     const std::vector<LegendEntry> entries{bar("T"), bar("density")};
     const LegendRoom room{{0, 0}, {450, 185}};

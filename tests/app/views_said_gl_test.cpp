@@ -11,6 +11,7 @@
 namespace tessera::app {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -210,6 +211,43 @@ TEST_F(SaidViews, TheReadOutHasWholeNumbersInAnyWidth) {
         if (each[0] != "region") {
             EXPECT_THAT(narrower, HasSubstr(each[1])) << each[0];
         }
+}
+
+/// Running lines are whole: the place gives way first, then units, then values, and all is under the mouse.
+TEST_F(SaidViews, RunningValuesGiveUpUnitsBeforeNumbers) {
+    show(fuelCell(volume::LatticeKind::CC));
+    session.cursor = {0.0011, 0.0009, 0.02};
+    float last = 0;
+    const auto at = [&](float height) {
+        const auto body = [&] {
+            ViewContext context{session, source, renderer, jobs, caches};
+            context.headless = true;
+            ImGui::SetNextWindowPos({0, 0});
+            ImGui::SetNextWindowSize({240, 400});
+            ImGui::Begin("running", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+            updateReadout(context, "running", readout);
+            const float from = ImGui::GetCursorPosY();
+            drawRunningReadout(context, readout, height);
+            last = ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y - from;
+            ImGui::End();
+        };
+        for (int i = 0; i < 3; ++i) {
+            frame(body);
+            jobs.wait();
+        }
+        EXPECT_LE(last, height) << "no line is cut off";
+        return said(body);
+    };
+    const std::string whole = at(300);
+    EXPECT_THAT(whole, AllOf(HasSubstr("x "), HasSubstr(" Pa"), HasSubstr("mol/m"), HasSubstr("region ")));
+    const std::string unplaced = at(last - 2);
+    EXPECT_THAT(unplaced, AllOf(Not(HasSubstr("x 1")), HasSubstr(" Pa"), HasSubstr("region ")));
+    const std::string bare = at(last - 2);
+    EXPECT_THAT(bare, AllOf(HasSubstr("p 1"), HasSubstr("region "), Not(HasSubstr(" Pa"))));
+    mouse = {20, 12};
+    const std::string few = at(ImGui::GetTextLineHeight());
+    EXPECT_THAT(few, AllOf(HasSubstr("O2 "), HasSubstr("...")));
+    EXPECT_THAT(few, AllOf(HasSubstr(" Pa"), HasSubstr("region "))) << "in the tooltip";
 }
 
 /// A lens that was added by a command is the thing to set up: the list goes to it.

@@ -1,8 +1,10 @@
+#include "app/workbench/whole_box.h"
 #include "app/workbench/workbench_commands.h"
 #include "tests/app/drawn_text.h"
 #include "workbench_fixture.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <imgui_internal.h>
@@ -266,6 +268,81 @@ TEST_F(WorkbenchOpening, TheLayoutOfErrorsOpensTheCellBesideItsOriginals) {
     EXPECT_TRUE(workbench.source()->info().findChannel("T error"));
     EXPECT_EQ(std::get<SlicesView>(workbench.session().views.at("slices")).channel, "T error");
     EXPECT_EQ(news(), 0u);
+}
+
+// Cameras of layouts were chosen in a large window.
+TEST_F(WorkbenchOpening, CamerasOfLayoutsShowTheWholeBoxInTheirPanes) {
+    const auto expectWhole = [&](const std::string& layout) {
+        const Session& session = workbench.session();
+        const vis::WorldFrame world = vis::worldFrame(workbench.source()->info().bounds, session.stretch);
+        for (const auto& [pane, view] : session.views) {
+            if (!std::holds_alternative<VolumeView>(view)) continue;
+            const ImGuiWindow* window = ImGui::FindWindowByName(("###pane." + pane).c_str());
+            if (!window || !window->WasActive) continue;
+            const VolumeView& shown = std::get<VolumeView>(view);
+            const glm::dvec2 extent = boxExtent(shown.camera ? *shown.camera : session.camera, world);
+            EXPECT_LE(extent.y, 1) << layout << ' ' << pane;
+            EXPECT_LE(extent.x, double(window->Size.x / window->Size.y)) << layout << ' ' << pane;
+        }
+    };
+    OpenRequest request;
+    request.data.emplace();
+    request.data->model = "fuel-cell";
+    request.data->settings = {{"nx", 5}, {"ny", 5}, {"nz", 21}, {"times", 2}};
+    for (const std::string layout : {"compression_error", "overview", "gases"}) {
+        request.layout = layout;
+        const vis::Camera camera = loadSession(findLayout(layout)).session.camera;
+        workbench.open(request);
+        settle();
+        expectWhole(layout);
+        EXPECT_EQ(workbench.session().camera.orientation, camera.orientation) << "the direction stays";
+        EXPECT_FALSE(workbench.document().dirty()) << "nobody has changed anything";
+    }
+    // A saved session is as it was.
+    workbench.session().camera.distance = 0.7f;
+    frame();
+    workbench.document().save("near.tessera.json");
+    request = {};
+    request.paths = {"near.tessera.json"};
+    workbench.open(request);
+    settle();
+    EXPECT_EQ(workbench.session().camera.distance, 0.7f);
+    // By the menu, which takes it back as one step.
+    ASSERT_TRUE(run("Gases"));
+    settle();
+    expectWhole("gases from the menu");
+}
+
+// A file of one's own is packed beside itself, in the layout as it is chosen in the menu.
+TEST_F(WorkbenchOpening, TheLayoutOfErrorsPacksAFileOfOnesOwn) {
+    std::string bytes;
+    for (int z = 0; z < 8; ++z)
+        for (int y = 0; y < 9; ++y)
+            for (int x = 0; x < 10; ++x) {
+                const float value = std::sin(0.3f * float(x)) + std::cos(0.2f * float(y + z));
+                bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+            }
+    write("waves.raw", bytes);
+    write("waves.json", R"({"dims":[10,9,8],"dtype":"float32"})");
+    OpenRequest request;
+    request.paths = {"waves.raw"};
+    workbench.open(request);
+    settle();
+    ASSERT_EQ(shown(), "waves.raw");
+    const std::string own = workbench.source()->info().parameters.at(0).name;
+    ASSERT_TRUE(run("Compression error"));
+    settle();
+    EXPECT_EQ(shown(), "waves.raw");
+    EXPECT_TRUE(workbench.session().data.originals);
+    EXPECT_TRUE(workbench.session().data.packed);
+    EXPECT_EQ(std::get<SlicesView>(workbench.session().views.at("slices")).channel, own + " error");
+    const volume::DatasetInfo& info = workbench.source()->info();
+    const auto error = info.findChannel(own + " error"), value = info.findChannel(own);
+    ASSERT_TRUE(error);
+    ASSERT_TRUE(value);
+    const Range errors = info.channelRange(info.channel(*error)), values = info.channelRange(info.channel(*value));
+    EXPECT_GT(errors.hi - errors.lo, 0) << "it was packed with loss";
+    EXPECT_LT(errors.hi - errors.lo, 0.3 * (values.hi - values.lo));
 }
 
 // A session whose data are other ones now is not the one that was saved: that stands longer than what was done.

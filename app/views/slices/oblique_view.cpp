@@ -94,7 +94,7 @@ void drawTools(ViewContext& context, ToolRow& tools, ObliqueView& view, const Fl
 std::optional<PlotFrame> placePicture(const ObliqueRooms& rooms, const FlatSlice& flat, bool axes) {
     const glm::dvec2 unit = flat.perUnit();
     const Range x{flat.x.lo * unit.x, flat.x.hi * unit.x}, y{flat.y.lo * unit.y, flat.y.hi * unit.y};
-    ImVec2 lo{rooms.picture.x, rooms.picture.y + em() * 1.35f}, hi = rooms.pictureEnd;
+    ImVec2 lo{rooms.picture.x, rooms.picture.y + em() * (axes ? kTitleAbove : 1.35f)}, hi = rooms.pictureEnd;
     if (axes) {
         lo.x += axisRoom(AxisSide::Left, y, false);
         hi = {hi.x - em() * 0.8f, hi.y - axisRoom(AxisSide::Bottom, x, false)};
@@ -242,7 +242,9 @@ void drawNumbersOf(ViewContext& context, const ObliqueView& view, const Readout&
         ImGui::PopTextWrapPos();
     }
     if (!view.showReadout || !context.decoration.cursor) return;
-    drawReadout(context, readout, readoutHeight(readout) > ImGui::GetContentRegionAvail().y);
+    const float room = ImGui::GetContentRegionAvail().y;
+    if (readoutHeight(readout) <= room) return drawReadout(context, readout);
+    drawRunningReadout(context, readout, room);
 }
 
 } // namespace

@@ -34,6 +34,8 @@ struct PlaneFrame {
     bool beside = false;  ///< its place stands at its right
     bool shared = false;  ///< the numbers of its lower axis are those of the slice below
     float left = 0;       ///< room of the vertical axis
+    float title = 1e6f;   ///< of its title, before the place of the slice
+    float least = 0;      ///< sides of the smallest room for a picture
     ImVec2 min, max;      ///< the pane
     ImVec2 lo, hi;        ///< what is left for the picture
     glm::dvec2 perUnit{1};
@@ -53,15 +55,17 @@ PlaneFrame planeFrame(const Session& session, const volume::DatasetInfo& info, i
     frame.numbered = rooms.axes;
     frame.beside = rooms.beside[static_cast<std::size_t>(index)];
     frame.shared = rooms.shared[static_cast<std::size_t>(index)];
+    frame.least = leastPicture(rooms, em());
     frame.perUnit = {frame.right.unit.perUnit, frame.up.unit.perUnit};
     const auto range = [&](int axis, const LengthUnit& unit) {
         return Range{info.bounds.lo[axis] * unit.perUnit, info.bounds.hi[axis] * unit.perUnit};
     };
     frame.rangeX = range(axes.right, frame.right.unit), frame.rangeY = range(axes.up, frame.up.unit);
-    // Slices below each other begin at the same pixel, whatever their numbers.
+    // Slices below each other begin at the same pixel, whatever their numbers. Where their place stands at the right,
+    // the title of the vertical axis stands upright at the left: nothing is above them.
     for (const SliceAxes& each : rooms.turned) {
         const AxisLabel& label = labels[std::size_t(each.up)];
-        frame.left = std::max(frame.left, axisRoom(AxisSide::Left, range(each.up, label.unit), false));
+        frame.left = std::max(frame.left, axisRoom(AxisSide::Left, range(each.up, label.unit), frame.beside));
     }
     const float bottom = axisRoom(AxisSide::Bottom, frame.rangeX, false);
     const SliceMargins around = sliceMargins(rooms, index, frame.left / em(), bottom / em());
@@ -73,7 +77,7 @@ PlaneFrame planeFrame(const Session& session, const volume::DatasetInfo& info, i
 /// Pixels per length of the largest picture with the proportions of the stretched box; 0 if there is no room for one or
 /// the box is flat.
 double planeScale(const PlaneFrame& frame, const vis::WorldFrame& world) {
-    if (frame.hi.x - frame.lo.x < em() * 2 || frame.hi.y - frame.lo.y < em() * 2) return 0;
+    if (frame.hi.x - frame.lo.x < frame.least || frame.hi.y - frame.lo.y < frame.least) return 0;
     const double worldX = world.halfSize[frame.axes.right], worldY = world.halfSize[frame.axes.up];
     if (!(worldX > 0) || !(worldY > 0)) return 0;
     return std::min((frame.hi.x - frame.lo.x) / worldX, (frame.hi.y - frame.lo.y) / worldY);
@@ -99,7 +103,7 @@ bool placePlane(PlaneFrame& frame, const vis::WorldFrame& world, double scale) {
 
 /// The head line, or the line beside the picture, names the slice and its place, in the colour of the axis it is
 /// perpendicular to.
-void drawPlaneTitle(const PlaneFrame& frame, const Session& session, const volume::DatasetInfo& info) {
+void drawPlaneTitle(PlaneFrame& frame, const Session& session, const volume::DatasetInfo& info) {
     const int axis = frame.axes.normal;
     const LengthUnit& unit = frame.normal.unit;
     const std::string name(frame.normal.name);
@@ -119,6 +123,7 @@ void drawPlaneTitle(const PlaneFrame& frame, const Session& session, const volum
     const ImVec2 size = ImGui::CalcTextSize(place.c_str());
     const ImVec2 from = frame.beside ? ImVec2{std::round(left), frame.plot.min.y}
                                      : ImVec2{std::round(frame.hi.x - size.x), frame.min.y};
+    if (!frame.beside) frame.title = from.x - frame.min.x - em() * 0.4f;
     ImGui::GetWindowDrawList()->AddText(from, axisColor(axis), place.c_str());
     tellWhole(from, {from.x + size.x, from.y + size.y}, whole, place);
 }
@@ -202,8 +207,11 @@ void drawOverPlane(ViewContext& context, SlicePlanes& planes, const std::string&
         if (!frame.shared)
             drawAxis(draw, frame.plot, AxisSide::Bottom, frame.right.name, frame.right.unit.name, frame.min.x,
                      std::min(frame.max.x, frame.plot.max.x + em() * 4), {.inlineTitle = true});
-        drawAxis(draw, frame.plot, AxisSide::Left, frame.up.name, frame.up.unit.name, frame.min.y, frame.max.y,
-                 {.inlineTitle = true, .room = frame.left});
+        const auto fits = [&](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x <= frame.title; };
+        const std::string& unit = frame.up.unit.name;
+        const bool whole = fits(titleWithUnit(frame.up.name, unit)), named = whole || fits(frame.up.name);
+        drawAxis(draw, frame.plot, AxisSide::Left, named ? frame.up.name : "", whole ? unit : "", frame.min.y,
+                 frame.max.y, {.inlineTitle = !frame.beside, .room = frame.left});
     }
     draw.PushClipRect(frame.plot.min, frame.plot.max, true);
     if (lines.channel)

@@ -1,5 +1,7 @@
 #include "app/views/slices/slice_rooms.h"
 
+#include "app/pane/plot.h"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/vec2.hpp>
@@ -13,12 +15,27 @@ namespace {
 constexpr glm::vec2 kRoomy{20, 14};         // em: from here on always quarters
 constexpr glm::vec2 kAxesRoom{3.2f, 1.45f}; // em: what axes take at the left and below
 constexpr float kApart = 1;                 // em: between slices without axes
+constexpr float kTitleAside = 1.3f;         // em: an upright title at the left of an axis
 constexpr float kPlaceBeside = 6.2f;        // em: the place of a slice at its right
 constexpr float kNumbers = 26;              // em: width from which on there are numbers beside a row
+constexpr float kValues = 2.4f;             // em: two lines of values
+constexpr float kLegend = 3.7f;             // em: a legend
 constexpr double kMuchLarger = 1.3;
 // The longest edge of a box that is looked at along it, by the next: in a roomy pane, quarters have more room for
 // numbers.
 constexpr double kLongEdge = 1.8, kLongEdgeRoomy = 4;
+
+/// What stands above the picture of a slice, in em.
+float topOf(bool beside, bool axes) {
+    return beside ? 0.3f : axes ? kTitleAbove : 1.35f;
+}
+
+int longestEdge(glm::dvec3 half) {
+    int longest = 0;
+    for (const int axis : {1, 2})
+        if (half[axis] > half[longest]) longest = axis;
+    return longest;
+}
 
 /// Size of the first of two columns or rows whose plots share `room` in proportion to the box, none too narrow to
 /// read; each has `around` pixels of axes besides.
@@ -38,13 +55,12 @@ SliceRooms quarters(ImVec2 min, ImVec2 room, glm::dvec3 half, float em) {
     const float gap = em * 0.3f;
     return {SliceOrder::Quarters,
             {{{min, {x - gap, y - gap}}, {{x + gap, min.y}, {max.x, y - gap}}, {{min.x, y + gap}, {x - gap, max.y}}}},
-            {{x + gap * 2, y + gap}, max},
-            true};
+            {{x + gap * 2, y + gap}, max}};
 }
 
 /// Beside each other, as wide as they are high together; in a wide pane with the numbers at the end.
 SliceRooms inRow(ImVec2 min, ImVec2 room, glm::dvec3 half, float em) {
-    SliceRooms out{SliceOrder::Row, {}, {}, true};
+    SliceRooms out{.order = SliceOrder::Row, .planes = {}, .numbers = {}};
     const ImVec2 max{min.x + room.x, min.y + room.y};
     const float gap = em * 0.6f;
     const float numbers = room.x < kNumbers * em ? 0 : std::clamp(room.x * 0.25f, em * 8, em * 14);
@@ -65,7 +81,7 @@ SliceRooms inRow(ImVec2 min, ImVec2 room, glm::dvec3 half, float em) {
 }
 
 SliceRooms inColumn(ImVec2 min, ImVec2 room, float em) {
-    SliceRooms out{SliceOrder::Column, {}, {}, true};
+    SliceRooms out{.order = SliceOrder::Column, .planes = {}, .numbers = {}};
     const float gap = em * 0.4f, height = std::floor((room.y - 2 * gap) / 3);
     for (std::size_t i = 0; i < 3; ++i) {
         const float y = min.y + (height + gap) * static_cast<float>(i);
@@ -74,36 +90,51 @@ SliceRooms inColumn(ImVec2 min, ImVec2 room, float em) {
     return out;
 }
 
+/// Heights of the rooms of two slices below each other that share an axis, with `around` pixels above each picture and
+/// those of the axis below the last. `heights`: those of their pictures where they take the whole width; less where
+/// these have no room.
+std::array<float, 2> rowHeights(std::array<double, 2> heights, float around, float axis, float room) {
+    const float pictures = room - axis - 2 * around;
+    const double sum = heights[0] + heights[1], share = sum > 0 ? heights[0] / sum : 0.5;
+    const float first = sum < double(pictures) ? std::ceil(float(heights[0]))
+                                               : std::round(pictures * float(std::clamp(share, 0.25, 0.75)));
+    const float second = sum < double(pictures) ? std::ceil(float(heights[1])) : pictures - first;
+    return {around + first, around + second + axis};
+}
+
 /// The slices along the longest edge, which all have to the right, below each other, beside the one across it with the
-/// numbers below. Nothing where there is no room for two columns.
-std::optional<SliceRooms> inRows(ImVec2 min, ImVec2 room, glm::dvec3 half, int longest, float em, bool beside) {
-    const float gap = em * 0.5f, column = std::clamp(room.x * 0.3f, em * 8, em * 16), across = room.y * 0.6f;
+/// numbers below. What the slices leave of their column is the room of values. Nothing where there is no room for two
+/// columns.
+std::optional<SliceRooms> inRows(ImVec2 min, ImVec2 room, glm::dvec3 half, float em, bool beside, bool axes) {
+    const int longest = longestEdge(half);
+    const float gap = em * 0.5f, column = std::clamp(room.x * 0.3f, em * 8, em * 16);
     if (room.x < column + em * 12 || room.y < em * 7) return std::nullopt;
-    SliceRooms out{.order = SliceOrder::Rows, .planes = {}, .numbers = {}};
+    SliceRooms out{.order = SliceOrder::Rows, .planes = {}, .numbers = {}, .values = {}, .axes = axes};
     const ImVec2 max{min.x + room.x, min.y + room.y};
-    double halves = 0;
-    for (const SliceAxes& plane : kSlicePlanes)
-        if (plane.normal != longest) halves += half[plane.right + plane.up - longest];
-    const float around = (beside ? 0.3f : 1.35f) * em, axis = kAxesRoom.y * em,
-                pictures = room.y - gap - axis - 2 * around;
+    const double scale = (room.x - column - gap - (beside ? kPlaceBeside : 0) * em) / half[longest];
+    std::array<double, 2> heights{};
+    for (std::size_t i = 0, row = 0; i < 3; ++i)
+        if (const SliceAxes& plane = kSlicePlanes[i]; plane.normal != longest)
+            heights[row++] = scale * half[plane.right + plane.up - longest];
+    const auto rows = rowHeights(heights, topOf(beside, axes) * em, (axes ? kAxesRoom.y : 0) * em, room.y - gap);
+    const float values = min.y + rows[0] + rows[1] + gap;
+    const bool apart = max.y - values >= kValues * em;
+    const float across = std::max(room.y * 0.6f, apart ? room.y - gap - kLegend * em : 0.0f);
     float y = min.y;
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0, row = 0; i < 3; ++i) {
         const SliceAxes& plane = kSlicePlanes[i];
         if (plane.normal == longest) {
             out.planes[i] = {min, {min.x + column, min.y + across}};
             continue;
         }
-        const int other = plane.right + plane.up - longest;
-        const bool first = y == min.y;
-        const double share = halves > 0 ? half[other] / halves : 0.5;
-        const float own = first ? std::round(around + pictures * float(std::clamp(share, 0.25, 0.75))) : max.y - y;
-        out.turned[i] = {longest, other, plane.normal};
+        out.turned[i] = {longest, plane.right + plane.up - longest, plane.normal};
         out.beside[i] = beside;
-        out.shared[i] = first;
-        out.planes[i] = {{min.x + column + gap, y}, {max.x, y + own}};
-        y += own + gap;
+        out.shared[i] = row == 0;
+        out.planes[i] = {{min.x + column + gap, y}, {max.x, y + rows[row]}};
+        y += rows[row++] + gap;
     }
     out.numbers = {{min.x, min.y + across + gap}, {min.x + column, max.y}};
+    if (apart) out.values = {{min.x + column + gap, values}, max};
     return out;
 }
 
@@ -137,10 +168,13 @@ double area(const SliceRooms& rooms, glm::dvec3 half, float em) {
         const ImVec2 size = rooms.planes[at].size();
         const double wide = half[rooms.turned[at].right], high = half[rooms.turned[at].up];
         if (!(wide > 0) || !(high > 0)) continue;
-        const SliceMargins around = sliceMargins(rooms, i, kAxesRoom.x, kAxesRoom.y);
+        const float axis = kAxesRoom.x + (rooms.beside[at] ? kTitleAside : 0);
+        const SliceMargins around = sliceMargins(rooms, i, axis, kAxesRoom.y);
         const float apart = rooms.axes ? 0 : kApart; // pictures without axes between them
-        const double scale = std::min(std::max(0.0f, size.x - (around.left + around.right + apart) * em) / wide,
-                                      std::max(0.0f, size.y - (around.top + around.bottom + apart / 4) * em) / high);
+        const ImVec2 left{size.x - (around.left + around.right + apart) * em,
+                          size.y - (around.top + around.bottom + apart / 4) * em};
+        if (std::min(left.x, left.y) < leastPicture(rooms, em)) continue;
+        const double scale = std::min(left.x / wide, left.y / high);
         sum += scale * scale * wide * high;
     }
     return sum;
@@ -154,23 +188,25 @@ std::vector<SliceRooms> others(ImVec2 min, ImVec2 room, glm::dvec3 half, float e
         out.push_back(inRow(min, room, half, em));
         out.push_back(inColumn(min, room, em));
     }
-    int longest = 0;
-    for (const int axis : {1, 2})
-        if (half[axis] > half[longest]) longest = axis;
+    const int longest = longestEdge(half);
     if (half[longest] <
         (roomy ? kLongEdgeRoomy : kLongEdge) * std::max(half[(longest + 1) % 3], half[(longest + 2) % 3]))
         return out;
     for (const bool beside : {true, false})
-        if (auto rows = inRows(min, room, half, longest, em, beside)) out.push_back(*rows);
+        if (auto rows = inRows(min, room, half, em, beside, roomy)) out.push_back(*rows);
     if (auto columns = inColumns(min, room, longest, em)) out.push_back(*columns);
     return out;
 }
 
 } // namespace
 
+float leastPicture(const SliceRooms& rooms, float em) {
+    return rooms.order == SliceOrder::Rows ? 1 : em * 2;
+}
+
 SliceMargins sliceMargins(const SliceRooms& rooms, int index, float leftAxis, float bottomAxis) {
     const bool beside = rooms.beside[std::size_t(index)], shared = rooms.shared[std::size_t(index)];
-    SliceMargins out{0, beside ? 0.3f : 1.35f, beside ? kPlaceBeside : 0, 0};
+    SliceMargins out{0, topOf(beside, rooms.axes), beside ? kPlaceBeside : 0, 0};
     if (!rooms.axes) return out;
     return {leftAxis, out.top, std::max(out.right, 0.8f), shared ? 0 : bottomAxis};
 }
@@ -190,8 +226,13 @@ SliceRooms sliceRooms(ImVec2 min, ImVec2 room, glm::dvec3 half, float em, bool w
         best = other;
         most = least = own;
     }
-    if (!roomy) best.axes = area(best, half, em) * 2 > most;
-    return best;
+    if (roomy) return best;
+    best.axes = true;
+    const bool beside = std::ranges::find(best.beside, true) != best.beside.end();
+    if (best.order == SliceOrder::Rows) best = *inRows(min, room, half, em, beside, true);
+    if (area(best, half, em) * 2 > most) return best;
+    best.axes = false;
+    return best.order == SliceOrder::Rows ? *inRows(min, room, half, em, beside, false) : best;
 }
 
 } // namespace tessera::app

@@ -20,8 +20,8 @@ struct SliceRoom {
 struct SliceRooms {
     SliceOrder order = SliceOrder::Quarters;
     std::array<SliceRoom, 3> planes; ///< by index of kSlicePlanes
-    SliceRoom numbers;
-    bool axes = true;                                                                   ///< numbers along the slices
+    SliceRoom numbers, values = {};  ///< values have a room apart from the legend where they have an extent
+    bool axes = true;                ///< numbers along the slices
     std::array<SliceAxes, 3> turned{kSlicePlanes[0], kSlicePlanes[1], kSlicePlanes[2]}; ///< to the right and up
     std::array<bool, 3> beside{}; ///< the place of the slice stands at the right of it, not above
     std::array<bool, 3> shared{}; ///< the slice below has the numbers of its lower axis
@@ -32,6 +32,9 @@ struct SliceRooms {
 /// slices lie in a row or a column, where they are much larger so; without axes where these would take most of the
 /// room. `em`: height of the font. `whole`: always quarters with axes, as in figures.
 SliceRooms sliceRooms(ImVec2 min, ImVec2 room, glm::dvec3 half, float em, bool whole = false);
+
+/// The least side of the room for a picture, pixels: slices along a long edge have no more than their pictures need.
+float leastPicture(const SliceRooms& rooms, float em);
 
 /// What the place of a slice and its axes take around its picture, in em, where the axes alone take this much.
 struct SliceMargins {

@@ -61,25 +61,51 @@ void drawStretch(const ViewContext& context) {
     }
 }
 
-/// Legend and read-out in the quarter that the three slices leave.
-void drawNumbers(ViewContext& context, const SlicesView& view, const Readout& values, int channel,
-                 const DrawnContours& lines) {
+void drawSliceLegend(const ViewContext& context, const SlicesView& view, const Readout& readout, int channel,
+                     const DrawnContours& lines) {
     const volume::DatasetInfo& info = context.source->info();
     LegendEntry legend = legendOf(context.session, info, channel);
-    if (const auto value = values.value(info.channel(channel).name); value && context.decoration.cursor)
+    if (const auto value = readout.value(info.channel(channel).name); value && context.decoration.cursor)
         legend.marker = *value;
-    // If the table does not fit below the legend, the values come first, as running text; after the legend, which is
-    // whole, in figures and where both have no room, so that values scroll.
-    const std::string note = contourNote(info, view.lines, lines);
-    const float legends = legendBarHeight() + (note.empty() ? 0 : ImGui::GetTextLineHeightWithSpacing());
-    const bool readout = view.showReadout && context.decoration.cursor;
-    const bool compact = readout && legends + readoutHeight(values) > ImGui::GetContentRegionAvail().y;
-    const bool first = compact && !context.figure && ImGui::GetScrollMaxY() <= 0;
-    if (first) drawReadout(context, values, true);
+    if (ImGui::GetContentRegionAvail().y < legendBarHeight()) legend.title = legend.unit = ""; // the tools have it
     // What is left out keeps its place: the rest stays where it is.
     legendBarItem(legend, context.decoration.legend);
-    if (context.decoration.legend) drawContourNote(note);
-    if (readout && !first) drawReadout(context, values, compact);
+    if (context.decoration.legend) drawContourNote(contourNote(info, view.lines, lines));
+}
+
+/// Legend and read-out in the room that the three slices leave, or the read-out in one of its own.
+void drawNumbers(ViewContext& context, const SlicesView& view, const Readout& values, int channel,
+                 const DrawnContours& lines, const SliceRooms& rooms) {
+    const bool readout = view.showReadout && context.decoration.cursor;
+    const auto within = [&](const char* id, const SliceRoom& room, const auto& body) {
+        const ImVec2 size = room.size();
+        if (size.x < em() || size.y < em()) return;
+        ImGui::SetCursorScreenPos(room.min);
+        ImGui::BeginChild(id, size, false, ImGuiWindowFlags_NoScrollbar);
+        body(size.y);
+        ImGui::EndChild();
+    };
+    const auto legend = [&] { drawSliceLegend(context, view, values, channel, lines); };
+    const bool apart = rooms.values.size().x > 0;
+    within("legend", rooms.numbers, [&](float room) {
+        if (!readout || apart) return legend();
+        const std::string note = contourNote(context.source->info(), view.lines, lines);
+        const float left = room - legendBarHeight() - em() * 0.3f - ImGui::GetStyle().ItemSpacing.y -
+                           (note.empty() ? 0 : ImGui::GetTextLineHeightWithSpacing());
+        if (readoutHeight(values) <= left) {
+            legend();
+            return drawReadout(context, values);
+        }
+        // Values in running lines change their number of lines, so that the legend comes after them; but in figures.
+        if (context.figure) legend();
+        const bool any = left >= ImGui::GetTextLineHeight();
+        if (any) drawRunningReadout(context, values, left);
+        if (!context.figure) legend();
+        const ImVec2 max = rooms.numbers.max;
+        if (!any) tellWhole(rooms.numbers.min, max, readoutText(context, values), "");
+    });
+    if (readout && apart)
+        within("values", rooms.values, [&](float room) { drawRunningReadout(context, values, room); });
 }
 
 } // namespace
@@ -110,12 +136,7 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
         sliceRooms(ImGui::GetCursorScreenPos(), room, vis::worldFrame(info.bounds, context.session.stretch).halfSize,
                    em(), context.figure);
     for (int i = 0; i < 3; ++i) drawSlicePlane(context, cache.planes, pane, view, name, lines, i, rooms);
-    const ImVec2 size = rooms.numbers.size();
-    if (size.x < em() || size.y < em()) return;
-    ImGui::SetCursorScreenPos(rooms.numbers.min);
-    ImGui::BeginChild("readout", size, false, context.figure ? ImGuiWindowFlags_NoScrollbar : ImGuiWindowFlags_None);
-    drawNumbers(context, view, readout, *channel, lines);
-    ImGui::EndChild();
+    drawNumbers(context, view, readout, *channel, lines, rooms);
 }
 
 } // namespace tessera::app

@@ -9,12 +9,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace tessera::app {
 
 namespace {
 
-constexpr float kNumbersFrom = 2.6f; ///< em: height of the track that has room for numbers
+constexpr float kTrack = 1.4f;       ///< em: least height of the track
+constexpr float kNumbersFrom = 2.6f; ///< em: height of the track that has room for numbers below
 
 struct TimelineCache : ViewCache {
     Playback playback;
@@ -110,20 +112,36 @@ void drawPlace(Session& session, ToolRow& tools) {
         tooltip("Position of the plane along the axis; the data are read again when you release the mouse");
 }
 
-/// The track: one mark per stored time, the knob at the time shown, physical time below.
-void drawTrack(ViewContext& context, TimelineCache& cache, const volume::DatasetInfo& info, float height) {
+/// The line of a track of this size. One without room for numbers below has the first and the last time beside it.
+PlotFrame trackFrame(const volume::DatasetInfo& info, ImVec2 origin, ImVec2 size) {
+    const bool low = size.y < em() * kNumbersFrom;
+    const float pad = em() * 0.8f, y = std::round(origin.y + (low ? size.y / 2 : pad));
+    PlotFrame frame{{origin.x + pad, y - em() * 0.5f},
+                    {origin.x + size.x - pad, y + em() * 0.45f},
+                    paddedRange({info.times.front(), info.times.back()}),
+                    {0, 1}};
+    const std::string first = timeValueText(info, info.times.front()), last = timeValueText(info, info.times.back());
+    const float left = ImGui::CalcTextSize(first.c_str()).x, right = ImGui::CalcTextSize(last.c_str()).x;
+    if (!low || frame.width() - left - right < em() * 5) return frame;
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const float top = std::round(y - em() / 2);
+    draw.AddText({origin.x, top}, plotColors().faint, first.c_str());
+    draw.AddText({std::round(origin.x + size.x - right), top}, plotColors().faint, last.c_str());
+    frame.min.x += left;
+    frame.max.x -= right;
+    return frame;
+}
+
+/// The track: one mark per stored time, the knob at the time shown, physical time below or beside it.
+void drawTrack(ViewContext& context, TimelineCache& cache, const volume::DatasetInfo& info, ImVec2 size) {
     Session& session = context.session;
     const std::vector<double>& times = info.times;
     const ImVec2 origin = ImGui::GetCursorScreenPos();
-    const float width = ImGui::GetContentRegionAvail().x;
-    if (width < em() * 4) return;
-    ImGui::InvisibleButton("track", {width, height});
+    if (size.x < em() * 4) return;
+    ImGui::InvisibleButton("track", size);
     const bool hovered = ImGui::IsItemHovered(), held = ImGui::IsItemActive();
-    const float pad = em() * 0.8f, y = std::round(origin.y + em() * 0.8f);
-    const PlotFrame frame{{origin.x + pad, y - em() * 0.5f},
-                          {origin.x + width - pad, y + em() * 0.45f},
-                          paddedRange({times.front(), times.back()}),
-                          {0, 1}};
+    const PlotFrame frame = trackFrame(info, origin, size);
+    const float y = frame.min.y + em() * 0.5f;
     if (held && times.size() > 1) {
         session.time = timeUnder(frame, times, ImGui::GetIO().MousePos);
         session.animation.playing = false;
@@ -151,7 +169,7 @@ void drawTrack(ViewContext& context, TimelineCache& cache, const volume::Dataset
         previous = x;
     }
     draw.AddCircleFilled({knob, y}, em() * (hovered || held ? 0.48f : 0.4f), colors.cursor, 24);
-    if (height >= em() * kNumbersFrom) drawAxis(draw, frame, AxisSide::Bottom, "", "", origin.x, origin.x + width);
+    if (size.y >= em() * kNumbersFrom) drawAxis(draw, frame, AxisSide::Bottom, "", "", origin.x, origin.x + size.x);
     if (hovered && !held) {
         const double under = timeUnder(frame, times, ImGui::GetIO().MousePos);
         ImGui::SetTooltip("%s  (%s)", stateText(info, under, session.data.axis).c_str(),
@@ -169,11 +187,12 @@ void drawText(ToolRow& tools, const std::string& text, bool faint) {
     if (faint) ImGui::PopStyleColor();
 }
 
-/// The time shown, with quantities at that time.
-void drawNow(Session& session, const volume::DatasetInfo& info, ToolRow& tools) {
+/// The time shown, with quantities at that time. `track`: draws what comes before these.
+void drawNow(Session& session, const volume::DatasetInfo& info, ToolRow& tools, const std::function<void()>& track) {
     if (info.times.size() > 1) {
         const double now = std::clamp(session.time, info.times.front(), info.times.back());
         drawText(tools, timeText(info, now), false);
+        track();
         if (const std::string quantities = quantitiesText(info, now, session.data.axis); !quantities.empty())
             drawText(tools, quantities, false);
         drawText(tools, placeText(info.times, now), true);
@@ -202,20 +221,28 @@ void drawTimelineView(ViewContext& context, const std::string& pane, TimelineVie
         playOn(cache.playback, session, info.times, double(ImGui::GetIO().DeltaTime));
         context.busy = true;
     }
+    // A pane without room below the tools has the track among them.
+    const bool among = many && ImGui::GetContentRegionAvail().y < ImGui::GetFrameHeightWithSpacing() + kTrack * em();
     {
         ToolRow tools(context);
         drawButtons(context, tools, info.times, info.nearestTime(session.time));
-        const bool scarce = tools.room() < em() * 48; // then the time comes before what is rarely changed
-        if (scarce) drawNow(session, info, tools);
+        const auto track = [&] {
+            const float least = em() * 9;
+            if (among && tools.next(least, em()))
+                drawTrack(context, cache, info, {tools.grow(least, tools.room()), ImGui::GetFrameHeight()});
+        };
+        const bool scarce = among || tools.room() < em() * 48; // then the time comes before what is rarely changed
+        if (scarce) drawNow(session, info, tools, track);
         drawPlaying(context, tools, many);
-        if (!scarce) drawNow(session, info, tools);
+        if (!scarce) drawNow(session, info, tools, track);
         if (many) chooseAxis(context, tools, info);
         drawKeyframeButtons(context, tools);
     }
     // Rows of keys come before the numbers below the track; what has no room scrolls.
     const float rows = keyed ? keyframesHeight(session) : 0;
-    if (many)
-        drawTrack(context, cache, info, std::clamp(ImGui::GetContentRegionAvail().y - rows, em() * 1.4f, em() * 2.9f));
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    if (many && !among)
+        drawTrack(context, cache, info, {room.x, std::clamp(room.y - rows, kTrack * em(), em() * 2.9f)});
     if (keyed) drawKeyframes(context, std::clamp(ImGui::GetContentRegionAvail().y, std::min(rows, em() * 2.4f), rows));
 }
 
