@@ -1,4 +1,4 @@
-#include "app/data/merge_layouts.h"
+#include "app/command/merge_layouts.h"
 
 #include "app/data/format.h"
 
