@@ -16,7 +16,8 @@ packages=(
     libvtk9-dev libtiff-dev                                          # tessera-import: readers of foreign formats
 )
 test_packages=( # only ./test.sh needs these
-    libgtest-dev libgmock-dev clang-format glslang-tools xvfb xdotool xauth x11-utils
+    libgtest-dev libgmock-dev clang-format glslang-tools xvfb xdotool xauth
+    poppler-utils librsvg2-bin                            # figures as other programs read them
     pybind11-dev python3-dev python3-numpy python3-xarray # the Python package
 )
 case $(. /etc/os-release && echo "${ID:-} ${VERSION_ID:-}") in
@@ -32,8 +33,8 @@ if ! command -v apt-get >/dev/null; then
     echo "    gcc-c++ cmake ninja-build pkgconf glm-devel json-devel cli11-devel tbb-devel libzstd-devel xz-devel" >&2
     echo "    xxhash-devel libpng-devel libcurl-devel muParser-devel imgui-devel stb-devel freetype-devel cairo-devel glfw-devel libepoxy-devel" >&2
     echo "    mesa-libEGL-devel mesa-dri-drivers google-roboto-fonts fontawesome4-fonts vtk-devel libtiff-devel" >&2
-    echo "    zlib-devel; for tests: gtest-devel gmock-devel clang-tools-extra xorg-x11-server-Xvfb xdotool; for the Python" >&2
-    echo "    package: pybind11-devel python3-devel python3-numpy python3-xarray" >&2
+    echo "    zlib-devel; for tests: gtest-devel gmock-devel clang-tools-extra glslang xorg-x11-server-Xvfb xdotool xorg-x11-xauth" >&2
+    echo "    poppler-utils librsvg2-tools; for the Python package: pybind11-devel python3-devel python3-numpy python3-xarray" >&2
     exit 0
 fi
 

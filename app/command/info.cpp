@@ -1,7 +1,7 @@
 #include "app/command/command.h"
+#include "app/command/merge_layouts.h"
 #include "app/data/format.h"
 #include "app/data/import_options.h"
-#include "app/data/merge_layouts.h"
 #include "app/data/open.h"
 #include "app/data/picture_session.h"
 #include "app/described/describe_cli.h"
@@ -11,6 +11,7 @@
 #include "codec/container/exactness.h"
 #include "codec/pack/error_bound.h"
 #include "codec/remote/address.h"
+#include "volume/base/byte_text.h"
 #include "volume/import/find_parts.h"
 #include "volume/import/import.h"
 
@@ -106,7 +107,7 @@ void printArchive(const codec::Archive& archive) {
     const volume::DatasetInfo& info = archive.info();
     const volume::BrickGrid& grid = archive.grid();
     const glm::dvec3 extent = info.bounds.size();
-    std::printf("%s (archive, %s, %s)\n", info.name.c_str(), bytesText(double(archive.fileBytes())).c_str(),
+    std::printf("%s (archive, %s, %s)\n", info.name.c_str(), textOfBytes(double(archive.fileBytes())).c_str(),
                 codec::exactnessText(archive.metadata()).c_str());
     std::printf("  samples    %s on %s, from a grid of %s\n", triple(info.lattice.size).c_str(),
                 archive.metadata().alternating                  ? "D4* (each time)"
@@ -120,13 +121,13 @@ void printArchive(const codec::Archive& archive) {
     if (archive.commits() > 1) std::printf("  written    in %d steps\n", archive.commits());
     std::printf("  bricks     %s of %d, levels from fine to coarse:", triple(grid.count()).c_str(), grid.brickSize);
     for (int level = 0; level < grid.levels; ++level)
-        std::printf("%s %s", level > 0 ? "," : "", bytesText(double(archive.levelBytes(level))).c_str());
+        std::printf("%s %s", level > 0 ? "," : "", textOfBytes(double(archive.levelBytes(level))).c_str());
     std::printf("\n");
     if (archive.maskCount() > 0)
-        std::printf("  masks      %d, %s\n", archive.maskCount(), bytesText(double(archive.maskBytes())).c_str());
+        std::printf("  masks      %d, %s\n", archive.maskCount(), textOfBytes(double(archive.maskBytes())).c_str());
     if (const auto repeats = archive.repeats(); repeats.bricks > 0)
         std::printf("  repeats    %llu bricks equal those of the time before, which saves %s\n",
-                    static_cast<unsigned long long>(repeats.bricks), bytesText(double(repeats.bytes)).c_str());
+                    static_cast<unsigned long long>(repeats.bricks), textOfBytes(double(repeats.bytes)).c_str());
     std::printf("  parameters\n");
     for (std::size_t p = 0; p < info.parameters.size(); ++p) {
         const volume::Parameter& parameter = info.parameters[p];

@@ -1,5 +1,6 @@
 #include "app/command/command.h"
 #include "app/command/picture_options.h"
+#include "app/data/apply_layout.h"
 #include "app/data/import_options.h"
 #include "app/platform/window.h"
 

@@ -132,6 +132,10 @@ void aimFunction(Session& session, const volume::BrickSource& source, const std:
     }
 }
 
+double firstAspect(const volume::DatasetInfo& info) {
+    return info.times.size() > 1 ? 0.92 : 0.78;
+}
+
 void aimFirstView(Session& session, const volume::BrickSource& source, double aspect) {
     const volume::DatasetInfo& info = source.info();
     const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);

@@ -7,6 +7,9 @@
 /// Adapts the default session to the samples, so that the first picture shows something.
 namespace tessera::app {
 
+/// Width by height of the volume pane in a new window, labels taken off: with and without a timeline below it.
+double firstAspect(const volume::DatasetInfo& info);
+
 /// Moves the camera so that the box fills the picture (`aspect`: width over height), from vis::firstOrientation()
 /// unless the session has a direction of its own; if the first layer's parameter is absent at the cross-hair, moves the
 /// cross-hair to the middle of its samples; makes the background of scans transparent in the default opacity curves, up

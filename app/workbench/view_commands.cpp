@@ -1,3 +1,4 @@
+#include "app/data/apply_layout.h"
 #include "app/data/packing_errors.h"
 #include "app/session/shown_scene.h"
 #include "app/ui/keys.h"

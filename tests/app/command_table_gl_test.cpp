@@ -1,3 +1,4 @@
+#include "app/data/apply_layout.h"
 #include "app/data/open.h"
 #include "app/session/shown_scene.h"
 #include "tests/app/workbench_fixture.h"

@@ -1,3 +1,4 @@
+#include "app/data/apply_layout.h"
 #include "app/data/open.h"
 #include "app/pane/view_parts.h"
 #include "app/platform/headless.h"

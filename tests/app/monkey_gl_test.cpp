@@ -1,3 +1,4 @@
+#include "app/data/apply_layout.h"
 #include "app/history/session_file.h"
 #include "app/platform/headless.h"
 #include "tests/app/workbench_fixture.h"

@@ -225,7 +225,7 @@ TEST_F(SaidViews, RunningValuesGiveUpUnitsBeforeNumbers) {
             ImGui::SetNextWindowPos({0, 0});
             ImGui::SetNextWindowSize({240, 400});
             ImGui::Begin("running", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
-            updateReadout(context, "running", readout);
+            updateReadout(context, readout);
             const float from = ImGui::GetCursorPosY();
             drawRunningReadout(context, readout, height);
             last = ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y - from;

@@ -1,6 +1,6 @@
 #include "app/bench/bench.h"
 #include "app/bench/data/bench_archives.h"
-#include "app/data/merge_layouts.h"
+#include "app/command/merge_layouts.h"
 
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"

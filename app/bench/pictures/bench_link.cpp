@@ -1,5 +1,6 @@
 #include "app/bench/data/enlarged_cell.h"
 #include "app/bench/pictures/timed_workbench.h"
+#include "app/data/apply_layout.h"
 #include "app/queries/statistics_query.h"
 #include "volume/sources/memory_source.h"
 
