@@ -1,3 +1,4 @@
+#include "app/data/apply_layout.h"
 #include "app/workbench/whole_box.h"
 #include "app/workbench/workbench_commands.h"
 #include "tests/app/drawn_text.h"

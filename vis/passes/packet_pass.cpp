@@ -68,6 +68,16 @@ void RenderStages::useSamples(ViewTarget& target, bool coarse) {
     target.redraw(target.buffers.everything());
 }
 
+namespace {
+
+/// Whether the picture of coarse samples is as good as it becomes: whole at half resolution, if not at full at once.
+bool showsCoarse(const ViewTarget& target, bool moving) {
+    const PictureState& state = target.state;
+    return target.packets.isCoarse && (state.full() || state.half() || (moving && state.reduced()));
+}
+
+} // namespace
+
 /// Chooses the samples that a call is drawn from, coarse ones until all are read; false if neither are there yet.
 bool RenderStages::findSamples(ViewTarget& target, const RenderCall& call) {
     PacketView& packets = target.packets;
@@ -79,8 +89,7 @@ bool RenderStages::findSamples(ViewTarget& target, const RenderCall& call) {
         if (coarseVolumes && !brief) some = packets.coarse.request(call.scene);
         // Reading all of large data leaves little to others, so their picture is drawn first; and who drags through
         // time must not start more reading than memory can hold.
-        const bool drawn =
-            some && packets.isCoarse && (target.state.full() || (call.request.moving && target.state.reduced()));
+        const bool drawn = some && showsCoarse(target, call.request.moving);
         if (!coarseVolumes || ((drawn || brief) && !volumes->reading())) all = packets.full.request(call.scene);
     }
     if (all) packets.lackingSince.reset();
@@ -99,7 +108,8 @@ bool RenderStages::drawByPackets(ViewTarget& target, const RenderCall& call, Clo
         target.shown.compiling = false;
         status.complete = here && !packets.isCoarse;
         if (here) {
-            refineByPackets(target, call, start);
+            if (!showsCoarse(target, call.request.moving)) refineByPackets(target, call, start);
+            status.waits = showsCoarse(target, call.request.moving);
             if (!call.request.wait && !packets.isCoarse) prefetchTime(packets, call);
         } else {
             status.waits = true;
