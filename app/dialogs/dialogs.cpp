@@ -44,7 +44,7 @@ public:
         const float room = ImGui::GetMainViewport()->Size.y - 2 * style.DisplaySafeAreaPadding.y -
                            ImGui::GetCursorPosY() - below - style.WindowPadding.y;
         child_ = ImGui::GetStateStorage()->GetFloat(id_) > room; // as high as in the last frame
-        if (child_) {                                            // Tab begins in it, and goes on to what is below
+        if (child_) {                                            // Tab goes through it and on to what is below
             ImGui::BeginChild("scrolled", {0, std::max(room, ImGui::GetFrameHeight())}, false,
                               ImGuiWindowFlags_NavFlattened);
             if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();

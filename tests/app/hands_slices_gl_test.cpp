@@ -62,11 +62,12 @@ TEST_F(SliceHands, TextsAroundSlicesAreClearOfEachOther) {
             for (const int height : {150, 190, 260, 420, 560}) drawnAt({width, height}, stretch);
 }
 
-// Below each other: the heights of y and x, 12 and 7 mm, alone would give them other scales.
+// Below each other, thin ones and those whose heights have no room: y and x are 12 and 7 mm, before they are stretched.
 TEST_F(SliceHands, SlicesThatShareAnAxisHaveOneScale) {
-    show(SlicesView{}, {460, 190}, [](Session& edited) { edited.stretch = {0.4, 1, 16}; });
-    for (const glm::ivec2 size : {glm::ivec2{460, 190}, {600, 220}}) {
-        frames.emplace(size);
+    show(SlicesView{}, {460, 190});
+    for (const glm::dvec3 stretch : {glm::dvec3(0.4, 1, 16), {0.2, 1, 6.5}}) {
+        session().stretch = stretch;
+        if (stretch.z < 10) frames.emplace(glm::ivec2{460, 172});
         settle();
         planes = pictures();
         ASSERT_EQ(planes.size(), 3u);
@@ -74,7 +75,7 @@ TEST_F(SliceHands, SlicesThatShareAnAxisHaveOneScale) {
         EXPECT_GT(zy.GetWidth(), 2 * zy.GetHeight());
         EXPECT_EQ(zy.Min.x, zx.Min.x);
         EXPECT_EQ(zy.GetWidth(), zx.GetWidth());
-        EXPECT_NEAR(zy.GetHeight() / 12, zx.GetHeight() / (7 * 0.4), 0.5) << "pixels per mm";
+        EXPECT_NEAR(zx.GetHeight(), double(zy.GetHeight()) / 12 * 7 * stretch.x, 1.01) << "pixels";
     }
 }
 
