@@ -2,6 +2,7 @@
 #include "app/data/format.h"
 #include "app/described/describe_cli.h"
 #include "codec/pack/pack.h"
+#include "volume/base/byte_text.h"
 #include "volume/export/export.h"
 #include "volume/synthetic/casting.h"
 #include "volume/synthetic/fuel_cell.h"
@@ -97,8 +98,8 @@ void run(const GenerateRequest& request) {
     volume::Dataset dataset = volume::makeModel(request.model, settings, progress.part(0, 0.7));
     if (archive) {
         const codec::PackSummary summary = codec::pack(dataset, request.options, request.output, progress.part(0.7, 1));
-        std::printf("%s: %s of %s\n", request.output.c_str(), bytesText(double(summary.archiveBytes)).c_str(),
-                    bytesText(double(summary.sourceBytes)).c_str());
+        std::printf("%s: %s of %s\n", request.output.c_str(), textOfBytes(double(summary.archiveBytes)).c_str(),
+                    textOfBytes(double(summary.sourceBytes)).c_str());
         return;
     }
     for (const std::string& file : volume::exportDataset(dataset, {}, request.output, progress.part(0.7, 1)))

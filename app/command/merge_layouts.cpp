@@ -1,6 +1,7 @@
 #include "app/command/merge_layouts.h"
 
 #include "app/data/format.h"
+#include "volume/base/byte_text.h"
 
 #include <cmath>
 #include <cstdio>
@@ -61,7 +62,7 @@ void printLayouts(const codec::Archive& archive, const std::vector<MergeLayout>&
             sizes += (sizes.empty() ? "" : ", ") + std::to_string(number) + " of " + size;
         std::printf("  %-10s %8s %10s %10s  %s\n", mergeName(layout.shape).c_str(),
                     (std::to_string(layout.boxes.size()) + "/" + std::to_string(count.x * count.y * count.z)).c_str(),
-                    bytesText(double(layout.sum().apart)).c_str(), bytesText(double(layout.sum().together)).c_str(),
+                    textOfBytes(double(layout.sum().apart)).c_str(), textOfBytes(double(layout.sum().together)).c_str(),
                     sizes.c_str());
     }
     for (const MergeLayout& layout : layouts) {

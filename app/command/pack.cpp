@@ -1,6 +1,5 @@
 #include "codec/pack/pack.h"
 #include "app/command/command.h"
-#include "app/data/format.h"
 #include "app/data/import_options.h"
 #include "app/data/open.h"
 #include "app/described/describe_cli.h"
@@ -10,6 +9,7 @@
 #include "codec/container/exactness.h"
 #include "codec/pack/unpack.h"
 #include "codec/remote/address.h"
+#include "volume/base/byte_text.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -199,18 +199,18 @@ void run(PackRequest request) {
     if (summary.repeatedBricks > 0)
         std::printf("%llu bricks equal those of the time before, which saves %s\n",
                     static_cast<unsigned long long>(summary.repeatedBricks),
-                    bytesText(double(summary.repeatedBytes)).c_str());
+                    textOfBytes(double(summary.repeatedBytes)).c_str());
     const double source = double(summary.sourceBytes), stored = double(summary.archiveBytes);
     if (request.append) {
-        std::printf("%s: now %s, %s of it from %s, %.2f s (%s/s)\n", request.output.c_str(), bytesText(stored).c_str(),
-                    bytesText(double(summary.addedBytes)).c_str(), bytesText(source).c_str(), summary.seconds,
-                    bytesText(source / summary.seconds).c_str());
+        std::printf("%s: now %s, %s of it from %s, %.2f s (%s/s)\n", request.output.c_str(),
+                    textOfBytes(stored).c_str(), textOfBytes(double(summary.addedBytes)).c_str(),
+                    textOfBytes(source).c_str(), summary.seconds, textOfBytes(source / summary.seconds).c_str());
         return;
     }
     std::printf("%s: %s from %s (%.2f : 1), %.1f %% of the samples, %.2f s (%s/s)\n", request.output.c_str(),
-                bytesText(stored).c_str(), bytesText(source).c_str(), source / stored,
+                textOfBytes(stored).c_str(), textOfBytes(source).c_str(), source / stored,
                 100.0 * double(summary.storedSamples) / double(summary.sourceSamples), summary.seconds,
-                bytesText(source / summary.seconds).c_str());
+                textOfBytes(source / summary.seconds).c_str());
     std::printf("%s\n", exactnessOf(request.output).c_str());
 }
 

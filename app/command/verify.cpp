@@ -1,8 +1,8 @@
 #include "app/command/command.h"
-#include "app/data/format.h"
 #include "app/data/import_options.h"
 #include "codec/archive/archive.h"
 #include "codec/remote/remote_file.h"
+#include "volume/base/byte_text.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -56,7 +56,7 @@ void run(const VerifyRequest& request) {
         std::printf("%s: whole%s; %llu brick%s decoded at every level, %s checked\n", path.c_str(),
                     report.damagedHeader ? " but for one copy of the header, which the next append replaces" : "",
                     static_cast<unsigned long long>(report.bricks), report.bricks == 1 ? "" : "s",
-                    bytesText(double(archive.fileBytes())).c_str());
+                    textOfBytes(double(archive.fileBytes())).c_str());
 }
 
 } // namespace

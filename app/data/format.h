@@ -6,8 +6,6 @@
 /// Numbers as the commands print them.
 namespace tessera::app {
 
-/// "1.5 MB", "12 byte": three significant digits, powers of 1000.
-std::string bytesText(double bytes);
 /// Shortest of %.6g.
 std::string numberText(double value);
 /// At the end of a path, without regard to case: hasEnding("a.TSR", ".tsr").

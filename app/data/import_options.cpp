@@ -1,6 +1,8 @@
 #include "app/data/import_options.h"
 
+#include "app/data/format.h"
 #include "app/described/describe_cli.h"
+#include "volume/base/byte_text.h"
 #include "volume/base/error.h"
 #include "volume/import/find_parts.h"
 
@@ -31,21 +33,6 @@ glm::ivec3 parseGrid(const std::string& text) {
     for (const int value : values)
         if (value < 1 || value > 4096) throw CLI::ValidationError("--grid", "each size must be 1..4096");
     return {values[0], values[1], values[2]};
-}
-
-std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
-}
-
-std::string size(double bytes) {
-    const char* units[] = {"byte", "kB", "MB", "GB", "TB"};
-    int unit = 0;
-    for (; bytes >= 1000 && unit < 4; ++unit) bytes /= 1000;
-    char text[48];
-    std::snprintf(text, sizeof text, unit == 0 ? "%.0f %s" : "%.1f %s", bytes, units[unit]);
-    return text;
 }
 
 } // namespace
@@ -175,7 +162,7 @@ std::string quantityLines(const volume::DatasetInfo& info) {
             range = {std::min(range.lo, value), std::max(range.hi, value)};
         }
         out += "  over time  " + quantity.name + ": ";
-        out += known == 0 ? "not known at any time" : number(range.lo) + " .. " + number(range.hi);
+        out += known == 0 ? "not known at any time" : numberText(range.lo) + " .. " + numberText(range.hi);
         if (!quantity.unit.empty()) out += " " + quantity.unit;
         if (known > 0 && known < quantity.values.size())
             out += ", known at " + std::to_string(known) + " of " + std::to_string(quantity.values.size()) + " times";
@@ -187,8 +174,8 @@ std::string quantityLines(const volume::DatasetInfo& info) {
 std::string timesText(const volume::DatasetInfo& info) {
     std::string out = std::to_string(info.times.size());
     if (info.times.size() == 1) return out;
-    return out + ": " + (info.timeName == "time" ? "" : info.timeName + " ") + number(info.times.front()) + " .. " +
-           number(info.times.back()) + (info.timeUnit.empty() ? "" : " " + info.timeUnit);
+    return out + ": " + (info.timeName == "time" ? "" : info.timeName + " ") + numberText(info.times.front()) + " .. " +
+           numberText(info.times.back()) + (info.timeUnit.empty() ? "" : " " + info.timeUnit);
 }
 
 std::string describePreview(const volume::ImportPreview& preview) {
@@ -199,13 +186,15 @@ std::string describePreview(const volume::ImportPreview& preview) {
     std::string out = info.name + " (" + preview.format + ")\n";
     out += "  samples    " + std::to_string(lattice.size.x) + " x " + std::to_string(lattice.size.y) + " x " +
            std::to_string(lattice.size.z) + "\n";
-    out += "  spacing    " + number(lattice.spacing.x) + " x " + number(lattice.spacing.y) + " x " +
-           number(lattice.spacing.z) + unit + "\n";
-    out += "  extent     " + number(extent.x) + " x " + number(extent.y) + " x " + number(extent.z) + unit + "\n";
+    out += "  spacing    " + numberText(lattice.spacing.x) + " x " + numberText(lattice.spacing.y) + " x " +
+           numberText(lattice.spacing.z) + unit + "\n";
+    out += "  extent     " + numberText(extent.x) + " x " + numberText(extent.y) + " x " + numberText(extent.z) + unit +
+           "\n";
     out += "  times      " + timesText(info);
     out += "\n" + quantityLines(info);
     if (out.ends_with('\n')) out.pop_back();
-    out += "\n  size       " + size(preview.bytes) + "\n  parameters " + std::to_string(info.parameters.size()) + "\n";
+    out += "\n  size       " + textOfBytes(preview.bytes) + "\n  parameters " + std::to_string(info.parameters.size()) +
+           "\n";
     for (const volume::Parameter& parameter : info.parameters) {
         out += "    " + parameter.name +
                (parameter.unit.empty() ? "" : " [" + parameter.unit + (parameter.unitGuessed ? " (guessed)]" : "]")) +

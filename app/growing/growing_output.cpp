@@ -1,8 +1,8 @@
 #include "app/growing/growing_output.h"
 
-#include "app/data/format.h"
 #include "app/user_files/import_memory.h"
 #include "codec/pack/pack.h"
+#include "volume/base/byte_text.h"
 #include "volume/base/error.h"
 #include "volume/import/parts_rules.h"
 
@@ -123,7 +123,7 @@ void GrowingOutput::append(const std::string& path, const std::optional<StatedFr
         } else {
             const std::string of = stated ? frameText(*stated) : std::filesystem::path(path).filename().string();
             std::printf("%s: time %.10g of %s appended (%s, %s, %.2f s)\n", request_.output.c_str(), times[t],
-                        of.c_str(), timesCounted(count).c_str(), bytesText(double(summary.archiveBytes)).c_str(),
+                        of.c_str(), timesCounted(count).c_str(), textOfBytes(double(summary.archiveBytes)).c_str(),
                         seconds);
         }
     }

@@ -1,9 +1,9 @@
 #include "app/command/command.h"
-#include "app/data/format.h"
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
 #include "tests/app/formula_cell.h"
 #include "tests/app/table_text.h"
+#include "volume/base/byte_text.h"
 
 #include <CLI/CLI.hpp>
 #include <cstring>
@@ -104,7 +104,7 @@ TEST_F(Commands, InfoSaysTheBytesOfEachLevel) {
     std::string levels = "levels from fine to coarse:";
     for (int level = 0; level < archive.grid().levels; ++level) {
         EXPECT_GT(archive.levelBytes(level), 0u);
-        levels += (level > 0 ? ", " : " ") + bytesText(double(archive.levelBytes(level)));
+        levels += (level > 0 ? ", " : " ") + textOfBytes(double(archive.levelBytes(level)));
     }
     EXPECT_NE(said.find(levels + "\n"), std::string::npos) << said;
     EXPECT_NE(said.find("  samples    8 x 7 x 9 on CC, from a grid of 8 x 7 x 9\n"), std::string::npos) << said;

@@ -1,5 +1,6 @@
 #include "app/views/statistics/region_data.h"
 
+#include "app/data/format.h"
 #include "app/pane/figure.h"
 #include "app/session/label_colors.h"
 #include "app/ui/ticks.h"
@@ -22,10 +23,7 @@ std::size_t columnsOf(const std::string& text) { // of UTF-8
 }
 
 std::string scientific(double value) {
-    if (!std::isfinite(value)) return "-";
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
+    return std::isfinite(value) ? numberText(value) : "-";
 }
 
 } // namespace
