@@ -4,6 +4,7 @@
 #include "app/history/parameter_path.h"
 #include "app/session/session_json.h"
 #include "codec/remote/address.h"
+#include "volume/base/csv_text.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -130,18 +131,6 @@ GridShape gridFor(int count, double width, double height) {
     }
     return best;
 }
-
-namespace {
-
-/// Text as a field of a CSV file.
-std::string csvField(const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + "\"";
-}
-
-} // namespace
 
 std::string questionsCsv(const std::vector<CompareQuestion>& questions) {
     std::string csv = "question,answer,seconds\n";

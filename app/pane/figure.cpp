@@ -182,13 +182,6 @@ VectorPage drawingOf(const std::vector<FigurePanel>& panels, int columns) {
     return out;
 }
 
-std::string csvField(const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos) return text;
-    std::string out = "\"";
-    for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return out + "\"";
-}
-
 std::string csvNumber(double value) {
     if (!std::isfinite(value)) return {};
     char text[32];

@@ -2,6 +2,7 @@
 
 #include "app/drawing/drawing.h"
 #include "app/pane/tool_row.h"
+#include "volume/base/csv_text.h"
 #include "volume/base/describe.h"
 
 #include <glm/vec2.hpp>
@@ -67,8 +68,6 @@ double figureTextWidth(const std::string& text);
 /// Panels in rows of `columns`, black on white.
 VectorPage drawingOf(const std::vector<FigurePanel>& panels, int columns);
 
-/// A text as one field of a CSV line.
-std::string csvField(const std::string& text);
 /// A number for CSV, empty where it is not finite.
 std::string csvNumber(double value);
 

@@ -42,13 +42,13 @@ std::string composed(const Exponents& e) {
     return (above.empty() ? "1" : above) + "/" + (denominators > 1 ? "(" + below + ")" : below);
 }
 
-bool isTime(const std::string& name) {
-    char* end = nullptr;
-    std::strtod(name.c_str(), &end);
-    return !name.empty() && end == name.c_str() + name.size();
-}
-
 } // namespace
+
+bool namesTime(const std::string& folder) {
+    char* end = nullptr;
+    std::strtod(folder.c_str(), &end);
+    return !folder.empty() && end == folder.c_str() + folder.size();
+}
 
 std::string unitOfDimensions(std::string_view brackets) {
     Exponents e{};
@@ -86,7 +86,7 @@ std::map<std::string, std::string> foamUnits(const std::string& path) {
     const fs::path folder = given.empty() ? fs::path(".") : given;
     std::vector<std::pair<double, fs::path>> times;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-        if (entry.is_directory() && isTime(entry.path().filename().string()))
+        if (entry.is_directory() && namesTime(entry.path().filename().string()))
             times.emplace_back(std::stod(entry.path().filename().string()), entry.path());
     std::sort(times.begin(), times.end());
     std::map<std::string, std::string> units;

@@ -10,6 +10,9 @@ namespace tessera::importer {
 /// "" for a dimensionless field.
 std::string unitOfDimensions(std::string_view brackets);
 
+/// Whether a folder of an OpenFOAM case holds a time, which is its name.
+bool namesTime(const std::string& folder);
+
 /// The units of the fields of an OpenFOAM case by name, from the first time that has the field. Omits names with
 /// different dimensions in different regions.
 std::map<std::string, std::string> foamUnits(const std::string& path);

@@ -1,4 +1,5 @@
 // Checks for truncated OpenFOAM and EnSight cases, in which each array is a separate file.
+#include "app/importer/readers/foam_units.h"
 #include "app/importer/readers/whole_file.h"
 
 #include <algorithm>
@@ -80,12 +81,6 @@ void checkFoamField(const std::string& path) {
         throw std::runtime_error("ends before its boundaryField: truncated");
     if (text.find("FoamFile") != std::string::npos && text.find("class") == std::string::npos)
         throw std::runtime_error("ends within its header: truncated");
-}
-
-bool isTime(const std::string& name) {
-    char* end = nullptr;
-    std::strtod(name.c_str(), &end);
-    return !name.empty() && end == name.c_str() + name.size();
 }
 
 /// A part of an EnSight geometry: its number of points, and of cells by type.
@@ -326,7 +321,7 @@ void checkFoam(const std::string& path, double time) {
     for (const fs::directory_entry& one : fs::directory_iterator(start)) {
         const std::string name = one.path().filename().string();
         const bool constant = name == "constant";
-        if (!one.is_directory() || (!constant && !(isTime(name) && std::abs(std::stod(name) - time) <= 1e-6 * time)))
+        if (!one.is_directory() || (!constant && !(namesTime(name) && std::abs(std::stod(name) - time) <= 1e-6 * time)))
             continue;
         for (const fs::directory_entry& entry : fs::recursive_directory_iterator(one)) {
             const std::string inner = nameIn(one, entry.path());
