@@ -100,7 +100,7 @@ TEST_P(PacketGeometryPictures, AgreeWithSlicesOfTheReference) {
     std::vector<PacketRenderer> renderers = everyRenderer(data);
     for (const GeometryMode& mode : kGeometryModes)
         for (const bool perspective : {false, true}) {
-            Scene scene = baseScene(perspective);
+            Scene scene = wavyScene(perspective);
             scene.cursor = {9, 8, 12};
             mode.apply(scene);
             Scene sliced = scene;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tests/vis/function_source.h"
+#include "tests/vis/wavy_data.h"
 #include "vis/packet/packet_refusal.h"
 #include "vis/packet/packet_renderer.h"
 #include "vis/reference/raycast.h"
@@ -23,20 +23,9 @@ constexpr std::size_t kOutliers = 4;
 constexpr double kOutlier = 0.01;
 
 /// Scalars, of which some are absent outside a ball and in a slab if `masked`: not "whole" and "even", which is 4
-/// everywhere. "label" and "region" have names, "parted" jumps between two parts. Sizes that fill no brick.
+/// everywhere. "label" and "region" have names, "parted" jumps between two parts.
 inline std::shared_ptr<FunctionSource> source(LatticeKind kind, bool masked) {
-    const auto present = [masked](glm::dvec3 p) {
-        return !masked || (glm::length((p - glm::dvec3(9, 8, 12)) / glm::dvec3(9.3, 8.4, 12.7)) < 1 &&
-                           std::abs(p.x - p.z * 0.5 - 2.2) > 1.7);
-    };
-    const auto a = [=](glm::dvec3 p) -> std::optional<double> {
-        if (!present(p)) return std::nullopt;
-        return 300 + 40 * std::sin(0.45 * p.x + 0.2) * std::cos(0.5 * p.y) + 35 * std::sin(0.4 * p.z + 0.1 * p.x);
-    };
-    const auto b = [=](glm::dvec3 p) -> std::optional<double> {
-        if (!present({p.x, p.y + 1, p.z})) return std::nullopt;
-        return 0.04 * (p.x + p.y) + 0.3 * std::cos(0.35 * p.z);
-    };
+    const WavyPresence present{masked};
     const auto whole = [](glm::dvec3 p) -> std::optional<double> { return 0.04 * p.x + 0.05 * p.y + 0.01 * p.z; };
     const auto label = [present](glm::dvec3 p) -> std::optional<double> {
         if (!present({p.x, p.y, p.z - 2})) return std::nullopt;
@@ -50,29 +39,13 @@ inline std::shared_ptr<FunctionSource> source(LatticeKind kind, bool masked) {
         return *region(p) == 0 ? 5 + 0.15 * p.y : 1 + 0.12 * p.z + 0.4 * std::sin(0.5 * p.y);
     };
     const auto even = [](glm::dvec3) -> std::optional<double> { return 4; };
-    return std::make_shared<FunctionSource>(
-        kind, glm::ivec3(19, 17, 25), glm::dvec3(1),
-        std::vector<FunctionSource::Channel>{{"a", a, {225, 375}},
-                                             {"b", b, {-0.3, 1.7}},
-                                             {"whole", whole, {0, 1.8}},
-                                             {"even", even, {4, 4}},
-                                             {"label", label, {0, 5}, true},
-                                             {"parted", parted, {0, 8}, false, {"region", {{0}, {1, 2}}}},
-                                             {"region", region, {0, 2}, true}},
-        8, glm::dvec3(0.137, 0.211, 0.173));
-}
-
-inline Scene baseScene(bool perspective) {
-    Scene scene;
-    scene.camera.projection = perspective ? Projection::Perspective : Projection::Orthographic;
-    scene.camera.distance = perspective ? 1.7f : 2.1f;
-    scene.camera.target = {0.04f, -0.03f, 0.02f};
-    scene.showBox = false;
-    scene.render.samples = 1;
-    scene.transfer["a"].opacity = {{0, 0}, {0.3f, 0}, {1, 0.06f}};
-    scene.transfer["b"].colormap = "inferno";
-    scene.transfer["b"].opacity = {{0, 0.3f}, {1, 1}};
-    return scene;
+    return wavySource(kind, {wavyA(masked),
+                             wavyB(masked),
+                             {"whole", whole, {0, 1.8}},
+                             {"even", even, {4, 4}},
+                             {"label", label, {0, 5}, true},
+                             {"parted", parted, {0, 8}, false, {"region", {{0}, {1, 2}}}},
+                             {"region", region, {0, 2}, true}});
 }
 
 inline Layer layerOf(Technique technique) {
@@ -138,7 +111,7 @@ inline void expectAgreement(const std::shared_ptr<const volume::BrickSource>& da
     for (const Mode& mode : modes)
         for (const bool perspective : {false, true}) {
             const std::string what = std::string(mode.name) + (perspective ? " perspective" : " parallel");
-            Scene scene = baseScene(perspective);
+            Scene scene = wavyScene(perspective);
             mode.apply(scene);
             ASSERT_EQ(packetRefusal(scene, data->info(), data->grid().lattice), "") << what;
             const reference::Image wanted =

@@ -180,7 +180,7 @@ TEST_P(PacketPictures, AgreeWithTheReference) {
 TEST(PacketRefusal, NamesWhatIsNotDrawn) {
     const auto data = source(LatticeKind::CC, false);
     const auto refusal = [&](const Scene& scene) { return packetRefusal(scene, data->info(), data->grid().lattice); };
-    Scene scene = baseScene(true);
+    Scene scene = wavyScene(true);
     scene.layers = {layerOf(VolumeLayer{.channel = "a"})};
     EXPECT_EQ(refusal(scene), "");
     Scene other = scene;
@@ -204,7 +204,7 @@ TEST(PacketRefusal, NamesWhatIsNotDrawn) {
 /// A mean reconstructs every sample of every ray once; counts say so.
 TEST(PacketSamples, AreCounted) {
     const auto data = source(LatticeKind::CC, false);
-    Scene scene = baseScene(true);
+    Scene scene = wavyScene(true);
     scene.layers = {layerOf(VolumeLayer{.channel = "b", .style = RayStyle::Average})};
     const WorldFrame frame = worldFrame(data->info().bounds, scene.stretch);
     const glm::dvec3 cell = worldCell(data->grid().lattice, frame);

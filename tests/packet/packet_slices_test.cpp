@@ -92,7 +92,7 @@ TEST(PacketSlicesMore, FollowTheScene) {
     const auto data = source(LatticeKind::CC, false);
     PacketRenderer renderer;
     renderer.setSource(data);
-    Scene scene = baseScene(true);
+    Scene scene = wavyScene(true);
     scene.layers = {layerOf(VolumeLayer{.channel = "a"}), layerOf(SliceLayer{.channel = "b"})};
     auto& slice = std::get<SliceLayer>(scene.layers[1].technique);
     const auto check = [&](const char* what) {

@@ -1,46 +1,16 @@
 #include "tests/packet/packet_pictures.h"
 #include "vis/packed/packet_blend.h"
 
-#include <atomic>
-
 /// Times between the stored ones by the packet ray caster.
 namespace tessera::vis::packet {
 namespace {
 
-/// Two data sets as three times: the second time has other values in a narrower range, absent elsewhere.
-class Series : public volume::BrickSource {
-public:
-    Series(LatticeKind kind, bool masked) : first_(source(kind, masked)), second_(later(kind, masked)) {
-        info_ = first_->info();
-        info_.times = {1, 3, 4};
-    }
-    const volume::DatasetInfo& info() const override { return info_; }
-    const volume::BrickGrid& grid() const override { return first_->grid(); }
-    volume::BrickStats stats(const volume::BrickKey& key) const override { return frame(key).stats(key); }
-    volume::BrickSamples read(const volume::BrickKey& key) const override {
-        ++reads;
-        return frame(key).read(key);
-    }
-    mutable std::atomic<int> reads = 0;
-
-private:
-    static std::shared_ptr<FunctionSource> later(LatticeKind kind, bool masked) {
-        const auto a = [=](glm::dvec3 p) -> std::optional<double> {
-            if (masked && glm::length((p - glm::dvec3(10, 9, 11)) / glm::dvec3(9, 8, 12)) > 1) return std::nullopt;
-            return 310 + 20 * std::cos(0.35 * p.x - 0.3 * p.z) + 2 * p.y;
-        };
-        const auto b = [=](glm::dvec3 p) -> std::optional<double> {
-            return 0.8 - 0.02 * p.x + 0.3 * std::sin(0.3 * p.z);
-        };
-        return std::make_shared<FunctionSource>(
-            kind, glm::ivec3(19, 17, 25), glm::dvec3(1),
-            std::vector<FunctionSource::Channel>{{"a", a, {225, 375}}, {"b", b, {-0.3, 1.7}}, {"whole", b, {0, 1.8}}},
-            8, glm::dvec3(0.137, 0.211, 0.173));
-    }
-    const FunctionSource& frame(const volume::BrickKey& key) const { return key.time == 1 ? *second_ : *first_; }
-    std::shared_ptr<FunctionSource> first_, second_;
-    volume::DatasetInfo info_;
-};
+std::shared_ptr<ThreeTimes> series(LatticeKind kind, bool masked) {
+    FunctionSource::Channel whole = laterB();
+    whole.name = "whole";
+    whole.range = {0, 1.8};
+    return std::make_shared<ThreeTimes>(source(kind, masked), wavySource(kind, {laterA(masked), laterB(), whole}));
+}
 
 const Mode kTimeModes[] = {
     {"all kinds of layers",
@@ -82,14 +52,14 @@ class PacketTimes : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(All, PacketTimes, testing::ValuesIn(cases()), nameOf);
 
 TEST_P(PacketTimes, AgreeWithTheReference) {
-    expectAgreement(std::make_shared<Series>(GetParam().kind, GetParam().masked), kTimeModes);
+    expectAgreement(series(GetParam().kind, GetParam().masked), kTimeModes);
 }
 
 /// Bounds of blocks hold for every sample that is read in them.
 TEST(PacketTimesMore, BoundsHoldTheSamples) {
     for (const bool masked : {false, true}) {
-        const Series data(LatticeKind::BCC, masked);
-        const auto at = [&](int time) { return readPacketVolume(data, {.channel = 0, .time = {time, time, 0}}); };
+        const std::shared_ptr<ThreeTimes> data = series(LatticeKind::BCC, masked);
+        const auto at = [&](int time) { return readPacketVolume(*data, {.channel = 0, .time = {time, time, 0}}); };
         const PacketVolume blend = blendedVolume(at(0), at(1), 0.3);
         int some = 0, partly = 0;
         for (int n = 0; n < blend.cells.x * blend.cells.y * blend.cells.z; ++n) {
@@ -119,10 +89,10 @@ TEST(PacketTimesMore, BoundsHoldTheSamples) {
 
 /// While a time between two runs on, the stored samples are read once.
 TEST(PacketTimesMore, StoredSamplesAreReadOnce) {
-    const auto data = std::make_shared<Series>(LatticeKind::CC, false);
+    const auto data = series(LatticeKind::CC, false);
     PacketRenderer renderer;
     renderer.setSource(data);
-    Scene scene = baseScene(true);
+    Scene scene = wavyScene(true);
     scene.layers = {layerOf(VolumeLayer{.channel = "a"})};
     scene.time = 1.2;
     renderer.render(scene, kSize);

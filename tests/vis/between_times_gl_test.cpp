@@ -6,60 +6,24 @@
 namespace tessera::vis {
 namespace {
 
-/// The test data set at two times: the second one is another function in another range, absent elsewhere.
-class Series : public volume::BrickSource {
-public:
-    Series(LatticeKind kind, bool masked) : first_(source(kind, masked)), second_(later(kind, masked)) {
-        info_ = first_->info();
-        info_.times = {1, 3, 4};
-    }
-    const volume::DatasetInfo& info() const override { return info_; }
-    const volume::BrickGrid& grid() const override { return first_->grid(); }
-    volume::BrickStats stats(const volume::BrickKey& key) const override { return frame(key).stats(key); }
-    volume::BrickSamples read(const volume::BrickKey& key) const override { return frame(key).read(key); }
-
-private:
-    static std::shared_ptr<FunctionSource> later(LatticeKind kind, bool masked) {
-        const auto a = [=](glm::dvec3 p) -> std::optional<double> {
-            if (masked && glm::length((p - glm::dvec3(10, 9, 11)) / glm::dvec3(9, 8, 12)) > 1) return std::nullopt;
-            return 310 + 20 * std::cos(0.35 * p.x - 0.3 * p.z) + 2 * p.y;
-        };
-        const auto b = [=](glm::dvec3 p) -> std::optional<double> {
-            return 0.8 - 0.02 * p.x + 0.3 * std::sin(0.3 * p.z);
-        };
-        const auto label = [](glm::dvec3 p) -> std::optional<double> { return std::floor(p.x / 5.1); };
-        return std::make_shared<FunctionSource>(kind, glm::ivec3(19, 17, 25), glm::dvec3(1),
-                                                std::vector<FunctionSource::Channel>{{"a", a, {225, 375}},
-                                                                                     {"b", b, {-0.3, 1.7}},
-                                                                                     {"label", label, {0, 5}, true}},
-                                                8, glm::dvec3(0.137, 0.211, 0.173));
-    }
-    const FunctionSource& frame(const volume::BrickKey& key) const { return key.time == 1 ? *second_ : *first_; }
-    std::shared_ptr<FunctionSource> first_, second_;
-    volume::DatasetInfo info_;
-};
+/// The test data set at two times.
+std::shared_ptr<ThreeTimes> series(LatticeKind kind, bool masked) {
+    const auto label = [](glm::dvec3 p) -> std::optional<double> { return std::floor(p.x / 5.1); };
+    return std::make_shared<ThreeTimes>(source(kind, masked),
+                                        wavySource(kind, {laterA(masked), laterB(), {"label", label, {0, 5}, true}}));
+}
 
 struct Between {
     HeadlessContext context;
-    std::shared_ptr<Series> data;
+    std::shared_ptr<ThreeTimes> data;
     Renderer renderer;
     ViewTargetPtr target;
     Between(LatticeKind kind, bool masked, bool bricked = false)
-        : data(std::make_shared<Series>(kind, masked)), renderer(optionsFor(true, bricked)) {
+        : data(series(kind, masked)), renderer(optionsFor(true, bricked)) {
         renderer.setSource(data);
         target = renderer.makeTarget();
     }
-    Linear draw(const Scene& scene) {
-        FrameRequest request;
-        request.size = kSize;
-        request.wait = true;
-        EXPECT_TRUE(renderer.render(*target, scene, request).complete);
-        Linear image;
-        image.size = kSize;
-        for (const glm::vec4& pixel : renderer.readLinear(*target)) image.pixels.emplace_back(pixel);
-        for (const std::string& message : renderer.takeMessages()) ADD_FAILURE() << message;
-        return image;
-    }
+    Linear draw(const Scene& scene) { return drawWhole(renderer, *target, scene); }
     void check(const std::string& name, const Scene& scene) {
         const Linear got = draw(scene), wanted = reference::render(scene, *data, kSize, {});
         const reference::Difference difference = reference::compare(got, wanted, kOutlier);

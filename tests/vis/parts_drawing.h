@@ -23,18 +23,7 @@ struct Drawn {
         : data(std::move(source)), renderer(optionsFor(exact, bricked)) {
         renderer.setSource(data);
     }
-    Linear draw(const Scene& scene) {
-        const ViewTargetPtr target = renderer.makeTarget();
-        FrameRequest request;
-        request.size = kSize;
-        request.wait = true;
-        EXPECT_TRUE(renderer.render(*target, scene, request).complete);
-        Linear image;
-        image.size = kSize;
-        for (const glm::vec4& pixel : renderer.readLinear(*target)) image.pixels.emplace_back(pixel);
-        for (const std::string& message : renderer.takeMessages()) ADD_FAILURE() << message;
-        return image;
-    }
+    Linear draw(const Scene& scene) { return drawWhole(renderer, *renderer.makeTarget(), scene); }
     Linear truth(const Scene& scene) const { return reference::render(scene, *data, kSize, {}); }
     void check(const std::string& name, const Scene& scene, double rmse = 1.5 * kRmse) {
         check(name, scene, truth(scene), rmse);

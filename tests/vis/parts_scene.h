@@ -1,7 +1,6 @@
 #pragma once
 
-#include "tests/vis/function_source.h"
-#include "vis/scene/scene.h"
+#include "tests/vis/wavy_data.h"
 
 #include <cmath>
 #include <memory>
@@ -77,12 +76,7 @@ inline TransferFunction between() {
 }
 
 inline Scene regionScene(bool perspective = true) {
-    Scene scene;
-    scene.camera.projection = perspective ? Projection::Perspective : Projection::Orthographic;
-    scene.camera.distance = perspective ? 1.7f : 2.1f;
-    scene.camera.target = {0.04f, -0.03f, 0.02f};
-    scene.showBox = false;
-    scene.render.samples = 1;
+    Scene scene = bareScene(perspective);
     scene.cursor = {9.3, 7.7, 12.2};
     return scene;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tests/vis/function_source.h"
+#include "tests/vis/wavy_data.h"
 #include "vis/gl/headless.h"
 #include "vis/image/image_io.h"
 #include "vis/image/light_picture.h"
@@ -33,40 +33,16 @@ inline constexpr double kRmse = 2e-6, kOutlier = 1e-4;
 inline constexpr std::size_t kOutliers = 8; // of 4032 pixels
 inline constexpr double kPsnr16 = 64;
 
-/// Two scalars, a label and (where masked) absent samples outside a ball and in a slab; sizes that fill no brick.
+/// Two scalars, a label and (where masked) absent samples outside a ball and in a slab.
 inline std::shared_ptr<FunctionSource> source(LatticeKind kind, bool masked) {
-    const auto present = [masked](glm::dvec3 p) {
-        return !masked || (glm::length((p - glm::dvec3(9, 8, 12)) / glm::dvec3(9.3, 8.4, 12.7)) < 1 &&
-                           std::abs(p.x - p.z * 0.5 - 2.2) > 1.7);
-    };
-    const auto a = [=](glm::dvec3 p) -> std::optional<double> {
-        if (!present(p)) return std::nullopt;
-        return 300 + 40 * std::sin(0.45 * p.x + 0.2) * std::cos(0.5 * p.y) + 35 * std::sin(0.4 * p.z + 0.1 * p.x);
-    };
-    const auto b = [=](glm::dvec3 p) -> std::optional<double> {
-        if (!present({p.x, p.y + 1, p.z})) return std::nullopt;
-        return 0.04 * (p.x + p.y) + 0.3 * std::cos(0.35 * p.z);
-    };
     const auto label = [](glm::dvec3 p) -> std::optional<double> {
         return std::floor(p.z / 6.3) + (p.x > 7.3 ? 1 : 0);
     };
-    return std::make_shared<FunctionSource>(kind, glm::ivec3(19, 17, 25), glm::dvec3(1),
-                                            std::vector<FunctionSource::Channel>{{"a", a, {225, 375}},
-                                                                                 {"b", b, {-0.3, 1.7}},
-                                                                                 {"label", label, {0, 5}, true}},
-                                            8, glm::dvec3(0.137, 0.211, 0.173));
+    return wavySource(kind, {wavyA(masked), wavyB(masked), {"label", label, {0, 5}, true}});
 }
 
 inline Scene baseScene(bool perspective) {
-    Scene scene;
-    scene.camera.projection = perspective ? Projection::Perspective : Projection::Orthographic;
-    scene.camera.distance = perspective ? 1.7f : 2.1f;
-    scene.camera.target = {0.04f, -0.03f, 0.02f};
-    scene.showBox = false;
-    scene.render.samples = 1;
-    scene.transfer["a"].opacity = {{0, 0}, {0.3f, 0}, {1, 0.06f}};
-    scene.transfer["b"].colormap = "inferno";
-    scene.transfer["b"].opacity = {{0, 0.3f}, {1, 1}};
+    Scene scene = wavyScene(perspective);
     scene.transfer["label"].colormap = "labels";
     scene.transfer["label"].opacity = {{0, 0.02f}, {1, 0.02f}};
     scene.cursor = {9.3, 7.7, 12.2};
@@ -80,6 +56,20 @@ inline RendererOptions optionsFor(bool exact, bool bricked) {
     return options;
 }
 
+/// The complete picture of a scene; messages are failures.
+inline Linear drawWhole(Renderer& renderer, ViewTarget& target, const Scene& scene) {
+    FrameRequest request;
+    request.size = kSize;
+    request.wait = true;
+    EXPECT_TRUE(renderer.render(target, scene, request).complete);
+    Linear image;
+    image.size = kSize;
+    for (const glm::vec4& pixel : renderer.readLinear(target)) image.pixels.emplace_back(pixel);
+    EXPECT_EQ(image.pixels.size(), std::size_t(kSize.x * kSize.y));
+    for (const std::string& message : renderer.takeMessages()) ADD_FAILURE() << message;
+    return image;
+}
+
 /// One renderer for a data set and its pictures.
 struct Drawing {
     std::shared_ptr<FunctionSource> data;
@@ -89,20 +79,7 @@ struct Drawing {
         : data(source(kind, masked)), renderer(optionsFor(exact, bricked)) {
         renderer.setSource(data);
     }
-    Linear draw(const Scene& scene) {
-        const ViewTargetPtr target = renderer.makeTarget();
-        FrameRequest request;
-        request.size = kSize;
-        request.wait = true;
-        const FrameStatus status = renderer.render(*target, scene, request);
-        EXPECT_TRUE(status.complete);
-        Linear image;
-        image.size = kSize;
-        for (const glm::vec4& pixel : renderer.readLinear(*target)) image.pixels.emplace_back(pixel);
-        EXPECT_EQ(image.pixels.size(), std::size_t(kSize.x * kSize.y));
-        for (const std::string& message : renderer.takeMessages()) ADD_FAILURE() << message;
-        return image;
-    }
+    Linear draw(const Scene& scene) { return drawWhole(renderer, *renderer.makeTarget(), scene); }
     Linear truth(const Scene& scene, const Flaws& flaws = {}) const {
         reference::Options options{.flaws = flaws};
         if (scene.lighting.environment.kind == Environment::Picture)
