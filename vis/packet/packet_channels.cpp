@@ -10,15 +10,12 @@ namespace {
 /// A range of places narrower than this part of the data's range is read from floats.
 constexpr double kNarrow = 1.0 / 8;
 
-/// Index of an enabled lens among those that placeLenses() gives, -1 if there is none of that name.
-int findEnabledLens(const Scene& scene, const std::string& name) {
-    int index = 0;
-    for (const Lens& lens : scene.lenses) {
-        if (!lens.enabled) continue;
-        if (lens.name == name) return index < kMaxLenses ? index : -1;
-        ++index;
-    }
-    return -1;
+/// Whether placeLenses() gives a lens of that name.
+bool hasLens(const Scene& scene, const std::string& name) {
+    int enabled = 0;
+    for (const Lens& lens : scene.lenses)
+        if (lens.enabled && enabled++ < kMaxLenses && lens.name == name) return true;
+    return false;
 }
 
 } // namespace
@@ -74,7 +71,7 @@ std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::Datase
     bool exact = false; // all have samples of the same kind
     for (std::size_t i = 0; i < scene.layers.size(); ++i) {
         const Layer& layer = scene.layers[i];
-        if (!layer.lens.empty() && findEnabledLens(scene, layer.lens) < 0) continue;
+        if (!layer.lens.empty() && !hasLens(scene, layer.lens)) continue;
         if (!layer.visible || std::holds_alternative<FlowLayer>(layer.technique)) continue;
         const auto* iso = std::get_if<IsoLayer>(&layer.technique);
         if (iso && iso->method == SurfaceMethod::Polygons) continue;

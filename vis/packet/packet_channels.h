@@ -29,11 +29,11 @@ struct Transfer {
     Range range;
 };
 Transfer transferOfLayer(const Scene& scene, const volume::DatasetInfo& info, const Layer& layer, int channel);
+/// The same for the channel that colours a layer.
+Transfer transferOfColors(const Scene& scene, const volume::DatasetInfo& info, const Layer& layer, int channel);
 /// Whether a layer is classified by regions of value and gradient magnitude.
 bool byRegions(const Technique& technique, const TransferFunction& function);
 /// How a layer is classified: after interpolation what can only be so.
 Classification classificationOf(const Technique& technique, const TransferFunction& function, bool categorical);
-/// The same for the channel that colours a layer.
-Transfer transferOfColors(const Scene& scene, const volume::DatasetInfo& info, const Layer& layer, int channel);
 
 } // namespace tessera::vis::packet

@@ -181,18 +181,26 @@ std::optional<Pick> Renderer::pick(ViewTarget& target, glm::ivec2 pixel) {
     return Pick{frame.toPhysical(ray.origin + ray.direction * double(distance))};
 }
 
+namespace {
+
+/// The rows of a picture in reverse order; `row`: values in each.
+template <class T> std::vector<T> rowsReversed(const std::vector<T>& picture, std::size_t row) {
+    std::vector<T> out(picture.size());
+    for (std::size_t at = 0; at < picture.size(); at += row)
+        std::copy_n(picture.end() - std::ptrdiff_t(at + row), row, out.begin() + std::ptrdiff_t(at));
+    return out;
+}
+
+} // namespace
+
 std::vector<glm::vec4> Renderer::readLinear(ViewTarget& target) {
     if (processor_) return linearRows(target.alone);
-    const std::size_t width(static_cast<std::size_t>(target.buffers.size.x)),
-        height(static_cast<std::size_t>(target.buffers.size.y));
-    std::vector<glm::vec4> pixels(width * height), out(pixels.size());
+    const glm::ivec2 size = target.buffers.size;
+    std::vector<glm::vec4> pixels(std::size_t(size.x) * std::size_t(size.y));
     if (pixels.empty()) return pixels;
     glGetTextureImage(target.buffers.full.color.name(), 0, GL_RGBA, GL_FLOAT,
                       GLsizei(pixels.size() * sizeof(glm::vec4)), pixels.data());
-    for (std::size_t y = 0; y < height; ++y)
-        std::copy_n(pixels.begin() + std::ptrdiff_t((height - 1 - y) * width), width,
-                    out.begin() + std::ptrdiff_t(y * width));
-    return out;
+    return rowsReversed(pixels, std::size_t(size.x));
 }
 
 std::vector<std::uint8_t> Renderer::readPixels(ViewTarget& target, glm::ivec2& size) {
@@ -201,15 +209,12 @@ std::vector<std::uint8_t> Renderer::readPixels(ViewTarget& target, glm::ivec2& s
         return shownRows(target.alone);
     }
     size = target.buffers.size;
-    const std::size_t row = static_cast<std::size_t>(size.x) * 4, height = static_cast<std::size_t>(size.y);
-    std::vector<std::uint8_t> pixels(row * height), out(pixels.size());
+    const std::size_t row = std::size_t(size.x) * 4;
+    std::vector<std::uint8_t> pixels(row * std::size_t(size.y));
     if (pixels.empty()) return pixels;
     glGetTextureImage(target.buffers.output.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, GLsizei(pixels.size()),
                       pixels.data());
-    for (std::size_t y = 0; y < height; ++y)
-        std::copy_n(pixels.begin() + std::ptrdiff_t((height - 1 - y) * row), row,
-                    out.begin() + std::ptrdiff_t(y * row));
-    return out;
+    return rowsReversed(pixels, row);
 }
 
 const EngineUse& Renderer::engine() const {
