@@ -136,8 +136,8 @@ void drawTriangle(const PixelTriangle& triangle, const vis::MemoryTexture& textu
     const bool plain = triangle.plain(white);
     const Sampler sampler(texture, !texture.smooth && triangle.magnifies(texture.size));
     const glm::vec4 one = plain ? sampler.at(white) * triangle.corners[0].color : glm::vec4(0);
-    std::array<std::int64_t, 3> least3;
-    for (std::size_t i = 0; i < 3; ++i) least3[i] = triangle.owns(i) ? 0 : 1;
+    std::array<std::int64_t, 3> lowest;
+    for (std::size_t i = 0; i < 3; ++i) lowest[i] = triangle.owns(i) ? 0 : 1;
     const auto drawRow = [&](int y) {
         std::uint8_t* row = &image.rgba[std::size_t(y - origin.y) * std::size_t(image.size.x) * 4];
         constexpr auto kGrid = std::int64_t(kSubpixels);
@@ -147,7 +147,7 @@ void drawTriangle(const PixelTriangle& triangle, const vis::MemoryTexture& textu
             change[i] = -(triangle.at[(i + 1) % 3] - triangle.at[i]).y * kGrid;
         }
         for (int x = area.lo.x; x < area.hi.x; ++x) {
-            if (inside[0] >= least3[0] && inside[1] >= least3[1] && inside[2] >= least3[2]) {
+            if (inside[0] >= lowest[0] && inside[1] >= lowest[1] && inside[2] >= lowest[2]) {
                 std::uint8_t* pixel = row + std::size_t(x - origin.x) * 4;
                 if (plain) {
                     blendPixel(pixel, one);

@@ -95,7 +95,7 @@ void OffscreenFrames::finish() {
 namespace {
 
 void drawUntilQuiet(OffscreenFrames& target, Workbench& workbench, float scale) {
-    // Two quiet frames in a row: sizes that ImGui learns in one frame are right in the next.
+    // Several quiet frames in a row: sizes that ImGui learns in one frame are right in the next.
     int quiet = 0;
     for (int frames = 0; quiet < 3; ++frames) {
         target.draw(workbench, scale);

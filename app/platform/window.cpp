@@ -165,6 +165,18 @@ vis::Image readWindow(glm::ivec2 size) {
     return image;
 }
 
+/// Takes the events of the system; where nothing is to be drawn, waits for one, or until `idle` seconds are over.
+void awaitEvents(const Window& window, double idle) {
+    if (window.minimised())
+        glfwWaitEventsTimeout(0.5);
+    else if (window.freshFrames > 0 || idle <= 0 || !window.input.empty())
+        glfwPollEvents();
+    else if (std::isfinite(idle))
+        glfwWaitEventsTimeout(idle);
+    else
+        glfwWaitEvents();
+}
+
 } // namespace
 
 void runWindow(const OpenRequest& request, const std::string& screenshots) {
@@ -182,15 +194,7 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
     std::string title;
     bool photographed = false;
     while (!workbench.finished()) {
-        const double idle = workbench.idleSeconds();
-        if (window.minimised())
-            glfwWaitEventsTimeout(0.5);
-        else if (window.freshFrames > 0 || idle <= 0 || !window.input.empty())
-            glfwPollEvents();
-        else if (std::isfinite(idle))
-            glfwWaitEventsTimeout(idle);
-        else
-            glfwWaitEvents();
+        awaitEvents(window, workbench.idleSeconds());
         if (glfwWindowShouldClose(window.handle) == GLFW_TRUE) {
             glfwSetWindowShouldClose(window.handle, GLFW_FALSE);
             workbench.requestQuit();

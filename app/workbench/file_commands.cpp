@@ -78,6 +78,16 @@ void pasteSession(Workbench& workbench) {
     }
 }
 
+/// Jobs that a user knows of; quiet ones belong to the views.
+bool hasJobs(const Jobs& jobs) {
+    return std::ranges::any_of(jobs.list(), [](const Jobs::Status& job) { return !job.quiet; });
+}
+
+void cancelJobs(Jobs& jobs) {
+    for (const Jobs::Status& job : jobs.list())
+        if (!job.quiet) jobs.cancel(job.key);
+}
+
 } // namespace
 
 void dropFiles(Workbench& workbench, const std::vector<std::string>& paths) {
@@ -155,15 +165,8 @@ std::vector<Command> fileCommands(Workbench& workbench) {
              .name = "Cancel jobs",
              .help = "Cancel what runs in the background; what is shown does not change",
              .words = "stop abort interrupt job background work",
-             .run =
-                 [&workbench] {
-                     for (const Jobs::Status& job : workbench.jobs().list())
-                         if (!job.quiet) workbench.jobs().cancel(job.key);
-                 },
-             .enabled =
-                 [&workbench] {
-                     return std::ranges::any_of(workbench.jobs().list(), [](auto& job) { return !job.quiet; });
-                 }},
+             .run = [&workbench] { cancelJobs(workbench.jobs()); },
+             .enabled = [&workbench] { return hasJobs(workbench.jobs()); }},
             {.menu = "File",
              .name = "Copy session",
              .help = "Copy the session as text, to send it to somebody",
