@@ -1,15 +1,12 @@
 #!/bin/bash
 # Variants of a session in one figure with its table, keyframes as pictures and as a video. Arguments TESSERA SOURCE_DIR.
-tessera=$1 source=$2
+tessera=$1
 source "$2/tests/e2e/common.bash"
 
 "$tessera" generate fuel-cell -o cell.tsr --size 7x13x20 --times 3 > /dev/null 2> err || die "generate"
 compare() { "$tessera" compare cell.tsr "$@" --size 480x320 --set /render/samples=1 > /dev/null 2> err; }
 compare -o figure.png --csv table.csv --variant "as it is:" --variant "/render/filter=average" \
-    --variant "long steps: /render/step=3; /render/jitter=true"
-status=$?
-[ $status = 3 ] && grep -q 'OpenGL' err && { cat err; exit 77; }
-[ $status = 0 ] || die "compare ends with $status"
+    --variant "long steps: /render/step=3; /render/jitter=true" || die "compare"
 [ -s figure.png ] || die "no figure"
 [ "$(wc -l < table.csv)" = 4 ] || die "the table has $(wc -l < table.csv) lines"
 python3 - <<'PY' || die "the table is wrong"
@@ -62,7 +59,7 @@ assert abs(middle["time"] - 0.03) < 1e-9 and abs(last["time"] - 0.06) < 1e-9
 PY
 
 # The video is ffmpeg's work: without it that is said at once, with it it gets the frames and their rate.
-mkdir bin && for tool in bash; do ln -s "$(command -v $tool)" bin/; done
+mkdir bin && ln -s "$(command -v bash)" bin/
 PATH=$work/bin replay --video out.mp4 --out none
 [ $? = 3 ] && grep -q 'ffmpeg' err || die "a missing ffmpeg is not said"
 printf '#!%s\necho "$@" > "%s/arguments"; for last; do :; done; echo video > "$last"\n' "$(command -v bash)" "$work" > bin/ffmpeg
