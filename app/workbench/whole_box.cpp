@@ -70,6 +70,7 @@ bool seesWholeBox(const Session& session, const std::string& pane, const vis::Wo
 }
 
 void showWholeBox(Session& session, const vis::WorldFrame& world, float scale) {
+    if (const ImVec2 window = ImGui::GetMainViewport()->Size; window.x <= 0 || window.y <= 0) return;
     for (const auto& [pane, view] : session.views)
         if (std::holds_alternative<VolumeView>(view) && coveredShare(session, pane, world, scale) > 1)
             fitToPane(session, pane, world, scale);

@@ -21,7 +21,7 @@ glm::dvec2 boxExtent(const vis::Camera& camera, const vis::WorldFrame& world);
 bool seesWholeBox(const Session& session, const std::string& pane, const vis::WorldFrame& world, float scale);
 
 /// Fits the cameras of a layout, which were chosen for other panes, to those volume views where they do not show the
-/// whole box.
+/// whole box; before the first frame, when no pane has a size, it does nothing.
 void showWholeBox(Session& session, const vis::WorldFrame& world, float scale);
 
 /// Moves the camera of a volume view, or the one it shares, so that the box fits into its pane as the dock is now.

@@ -1,4 +1,5 @@
 #include "app/ui/dock.h"
+#include "tests/app/drawn_text.h"
 #include "tests/app/ui_fixture.h"
 
 #include <cmath>

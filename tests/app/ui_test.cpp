@@ -3,7 +3,6 @@
 #include "app/ui/commands.h"
 #include "app/ui/parameter_widget.h"
 #include "app/ui/widgets.h"
-#include "tests/app/drawn_text.h"
 #include "tests/app/ui_fixture.h"
 
 #include <algorithm>
