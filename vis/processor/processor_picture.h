@@ -28,8 +28,6 @@ public:
     const MemoryTexture& texture() const { return texture_; }
 
 private:
-    void drawPasses(const volume::DatasetInfo& info);
-
     packet::PacketRenderer renderer_;
     std::shared_ptr<packet::PacketVolumes> volumes_; ///< of the picture
     Scene scene_;                                    ///< of the picture
