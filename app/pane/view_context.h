@@ -81,7 +81,7 @@ struct ViewContext {
     std::vector<std::string> messages = {}; ///< failures that a view adds, for the log
     bool busy = false;                      ///< set by a view that needs the next frame at once (refining, animating)
     bool awaiting = false;    ///< set by a view that needs another frame once a job, samples or a program are there
-    bool waiting = false;     ///< set by a view that has work left for frames that are idle
+    bool postponed = false;   ///< set by a view that has work left for frames that are idle
     bool behind = false;      ///< set by a view that shows an older state of the session until an answer is there
     bool compiling = false;   ///< set by a view whose picture waits for a program of the renderer
     bool interacting = false; ///< some edit is in progress (mouse held on a control): draw at reduced size

@@ -147,8 +147,8 @@ void PaneHost::drawPane(const ViewContext& frame, const std::string& pane, int r
     ImGui::PopID();
     messages_.insert(messages_.end(), context.messages.begin(), context.messages.end());
     working_ = working_ || context.unfinished();
-    busy_ = busy_ || context.unfinished() || context.waiting;
-    hurries_ = hurries_ || context.busy || context.waiting;
+    busy_ = busy_ || context.unfinished() || context.postponed;
+    hurries_ = hurries_ || context.busy || (context.postponed && context.idle);
     compiling_ = compiling_ || context.compiling;
     if (paneDrawn) paneDrawn(pane, context.behind);
 }

@@ -127,7 +127,7 @@ protected:
             ImGui::Begin("page", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
             drawLibraryPage(context, page, "T", *source->info().findChannel("T"));
             ImGui::End();
-            waiting = context.waiting;
+            waiting = context.postponed;
             said = context.messages;
         });
         jobs.wait();

@@ -87,8 +87,8 @@ void LibraryPictures::work(ViewContext& context) {
         if (!rests || !draw(context, *next)) break;
         if (!context.headless) break;
     }
-    context.waiting = context.waiting || std::ranges::any_of(pictures_, missing);
-    if (!context.waiting) target_.reset();
+    context.postponed = context.postponed || std::ranges::any_of(pictures_, missing);
+    if (!context.postponed) target_.reset();
     while (pictures_.size() > kMostPictures && !pictures_.back().wanted) pictures_.pop_back();
 }
 
