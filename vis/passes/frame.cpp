@@ -181,6 +181,7 @@ void RenderStages::drawHalf(ViewTarget& target, const RenderCall& call, const Ra
         const double left = call.request.budgetMs - millisecondsSince(start);
         if (!target.pace().fits(small.area(), left) && int(i) > drawnBefore) return;
         geometry(target, call, half, all);
+        if (programs.packets) programs.packets->picture.begin(half.used, {}, false); // a tile may show nothing
         const RayTile what{.size = half.used,
                            .tile = small,
                            .parts = programs.packets ? nullptr : target.tables.covered(call, half.used),
