@@ -1,6 +1,7 @@
 #include "vis/passes/renderer.h"
 
 #include "vis/demand/changed_pixels.h"
+#include "vis/image/turned_rows.h"
 #include "vis/passes/render_stages.h"
 #include "vis/processor/processor_renderer.h"
 
@@ -183,18 +184,6 @@ std::optional<Pick> Renderer::pick(ViewTarget& target, glm::ivec2 pixel) {
     return Pick{frame.toPhysical(ray.origin + ray.direction * double(distance))};
 }
 
-namespace {
-
-/// The rows of a picture in reverse order; `row`: values in each.
-template <class T> std::vector<T> rowsReversed(const std::vector<T>& picture, std::size_t row) {
-    std::vector<T> out(picture.size());
-    for (std::size_t at = 0; at < picture.size(); at += row)
-        std::copy_n(picture.end() - std::ptrdiff_t(at + row), row, out.begin() + std::ptrdiff_t(at));
-    return out;
-}
-
-} // namespace
-
 std::vector<glm::vec4> Renderer::readLinear(ViewTarget& target) {
     if (processor_) return linearRows(target.alone);
     const glm::ivec2 size = target.buffers.size;
@@ -202,7 +191,7 @@ std::vector<glm::vec4> Renderer::readLinear(ViewTarget& target) {
     if (pixels.empty()) return pixels;
     glGetTextureImage(target.buffers.full.color.name(), 0, GL_RGBA, GL_FLOAT,
                       GLsizei(pixels.size() * sizeof(glm::vec4)), pixels.data());
-    return rowsReversed(pixels, std::size_t(size.x));
+    return turnedRows(pixels, std::size_t(size.x));
 }
 
 std::vector<std::uint8_t> Renderer::readPixels(ViewTarget& target, glm::ivec2& size) {
@@ -216,7 +205,7 @@ std::vector<std::uint8_t> Renderer::readPixels(ViewTarget& target, glm::ivec2& s
     if (pixels.empty()) return pixels;
     glGetTextureImage(target.buffers.output.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, GLsizei(pixels.size()),
                       pixels.data());
-    return rowsReversed(pixels, row);
+    return turnedRows(pixels, row);
 }
 
 const EngineUse& Renderer::engine() const {

@@ -1,21 +1,11 @@
 #include "vis/processor/processor_renderer.h"
 
+#include "vis/image/turned_rows.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace tessera::vis {
-
-namespace {
-
-/// Rows in the opposite order; each has `width` parts.
-template <class Part> std::vector<Part> turnedRows(const std::vector<Part>& rows, std::size_t width) {
-    std::vector<Part> out(rows.size());
-    for (std::size_t at = 0; at < rows.size(); at += width)
-        std::copy_n(rows.begin() + std::ptrdiff_t(at), width, out.end() - std::ptrdiff_t(at + width));
-    return out;
-}
-
-} // namespace
 
 void ProcessorRenderer::setSource(std::shared_ptr<const volume::BrickSource> source) {
     if (source.get() == this->source()) return;
