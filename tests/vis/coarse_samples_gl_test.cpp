@@ -16,6 +16,8 @@ constexpr glm::ivec2 kSmallPicture(64, 48);
 /// Waves in the middle of a box of more than 2^21 samples, whose samples at full resolution can be held back.
 class HeldBack : public FunctionSource {
 public:
+    explicit HeldBack(glm::ivec3 size)
+        : FunctionSource(volume::LatticeKind::CC, size, glm::dvec3(1), {{"v", value}}, 32) {}
     explicit HeldBack(volume::LatticeKind kind)
         : FunctionSource(kind, kind == volume::LatticeKind::CC ? glm::ivec3(130, 120, 140) : glm::ivec3(150, 140, 150),
                          glm::dvec3(1), {{"v", value}}, 32) {}
@@ -123,6 +125,25 @@ TEST_F(CoarseSamplesGl, AreDrawnUntilAllAreRead) {
         EXPECT_GT(apart, 1e-5);
         EXPECT_TRUE(drawing.renderer.takeMessages().empty());
     }
+}
+
+/// Data that need no coarse samples, opened while those of others are shown.
+TEST_F(CoarseSamplesGl, AreNotThoseOfTheDataBefore) {
+    CoarseDrawing drawing(volume::LatticeKind::CC, 0);
+    drawing.source->hold(true);
+    drawing.until([](const FrameStatus& status) { return status.bricksMissing > 0 && status.waits; });
+    const auto small = std::make_shared<HeldBack>(glm::ivec3(30, 20, 25));
+    small->hold(true);
+    drawing.renderer.setSource(small);
+    const std::size_t read = drawing.source->fine();
+    drawing.source->hold(false); // what is being read of them is given up
+    const FrameStatus status = drawing.frame();
+    EXPECT_FALSE(status.complete);
+    EXPECT_EQ(status.bricksMissing, 0);
+    EXPECT_LT(drawing.source->fine() - read, drawing.source->grid().brickCount());
+    small->hold(false);
+    EXPECT_EQ(drawing.until(isComplete).samples, 30u * 20 * 25);
+    EXPECT_LT(rmsApart(drawing.shown(), drawing.waited()), 1e-6);
 }
 
 TEST_F(CoarseSamplesGl, OpenGlSaysWhenSamplesAreThere) {

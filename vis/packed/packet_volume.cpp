@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace tessera::vis::packet {
 
@@ -193,8 +194,8 @@ namespace {
 /// Lays the samples of a channel out.
 class VolumeMaker {
 public:
-    VolumeMaker(const volume::BrickSource& source, const PacketChannel& what)
-        : source_(source), what_(what), geometry_(volume::levelGeometry(source.grid(), 0)) {
+    VolumeMaker(const volume::BrickSource& source, const PacketChannel& what, std::stop_token stop)
+        : source_(source), what_(what), stop_(std::move(stop)), geometry_(volume::levelGeometry(source.grid(), 0)) {
         const volume::DatasetInfo& info = source.info();
         shape_.labels = info.parameters[std::size_t(info.channel(what.channel).parameter)].categorical;
         filtered_ = what.filter == Filter::AverageQuasi && !shape_.labels;
@@ -217,11 +218,13 @@ public:
     /// so shorts have the range of the filtered ones.
     Read read(const std::optional<OnePart>& only) const {
         const int halo = filtered_ ? 1 : 0;
-        Read out{readPadded(source_, {.channel = what_.channel,
-                                      .time = what_.time.earlier,
-                                      .only = only,
-                                      .first = glm::ivec3(-kMargin - halo),
-                                      .count = shape_.bricks * kBrick + (kRow - kBrick + 2 * halo)}),
+        Read out{readPadded(source_,
+                            {.channel = what_.channel,
+                             .time = what_.time.earlier,
+                             .only = only,
+                             .first = glm::ivec3(-kMargin - halo),
+                             .count = shape_.bricks * kBrick + (kRow - kBrick + 2 * halo)},
+                            stop_),
                  {}};
         if (!filtered_ || shape_.exact) out.range = extentOf(out.samples);
         if (filtered_) out.samples = volume::prefilter(out.samples, geometry_);
@@ -269,6 +272,7 @@ private:
 
     const volume::BrickSource& source_;
     const PacketChannel& what_;
+    std::stop_token stop_;
     volume::LevelGeometry geometry_;
     bool filtered_ = false;
     PacketVolume shape_;
@@ -287,10 +291,10 @@ void joinParts(PacketVolume& volume) {
     }
 }
 
-PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketChannel& what) {
+PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketChannel& what, std::stop_token stop) {
     const volume::DatasetInfo& info = source.info();
     const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(what.channel).parameter)];
-    VolumeMaker maker(source, what);
+    VolumeMaker maker(source, what, std::move(stop));
     const std::optional<int> label = volume::labelChannel(info, parameter);
     if (!label) {
         const VolumeMaker::Read all = maker.read(std::nullopt);

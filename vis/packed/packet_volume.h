@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <stop_token>
 #include <vector>
 
 /// The samples of one channel at one time, laid out for packets of rays.
@@ -67,7 +68,7 @@ struct PacketChannel {
 /// Sets the bounds of blocks from those of the parts.
 void joinParts(PacketVolume& volume);
 
-/// Samples at a stored time. Throws Error when the source does.
-PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketChannel& what);
+/// Samples at a stored time. Throws Error when the source does, Cancelled once a stop is requested.
+PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketChannel& what, std::stop_token stop = {});
 
 } // namespace tessera::vis::packet

@@ -1,5 +1,6 @@
 #include "vis/packed/padded_samples.h"
 
+#include "volume/base/error.h"
 #include "volume/base/parallel.h"
 #include "volume/bricks/parts_bricks.h"
 
@@ -120,10 +121,11 @@ Extent extentOf(const volume::BrickSamples& samples) {
     return out;
 }
 
-volume::BrickSamples readPadded(const volume::BrickSource& source, const PaddedRead& what) {
+volume::BrickSamples readPadded(const volume::BrickSource& source, const PaddedRead& what, std::stop_token stop) {
     const volume::BrickGrid& grid = source.grid();
     Padding padding(grid.lattice, what);
     parallelFor(grid.brickCount(), [&](std::size_t i) {
+        if (stop.stop_requested()) throw Cancelled();
         const auto read = [&](int channel) { return source.read({channel, what.time, 0, grid.indexOf(i)}); };
         volume::BrickSamples brick = read(what.channel);
         if (what.only)

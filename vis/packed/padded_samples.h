@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <optional>
+#include <stop_token>
 
 /// The samples of one channel at one time in one array, before they are laid out for packets of rays.
 namespace tessera::vis::packet {
@@ -33,7 +34,7 @@ struct PaddedRead {
 
 /// The samples of these texels at full resolution, in the order of a lattice of their own; beyond the lattice the
 /// nearest sample of the same sublattice, an absent one is 0. `present` is empty where all are. Throws Error when the
-/// source does.
-volume::BrickSamples readPadded(const volume::BrickSource& source, const PaddedRead& what);
+/// source does, Cancelled once a stop is requested.
+volume::BrickSamples readPadded(const volume::BrickSource& source, const PaddedRead& what, std::stop_token stop);
 
 } // namespace tessera::vis::packet

@@ -88,6 +88,10 @@ PacketVolumes::Held& PacketVolumes::entry(const PacketChannel& channel) {
     return *found;
 }
 
+PacketVolumes::~PacketVolumes() {
+    for (Held& each : held_) each.stop.request_stop();
+}
+
 void PacketVolumes::keep(std::size_t bytes) {
     keep_ = bytes;
 }
@@ -151,16 +155,16 @@ bool PacketVolumes::request(const PacketChannel& channel) {
     if (own.coming.valid()) return isReady(own.coming);
     std::promise<SharedVolume> made;
     own.coming = made.get_future();
-    own.reader =
-        std::async(std::launch::async, [source = source_, channel, how = how_, made = std::move(made)]() mutable {
-            if (!how.awaited) workInBackground();
-            try {
-                made.set_value(std::make_shared<const PacketVolume>(readPacketVolume(*source, channel)));
-            } catch (...) {
-                made.set_exception(std::current_exception());
-            }
-            if (how.arrived) how.arrived();
-        });
+    own.reader = std::async(std::launch::async, [source = source_, channel, how = how_, stop = own.stop.get_token(),
+                                                 made = std::move(made)]() mutable {
+        if (!how.awaited) workInBackground();
+        try {
+            made.set_value(std::make_shared<const PacketVolume>(readPacketVolume(*source, channel, std::move(stop))));
+        } catch (...) {
+            made.set_exception(std::current_exception());
+        }
+        if (how.arrived) how.arrived();
+    });
     return false;
 }
 

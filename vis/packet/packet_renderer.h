@@ -6,6 +6,7 @@
 #include <functional>
 #include <future>
 #include <optional>
+#include <stop_token>
 
 /// The ray caster on the processor's vector units: pictures without OpenGL.
 namespace tessera::vis::packet {
@@ -52,6 +53,7 @@ class PacketVolumes {
 public:
     explicit PacketVolumes(std::shared_ptr<const volume::BrickSource> source, PacketReading how = {})
         : source_(std::move(source)), how_(std::move(how)) {}
+    ~PacketVolumes(); ///< gives up what is being read
     /// Keeps the last ones used up to so many bytes.
     void keep(std::size_t bytes);
     const std::shared_ptr<const volume::BrickSource>& source() const { return source_; }
@@ -71,6 +73,7 @@ private:
         std::weak_ptr<const PacketVolume> volume;
         SharedVolume earlier = {}, later = {}; ///< what it was blended from
         std::future<SharedVolume> coming;      ///< valid until what is being read is taken
+        std::stop_source stop = {};            ///< of reading
         std::future<void> reader = {};         ///< the thread that reads it
         std::uint64_t asked = 0;               ///< value of asked_ when it was last asked for
     };

@@ -41,7 +41,7 @@ bool RenderStages::chooseEngine(ViewTarget& target, const RenderCall& call, Fram
     PacketView& packets = target.packets;
     packets.coarse.setVolumes(coarseVolumes);
     if (packets.full.setVolumes(volumes)) {
-        packets.failed = false;
+        packets.failed = packets.isCoarse = false;
         packets.lackingSince.reset();
         ++packets.revision;
     }
