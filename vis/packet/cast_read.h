@@ -8,7 +8,8 @@
 #include "volume/reconstruct/part_choice.h"
 #include "volume/reconstruct/present_coverage.h"
 
-/// Packets of samples read from a PacketVolume: reconstruction, classification. Only for cast_*.cpp.
+/// Packets of samples read from a PacketVolume: reconstruction, classification. Only for cast_*.cpp, and
+/// for measuring.
 namespace tessera::vis::packet::TESSERA_LANES {
 
 using Vec = glm::vec<3, Floats>;

@@ -15,6 +15,8 @@ namespace {
 
 constexpr double kSlack = 2; ///< of bounds, in 16-bit samples, for rounding
 
+} // namespace
+
 VolumeView viewOf(const PacketVolume& volume) {
     VolumeView view;
     view.shorts = volume.exact ? nullptr : volume.shorts.data();
@@ -29,8 +31,6 @@ VolumeView viewOf(const PacketVolume& volume) {
     view.perBrick = {brick - kBrick, row - kBrick * kRow, slice - kBrick * kSlice};
     return view;
 }
-
-} // namespace
 
 namespace {
 

@@ -15,6 +15,9 @@ namespace tessera::vis::packet {
 
 using SharedVolume = std::shared_ptr<const PacketVolume>;
 
+/// Refers to a volume, but not to its parts.
+VolumeView viewOf(const PacketVolume& volume);
+
 /// Tables and maps of a scene, for every camera. Owns all that its views refer to; not to be moved.
 class PacketScene {
 public:

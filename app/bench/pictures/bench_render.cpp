@@ -1,6 +1,7 @@
 #include "app/bench/bench.h"
 #include "app/bench/pictures/bench_frames.h"
 #include "app/bench/pictures/bench_volumes.h"
+#include "app/bench/pictures/least_sample.h"
 #include "app/bench/pictures/vtk_peer.h"
 #include "vis/gl/headless.h"
 #include "vis/packet/packet_renderer.h"
@@ -96,6 +97,17 @@ double millionSamples(vis::Renderer& counter, vis::packet::PacketRenderer& packe
     return double(packets.samplesTaken()) / 1e6;
 }
 
+/// What a picture by the processor costs at least, and how near ours comes: milliseconds to read and interpolate its
+/// samples from the nearest cache, and to read all samples of the volume from memory once; the former in percent of
+/// the time of the picture.
+void addLimit(std::vector<std::string>& row, const LeastCost& least, volume::LatticeKind kind, double millions,
+              std::size_t bytes, double milliseconds) {
+    const double samples = millions * least.sampleNs[kind == volume::LatticeKind::BCC ? 1 : 0];
+    row.push_back(decimals(samples, 1));
+    row.push_back(decimals(double(bytes) / least.gigabytes / 1e6, 1));
+    row.push_back(decimals(100 * samples / milliseconds, 0));
+}
+
 /// Ours, by one engine: time of a frame and of new data; nothing where it cannot draw the style.
 struct Own {
     double frame = 0, changed = 0;
@@ -115,6 +127,11 @@ std::optional<Own> measureOwn(vis::Renderer& renderer, vis::Scene scene, const B
 
 void measure(const BenchVolume& volume, bool peers, std::map<std::string, Means>& means, BenchTable& table) {
     std::map<std::string, double> onCc;
+    const LeastCost least = leastCost();
+    table.rows.push_back({volume.name, "", "least: one sample on CC, BCC; memory",
+                          decimals(least.sampleNs[0], 2) + " ns, " + decimals(least.sampleNs[1], 2) + " ns, " +
+                              decimals(least.gigabytes, 1) + " GB/s"});
+    table.rows.back().resize(table.columns.size());
     for (const volume::LatticeKind kind : {volume::LatticeKind::CC, volume::LatticeKind::BCC}) {
         const std::shared_ptr<const volume::BrickSource> source =
             volume::makeMemorySource(benchDataset(volume), {.lattice = kind});
@@ -146,15 +163,16 @@ void measure(const BenchVolume& volume, bool peers, std::map<std::string, Means>
                     onCc[name] = ours->frame;
                 else
                     add(mean.lattice, ours->frame, onCc[name]);
-                std::vector<std::string> row{
-                    volume.name,
-                    std::string(volume::kLatticeNames[std::size_t(kind)]),
-                    name,
-                    decimals(ours->frame, 1),
-                    decimals(millionSamples(counter, packets, scene, engine) * 1000 / ours->frame, 0),
-                    decimals(ours->changed, 0),
-                    decimals(vis::reference::compare(ours->picture, same, 1).psnr, 1),
-                    decimals(vis::reference::compare(ours->picture, limit, 1).psnr, 1)};
+                const double millions = millionSamples(counter, packets, scene, engine);
+                std::vector<std::string> row{volume.name, std::string(volume::kLatticeNames[std::size_t(kind)]), name,
+                                             decimals(ours->frame, 1), decimals(millions * 1000 / ours->frame, 0)};
+                if (engine == vis::Engine::Processor)
+                    addLimit(row, least, kind, millions, packets.bytes(), ours->frame);
+                else
+                    row.insert(row.end(), {"", "", ""});
+                row.push_back(decimals(ours->changed, 0));
+                row.push_back(decimals(vis::reference::compare(ours->picture, same, 1).psnr, 1));
+                row.push_back(decimals(vis::reference::compare(ours->picture, limit, 1).psnr, 1));
                 if (peers) {
                     addPeer(row, peer.gpu, ours->frame, limit, mean.gpu);
                     addPeer(row, peer.cpu, ours->frame, limit, mean.cpu);
@@ -182,9 +200,17 @@ BenchTable benchRender(const std::string& only) {
     const bool peers = vtkPeerAtHand();
     BenchTable table;
     table.name = "render: beside VTK";
-    table.columns = {
-        "volume",      "lattice",         "engine and style", timeColumn(benchClock()), "million samples / s",
-        "new data ms", "same samples dB", "converged dB"};
+    table.columns = {"volume",
+                     "lattice",
+                     "engine and style",
+                     timeColumn(benchClock()),
+                     "million samples / s",
+                     "least for samples ms",
+                     "all samples once ms",
+                     "% of the limit",
+                     "new data ms",
+                     "same samples dB",
+                     "converged dB"};
     if (peers)
         for (const char* column : {"VTK GPU ms", "VTK GPU dB", "VTK GPU / ours", "VTK CPU ms", "VTK CPU dB",
                                    "VTK CPU / ours", "VTK GPU new data ms", "VTK GPU / ours"})
@@ -200,7 +226,8 @@ BenchTable benchRender(const std::string& only) {
         if (wanted(volume.name)) measure(volume, peers, means, table);
     if (wanted("foam")) measure(foamVolume(kFullModel), peers, means, table);
     for (const auto& [name, mean] : means) {
-        std::vector<std::string> row{"geometric mean", "BCC / CC", name, ratio(mean.lattice), "", "", "", ""};
+        std::vector<std::string> row{
+            "geometric mean", "BCC / CC", name, ratio(mean.lattice), "", "", "", "", "", "", ""};
         if (peers) row.insert(row.end(), {"", "", ratio(mean.gpu), "", "", ratio(mean.cpu), "", ratio(mean.changed)});
         table.rows.push_back(std::move(row));
     }
