@@ -3,7 +3,11 @@
 
 #include <atomic>
 #include <cmath>
+#include <mutex>
+#include <set>
+#include <sys/resource.h>
 #include <thread>
+#include <unistd.h>
 
 /// The processor draws large data from coarse samples until it has read all.
 namespace tessera::vis {
@@ -12,31 +16,70 @@ namespace {
 class CoarseSamplesGl : public test::GlTest {};
 
 constexpr glm::ivec2 kSmallPicture(64, 48);
+constexpr int kHeldTimes = 4;
 
-/// Waves in the middle of a box of more than 2^21 samples, whose samples at full resolution can be held back.
+int ownNiceness() {
+    return getpriority(PRIO_PROCESS, id_t(gettid()));
+}
+
+/// Waves in the middle of a box of more than 2^21 samples at each of four times, whose samples at full resolution can
+/// be held back.
 class HeldBack : public FunctionSource {
 public:
     explicit HeldBack(glm::ivec3 size)
         : FunctionSource(volume::LatticeKind::CC, size, glm::dvec3(1), {{"v", value}}, 32) {}
     explicit HeldBack(volume::LatticeKind kind)
         : FunctionSource(kind, kind == volume::LatticeKind::CC ? glm::ivec3(130, 120, 140) : glm::ivec3(150, 140, 150),
-                         glm::dvec3(1), {{"v", value}}, 32) {}
+                         glm::dvec3(1), {{"v", value}}, 32) {
+        info_.times.clear();
+        for (int i = 0; i < kHeldTimes; ++i) info_.times.push_back(i);
+        info_.parameters[0].ranges.resize(kHeldTimes, info_.parameters[0].ranges[0]);
+    }
     ~HeldBack() override = default;
 
+    const volume::DatasetInfo& info() const override { return info_; }
     volume::BrickSamples read(const volume::BrickKey& key) const override {
+        {
+            const std::lock_guard lock(mutex_);
+            if (key.level == 0) {
+                fineTimes_.insert(key.time);
+                lowestOfFine_ = std::max(lowestOfFine_, ownNiceness());
+            } else {
+                highestOfCoarse_ = std::min(highestOfCoarse_, ownNiceness());
+            }
+        }
         while (held_ && key.level == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         if (key.level == 0) ++fine_;
         return FunctionSource::read(key);
     }
     void hold(bool yes) { held_ = yes; }
     std::size_t fine() const { return fine_; }
+    /// Times of which samples at full resolution have been asked for.
+    std::set<int> fineTimes() const {
+        const std::lock_guard lock(mutex_);
+        return fineTimes_;
+    }
+    /// Niceness of the least urgent thread that read samples at full resolution, and of the most urgent one of coarse
+    /// ones: helpers of either may have that of the thread that began them.
+    int lowestOfFine() const {
+        const std::lock_guard lock(mutex_);
+        return lowestOfFine_;
+    }
+    int highestOfCoarse() const {
+        const std::lock_guard lock(mutex_);
+        return highestOfCoarse_;
+    }
 
 private:
     static std::optional<double> value(glm::dvec3 p) {
         return 0.3 + 0.25 * std::sin(0.06 * p.x) * std::cos(0.05 * p.y) + 0.4 * p.z / 150;
     }
+    volume::DatasetInfo info_ = FunctionSource::info();
     std::atomic<bool> held_ = false;
     mutable std::atomic<std::size_t> fine_ = 0;
+    mutable std::mutex mutex_;
+    mutable std::set<int> fineTimes_;
+    mutable int lowestOfFine_ = -100, highestOfCoarse_ = 100;
 };
 
 /// A renderer of such data; what is read in the background at its end must not be held back.
@@ -125,6 +168,31 @@ TEST_F(CoarseSamplesGl, AreDrawnUntilAllAreRead) {
         EXPECT_GT(apart, 1e-5);
         EXPECT_TRUE(drawing.renderer.takeMessages().empty());
     }
+}
+
+/// Whoever drags through time sees each from coarse samples, and starts no reading of all while another goes on.
+TEST_F(CoarseSamplesGl, OneTimeIsReadAtATime) {
+    CoarseDrawing drawing(volume::LatticeKind::CC, 0);
+    drawing.source->hold(true);
+    const auto drawnCoarse = [](const FrameStatus& status) { return status.bricksMissing > 0 && status.waits; };
+    for (int time = 0; time < kHeldTimes; ++time) {
+        drawing.scene.time = time;
+        drawing.until(drawnCoarse);
+        for (int i = 0; i < 50 && drawing.source->fineTimes().empty(); ++i) drawing.frame();
+        for (int i = 0; i < 60; ++i) drawing.frame();
+        EXPECT_EQ(drawing.source->fineTimes(), std::set<int>{0}) << time;
+    }
+    drawing.source->hold(false);
+    EXPECT_EQ(drawing.until(isComplete).samples, drawing.source->grid().lattice.count());
+    EXPECT_EQ(drawing.source->fineTimes(), (std::set<int>{0, kHeldTimes - 1})) << "those passed meanwhile are not read";
+}
+
+/// Coarse samples are waited for, all of them are read behind whatever else there is to do.
+TEST_F(CoarseSamplesGl, AllAreReadBehindOtherWork) {
+    CoarseDrawing drawing(volume::LatticeKind::CC, 0);
+    drawing.until(isComplete);
+    EXPECT_EQ(drawing.source->highestOfCoarse(), ownNiceness());
+    EXPECT_EQ(drawing.source->lowestOfFine(), std::max(ownNiceness(), 10));
 }
 
 /// Data that need no coarse samples, opened while those of others are shown.
