@@ -55,7 +55,8 @@ protected:
     template <class View>
     void expectMain(View& view, void (*function)(ViewContext&, const std::string&, View&), float width, float height) {
         constexpr float kTab = 26;
-        const ViewTraits& traits = traitsOf(ViewState(view));
+        const ViewState state(view);
+        const ViewTraits& traits = traitsOf(state);
         const ImVec2 size{traits.leastWidth, traits.leastHeight - kTab};
         SCOPED_TRACE(std::string(traits.title));
         EXPECT_THAT(drawIn(size, view, function), Not(HasSubstr("Not enough room")));
