@@ -1,5 +1,6 @@
 #include "vis/processor/surface_shading.h"
 
+#include "vis/optics/look_sample.h"
 #include "vis/optics/ray_setup.h"
 
 #include <algorithm>
@@ -83,21 +84,18 @@ glm::dvec3 SurfaceShading::lit(glm::dvec3 albedo, glm::dvec3 normal, glm::dvec3 
 /// `normals`: of the places of a spot, of length 1.
 LookSample SurfaceShading::lookSample(const Look& look, const SurfaceSpot& spot,
                                       const std::array<glm::dvec3, 3>& normals) const {
-    const glm::dvec3 world = spot.here.world, away = world - middle_.origin;
-    const glm::dvec3 toLight = look_.light.point ? look_.light.place - world : look_.light.place;
-    LookSample at;
-    at.at = facing(normals[0], toViewer(world));
-    at.weight = 1;
-    at.steepness = 1;
-    at.depth =
-        std::clamp((glm::dot(away, middle_.direction) - look_.nearest) / (look_.farthest - look_.nearest), 0.0, 1.0);
-    at.pixel = look_.pixel.x + look_.pixel.y * along(world);
-    at.toLight = toLight / std::sqrt(std::max(glm::dot(toLight, toLight), 1e-12));
+    const glm::dvec3 world = spot.here.world;
+    LookSample at = lookSampleAt<double>(look, look_,
+                                         {.world = world,
+                                          .toViewer = toViewer(world),
+                                          .along = glm::dot(world - middle_.origin, middle_.direction),
+                                          .distance = along(world),
+                                          .share = 1,
+                                          .steepness = 1,
+                                          .gradient = normals[0],
+                                          .weight = 1});
     at.curvature = curvatureOf(at, spot.right.world - world, spot.above.world - world, normals[1] - normals[0],
                                normals[2] - normals[0]);
-    if (look.wire)
-        at.wire = wireCoverage(world, at.at.normal, at.at.toViewer, double(look.wire->spacing),
-                               double(look.wire->width), at.pixel);
     if (look.charcoal) at.grain = marksAt(*look.charcoal, world, at.at.normal, SurfaceBend(0), at.pixel);
     return at;
 }

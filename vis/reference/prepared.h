@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vis/optics/adaptive_step.h"
-#include "vis/optics/look_shading.h"
+#include "vis/optics/look_sample.h"
 #include "vis/optics/preintegration.h"
 #include "vis/optics/ray_setup.h"
 #include "vis/optics/shade.h"

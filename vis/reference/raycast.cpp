@@ -124,40 +124,17 @@ template <class Number> struct Caster {
 
     LookSample lookSample(const DrawnLayer& layer, const Look& look, glm::dvec3 place, glm::dvec3 gradient, double t,
                           double doi) const {
-        const LookView& view = scene.look;
-        LookSample sample;
-        sample.share = lookShare(look.part, doi);
-        sample.steepness = scene.steepPlace(layer, place);
-        const double along = t * glm::dot(ray.direction, scene.middle);
-        sample.depth = std::clamp((along - view.nearest) / (view.farthest - view.nearest), 0.0, 1.0);
-        sample.pixel = view.pixel.x + view.pixel.y * t;
-        const glm::dvec3 way = view.light.point ? view.light.place - place : view.light.place;
-        sample.toLight = way / std::max(glm::length(way), 1e-6);
-        sample.at.normal = glm::dvec3(0);
-        sample.at.toViewer = -ray.direction;
-        SurfaceBend bend(0);
         const int part = layer.samples->part(scene.cells(place));
-        if (glm::length(gradient) > 0) {
-            sample.at = facing(gradient, -ray.direction);
-            sample.weight = surfaceWeight(layer, place);
-            const glm::dvec3 tangent = -ray.direction - glm::dot(-ray.direction, sample.at.normal) * sample.at.normal;
-            const glm::dvec3 across = tangent / std::max(glm::length(tangent), 1e-6);
-            const double reach = bendReach(look, view), perReach = 1 / (reach * glm::length(gradient));
-            const bool follows = look.charcoal && look.charcoal->mark == Mark::Strokes && look.charcoal->follow > 0;
-            const auto centre = layer.samples->ofPart(part, scene.cells(place));
-            const volume::FoundValue<double, bool> middle{centre.value_or(0), centre.has_value()};
-            const auto valueAt = [&](glm::dvec3 to) { return scene.beside(*layer.samples, place, part, to); };
-            if (follows) bend = perReach * surfaceBend<double>(valueAt, middle, sample.at.normal, reach);
-            const double turned = follows ? bendAlong(bend, sample.at.normal, across)
-                                          : perReach * secondDifference<double>(valueAt, middle, across * reach);
-            sample.curvature = std::abs(turned) / reach;
-        }
-        if (look.wire)
-            sample.wire =
-                sample.weight * wireCoverage(place, sample.at.normal, -ray.direction, double(look.wire->spacing),
-                                             double(look.wire->width), sample.pixel);
-        if (look.charcoal) sample.grain = marksAt(*look.charcoal, place, sample.at.normal, bend, sample.pixel);
-        return sample;
+        const LookPlaceOf<double> at{.world = place,
+                                     .toViewer = -ray.direction,
+                                     .along = t * glm::dot(ray.direction, scene.middle),
+                                     .distance = t,
+                                     .share = lookShare(look.part, doi),
+                                     .steepness = scene.steepPlace(layer, place),
+                                     .gradient = gradient,
+                                     .weight = surfaceWeight(layer, place)};
+        return lookSampleAt<double>(
+            look, scene.look, at, [&](glm::dvec3 offset) { return scene.beside(*layer.samples, place, part, offset); });
     }
 
     /// Colour and opacity of a sample, after shading and looks.

@@ -1,4 +1,4 @@
-// Inputs of look shading for a sample of the ray caster; twin: lookSample in vis/reference/raycast.cpp.
+// Inputs of look shading for a sample of the ray caster; twin: vis/optics/look_sample.h.
 
 // The gradient that a look is shaded by: `perCell`, result of cellGradient() for the channel `field`, or that of a field
 // smoothed over the width of the look. `centre`: value at p, or kUnknown.
