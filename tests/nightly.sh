@@ -50,7 +50,7 @@ second_driver() {
     local home=$PWD/build/release/second-driver
     rm -rf "$home"
     mkdir "$home" && chmod 700 "$home"
-    LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=zink XDG_RUNTIME_DIR=$home MESA_SHADER_CACHE_DIR=$home TMPDIR=$home \
+    LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=zink TESSERA_TEST_DRIVER=zink XDG_RUNTIME_DIR=$home MESA_SHADER_CACHE_DIR=$home TMPDIR=$home \
         build/release/vis_gl_tests --gtest_brief=1
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 
+#include "vis/gl/driver.h"
 #include "vis/gl/headless.h"
 #include "vis/passes/renderer.h"
 
+#include <cstdlib>
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
@@ -21,6 +23,10 @@ protected:
             nullptr);
         // What the shader compiler says comes back as an exception already.
         glDebugMessageControl(GL_DEBUG_SOURCE_SHADER_COMPILER, GL_DONT_CARE, GL_DONT_CARE, 0, nullptr, GL_FALSE);
+        // A driver that is not there is replaced by another without a word.
+        const char* const wanted = std::getenv("TESSERA_TEST_DRIVER");
+        const std::string renderer = vis::currentDriver().renderer;
+        if (wanted && renderer.find(wanted) == renderer.npos) ADD_FAILURE() << "drawn by " << renderer << ", not " << wanted;
     }
     vis::HeadlessContext context{true};
 };
