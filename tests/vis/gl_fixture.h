@@ -26,7 +26,8 @@ protected:
         // A driver that is not there is replaced by another without a word.
         const char* const wanted = std::getenv("TESSERA_TEST_DRIVER");
         const std::string renderer = vis::currentDriver().renderer;
-        if (wanted && renderer.find(wanted) == renderer.npos) ADD_FAILURE() << "drawn by " << renderer << ", not " << wanted;
+        if (wanted && renderer.find(wanted) == renderer.npos)
+            ADD_FAILURE() << "drawn by " << renderer << ", not " << wanted;
     }
     vis::HeadlessContext context{true};
 };
