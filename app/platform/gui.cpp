@@ -38,7 +38,10 @@ Gui::Gui(vis::TexturesIn where) {
 
 Gui::~Gui() {
     ImGui::SetCurrentContext(context_);
-    if (textures() == vis::TexturesIn::OpenGl) ImGui_ImplOpenGL3_Shutdown();
+    if (textures() == vis::TexturesIn::OpenGl)
+        ImGui_ImplOpenGL3_Shutdown();
+    else
+        ImGui::GetIO().BackendRendererUserData = nullptr; // else newer versions miss the end of a back end
     ImGui::DestroyContext(context_);
     ImGui::SetCurrentContext(former_);
 }
