@@ -64,6 +64,12 @@ follow_and_kill() {
         wait $pid 2> /dev/null
         [ ! -e live.tsr ] || "$tessera" verify live.tsr > /dev/null || fail "a kill left a damaged archive"
     done
+    if ! grep -q appended lines; then # a busy machine: every kill came before the first time was there
+        start "$@"
+        for i in $(seq 600); do grep -q appended lines && break; sleep 0.1; done
+        kill -KILL $pid 2> /dev/null && kills=$((kills + 1))
+        wait $pid 2> /dev/null
+    fi
     start "$@"
     wait $pid || { fail "follow $kind $*"; cat err; }
     wait $solver
