@@ -81,6 +81,56 @@ TEST_F(EngineGl, BothEnginesDrawTheSamePicture) {
         }
 }
 
+/// What a screen shows of both, where the processor presents its own pixels and where OpenGL does (behind tones), with
+/// and without the box and the ground, drawn in one go and tile by tile; after the box has moved, what was beside it is
+/// empty again.
+TEST_F(EngineGl, BothPresentTheSamePixels) {
+    Renderer renderer({.exactTextures = true});
+    renderer.setSource(waves(volume::LatticeKind::CC));
+    const ViewTargetPtr byOpenGl = renderer.makeTarget(), byProcessor = renderer.makeTarget();
+    Scene scene = wavesScene(Engine::Processor);
+    scene.render.samples = 1;
+    scene.background = {0.2f, 0.5f, 0.8f};
+    scene.transfer["v"].opacity = {{0, 0.02f}, {1, 0.3f}}; // no pixel of the box is empty
+    const glm::ivec2 size(333, 201);
+    const auto shown = [&](ViewTarget& target, Engine engine, double budget) {
+        scene.render.engine = engine;
+        FrameStatus status;
+        for (int frame = 0; frame < 20000 && !status.complete; ++frame)
+            status = renderer.render(target, scene, {.size = size, .budgetMs = budget, .wait = budget == 0});
+        EXPECT_TRUE(status.complete);
+        EXPECT_EQ(status.engine.byProcessor, engine == Engine::Processor);
+        glm::ivec2 read;
+        return renderer.readPixels(target, read);
+    };
+    int way = 0;
+    for (const bool ground : {true, false})
+        for (const bool box : {true, false})
+            for (const ToneCurve curve : {ToneCurve::None, ToneCurve::Filmic}) {
+                SCOPED_TRACE(testing::Message() << ground << box << int(curve));
+                scene.showGround = ground;
+                scene.showBox = box;
+                scene.tone.curve = curve;
+                scene.camera.distance = 2.2f + 0.4f * float(way % 3);
+                orbit(scene.camera, {0, 0}, {0.7f, 0.2f * float(way % 2)});
+                const auto wanted = shown(*byOpenGl, Engine::OpenGl, 0),
+                           got = shown(*byProcessor, Engine::Processor, way++ % 2 == 0 ? 0 : 0.1);
+                std::size_t apart = 0;
+                for (std::size_t i = 0; i < wanted.size(); ++i) apart += std::abs(int(wanted[i]) - int(got[i])) > 2;
+                EXPECT_LT(apart, wanted.size() / 2000);
+                std::size_t empty = 0; // corners of the picture hold nothing but the ground
+                for (const std::size_t at : {std::size_t(0), std::size_t(4 * (size.x - 1)), wanted.size() - 4})
+                    for (std::size_t c = 0; c < 4; ++c) empty += wanted[at + c] == got[at + c];
+                EXPECT_EQ(empty, 12u);
+            }
+    scene.tone.curve = ToneCurve::None;
+    scene.showGround = true;
+    shown(*byProcessor, Engine::Processor, 0);
+    scene.camera.target.x += 100; // away from the box
+    const auto ground = shown(*byProcessor, Engine::Processor, 0);
+    for (std::size_t i = 4; i < ground.size(); ++i) ASSERT_EQ(ground[i], ground[i - 4]);
+}
+
 TEST_F(EngineGl, AutomaticIsWhatTheOptionsSay) {
     for (const Packets packets : {Packets::Never, Packets::WhileCompiling, Packets::Always}) {
         Renderer renderer({.packets = packets});

@@ -24,7 +24,7 @@ TEST_F(ShaderLib, ColorsAreEncodedAlike) {
     const auto got =
         evaluate("#include \"lib/color.glsl\"\n", "vec4(srgbFromLinear(abs(a[i].rgb)), luminance(b[i].rgb))");
     for (int i = 0; i < kCases; ++i) {
-        for (int k = 0; k < 3; ++k) EXPECT_NEAR(got[i][k], vis::srgbFromLinear(std::abs(a[i][k])), 2e-6);
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(got[i][k], vis::srgbFromLinear(double(std::abs(a[i][k]))), 2e-6);
         EXPECT_NEAR(got[i].w, vis::luminance(glm::dvec3(b[i])), 1e-6);
     }
 }

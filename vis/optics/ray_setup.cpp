@@ -58,10 +58,6 @@ Plane slicePlane(const SliceLayer& layer, const WorldFrame& frame, glm::dvec3 cu
     return plane;
 }
 
-double srgbFromLinear(double linear) {
-    return linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
-
 glm::dvec3 linearFromSrgb(glm::dvec3 encoded) {
     return {linearFromSrgb(encoded.x), linearFromSrgb(encoded.y), linearFromSrgb(encoded.z)};
 }

@@ -146,7 +146,13 @@ template <class N> N linearFromSrgb(N encoded) {
 inline double linearFromSrgb(double encoded) {
     return linearFromSrgb<double>(encoded);
 }
-double srgbFromLinear(double linear);
+template <class N> N srgbFromLinear(N linear) {
+    return choose(linear <= N(0.0031308), linear * N(12.92),
+                  N(1.055) * power(larger(linear, N(0)), N(1 / 2.4)) - N(0.055));
+}
+inline double srgbFromLinear(double linear) {
+    return srgbFromLinear<double>(linear);
+}
 glm::dvec3 linearFromSrgb(glm::dvec3 encoded);
 inline constexpr glm::dvec3 kLuminance{0.2126, 0.7152, 0.0722}; ///< Rec. 709
 /// Rec. 709 luminance of linear light.

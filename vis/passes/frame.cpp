@@ -2,6 +2,7 @@
 
 #include "vis/demand/lens_pixels.h"
 #include "vis/demand/tile_order.h"
+#include "vis/processor/presented.h"
 #include "vis/raycast/ray_uniforms.h"
 #include "vis/shapes/proxy.h"
 
@@ -164,7 +165,7 @@ void RenderStages::drawReduced(ViewTarget& target, const RenderCall& call, const
 void RenderStages::drawHalf(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
                             Clock::time_point start) {
     PictureState& state = target.state;
-    const RayBuffer& half = target.buffers.half;
+    RayBuffer& half = target.buffers.half;
     if (state.halfTilesDone() == 0) {
         target.pace().beginPass(false, call.request.budgetMs);
         target.packets.contrast.clear();
@@ -233,9 +234,13 @@ void RenderStages::drawTile(ViewTarget& target, const RenderCall& call, const Ra
         setUniforms(all, target, own, 1);
         castTile(target, own, all, tile, pass);
     } else {
+        if (programs.packets) programs.packets->picture.begin(target.buffers.size, {}, false); // it may show nothing
         castTile(target, call, programs, tile, pass);
     }
-    present(target, call.scene, target.buffers.full, tile);
+    if (programs.packets && pass == 0 && presentsPlainly(call.scene))
+        presentPackets(target, call.scene, tile);
+    else
+        present(target, call.scene, target.buffers.full, tile);
     glBindTextureUnit(0, call.plan.fields[0].texture);
     target.state.drewTile();
 }

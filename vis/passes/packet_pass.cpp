@@ -217,7 +217,7 @@ void readGeometry(const GeometryBuffer& buffer, glm::ivec2 first, glm::ivec2 ext
 
 } // namespace
 
-/// Draws a tile with the rays of one pass; the buffer there is cleared.
+/// Draws a tile with the rays of one pass; replaces all but termination depths, which rays of the processor have not.
 void RenderStages::castPackets(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer,
                                const RayTile& what) {
     PacketView& packets = *programs.packets;

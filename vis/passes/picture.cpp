@@ -17,12 +17,13 @@ RayBuffer makeRayBuffer(glm::ivec2 size, bool exact, const char* label) {
 
 } // namespace
 
-void RayBuffer::clear() const {
+void RayBuffer::clear() {
     const float empty[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0}, endless[] = {1e9f, 0, 0, 0};
     glDisable(GL_SCISSOR_TEST);
     glClearNamedFramebufferfv(framebuffer.name(), GL_COLOR, 0, empty);
     glClearNamedFramebufferfv(framebuffer.name(), GL_COLOR, 1, nowhere);
     glClearNamedFramebufferfv(framebuffer.name(), GL_COLOR, 2, endless);
+    drawn = {};
 }
 
 PictureBuffers PictureBuffers::make(glm::ivec2 size, bool exact) {

@@ -15,8 +15,11 @@ struct RayBuffer {
     glm::ivec2 size{0};
     glm::ivec2 first{0}; ///< texel of the picture's lower left pixel
     glm::ivec2 used{0};  ///< size of the picture in it
+    Tile drawn;          ///< texels that may show something: others are clear
     /// Clears all targets.
-    void clear() const;
+    void clear();
+    /// Texels `seen` of `tile` show something now, the others of it nothing.
+    void drew(const Tile& tile, const Tile& seen) { drawn = united(tile, drawn) == tile ? seen : united(drawn, seen); }
 };
 
 /// The buffers of a view.

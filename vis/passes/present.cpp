@@ -3,6 +3,7 @@
 #include "vis/demand/box_lines.h"
 #include "vis/optics/context_blur.h"
 #include "vis/optics/grain.h"
+#include "vis/processor/presented.h"
 #include "vis/raycast/look_uniforms.h"
 #include "vis/raycast/ray_uniforms.h"
 #include "volume/base/error.h"
@@ -82,6 +83,16 @@ void RenderStages::present(ViewTarget& target, const Scene& scene, const RayBuff
     glUseProgram(resolve->name());
     glBindVertexArray(tools.vertices.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    target.state.setPresented(true);
+}
+
+/// Presents a tile of the first pass from what the processor has drawn of it: software GL takes several times as long.
+void RenderStages::presentPackets(ViewTarget& target, const Scene& scene, const Tile& tile) {
+    const std::vector<std::uint8_t> pixels =
+        presented(target.packets.picture, {tile.begin, tile.end}, scene, box(target, scene));
+    const glm::ivec2 extent = tile.end - tile.begin;
+    glTextureSubImage2D(target.buffers.output.name(), 0, tile.begin.x, tile.begin.y, extent.x, extent.y, GL_RGBA,
+                        GL_UNSIGNED_BYTE, pixels.data());
     target.state.setPresented(true);
 }
 

@@ -8,6 +8,7 @@
 #include "volume/base/error.h"
 
 #include <algorithm>
+#include <span>
 
 namespace tessera::vis {
 
@@ -69,8 +70,7 @@ void RenderStages::proxies(const Program& program, const RenderCall& call, const
 }
 
 /// Draws a tile with the rays of one pass.
-void RenderStages::rays(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer,
-                        const RayTile& what) {
+void RenderStages::rays(const RayPrograms& programs, const RenderCall& call, RayBuffer& buffer, const RayTile& what) {
     const Scene& scene = call.scene;
     const glm::ivec2 size = what.size;
     const Tile& tile = what.tile;
@@ -78,21 +78,31 @@ void RenderStages::rays(const RayPrograms& programs, const RenderCall& call, con
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, buffer.framebuffer.name());
     glViewport(buffer.first.x, buffer.first.y, size.x, size.y);
     glEnable(GL_SCISSOR_TEST);
+    const auto texels = [&](const Tile& of) { return Tile{buffer.first + of.begin, buffer.first + of.end}; };
     const auto within = [&](glm::ivec2 from, glm::ivec2 to) {
         glScissor(buffer.first.x + from.x, buffer.first.y + from.y, to.x - from.x, to.y - from.y);
     };
-    within(tile.begin, tile.end);
-    glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 0, nothing);
-    glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 1, nowhere);
-    glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 2, unseen);
-    // Restrict drawing to the pixels of the box.
+    const auto clear = [&](const Tile& part) {
+        within(part.begin, part.end);
+        glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 0, nothing);
+        glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 1, nowhere);
+    };
+    // Rays are cast for the pixels of the box only.
     const glm::ivec4 box = boxPixels(scene.camera, call.frame().halfSize, size);
-    const glm::ivec2 begin = glm::max(tile.begin, glm::ivec2(box)), end = glm::min(tile.end, glm::ivec2(box.z, box.w));
-    if (begin.x >= end.x || begin.y >= end.y) return;
-    within(begin, end);
-    if (programs.packets)
-        return castPackets(programs, call, buffer, {size, {begin, end}, nullptr, what.stepFactor, what.pass});
-    const std::vector<Tile> whole{{begin, end}};
+    const Tile seen = intersection(tile, {{box.x, box.y}, {box.z, box.w}});
+    const Tile held{buffer.drawn.begin - buffer.first, buffer.drawn.end - buffer.first};
+    buffer.drew(texels(tile), seen.empty() ? Tile{} : texels(seen));
+    if (programs.packets) { // these replace what is there, and find no termination depths
+        for (const Tile& beside : remainder(tile, std::span(&seen, seen.empty() ? 0 : 1)))
+            if (const Tile full = intersection(beside, held); !full.empty()) clear(full);
+        if (!seen.empty()) castPackets(programs, call, buffer, {size, seen, nullptr, what.stepFactor, what.pass});
+        return;
+    }
+    clear(tile);
+    glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 2, unseen);
+    if (seen.empty()) return;
+    within(seen.begin, seen.end);
+    const std::vector<Tile> whole{seen};
     glBindVertexArray(tools.vertices.name());
     const auto prepare = [&](const Program& program) {
         program.set("ndcScale", 2.0f / glm::vec2(size));

@@ -82,7 +82,7 @@ struct RenderStages {
     // ray_pass.cpp
     ProgramRecipe variant(const ViewTarget& target, const Scene& scene, const RayPlan& plan) const;
     void geometry(ViewTarget& target, const RenderCall& call, const RayBuffer& buffer, const Tile& tile, int pass = 0);
-    void rays(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer, const RayTile& what);
+    void rays(const RayPrograms& programs, const RenderCall& call, RayBuffer& buffer, const RayTile& what);
     void proxies(const Program& program, const RenderCall& call, const RayBuffer& buffer, double stepFactor);
     void accumulate(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const RayTile& what);
 
@@ -104,6 +104,7 @@ struct RenderStages {
     void setPresented(const Program& resolve, const ViewTarget& target, const Scene& scene, const BoxLines& lines,
                       const RayBuffer& from);
     void present(ViewTarget& target, const Scene& scene, const RayBuffer& from, const Tile& tile);
+    void presentPackets(ViewTarget& target, const Scene& scene, const Tile& tile);
     bool presentable(const ViewTarget& target, const Scene& scene);
     void blank(ViewTarget& target, const Scene& scene);
     void nothing(ViewTarget& target, const Scene& scene);

@@ -1,10 +1,12 @@
 #include "vis/processor/presented.h"
 
+#include "vis/optics/context_blur.h"
 #include "vis/optics/grain.h"
-#include "vis/optics/ray_setup.h"
+#include "vis/processor/present_rows.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <span>
@@ -17,52 +19,69 @@ std::uint8_t bitsOf(double share) {
     return std::uint8_t(std::clamp(share, 0.0, 1.0) * 255 + 0.5);
 }
 
+/// Adds what lines cover of a row's pixels, from `first` on.
+void addLines(std::span<const glm::vec4> lines, glm::ivec2 first, std::vector<float>& covered) {
+    constexpr double kReach = 0.5 * kBoxLineWidth + 0.5;
+    const double y = first.y + 0.5;
+    for (const glm::vec4& line : lines) {
+        const glm::dvec2 from(line.x, line.y), along = glm::dvec2(line.z, line.w) - from, to = from + along;
+        const double square = glm::dot(along, along);
+        double low = std::min(from.x, to.x) - kReach, high = std::max(from.x, to.x) + kReach;
+        if (y < std::min(from.y, to.y) - kReach || y > std::max(from.y, to.y) + kReach) continue;
+        if (std::abs(along.y) > 1e-6) { // of the row only what the strip around the line meets
+            const double middle = from.x + (y - from.y) * along.x / along.y;
+            const double half = kReach * std::sqrt(square) / std::abs(along.y);
+            low = std::max(low, middle - half);
+            high = std::min(high, middle + half);
+        }
+        const int begin = std::max(0, int(std::floor(low - 0.5)) - first.x);
+        const int end = std::min(int(covered.size()), int(std::ceil(high - 0.5)) - first.x + 1);
+        for (int i = begin; i < end; ++i) {
+            const glm::dvec2 off = glm::dvec2(first.x + i + 0.5, y) - from;
+            const double t = std::clamp(glm::dot(off, along) / std::max(square, 1e-6), 0.0, 1.0);
+            const double share = std::clamp(kReach - glm::length(off - t * along), 0.0, 1.0);
+            covered[std::size_t(i)] = std::max(covered[std::size_t(i)], float(share));
+        }
+    }
+}
+
 /// What all pixels of a picture share.
 struct Ground {
     const Scene& scene;
     std::span<const glm::vec4> behind, before; ///< lines
-    glm::dvec3 color, lineColor;               ///< linear
-    std::optional<Paper> paper;                ///< with a grain
+    PresentedWith with;
+    std::optional<Paper> paper; ///< with a grain
 
     Ground(const Scene& shown, const BoxLines& lines) : scene(shown) {
         const std::span<const glm::vec4> all(lines.edges);
         behind = all.first(all.size() - std::size_t(lines.front));
         before = all.last(std::size_t(lines.front));
-        color = linearFromSrgb(glm::dvec3(groundColor(scene)));
-        lineColor = linearFromSrgb(glm::dvec3(scene.boxColor));
+        with = {linearFromSrgb(glm::dvec3(groundColor(scene))), linearFromSrgb(glm::dvec3(scene.boxColor)),
+                scene.showGround};
         paper = paperOf(scene);
         if (paper && !(paper->tooth > 0)) paper.reset();
     }
+
+    /// The same as rows on vector units, with tones and paper.
+    void present(const PixelRow& row, glm::ivec2 first) const {
+        for (int i = 0; i < row.count; ++i) {
+            const float* seen = row.rgba + std::size_t(4) * std::size_t(i);
+            glm::dvec3 light(seen[0], seen[1], seen[2]);
+            const double opacity = seen[3];
+            if (scene.tone.curve != ToneCurve::None)
+                light = toneMap(light / std::max(opacity, 1e-6), scene.tone) * opacity;
+            const glm::dvec2 at = (glm::dvec2(first) + glm::dvec2(i + 0.5, 0.5));
+            const double shade =
+                paper ? paperShade(*grainTile(), at * (kGrainTexels / double(paper->grain)), double(paper->tooth)) : 1;
+            const glm::dvec4 shown =
+                presentedPixel<double>(with, light, opacity, double(row.behind[i]), double(row.before[i]), shade);
+            const glm::u8vec3 color = screenColor(glm::dvec3(shown));
+            std::uint8_t* out = row.out + std::size_t(4) * std::size_t(i);
+            for (int c = 0; c < 3; ++c) out[c] = color[c];
+            out[3] = bitsOf(shown.a);
+        }
+    }
 };
-
-/// Coverage of a pixel by lines.
-double coveredByLines(std::span<const glm::vec4> lines, glm::dvec2 pixel) {
-    double covered = 0;
-    for (const glm::vec4& line : lines) {
-        const glm::dvec2 from(line.x, line.y), along = glm::dvec2(line.z, line.w) - from, to = pixel - from;
-        const double t = glm::clamp(glm::dot(to, along) / std::max(glm::dot(along, along), 1e-6), 0.0, 1.0);
-        covered = std::max(covered, 0.5 * kBoxLineWidth + 0.5 - glm::length(to - t * along));
-    }
-    return std::min(covered, 1.0);
-}
-
-/// The colour of a pixel, linear, and its opacity. `seen`: of the picture there, linear and premultiplied.
-glm::dvec4 presentedPixel(const Ground& ground, glm::dvec4 seen, glm::dvec2 pixel) {
-    glm::dvec3 light(seen);
-    const double opacity = seen.a;
-    if (ground.scene.tone.curve != ToneCurve::None)
-        light = toneMap(light / std::max(opacity, 1e-6), ground.scene.tone) * opacity;
-    const double behind = coveredByLines(ground.behind, pixel), before = coveredByLines(ground.before, pixel);
-    if (ground.scene.showGround) {
-        glm::dvec3 color = light + (1 - opacity) * glm::mix(ground.color, ground.lineColor, behind);
-        if (const auto& paper = ground.paper)
-            color *= paperShade(*grainTile(), pixel * (kGrainTexels / double(paper->grain)), double(paper->tooth));
-        return {glm::mix(color, ground.lineColor, before), 1};
-    }
-    glm::dvec4 over(light + (1 - opacity) * ground.lineColor * behind, opacity + (1 - opacity) * behind);
-    over = glm::mix(over, glm::dvec4(ground.lineColor, 1), before);
-    return {glm::dvec3(over) / std::max(over.a, 1e-6), over.a};
-}
 
 } // namespace
 
@@ -72,20 +91,35 @@ glm::u8vec3 screenColor(glm::dvec3 linear) {
             bitsOf(srgbFromLinear(std::clamp(linear.z, 0.0, 1.0)))};
 }
 
-std::vector<std::uint8_t> presented(const packet::PacketPicture& picture, const Scene& scene, const BoxLines& lines) {
+bool presentsPlainly(const Scene& scene) {
+    const std::optional<Paper> paper = paperOf(scene);
+    return scene.tone.curve == ToneCurve::None && !(paper && paper->tooth > 0) && !blursContext(scene);
+}
+
+std::vector<std::uint8_t> presented(const packet::PacketPicture& picture, const packet::PixelBox& box,
+                                    const Scene& scene, const BoxLines& lines, packet::InstructionSet with) {
     const Ground ground(scene, lines);
-    std::vector<std::uint8_t> out(picture.rgba.size());
-    const std::size_t width = std::size_t(picture.size.x);
-    parallelFor(std::size_t(picture.size.y), [&](std::size_t y) {
-        for (std::size_t x = 0; x < width; ++x) {
-            const std::size_t at = (y * width + x) * 4;
-            const float* seen = &picture.rgba[at];
-            const glm::dvec4 shown =
-                presentedPixel(ground, {seen[0], seen[1], seen[2], seen[3]}, glm::dvec2(double(x), double(y)) + 0.5);
-            const glm::u8vec3 color = screenColor(glm::dvec3(shown));
-            for (int c = 0; c < 3; ++c) out[at + std::size_t(c)] = color[c];
-            out[at + 3] = bitsOf(shown.a);
+    const bool plain = presentsPlainly(scene);
+    const glm::ivec2 extent = box.extent(), begin = glm::max(picture.box.begin, box.begin),
+                     end = glm::min(picture.box.end, box.end);
+    const auto width = std::size_t(extent.x), held = std::size_t(picture.box.extent().x);
+    std::vector<std::uint8_t> out(width * std::size_t(extent.y) * 4);
+    parallelFor(std::size_t(extent.y), [&](std::size_t row) {
+        const int y = box.begin.y + int(row);
+        std::vector<float> rgba(width * 4), behind(width), before(width);
+        if (y >= begin.y && y < end.y && begin.x < end.x) {
+            const float* from = picture.rgba.data() + 4 * (std::size_t(y - picture.box.begin.y) * held +
+                                                           std::size_t(begin.x - picture.box.begin.x));
+            std::copy_n(from, std::size_t(4) * std::size_t(end.x - begin.x),
+                        rgba.begin() + std::ptrdiff_t(4) * (begin.x - box.begin.x));
         }
+        addLines(ground.behind, {box.begin.x, y}, behind);
+        addLines(ground.before, {box.begin.x, y}, before);
+        const PixelRow pixels{extent.x, rgba.data(), behind.data(), before.data(), out.data() + row * width * 4};
+        if (plain)
+            presentRow(with, ground.with, pixels);
+        else
+            ground.present(pixels, {box.begin.x, y});
     });
     return out;
 }

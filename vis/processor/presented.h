@@ -12,8 +12,15 @@ namespace tessera::vis {
 /// Linear light as a colour of a screen, 8 bits for each part.
 glm::u8vec3 screenColor(glm::dvec3 linear);
 
-/// A whole picture over its background or paper, with the lines of the box, tone-mapped: RGBA8, sRGB, rows bottom up.
-/// Not premultiplied where the scene shows no ground. Twin: vis/shaders/resolve.frag.glsl.
-std::vector<std::uint8_t> presented(const packet::PacketPicture& picture, const Scene& scene, const BoxLines& lines);
+/// Whether a scene is presented pixel by pixel, without what a curve of tones, the grain of paper or blur would change:
+/// that is quick.
+bool presentsPlainly(const Scene& scene);
+
+/// Pixels of `box` in a picture, of which `picture` holds a part at least (elsewhere nothing is seen), over the
+/// background or paper, with the lines of the box, tone-mapped: RGBA8, sRGB, rows bottom up. Not premultiplied where
+/// the scene shows no ground. Blur is left to others.
+std::vector<std::uint8_t> presented(const packet::PacketPicture& picture, const packet::PixelBox& box,
+                                    const Scene& scene, const BoxLines& lines,
+                                    packet::InstructionSet with = packet::instructionSets().back());
 
 } // namespace tessera::vis

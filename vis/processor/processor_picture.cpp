@@ -63,7 +63,7 @@ void ProcessorPicture::draw(const Scene& scene, glm::ivec2 size, const Data& dat
             lines = boxLines(scene.camera, worldFrame(source.info().bounds, scene.stretch).halfSize, size);
     }
     texture_.size = size;
-    texture_.rgba = presented(made, scene, lines);
+    texture_.rgba = presented(made, made.box, scene, lines);
     volumes_ = data.volumes;
     scene_ = scene;
     linear_ = std::move(made);
