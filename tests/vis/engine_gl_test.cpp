@@ -123,12 +123,28 @@ TEST_F(EngineGl, BothPresentTheSamePixels) {
                     for (std::size_t c = 0; c < 4; ++c) empty += wanted[at + c] == got[at + c];
                 EXPECT_EQ(empty, 12u);
             }
-    scene.tone.curve = ToneCurve::None;
-    scene.showGround = true;
-    shown(*byProcessor, Engine::Processor, 0);
-    scene.camera.target.x += 100; // away from the box
-    const auto ground = shown(*byProcessor, Engine::Processor, 0);
-    for (std::size_t i = 4; i < ground.size(); ++i) ASSERT_EQ(ground[i], ground[i - 4]);
+}
+
+/// A picture of one tile, beside the box.
+TEST_F(EngineGl, NothingIsLeftOfABoxThatWentAway) {
+    Renderer renderer;
+    renderer.setSource(waves(volume::LatticeKind::CC));
+    const ViewTargetPtr target = renderer.makeTarget();
+    Scene scene = wavesScene(Engine::Processor);
+    scene.render.samples = 1;
+    const auto shown = [&] {
+        test::renderAll(renderer, *target, scene, {40, 30});
+        glm::ivec2 read;
+        return renderer.readPixels(*target, read);
+    };
+    const auto same = [](const std::vector<std::uint8_t>& pixels) {
+        for (std::size_t i = 4; i < pixels.size(); ++i)
+            if (pixels[i] != pixels[i - 4]) return false;
+        return true;
+    };
+    EXPECT_FALSE(same(shown()));
+    scene.camera.target += scene.camera.orientation * glm::vec3(6, 0, 0);
+    EXPECT_TRUE(same(shown()));
 }
 
 TEST_F(EngineGl, AutomaticIsWhatTheOptionsSay) {
