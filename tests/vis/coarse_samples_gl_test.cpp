@@ -178,7 +178,7 @@ TEST_F(CoarseSamplesGl, OneTimeIsReadAtATime) {
     for (int time = 0; time < kHeldTimes; ++time) {
         drawing.scene.time = time;
         drawing.until(drawnCoarse);
-        for (int i = 0; i < 50 && drawing.source->fineTimes().empty(); ++i) drawing.frame();
+        for (int i = 0; i < 20000 && drawing.source->fineTimes().empty(); ++i) drawing.frame();
         for (int i = 0; i < 60; ++i) drawing.frame();
         EXPECT_EQ(drawing.source->fineTimes(), std::set<int>{0}) << time;
     }

@@ -1,10 +1,10 @@
 #include "vis/packet/packet_renderer.h"
 
 #include "vis/optics/jitter.h"
-#include "vis/optics/mesh_medium.h"
 #include "vis/optics/shade.h"
 #include "vis/packed/packet_blend.h"
 #include "vis/packet/cast.h"
+#include "vis/shapes/mesh_medium.h"
 #include "volume/base/background.h"
 #include "volume/base/parallel.h"
 

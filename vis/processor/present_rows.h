@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vis/optics/presented_pixel.h"
 #include "vis/packet/packet_renderer.h"
+#include "vis/processor/presented_pixel.h"
 
 #include <cstdint>
 

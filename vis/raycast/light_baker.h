@@ -2,8 +2,8 @@
 
 #include "vis/gl/pixel_reader.h"
 #include "vis/gl/program.h"
-#include "vis/optics/mesh_medium.h"
 #include "vis/optics/surface_light.h"
+#include "vis/shapes/mesh_medium.h"
 
 #include <atomic>
 #include <functional>

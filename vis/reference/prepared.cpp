@@ -1,7 +1,7 @@
 #include "vis/reference/prepared.h"
 
-#include "vis/optics/mesh_medium.h"
 #include "vis/optics/surface_light.h"
+#include "vis/shapes/mesh_medium.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>

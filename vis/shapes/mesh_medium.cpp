@@ -1,4 +1,4 @@
-#include "vis/optics/mesh_medium.h"
+#include "vis/shapes/mesh_medium.h"
 
 #include "vis/optics/ray_setup.h"
 
