@@ -2,7 +2,7 @@
 
 #include "app/session/shown_scene.h"
 #include "app/ui/dock_layout.h"
-#include "app/views/compare/compare_layout.h"
+#include "app/views/compare/compare_room.h"
 
 #include <algorithm>
 #include <cmath>

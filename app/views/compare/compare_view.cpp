@@ -12,6 +12,7 @@
 #include "app/views/compare/compare_offers.h"
 #include "app/views/compare/compare_panes.h"
 #include "app/views/compare/compare_questions.h"
+#include "app/views/compare/compare_room.h"
 #include "app/views/compare/compare_table.h"
 
 #include <algorithm>
