@@ -265,7 +265,7 @@ void PictureDialog::drawPanels(const Session& session, const volume::DatasetInfo
                      columns_ == 0 ? "as many as suit" : "%d");
 }
 
-std::optional<PictureRequest> PictureDialog::drawForm() {
+std::optional<PictureRequest> PictureDialog::drawForm(Appearance& appearance) {
     const WidgetContext widgets{nullptr, 0.3f};
     PictureForm& form = *form_;
     ImGui::PushID("size");
@@ -284,16 +284,23 @@ std::optional<PictureRequest> PictureDialog::drawForm() {
         ImGui::TextDisabled("%d x %d pixels", request->size.x, request->size.y);
     else
         ImGui::TextWrapped("%s", problem.c_str());
-    valueOf(form).visitMembers([&](Value member, const FieldInfo& field) {
+    const auto row = [&](Value member, const FieldInfo& field) {
         std::optional<Range> scale;
         std::string unit;
         bool changed = false;
-        if (field.key != "size") MemberToWidget{widgets, changed, scale, unit}(member, field);
+        MemberToWidget{widgets, changed, scale, unit}(member, field);
+    };
+    valueOf(form).visitMembers([&](Value member, const FieldInfo& field) {
+        if (field.key == "decoration")
+            valueOf(appearance).visitMembers([&](Value part, const FieldInfo& of) {
+                if (of.key == "legends") row(part, of);
+            });
+        if (field.key != "size") row(member, field);
     });
     return request;
 }
 
-std::optional<PictureRequest> PictureDialog::draw(const Session& session, const volume::DatasetInfo& info,
+std::optional<PictureRequest> PictureDialog::draw(Session& session, const volume::DatasetInfo& info,
                                                   const std::string& stateFolder) {
     if (!shown_ || !beginDialog("Save picture", shown_, ImGui::GetFontSize() * 30)) return {};
     if (!form_) form_ = rememberedForm(stateFolder);
@@ -304,7 +311,7 @@ std::optional<PictureRequest> PictureDialog::draw(const Session& session, const 
         const Scrolled settings(3 * ImGui::GetStyle().ItemSpacing.y + ImGui::GetFrameHeight() +
                                 (vectors ? 2 : 1) * ImGui::GetTextLineHeightWithSpacing());
         drawWhat(session, info);
-        request = drawForm();
+        request = drawForm(session.appearance);
     }
     ImGui::Spacing();
     if (vectors) ImGui::TextDisabled("Texts and lines are vectors.");

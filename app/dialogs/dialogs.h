@@ -57,14 +57,15 @@ class PictureDialog {
 public:
     /// `pane`: proposed, "" = the whole window.
     void show(const std::string& pane);
-    /// Returns the picture wanted. `stateFolder` keeps the form.
-    std::optional<PictureRequest> draw(const Session& session, const volume::DatasetInfo& info,
+    /// Returns the picture wanted. `stateFolder` keeps the form; what figures of the session are like at any time, such
+    /// as the form of legends, is set in the session.
+    std::optional<PictureRequest> draw(Session& session, const volume::DatasetInfo& info,
                                        const std::string& stateFolder);
 
 private:
     void drawWhat(const Session& session, const volume::DatasetInfo& info);
     void drawPanels(const Session& session, const volume::DatasetInfo& info);
-    std::optional<PictureRequest> drawForm();
+    std::optional<PictureRequest> drawForm(Appearance& appearance);
     /// What is chosen. Throws Error where it cannot be drawn.
     PictureRequest request() const;
 

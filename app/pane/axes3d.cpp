@@ -26,6 +26,40 @@ std::pair<ImVec2, ImVec2> besides(ImVec2 at, ImVec2 direction, ImVec2 size) {
     return {min, {min.x + size.x, min.y + size.y}};
 }
 
+/// The eye in the world, or in parallel projection far away in its direction.
+glm::dvec3 eyeOf(const vis::Camera& camera) {
+    if (camera.projection == vis::Projection::Perspective) return vis::cameraRay(camera, 1, {0, 0}).origin;
+    glm::dvec3 eye = -1e6 * vis::cameraRay(camera, 1, {0, 0}).direction;
+    // Directions along a face must count as "not seen" in spite of rounding.
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(eye[axis]) < 1) eye[axis] = 0;
+    return eye;
+}
+
+/// The part of an edge where the middle of a number beside it would be taken.
+float takenBeside(const LabelledEdge& edge, const Rectangles& taken) {
+    constexpr int kPlaces = 16;
+    int count = 0;
+    for (int i = 0; i < kPlaces; ++i) {
+        const float along = (float(i) + 0.5f) / kPlaces, out = em() * 1.2f;
+        const ImVec2 at{edge.a.x + (edge.b.x - edge.a.x) * along + edge.outward.x * out,
+                        edge.a.y + (edge.b.y - edge.a.y) * along + edge.outward.y * out};
+        count += std::ranges::any_of(taken, [&](const auto& each) { return overlaps({at, at}, each, 0); });
+    }
+    return float(count) / kPlaces;
+}
+
+/// The share of a rectangle for whose points `covered` is true, by a grid of them.
+template <class Covered> double coveredShareOf(ImVec2 min, ImVec2 max, const Covered& covered) {
+    constexpr int kParts = 16; // a side
+    int count = 0;
+    for (int y = 0; y <= kParts; ++y)
+        for (int x = 0; x <= kParts; ++x)
+            count +=
+                covered({min.x + (max.x - min.x) * float(x) / kParts, min.y + (max.y - min.y) * float(y) / kParts});
+    return count / double((kParts + 1) * (kParts + 1));
+}
+
 } // namespace
 
 std::optional<ImVec2> SpaceFrame::pixel(glm::dvec3 physical) const {
@@ -44,7 +78,6 @@ SpaceFrame spaceFrame(ImVec2 min, ImVec2 max, const vis::Camera& camera, const v
 }
 
 double coveredByBox(const SpaceFrame& frame, ImVec2 min, ImVec2 max) {
-    constexpr int kParts = 16; // a side, of the rectangle
     std::array<ImVec2, 8> corners;
     for (int i = 0; i < 8; ++i) {
         const volume::Box& box = frame.bounds;
@@ -56,7 +89,7 @@ double coveredByBox(const SpaceFrame& frame, ImVec2 min, ImVec2 max) {
     // A pixel is covered where it lies in one of the faces, whose corners follow each other around it.
     static constexpr std::array<std::array<std::size_t, 4>, 6> kFaces{
         {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
-    const auto covered = [&](ImVec2 at) {
+    return coveredShareOf(min, max, [&](ImVec2 at) {
         return std::ranges::any_of(kFaces, [&](const auto& face) {
             int left = 0, right = 0;
             for (std::size_t i = 0; i < 4; ++i) {
@@ -67,16 +100,10 @@ double coveredByBox(const SpaceFrame& frame, ImVec2 min, ImVec2 max) {
             }
             return (left == 4) != (right == 4); // both: on the line of a face that is seen edge on
         });
-    };
-    int count = 0;
-    for (int y = 0; y <= kParts; ++y)
-        for (int x = 0; x <= kParts; ++x)
-            count +=
-                covered({min.x + (max.x - min.x) * float(x) / kParts, min.y + (max.y - min.y) * float(y) / kParts});
-    return count / double((kParts + 1) * (kParts + 1));
+    });
 }
 
-std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eye) {
+std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eye, const Rectangles& taken) {
     // A face is visible if the eye is beyond it; `eye` is a world position, or a direction in parallel projection.
     const auto seen = [&](int axis, bool high) {
         const double half = frame.world.halfSize[axis];
@@ -116,6 +143,7 @@ std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eye)
             const bool inside =
                 center.x > frame.min.x && center.x < frame.max.x && center.y > frame.min.y && center.y < frame.max.y;
             if (!inside) score -= 4;
+            score -= 5 * takenBeside(edge, taken);
             if (score > bestScore) {
                 bestScore = score;
                 best = edge;
@@ -126,14 +154,24 @@ std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eye)
     return edges;
 }
 
+double coveredByAxes(const SpaceFrame& frame, const vis::Camera& camera, ImVec2 min, ImVec2 max) {
+    const std::vector<LabelledEdge> edges = labelledEdges(frame, eyeOf(camera));
+    return coveredShareOf(min, max, [&](ImVec2 at) {
+        return std::ranges::any_of(edges, [&](const LabelledEdge& edge) {
+            const ImVec2 along{edge.b.x - edge.a.x, edge.b.y - edge.a.y}, away{at.x - edge.a.x, at.y - edge.a.y};
+            const float out = away.x * edge.outward.x + away.y * edge.outward.y;
+            const float size = length(along), on = (away.x * along.x + away.y * along.y) / size;
+            // Numbers are wider than high, and their middles reach to the ends; beyond them the title has the middle.
+            const bool titled = std::abs(on / size - 0.5f) < 0.3f;
+            const float reach = em() * ((titled ? 3.0f : 1.6f) + 1.6f * std::abs(edge.outward.x));
+            return on >= -em() && on <= size + em() && out >= 0 && out <= reach;
+        });
+    });
+}
+
 void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& camera, const AxisLabels& labels,
-                std::vector<std::pair<ImVec2, ImVec2>> avoid) {
+                Rectangles avoid) {
     const PlotColors colors = plotColors();
-    glm::dvec3 eye = vis::cameraRay(camera, 1, {0, 0}).origin;
-    if (camera.projection == vis::Projection::Orthographic) eye = -1e6 * vis::cameraRay(camera, 1, {0, 0}).direction;
-    // Directions along a face must count as "not seen" in spite of rounding.
-    for (int axis = 0; axis < 3; ++axis)
-        if (camera.projection == vis::Projection::Orthographic && std::abs(eye[axis]) < 1) eye[axis] = 0;
     const auto place = [&](std::pair<ImVec2, ImVec2> box, ImU32 color, const std::string& text) {
         const float margin = em() * 0.4f;
         if (box.first.x < frame.min.x + margin || box.second.x > frame.max.x - margin ||
@@ -145,7 +183,7 @@ void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& ca
         avoid.push_back(box);
         return true;
     };
-    for (const LabelledEdge& edge : labelledEdges(frame, eye)) {
+    for (const LabelledEdge& edge : labelledEdges(frame, eyeOf(camera), avoid)) {
         const float pixels = length({edge.b.x - edge.a.x, edge.b.y - edge.a.y});
         const auto& [name, unit] = labels[static_cast<std::size_t>(edge.axis)];
         const Range range{edge.from[edge.axis] * unit.perUnit, edge.to[edge.axis] * unit.perUnit};

@@ -34,14 +34,19 @@ struct LabelledEdge {
     ImVec2 a, b;               ///< pixels of the ends
     ImVec2 outward;            ///< unit vector on screen
 };
+using Rectangles = std::vector<std::pair<ImVec2, ImVec2>>; ///< corners of each, pixels
+
 /// For each axis that is long enough on screen the outline edge that lies furthest to the bottom (left for upright
-/// ones), so that texts stand beside the box and not over it.
-std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eyeDirection);
+/// ones), so that texts stand beside the box and not over it; another one where much of their room is taken.
+std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eyeDirection, const Rectangles& taken = {});
+
+/// The share of a rectangle of the picture that the labelled edges with their numbers and titles take.
+double coveredByAxes(const SpaceFrame& frame, const vis::Camera& camera, ImVec2 min, ImVec2 max);
 
 /// Ticks, numbers and units on the labelled edges; texts that would overlap or leave the picture are left out.
 /// `avoid` are rectangles already taken.
 void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& camera, const AxisLabels& labels,
-                std::vector<std::pair<ImVec2, ImVec2>> avoid = {});
+                Rectangles avoid = {});
 
 /// The standard view that looks against an axis direction (0 = x, 1 = y, 2 = z).
 vis::StandardView viewAgainst(int axis, bool positive);

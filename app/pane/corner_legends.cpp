@@ -143,7 +143,7 @@ FormedLegends formLegends(const std::vector<LegendEntry>& entries, const LegendR
         out.width = place.form == LegendForm::Lines ? out.lines.width() : std::min(em() * 15, wide * 0.45f);
         if (out.width < em() * 7) return out;
         for (const LegendEntry& entry : entries) {
-            if (height + out.heightOf(entry) > high * 0.6f) break;
+            if (height + out.heightOf(entry) > high * place.most) break;
             height += out.heightOf(entry);
             out.shown.push_back(&entry);
         }
@@ -155,19 +155,27 @@ FormedLegends formLegends(const std::vector<LegendEntry>& entries, const LegendR
     return out;
 }
 
-/// The corner where legends of a form cover least, rather one where they usually are, and how much that is.
+/// The corner where legends of a form cover least, rather one where they usually are, and how much of the object that
+/// is.
 std::pair<LegendPlace, double> freestCorner(const std::vector<LegendEntry>& entries, const LegendRoom& room,
-                                            const std::function<double(ImVec2, ImVec2)>& covered, LegendForm form) {
-    LegendPlace best{form, LegendCorner::BottomRight};
-    double least = 2;
+                                            const LegendSurroundings& covered, LegendPlace best) {
+    double least = 2, leastNumbers = 2;
     for (const LegendCorner corner : {LegendCorner::BottomRight, LegendCorner::TopRight, LegendCorner::TopLeft}) {
-        const LegendArea area = legendArea(entries, room, {form, corner});
-        const double own = covered(area.min, area.max);
-        if (own >= least - 0.02) continue;
+        const LegendArea area = legendArea(entries, room, {best.form, corner, best.most});
+        const double own = covered.object(area.min, area.max);
+        const double numbers = covered.numbers ? covered.numbers(area.min, area.max) : 0;
+        const bool same = std::abs(own - least) <= kFree;
+        if (same ? numbers >= leastNumbers - kFree : own > least) continue;
         least = own;
+        leastNumbers = numbers;
         best.corner = corner;
     }
     return {best, least};
+}
+
+/// Whether all legends have room in one form.
+bool allFit(const std::vector<LegendEntry>& entries, const LegendRoom& room, LegendPlace place) {
+    return formLegends(entries, room, place).shown.size() == entries.size();
 }
 
 } // namespace
@@ -177,8 +185,14 @@ bool legendsAsLines(float height, float room) {
 }
 
 LegendPlace placeLegends(const std::vector<LegendEntry>& entries, const LegendRoom& room,
-                         const std::function<double(ImVec2, ImVec2)>& covered, bool figure) {
-    const auto find = [&](LegendForm form) { return freestCorner(entries, room, covered, form); };
+                         const LegendSurroundings& covered, std::optional<FigureLegends> figure) {
+    const auto find = [&](LegendForm form) { return freestCorner(entries, room, covered, {form}); };
+    if (figure == FigureLegends::Lines) return find(LegendForm::Lines).first;
+    if (figure == FigureLegends::Whole) {
+        const LegendPlace place =
+            freestCorner(entries, room, covered, {LegendForm::Whole, LegendCorner::BottomRight, 0.95f}).first;
+        if (allFit(entries, room, place)) return place;
+    }
     float height = 0;
     for (const LegendEntry& entry : entries) height += legendHeight(entry);
     std::vector<LegendForm> forms{LegendForm::Lines};

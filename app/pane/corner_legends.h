@@ -1,8 +1,10 @@
 #pragma once
 
 #include "app/pane/legend.h"
+#include "app/session/session.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,7 @@ enum class LegendCorner { BottomRight, TopRight, TopLeft };
 struct LegendPlace {
     LegendForm form = LegendForm::Whole;
     LegendCorner corner = LegendCorner::BottomRight;
+    float most = 0.6f; ///< of the height of the picture
 };
 
 /// The picture that legends lie in, pixels. `top`: what stands above them at its upper edge.
@@ -31,12 +34,20 @@ struct LegendArea {
 /// little room.
 bool legendsAsLines(float height, float room);
 
+/// The share of a rectangle that something covers.
+using CoveredShare = std::function<double(ImVec2 min, ImVec2 max)>;
+
+/// What legends shall leave in sight.
+struct LegendSurroundings {
+    CoveredShare object;
+    CoveredShare numbers = {}; ///< beside it, which matter where the object is left in sight anyway; or nothing
+};
+
 /// The corner and the most telling form in which legends cover nothing of the object; where there is none, the form
-/// that suits the size of the picture, in the corner where it covers least. `covered`: the share of a rectangle that
-/// the object covers. `figure`: with numbers at any size, as nobody can point at it, and whole where that covers
-/// nothing or is a small part.
+/// that suits the size of the picture, in the corner where it covers least. `figure`: with numbers at any size, as
+/// nobody can point at it; by itself whole where that covers nothing or is a small part.
 LegendPlace placeLegends(const std::vector<LegendEntry>& entries, const LegendRoom& room,
-                         const std::function<double(ImVec2 min, ImVec2 max)>& covered, bool figure = false);
+                         const LegendSurroundings& covered, std::optional<FigureLegends> figure = {});
 
 /// The pixels that drawLegends() covers.
 LegendArea legendArea(const std::vector<LegendEntry>& entries, const LegendRoom& room, LegendPlace place);

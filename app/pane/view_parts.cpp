@@ -192,6 +192,10 @@ LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, in
     return entry;
 }
 
+std::optional<FigureLegends> figureLegends(const ViewContext& context) {
+    return context.figure ? std::optional(context.session.appearance.legends) : std::nullopt;
+}
+
 std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info, bool drawings) {
     std::vector<LegendEntry> entries;
     std::set<std::string> seen;

@@ -64,6 +64,9 @@ vis::TransferFunction& transferOf(Session& session, const std::string& channel);
 LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, int channel,
                      const std::string& function = {});
 
+/// The form that legends in corners have in a figure; nothing in the window, where they suit the pane.
+std::optional<FigureLegends> figureLegends(const ViewContext& context);
+
 /// Legends of the visible layers, each channel once; of a layer that is coloured by another parameter both. Layers
 /// drawn in charcoal or chalk, whose colours the picture does not show, have legends only with `drawings`.
 std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info, bool drawings = false);

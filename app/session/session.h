@@ -117,14 +117,26 @@ struct DataRef {
 enum class Theme { Dark, Light };
 inline constexpr std::string_view kThemeNames[] = {"dark", "light"};
 
+/// In what form colour legends stand in a corner of a figure.
+enum class FigureLegends { Automatic, Whole, Lines };
+inline constexpr std::string_view kFigureLegendsNames[] = {"automatic", "whole", "lines"};
+
 struct Appearance {
     Theme theme = Theme::Dark;
     float scale = 1; ///< user factor on top of the display's
+    FigureLegends legends = FigureLegends::Automatic;
     bool operator==(const Appearance&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.theme, FieldInfo{.key = "theme", .unit = "", .doc = "Colours of the window", .names = kThemeNames});
         visit(self.scale,
               FieldInfo{.key = "scale", .unit = "", .doc = "Size of text and controls", .range = Range{0.5, 3}});
+        visit(self.legends,
+              FieldInfo{.key = "legends",
+                        .unit = "",
+                        .doc = "Colour legends in a corner of a figure: whole, with ticks; one line each, which covers "
+                               "less; or automatic: whole unless they would cover the object in a small figure. Those "
+                               "that do not all fit whole are lines",
+                        .names = kFigureLegendsNames});
     }
 };
 

@@ -328,8 +328,9 @@ void drawDock(DockTree& tree, DockHand& hand, const DockPanes& panes, ImVec2 ori
                 if (front) shown.push_back({own.panes[i], {rect.lo.x, rect.lo.y + drawing.strip}, rect.hi});
             }
             if (stack->tabs.empty())
-                ImGui::GetWindowDrawList()->AddText({rect.lo.x + 20 * scale, rect.lo.y + 20 * scale}, palette().muted,
-                                                    panes.none.c_str());
+                ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), ImGui::GetFontSize(),
+                                                    {rect.lo.x + 20 * scale, rect.lo.y + 20 * scale}, palette().muted,
+                                                    panes.none.c_str(), nullptr, rect.hi.x - rect.lo.x - 40 * scale);
         }
     }
     ImGui::End();

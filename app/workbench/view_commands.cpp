@@ -194,7 +194,7 @@ void showLayout(Workbench& workbench, const std::string& name, const std::string
             return workbench.open(std::move(request));
         }
         Session next = changeLayout(layout, *workbench.source(), workbench.session(), messages);
-        showWholeBox(next, vis::worldFrame(workbench.document().info().bounds, next.stretch), workbench.look().scale());
+        showWholeBox(next, workbench.document().info(), workbench.look().scale());
         workbench.document().replace(std::move(next), "Layout: " + title);
         for (const std::string& text : messages) workbench.message(text);
     } catch (const Error& error) {

@@ -2,8 +2,10 @@
 
 #include "app/session/shown_scene.h"
 #include "app/ui/dock_layout.h"
+#include "app/views/compare/compare_room.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <glm/common.hpp>
 #include <variant>
@@ -14,32 +16,50 @@ namespace {
 
 constexpr double kAlmost = 1.1; ///< of the picture: a box whose corners alone are cut off is meant to be seen whole
 
-/// Width by height of the picture in a pane.
-double aspectOf(const Session& session, const std::string& pane, float scale) {
+/// Size of a pane, below its tab.
+ImVec2 paneSize(const Session& session, const std::string& pane, float scale) {
     DockNode stack;
     stack.id = stackWith(session.dock.root, pane);
     const ImVec2 size = sizeOf(session, stack, scale);
-    return double(size.x) / std::max(1.0, double(size.y) - kTabStrip * double(scale));
+    return {size.x, std::max(1.0f, size.y - float(kTabStrip) * scale)};
 }
 
-/// The part of the picture in a pane that the box covers, by width or height, whichever is more.
-double coveredShare(const Session& session, const std::string& pane, const vis::WorldFrame& world, float scale) {
+/// Width by height of the picture in a pane.
+double aspectOf(const Session& session, const std::string& pane, float scale) {
+    const ImVec2 size = paneSize(session, pane, scale);
+    return double(size.x) / double(size.y);
+}
+
+/// The part of a picture of this aspect that the box covers, by width or height, whichever is more.
+double coveredShare(const vis::Camera& camera, const vis::WorldFrame& world, double aspect) {
+    const glm::dvec2 extent = boxExtent(camera, world);
+    return std::max(extent.y, extent.x / aspect);
+}
+
+/// The camera of a volume view, or the one it shares.
+const vis::Camera& cameraOf(const Session& session, const std::string& pane) {
     const VolumeView* const view = volumeView(session, pane);
-    const glm::dvec2 extent = boxExtent(view && view->camera ? *view->camera : session.camera, world);
-    return std::max(extent.y, extent.x / aspectOf(session, pane, scale));
+    return view && view->camera ? *view->camera : session.camera;
 }
 
 } // namespace
 
+WindowBars windowBars() {
+    return {ImGui::GetFrameHeight(), std::round(ImGui::GetFontSize() * 1.7f)};
+}
+
 ImVec2 sizeOf(const Session& session, const DockNode& part, float scale) {
     DockTree tree = session.dock;
+    const WindowBars bars = windowBars();
+    const ImVec2 window = ImGui::GetMainViewport()->Size;
+    const ImVec2 whole{window.x, std::max(1.0f, window.y - bars.menu - bars.status)};
     const LeastSizes least = [&session](const std::string& pane) {
         const auto view = session.views.find(pane);
         if (view == session.views.end()) return ImVec2{0, 0};
         const ViewTraits& traits = traitsOf(view->second);
         return ImVec2{traits.leastWidth, traits.leastHeight};
     };
-    const auto rects = layoutDock(tree, {{0, 0}, ImGui::GetMainViewport()->Size}, scale, {}, least).rects;
+    const auto rects = layoutDock(tree, {{0, 0}, whole}, scale, {}, least).rects;
     ImVec2 lo{1e9f, 1e9f}, hi{-1e9f, -1e9f};
     const std::function<void(const DockNode&)> add = [&](const DockNode& node) {
         if (const auto rect = rects.find(node.id); rect != rects.end()) {
@@ -49,7 +69,7 @@ ImVec2 sizeOf(const Session& session, const DockNode& part, float scale) {
         for (const DockNode& child : node.children) add(child);
     };
     add(part);
-    return hi.x > lo.x && hi.y > lo.y ? ImVec2{hi.x - lo.x, hi.y - lo.y} : ImGui::GetMainViewport()->Size;
+    return hi.x > lo.x && hi.y > lo.y ? ImVec2{hi.x - lo.x, hi.y - lo.y} : whole;
 }
 
 glm::dvec2 boxExtent(const vis::Camera& camera, const vis::WorldFrame& world) {
@@ -66,14 +86,21 @@ glm::dvec2 boxExtent(const vis::Camera& camera, const vis::WorldFrame& world) {
 }
 
 bool seesWholeBox(const Session& session, const std::string& pane, const vis::WorldFrame& world, float scale) {
-    return coveredShare(session, pane, world, scale) <= kAlmost;
+    return coveredShare(cameraOf(session, pane), world, aspectOf(session, pane, scale)) <= kAlmost;
 }
 
-void showWholeBox(Session& session, const vis::WorldFrame& world, float scale) {
+void showWholeBox(Session& session, const volume::DatasetInfo& info, float scale) {
     if (const ImVec2 window = ImGui::GetMainViewport()->Size; window.x <= 0 || window.y <= 0) return;
-    for (const auto& [pane, view] : session.views)
-        if (std::holds_alternative<VolumeView>(view) && coveredShare(session, pane, world, scale) > 1)
-            fitToPane(session, pane, world, scale);
+    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    for (const auto& [pane, view] : session.views) {
+        if (std::holds_alternative<VolumeView>(view)) {
+            const double aspect = aspectOf(session, pane, scale);
+            if (coveredShare(cameraOf(session, pane), world, aspect) > 1) fitToPane(session, pane, world, scale);
+        } else if (const auto* compare = std::get_if<CompareView>(&view); compare && compare->shows.empty()) {
+            const double aspect = comparedAspect(*compare, session, info, paneSize(session, pane, scale));
+            if (coveredShare(session.camera, world, aspect) > 1) vis::fit(session.camera, world, aspect);
+        }
+    }
 }
 
 void fitToPane(Session& session, const std::string& pane, const vis::WorldFrame& world, float scale) {

@@ -2,6 +2,7 @@
 
 #include "app/session/session.h"
 #include "vis/scene/camera.h"
+#include "volume/field/dataset.h"
 
 #include <imgui.h>
 #include <string>
@@ -10,6 +11,12 @@
 namespace tessera::app {
 
 inline constexpr double kTabStrip = 24; ///< height above a pane, design pixels
+
+/// Heights of the menu above the dock and of the status line below it, pixels.
+struct WindowBars {
+    float menu = 0, status = 0;
+};
+WindowBars windowBars();
 
 /// Size of a part of the dock in the window, in pixels.
 ImVec2 sizeOf(const Session& session, const DockNode& part, float scale);
@@ -20,9 +27,9 @@ glm::dvec2 boxExtent(const vis::Camera& camera, const vis::WorldFrame& world);
 /// Whether the volume view of a pane shows the box from end to end, or all but its corners.
 bool seesWholeBox(const Session& session, const std::string& pane, const vis::WorldFrame& world, float scale);
 
-/// Fits the cameras of a layout, which were chosen for other panes, to those volume views where they do not show the
-/// whole box; before the first frame, when no pane has a size, it does nothing.
-void showWholeBox(Session& session, const vis::WorldFrame& world, float scale);
+/// Fits the cameras of a layout, which were chosen for other panes, to those volume views and comparisons of the 3D
+/// scene where they do not show the whole box; before the first frame, when no pane has a size, it does nothing.
+void showWholeBox(Session& session, const volume::DatasetInfo& info, float scale);
 
 /// Moves the camera of a volume view, or the one it shares, so that the box fits into its pane as the dock is now.
 void fitToPane(Session& session, const std::string& pane, const vis::WorldFrame& world, float scale);

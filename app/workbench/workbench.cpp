@@ -153,7 +153,7 @@ void Workbench::recover(const Recovery& recovery) {
 void Workbench::install(Opened opened) {
     if (opened.firstView && opened.source && !options_.headless) {
         Session& session = opened.document.session;
-        showWholeBox(session, vis::worldFrame(opened.source->info().bounds, session.stretch), look_.scale());
+        showWholeBox(session, opened.source->info(), look_.scale());
         opened.document.history.reset(session);
     }
     const std::vector<std::string> said = std::move(opened.messages), warned = std::move(opened.warnings);
@@ -319,7 +319,7 @@ void Workbench::drawWindow() {
         area.none = whyEmpty() + "No data: choose File > Open, or drop a file here.";
     if (!options_.onlyPane.empty()) return panes_.draw(viewContext(), area);
     drawMenus();
-    const float top = ImGui::GetFrameHeight(), bottom = std::round(ImGui::GetFontSize() * 1.7f);
+    const auto [top, bottom] = windowBars();
     area.origin.y += top;
     area.size.y = std::max(1.0f, area.size.y - top - bottom);
     panes_.draw(viewContext(), area);

@@ -47,8 +47,8 @@ TEST_F(AxesTest, AnAxisWithoutRoomBesideItHasItsTitleBeyondItsEnd) {
     ASSERT_EQ(upright.size(), 1u);
     EXPECT_LT(upright[0].max.x, 169) << "there is room beside it";
     EXPECT_NEAR(upright[0].middle().y, 250, em);
-    camera.distance *= 1.08f;                  // from 186 to 614 and 36 to 464
-    draw({800, 500}, {{{0, 40}, {185, 500}}}); // none beside it
+    camera.distance *= 1.08f;                                           // from 186 to 614 and 36 to 464
+    draw({800, 500}, {{{0, 40}, {185, 500}}, {{615, 40}, {800, 500}}}); // none beside it on either side
     const auto above = called("y [mm]");
     ASSERT_EQ(above.size(), 1u);
     EXPECT_LT(above[0].max.y, 36) << "beyond its end";
@@ -75,6 +75,42 @@ TEST_F(AxesTest, ATitleGoesToTheEndOfItsAxisThatHasRoom) {
         else
             EXPECT_GT(titles[0].min.x, box[1]);
     }
+}
+
+// A legend in a small picture may lie where the numbers of an axis would be: they go to another edge of the box.
+TEST_F(AxesTest, AnAxisIsLabelledAtAnEdgeThatHasRoom) {
+    vis::Camera camera = vis::planeCamera(0, 1, vis::worldFrame(kBox, glm::dvec3(1)));
+    camera.distance *= 1.5f; // from 233 to 567 and 83 to 417
+    const auto numbers = [&](const Rectangles& taken) {
+        feedWindow([&] {
+            const SpaceFrame frame = spaceFrame({0, 0}, {800, 500}, camera, kBox, glm::dvec3(1));
+            drawAxes3d(*ImGui::GetWindowDrawList(), frame, camera, kLabels, taken);
+        });
+        std::array<int, 4> beside{}; // below, above, left, right
+        for (const DrawnText& text : drawnTexts()) {
+            if (text.text != "2.0") continue;
+            const ImVec2 at = text.middle();
+            ++beside[at.y > 417 ? 0 : at.y < 83 ? 1 : at.x < 233 ? 2 : 3];
+        }
+        return beside;
+    };
+    EXPECT_EQ(numbers({}), (std::array<int, 4>{1, 0, 1, 0}));
+    EXPECT_EQ(numbers({{{300, 420}, {800, 500}}}), (std::array<int, 4>{0, 1, 1, 0})) << "most of the lower edge";
+    EXPECT_EQ(numbers({{{0, 60}, {228, 440}}}), (std::array<int, 4>{1, 0, 0, 1}));
+    EXPECT_EQ(numbers({{{540, 420}, {800, 500}}}), (std::array<int, 4>{1, 0, 1, 0})) << "little of it";
+}
+
+TEST_F(AxesTest, NumbersBesideTheBoxCoverWhatLiesThere) {
+    vis::Camera camera = vis::planeCamera(0, 1, vis::worldFrame(kBox, glm::dvec3(1)));
+    camera.distance *= 1.5f; // from 233 to 567 and 83 to 417
+    feedWindow([&] {
+        const SpaceFrame frame = spaceFrame({0, 0}, {800, 500}, camera, kBox, glm::dvec3(1));
+        EXPECT_EQ(coveredByAxes(frame, camera, {300, 420}, {500, 420 + em()}), 1) << "those of x";
+        EXPECT_EQ(coveredByAxes(frame, camera, {230 - em(), 200}, {230, 300}), 1) << "those of y";
+        EXPECT_EQ(coveredByAxes(frame, camera, {300, 100}, {500, 400}), 0) << "the box itself";
+        EXPECT_EQ(coveredByAxes(frame, camera, {300, 0}, {800, 80}), 0);
+        EXPECT_NEAR(coveredByAxes(frame, camera, {310, 420}, {490, 420 + 10 * em()}), 0.3, 0.06) << "with their title";
+    });
 }
 
 TEST_F(AxesTest, ACornerIsCoveredAsFarAsTheBoxReachesIntoIt) {

@@ -80,5 +80,14 @@ TEST_F(PictureDialogTest, AFormatIsProposed) {
     EXPECT_TRUE(request->panels.empty());
 }
 
+// Figures made later, by commands too, follow it: it is of the session.
+TEST_F(PictureDialogTest, TheFormOfLegendsIsSetInTheSession) {
+    frames(3);
+    click("Automatic");
+    click("Whole");
+    EXPECT_EQ(session.appearance.legends, FigureLegends::Whole);
+    EXPECT_EQ(sessionFromJson(toJson(session), "test").appearance.legends, FigureLegends::Whole);
+}
+
 } // namespace
 } // namespace tessera::app

@@ -1,12 +1,15 @@
+#include "app/command/picture_options.h"
 #include "app/data/open.h"
 #include "app/dialogs/picture_request.h"
 #include "app/platform/headless.h"
+#include "tests/app/drawn_text.h"
 #include "vis/gl/headless.h"
 
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <map>
+#include <set>
 
 /// Pictures for print: the size of their text, their ground, and their decoration part by part.
 namespace tessera::app {
@@ -199,6 +202,36 @@ TEST(PictureFormGl, AWhiteGroundIsWhiteToTheEdges) {
             edge += at.x == 0 || at.y == 0 || at.x == 499 || at.y == 399;
         EXPECT_EQ(edge, 2u * (500 + 400) - 4) << pane;
     }
+}
+
+// Four legends, which cover some of the picture wherever they are.
+TEST(PictureFormGl, ASmallFigureKeepsTheNumbersOfItsAxes) {
+    PictureMaker maker;
+    std::vector<DrawnText> texts;
+    const auto draw = [&](const std::vector<std::string>& settings) {
+        PictureOptions options;
+        options.layout = "lens";
+        options.settings = settings;
+        Opened opened = openForPicture(options, {});
+        opened.document.session.layers.resize(3); // without flow, which takes long
+        maker.render(opened.document, opened.sources(), {.pane = "volume", .size = {320, 240}, .scale = 1},
+                     [&](const Workbench&) { texts = drawnTexts(); });
+    };
+    const auto has = [&](const std::string& word) {
+        return std::ranges::any_of(texts, [&](const DrawnText& each) { return each.text == word; });
+    };
+    const auto rows = [&] {
+        std::set<int> at;
+        for (const DrawnText& each : texts) at.insert(int(each.max.y));
+        return at.size();
+    };
+    draw({});
+    for (const char* word : {"y [mm]", "z [mm]", "10", "20", "30"}) EXPECT_TRUE(has(word)) << word;
+    const std::size_t lines = rows();
+    draw({"/appearance/legends=whole"});
+    EXPECT_GT(rows(), lines) << "numbers below each bar";
+    draw({"/appearance/legends=lines"});
+    EXPECT_EQ(rows(), lines);
 }
 
 } // namespace

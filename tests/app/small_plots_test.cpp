@@ -58,8 +58,8 @@ TEST_F(SmallPlots, LegendsOfASmallPictureAreOneLineEach) {
         LegendArea area{};
         feedWindow([&] {
             const LegendRoom room{{0, 0}, size};
-            const LegendPlace place = placeLegends(
-                entries, room, [](ImVec2, ImVec2) { return 0.0; }, whole);
+            const LegendPlace place = placeLegends(entries, room, {[](ImVec2, ImVec2) { return 0.0; }},
+                                                   whole ? std::optional(FigureLegends::Automatic) : std::nullopt);
             EXPECT_EQ(place.corner, LegendCorner::BottomRight) << "where nothing is in the way";
             area = drawLegends(*ImGui::GetWindowDrawList(), entries, room, place);
         });
@@ -95,7 +95,7 @@ TEST_F(SmallPlots, LegendsGoWhereTheObjectIsNot) {
     const auto drawn = [&](ImVec2 size, const std::function<double(ImVec2, ImVec2)>& covered) {
         feedWindow([&] {
             const LegendRoom room{{0, 0}, size, 20};
-            place = placeLegends(entries, room, covered);
+            place = placeLegends(entries, room, {covered});
             area = drawLegends(*ImGui::GetWindowDrawList(), entries, room, place);
         });
         return drawnWords();
@@ -144,7 +144,7 @@ TEST_F(SmallPlots, LegendsOfASmallFigureAreLinesWithTheirNumbers) {
         const std::vector<LegendEntry> some(entries.begin(), entries.begin() + std::ptrdiff_t(count));
         feedWindow([&] {
             const LegendRoom room{{0, 0}, size, 20};
-            place = placeLegends(some, room, covered, true);
+            place = placeLegends(some, room, {covered}, FigureLegends::Automatic);
             area = drawLegends(*ImGui::GetWindowDrawList(), some, room, place);
         });
         texts = drawnTexts();
@@ -172,6 +172,40 @@ TEST_F(SmallPlots, LegendsOfASmallFigureAreLinesWithTheirNumbers) {
     EXPECT_EQ(place.form, LegendForm::Whole) << "beside the object";
     drawn({900, 700}, 1, everywhere);
     EXPECT_EQ(place.form, LegendForm::Whole) << "a small part of the figure";
+}
+
+TEST_F(SmallPlots, LegendsOfAFigureHaveTheFormThatIsChosen) {
+    std::vector<LegendEntry> entries{bar("T"), bar("density")};
+    const auto placed = [&](ImVec2 size, double share, FigureLegends form) {
+        LegendPlace place;
+        feedWindow([&] {
+            place = placeLegends(entries, {{0, 0}, size, 20}, {[=](ImVec2, ImVec2) { return share; }}, form);
+        });
+        return place.form;
+    };
+    EXPECT_EQ(placed({320, 240}, 1, FigureLegends::Automatic), LegendForm::Lines);
+    EXPECT_EQ(placed({320, 240}, 1, FigureLegends::Whole), LegendForm::Whole);
+    EXPECT_EQ(placed({900, 700}, 0, FigureLegends::Automatic), LegendForm::Whole);
+    EXPECT_EQ(placed({900, 700}, 0, FigureLegends::Lines), LegendForm::Lines);
+    for (const char* name : {"O2", "H2", "H2O"}) entries.push_back(bar(name));
+    EXPECT_EQ(placed({320, 240}, 1, FigureLegends::Whole), LegendForm::Lines) << "some of them would be missing";
+    EXPECT_EQ(placed({900, 700}, 1, FigureLegends::Whole), LegendForm::Whole);
+}
+
+TEST_F(SmallPlots, LegendsLeaveTheNumbersBesideTheObjectInSight) {
+    const std::vector<LegendEntry> entries{bar("T")};
+    const auto nothing = objectAt({0, 0}, {0, 0}), below = objectAt({0, 400}, {700, 590});
+    const auto placed = [&](const LegendSurroundings& covered) {
+        LegendPlace place;
+        feedWindow([&] { place = placeLegends(entries, {{0, 0}, {700, 590}, 20}, covered); });
+        return place;
+    };
+    EXPECT_EQ(placed({nothing}).corner, LegendCorner::BottomRight);
+    EXPECT_EQ(placed({nothing, below}).corner, LegendCorner::TopRight);
+    EXPECT_EQ(placed({objectAt({400, 0}, {700, 300}), below}).corner, LegendCorner::TopLeft);
+    // Rather over numbers than over the object.
+    EXPECT_EQ(placed({objectAt({0, 0}, {700, 300}), below}).corner, LegendCorner::BottomRight);
+    EXPECT_EQ(placed({objectAt({0, 0}, {700, 300}), below}).form, LegendForm::Whole);
 }
 
 TEST_F(SmallPlots, WhatLegendsLeaveOutIsUnderTheMouse) {

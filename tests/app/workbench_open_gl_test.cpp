@@ -58,6 +58,22 @@ TEST_F(WorkbenchOpening, WhatCannotBeOpenedIsToldWhereTheDataWouldBe) {
     EXPECT_EQ(below, 1) << "news in the status line";
 }
 
+TEST_F(WorkbenchOpening, WhyNothingIsOpenIsToldWhole) {
+    OpenRequest request;
+    for (int i = 0; i < 12; ++i)
+        request.paths = {"a folder " + std::to_string(i) + "/" + (i ? request.paths[0] : "lost.vti")};
+    workbench.open(request);
+    settle();
+    std::string told;
+    for (const DrawnText& text : drawnTexts()) {
+        if (text.min.y > 300) continue;
+        EXPECT_LE(text.max.x, 600) << text.text;
+        told += text.text + " ";
+    }
+    for (const char* word : {"folder 11", "folder 0", "no such file", "No data"})
+        EXPECT_NE(told.find(word), std::string::npos) << word << " of " << told;
+}
+
 TEST_F(WorkbenchOpening, ABuiltInModelIsOpenedByItsName) {
     OpenRequest request;
     request.paths = {"marschner-lobb"};
@@ -315,6 +331,70 @@ TEST_F(WorkbenchOpening, CamerasOfLayoutsShowTheWholeBoxInTheirPanes) {
     ASSERT_TRUE(run("Gases"));
     settle();
     expectWhole("gases from the menu");
+}
+
+/// Sizes of the pictures that a pane has drawn.
+std::vector<ImVec2> pictureSizes(const std::string& pane) {
+    std::vector<ImVec2> sizes;
+    const ImGuiWindow* window = ImGui::FindWindowByName(("###pane." + pane).c_str());
+    if (!window || !window->WasActive) return sizes;
+    const ImDrawList& list = *window->DrawList;
+    for (const ImDrawCmd& command : list.CmdBuffer) {
+        if (command.TextureId == ImGui::GetIO().Fonts->TexID || command.ElemCount == 0) continue;
+        ImVec2 lo{1e9f, 1e9f}, hi{-1e9f, -1e9f};
+        for (unsigned i = 0; i < command.ElemCount; ++i) {
+            const ImVec2 at = list.VtxBuffer[int(command.VtxOffset + list.IdxBuffer[int(command.IdxOffset + i)])].pos;
+            lo = {std::min(lo.x, at.x), std::min(lo.y, at.y)};
+            hi = {std::max(hi.x, at.x), std::max(hi.y, at.y)};
+        }
+        sizes.push_back({hi.x - lo.x, hi.y - lo.y});
+    }
+    return sizes;
+}
+
+// Pictures side by side are smaller than the pane, and tools, table and legends take some of it.
+TEST_F(WorkbenchOpening, CamerasOfLayoutsShowTheWholeBoxInComparisons) {
+    const auto expectWhole = [&](const std::string& layout, std::size_t variants) {
+        const Session& session = workbench.session();
+        const vis::WorldFrame world = vis::worldFrame(workbench.source()->info().bounds, session.stretch);
+        const glm::dvec2 extent = boxExtent(session.camera, world);
+        const std::vector<ImVec2> pictures = pictureSizes("compare");
+        EXPECT_EQ(pictures.size(), variants) << layout;
+        for (const ImVec2 size : pictures) {
+            EXPECT_LE(extent.y, 1) << layout;
+            EXPECT_LE(extent.x, double(size.x / size.y)) << layout << ' ' << size.x << " x " << size.y;
+            if (layout == "near.json") {
+                EXPECT_GT(std::max(extent.y, extent.x / double(size.x / size.y)), 0.6) << "no farther than it must be";
+            }
+        }
+    };
+    for (const glm::ivec2 size : {glm::ivec2(600, 400), glm::ivec2(1100, 700)}) {
+        OffscreenFrames window(size);
+        const auto settleThere = [&] {
+            do {
+                workbench.jobs().wait();
+                window.draw(workbench, 1);
+            } while (workbench.busy());
+            for (int i = 0; i < 4; ++i) window.draw(workbench, 1);
+        };
+        settleThere();
+        OpenRequest request;
+        request.data.emplace();
+        request.data->model = "fuel-cell";
+        request.data->settings = {{"nx", 5}, {"ny", 5}, {"nz", 21}, {"times", 2}};
+        Json near = loadSession(findLayout("compare_compression")).raw;
+        near["camera"]["distance"] = 0.8;
+        write("near.json", near.dump());
+        request.layout = "near.json";
+        workbench.install(open(request));
+        settleThere();
+        expectWhole("near.json", 7);
+        EXPECT_FALSE(workbench.document().dirty()) << "nobody has changed anything";
+        workbench.session().camera.distance = 0.7f;
+        ASSERT_TRUE(run("Compare techniques"));
+        settleThere();
+        expectWhole("techniques compared, from the menu", 6);
+    }
 }
 
 // A file of one's own is packed beside itself, in the layout as it is chosen in the menu.

@@ -12,6 +12,7 @@
 #include "app/views/compare/compare_offers.h"
 #include "app/views/compare/compare_panes.h"
 #include "app/views/compare/compare_questions.h"
+#include "app/views/compare/compare_room.h"
 #include "app/views/compare/compare_table.h"
 
 #include <algorithm>
@@ -335,10 +336,8 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
 
     const ImVec2 room = ImGui::GetContentRegionAvail(), at = ImGui::GetCursorScreenPos();
     const bool bare = context.decoration == Decoration::preset("none");
-    const float most = context.figure ? 0.65f : 0.5f; // on paper nothing scrolls
-    const float table = view.showTable && !bare ? std::min(compareTableHeight(count), room.y * most) : 0;
-    const float asked = context.figure ? 0 : std::min(questionsHeight(view), room.y * 0.3f);
-    const ImVec2 area{std::floor(room.x), std::floor(room.y - table - asked)};
+    const CompareRooms rooms = compareRooms(view, count, room, context.figure, bare);
+    const ImVec2 area = rooms.pictures;
     if (area.x < 24 || area.y < 24) return;
     const CompareMode mode = modeOf(view);
     const bool grid = mode == CompareMode::Grid || mode == CompareMode::Difference;
@@ -355,12 +354,12 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
     // What was found while drawing, such as the range of other data, is in the next frame's legends.
     if (context.decoration.legend && legendsOf(frame) != legends) context.busy = true;
     cache.rows = cache.pictures.rows(context, frame.reference);
-    if (table > 0) {
+    if (rooms.table > 0) {
         ImGui::SetCursorScreenPos({at.x, at.y + area.y});
         drawCompareTable(view, cache.rows, context.figure);
     }
     if (context.figure) return;
-    ImGui::SetCursorScreenPos({at.x, at.y + area.y + table});
+    ImGui::SetCursorScreenPos({at.x, at.y + area.y + rooms.table});
     std::vector<std::string> names;
     for (std::size_t i = 0; i < count; ++i) names.push_back(nameOf(frame, i));
     drawQuestions(context, view, cache.questions, names);

@@ -317,7 +317,7 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     const bool explained = context.decoration.legend && !legends.empty();
     if (!moving) {
         const auto covered = [&](ImVec2 lo, ImVec2 hi) { return coveredByCube(frame, lo, hi); };
-        cache.legend = placeLegends(legends, room, covered, context.figure);
+        cache.legend = placeLegends(legends, room, {covered}, figureLegends(context));
     }
     drawWalls(context, frame, cache, view, moving);
 

@@ -316,7 +316,7 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
     // The edges reach everywhere as it turns: the legends stay where they are.
     const LegendRoom room{frame.min, max};
     const auto nothing = [](ImVec2, ImVec2) { return 0.0; };
-    drawLegends(draw, entries, room, placeLegends(entries, room, nothing, context.figure));
+    drawLegends(draw, entries, room, placeLegends(entries, room, {nothing}, figureLegends(context)));
 }
 
 } // namespace

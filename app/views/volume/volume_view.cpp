@@ -213,7 +213,7 @@ private:
 
     LegendRoom legendRoom() const { return {picture_.min, max(), em() * 1.8f}; }
 
-    /// Legends and gizmo go where the box is not, nor the numbers beside it.
+    /// Legends and gizmo go where the box is not, nor the numbers beside it, shown or left out of this picture.
     void placeCorners(const SpaceFrame& space) {
         cache_.legend = {};
         LegendArea legend{max(), max()};
@@ -222,7 +222,10 @@ private:
             const auto covered = [&](ImVec2 lo, ImVec2 hi) {
                 return coveredByBox(space, {lo.x - em(), lo.y - em()}, {hi.x + em(), hi.y + em()});
             };
-            cache_.legend = placeLegends(entries, legendRoom(), covered, context_.figure);
+            const auto numbers = [&](ImVec2 lo, ImVec2 hi) {
+                return view_.showAxes ? coveredByAxes(space, session_.camera, lo, hi) : 0;
+            };
+            cache_.legend = placeLegends(entries, legendRoom(), {covered, numbers}, figureLegends(context_));
             legend = legendArea(entries, legendRoom(), cache_.legend);
         }
         cache_.triad = freeTriadCorner(space, triad_, {legend.min, legend.max});
