@@ -87,6 +87,15 @@ void RenderStages::rays(const RayPrograms& programs, const RenderCall& call, Ray
         glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 0, nothing);
         glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 1, nowhere);
     };
+    // A clear of the framebuffer before pixels beside it are written as texels is lost by some drivers (zink of
+    // Mesa 22.3).
+    const auto forget = [&](const Tile& part) {
+        const glm::ivec2 extent = part.end - part.begin;
+        glClearTexSubImage(buffer.color.name(), 0, part.begin.x, part.begin.y, 0, extent.x, extent.y, 1, GL_RGBA,
+                           GL_FLOAT, nothing);
+        glClearTexSubImage(buffer.pick.name(), 0, part.begin.x, part.begin.y, 0, extent.x, extent.y, 1, GL_RG, GL_FLOAT,
+                           nowhere);
+    };
     // Rays are cast for the pixels of the box only.
     const glm::ivec4 box = boxPixels(scene.camera, call.frame().halfSize, size);
     const Tile seen = intersection(tile, {{box.x, box.y}, {box.z, box.w}});
@@ -94,7 +103,7 @@ void RenderStages::rays(const RayPrograms& programs, const RenderCall& call, Ray
     buffer.drew(texels(tile), seen.empty() ? Tile{} : texels(seen));
     if (programs.packets) { // these replace what is there, and find no termination depths
         for (const Tile& beside : remainder(tile, std::span(&seen, seen.empty() ? 0 : 1)))
-            if (const Tile full = intersection(beside, held); !full.empty()) clear(full);
+            if (const Tile full = intersection(beside, held); !full.empty()) forget(texels(full));
         if (!seen.empty()) castPackets(programs, call, buffer, {size, seen, nullptr, what.stepFactor, what.pass});
         return;
     }
