@@ -10,6 +10,15 @@
 
 namespace tessera::app {
 
+/// Draws until every job is done and nothing refines.
+inline void settle(Workbench& workbench, OffscreenFrames& frames) {
+    do {
+        workbench.jobs().wait();
+        frames.draw(workbench, 1);
+    } while (workbench.busy());
+    for (int i = 0; i < 4; ++i) frames.draw(workbench, 1);
+}
+
 /// A workbench with a window in memory, whose frames a test draws one by one.
 class DrawnWorkbench : public testing::Test {
 protected:
@@ -23,14 +32,7 @@ protected:
         return open(request);
     }
     void frame(const std::function<void(ImGuiIO&)>& input = {}) { frames.draw(workbench, 1, input); }
-    /// Until every job is done and nothing refines.
-    void settle() {
-        do {
-            workbench.jobs().wait();
-            frame();
-        } while (workbench.busy());
-        for (int i = 0; i < 4; ++i) frame();
-    }
+    void settle() { tessera::app::settle(workbench, frames); }
     void press(int key) {
         for (const bool down : {true, false}) frame([&](ImGuiIO& io) { feedKey(io, key, down); });
     }

@@ -220,13 +220,7 @@ TEST(WorkbenchGl, WhatIsNotSavedIsNotGivenUpUnasked) {
     Workbench workbench({.renderer = nullptr, .render = {}, .headless = false, .onlyPane = {}, .stateFolder = {}});
     workbench.install(smallData());
     OffscreenFrames frames({400, 300});
-    const auto settle = [&] {
-        do {
-            workbench.jobs().wait();
-            frames.draw(workbench, 1);
-        } while (workbench.busy());
-        for (int i = 0; i < 4; ++i) frames.draw(workbench, 1);
-    };
+    const auto settle = [&] { tessera::app::settle(workbench, frames); };
     settle();
     OpenRequest other;
     other.data.emplace();

@@ -370,13 +370,7 @@ TEST_F(WorkbenchOpening, CamerasOfLayoutsShowTheWholeBoxInComparisons) {
     };
     for (const glm::ivec2 size : {glm::ivec2(600, 400), glm::ivec2(1100, 700)}) {
         OffscreenFrames window(size);
-        const auto settleThere = [&] {
-            do {
-                workbench.jobs().wait();
-                window.draw(workbench, 1);
-            } while (workbench.busy());
-            for (int i = 0; i < 4; ++i) window.draw(workbench, 1);
-        };
+        const auto settleThere = [&] { tessera::app::settle(workbench, window); };
         settleThere();
         OpenRequest request;
         request.data.emplace();

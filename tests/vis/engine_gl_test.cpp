@@ -81,7 +81,7 @@ TEST_F(EngineGl, BothEnginesDrawTheSamePicture) {
         }
 }
 
-/// What a screen shows of both, where the processor presents its own pixels and where OpenGL does (behind tones), with
+/// What a screen shows of both, where the processor presents its own pixels and where OpenGL does (with tones), with
 /// and without the box and the ground, drawn in one go and tile by tile; after the box has moved, what was beside it is
 /// empty again.
 TEST_F(EngineGl, BothPresentTheSamePixels) {

@@ -26,7 +26,13 @@ packet::PacketPicture randomPicture() {
 }
 
 BoxLines someLines() {
-    return {{{1, 2, 50, 2.4f}, {4, 1, 4.2f, 30}, {-20, -30, 70, 45}, {20, 10, 20, 10}, {45, 28, 12, 6}}, 2};
+    return {{{1, 2, 50, 2.4f},
+             {4, 1, 4.2f, 30},
+             {5e9f, -1e9f, 6e9f, 1e9f},
+             {-20, -30, 70, 45},
+             {20, 10, 20, 10},
+             {45, 28, 12, 6}},
+            2};
 }
 
 /// Coverage of a pixel by lines [begin, end), one after the other.
@@ -90,7 +96,6 @@ TEST(Presented, IsThePictureOverTheGroundWithTheBox) {
             }
 }
 
-/// What is presented otherwise gives the same where the curve of tones is nearly straight.
 TEST(Presented, TonesAreMappedBeforeTheGround) {
     const packet::PacketPicture picture = randomPicture();
     Scene scene;

@@ -6,14 +6,6 @@
 /// Pixels in the lanes. Only for present_rows_*.cpp.
 namespace tessera::vis::packet::TESSERA_LANES {
 
-/// The 8 bits of what a screen shows.
-inline Ints bitsOf(Floats share) {
-    return toInts(multiplyAdd(clamped(share, Floats(0), Floats(1)), Floats(255), Floats(0.5)));
-}
-inline Ints encoded(Floats linear) {
-    return bitsOf(srgbFromLinear<Floats>(clamped(linear, Floats(0), Floats(1))));
-}
-
 inline void presentPixels(const PresentedWith& with, const PixelRow& row) {
     for (int first = 0; first < row.count; first += kLanes) {
         const int count = row.count - first < kLanes ? row.count - first : kLanes;
@@ -25,8 +17,9 @@ inline void presentPixels(const PresentedWith& with, const PixelRow& row) {
         const glm::vec<4, Floats> shown =
             presentedPixel<Floats>(with, {Floats::load(parts[0]), Floats::load(parts[1]), Floats::load(parts[2])},
                                    Floats::load(parts[3]), Floats::load(lines[0]), Floats::load(lines[1]), Floats(1));
+        const auto encoded = [](Floats linear) { return toInts(screenLevel(linear)); };
         const Ints pixels =
-            encoded(shown.x) | (encoded(shown.y) << 8) | (encoded(shown.z) << 16) | (bitsOf(shown.w) << 24);
+            encoded(shown.x) | (encoded(shown.y) << 8) | (encoded(shown.z) << 16) | (toInts(levelOf(shown.w)) << 24);
         __builtin_memcpy(row.out + std::size_t(4) * std::size_t(first), &pixels.v, std::size_t(count) * 4);
     }
 }

@@ -15,10 +15,6 @@ namespace tessera::vis {
 
 namespace {
 
-std::uint8_t bitsOf(double share) {
-    return std::uint8_t(std::clamp(share, 0.0, 1.0) * 255 + 0.5);
-}
-
 /// Adds what lines cover of a row's pixels, from `first` on.
 void addLines(std::span<const glm::vec4> lines, glm::ivec2 first, std::vector<float>& covered) {
     constexpr double kReach = 0.5 * kBoxLineWidth + 0.5;
@@ -34,8 +30,8 @@ void addLines(std::span<const glm::vec4> lines, glm::ivec2 first, std::vector<fl
             low = std::max(low, middle - half);
             high = std::min(high, middle + half);
         }
-        const int begin = std::max(0, int(std::floor(low - 0.5)) - first.x);
-        const int end = std::min(int(covered.size()), int(std::ceil(high - 0.5)) - first.x + 1);
+        const auto texel = [&](double x) { return int(std::clamp(x - first.x, 0.0, double(covered.size()))); };
+        const int begin = texel(std::floor(low - 0.5)), end = texel(std::ceil(high + 0.5));
         for (int i = begin; i < end; ++i) {
             const glm::dvec2 off = glm::dvec2(first.x + i + 0.5, y) - from;
             const double t = std::clamp(glm::dot(off, along) / std::max(square, 1e-6), 0.0, 1.0);
@@ -78,7 +74,7 @@ struct Ground {
             const glm::u8vec3 color = screenColor(glm::dvec3(shown));
             std::uint8_t* out = row.out + std::size_t(4) * std::size_t(i);
             for (int c = 0; c < 3; ++c) out[c] = color[c];
-            out[3] = bitsOf(shown.a);
+            out[3] = std::uint8_t(levelOf(shown.a));
         }
     }
 };
@@ -86,9 +82,8 @@ struct Ground {
 } // namespace
 
 glm::u8vec3 screenColor(glm::dvec3 linear) {
-    return {bitsOf(srgbFromLinear(std::clamp(linear.x, 0.0, 1.0))),
-            bitsOf(srgbFromLinear(std::clamp(linear.y, 0.0, 1.0))),
-            bitsOf(srgbFromLinear(std::clamp(linear.z, 0.0, 1.0)))};
+    return {std::uint8_t(screenLevel(linear.x)), std::uint8_t(screenLevel(linear.y)),
+            std::uint8_t(screenLevel(linear.z))};
 }
 
 bool presentsPlainly(const Scene& scene) {

@@ -30,4 +30,13 @@ glm::vec<4, N> presentedPixel(const PresentedWith& with, const glm::vec<3, N>& l
     return {color.x, color.y, color.z, covered};
 }
 
+/// What a screen of 8 bits is given for a share of 0..1, before its fraction is cut off.
+template <class N> N levelOf(N share) {
+    return clamped(share, N(0), N(1)) * N(255) + N(0.5);
+}
+/// The same of linear light.
+template <class N> N screenLevel(N linear) {
+    return levelOf(srgbFromLinear<N>(clamped(linear, N(0), N(1))));
+}
+
 } // namespace tessera::vis
