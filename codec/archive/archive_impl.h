@@ -88,9 +88,12 @@ struct Archive::Impl {
     /// Converts a brick decoded at full resolution to stored numbers; undefined for absent samples.
     Bytes numbersOf(const FrameRecord& frame, volume::ScalarType type, const DecodedBrick& decoded) const;
     volume::BrickSamples readComponent(int parameter, int component, const volume::BrickKey& key) const;
-    /// The same, but if several parts of the parameter (volume/field/parts.h) meet in the brick, coarser levels are
-    /// computed from level 0, part by part, since stored coarse samples mix parts. So are coarse labels, which the
-    /// prediction between the sublattices of BCC mixes too.
+    /// The coarsest level of a brick of a subsampled frame: samples of level 0. What each is physically must be finite
+    /// to be present.
+    volume::BrickSamples readSubsamples(int parameter, int component, const volume::BrickKey& key) const;
+    /// readComponent, but if several parts of the parameter (volume/field/parts.h) meet in the brick, coarser levels
+    /// are computed from level 0 (or read from what is stored of it), part by part, since stored coarse samples mix
+    /// parts. So are coarse labels, which the prediction between the sublattices of BCC mixes too.
     volume::BrickSamples readOfParts(int parameter, int component, const volume::BrickKey& key) const;
     volume::BrickStats statsOf(int parameter, int component, const volume::BrickKey& key) const;
     std::optional<volume::BrickChange> changeOf(int parameter, int component, const volume::BrickKey& key,

@@ -1,4 +1,6 @@
 #include "codec/archive/archive_impl.h"
+#include "codec/archive/coded_mask.h"
+#include "codec/brick/subsamples.h"
 #include "volume/base/parallel.h"
 #include "volume/bricks/parts_bricks.h"
 #include "volume/field/part_masks.h"
@@ -67,12 +69,8 @@ std::vector<std::uint8_t> Archive::Impl::flags(const FrameRecord& frame, std::si
     else if (mode != 1 || decompress(body, bits) != DecodeStatus::Ok)
         damaged(path, offset, "a mask cannot be decoded");
     std::vector<std::uint8_t> flags(count);
-    std::size_t present = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        flags[i] = static_cast<std::uint8_t>(static_cast<unsigned>(bits[i / 8]) >> (i % 8) & 1u);
-        present += flags[i];
-    }
-    if (present != record.present) damaged(path, offset, "a mask does not have the number of samples that it states");
+    if (takeBits(bits, flags) != record.present)
+        damaged(path, offset, "a mask does not have the number of samples that it states");
     return flags;
 }
 
@@ -194,12 +192,41 @@ volume::BrickSamples Archive::Impl::readComponent(int number, int component, con
     return out;
 }
 
+volume::BrickSamples Archive::Impl::readSubsamples(int number, int component, const volume::BrickKey& key) const {
+    const std::size_t brick = metadata.grid.numberOf(key.index);
+    const FrameRecord& record = holding(frame(number, component, key.time), brick);
+    const volume::ScalarType type = parameter(number).type;
+    const BrickFormat format = brickFormat(metadata.grid, key.index, type, record);
+    fetchBrick(record, brick, 1);
+    const std::vector<std::uint8_t> fine = flags(record, brick);
+    const Segment& first = record.segments[brick];
+    const FilePart part = segment(first);
+    std::span<const std::byte> in = part.bytes();
+    std::vector<std::uint32_t> numbers;
+    if (const DecodeStatus status = takeSubsamples(format, fine, in, numbers); status != DecodeStatus::Ok)
+        damaged(path, first.offset, reason(status));
+
+    volume::BrickSamples out;
+    out.size = samplesAt(format, key.level);
+    out.present = maskAt(format, fine, key.level);
+    for (const std::uint32_t bits : numbers) {
+        const double stored = type == volume::ScalarType::F32 ? double(std::bit_cast<float>(bits))
+                                                              : double(static_cast<std::int32_t>(bits));
+        out.values.push_back(static_cast<float>(record.valueOffset + record.valueScale * stored));
+    }
+    leaveOutInfinite(out);
+    return out;
+}
+
 volume::BrickSamples Archive::Impl::readOfParts(int number, int component, const volume::BrickKey& key) const {
     const bool isLabel = parameter(number).categorical && parameter(number).components == 1;
     const int label = isLabel ? number : volume::labelOf(metadata.info, parameter(number));
     if (key.level == 0 || label < 0) return readComponent(number, component, key);
     if (const volume::BrickStats stats = statsOf(label, 0, key); stats.min == stats.max && stats.presentFraction == 1)
         return readComponent(number, component, key);
+    const std::size_t brick = metadata.grid.numberOf(key.index);
+    if (key.level + 1 == metadata.grid.levels && holding(frame(number, component, key.time), brick).subsampled)
+        return readSubsamples(number, component, key);
     volume::BrickKey fine = key;
     fine.level = 0;
     const volume::BrickSamples labels = readComponent(label, 0, fine);

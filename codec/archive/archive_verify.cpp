@@ -1,4 +1,5 @@
 #include "codec/archive/archive_impl.h"
+#include "codec/brick/subsamples.h"
 #include "volume/base/parallel.h"
 
 #include <atomic>
@@ -54,10 +55,13 @@ struct Verifier {
             const std::size_t s = std::size_t(format.levels - 1 - level);
             bytes += record.segments[s * impl.bricks + brick].length;
         }
+        const Bytes numbers = impl.numbersOf(record, parameter.type, *decoded);
+        if (format.subsampled && decoded->subsamples != subsamplesOf(format, numbers, fine))
+            throw Error("its coarsest samples differ from those of level 0", impl.path, "index");
         if (!impl.hasStatistics()) return bytes;
         const FrameBrick& noted = record.bricks[brick];
-        const BrickSummary found = summaryOf(parameter.type, record.valueOffset, record.valueScale,
-                                             impl.numbersOf(record, parameter.type, *decoded), fine, true);
+        const BrickSummary found =
+            summaryOf(parameter.type, record.valueOffset, record.valueScale, numbers, fine, true);
         if (!agree(found, noted.min, noted.max, noted.histogram))
             throw Error("its statistics differ from those of its samples", impl.path, "index");
         return bytes;

@@ -7,11 +7,13 @@
 #include "codec/archive/coded_mask.h"
 #include "codec/archive/frame_model.h"
 #include "codec/archive/frame_steps.h"
+#include "codec/brick/subsamples.h"
 #include "codec/brick/whole_brick.h"
 #include "codec/bytes/lzma.h"
 #include "codec/container/growing_file.h"
 #include "codec/container/mask_hash.h"
 #include "volume/base/parallel.h"
+#include "volume/field/part_masks.h"
 
 #include <algorithm>
 #include <array>
@@ -29,6 +31,7 @@ struct FrameCoding {
     double maxError = 0;                ///< of its samples
     const SeenFrame* before = nullptr;  ///< earlier frame whose bricks may be repeated
     std::vector<std::uint8_t> repeated; ///< flag per brick
+    std::vector<std::uint8_t> whole;    ///< flag per brick: no token was coded
     std::vector<volume::BrickImportance> importance;
     Taken taken;
     Model model;
@@ -51,6 +54,7 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
     const glm::ivec3 brick = grid.indexOf(b);
     std::vector<Bytes> segments;
     FrameBrick& about = frame.bricks[b];
+    whole[b] = 1;
     if (repeated[b] != 0) {
         about = before->bricks[b];
         about.notes.repeats += step;
@@ -64,8 +68,10 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
         if (!taken.bricks[b])
             taken.bricks[b] = prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory);
         segments = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
-        for (const Bytes& segment : segments) seen.bytes[b] += segment.size();
+        whole[b] = !segments[0].empty() && isWhole(segments[0][0]) ? 1 : 0;
         roundAsDecoded(format, maxError, taken.bricks[b]->decoded, input);
+        if (format.subsampled) addSubsamples(format, input.samples, input.present, compressor, segments);
+        for (const Bytes& segment : segments) seen.bytes[b] += segment.size();
         about = statisticsOf(part, input, statistics);
     }
     taken.bricks[b].reset();
@@ -99,6 +105,9 @@ struct ArchiveWriter::Impl {
     explicit Impl(const std::string& path) : file(path) {}
     Impl(const std::string& path, const Header& last) : file(path, last), header(last) {}
 
+    /// Whether coarse coefficients of a component mix samples that a reader must not mix. A volume of one brick is read
+    /// as a whole quickly.
+    bool mixesParts(std::size_t component) const;
     int maskFor(const FrameSamples& samples, int zstdLevel);
     /// Or the steps of a frame. `idle`: the frame codes no token with the model.
     void writeModel(const Model& model, bool idle, std::size_t component, FrameRecord& frame);
@@ -112,6 +121,17 @@ struct ArchiveWriter::Impl {
                     const Progress& progress);
     void commit(const Metadata& now, std::size_t wholeTimes, bool always);
 };
+
+bool ArchiveWriter::Impl::mixesParts(std::size_t component) const {
+    const volume::BrickGrid& grid = metadata.grid;
+    if (grid.levels == 1 || grid.count() == glm::ivec3(1)) return false;
+    const auto& parameters = metadata.info.parameters;
+    std::size_t first = 0, at = 0;
+    while (component >= first + std::size_t(parameters[at].components))
+        first += std::size_t(parameters[at++].components);
+    const volume::Parameter& parameter = parameters[at];
+    return parameter.categorical ? parameter.components == 1 : volume::labelOf(metadata.info, parameter) >= 0;
+}
 
 /// Index of a frame's mask, which is written if it is new; -1 if all samples are present.
 int ArchiveWriter::Impl::maskFor(const FrameSamples& samples, int zstdLevel) {
@@ -246,6 +266,10 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     frame.valueOffset = samples.offset();
     frame.valueScale = samples.scale();
     frame.codeBits = codeBitsOf(samples, frame.numbers);
+    if (mixesParts(component)) {
+        frame.subsampled = true;
+        header.features |= kSubsamples;
+    }
     coding.maxError = boundOf(frame, options);
     coding.before = frameBefore(frame, samples);
     coding.repeated = repeated(coding.before, samples, frame, options);
@@ -271,6 +295,7 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     const std::size_t bricks = grid.brickCount();
     coding.taken.bricks.resize(bricks);
     coding.seen.bytes.resize(bricks);
+    coding.whole.resize(bricks);
     frame.bricks.resize(bricks);
     frame.segments.resize(bricks * std::size_t(grid.levels));
     return coding;
@@ -297,9 +322,8 @@ bool ArchiveWriter::Impl::codeBricks(FrameCoding& coding, const FrameSamples& sa
                     batch[b - first] = coding.code(b, part, own, b - firstBrick, encoder, compressor, input, memory);
             });
             for (std::size_t b = first; b < first + count; ++b) {
-                std::vector<Bytes>& segments = batch[b - first];
-                allWhole = allWhole && (coding.repeated[b] != 0 || (!segments[0].empty() && isWhole(segments[0][0])));
-                coded.put(b, std::move(segments));
+                allWhole = allWhole && coding.whole[b] != 0;
+                coded.put(b, std::move(batch[b - first]));
             }
             progress.advance(double(first + count) / double(grid.brickCount()));
         }

@@ -20,7 +20,8 @@ inline std::size_t brickBytes(const volume::BrickGrid& grid, volume::ScalarType 
 inline BrickFormat brickFormat(const volume::BrickGrid& grid, glm::ivec3 brick, volume::ScalarType type,
                                const FrameRecord& frame) {
     return {grid.lattice.kind, grid.brickSamples(brick, 0), grid.levels,    frame.wavelet,     type,
-            frame.numbers,     frame.keepsAbsent,           frame.codeBits, frame.bodyCentred, frame.steps};
+            frame.numbers,     frame.keepsAbsent,           frame.codeBits, frame.bodyCentred, frame.steps,
+            frame.subsampled};
 }
 
 /// Number of components of all parameters before one: the index of its first frame within a time.

@@ -3,6 +3,7 @@
 #include "codec/bytes/bytes.h"
 #include "codec/bytes/entropy.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -16,5 +17,8 @@ struct CodedMaskBrick {
 
 /// The presence flags of a brick as bits, LSB first, raw or compressed by zstd; empty if all are equal.
 CodedMaskBrick encodeMask(std::span<const std::uint8_t> flags, Compressor& compressor);
+
+/// Reads one bit of each flag, LSB first; `bits` has ceil(flags / 8) bytes. Returns the number of ones.
+std::size_t takeBits(std::span<const std::byte> bits, std::span<std::uint8_t> flags);
 
 } // namespace tessera::codec

@@ -1,6 +1,7 @@
 #include "codec/brick/brick_codec.h"
 
 #include "codec/brick/brick_levels.h"
+#include "codec/brick/subsamples.h"
 #include "codec/brick/whole_brick.h"
 #include "codec/wavelet/body_centred.h"
 
@@ -132,6 +133,14 @@ DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<co
     assert(present.empty() || present.size() == countOf(format.size));
     out.begin(format, level);
     out.present = maskAt(format, present, level);
+    std::vector<std::span<const std::byte>> coefficients;
+    if (format.subsampled) {
+        coefficients.assign(segments.begin(), segments.end());
+        if (const DecodeStatus status = takeSubsamples(format, present, coefficients[0], out.subsamples);
+            status != DecodeStatus::Ok)
+            return status;
+        segments = coefficients;
+    }
     if (format.isStepped()) return decodeStepped(format, segments, level, present, out);
     const bool narrow = out.narrow = fitsInt16(format, !present.empty());
     // Skip the extra streams to find the mode byte of a brick with one level.

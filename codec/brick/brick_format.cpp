@@ -44,17 +44,9 @@ glm::ivec3 samplesAt(const BrickFormat& format, int level) {
 
 std::vector<std::uint8_t> maskAt(const BrickFormat& format, std::span<const std::uint8_t> present, int level) {
     if (present.empty()) return {};
-    const glm::ivec3 size = samplesAt(format, level);
-    const int perTexel = format.sublattices(), stride = 1 << level;
     std::vector<std::uint8_t> out;
-    out.reserve(countOf(size));
-    for (int z = 0; z < size.z; ++z)
-        for (int y = 0; y < size.y; ++y) {
-            const int fineZ = (z / perTexel) * stride * perTexel + z % perTexel;
-            const std::size_t row = (std::size_t(fineZ) * std::size_t(format.size.y) + std::size_t(y * stride)) *
-                                    std::size_t(format.size.x);
-            for (int x = 0; x < size.x; ++x) out.push_back(present[row + std::size_t(x * stride)]);
-        }
+    out.reserve(countOf(samplesAt(format, level)));
+    forLevel(format, level, [&](std::size_t at) { out.push_back(present[at]); });
     return out;
 }
 

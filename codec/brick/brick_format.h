@@ -26,6 +26,7 @@ struct BrickFormat {
     bool bodyCentred =
         false;          ///< of BCC: the odd sublattice is predicted from the even one (codec/wavelet/body_centred.h)
     StepChoice steps{}; ///< for numbers of kind Stepped
+    bool subsampled = false; ///< segment 0 begins with samples of level 0 (codec/brick/subsamples.h)
 
     bool operator==(const BrickFormat&) const = default;
 
@@ -49,6 +50,19 @@ inline std::size_t countOf(glm::ivec3 size) {
 
 /// Storage samples of the brick at a level.
 glm::ivec3 samplesAt(const BrickFormat& format, int level);
+/// Calls `visit(index at full resolution)` for every 2^level-th sample of each sublattice, in the storage order of the
+/// level.
+template <class Visit> void forLevel(const BrickFormat& format, int level, Visit&& visit) {
+    const glm::ivec3 size = samplesAt(format, level);
+    const int perTexel = format.sublattices(), stride = 1 << level;
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y) {
+            const int fineZ = (z / perTexel) * stride * perTexel + z % perTexel;
+            const std::size_t row = (std::size_t(fineZ) * std::size_t(format.size.y) + std::size_t(y * stride)) *
+                                    std::size_t(format.size.x);
+            for (int x = 0; x < size.x; ++x) visit(row + std::size_t(x * stride));
+        }
+}
 /// The mask at a level: every 2^level-th flag of each sublattice. Empty for an empty mask.
 std::vector<std::uint8_t> maskAt(const BrickFormat& format, std::span<const std::uint8_t> present, int level);
 

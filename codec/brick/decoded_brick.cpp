@@ -32,6 +32,7 @@ void DecodedBrick::begin(const BrickFormat& format, int level) {
     sublattices = format.sublattices();
     narrow = false;
     present.clear();
+    subsamples.clear();
     exact.clear();
     absent.clear();
 }

@@ -27,10 +27,11 @@ struct DecodedBrick {
     bool narrow = false; ///< the codes are in `boxes16`, else in `boxes32`
     Boxes<std::int16_t> boxes16;
     Boxes<std::int32_t> boxes32;
-    std::vector<std::uint8_t> present;   ///< flags at the level; empty: all present
-    std::vector<ExactSample> exact;      ///< full resolution only: samples that replace those of their codes
-    std::vector<std::uint32_t> absent;   ///< full resolution only: bits of absent samples in storage order, if stored
-    std::vector<Correction> corrections; ///< working memory
+    std::vector<std::uint8_t> present;     ///< flags at the level; empty: all present
+    std::vector<std::uint32_t> subsamples; ///< of subsampled bricks, see takeSubsamples
+    std::vector<ExactSample> exact;        ///< full resolution only: samples that replace those of their codes
+    std::vector<std::uint32_t> absent;     ///< full resolution only: bits of absent samples in storage order, if stored
+    std::vector<Correction> corrections;   ///< working memory
 
     /// Resets to the shape of a level.
     void begin(const BrickFormat& format, int level);

@@ -34,8 +34,10 @@ inline constexpr std::uint32_t kBandContexts = 4;
 inline constexpr std::uint32_t kBrickStatistics = 8;
 /// Feature: numbers of frames can be of kind Stepped. Only set once one is.
 inline constexpr std::uint32_t kSteppedBricks = 16;
+/// Feature: frames can be subsampled. Only set once one is.
+inline constexpr std::uint32_t kSubsamples = 32;
 inline constexpr std::uint32_t kUsualFeatures = kBrickNotes | kCompact | kBandContexts | kBrickStatistics,
-                               kKnownFeatures = kUsualFeatures | kSteppedBricks;
+                               kKnownFeatures = kUsualFeatures | kSteppedBricks | kSubsamples;
 
 /// xxh3, 64 bits, seed 0.
 std::uint64_t checksum(std::span<const std::byte> bytes);

@@ -42,7 +42,7 @@ public:
                  const std::string& file)
         : in_(bytes), notes_((header.features & kBrickNotes) != 0),
           statistics_((header.features & kBrickStatistics) != 0), stepped_((header.features & kSteppedBricks) != 0),
-          end_(header.index.offset), shape_(shape), file_(file) {}
+          subsamples_((header.features & kSubsamples) != 0), end_(header.index.offset), shape_(shape), file_(file) {}
 
     IndexPage page() {
         IndexPage page;
@@ -129,12 +129,14 @@ private:
         require(kind <= static_cast<std::uint8_t>(stepped_ ? NumberKind::Stepped : NumberKind::Quantised),
                 "an unknown coding of numbers", file_);
         require(wavelet < std::size(kWaveletNames), "an unknown wavelet", file_);
-        require(keeps <= (notes_ ? 3 : 1), "an unknown flag of a frame", file_);
+        const int flags = 1 | (notes_ ? 2 : 0) | (subsamples_ && shape_.grid.levels > 1 ? 4 : 0);
+        require((keeps & ~flags) == 0, "an unknown flag of a frame", file_);
         require(codeBits >= 1 && codeBits <= 32, "an invalid width of codes", file_);
         frame.numbers.kind = static_cast<NumberKind>(kind);
         frame.wavelet = static_cast<Wavelet>(wavelet);
         frame.keepsAbsent = (keeps & 1) != 0;
         frame.bodyCentred = (keeps & 2) != 0;
+        frame.subsampled = (keeps & 4) != 0;
         frame.codeBits = codeBits;
         frame.mask = in_.get<std::int32_t>();
         frame.model = in_.get<std::int32_t>();
@@ -160,7 +162,7 @@ private:
     }
 
     ByteReader in_;
-    bool notes_, statistics_, stepped_;
+    bool notes_, statistics_, stepped_, subsamples_;
     std::uint64_t end_; ///< of the part of the file that may contain chunks
     const IndexShape& shape_;
     const std::string& file_;
@@ -291,7 +293,8 @@ Bytes serialise(const IndexPage& page, std::uint32_t features) {
         out.put(frame.length);
         out.put(static_cast<std::uint8_t>(frame.numbers.kind));
         out.put(static_cast<std::uint8_t>(frame.wavelet));
-        out.put(static_cast<std::uint8_t>((frame.keepsAbsent ? 1 : 0) | (frame.bodyCentred ? 2 : 0)));
+        out.put(static_cast<std::uint8_t>((frame.keepsAbsent ? 1 : 0) | (frame.bodyCentred ? 2 : 0) |
+                                          (frame.subsampled ? 4 : 0)));
         out.put(static_cast<std::uint8_t>(frame.codeBits));
         out.put(frame.mask);
         out.put(frame.model);

@@ -1,5 +1,6 @@
 #include "codec/brick/brick_codec.h"
 
+#include "codec/brick/subsamples.h"
 #include "tests/codec/make_dataset.h"
 
 #include <bit>
@@ -53,7 +54,15 @@ MadeBrick randomBrick(std::mt19937& random) {
     made.format.numbers = chooseCoding(field, made.maxError);
     made.samples = field.samples;
     if (made.format.type != ScalarType::F32) made.format.codeBits = codeBitsOf(made.format.type);
+    made.format.subsampled = made.format.levels > 1 && random() % 3 == 0;
     return made;
+}
+
+std::vector<Bytes> encoded(const MadeBrick& made, const Model& model, Compressor& compressor) {
+    std::vector<Bytes> segments =
+        encodeBrick(made.format, made.samples, made.present, made.maxError, compressor, BandEncoder(model));
+    if (made.format.subsampled) addSubsamples(made.format, made.samples, made.present, compressor, segments);
+    return segments;
 }
 
 /// The model of the brick itself, or of another one: any brick must come back with any model.
@@ -77,8 +86,7 @@ TEST(BrickCodec, DecodesWhatItEncodes) {
         const MadeBrick made = randomBrick(random);
         const Model model = modelOf(made, trial % 3 != 0, trial % 2 == 0);
         const BandDecoder decoder(model);
-        const std::vector<Bytes> segments =
-            encodeBrick(made.format, made.samples, made.present, made.maxError, compressor, BandEncoder(model));
+        const std::vector<Bytes> segments = encoded(made, model, compressor);
         ASSERT_EQ(int(segments.size()), made.format.levels);
         for (int level = made.format.levels - 1; level >= 0; --level) {
             DecodedBrick decoded;
@@ -88,6 +96,8 @@ TEST(BrickCodec, DecodesWhatItEncodes) {
             const std::vector<std::uint32_t> codes = decoded.codes();
             ASSERT_EQ(codes.size(), countOf(samplesAt(made.format, level)));
             ASSERT_EQ(decoded.present, maskAt(made.format, made.present, level));
+            ASSERT_EQ(decoded.subsamples, made.format.subsampled ? subsamplesOf(made.format, made.samples, made.present)
+                                                                 : std::vector<std::uint32_t>());
             if (level > 0) continue;
             ASSERT_EQ(decoded.present, made.present);
             std::vector<std::uint32_t> exact(codes.size());
@@ -128,8 +138,7 @@ TEST(BrickCodec, RefusesEveryTruncationAndEveryTrailingByte) {
         const MadeBrick made = randomBrick(random);
         const Model model = modelOf(made, trial % 3 != 0, trial % 2 == 0);
         const BandDecoder decoder(model);
-        const std::vector<Bytes> segments =
-            encodeBrick(made.format, made.samples, made.present, made.maxError, compressor, BandEncoder(model));
+        const std::vector<Bytes> segments = encoded(made, model, compressor);
         for (std::size_t s = 0; s < segments.size(); ++s) {
             const std::size_t stride = segments[s].size() / 200 + 1;
             for (std::size_t length = 0; length <= segments[s].size() + 1;
@@ -156,8 +165,7 @@ TEST(BrickCodec, SurvivesEveryFlippedBit) {
         const MadeBrick made = randomBrick(random);
         const Model model = modelOf(made, true, true);
         const BandDecoder decoder(model);
-        std::vector<Bytes> segments =
-            encodeBrick(made.format, made.samples, made.present, made.maxError, compressor, BandEncoder(model));
+        std::vector<Bytes> segments = encoded(made, model, compressor);
         for (Bytes& segment : segments)
             for (std::size_t i = 0; i < segment.size(); i += i < 24 ? 1 : 1 + segment.size() / 50)
                 for (int bit = 0; bit < 8; ++bit) {

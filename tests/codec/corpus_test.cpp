@@ -3,6 +3,7 @@
 #include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/fuzz/fuzz_model.h"
+#include "tests/volume/regions.h"
 
 #include <gtest/gtest.h>
 
@@ -48,6 +49,14 @@ TEST(Corpus, StoredArchivesStillDecode) {
     }
 }
 
+TEST(Corpus, AStoredArchiveOfPartsIsShownFromSamplesOfLevelZero) {
+    const Archive archive(corpus() + "fuzz_archive/parts-3-subsamples.tsr");
+    EXPECT_EQ(verifyArchive(archive).damaged, 0u);
+    const int last = archive.grid().levels - 1;
+    ASSERT_GT(last, 0);
+    EXPECT_EQ(archive.read({0, 0, last, {0, 0, 0}}).values[0], archive.read({0, 0, 0, {0, 0, 0}}).values[0]);
+}
+
 /// Not a check: writes the seeds of fuzz_brick and fuzz_archive when the format changes
 /// (--gtest_also_run_disabled_tests).
 TEST(Corpus, DISABLED_WriteSeeds) {
@@ -62,7 +71,11 @@ TEST(Corpus, DISABLED_WriteSeeds) {
                  corpus() + "fuzz_archive/" + std::string(kStoredLatticeNames[std::size_t(lattice)]) +
                      (maxError > 0 ? "-bounded-3-statistics.tsr" : "-exact-3-statistics.tsr"));
         }
-    // One that has grown twice.
+    // Two bricks of two parts and their label, and one that has grown twice.
+    volume::Dataset parts = volume::test::twoRegions(volume::test::ccLattice({12, 6, 7}), volume::test::linearIn);
+    PackOptions ofParts;
+    ofParts.brickSize = 8;
+    pack(parts, ofParts, corpus() + "fuzz_archive/parts-3-subsamples.tsr");
     const std::string grown = corpus() + "fuzz_archive/grown-3-statistics.tsr";
     for (int step = 0; step < 3; ++step) {
         const char* const name = step == 1 ? "p" : "T";

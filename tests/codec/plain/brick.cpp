@@ -77,11 +77,28 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
     const bool centred = frame.bodyCentred && bcc_ && levels_ > 1 && fine[2] > 1 && frame.numbers != 2 &&
                          std::find(flags.begin(), flags.end(), false) == flags.end();
     bool whole = false;
+    std::vector<std::uint32_t> subsamples;
     std::vector<Octets> stepped; // 4.8: the segments
     std::vector<std::pair<std::size_t, std::int64_t>> corrections;
     for (int segment = 0; segment < levels_ - level; ++segment) {
         const Octets bytes = checked(frame.pieces[std::size_t(segment) * bricks + std::size_t(number)]);
         Reader in(bytes);
+        if (segment == 0 && frame.subsampled) {
+            std::size_t count = 0;
+            for (std::size_t s = 0; s < boxes.size(); ++s) {
+                Size size = {fine[0], fine[1], (fine[2] + sublattices - 1 - int(s)) / sublattices};
+                for (int l = 1; l < levels_; ++l) size = half(size);
+                places({0, 0, 0}, size, [&](const Size& p) {
+                    const int z = (p[2] << (levels_ - 1)) * sublattices + int(s);
+                    count += flags[(std::size_t(z) * std::size_t(fine[1]) + std::size_t(p[1] << (levels_ - 1))) *
+                                       std::size_t(fine[0]) +
+                                   std::size_t(p[0] << (levels_ - 1))]
+                                 ? 1
+                                 : 0;
+                });
+            }
+            subsamples = stream(in, count);
+        }
         if (frame.numbers == 4) {
             if (segment == levels_ - 1) extras(in);
             stepped.push_back(in.take(std::size_t(in.end - in.at)));
@@ -203,6 +220,7 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
 
     // 3, in storage order
     Brick out;
+    out.subsamples = subsamples;
     out.size = boxes[0].size;
     if (bcc_) out.size[2] += boxes[1].size[2];
     std::size_t nextAbsent = 0;

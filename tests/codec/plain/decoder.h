@@ -17,7 +17,8 @@ using Size = std::array<int, 3>;
 struct Brick {
     Size size{};
     std::vector<bool> present;
-    std::vector<double> values;      ///< physical values, not held within the range; 0 where absent
+    std::vector<double> values;            ///< physical values, not held within the range; 0 where absent
+    std::vector<std::uint32_t> subsamples; ///< of subsampled frames: stored numbers that segment 0 begins with
     std::vector<std::uint32_t> bits; ///< level 0: the stored numbers, sign-extended or bits of a float; kept absent too
 };
 
@@ -61,7 +62,7 @@ private:
     struct Frame {
         int numbers = 0, wavelet = 0, mask = -1;
         std::size_t model = 0;
-        bool keepsAbsent = false, bodyCentred = false;
+        bool keepsAbsent = false, bodyCentred = false, subsampled = false;
         double origin = 0, step = 1, valueOffset = 0, valueScale = 1;
         std::vector<std::size_t> repeats; ///< by brick: the frame so many times before holds it
         std::vector<Piece> pieces;        ///< [segment * bricks + brick]
@@ -86,7 +87,8 @@ private:
     Size size_{}, bricks_{};
     int brickSize_ = 0, levels_ = 0;
     std::vector<std::string> types_; ///< of the component of each frame within a time
-    bool hasNotes_ = false, compact_ = false, knowsBands_ = false, hasStatistics_ = false, knowsSteps_ = false;
+    bool hasNotes_ = false, compact_ = false, knowsBands_ = false, hasStatistics_ = false, knowsSteps_ = false,
+         knowsSubsamples_ = false;
     std::size_t end_ = 0; ///< of the archive in the file
     std::vector<Piece> models_;
     std::vector<Mask> masks_;
