@@ -1,5 +1,6 @@
 #include "app/edits/compare.h"
 #include "app/platform/headless.h"
+#include "app/views/compare/compare_layout.h"
 #include "app/views/compare/compare_pictures.h"
 #include "app/views/compare/compare_view.h"
 #include "tests/app/views_fixture.h"
@@ -184,7 +185,58 @@ TEST(CompareView, ValuesDifferInTheirUnit) {
     EXPECT_TRUE(compared.rows[1].measured);
 }
 
+/// Pixels of the cross-hair's blue in a part of a picture, from one share of its width to another.
+int blue(const vis::Image& image, double from, double to) {
+    int count = 0;
+    for (int y = 0; y < image.size.y; ++y)
+        for (int x = int(from * image.size.x); x < int(to * image.size.x); ++x) {
+            const std::uint8_t* p = &image.rgba[4 * (std::size_t(y) * std::size_t(image.size.x) + std::size_t(x))];
+            count += p[2] > 150 && p[2] > p[0] + 80 ? 1 : 0;
+        }
+    return count;
+}
+
+TEST(CompareView, TheCrossHairIsWhereThePictureIs) {
+    Compared compared;
+    compared.view.showTable = false;
+    compared.view.variants = {{"known", {}}, {"no such model", {{"/data/model", "nothing"}}}};
+    for (const CompareMode mode : {CompareMode::Grid, CompareMode::Swipe}) {
+        compared.view.mode = mode;
+        const vis::Image shown = compared.draw({640, 240});
+        if (mode == CompareMode::Grid) {
+            EXPECT_GT(blue(shown, 0, 0.5), 20);
+        }
+        EXPECT_EQ(blue(shown, 0.52, 1), 0) << int(mode);
+    }
+}
+
 struct CompareNumbers : ViewsTest {};
+
+TEST_F(CompareNumbers, LegendsKeepTheirRoomWhileDataAreOpened) {
+    Compared compared;
+    show(compared.source);
+    session = compared.document.session;
+    ComparePictures pictures;
+    std::vector<CompareLegends> legends;
+    std::vector<bool> opening;
+    for (int i = 0; i < 6; ++i) {
+        frame([&] {
+            ViewContext context{session, source, renderer, jobs, caches};
+            pictures.prepare(context, {{"BCC", {}}, {"CC", {{"/data/lattice", "grid"}}}});
+            opening.push_back(pictures.cells()[1]->isOpening());
+            legends.push_back(variantLegends(context, pictures.cells(), {0, 1}));
+            pictures.draw(context, "compare", 0, {120, 90}, false);
+        });
+        jobs.wait();
+    }
+    EXPECT_TRUE(opening[0] && opening[1]);
+    EXPECT_FALSE(opening.back());
+    for (const CompareLegends& at : legends) {
+        ASSERT_EQ(at.size(), 2u);
+        EXPECT_EQ(at[0].size(), 1u);
+        EXPECT_EQ(at[1].size(), 1u);
+    }
+}
 
 /// Other variants in the same places, whose data are not opened yet, have no numbers: not those of the ones before.
 TEST_F(CompareNumbers, AreNotThoseOfTheVariantsBefore) {

@@ -55,7 +55,7 @@ CompareLegends variantLegends(const ViewContext& context, const std::vector<std:
     CompareLegends legends;
     for (const std::size_t index : shown) {
         const CompareCell& cell = *cells[index];
-        const auto& source = cell.source(context);
+        const auto& source = cell.isOpening() ? context.source : cell.source(context);
         legends.push_back(cell.failure.empty() && source ? sceneLegends(cell.session, source->info())
                                                          : std::vector<LegendEntry>{});
     }

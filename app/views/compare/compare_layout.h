@@ -19,7 +19,8 @@ struct CompareLayout {
 /// shows them. Legends that are equal are placed once, below everything.
 CompareLayout compareLayout(CompareLegends legends, int count, ImVec2 at, ImVec2 area);
 
-/// The legends of some variants, as far as their data are open.
+/// The legends of some variants; while the data of one are opened, with the ranges of the session's, so that pictures
+/// mostly stay where they are.
 CompareLegends variantLegends(const ViewContext& context, const std::vector<std::shared_ptr<CompareCell>>& cells,
                               const std::vector<std::size_t>& shown);
 

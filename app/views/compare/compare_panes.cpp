@@ -92,7 +92,7 @@ CompareLegends paneLegends(const ViewContext& context, const std::string& shows,
     for (const std::size_t index : shown) {
         std::vector<LegendEntry>& own = legends.emplace_back();
         const CompareCell& cell = *cells[index];
-        const auto& source = cell.source(context);
+        const auto& source = cell.isOpening() ? context.source : cell.source(context);
         if (!slices || !cell.failure.empty() || !source) continue;
         if (const auto channel = resolveChannel(source->info(), cell.session, slices->channel))
             own.push_back(legendOf(cell.session, source->info(), *channel));

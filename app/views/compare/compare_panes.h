@@ -17,7 +17,7 @@ CompareMode modeOf(const CompareView& view);
 void drawComparedPane(ViewContext& context, const std::string& pane, const std::string& shows, std::size_t index,
                       CompareCell& cell, const PictureBox& box);
 
-/// The colour bars of that view for some variants, as far as their data are open; drawComparedPane leaves them out.
+/// The colour bars of that view for some variants, which drawComparedPane leaves out; see variantLegends.
 CompareLegends paneLegends(const ViewContext& context, const std::string& shows,
                            const std::vector<std::shared_ptr<CompareCell>>& cells,
                            const std::vector<std::size_t>& shown);

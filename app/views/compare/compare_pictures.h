@@ -89,6 +89,8 @@ struct CompareCell {
     const std::shared_ptr<const volume::BrickSource>& source(const ViewContext& context) const {
         return data ? data->source : context.source;
     }
+    /// Whether its data, which are not the session's, are still being opened.
+    bool isOpening() const { return failure.empty() && !(session.data == of.data) && !(data && data->source); }
     bool isMeasured() const { return measured && measured->query.image == image; }
     bool showsDifference() const { return shownOf && shownOf->query.image == image; }
     /// True if nothing is left to draw.

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace tessera::app {
 
@@ -42,15 +43,15 @@ struct Frame {
     std::size_t reference = 0, other = 0;
 };
 
-/// What is drawn over a picture: cursor, brushes, caption.
+/// What is drawn over a picture: caption, and if the picture is there cursor and brushes.
 void drawOver(const Frame& frame, const PictureBox& box, const Session& session, const std::string& caption,
-              bool marked, bool left = true) {
+              bool marked, bool there, bool left = true) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const volume::DatasetInfo& info = frame.context.source->info();
     const SpaceFrame space = spaceFrame(box.min, box.max(), session.camera, info.bounds, session.stretch);
     const Decoration& shown = frame.context.decoration;
-    if (shown.cursor) drawCursor3d(draw, space, session.cursor);
-    if (shown.outlines) drawSpaceBrushes(draw, space, session.selection);
+    if (there && shown.cursor) drawCursor3d(draw, space, session.cursor);
+    if (there && shown.outlines) drawSpaceBrushes(draw, space, session.selection);
     if (!shown.title) return;
     const PlotColors colors = plotColors();
     const float pad = em() * 0.5f;
@@ -94,6 +95,10 @@ void drawCell(const Frame& frame, std::size_t index, const PictureBox& box) {
                           plotColors().faint, text, box.size.x - em());
 }
 
+bool isDrawn(const Frame& frame, std::size_t index) {
+    return frame.cache.pictures.cells()[index]->drawn;
+}
+
 std::string nameOf(const Frame& frame, std::size_t index) {
     return variantName(frame.context.session, frame.variants[index]);
 }
@@ -112,7 +117,7 @@ void drawGrid(const Frame& frame, const std::vector<PictureBox>& boxes, bool dif
             draw.AddImage(textureId(cell.differencePicture.name()), box.min, box.max());
         else
             drawCell(frame, i, box);
-        drawOver(frame, box, frame.context.session, nameOf(frame, i), i == frame.reference);
+        drawOver(frame, box, frame.context.session, nameOf(frame, i), i == frame.reference, shown || cell.drawn);
         draw.PopClipRect();
     }
 }
@@ -147,7 +152,7 @@ void drawValues(const Frame& frame, const std::string& pane, const std::vector<P
             addPicture(draw, cell.values.texture(), box.min, box.max());
         else
             drawCell(frame, i, box);
-        drawOver(frame, box, frame.context.session, nameOf(frame, i), i == frame.reference);
+        drawOver(frame, box, frame.context.session, nameOf(frame, i), i == frame.reference, shown || cell.drawn);
         if (shown && frame.context.decoration.title)
             for (int line = 0; const std::string& text : valuesText(cell)) note(text, line++);
         else if (!shown && i != frame.reference && cell.failure.empty())
@@ -156,18 +161,21 @@ void drawValues(const Frame& frame, const std::string& pane, const std::vector<P
     }
 }
 
-/// The legends of what the mode shows: of the variants, or in place of theirs those of differences, as far as they are
-/// known.
-CompareLegends legendsOf(const Frame& frame) {
+/// The variants that the mode shows.
+std::vector<std::size_t> shownIndices(const Frame& frame) {
+    const CompareMode mode = modeOf(frame.view);
+    if (mode == CompareMode::Swipe) return {frame.reference, frame.other};
+    if (mode == CompareMode::Blink)
+        return {frame.context.headless ? frame.reference : frame.cache.blinkShown % frame.variants.size()};
+    std::vector<std::size_t> all(frame.variants.size());
+    std::iota(all.begin(), all.end(), std::size_t(0));
+    return all;
+}
+
+/// The legends of these variants, or in place of theirs those of differences, as far as they are known.
+CompareLegends legendsOf(const Frame& frame, const std::vector<std::size_t>& shown) {
     const CompareMode mode = modeOf(frame.view);
     ComparePictures& pictures = frame.cache.pictures;
-    std::vector<std::size_t> shown;
-    if (mode == CompareMode::Swipe)
-        shown = {frame.reference, frame.other};
-    else if (mode == CompareMode::Blink)
-        shown = {frame.context.headless ? frame.reference : frame.cache.blinkShown % frame.variants.size()};
-    else
-        for (std::size_t i = 0; i < frame.variants.size(); ++i) shown.push_back(i);
     if (!frame.view.shows.empty()) return paneLegends(frame.context, frame.view.shows, pictures.cells(), shown);
     CompareLegends legends = variantLegends(frame.context, pictures.cells(), shown);
     if (mode != CompareMode::Difference) return legends;
@@ -214,11 +222,11 @@ void drawSwipe(const Frame& frame, const PictureBox& box) {
     const float x = std::round(box.min.x + box.size.x * frame.view.swipe);
     draw.PushClipRect(box.min, {x, box.max().y}, true);
     drawCell(frame, frame.reference, box);
-    drawOver(frame, box, frame.context.session, nameOf(frame, frame.reference), true);
+    drawOver(frame, box, frame.context.session, nameOf(frame, frame.reference), true, isDrawn(frame, frame.reference));
     draw.PopClipRect();
     draw.PushClipRect({x, box.min.y}, box.max(), true);
     drawCell(frame, frame.other, box);
-    drawOver(frame, box, frame.context.session, nameOf(frame, frame.other), false, false);
+    drawOver(frame, box, frame.context.session, nameOf(frame, frame.other), false, isDrawn(frame, frame.other), false);
     draw.PopClipRect();
     const PlotColors colors = plotColors();
     draw.AddLine({x, box.min.y}, {x, box.max().y}, colors.backdrop, 4);
@@ -249,7 +257,7 @@ std::size_t turn(const Frame& frame) {
 void drawBlink(const Frame& frame, const PictureBox& box) {
     const std::size_t shown = turn(frame);
     drawCell(frame, shown, box);
-    drawOver(frame, box, frame.context.session, nameOf(frame, shown), shown == frame.reference);
+    drawOver(frame, box, frame.context.session, nameOf(frame, shown), shown == frame.reference, isDrawn(frame, shown));
 }
 
 /// The 3D scene of every variant, in `boxes` or, in turn or beside a line, in the only one.
@@ -342,17 +350,20 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
     const CompareMode mode = modeOf(view);
     const bool grid = mode == CompareMode::Grid || mode == CompareMode::Difference;
     cache.pictures.prepare(context, frame.variants);
-    const CompareLegends legends = context.decoration.legend ? legendsOf(frame) : CompareLegends{};
-    const CompareLayout layout = compareLayout(legends, grid ? static_cast<int>(count) : 1, at, area);
+    const std::vector<std::size_t> shown = shownIndices(frame);
+    const CompareLegends legends = context.decoration.legend ? legendsOf(frame, shown) : CompareLegends{};
+    CompareLayout layout = compareLayout(legends, grid ? static_cast<int>(count) : 1, at, area);
     const ImVec2 size = layout.pictures[0].size;
     if (size.x < 8 || size.y < 8) return;
     if (view.shows.empty())
         drawScenes(frame, pane, layout.pictures);
     else
         drawPanes(frame, pane, layout.pictures);
+    for (std::size_t i = 0; layout.legends.size() > 1 && i < layout.legends.size(); ++i)
+        if (cache.pictures.cells()[shown[i]]->isOpening()) layout.legends[i].clear(); // presumed, to keep their room
     drawCompareLegends(*ImGui::GetWindowDrawList(), layout);
     // What was found while drawing, such as the range of other data, is in the next frame's legends.
-    if (context.decoration.legend && legendsOf(frame) != legends) context.busy = true;
+    if (context.decoration.legend && legendsOf(frame, shown) != legends) context.busy = true;
     cache.rows = cache.pictures.rows(context, frame.reference);
     if (rooms.table > 0) {
         ImGui::SetCursorScreenPos({at.x, at.y + area.y});
