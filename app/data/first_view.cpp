@@ -132,6 +132,33 @@ void aimFunction(Session& session, const volume::BrickSource& source, const std:
     }
 }
 
+void showLastIfEmpty(Session& session, const volume::BrickSource& source, std::vector<std::string>& messages) {
+    const volume::DatasetInfo& info = source.info();
+    const auto first = std::ranges::find_if(session.layers, [](const vis::Layer& layer) {
+        return layer.visible && layer.lens.empty() && std::holds_alternative<vis::VolumeLayer>(layer.technique);
+    });
+    if (info.times.size() < 2 || first == session.layers.end()) return;
+    const std::string& name = std::get<vis::VolumeLayer>(first->technique).channel;
+    const auto channel = info.findChannel(name);
+    if (!channel || info.parameters[std::size_t(info.channel(*channel).parameter)].categorical) return;
+    const std::string& key = first->transfer.empty() ? name : first->transfer;
+    if (!session.transfer.contains(key)) return;
+    const vis::TransferFunction& function = session.transfer.at(key);
+    const Range range = vis::effectiveRange(function, info.channelRange(info.channel(*channel)));
+    if (function.kind != vis::TransferKind::Curve || !(range.hi > range.lo)) return;
+    const auto seen = [&](double time) {
+        const Occurrence occurrence = occurrenceOf(source, *channel, info.nearestTime(time), range);
+        return vis::seenShare(occurrence.count, occurrence.places, function.opacity);
+    };
+    try {
+        const double now = seen(session.time), last = info.times.back();
+        if (now >= kLeastSeen || !(seen(last) > now)) return;
+        session.time = last;
+        messages.push_back(name + " would hardly be seen at the first time; the last one is shown");
+    } catch (const Error&) { // a damaged brick: the first time is shown
+    }
+}
+
 double firstAspect(const volume::DatasetInfo& info) {
     return info.times.size() > 1 ? 0.92 : 0.78;
 }

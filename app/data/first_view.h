@@ -4,6 +4,9 @@
 
 #include "volume/bricks/brick_source.h"
 
+#include <string>
+#include <vector>
+
 /// Adapts the default session to the samples, so that the first picture shows something.
 namespace tessera::app {
 
@@ -15,6 +18,10 @@ double firstAspect(const volume::DatasetInfo& info);
 /// cross-hair to the middle of its samples; makes the background of scans transparent in the default opacity curves, up
 /// to near their strongest boundary. If a brick is damaged, the rest is unchanged.
 void aimFirstView(Session& session, const volume::BrickSource& source, double aspect);
+
+/// The last time, with a message, if the first volume of a layout hardly shows a sample at the session's time and more
+/// at the last: opacities of layouts suit what a simulation ends with. If a brick is damaged, nothing changes.
+void showLastIfEmpty(Session& session, const volume::BrickSource& source, std::vector<std::string>& messages);
 
 /// Chooses the opacity curve of a channel's function from the values at the session's time, as aimFirstView does for
 /// the first layer; a function that is not the default one stays.

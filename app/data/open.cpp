@@ -232,6 +232,7 @@ Opened openData(DataRef data, std::optional<SessionDocument> layout, const Progr
     } else {
         session = defaultSession(info, data);
     }
+    if (layout && !sameData(layout->session.data, data)) showLastIfEmpty(session, *opened.source, opened.messages);
     if (!layout || !sameData(layout->session.data, data)) aimFirstView(session, *opened.source, firstAspect(info));
     if (layout) fitSurfaces(session, *opened.source, layout->session, opened.messages);
     opened.document.history.reset(session);

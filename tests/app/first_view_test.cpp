@@ -172,5 +172,40 @@ TEST(FirstView, TheCursorIsWhereTheFirstLayerHasAValue) {
     EXPECT_GE(aimed(*lonely, glm::dvec3(3.45)).z, 9);
 }
 
+/// A field that is 0 at its first time, and then rises from 0 to 1 along x, or stays.
+std::shared_ptr<const volume::BrickSource> rising(bool rises) {
+    volume::Dataset data;
+    volume::DatasetInfo& info = data.info;
+    info.lattice.size = glm::ivec3(kSide);
+    info.lattice.spacing = glm::dvec3(1);
+    info.bounds = {glm::dvec3(0), glm::dvec3(kSide - 1)};
+    info.times = {0, 1, 2};
+    volume::Parameter& parameter = info.parameters.emplace_back();
+    parameter.name = "T";
+    parameter.type = volume::ScalarType::F32;
+    parameter.ranges = {{0, 1}};
+    data.read = [lattice = info.lattice, rises](int, int, int time) {
+        volume::Field field = volume::makeField(lattice, volume::ScalarType::F32);
+        for (std::size_t i = 0; i < field.count(); ++i)
+            field.as<float>()[i] = rises && time == 2 ? float(i % kSide) / float(kSide - 1) : 0.0f;
+        return field;
+    };
+    return volume::makeMemorySource(std::move(data), {});
+}
+
+TEST(FirstView, ALayoutThatShowsNothingAtTheFirstTimeShowsTheLast) {
+    for (const bool rises : {true, false})
+        for (const bool opaque : {true, false}) {
+            const auto source = rising(rises);
+            Session session = defaultSession(source->info(), {});
+            session.layers = {{"T", true, vis::VolumeLayer{.channel = "T"}}};
+            session.transfer["T"].opacity = {{0.0f, opaque ? 0.5f : 0.0f}, {0.5f, 0.0f}, {1.0f, 0.8f}};
+            std::vector<std::string> messages;
+            showLastIfEmpty(session, *source, messages);
+            EXPECT_EQ(session.time, rises && !opaque ? 2 : 0) << rises << opaque;
+            EXPECT_EQ(messages.size(), rises && !opaque ? 1u : 0u);
+        }
+}
+
 } // namespace
 } // namespace tessera::app
