@@ -22,14 +22,21 @@ void drawQuestions(const ViewContext& context, CompareView& view, QuestionClock&
         return;
     }
     if (clock.shown < 0) clock.shown = ImGui::GetTime();
-    const float width = ImGui::GetContentRegionAvail().x, answer = std::min(em() * 14, width * 0.35f);
+    const float width = ImGui::GetContentRegionAvail().x;
     const float remove = iconButtonWidth(context, icons::kTrash), time = em() * 5;
+    // Answers are names of variants; where there is little room, the questions come first.
+    const float room = width - ImGui::GetFrameHeight() - time - remove;
+    float longest = 0;
+    for (const CompareQuestion& question : view.questions)
+        longest =
+            std::max(longest, ImGui::CalcTextSize(question.text.c_str()).x + 2 * ImGui::GetStyle().FramePadding.x);
+    const float answer = std::clamp(room - longest, std::min(em() * 7, room * 0.35f), em() * 14);
     const auto answered = [&](CompareQuestion& question) { question.seconds = ImGui::GetTime() - clock.shown; };
     std::size_t removed = view.questions.size();
     for (std::size_t i = 0; i < view.questions.size(); ++i) {
         CompareQuestion& question = view.questions[i];
         ImGui::PushID(static_cast<int>(i));
-        ImGui::SetNextItemWidth(std::max(em() * 4, width - answer - ImGui::GetFrameHeight() - time - remove));
+        ImGui::SetNextItemWidth(std::max(em() * 4, room - answer));
         ImGui::InputTextWithHint("##question", "A question, such as: which spot is hotter?", &question.text);
         const float shown = ImGui::GetItemRectSize().x - 2 * ImGui::GetStyle().FramePadding.x;
         if (ImGui::IsItemHovered() && !ImGui::IsItemActive() && ImGui::CalcTextSize(question.text.c_str()).x > shown)

@@ -81,8 +81,10 @@ void chooseLattice(DataRef& data) {
 
 void drawSummary(const ViewContext& context) {
     const volume::DatasetInfo& info = context.numbers->info();
-    if (!ImGui::BeginTable("summary", 2)) return;
-    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, em() * 5.5f);
+    // In a narrow pane texts stand below their names: the next column of a table of one is the next row.
+    const bool narrow = ImGui::GetContentRegionAvail().x < em() * 16;
+    if (!ImGui::BeginTable("summary", narrow ? 1 : 2)) return;
+    if (!narrow) ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, em() * 5.5f);
     ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
     row("Name", info.name.empty() ? "unnamed" : info.name);
     row("Samples", latticeText(info));
