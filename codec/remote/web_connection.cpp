@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cstdlib>
 #include <curl/curl.h>
 #include <string_view>
 
@@ -94,6 +95,9 @@ public:
         set(CURLOPT_FOLLOWLOCATION, 1L);
         set(CURLOPT_MAXREDIRS, 8L);
         set(CURLOPT_NETRC, long(CURL_NETRC_OPTIONAL));
+        // Authorities that the system does not know, named as for the program curl.
+        for (const char* const name : {"SSL_CERT_FILE", "CURL_CA_BUNDLE"})
+            if (const char* const file = std::getenv(name); file && *file) set(CURLOPT_CAINFO, file);
         set(CURLOPT_NOSIGNAL, 1L);
         set(CURLOPT_CONNECTTIMEOUT, kConnectSeconds);
         set(CURLOPT_LOW_SPEED_LIMIT, 1L);

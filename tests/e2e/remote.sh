@@ -5,7 +5,7 @@ tessera=$1 source=$2
 source "$2/tests/e2e/common.bash"
 command -v python3 > /dev/null || { echo "skipped: no python3"; exit 77; }
 export XDG_CACHE_HOME=$work/cache HOME=$work
-unset http_proxy https_proxy all_proxy HTTP_PROXY HTTPS_PROXY ALL_PROXY
+unset CURL_CA_BUNDLE SSL_CERT_FILE http_proxy https_proxy all_proxy HTTP_PROXY HTTPS_PROXY ALL_PROXY
 mkdir served
 
 # Numbers without pattern, which no coder makes smaller: 36 MB in 216 bricks, more than are drawn from one texture.
@@ -18,11 +18,15 @@ sed 's/330/160/g' big.json > middle.json
 "$tessera" pack middle.json -o served/middle.tsr --lattice cc > /dev/null 2> err || die "pack"
 big=$(stat -c %s served/big.tsr) middle=$(stat -c %s served/middle.tsr)
 
-python3 "$source/tests/e2e/remote_server.py" "$work/served" "$work/port" > server.log 2>&1 &
+certificate=()
+openssl req -x509 -newkey rsa:2048 -nodes -days 2 -subj /CN=localhost -addext subjectAltName=DNS:localhost \
+    -keyout key.pem -out certificate.pem 2> err && certificate=("$work/certificate.pem" "$work/key.pem")
+python3 "$source/tests/e2e/remote_server.py" "$work/served" "$work/port" "${certificate[@]}" > server.log 2>&1 &
 server=$!
 trap 'kill $server; rm -rf "$work"' EXIT
 for ((i = 0; i < 100; ++i)); do [ -s port ] && break; sleep 0.1; done
-at=http://127.0.0.1:$(cat port) || die "no server"
+read -r port secure < port || [ -n "$port" ] || die "no server"
+at=http://127.0.0.1:$port
 way() { python3 -c 'import sys, urllib.request as u; u.urlopen(sys.argv[1]).read()' "$at/set?$1"; }
 told() { python3 -c 'import sys, urllib.request as u; print(u.urlopen(sys.argv[1]).read().decode().strip())' "$at/told"; }
 # sent WHAT LEAST MOST: bytes of files sent since the last call.
@@ -189,6 +193,44 @@ way password=
 rm .netrc
 check "several" 2 "$tessera" stats $at/cell.tsr $at/big.tsr
 say "opened by itself" err.txt
+
+# https, with a certificate that is trusted only where it is named; there is one where openssl could make it.
+if [ -n "$secure" ]; then
+    check "not trusted" 2 "$tessera" info https://localhost:$secure/cell.tsr
+    say "https://localhost:$secure/cell.tsr: .*certificate" err.txt
+    [ "$(wc -l < err.txt)" = 1 ] || fail "not one line"
+    "$tessera" info $at/cell.tsr > local.txt
+    for variable in SSL_CERT_FILE CURL_CA_BUNDLE; do
+        check "info by https" 0 env $variable=certificate.pem "$tessera" info https://localhost:$secure/cell.tsr
+        cmp <(sed "s#$at#https://localhost:$secure#g" local.txt) out.txt || fail "info by https differs"
+    done
+    check "verify by https" 0 env SSL_CERT_FILE=certificate.pem "$tessera" verify https://localhost:$secure/middle.tsr
+    check "another name" 2 env SSL_CERT_FILE=certificate.pem "$tessera" info https://127.0.0.1:$secure/cell.tsr
+else
+    echo "not tried: https, since openssl makes no certificate: $(tail -n 1 err)"
+fi
+
+# A slow line: 20 Mbit/s, an answer after 50 ms.
+forget
+way "delay=0.05&rate=2500000"
+check "by a slow line" 0 "$tessera" unpack $at/middle.tsr -o slow.raw -l 1
+"$tessera" unpack served/middle.tsr -o local.raw -l 1 2> err
+cmp local.raw slow.raw || fail "other samples by a slow line"
+way "delay=0&rate=0"
+
+# The coarsest level of parameters with parts and of labels is read alone, from the first bytes of each brick.
+forget
+python3 - <<'PY'
+import random
+noise, half = random.Random(2).randbytes(128**3), bytes(x // 64 for x in range(128))
+open("parts.raw", "wb").write(noise + half * 128**2)
+PY
+echo '{"dims": [128, 128, 128], "dtype": "uint8", "components": [{"name": "a"}, {"name": "half"}]}' > parts.json
+"$tessera" pack parts.json -o served/parts.tsr --lattice cc --brick-size 64 --label half:0=left,1=right \
+    --parts 'a=half:0|1' > /dev/null 2> err || die "pack parts"
+"$tessera" info served/parts.tsr | grep -q "2 parts by half" || fail "no parts"
+check "coarse parts" 0 "$tessera" unpack $at/parts.tsr -o coarse.raw -l 4
+sent "every sixteenth sample of parts" 10000 $(($(stat -c %s served/parts.tsr) / 4))
 
 # A file that is replaced while it is read: seen to be another one, not said to be damaged.
 forget

@@ -1,13 +1,14 @@
-"""A web server for tests/e2e/remote.sh that answers ranges of the files of a folder: remote_server.py FOLDER PORT_FILE.
+"""A web server for tests/e2e/remote.sh that answers ranges of the files of a folder: remote_server.py FOLDER PORT_FILE
+[CERTIFICATE KEY], with these by https as well; the port file then has both ports.
 It misbehaves as /set?NAME=VALUE tells it; /told says what it has sent, as "bytes requests", and forgets it."""
-import email.utils, http.server, os, sys, threading, time, urllib.parse
+import email.utils, http.server, os, ssl, sys, threading, time, urllib.parse
 
-folder, port_file = sys.argv[1:]
+folder, port_file = sys.argv[1:3]
 lock = threading.Lock()
 told = {"bytes": 0, "requests": 0, "most": 0, "now": 0}
 # delay: seconds before each answer; busy: answers that are 503; cut: answers that end after half of their bytes;
-# ranges: 0 = whole files only; damage: answers whose first byte is wrong; password: "user:word", base 64
-ways = {"delay": 0.0, "busy": 0, "cut": 0, "ranges": 1, "damage": 0, "password": ""}
+# rate: bytes a second of all answers together, 0 = any; ranges: 0 = whole files only; damage: answers whose first byte is wrong; password: "user:word", base 64
+ways = {"delay": 0.0, "rate": 0.0, "busy": 0, "cut": 0, "ranges": 1, "damage": 0, "password": ""}
 
 
 def once(name):
@@ -16,6 +17,18 @@ def once(name):
             return False
         ways[name] -= 1
         return True
+
+
+free_at = [0.0]  # when the line has sent all before
+
+
+def wait_for_line(count):
+    with lock:
+        if ways["rate"] <= 0:
+            return
+        free_at[0] = max(free_at[0], time.monotonic()) + count / ways["rate"]
+        until = free_at[0]
+    time.sleep(max(0.0, until - time.monotonic()))
 
 
 class Handler(http.server.BaseHTTPRequestHandler):
@@ -89,13 +102,21 @@ class Handler(http.server.BaseHTTPRequestHandler):
         with lock:
             told["bytes"] += len(body)
         try:
-            self.wfile.write(body)
+            for at in range(0, len(body), 65536):
+                wait_for_line(len(body[at:at + 65536]))
+                self.wfile.write(body[at:at + 65536])
         except OSError:
             self.close_connection = True
 
 
-server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+servers = [http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)]
+if len(sys.argv) > 3:
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    context.load_cert_chain(*sys.argv[3:])
+    servers.append(http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler))
+    servers[1].socket = context.wrap_socket(servers[1].socket, server_side=True)
+    threading.Thread(target=servers[1].serve_forever, daemon=True).start()
 with open(port_file + ".new", "w") as file:
-    file.write(str(server.server_port))
+    file.write(" ".join(str(server.server_port) for server in servers))
 os.rename(port_file + ".new", port_file)
-server.serve_forever()
+servers[0].serve_forever()
