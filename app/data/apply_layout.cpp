@@ -65,6 +65,12 @@ std::vector<std::string> layoutNames() {
     return {names.begin(), names.end()};
 }
 
+bool isDemonstration(std::string_view layout) {
+    static constexpr std::string_view kNames[] = {"animation", "charcoal", "compare_lattice", "evening",
+                                                  "illustration"};
+    return std::ranges::find(kNames, layout) != std::end(kNames);
+}
+
 std::string findLayout(const std::string& nameOrPath) {
     std::error_code problem;
     if (hasEnding(nameOrPath, ".json") && fs::is_regular_file(nameOrPath, problem)) return nameOrPath;
@@ -87,12 +93,18 @@ Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& in
         if (!own && (key == "title" || key == "time" || key == "cursor" || key == "stretch")) continue;
         if (key == "transfer") {
             for (const auto& [channel, function] : value.items())
-                if (own || function.value("autoRange", true)) result[key][channel] = function;
+                if (own || function.value("autoRange", true))
+                    result[key][channel] = function;
+                else if (info.findChannel(channel))
+                    messages.push_back("the layout's colours of " + channel +
+                                       " have a range of other data, so they are not taken");
         } else {
             result[key] = value;
         }
     }
-    if (!own && result["selection"].is_object()) result["selection"].erase("brushes");
+    if (!own && result["selection"].is_object() && result["selection"].erase("brushes") > 0 &&
+        !layout.session.selection.brushes.empty())
+        messages.emplace_back("the layout's brushes were made for other data and are left out: brush in a plot");
     Session session = sessionFromJson(result, {});
     std::erase_if(session.transfer, [&](const auto& entry) { return !info.findChannel(entry.first); });
     fitSession(session, info, messages);

@@ -5,6 +5,7 @@
 #include "volume/bricks/brick_source.h"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// Layouts that ship with the program or were saved, shown with any data.
@@ -13,6 +14,9 @@ namespace tessera::app {
 /// Names of the layouts that ship with the program, and the file of a layout given by name or path. Throws Error.
 std::vector<std::string> layoutNames();
 std::string findLayout(const std::string& nameOrPath);
+
+/// Whether a layout that ships with the program shows a technique or a look rather than helping with a task.
+bool isDemonstration(std::string_view layout);
 
 /// Whether both are the same files, or the same model, whatever its settings.
 bool sameData(const DataRef& a, const DataRef& b);

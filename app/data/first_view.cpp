@@ -2,6 +2,8 @@
 
 #include "app/data/boundary_value.h"
 #include "app/data/coarse_samples.h"
+#include "codec/archive/archive.h"
+#include "codec/remote/address.h"
 #include "vis/transfer/tail_opacity.h"
 #include "volume/base/error.h"
 #include "volume/reconstruct/probe.h"
@@ -156,6 +158,42 @@ void showLastIfEmpty(Session& session, const volume::BrickSource& source, std::v
         session.time = last;
         messages.push_back(name + " would hardly be seen at the first time; the last one is shown");
     } catch (const Error&) { // a damaged brick: the first time is shown
+    }
+}
+
+namespace {
+
+/// Whether a coarse level of the data can be read while the user waits.
+bool isQuick(const Session& session, const volume::BrickSource& source) {
+    constexpr std::size_t kMost = std::size_t(1) << 22; // samples
+    const auto& files = session.data.files;
+    if (!files.empty() && codec::isRemote(files.front().absolutePath)) return false;
+    return source.grid().lattice.count() <= kMost || dynamic_cast<const codec::Archive*>(&source);
+}
+
+} // namespace
+
+void aimLayer(Session& session, const volume::BrickSource& source, vis::Layer& layer) {
+    const volume::DatasetInfo& info = source.info();
+    const std::string& name =
+        std::visit([](const auto& own) -> const std::string& { return own.channel; }, layer.technique);
+    const auto channel = info.findChannel(name);
+    if (!channel) return;
+    const bool quick = isQuick(session, source);
+    if (std::holds_alternative<vis::VolumeLayer>(layer.technique)) {
+        if (quick && layer.transfer.empty()) aimFunction(session, source, name);
+    } else if (auto* const iso = std::get_if<vis::IsoLayer>(&layer.technique)) {
+        const Range range = info.channelRange(info.channel(*channel));
+        const bool outside = double(iso->value) < range.lo || double(iso->value) > range.hi;
+        std::optional<double> value;
+        if (outside) value = (range.lo + range.hi) / 2;
+        try {
+            if (quick)
+                value =
+                    surfaceValue(source, *channel, info.nearestTime(session.time)).value_or(value.value_or(iso->value));
+        } catch (const Error&) { // a damaged brick
+        }
+        if (value) iso->value = *value;
     }
 }
 

@@ -23,6 +23,11 @@ void aimFirstView(Session& session, const volume::BrickSource& source, double as
 /// at the last: opacities of layouts suit what a simulation ends with. If a brick is damaged, nothing changes.
 void showLastIfEmpty(Session& session, const volume::BrickSource& source, std::vector<std::string>& messages);
 
+/// aimFunction for the parameter of a volume that is new or shows another one; a surface moves to surfaceValue(). Data
+/// on another machine, and large ones without coarse levels, are not waited for: there nothing changes, but that a
+/// surface outside of the parameter's range moves to its middle.
+void aimLayer(Session& session, const volume::BrickSource& source, vis::Layer& layer);
+
 /// Chooses the opacity curve of a channel's function from the values at the session's time, as aimFirstView does for
 /// the first layer; a function that is not the default one stays.
 void aimFunction(Session& session, const volume::BrickSource& source, const std::string& channel);

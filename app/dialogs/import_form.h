@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/ui/file_dialog.h"
+#include "app/dialogs/file_dialog.h"
 #include "app/ui/jobs.h"
 #include "volume/import/import.h"
 

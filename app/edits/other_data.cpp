@@ -4,6 +4,7 @@
 #include "app/session/shown_scene.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace tessera::app {
 
@@ -62,6 +63,26 @@ bool isField(const volume::DatasetInfo& info) {
     });
 }
 
+/// Lenses stand in a row along the longest axis through the cross-hair, and lines of profiles along it: places in the
+/// layout's data mean nothing here.
+void movePlaces(Session& session, const volume::DatasetInfo& info, std::vector<std::string>& messages) {
+    const glm::dvec3 size = info.bounds.size(), shown = size * session.stretch;
+    const int axis = shown.x >= shown.y && shown.x >= shown.z ? 0 : shown.y >= shown.z ? 1 : 2;
+    const auto stays = [](const vis::Lens& lens) { return lens.followsCursor; };
+    const auto count = std::ranges::count_if(session.lenses, std::not_fn(stays));
+    double number = 0.5;
+    for (vis::Lens& lens : session.lenses) {
+        if (stays(lens)) continue;
+        lens.center = session.cursor;
+        if (count > 1) lens.center[axis] = info.bounds.lo[axis] + size[axis] * number++ / double(count);
+    }
+    for (auto& [pane, view] : session.views)
+        if (auto* const profile = std::get_if<ProfileView>(&view); profile && !profile->points.empty()) {
+            profile->points.clear();
+            messages.emplace_back("the line of a profile was drawn in other data; it goes along the longest axis here");
+        }
+}
+
 } // namespace
 
 void suitOtherData(Session& session, const volume::DatasetInfo& info, const DataRef& made,
@@ -69,6 +90,7 @@ void suitOtherData(Session& session, const volume::DatasetInfo& info, const Data
     dropForeignVariants(session, made, messages);
     keepSettings(session, made);
     if (session.data.files.empty() && session.data.model == made.model) return;
+    movePlaces(session, info, messages);
     if (!onlyDrawings(session) || !isField(info)) return;
     for (auto& [pane, view] : session.views)
         if (auto* const volume = std::get_if<VolumeView>(&view)) volume->showBox = volume->drawingBox = true;

@@ -146,21 +146,6 @@ std::optional<SpaceShape> spaceShape(const vis::Brush& brush) {
     return std::nullopt;
 }
 
-/// Gives each visible volume a function of its own that hides nothing.
-void makeOpaque(Session& session) {
-    for (vis::Layer& layer : session.layers) {
-        const auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique);
-        if (!volume || !layer.visible || volume->style != vis::RayStyle::Composite) continue;
-        if (layer.transfer.empty()) {
-            std::string name = layerName(layer);
-            while (name.empty() || session.transfer.contains(name)) name += "'";
-            session.transfer[name] = transferOf(std::as_const(session), volume->channel);
-            layer.transfer = name;
-        }
-        session.transfer[layer.transfer].opacity = {{0, 0.6f}, {1, 0.6f}};
-    }
-}
-
 } // namespace
 
 void drawBrushList(ViewContext& context) {
@@ -198,11 +183,25 @@ void drawBrushList(ViewContext& context) {
         brush.region = vis::LensRegion{context.session.lenses.back().name};
         selection.brushes.push_back(std::move(brush));
     }
-    if (!selection.brushes.empty() && button("Clear all")) selection.brushes.clear();
+    if (!selection.brushes.empty() && button("Clear all")) clearBrushes(context);
     if (selection.active() && button("Make selection opaque")) makeOpaque(context.session);
     if (selection.active() && ImGui::IsItemHovered())
         tooltip("Gives every volume the same opacity for all values, so that selected samples are visible even where "
                 "the transfer function hides them");
+}
+
+void makeOpaque(Session& session) {
+    for (vis::Layer& layer : session.layers) {
+        const auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique);
+        if (!volume || !layer.visible || volume->style != vis::RayStyle::Composite) continue;
+        if (layer.transfer.empty()) {
+            std::string name = layerName(layer);
+            while (name.empty() || session.transfer.contains(name)) name += "'";
+            session.transfer[name] = transferOf(std::as_const(session), volume->channel);
+            layer.transfer = name;
+        }
+        session.transfer[layer.transfer].opacity = {{0, 0.6f}, {1, 0.6f}};
+    }
 }
 
 std::string combinationText(const vis::Selection& selection) {
@@ -251,6 +250,14 @@ void addSpaceBrush(Session& session, const volume::DatasetInfo& info, bool box) 
     selection.brushes.push_back(std::move(brush));
 }
 
+void clearBrushes(ViewContext& context) {
+    std::vector<vis::Brush>& brushes = context.session.selection.brushes;
+    if (brushes.size() > 1 && context.runCommand)
+        context.runCommand("Clear brushes");
+    else
+        brushes.clear();
+}
+
 void drawBrushMenu(ViewContext& context) {
     const std::size_t before = context.session.selection.brushes.size();
     if (ImGui::MenuItem("Brush a sphere at the cross-hair"))
@@ -258,7 +265,7 @@ void drawBrushMenu(ViewContext& context) {
     if (ImGui::MenuItem("Brush a box at the cross-hair")) addSpaceBrush(context.session, context.source->info(), true);
     if (context.session.selection.brushes.size() > before) showLists(context.session);
     if (ImGui::MenuItem("Clear brushes", "Esc", false, !context.session.selection.brushes.empty()))
-        context.session.selection.brushes.clear();
+        clearBrushes(context);
 }
 
 void drawSpaceBrushes(ImDrawList& draw, const SpaceFrame& frame, const vis::Selection& selection) {

@@ -19,6 +19,12 @@ vis::Brush spaceBrush(const Session& session, const volume::DatasetInfo& info, b
 /// Adds one with a name and colour of its own, as "or" beside others in space.
 void addSpaceBrush(Session& session, const volume::DatasetInfo& info, bool box);
 
+/// Gives each visible volume a function of its own that hides nothing.
+void makeOpaque(Session& session);
+
+/// Removes every brush; of several by the command, which asks.
+void clearBrushes(ViewContext& context);
+
 /// Items of a view's menu that place a brush at the cursor and clear all brushes.
 void drawBrushMenu(ViewContext& context);
 

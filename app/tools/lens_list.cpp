@@ -1,5 +1,7 @@
 #include "app/tools/lens_list.h"
 
+#include "app/data/first_view.h"
+#include "app/edits/add_layer.h"
 #include "app/pane/view_parts.h"
 #include "app/session/shown_scene.h"
 #include "app/ui/fitted_text.h"
@@ -218,7 +220,7 @@ void addLensWith(Session& session, const volume::DatasetInfo& info, vis::Techniq
     layer.technique = std::move(technique);
     layer.lens = lens.name;
     session.lenses.push_back(lens);
-    session.layers.push_back(std::move(layer));
+    addLayer(session, std::move(layer));
 }
 
 void renameLens(Session& session, std::size_t index, const std::string& name) {
@@ -275,6 +277,7 @@ void drawLensMenu(ViewContext& context) {
     if (ImGui::BeginMenu("Lens: another parameter")) {
         each([&](const volume::Channel& channel) {
             addLensWith(session, info, vis::VolumeLayer{.channel = channel.name});
+            aimLayer(session, *context.source, session.layers.back());
         });
         ImGui::EndMenu();
     }
@@ -282,6 +285,7 @@ void drawLensMenu(ViewContext& context) {
         each([&](const volume::Channel& channel) {
             const Range range = info.channelRange(channel);
             addLensWith(session, info, vis::IsoLayer{.channel = channel.name, .value = 0.5 * (range.lo + range.hi)});
+            aimLayer(session, *context.source, session.layers.back());
         });
         ImGui::EndMenu();
     }

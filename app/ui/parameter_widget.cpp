@@ -154,6 +154,7 @@ bool drawList(const WidgetContext& context, const FieldInfo& info, Value list) {
     }
     if (!drawListButton(("Add to " + std::string(info.key)).c_str())) return changed;
     list.type->resize(list.at, list.size() + 1);
+    openSection((std::string(info.key) + std::to_string(size - (removed < size ? 1 : 0))).c_str());
     return true;
 }
 

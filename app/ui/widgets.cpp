@@ -2,6 +2,7 @@
 
 #include "app/described/key_words.h"
 #include "app/ui/fitted_text.h"
+#include "app/ui/number_field.h"
 #include "app/ui/theme.h"
 #include "app/ui/ticks.h"
 
@@ -73,33 +74,6 @@ std::string idOf(const FieldInfo& info) {
     return "##" + std::string(info.key);
 }
 
-/// The slider clicked last and its values before: the first click of a double click moves it.
-struct ClickedSlider {
-    ImGuiID id = 0;
-    std::vector<double> before;
-};
-ClickedSlider& clickedSlider() {
-    static ClickedSlider clicked;
-    return clicked;
-}
-
-/// Sliders of `count` numbers. A slider takes the keyboard only by Ctrl+click: a double click is one, as in numbers
-/// without limits, and puts back what its first click has moved.
-bool drawSliders(const char* id, double* values, int count, Range range, const char* format, ImGuiSliderFlags flags) {
-    const std::vector<double> before(values, values + count);
-    const ImGuiID self = ImGui::GetID(id);
-    const bool types = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
-    if (types && clickedSlider().id == self && clickedSlider().before.size() == before.size())
-        std::ranges::copy(clickedSlider().before, values);
-    ImGuiIO& io = ImGui::GetIO();
-    const bool ctrl = io.KeyCtrl;
-    io.KeyCtrl = ctrl || types;
-    ImGui::SliderScalarN(id, ImGuiDataType_Double, values, count, &range.lo, &range.hi, format, flags);
-    io.KeyCtrl = ctrl;
-    if (!types && ImGui::IsItemActivated()) clickedSlider() = {self, before};
-    return !std::equal(before.begin(), before.end(), values);
-}
-
 /// Where the control beside a label begins.
 float controlColumn(const WidgetContext& context) {
     return std::floor(ImGui::GetContentRegionAvail().x * context.labelShare);
@@ -162,34 +136,26 @@ bool drawNumber(const WidgetContext& context, const FieldInfo& info, std::option
     std::string label = labelOf(info.key);
     if (!row.whole && !info.unit.empty()) label = titleWithUnit(label, std::string(info.unit));
     drawLabel(context, label, info.doc);
-    ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
-    if (info.logScale) flags |= ImGuiSliderFlags_Logarithmic;
     double largest = 0;
     for (int i = 0; i < count; ++i) largest = std::max(largest, std::abs(values[i]));
-    const double span = range ? range->hi - range->lo : std::max(largest, 1e-3);
     const bool slides = info.range || (range && count == 1);
-    const auto draw = [&](const std::string& id, double* from, int fields) {
-        if (slides) return drawSliders(id.c_str(), from, fields, *range, row.format.c_str(), flags);
-        return ImGui::DragScalarN(id.c_str(), ImGuiDataType_Double, from, fields, static_cast<float>(span * 0.004),
-                                  nullptr, nullptr, row.format.c_str(), ImGuiSliderFlags_NoRoundToFormat);
-    };
+    const NumberStyle style{.format = row.format,
+                            .range = slides ? range : std::nullopt,
+                            .span = range ? range->hi - range->lo : std::max(largest, 1e-3),
+                            .logScale = info.logScale,
+                            .integer = integer};
     bool changed = false;
     const std::vector<double> before(values, values + count);
     if (row.stacked) {
         ImGui::BeginGroup();
         for (int i = 0; i < count; ++i) {
             ImGui::SetNextItemWidth(-FLT_MIN);
-            changed |= draw(idOf(info) + std::to_string(i), values + i, 1);
+            changed |= numberFields((idOf(info) + std::to_string(i)).c_str(), values + i, 1, style);
         }
         ImGui::EndGroup();
     } else {
-        changed = draw(idOf(info), values, count);
+        changed = numberFields(idOf(info).c_str(), values, count, style);
     }
-    // 1e999 is read as infinity; a drag makes NaN of that, which passes all limits.
-    for (int i = 0; i < count; ++i)
-        if (changed && !std::isfinite(values[i])) values[i] = before[std::size_t(i)];
-    if (changed && integer)
-        for (int i = 0; i < count; ++i) values[i] = std::round(std::clamp(values[i], -2147483647.0, 2147483647.0));
     if (!ImGui::IsItemHovered(ImGuiHoveredFlags_None) || ImGui::IsItemActive()) return changed;
     if (!row.whole) {
         std::string whole;
@@ -197,7 +163,7 @@ bool drawNumber(const WidgetContext& context, const FieldInfo& info, std::option
             whole += (whole.empty() ? "" : ", ") + printed(withUnit(format, info.unit), value);
         ImGui::SetTooltip("%s", whole.c_str());
     } else if (ImGui::GetIO().KeyCtrl) {
-        ImGui::SetTooltip("Double click or Ctrl+click to type a number");
+        ImGui::SetTooltip("Ctrl+wheel steps, Ctrl+click or a double click types; in a drag Ctrl snaps, Shift is finer");
     }
     return changed;
 }
@@ -318,6 +284,10 @@ bool beginSection(const char* id, std::string_view label, std::string_view help)
         ImGui::TreeNodeEx(text.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_FramePadding);
     if (!help.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%.*s", int(help.size()), help.data());
     return open;
+}
+
+void openSection(const char* id) {
+    ImGui::GetStateStorage()->SetInt(ImGui::GetID(("###" + std::string(id)).c_str()), 1);
 }
 
 bool drawListButton(const char* label) {

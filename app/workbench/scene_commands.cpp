@@ -1,3 +1,4 @@
+#include "app/edits/context_style.h"
 #include "app/session/shown_scene.h"
 #include "app/tools/brush_list.h"
 #include "app/tools/camera_hand.h"
@@ -45,7 +46,9 @@ std::vector<Command> addingCommands(Workbench& workbench) {
         const auto& [name, help, words] = kLayers[kind];
         adds(
             name, help, words,
-            [kind](Session& session, const volume::DatasetInfo& info) { addLayer(session, info, kind); },
+            [&workbench, kind](Session& session, const volume::DatasetInfo&) {
+                addLayer(session, *workbench.source(), kind);
+            },
             [&workbench, loaded, kind] {
                 return loaded() && (kind != 3 || !firstVector(workbench.document().info()).empty());
             });
@@ -65,6 +68,38 @@ std::vector<Command> addingCommands(Workbench& workbench) {
             box ? "Brush a box at the cross-hair" : "Brush a sphere at the cross-hair",
             "Select what lies around the cross-hair", "new add selection region",
             [box](Session& session, const volume::DatasetInfo& info) { addSpaceBrush(session, info, box); }, loaded);
+    for (std::size_t kind = 0; kind < std::size(vis::kClipKindNames); ++kind)
+        adds(
+            "Add clip: " + std::string(vis::kClipKindNames[kind]),
+            "Cut the data open; Clipping in Layers has its settings", "new cut crop section plane body remove",
+            [kind](Session& session, const volume::DatasetInfo&) {
+                session.clips.emplace_back().kind = static_cast<vis::ClipKind>(kind);
+            },
+            loaded);
+    adds(
+        "Add light", "Light the scene from a further direction; Light in Layers has its settings",
+        "new lamp sun direction illumination shading",
+        [](Session& session, const volume::DatasetInfo&) {
+            session.lighting.lights.emplace_back().kind = vis::LightKind::World;
+        },
+        loaded);
+    for (std::size_t style = 0; style < std::size(kContextStyleNames); ++style)
+        adds(
+            "What is not brushed: " + std::string(kContextStyleNames[style]),
+            std::string(contextStyleHelp(static_cast<ContextStyle>(style))), "context focus rest selection style",
+            [style](Session& session, const volume::DatasetInfo& info) {
+                setContextStyle(session, info, static_cast<ContextStyle>(style));
+            },
+            loaded);
+    adds(
+        "Make selection opaque", "Give every volume one opacity, so that selected samples are seen wherever they are",
+        "brush focus transfer function hidden visible",
+        [](Session& session, const volume::DatasetInfo&) { makeOpaque(session); },
+        [&workbench, loaded] { return loaded() && workbench.session().selection.active(); });
+    adds(
+        "True proportions", "Show the data without stretch", "stretch scale aspect ratio exaggeration",
+        [](Session& session, const volume::DatasetInfo&) { session.stretch = glm::dvec3(1); },
+        [&workbench, loaded] { return loaded() && workbench.session().stretch != glm::dvec3(1); });
     commands.push_back({.menu = "",
                         .name = "Face oblique slices to the viewer",
                         .help = "Tilt the plane of an oblique slice to face the viewer; without one, open one",

@@ -221,16 +221,22 @@ std::vector<Command> layoutCommands(Workbench& workbench) {
                                       .shortcut = {.key = 'R', .ctrl = true, .shift = true},
                                       .run = [&workbench] { resetArrangement(workbench); },
                                       .enabled = loaded}};
-    for (const std::string& name : layoutNames()) {
+    // Those for tasks with any data, then those that show what pictures can look like.
+    std::vector<std::string> names = layoutNames();
+    const auto shows =
+        std::ranges::stable_partition(names, [](const std::string& name) { return !isDemonstration(name); });
+    for (const std::string& name : names) {
+        const bool first = name == names.front() || (!shows.empty() && name == shows.front());
         std::string title = name;
         std::replace(title.begin(), title.end(), '_', ' ');
         title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
-        commands.push_back({.menu = "Layout",
-                            .name = (name == layoutNames().front() ? "-" : "") + title,
-                            .help = "Show the data in the layout " + name,
-                            .words = "demonstration arrangement preset task",
-                            .run = [&workbench, name, title] { showLayout(workbench, name, title); },
-                            .enabled = loaded});
+        commands.push_back(
+            {.menu = "Layout",
+             .name = (first ? "-" : "") + title,
+             .help = "Show the data in the layout " + name,
+             .words = isDemonstration(name) ? "demonstration arrangement preset" : "arrangement preset task",
+             .run = [&workbench, name, title] { showLayout(workbench, name, title); },
+             .enabled = loaded});
     }
     return commands;
 }

@@ -253,6 +253,56 @@ TEST_F(LayoutTest, TheLayoutOfErrorsPacksOtherData) {
     EXPECT_TRUE(says(archive, "an archive has no originals"));
 }
 
+// Where they were in the layout's data means nothing here.
+TEST_F(LayoutTest, LensesAndLinesLieInOtherData) {
+    OpenRequest request = rawRequest(raw("a.raw"));
+    request.layout = "lens";
+    const Opened opened = open(request);
+    const volume::DatasetInfo& info = opened.source->info();
+    const Session& session = opened.document.session;
+    ASSERT_EQ(session.lenses.size(), 2u);
+    const glm::dvec3 size = info.bounds.size();
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    for (std::size_t i = 0; i < 2; ++i)
+        for (int a = 0; a < 3; ++a) {
+            const double expected =
+                a == axis ? info.bounds.lo[a] + size[a] * (0.25 + 0.5 * double(i)) : session.cursor[a];
+            EXPECT_NEAR(session.lenses[i].center[a], expected, 1e-9 * size[a]) << i << ' ' << a;
+        }
+    SessionDocument layout = loadSession(findLayout("statistics"));
+    auto& profile = std::get<ProfileView>(layout.session.views.at("profile"));
+    profile.points = {{0, 0, 0}, {1, 1, 1}};
+    layout.raw = toJson(layout.session);
+    std::vector<std::string> messages;
+    const Session applied = applyLayout(layout, info, session.data, messages);
+    EXPECT_TRUE(std::get<ProfileView>(applied.views.at("profile")).points.empty());
+    EXPECT_THAT(messages, testing::Contains(testing::HasSubstr("line of a profile")));
+    // With its own data all stays.
+    const Session own = applyLayout(layout, info, layout.session.data, messages);
+    EXPECT_EQ(std::get<ProfileView>(own.views.at("profile")).points, profile.points);
+}
+
+TEST_F(LayoutTest, WhatALayoutLosesIsTold) {
+    OpenRequest request = rawRequest(raw("a.raw"));
+    request.layout = "starved";
+    const Opened opened = open(request);
+    EXPECT_TRUE(opened.document.session.selection.brushes.empty());
+    EXPECT_THAT(opened.messages, testing::Contains(testing::HasSubstr("brushes were made for other data")));
+    SessionDocument layout = loadSession(findLayout("overview"));
+    const std::string name = opened.source->info().channel(0).name;
+    layout.raw["transfer"][name] = {{"autoRange", false}, {"range", {1, 2}}};
+    std::vector<std::string> messages;
+    const Session applied = applyLayout(layout, opened.source->info(), opened.document.session.data, messages);
+    EXPECT_TRUE(applied.transfer.at(name).autoRange);
+    EXPECT_THAT(messages, testing::Contains(testing::HasSubstr("colours of " + name)));
+}
+
+TEST_F(LayoutTest, DemonstrationsAreFew) {
+    const std::vector<std::string> names = layoutNames();
+    EXPECT_EQ(std::ranges::count_if(names, isDemonstration), 5);
+    EXPECT_FALSE(isDemonstration("overview"));
+}
+
 TEST_F(LayoutTest, ShippedLayoutsAreValid) {
     const std::vector<std::string> names = layoutNames();
     EXPECT_TRUE(std::find(names.begin(), names.end(), "overview") != names.end());

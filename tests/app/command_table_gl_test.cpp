@@ -1,5 +1,6 @@
 #include "app/data/apply_layout.h"
 #include "app/data/open.h"
+#include "app/edits/context_style.h"
 #include "app/session/shown_scene.h"
 #include "tests/app/workbench_fixture.h"
 
@@ -120,6 +121,32 @@ Check lensAdded(vis::LensEffect effect) {
     };
 }
 
+Check clipAdded(vis::ClipKind kind) {
+    return [kind](const Session& before, const Session& after) {
+        ASSERT_EQ(after.clips.size(), before.clips.size() + 1);
+        EXPECT_EQ(after.clips.back().kind, kind);
+    };
+}
+
+/// Three times of a small volume.
+Opened smallSignal() {
+    OpenRequest request;
+    request.data.emplace();
+    request.data->model = "marschner-lobb";
+    request.data->settings = {{"nx", 12}, {"ny", 12}, {"nz", 12}, {"times", 3}};
+    return open(request);
+}
+
+/// A style of what is not brushed: the same as its button makes.
+Check contextStyled(ContextStyle style) {
+    return [style](const Session& before, const Session& after) {
+        static const volume::DatasetInfo info = smallSignal().source->info();
+        Session wanted = before;
+        setContextStyle(wanted, info, style);
+        EXPECT_TRUE(after.selection == wanted.selection && after.layers == wanted.layers);
+    };
+}
+
 template <class Region> void brushAdded(const Session& before, const Session& after) {
     ASSERT_EQ(after.selection.brushes.size(), before.selection.brushes.size() + 1);
     EXPECT_EQ(std::get<Region>(after.selection.brushes.back().region).center, after.cursor);
@@ -176,6 +203,21 @@ const std::map<std::string, Check>& checks() {
             {"Add lens: suppress", lensAdded(vis::LensEffect::Suppress)},
             {"Add lens: magnify", lensAdded(vis::LensEffect::Magnify)},
             {"Add lens: brushes inside", lensAdded(vis::LensEffect::Focus)},
+            {"Add clip: plane", clipAdded(vis::ClipKind::Plane)},
+            {"Add clip: box", clipAdded(vis::ClipKind::Box)},
+            {"Add clip: sphere", clipAdded(vis::ClipKind::Sphere)},
+            {"Add clip: cylinder", clipAdded(vis::ClipKind::Cylinder)},
+            {"Add light",
+             [](const Session& before, const Session& after) {
+                 EXPECT_EQ(after.lighting.lights.size(), before.lighting.lights.size() + 1);
+             }},
+            {"Make selection opaque",
+             [](const Session& before, const Session& after) { EXPECT_NE(after.transfer, before.transfer); }},
+            {"True proportions",
+             [](const Session& before, const Session& after) {
+                 EXPECT_NE(before.stretch, glm::dvec3(1));
+                 EXPECT_EQ(after.stretch, glm::dvec3(1));
+             }},
             {"Brush a sphere at the cross-hair", brushAdded<vis::SphereRegion>},
             {"Brush a box at the cross-hair", brushAdded<vis::BoxRegion>},
             {"Show box", turned(&VolumeView::showBox)},
@@ -235,6 +277,9 @@ const std::map<std::string, Check>& checks() {
             {"New: Section averages", [](const Session&, const Session& after) {
                  EXPECT_EQ(std::get<ProfileView>(after.views.at("profile")).over, ProfileOver::Sections);
              }}};
+        for (std::size_t style = 0; style < std::size(kContextStyleNames); ++style)
+            made["What is not brushed: " + std::string(kContextStyleNames[style])] =
+                contextStyled(static_cast<ContextStyle>(style));
         forEachViewKind([&]<class Kind>(const Kind& kind) {
             using State = typename Kind::State;
             constexpr bool same =
@@ -251,13 +296,10 @@ protected:
     /// Three times of a small volume, the second one shown, one brush; only the list of layers is drawn, which is
     /// quick.
     void begin() {
-        OpenRequest request;
-        request.data.emplace();
-        request.data->model = "marschner-lobb";
-        request.data->settings = {{"nx", 12}, {"ny", 12}, {"nz", 12}, {"times", 3}};
-        Opened opened = open(request);
+        Opened opened = smallSignal();
         Session& session = opened.document.session;
         session.time = 1.0 / 3;
+        session.stretch = {1, 2, 1};
         session.selection.brushes = {vis::rangeBrush({{.channel = "rho", .lo = 0.2, .hi = 0.6}}, "half")};
         session.dock.maximised = "layers";
         workbench.session().appearance = {};

@@ -207,5 +207,37 @@ TEST(FirstView, ALayoutThatShowsNothingAtTheFirstTimeShowsTheLast) {
         }
 }
 
+TEST(FirstView, ALayerThatIsNewOrShowsAnotherParameterSuitsIt) {
+    const auto source = bodies();
+    const int air = *source->info().findChannel("air");
+    Session session = defaultSession(source->info(), {});
+    const Session before = session;
+    vis::Layer volume{"", true, vis::VolumeLayer{.channel = "air"}};
+    vis::Layer surface{"", true, vis::IsoLayer{.channel = "air", .value = 100}};
+    aimLayer(session, *source, volume);
+    aimLayer(session, *source, surface);
+    EXPECT_NE(session.transfer.at("air"), before.transfer.at("air"));
+    EXPECT_EQ(session.transfer.at("rest"), before.transfer.at("rest"));
+    EXPECT_EQ(std::get<vis::IsoLayer>(surface.technique).value, float(*surfaceValue(*source, air, 0)));
+    EXPECT_NE(std::get<vis::IsoLayer>(surface.technique).value, 100);
+    // A curve that somebody made stays, as does everything where the data would have to be waited for.
+    session = before;
+    session.transfer.at("air").opacity = {{0.0f, 0.5f}, {1.0f, 0.5f}};
+    const auto made = session.transfer;
+    aimLayer(session, *source, volume);
+    EXPECT_EQ(session.transfer, made);
+    session = before;
+    session.data.files.resize(1);
+    session.data.files[0].absolutePath = "https://host/a.tsr";
+    std::get<vis::IsoLayer>(surface.technique).value = 150;
+    aimLayer(session, *source, volume);
+    aimLayer(session, *source, surface);
+    EXPECT_EQ(session.transfer, before.transfer);
+    EXPECT_EQ(std::get<vis::IsoLayer>(surface.technique).value, 150);
+    std::get<vis::IsoLayer>(surface.technique).value = 1500;
+    aimLayer(session, *source, surface);
+    EXPECT_EQ(std::get<vis::IsoLayer>(surface.technique).value, 100) << "outside of the range there is no surface";
+}
+
 } // namespace
 } // namespace tessera::app

@@ -1,3 +1,4 @@
+#include "app/data/boundary_value.h"
 #include "app/pane/view_parts.h"
 #include "tests/app/hands_fixture.h"
 
@@ -98,8 +99,10 @@ TEST_F(ListHands, EveryKindOfLayerIsAdded) {
     EXPECT_EQ(channel, "T");
     const vis::Technique surface = added("Iso-surface");
     EXPECT_EQ(std::get<vis::IsoLayer>(surface).channel, channel);
-    const Range range = formula::rangeOf(channel);
-    EXPECT_NEAR(std::get<vis::IsoLayer>(surface).value, (range.lo + range.hi) / 2, 1e-3);
+    const int index = *workbench.source()->info().findChannel(channel);
+    const int time = workbench.source()->info().nearestTime(session().time);
+    EXPECT_FLOAT_EQ(float(std::get<vis::IsoLayer>(surface).value),
+                    float(*surfaceValue(*workbench.source(), index, time)));
     EXPECT_EQ(std::get<vis::SliceLayer>(added("Slice")).channel, channel);
     const vis::Technique flow = added("Flow");
     EXPECT_EQ(std::get<vis::FlowLayer>(flow).vector, "U");
@@ -132,6 +135,28 @@ TEST_F(ListHands, ALayerIsNamedAfterWhatItShowsUntilTheUserNamesIt) {
     EXPECT_EQ(title(), "inlet");
     session().layers.back().name.clear();
     EXPECT_EQ(title(), "T volume");
+}
+
+TEST_F(ListHands, SeveralBrushesAreClearedByTheCommandThatAsks) {
+    showLists();
+    session().selection.brushes.resize(2);
+    settle();
+    moveTo(at({"Clear all"}));
+    button(0, true);
+    button(0, false);
+    EXPECT_EQ(session().selection.brushes.size(), 2u) << "the list itself clears nothing";
+    frame();
+    EXPECT_TRUE(session().selection.brushes.empty()) << "without a window the question is answered with yes";
+}
+
+TEST_F(ListHands, ANewClipIsUnfolded) {
+    showLists();
+    click(at({"Clipping"}));
+    for (const int number : {0, 1}) {
+        click(at({"Add to clips"}));
+        ASSERT_EQ(int(session().clips.size()), number + 1);
+        EXPECT_TRUE(unfolded({"###clips" + std::to_string(number)})) << number;
+    }
 }
 
 TEST_F(ListHands, ANewBrushOrLensIsUnfoldedAndTheOthersAreNot) {

@@ -1,4 +1,6 @@
 #include "app/views/data/layers_view.h"
+#include "app/data/first_view.h"
+#include "app/edits/add_layer.h"
 #include "app/edits/context_style.h"
 #include "app/pane/pane_title.h"
 #include "app/pane/view_parts.h"
@@ -224,7 +226,7 @@ void drawListButtons(ViewContext& context, const volume::DatasetInfo& info, int&
         static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice", "Flow"};
         for (std::size_t kind = 0; kind < std::size(kNames); ++kind)
             if (ImGui::MenuItem(kNames[kind], nullptr, false, kind != 3 || !firstVector(info).empty())) {
-                addLayer(context.session, info, kind);
+                addLayer(context.session, *context.source, kind);
                 selected = static_cast<int>(layers.size()) - 1;
             }
         ImGui::EndPopup();
@@ -247,10 +249,10 @@ void drawListButtons(ViewContext& context, const volume::DatasetInfo& info, int&
 
 } // namespace
 
-void addLayer(Session& session, const volume::DatasetInfo& info, std::size_t kind) {
-    session.layers.push_back(newLayer(session, info, kind));
-    for (auto& [pane, view] : session.views)
-        if (auto* const list = std::get_if<LayersView>(&view)) list->selected = int(session.layers.size()) - 1;
+void addLayer(Session& session, const volume::BrickSource& source, std::size_t kind) {
+    vis::Layer layer = newLayer(session, source.info(), kind);
+    aimLayer(session, source, layer);
+    addLayer(session, std::move(layer));
 }
 
 void followChannel(std::string& name, const std::string& before, const std::string& now) {
@@ -297,7 +299,9 @@ void drawLayersView(ViewContext& context, const std::string& pane, LayersView& v
             const std::string before = channelOf(layer.technique);
             const WidgetContext own = widgets.at(path + "/" + std::to_string(selected) + "/technique");
             std::visit([&](auto& technique) { drawDescribed(technique, own); }, layer.technique);
-            followChannel(layer.name, before, channelOf(layer.technique));
+            const std::string now = channelOf(layer.technique);
+            followChannel(layer.name, before, now);
+            if (now != before) aimLayer(session, *context.source, layer);
             drawPlace(widgets, session, layer);
             ImGui::PopID();
         }

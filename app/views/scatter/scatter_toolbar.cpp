@@ -4,6 +4,7 @@
 #include "app/pane/view_parts.h"
 #include "app/queries/focus_share.h"
 #include "app/tools/brush_edit.h"
+#include "app/tools/brush_list.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
 #include "app/views/data/derived_list.h"
@@ -137,7 +138,7 @@ void drawMore(ViewContext& context, ToolRow& tools, ScatterMatrixView& view, con
 
 /// The end of the line: the share in focus, and the button that clears the brushes. Their space is reserved even
 /// without brushes: else the plots would move under the mouse while the first brush is drawn.
-void drawShare(Session& session, const ViewContext& context, ToolRow& tools, const StatisticsResult* result) {
+void drawShare(Session& session, ViewContext& context, ToolRow& tools, const StatisticsResult* result) {
     const bool brushes = !session.selection.brushes.empty();
     const float button = ImGui::GetFrameHeight(), gap = em() * 0.3f;
     const float least = button + gap + ImGui::CalcTextSize("99.9 %").x;
@@ -151,7 +152,7 @@ void drawShare(Session& session, const ViewContext& context, ToolRow& tools, con
         texts = {"drag in a plot to brush, click to enlarge", "drag to brush"};
     }
     if (brushes) {
-        if (iconButton(context, "clear", icons::kTrash, "Remove all brushes (Esc)")) session.selection.brushes.clear();
+        if (iconButton(context, "clear", icons::kTrash, "Remove all brushes (Esc)")) clearBrushes(context);
         ImGui::SameLine(0, gap);
     }
     const float textRoom = room - (brushes ? button + gap : 0);

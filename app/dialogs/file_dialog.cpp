@@ -1,4 +1,4 @@
-#include "app/ui/file_dialog.h"
+#include "app/dialogs/file_dialog.h"
 
 #include "app/ui/fitted_text.h"
 #include "app/ui/keys.h"

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "app/session/session.h"
+
+namespace tessera::app {
+
+/// Adds a layer on top of the others and selects it in every list of layers.
+void addLayer(Session& session, vis::Layer layer);
+
+} // namespace tessera::app
