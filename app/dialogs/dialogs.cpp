@@ -1,8 +1,8 @@
 #include "app/dialogs/dialogs.h"
 
+#include "app/dialogs/file_dialog.h"
 #include "app/drawing/panels.h"
 #include "app/pane/pane_title.h"
-#include "app/dialogs/file_dialog.h"
 #include "app/ui/fitted_text.h"
 #include "app/ui/parameter_widget.h"
 #include "volume/base/byte_text.h"
