@@ -29,14 +29,15 @@ asan() { ./test.sh asan; }
 
 # Each target searches on from the stored corpus; what it finds lies in build/fuzz/found.
 fuzz() {
-    ./setup.sh --clang && cmake --preset fuzz -DBUILD_TESTING=ON -DTESSERA_WERROR=ON && cmake --build --preset fuzz || return 1
+    local names name good=0
+    names=$(basename -s .cpp -a tests/fuzz/fuzz_*.cpp)
+    # shellcheck disable=SC2086
+    ./setup.sh --clang && cmake --preset fuzz -DBUILD_TESTING=ON -DTESSERA_WERROR=ON &&
+        cmake --build --preset fuzz --target $names || return 1
     mkdir -p build/fuzz/found
-    local target name good=0
-    for target in build/fuzz/fuzz_*; do
-        if [ ! -f "$target" ] || [ ! -x "$target" ]; then continue; fi
-        name=$(basename "$target")
+    for name in $names; do
         mkdir -p "build/fuzz/corpus/$name"
-        "$target" -max_total_time="${FUZZ_SECONDS:-600}" -artifact_prefix=build/fuzz/found/ -print_final_stats=1 \
+        "build/fuzz/$name" -max_total_time="${FUZZ_SECONDS:-600}" -artifact_prefix=build/fuzz/found/ -print_final_stats=1 \
             "build/fuzz/corpus/$name" "tests/fuzz/corpus/$name" > "build/fuzz/$name.log" 2>&1 ||
             { tail -n 20 "build/fuzz/$name.log"; echo "FAILED: $name"; good=1; }
     done

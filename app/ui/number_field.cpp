@@ -26,6 +26,7 @@ struct HeldField {
     double raw = 0;        ///< where the hand is; the number may be snapped
     bool relative = false; ///< moves by the way of the mouse instead of to its place
     bool typed = false;
+    bool snapped = false; ///< what was shown last
 };
 
 /// One field; there is one mouse.
@@ -89,19 +90,20 @@ bool numberField(const char* id, double& value, const NumberStyle& style) {
     io.KeyCtrl = ctrl;
     const bool active = ImGui::IsItemActive();
     if (ImGui::IsItemActivated()) {
-        held = {self, raw, !slides && style.range, types || ctrl};
+        held = {self, raw, !slides && style.range, types || ctrl, false};
         if (!types) clicked = {self, before};
     }
     value = raw;
     if (dragged && active) {
         held.raw = raw;
+        held.snapped = snaps;
         held.relative = held.relative || (style.range && !slides);
         if (snaps) {
             value = snappedNumber(raw, style);
             drawText(style.format, value);
         }
     } else if (!active && held.id == self) {
-        if (dragged && snaps) value = before;
+        if (dragged && held.snapped) value = before; // Ctrl may go up in the same frame
         held = {};
     }
     if (!active && ctrl && io.MouseWheel != 0 && ImGui::IsItemHovered()) {
