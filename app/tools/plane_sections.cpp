@@ -114,15 +114,4 @@ void drawPlaneSections(ImDrawList& draw, const PlotFrame& frame, const std::vect
     }
 }
 
-int lensAtPixel(const Session& session, const PlotFrame& frame, const PicturePlane& plane, glm::dvec2 perUnit,
-                ImVec2 mouse) {
-    for (int i = static_cast<int>(session.lenses.size()) - 1; i >= 0; --i) {
-        const vis::Lens& lens = session.lenses[static_cast<std::size_t>(i)];
-        const glm::dvec2 middle = plane.along(lens.center) * perUnit;
-        const ImVec2 at = frame.pixel(middle.x, middle.y);
-        if (lens.enabled && !lens.followsCursor && std::hypot(at.x - mouse.x, at.y - mouse.y) < em() * 0.7f) return i;
-    }
-    return -1;
-}
-
 } // namespace tessera::app

@@ -35,9 +35,4 @@ std::vector<PlaneSection> planeSections(const Session& session, const volume::Da
 void drawPlaneSections(ImDrawList& draw, const PlotFrame& frame, const std::vector<PlaneSection>& sections,
                        glm::dvec2 perUnit);
 
-/// The lens whose middle is at a pixel of the picture and which does not follow the cross-hair, -1 if none; later ones
-/// lie over those before them.
-int lensAtPixel(const Session& session, const PlotFrame& frame, const PicturePlane& plane, glm::dvec2 perUnit,
-                ImVec2 mouse);
-
 } // namespace tessera::app
