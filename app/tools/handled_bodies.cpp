@@ -76,9 +76,9 @@ std::vector<SpaceLine> bodySection(const vis::PlacedClip& body, const vis::World
     std::vector<glm::dvec3> outline;
     if (body.kind == vis::ClipKind::Box)
         outline = planeSection(slice.plane(), {center - half, center + half});
-    else if (body.kind == vis::ClipKind::Sphere)
+    else if (body.kind == vis::ClipKind::Sphere && body.half.x > 0)
         outline = ballSection({.center = center, .radius = body.half.x / world.scale}, slice);
-    else
+    else if (body.kind == vis::ClipKind::Cylinder)
         outline = edgesCrossed(cylinderWires(body, world, 1), slice);
     std::vector<SpaceLine> lines;
     for (std::size_t i = 0; i < outline.size(); ++i) lines.emplace_back(outline[i], outline[(i + 1) % outline.size()]);

@@ -19,6 +19,8 @@ const volume::Box& bodiesBox() {
 
 class ClipBodyHands : public Hands {
 protected:
+    ClipBodyHands() = default;
+    explicit ClipBodyHands(WorkbenchOptions options) : Hands(std::move(options)) {}
     /// A volume view from the front without perspective.
     void showVolume(const vis::Clip& clip, bool handles = true) {
         VolumeView volume;
@@ -267,6 +269,21 @@ TEST_F(ClipBodyHands, WhatIsOffOrHiddenHasNoDots) {
     }
     showSlices(off);
     EXPECT_LT(outline(pictures()[0]).GetWidth(), 0);
+}
+
+class ClipBodyFigure : public ClipBodyHands {
+protected:
+    ClipBodyFigure() : ClipBodyHands({.headless = true, .onlyPane = "pane"}) {}
+};
+
+TEST_F(ClipBodyFigure, HasNoDotsThatNobodyCanDrag) {
+    showVolume(bodyOf(vis::ClipKind::Box));
+    EXPECT_LT(outline(picture).GetWidth(), 0);
+    showSlices(bodyOf(vis::ClipKind::Box));
+    for (const ImRect& slice : pictures()) EXPECT_LT(outline(slice).GetWidth(), 0);
+    vis::Clip empty = bodyOf(vis::ClipKind::Sphere);
+    empty.radius = 0;
+    showSlices(empty);
 }
 
 } // namespace

@@ -215,6 +215,8 @@ void drawOver(ViewContext& context, ObliqueCache& cache, const std::string& pane
     if (shown.outlines) {
         drawPlaneSections(draw, plot, planeSections(context.session, info, flat.page()), unit);
         drawProfileLines(draw, plot, context.session, flat.page(), unit);
+    }
+    if (shown.outlines && !context.figure) { // nobody can drag in a figure
         drawLensHandles(draw, cache.lens, plot, context.session, info.bounds, flat.page(), unit);
         drawHandles(draw, cache.handles, plot, context.session, info, flat.page(), unit);
     }

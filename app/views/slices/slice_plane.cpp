@@ -226,6 +226,9 @@ void drawOverPlane(ViewContext& context, SlicePlanes& planes, const std::string&
         const PicturePlane page = planeAcross(right, up, normal, place);
         drawPlaneSections(draw, frame.plot, planeSections(session, info, page), frame.perUnit);
         drawProfileLines(draw, frame.plot, session, page, frame.perUnit);
+    }
+    if (shown.outlines && !context.figure) { // nobody can drag in a figure
+        const PicturePlane page = planeAcross(right, up, normal, place);
         drawLensHandles(draw, planes.lenses[static_cast<std::size_t>(index)], frame.plot, session, info.bounds, page,
                         frame.perUnit);
         drawHandles(draw, planes.handles[static_cast<std::size_t>(index)], frame.plot, session, info, page,
