@@ -131,9 +131,12 @@ int lensUnder(const SpaceFrame& frame, const Session& session, ImVec2 at) {
     return -1;
 }
 
-bool followPointer(Session& session, const SpaceFrame& frame, bool hovered) {
+namespace {
+
+/// `to`: the physical place at which a lens is under the mouse; nothing where it is so already.
+bool followWith(Session& session, const volume::Box& bounds, const std::function<int(ImVec2)>& under,
+                const std::function<std::optional<glm::dvec3>(const vis::Lens& lens)>& to) {
     const ImGuiIO& io = ImGui::GetIO();
-    if (!hovered) return false;
     bool moved = false;
     if (pressed({.key = 'F'}) && !typing()) {
         // Pins the lenses that follow; if there are none, the one under the mouse or the last one starts to follow.
@@ -141,8 +144,8 @@ bool followPointer(Session& session, const SpaceFrame& frame, bool hovered) {
         for (vis::Lens& lens : session.lenses) any = any || lens.followsPointer;
         for (vis::Lens& lens : session.lenses) lens.followsPointer = false;
         if (!any && !session.lenses.empty()) {
-            const int under = lensUnder(frame, session, io.MousePos);
-            vis::Lens& lens = session.lenses[under < 0 ? session.lenses.size() - 1 : static_cast<std::size_t>(under)];
+            const int index = under(io.MousePos);
+            vis::Lens& lens = session.lenses[index < 0 ? session.lenses.size() - 1 : static_cast<std::size_t>(index)];
             lens.followsPointer = lens.enabled = true;
             lens.followsCursor = false;
         }
@@ -151,17 +154,13 @@ bool followPointer(Session& session, const SpaceFrame& frame, bool hovered) {
     if (io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2]) return moved;
     for (vis::Lens& lens : session.lenses) {
         if (!lens.enabled || !lens.followsPointer || lens.followsCursor) continue;
-        const glm::dvec3 from = frame.world.toWorld(lens.center);
-        const auto middle = worldPixel(frame, from);
-        if (!middle || distance(middle, io.MousePos) < 0.5f) continue;
-        const glm::dvec3 to = draggedPlace(frame, session.camera, from, *middle, io.MousePos, false);
-        lens.center = glm::clamp(frame.world.toPhysical(to), frame.bounds.lo, frame.bounds.hi);
+        const auto place = to(lens);
+        if (!place) continue;
+        lens.center = glm::clamp(*place, bounds.lo, bounds.hi);
         moved = moved || io.MouseDelta.x != 0 || io.MouseDelta.y != 0;
     }
     return moved;
 }
-
-namespace {
 
 bool editIn(LensDrag& drag, Session& session, const LensPicture& picture, bool hovered) {
     const ImGuiIO& io = ImGui::GetIO();
@@ -318,6 +317,27 @@ void drawHandlesOf(ImDrawList& draw, const LensDrag& drag, const LensHandles& ha
 }
 
 } // namespace
+
+bool followPointer(Session& session, const SpaceFrame& frame, bool hovered) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const auto to = [&](const vis::Lens& lens) -> std::optional<glm::dvec3> {
+        const glm::dvec3 from = frame.world.toWorld(lens.center);
+        const auto middle = worldPixel(frame, from);
+        if (!middle || distance(middle, mouse) < 0.5f) return std::nullopt;
+        return frame.world.toPhysical(draggedPlace(frame, session.camera, from, *middle, mouse, false));
+    };
+    const auto under = [&](ImVec2 at) { return lensUnder(frame, session, at); };
+    return hovered && followWith(session, frame.bounds, under, to);
+}
+
+bool followPointer(Session& session, const volume::Box& bounds, const PlotFrame& frame, const PicturePlane& plane,
+                   glm::dvec2 perUnit, bool hovered) {
+    const LensSlice slice{frame, plane, perUnit};
+    const vis::WorldFrame world = vis::worldFrame(bounds, session.stretch);
+    const auto to = [&](const vis::Lens&) { return std::optional(slice.place(ImGui::GetIO().MousePos)); };
+    const auto under = [&](ImVec2 at) { return lensInSlice(slice, session, world, at); };
+    return hovered && followWith(session, bounds, under, to);
+}
 
 bool editLenses(LensDrag& drag, Session& session, const SpaceFrame& frame, bool hovered) {
     return editIn(drag, session, lensesInSpace(frame, session), hovered);

@@ -42,6 +42,9 @@ bool editLenses(LensDrag& drag, Session& session, const volume::Box& bounds, con
 /// Lenses that follow the pointer move with it, in the plane through their middle that faces the viewer; F pins those
 /// that follow, or lets the one under the mouse (else the last one) follow. True while something changes.
 bool followPointer(Session& session, const SpaceFrame& frame, bool hovered);
+/// In a slice they come to the place under the mouse.
+bool followPointer(Session& session, const volume::Box& bounds, const PlotFrame& frame, const PicturePlane& plane,
+                   glm::dvec2 perUnit, bool hovered);
 
 /// The handles of the lens under the mouse, and its name.
 void drawLensHandles(ImDrawList& draw, const LensDrag& drag, const SpaceFrame& frame, const Session& session);

@@ -357,6 +357,14 @@ TEST_F(TiltedPlaneHands, InTheFlatViewALensIsDraggedByItsMiddleAlongThePlane) {
     drag(top, {top.x + 2, top.y + (middle.y - top.y) / 3});
     EXPECT_NEAR(double(session().lenses[0].size.y) * 0.012, radius * 2 / 3, radius * 0.03);
     EXPECT_EQ(session().lenses[0].center, center);
+    moveTo({middle.x + 4, middle.y + 4});
+    press('F');
+    moveTo({middle.x - 30, middle.y + 20});
+    const glm::dvec3 followed = session().lenses[0].center;
+    EXPECT_NEAR(slice.plane.distance(followed), 0, 1e-9);
+    EXPECT_NEAR(pixelOf(followed).x, mouse.x, 1.5);
+    EXPECT_NEAR(pixelOf(followed).y, mouse.y, 1.5);
+    press('F');
 }
 
 TEST_F(TiltedPlaneHands, InTheFlatViewSeedsLinesAndBrushesAreDraggedByTheirDots) {

@@ -219,6 +219,40 @@ TEST_F(SliceHands, ASquareOfALensResizesItAndSoDoesTheWheelWithAlt) {
     }
 }
 
+TEST_F(SliceHands, ALensFollowsTheMouseUntilItIsPinned) {
+    for (int plane = 0; plane < 3; ++plane) {
+        SCOPED_TRACE(plane);
+        showSlices([&](Session& edited) {
+            edited.lenses = {{.name = "a", .size = glm::vec3(0.1f)}, {.name = "b", .size = glm::vec3(0.1f)}};
+            edited.lenses[0].center = edited.lenses[1].center = edited.cursor;
+            edited.lenses[1].center[kAxes[plane][0]] = extent(kAxes[plane][0]).hi;
+        });
+        const ImRect& picture = planes[std::size_t(plane)];
+        const auto [right, up, normal] = kAxes[plane];
+        const Session before = session();
+        const auto share = [&](int axis) {
+            return (session().cursor[axis] - extent(axis).lo) / (extent(axis).hi - extent(axis).lo);
+        };
+        moveTo(within(picture, share(right), 1 - share(up)));
+        press('F');
+        EXPECT_TRUE(session().lenses[0].followsPointer) << "the one under the mouse";
+        for (const double at : {0.7, 0.4}) {
+            moveTo(within(picture, at, 0.3));
+            const glm::dvec3 center = session().lenses[0].center;
+            EXPECT_NEAR(center[right], across(picture, extent(right), mouse), kTiny);
+            EXPECT_NEAR(center[up], upwards(picture, extent(up), mouse), kTiny);
+            EXPECT_NEAR(center[normal], before.cursor[normal], kTiny) << "on the slice";
+        }
+        press('F');
+        EXPECT_FALSE(session().lenses[0].followsPointer);
+        const glm::dvec3 left = session().lenses[0].center;
+        moveTo(within(picture, 0.2, 0.6));
+        EXPECT_EQ(session().lenses[0].center, left);
+        EXPECT_TRUE(session().lenses[1] == before.lenses[1]);
+        EXPECT_EQ(session().cursor, before.cursor);
+    }
+}
+
 TEST_F(SliceHands, CornersOfAProfileLineMoveInThePlane) {
     const std::vector<glm::dvec3> corners{{0.012, 0.009, 0.001}, {0.015, 0.003, -0.0005}};
     for (int plane = 0; plane < 3; ++plane)

@@ -126,6 +126,7 @@ void useMouse(ViewContext& context, ObliqueCache& cache, ObliqueView& view, cons
                                                             flat.perUnit(), free && !io.KeyAlt);
     const bool onLens = editLenses(cache.lens, session, info.bounds, plot, flat.page(), flat.perUnit(),
                                    free && cache.handles.object.empty());
+    followPointer(session, info.bounds, plot, flat.page(), flat.perUnit(), free);
     if (onHandle || onLens) context.interacting = true;
     if (ImGui::IsItemActivated() && !onHandle && !onLens) cache.dragging = true;
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) cache.dragging = false;

@@ -151,6 +151,7 @@ void handlePlaneMouse(ViewContext& context, SlicePlanes& planes, const PlaneFram
         !lens.active && editHandles(handle, session, info, frame.plot, page, frame.perUnit, free && !io.KeyAlt);
     const bool onLens =
         editLenses(lens, session, info.bounds, frame.plot, page, frame.perUnit, free && handle.object.empty());
+    followPointer(session, info.bounds, frame.plot, page, frame.perUnit, free);
     if (onHandle || onLens) context.interacting = true;
     if (ImGui::IsItemActivated() && !onHandle && !onLens) planes.dragging = index;
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) planes.dragging = -1;
