@@ -200,6 +200,7 @@ std::vector<HandledObject> handledObjects(const Session& session, const volume::
     for (const auto& [pane, view] : session.views) addProfile(objects, session, info, pane);
     addCut(objects, session, info);
     addPlanes(objects, session, info);
+    addClipBodies(objects, session, info);
     addFocus(objects, session, info);
     if (lights) addLights(objects, session, info);
     return objects;

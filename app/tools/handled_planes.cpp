@@ -11,8 +11,6 @@ namespace tessera::app {
 
 namespace {
 
-constexpr double kArrow = 0.1; ///< length of an arrow, in distances of the camera from its target
-
 /// A plane's object without what moves it. Planes that cannot be tilted have no arrow.
 HandledObject planeObject(const Session& session, const volume::DatasetInfo& info, const SpacePlane& plane,
                           bool tilts) {
@@ -22,7 +20,7 @@ HandledObject planeObject(const Session& session, const volume::DatasetInfo& inf
     object.plane = plane;
     // Upright on the plane as it is seen, in the stretched world.
     const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
-    const double length = kArrow * static_cast<double>(session.camera.distance);
+    const double length = kTiltArrow * static_cast<double>(session.camera.distance);
     const glm::dvec3 tip = world.toPhysical(world.toWorld(plane.at) + worldNormal(plane.normal, world) * length);
     object.handles = {{.at = plane.at, .whole = true, .how = HandleWay::Along, .way = tip - plane.at}};
     const std::vector<glm::dvec3> corners = planeSection(plane, info.bounds);
@@ -32,11 +30,6 @@ HandledObject planeObject(const Session& session, const volume::DatasetInfo& inf
     object.handles.push_back({.at = tip, .how = HandleWay::Around, .way = plane.at});
     object.lines.emplace_back(plane.at, tip);
     return object;
-}
-
-/// The normal of the plane through `middle` that an arrow to `tip` stands on, in the world.
-glm::dvec3 normalTo(const vis::WorldFrame& world, glm::dvec3 middle, glm::dvec3 tip) {
-    return unitNormal(world.toWorld(tip) - world.toWorld(middle));
 }
 
 void addView(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info,
@@ -52,7 +45,7 @@ void addView(std::vector<HandledObject>& objects, const Session& session, const 
         if (handle == 0)
             edited.cursor = nearestInPlane({unitNormal(normal), place}, bounds, place);
         else
-            normal = physicalNormal(normalTo(world, edited.cursor, place), world);
+            normal = physicalNormal(arrowWay(world, edited.cursor, place), world);
     };
     objects.push_back(std::move(object));
 }
@@ -95,7 +88,7 @@ void addSlice(std::vector<HandledObject>& objects, const Session& session, const
         const vis::WorldFrame frame = vis::worldFrame(bounds, edited.stretch);
         if (handle == 0) return putSlice(own, edited, bounds, frame, place);
         const glm::dvec3 around = own.atCursor ? edited.cursor : middle;
-        own.normal = glm::vec3(normalTo(frame, around, place));
+        own.normal = glm::vec3(arrowWay(frame, around, place));
         if (!own.atCursor) putSlice(own, edited, bounds, frame, around);
     };
     objects.push_back(std::move(object));
@@ -120,12 +113,16 @@ void addClip(std::vector<HandledObject>& objects, const Session& session, const 
         if (handle == 0)
             own.center = glm::vec3((nearestInPlane({normal, place}, bounds, place) - lo) / size);
         else
-            own.axis = glm::vec3(normalTo(frame, middle, place));
+            own.axis = glm::vec3(arrowWay(frame, middle, place));
     };
     objects.push_back(std::move(object));
 }
 
 } // namespace
+
+glm::dvec3 arrowWay(const vis::WorldFrame& world, glm::dvec3 middle, glm::dvec3 tip) {
+    return unitNormal(world.toWorld(tip) - world.toWorld(middle));
+}
 
 void addPlanes(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info) {
     if (timeAxisOf(session, info)) return; // no directions between lengths and times

@@ -1,6 +1,7 @@
 #include "app/tools/lens_edit.h"
 
 #include "app/tools/lens_outline.h"
+#include "app/tools/plane_sections.h"
 #include "app/tools/space_handles.h"
 #include "app/ui/keys.h"
 
@@ -14,6 +15,7 @@ namespace tessera::app {
 namespace {
 
 constexpr float kShortest = 0.8f; ///< em: an axis handle closer to the middle than this is left out
+constexpr float kGrip = 0.75f;    ///< em: how near a handle the mouse takes it
 constexpr float kLeast = 0.005f, kMost = 2;
 
 /// Axes of the picture in world space.
@@ -25,15 +27,26 @@ float distance(std::optional<ImVec2> a, ImVec2 b) {
     return a ? std::hypot(a->x - b.x, a->y - b.y) : 1e9f;
 }
 
-std::optional<vis::PlacedLens> placed(const SpaceFrame& frame, const Session& session, int lens) {
+std::optional<vis::PlacedLens> placed(const vis::WorldFrame& world, const Session& session, int lens) {
     if (lens < 0 || lens >= static_cast<int>(session.lenses.size())) return std::nullopt;
     const auto all =
-        vis::placeLenses({session.lenses[static_cast<std::size_t>(lens)]}, frame.world, session.camera, session.cursor);
+        vis::placeLenses({session.lenses[static_cast<std::size_t>(lens)]}, world, session.camera, session.cursor);
     return all.empty() ? std::nullopt : std::optional(all.front());
 }
 
+/// How a picture shows lenses to the mouse.
+struct LensPicture {
+    vis::WorldFrame world;
+    volume::Box bounds;
+    float height = 0; ///< pixels; 0: nothing is rotated here
+    std::function<LensHandles(const vis::PlacedLens& lens)> handles;
+    std::function<int(ImVec2 at)> under; ///< the lens that a pixel shows
+    /// A physical place moved as the mouse moved from `start`.
+    std::function<glm::dvec3(glm::dvec3 from, ImVec2 start, ImVec2 mouse)> dragged;
+};
+
 LensGrip gripUnder(const LensHandles& handles, ImVec2 at) {
-    const float near = em() * 0.75f;
+    const float near = em() * kGrip;
     LensGrip grip = LensGrip::None;
     float best = near;
     const auto look = [&](std::optional<ImVec2> handle, LensGrip own) {
@@ -48,12 +61,10 @@ LensGrip gripUnder(const LensHandles& handles, ImVec2 at) {
     return grip;
 }
 
-void move(Session& session, vis::Lens& lens, const LensDrag& drag, const SpaceFrame& frame, ImVec2 mouse) {
-    const glm::dvec3 physical = drag.before.followsCursor ? drag.cursorBefore : drag.before.center;
-    const glm::dvec3 to =
-        draggedPlace(frame, session.camera, frame.world.toWorld(physical), drag.start, mouse, ImGui::GetIO().KeyShift);
-    const glm::dvec3 place = glm::clamp(frame.world.toPhysical(to), frame.bounds.lo, frame.bounds.hi);
-    (lens.followsCursor ? session.cursor : lens.center) = place;
+void move(Session& session, vis::Lens& lens, const LensDrag& drag, const LensPicture& picture, ImVec2 mouse) {
+    const glm::dvec3 from = drag.before.followsCursor ? drag.cursorBefore : drag.before.center;
+    const glm::dvec3 to = picture.dragged(from, drag.start, mouse);
+    (lens.followsCursor ? session.cursor : lens.center) = glm::clamp(to, picture.bounds.lo, picture.bounds.hi);
 }
 
 /// Which way a lens's axis grows: all of them together where it is round, else that one (the other way with Ctrl).
@@ -71,9 +82,9 @@ void resize(vis::Lens& lens, const LensDrag& drag, const LensHandles& before, Im
         if (all || i == axis) lens.size[i] = std::clamp(drag.before.size[i] * factor, kLeast, kMost);
 }
 
-void turn(vis::Lens& lens, const LensDrag& drag, const vis::Camera& camera, const SpaceFrame& frame, ImVec2 mouse) {
+void turn(vis::Lens& lens, const LensDrag& drag, const vis::Camera& camera, const LensPicture& picture, ImVec2 mouse) {
     const glm::dmat3 axes = eyeAxes(camera);
-    const double perPixel = 4 / std::max(1.0, double(frame.max.y - frame.min.y));
+    const double perPixel = 4 / std::max(1.0, double(picture.height));
     const glm::dquat by = glm::angleAxis(double(mouse.x - drag.start.x) * perPixel, axes[1]) *
                           glm::angleAxis(double(mouse.y - drag.start.y) * perPixel, axes[0]);
     const glm::dquat now = by * glm::dquat(glm::radians(glm::dvec3(drag.before.rotation)));
@@ -108,7 +119,7 @@ LensHandles lensHandles(const SpaceFrame& frame, const vis::PlacedLens& placed) 
 int lensUnder(const SpaceFrame& frame, const Session& session, ImVec2 at) {
     const vis::Ray ray = rayThrough(frame, session.camera, at);
     for (int i = static_cast<int>(session.lenses.size()) - 1; i >= 0; --i) {
-        const auto lens = placed(frame, session, i);
+        const auto lens = placed(frame.world, session, i);
         if (!lens) continue;
         // Closest to the middle along the ray: convex shapes are met there or near it.
         const double middle = glm::dot(lens->center - ray.origin, ray.direction);
@@ -120,9 +131,12 @@ int lensUnder(const SpaceFrame& frame, const Session& session, ImVec2 at) {
     return -1;
 }
 
-bool followPointer(Session& session, const SpaceFrame& frame, bool hovered) {
+namespace {
+
+/// `to`: the physical place at which a lens is under the mouse; nothing where it is so already.
+bool followWith(Session& session, const volume::Box& bounds, const std::function<int(ImVec2)>& under,
+                const std::function<std::optional<glm::dvec3>(const vis::Lens& lens)>& to) {
     const ImGuiIO& io = ImGui::GetIO();
-    if (!hovered) return false;
     bool moved = false;
     if (pressed({.key = 'F'}) && !typing()) {
         // Pins the lenses that follow; if there are none, the one under the mouse or the last one starts to follow.
@@ -130,8 +144,8 @@ bool followPointer(Session& session, const SpaceFrame& frame, bool hovered) {
         for (vis::Lens& lens : session.lenses) any = any || lens.followsPointer;
         for (vis::Lens& lens : session.lenses) lens.followsPointer = false;
         if (!any && !session.lenses.empty()) {
-            const int under = lensUnder(frame, session, io.MousePos);
-            vis::Lens& lens = session.lenses[under < 0 ? session.lenses.size() - 1 : static_cast<std::size_t>(under)];
+            const int index = under(io.MousePos);
+            vis::Lens& lens = session.lenses[index < 0 ? session.lenses.size() - 1 : static_cast<std::size_t>(index)];
             lens.followsPointer = lens.enabled = true;
             lens.followsCursor = false;
         }
@@ -140,17 +154,15 @@ bool followPointer(Session& session, const SpaceFrame& frame, bool hovered) {
     if (io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2]) return moved;
     for (vis::Lens& lens : session.lenses) {
         if (!lens.enabled || !lens.followsPointer || lens.followsCursor) continue;
-        const glm::dvec3 from = frame.world.toWorld(lens.center);
-        const auto middle = worldPixel(frame, from);
-        if (!middle || distance(middle, io.MousePos) < 0.5f) continue;
-        const glm::dvec3 to = draggedPlace(frame, session.camera, from, *middle, io.MousePos, false);
-        lens.center = glm::clamp(frame.world.toPhysical(to), frame.bounds.lo, frame.bounds.hi);
+        const auto place = to(lens);
+        if (!place) continue;
+        lens.center = glm::clamp(*place, bounds.lo, bounds.hi);
         moved = moved || io.MouseDelta.x != 0 || io.MouseDelta.y != 0;
     }
     return moved;
 }
 
-bool editLenses(LensDrag& drag, Session& session, const SpaceFrame& frame, bool hovered) {
+bool editIn(LensDrag& drag, Session& session, const LensPicture& picture, bool hovered) {
     const ImGuiIO& io = ImGui::GetIO();
     const ImVec2 mouse = io.MousePos;
     if (drag.active) {
@@ -167,26 +179,30 @@ bool editLenses(LensDrag& drag, Session& session, const SpaceFrame& frame, bool 
             return true;
         }
         vis::Lens& lens = session.lenses[at];
-        const auto before = vis::placeLenses({drag.before}, frame.world, session.camera, drag.cursorBefore);
+        const auto before = vis::placeLenses({drag.before}, picture.world, session.camera, drag.cursorBefore);
         if (drag.grip == LensGrip::Middle)
-            move(session, lens, drag, frame, mouse);
+            move(session, lens, drag, picture, mouse);
         else if (drag.grip == LensGrip::Turn)
-            turn(lens, drag, session.camera, frame, mouse);
+            turn(lens, drag, session.camera, picture, mouse);
         else if (!before.empty())
-            resize(lens, drag, lensHandles(frame, before.front()), mouse);
+            resize(lens, drag, picture.handles(before.front()), mouse);
         if (!held) drag.active = false;
         return true;
     }
     if (!hovered) {
         drag.lens = -1;
+        drag.grip = LensGrip::None;
         return false;
     }
     // The handles of a lens are on or outside of its outline: over them it stays the one under the mouse.
-    const auto former = placed(frame, session, drag.lens);
-    LensGrip grip = former ? gripUnder(lensHandles(frame, *former), mouse) : LensGrip::None;
+    const auto gripOf = [&](int index) {
+        const auto lens = placed(picture.world, session, index);
+        return lens ? gripUnder(picture.handles(*lens), mouse) : LensGrip::None;
+    };
+    LensGrip grip = gripOf(drag.lens);
     if (grip == LensGrip::None) {
-        drag.lens = lensUnder(frame, session, mouse);
-        if (const auto now = placed(frame, session, drag.lens)) grip = gripUnder(lensHandles(frame, *now), mouse);
+        drag.lens = picture.under(mouse);
+        grip = gripOf(drag.lens);
     }
     drag.grip = grip;
     if (drag.lens < 0) return false;
@@ -197,15 +213,82 @@ bool editLenses(LensDrag& drag, Session& session, const SpaceFrame& frame, bool 
     }
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) && (grip != LensGrip::None || io.KeyAlt))
         begin(drag, session, grip == LensGrip::None ? LensGrip::Middle : grip, mouse);
-    else if (ImGui::IsMouseClicked(ImGuiMouseButton_Right) && io.KeyAlt)
+    else if (ImGui::IsMouseClicked(ImGuiMouseButton_Right) && io.KeyAlt && picture.height > 0)
         begin(drag, session, LensGrip::Turn, mouse);
     return drag.active;
 }
 
-void drawLensHandles(ImDrawList& draw, const LensDrag& drag, const SpaceFrame& frame, const Session& session) {
-    const auto lens = placed(frame, session, drag.lens);
-    if (!lens) return;
-    const LensHandles handles = lensHandles(frame, *lens);
+LensPicture lensesInSpace(const SpaceFrame& frame, const Session& session) {
+    return {.world = frame.world,
+            .bounds = frame.bounds,
+            .height = frame.max.y - frame.min.y,
+            .handles = [&frame](const vis::PlacedLens& lens) { return lensHandles(frame, lens); },
+            .under = [&frame, &session](ImVec2 at) { return lensUnder(frame, session, at); },
+            .dragged =
+                [&frame, &session](glm::dvec3 from, ImVec2 start, ImVec2 mouse) {
+                    return frame.world.toPhysical(draggedPlace(frame, session.camera, frame.world.toWorld(from), start,
+                                                               mouse, ImGui::GetIO().KeyShift));
+                }};
+}
+
+/// The picture of a slice.
+struct LensSlice {
+    PlotFrame frame;
+    PicturePlane plane;
+    glm::dvec2 perUnit;
+
+    ImVec2 pixel(glm::dvec3 physical) const {
+        const glm::dvec2 at = plane.along(physical) * perUnit;
+        return frame.pixel(at.x, at.y);
+    }
+    glm::dvec3 place(ImVec2 pixel) const { return plane.placeAt(frame.data(pixel) / perUnit); }
+    bool shows(const vis::WorldFrame& world, const vis::PlacedLens& lens) const {
+        const glm::dvec3 right = glm::normalize(plane.right * world.scale), up = glm::normalize(plane.up * world.scale);
+        return !lensSection(lens, world.toWorld(plane.at), right, up).empty();
+    }
+};
+
+LensHandles handlesInSlice(const LensSlice& slice, const vis::WorldFrame& world, const vis::PlacedLens& lens) {
+    LensHandles handles;
+    const ImVec2 middle = slice.pixel(world.toPhysical(lens.center));
+    handles.middle = middle;
+    for (int i = 0; i < (lens.shape == vis::LensShape::Disc ? 2 : 3); ++i) {
+        const ImVec2 end = slice.pixel(world.toPhysical(lens.center + lens.fromUnit[i]));
+        if (distance(end, middle) > em() * kShortest) handles.axes[i] = end;
+    }
+    return handles;
+}
+
+/// The topmost enabled lens that a slice shows at a pixel, or whose dot is there; -1 for none.
+int lensInSlice(const LensSlice& slice, const Session& session, const vis::WorldFrame& world, ImVec2 at) {
+    for (int i = static_cast<int>(session.lenses.size()) - 1; i >= 0; --i) {
+        const auto lens = placed(world, session, i);
+        if (!lens) continue;
+        if (lens->radius(world.toWorld(slice.place(at))) < 1) return i;
+        const bool onDot = distance(slice.pixel(world.toPhysical(lens->center)), at) < em() * kGrip;
+        if (onDot && slice.shows(world, *lens)) return i;
+    }
+    return -1;
+}
+
+LensPicture lensesInSlice(const LensSlice& slice, const Session& session, const volume::Box& bounds) {
+    const vis::WorldFrame world = vis::worldFrame(bounds, session.stretch);
+    return {.world = world,
+            .bounds = bounds,
+            .handles =
+                [slice, world](const vis::PlacedLens& lens) {
+                    return slice.shows(world, lens) ? handlesInSlice(slice, world, lens) : LensHandles{};
+                },
+            .under = [slice, world, &session](ImVec2 at) { return lensInSlice(slice, session, world, at); },
+            .dragged =
+                [slice](glm::dvec3 from, ImVec2 start, ImVec2 mouse) {
+                    const glm::dvec2 by = (slice.frame.data(mouse) - slice.frame.data(start)) / slice.perUnit;
+                    return from + slice.plane.right * by.x + slice.plane.up * by.y;
+                }};
+}
+
+void drawHandlesOf(ImDrawList& draw, const LensDrag& drag, const LensHandles& handles, const Session& session,
+                   bool named) {
     const PlotColors colors = plotColors();
     const vis::Lens& own = session.lenses[static_cast<std::size_t>(drag.lens)];
     const ImU32 color = toColor({own.color.r, own.color.g, own.color.b});
@@ -216,7 +299,7 @@ void drawLensHandles(ImDrawList& draw, const LensDrag& drag, const SpaceFrame& f
         draw.AddCircle(*handles.turn, size * 1.35f, lit(LensGrip::Turn), 20, line * 1.4f);
         draw.AddCircleFilled(*handles.turn, size * 0.4f, lit(LensGrip::Turn));
         addTextWithBackdrop(draw, {handles.turn->x, handles.turn->y - size * 2.2f}, {0.5f, 1}, color, own.name.c_str());
-    } else if (handles.middle) {
+    } else if (handles.middle && named) {
         addTextWithBackdrop(draw, {handles.middle->x, handles.middle->y - size * 2.2f}, {0.5f, 1}, color,
                             own.name.c_str());
     }
@@ -231,6 +314,51 @@ void drawLensHandles(ImDrawList& draw, const LensDrag& drag, const SpaceFrame& f
         draw.AddCircleFilled(*handles.middle, size + 1, colors.backdrop);
         draw.AddCircleFilled(*handles.middle, size, lit(LensGrip::Middle));
     }
+}
+
+} // namespace
+
+bool followPointer(Session& session, const SpaceFrame& frame, bool hovered) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const auto to = [&](const vis::Lens& lens) -> std::optional<glm::dvec3> {
+        const glm::dvec3 from = frame.world.toWorld(lens.center);
+        const auto middle = worldPixel(frame, from);
+        if (!middle || distance(middle, mouse) < 0.5f) return std::nullopt;
+        return frame.world.toPhysical(draggedPlace(frame, session.camera, from, *middle, mouse, false));
+    };
+    const auto under = [&](ImVec2 at) { return lensUnder(frame, session, at); };
+    return hovered && followWith(session, frame.bounds, under, to);
+}
+
+bool followPointer(Session& session, const volume::Box& bounds, const PlotFrame& frame, const PicturePlane& plane,
+                   glm::dvec2 perUnit, bool hovered) {
+    const LensSlice slice{frame, plane, perUnit};
+    const vis::WorldFrame world = vis::worldFrame(bounds, session.stretch);
+    const auto to = [&](const vis::Lens&) { return std::optional(slice.place(ImGui::GetIO().MousePos)); };
+    const auto under = [&](ImVec2 at) { return lensInSlice(slice, session, world, at); };
+    return hovered && followWith(session, bounds, under, to);
+}
+
+bool editLenses(LensDrag& drag, Session& session, const SpaceFrame& frame, bool hovered) {
+    return editIn(drag, session, lensesInSpace(frame, session), hovered);
+}
+
+bool editLenses(LensDrag& drag, Session& session, const volume::Box& bounds, const PlotFrame& frame,
+                const PicturePlane& plane, glm::dvec2 perUnit, bool hovered) {
+    return editIn(drag, session, lensesInSlice({frame, plane, perUnit}, session, bounds), hovered);
+}
+
+void drawLensHandles(ImDrawList& draw, const LensDrag& drag, const SpaceFrame& frame, const Session& session) {
+    if (const auto lens = placed(frame.world, session, drag.lens))
+        drawHandlesOf(draw, drag, lensHandles(frame, *lens), session, true);
+}
+
+void drawLensHandles(ImDrawList& draw, const LensDrag& drag, const PlotFrame& frame, const Session& session,
+                     const volume::Box& bounds, const PicturePlane& plane, glm::dvec2 perUnit) {
+    const vis::WorldFrame world = vis::worldFrame(bounds, session.stretch);
+    if (const auto lens = placed(world, session, drag.lens))
+        drawHandlesOf(draw, drag, handlesInSlice({frame, plane, perUnit}, world, *lens), session,
+                      drag.grip != LensGrip::None);
 }
 
 } // namespace tessera::app

@@ -1,11 +1,13 @@
 #pragma once
 
 #include "app/pane/axes3d.h"
+#include "app/pane/oblique_plane.h"
 #include "app/pane/view_context.h"
 
-/// Editing lenses with the mouse in a 3D picture: the dot in the centre moves a lens in the plane that faces the viewer
-/// (with Shift nearer or farther), squares at the ends of its axes resize it, the ring beside it rotates it. With Alt
-/// the mouse does the same anywhere: left moves, right rotates, the wheel resizes. Escape cancels a drag.
+/// Editing lenses with the mouse in a 3D picture or a slice: the dot in the centre moves a lens in the plane that faces
+/// the viewer (with Shift nearer or farther), squares at the ends of its axes resize it, the ring beside it rotates it.
+/// With Alt the mouse does the same anywhere: left moves, right rotates, the wheel resizes. Escape cancels a drag. In
+/// slices a lens moves along the slice, and nothing rotates it.
 namespace tessera::app {
 
 enum class LensGrip { None, Middle, AxisX, AxisY, AxisZ, Turn };
@@ -33,11 +35,21 @@ int lensUnder(const SpaceFrame& frame, const Session& session, ImVec2 at);
 /// the mouse. A lens that follows the cross-hair takes the cross-hair along.
 bool editLenses(LensDrag& drag, Session& session, const SpaceFrame& frame, bool hovered);
 
+/// The same in the picture of a slice, whose values are distances along its directions times the factors.
+bool editLenses(LensDrag& drag, Session& session, const volume::Box& bounds, const PlotFrame& frame,
+                const PicturePlane& plane, glm::dvec2 perUnit, bool hovered);
+
 /// Lenses that follow the pointer move with it, in the plane through their middle that faces the viewer; F pins those
 /// that follow, or lets the one under the mouse (else the last one) follow. True while something changes.
 bool followPointer(Session& session, const SpaceFrame& frame, bool hovered);
+/// In a slice they come to the place under the mouse.
+bool followPointer(Session& session, const volume::Box& bounds, const PlotFrame& frame, const PicturePlane& plane,
+                   glm::dvec2 perUnit, bool hovered);
 
 /// The handles of the lens under the mouse, and its name.
 void drawLensHandles(ImDrawList& draw, const LensDrag& drag, const SpaceFrame& frame, const Session& session);
+/// In a slice, the name only where the mouse is on a handle.
+void drawLensHandles(ImDrawList& draw, const LensDrag& drag, const PlotFrame& frame, const Session& session,
+                     const volume::Box& bounds, const PicturePlane& plane, glm::dvec2 perUnit);
 
 } // namespace tessera::app

@@ -16,8 +16,9 @@ namespace {
 constexpr int kLensParts = 64, kBallParts = 48; ///< of an outline
 constexpr double kLensReach = 4;                ///< world units: no lens is larger
 
-/// Where a plane cuts a ball of three radii: in the space where it is round, a circle around the place nearest to its
-/// middle.
+} // namespace
+
+// In the space where it is round, a circle around the place nearest to its middle.
 std::vector<glm::dvec3> ballSection(const vis::SphereRegion& ball, const PicturePlane& plane) {
     const glm::dvec3 first = glm::normalize(plane.right / ball.radius);
     const glm::dvec3 slant = plane.up / ball.radius, second = glm::normalize(slant - first * glm::dot(slant, first));
@@ -33,8 +34,6 @@ std::vector<glm::dvec3> ballSection(const vis::SphereRegion& ball, const Picture
     }
     return points;
 }
-
-} // namespace
 
 std::vector<glm::dvec3> lensSection(const vis::PlacedLens& lens, glm::dvec3 at, glm::dvec3 right, glm::dvec3 up) {
     const glm::dvec3 normal = glm::cross(right, up);
@@ -113,17 +112,6 @@ void drawPlaneSections(ImDrawList& draw, const PlotFrame& frame, const std::vect
             draw.AddCircleFilled(frame.pixel(section.middle->x * perUnit.x, section.middle->y * perUnit.y),
                                  em() * 0.28f, color);
     }
-}
-
-int lensAtPixel(const Session& session, const PlotFrame& frame, const PicturePlane& plane, glm::dvec2 perUnit,
-                ImVec2 mouse) {
-    for (int i = static_cast<int>(session.lenses.size()) - 1; i >= 0; --i) {
-        const vis::Lens& lens = session.lenses[static_cast<std::size_t>(i)];
-        const glm::dvec2 middle = plane.along(lens.center) * perUnit;
-        const ImVec2 at = frame.pixel(middle.x, middle.y);
-        if (lens.enabled && !lens.followsCursor && std::hypot(at.x - mouse.x, at.y - mouse.y) < em() * 0.7f) return i;
-    }
-    return -1;
 }
 
 } // namespace tessera::app

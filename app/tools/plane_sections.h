@@ -20,6 +20,9 @@ struct PlaneSection {
     std::optional<glm::dvec2> middle = {}; ///< of a lens, also where it is before or behind the plane
 };
 
+/// Where a plane cuts a ball of three radii, in order around it; none where it misses the ball.
+std::vector<glm::dvec3> ballSection(const vis::SphereRegion& ball, const PicturePlane& plane);
+
 /// The outline of a lens in a plane through `at`, around the place where the lens is deepest: world points, none where
 /// the plane misses it. `right` and `up` (world, length 1) are at right angles.
 std::vector<glm::dvec3> lensSection(const vis::PlacedLens& lens, glm::dvec3 at, glm::dvec3 right, glm::dvec3 up);
@@ -31,10 +34,5 @@ std::vector<PlaneSection> planeSections(const Session& session, const volume::Da
 /// Draws them; the frame's values are distances along the plane's directions times the factors.
 void drawPlaneSections(ImDrawList& draw, const PlotFrame& frame, const std::vector<PlaneSection>& sections,
                        glm::dvec2 perUnit);
-
-/// The lens whose middle is at a pixel of the picture and which does not follow the cross-hair, -1 if none; later ones
-/// lie over those before them.
-int lensAtPixel(const Session& session, const PlotFrame& frame, const PicturePlane& plane, glm::dvec2 perUnit,
-                ImVec2 mouse);
 
 } // namespace tessera::app

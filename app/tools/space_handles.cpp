@@ -27,8 +27,18 @@ const HandledObject* findObject(const std::vector<HandledObject>& objects, const
     return found == objects.end() ? nullptr : &*found;
 }
 
+/// The direction, physical, in which alone a dot changes the size of something.
+std::optional<glm::dvec3> railOf(const SpaceHandle& handle) {
+    if (handle.axis < 0)
+        return handle.how == HandleWay::Along && !handle.whole ? std::optional(handle.way) : std::nullopt;
+    glm::dvec3 way(0);
+    way[handle.axis] = 1;
+    return way;
+}
+
 /// The dot nearest to a pixel, later ones first; an end rather than the middle where both are as near, but for the end
-/// of a radius that points at the viewer: it lies on the middle and cannot be dragged along itself.
+/// of a radius that points at the viewer: it lies on the middle and cannot be dragged along itself. Nor does the arrow
+/// of a body lie over its middle; a plane that faces the viewer is rather tilted than moved.
 void findHandle(HandleDrag& drag, const std::vector<HandledObject>& objects, const PixelOf& pixel, ImVec2 mouse) {
     drag.object.clear();
     float nearest = em() * 0.6f;
@@ -37,7 +47,8 @@ void findHandle(HandleDrag& drag, const std::vector<HandledObject>& objects, con
             const auto at = pixel(object->handles[i]);
             if (!at || pixelsApart(*at, mouse) >= nearest) continue;
             const auto& first = object->handles.front();
-            const auto middle = first.whole && object->handles[i].axis >= 0 ? pixel(first) : std::nullopt;
+            const bool end = railOf(object->handles[i]) || (i > 0 && object->section);
+            const auto middle = first.whole && end ? pixel(first) : std::nullopt;
             if (middle && pixelsApart(*at, *middle) < 1) continue;
             nearest = pixelsApart(*at, mouse);
             drag.object = object->key;
@@ -126,23 +137,27 @@ struct SlicePixels {
     const PlotFrame& frame;
     const PicturePlane& plane;
     glm::dvec2 perUnit;
+    glm::dvec3 scale; ///< of the world
 
     ImVec2 of(glm::dvec3 place) const {
         const glm::dvec2 at = plane.along(place) * perUnit;
         return frame.pixel(at.x, at.y);
     }
-    /// Pixels by which a place moves with the axis of a dot; nothing where the axis stands (nearly) upright on the
-    /// slice.
-    std::optional<glm::dvec2> along(int axis) const {
-        const glm::dvec2 way(plane.right[axis], plane.up[axis]);
-        if (glm::dot(way, way) < kSteep) return std::nullopt;
-        return way * perUnit / glm::dvec2(frame.perPixelX(), -frame.perPixelY());
+    /// Pixels by which a place moves with the line of a dot; nothing where that stands (nearly) upright on the slice,
+    /// as it is seen.
+    std::optional<glm::dvec2> along(glm::dvec3 way) const {
+        const glm::dvec3 seen = glm::normalize(way * scale);
+        const glm::dvec2 across(glm::dot(seen, glm::normalize(plane.right * scale)),
+                                glm::dot(seen, glm::normalize(plane.up * scale)));
+        if (glm::dot(across, across) < kSteep) return std::nullopt;
+        return glm::dvec2(glm::dot(way, plane.right), glm::dot(way, plane.up)) * perUnit /
+               glm::dvec2(frame.perPixelX(), -frame.perPixelY());
     }
 };
 
 PixelOf inSlice(const SlicePixels& pixels) {
     return [pixels](const SpaceHandle& handle) -> std::optional<ImVec2> {
-        if (handle.axis >= 0 && !pixels.along(handle.axis)) return std::nullopt;
+        if (const auto rail = railOf(handle); rail && !pixels.along(*rail)) return std::nullopt;
         return pixels.of(handle.at);
     };
 }
@@ -285,17 +300,16 @@ bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& 
 
 bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const PlotFrame& frame,
                  const PicturePlane& plane, glm::dvec2 perUnit, bool hovered) {
-    const SlicePixels pixels{frame, plane, perUnit};
+    const SlicePixels pixels{frame, plane, perUnit, vis::worldFrame(info.bounds, session.stretch).scale};
     return editWith(drag, session, info, objectsInSlice(session, info, plane), hovered, inSlice(pixels),
                     [&](const SpaceHandle& handle, ImVec2 mouse) {
-                        glm::dvec3 to = handle.at;
-                        if (const auto way = handle.axis >= 0 ? pixels.along(handle.axis) : std::nullopt) {
+                        const auto rail = railOf(handle);
+                        if (const auto way = rail ? pixels.along(*rail) : std::nullopt) {
                             const glm::dvec2 by(mouse.x - drag.start.x, mouse.y - drag.start.y);
-                            to[handle.axis] += glm::dot(by, *way) / glm::dot(*way, *way);
-                            return to;
+                            return handle.at + *rail * (glm::dot(by, *way) / glm::dot(*way, *way));
                         }
                         const glm::dvec2 by = (frame.data(mouse) - frame.data(drag.start)) / perUnit;
-                        return to + plane.right * by.x + plane.up * by.y;
+                        return handle.at + plane.right * by.x + plane.up * by.y;
                     });
 }
 
@@ -308,10 +322,12 @@ void drawHandles(ImDrawList& draw, const HandleDrag& drag, const SpaceFrame& fra
 
 void drawHandles(ImDrawList& draw, const HandleDrag& drag, const PlotFrame& frame, const Session& session,
                  const volume::DatasetInfo& info, const PicturePlane& plane, glm::dvec2 perUnit) {
-    const SlicePixels pixels{frame, plane, perUnit};
+    const SlicePixels pixels{frame, plane, perUnit, vis::worldFrame(info.bounds, session.stretch).scale};
     for (HandledObject& object : objectsInSlice(session, info, plane)) {
         if (object.plane) object.lines = planeCrossing(object, info.bounds, plane.plane());
-        drawObject(draw, drag, object, !object.plane, inSlice(pixels),
+        if (object.section) object.lines = object.section(plane);
+        const bool shown = object.plane || (object.section && !object.lines.empty());
+        drawObject(draw, drag, object, !shown, inSlice(pixels),
                    [&](glm::dvec3 at) { return std::optional(pixels.of(at)); });
     }
 }

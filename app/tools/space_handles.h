@@ -9,9 +9,9 @@
 #include <vector>
 
 /// Objects in space that are edited by dots: seed points of flow (line, plane, ball or box), brushes in space, the
-/// corners of profile lines, planes, lights, the point in focus. A dot moves in the plane that faces the viewer, with
-/// Shift nearer or farther, along a line, or around a middle; Escape cancels a drag. In slices, tilted ones too, the
-/// same dots move along the slice. Lenses have further handles (lens_edit.h).
+/// corners of profile lines, planes, clips, lights, the point in focus. A dot moves in the plane that faces the viewer,
+/// with Shift nearer or farther, along a line, or around a middle; Escape cancels a drag. In slices, tilted ones too,
+/// the same dots move along the slice. Lenses have further handles (lens_edit.h).
 namespace tessera::app {
 
 /// The ray through a pixel of the picture.
@@ -46,7 +46,8 @@ enum class HandleWay {
     Beyond    ///< also outside of the box
 };
 
-/// A dot. `axis`: along which it alone moves something, -1: any; slices (nearly) across that axis leave it out.
+/// A dot. `axis`: along which it alone moves something, -1: any. Slices (nearly) across that axis leave it out, and so
+/// they do with one that moves along a line but not the whole object.
 struct SpaceHandle {
     glm::dvec3 at{0}; ///< physical
     int axis = -1;
@@ -64,6 +65,8 @@ struct HandledObject {
     std::vector<SpaceHandle> handles;
     std::vector<SpaceLine> lines;
     std::optional<SpacePlane> plane = {}; ///< the object is one: in slices it is drawn where it crosses them
+    /// Of a body: the lines that show it in a slice, none where it does not reach.
+    std::function<std::vector<SpaceLine>(const PicturePlane& slice)> section = {};
     /// Puts a dot at a place (physical; of HandleWay::Anywhere in the box of the data) of a session that has the
     /// object.
     std::function<void(Session& session, std::size_t handle, glm::dvec3 to)> move;

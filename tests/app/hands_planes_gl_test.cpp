@@ -350,6 +350,21 @@ TEST_F(TiltedPlaneHands, InTheFlatViewALensIsDraggedByItsMiddleAlongThePlane) {
     drag({from.x - 40, from.y + 30}, {from.x - 30, from.y + 30});
     EXPECT_NE(session().cursor, before.cursor) << "elsewhere the cross-hair goes along";
     EXPECT_EQ(session().lenses[0].center, center);
+    // Its squares stand at the ends of its own axes; y runs upwards. The longest edge of the data is 12 mm.
+    const double radius = double(session().lenses[0].size.y) * 0.012;
+    const ImVec2 middle = pixelOf(center), top = pixelOf(center + glm::dvec3(0, radius, 0));
+    moveTo({middle.x + 12, middle.y + 12});
+    drag(top, {top.x + 2, top.y + (middle.y - top.y) / 3});
+    EXPECT_NEAR(double(session().lenses[0].size.y) * 0.012, radius * 2 / 3, radius * 0.03);
+    EXPECT_EQ(session().lenses[0].center, center);
+    moveTo({middle.x + 4, middle.y + 4});
+    press('F');
+    moveTo({middle.x - 30, middle.y + 20});
+    const glm::dvec3 followed = session().lenses[0].center;
+    EXPECT_NEAR(slice.plane.distance(followed), 0, 1e-9);
+    EXPECT_NEAR(pixelOf(followed).x, mouse.x, 1.5);
+    EXPECT_NEAR(pixelOf(followed).y, mouse.y, 1.5);
+    press('F');
 }
 
 TEST_F(TiltedPlaneHands, InTheFlatViewSeedsLinesAndBrushesAreDraggedByTheirDots) {

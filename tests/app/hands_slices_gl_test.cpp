@@ -162,8 +162,9 @@ TEST_F(SliceHands, TheMiddleOfALensMovesTheLens) {
         const glm::dvec3 cursor = session().cursor;
         drag(within(picture, share(right), 1 - share(up)), within(picture, 0.75, 0.8));
         const glm::dvec3 center = session().lenses[0].center;
-        EXPECT_NEAR(center[right], across(picture, extent(right), mouse), kTiny);
-        EXPECT_NEAR(center[up], upwards(picture, extent(up), mouse), kTiny);
+        const auto pixel = [&](int axis, float pixels) { return (extent(axis).hi - extent(axis).lo) / double(pixels); };
+        EXPECT_NEAR(center[right], across(picture, extent(right), mouse), pixel(right, picture.GetWidth()));
+        EXPECT_NEAR(center[up], upwards(picture, extent(up), mouse), pixel(up, picture.GetHeight()));
         EXPECT_EQ(center[normal], lens.center[normal]);
         EXPECT_EQ(session().cursor, cursor);
         EXPECT_EQ(steps(), 1u);
@@ -176,6 +177,79 @@ TEST_F(SliceHands, TheMiddleOfALensMovesTheLens) {
             EXPECT_EQ(session().lenses[0].center, lens.center);
             EXPECT_NEAR(session().cursor[right], across(picture, extent(right), mouse), kTiny);
         }
+    }
+}
+
+TEST_F(SliceHands, ASquareOfALensResizesItAndSoDoesTheWheelWithAlt) {
+    for (int plane = 0; plane < 3; ++plane) {
+        SCOPED_TRACE(plane);
+        showSlices([&](Session& edited) {
+            edited.stretch = {1, 0.5, 1.5}; // edges as 7 to 6 to 6
+            edited.lenses = {{.name = "a", .size = glm::vec3(0.3f)}};
+            edited.lenses[0].center = {0.0135, 0.006, 0};
+        });
+        const ImRect& picture = planes[std::size_t(plane)];
+        const auto [right, up, normal] = kAxes[plane];
+        const auto share = [&](int axis) {
+            return (session().lenses[0].center[axis] - extent(axis).lo) / (extent(axis).hi - extent(axis).lo);
+        };
+        const Session before = session();
+        const ImVec2 middle = within(picture, share(right), 1 - share(up));
+        // The longest edge of the data is 1 in the world.
+        const double edge[] = {1, 6.0 / 7, 6.0 / 7};
+        const float radius = float(0.3 / edge[right] * double(picture.GetWidth()));
+        moveTo({middle.x + 10, middle.y - 14});
+        EXPECT_TRUE(session() == before) << apart(before);
+        drag({middle.x + radius, middle.y}, {middle.x + 1.4f * radius, middle.y + 3});
+        EXPECT_NEAR(session().lenses[0].size[0], 0.3 * 1.4, 0.3 * 1.5 / double(radius));
+        EXPECT_EQ(session().lenses[0].center, before.lenses[0].center);
+        EXPECT_EQ(session().cursor, before.cursor);
+        settle();
+        EXPECT_EQ(steps(), 1u);
+        undo();
+        EXPECT_TRUE(session() == before) << apart(before);
+        moveTo({middle.x + 10, middle.y - 14});
+        alt = true;
+        turnWheel(-1);
+        alt = false;
+        EXPECT_NEAR(session().lenses[0].size[0], 0.3 / 1.1, 1e-4);
+        EXPECT_EQ(session().cursor, before.cursor) << "the slice stays";
+        turnWheel(1);
+        EXPECT_NE(session().cursor[normal], before.cursor[normal]) << "without Alt it does not";
+    }
+}
+
+TEST_F(SliceHands, ALensFollowsTheMouseUntilItIsPinned) {
+    for (int plane = 0; plane < 3; ++plane) {
+        SCOPED_TRACE(plane);
+        showSlices([&](Session& edited) {
+            edited.lenses = {{.name = "a", .size = glm::vec3(0.1f)}, {.name = "b", .size = glm::vec3(0.1f)}};
+            edited.lenses[0].center = edited.lenses[1].center = edited.cursor;
+            edited.lenses[1].center[kAxes[plane][0]] = extent(kAxes[plane][0]).hi;
+        });
+        const ImRect& picture = planes[std::size_t(plane)];
+        const auto [right, up, normal] = kAxes[plane];
+        const Session before = session();
+        const auto share = [&](int axis) {
+            return (session().cursor[axis] - extent(axis).lo) / (extent(axis).hi - extent(axis).lo);
+        };
+        moveTo(within(picture, share(right), 1 - share(up)));
+        press('F');
+        EXPECT_TRUE(session().lenses[0].followsPointer) << "the one under the mouse";
+        for (const double at : {0.7, 0.4}) {
+            moveTo(within(picture, at, 0.3));
+            const glm::dvec3 center = session().lenses[0].center;
+            EXPECT_NEAR(center[right], across(picture, extent(right), mouse), kTiny);
+            EXPECT_NEAR(center[up], upwards(picture, extent(up), mouse), kTiny);
+            EXPECT_NEAR(center[normal], before.cursor[normal], kTiny) << "on the slice";
+        }
+        press('F');
+        EXPECT_FALSE(session().lenses[0].followsPointer);
+        const glm::dvec3 left = session().lenses[0].center;
+        moveTo(within(picture, 0.2, 0.6));
+        EXPECT_EQ(session().lenses[0].center, left);
+        EXPECT_TRUE(session().lenses[1] == before.lenses[1]);
+        EXPECT_EQ(session().cursor, before.cursor);
     }
 }
 

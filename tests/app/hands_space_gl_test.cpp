@@ -262,6 +262,72 @@ TEST_F(SpaceHands, TheCubeTurnsWithTheObjectOrAlone) {
     EXPECT_EQ(session().cursor.z, cursor.z) << "a double click on a face says nothing about the depth";
 }
 
+TEST_F(SpaceHands, AFaceOfTheCubeHasAMenuOfItsOwn) {
+    ShadowCubeView cube;
+    cube.back.channel = cube.left.channel = "T";
+    showSpace(cube, {640, 480}, [](Session& edited) { vis::orbit(edited.camera, {0, 0}, {0.3f, -0.25f}); });
+    const Session before = session();
+    const auto inFace = [&](std::size_t index, double s, double t) {
+        const vis::WorldFrame world = vis::worldFrame(cellBox(), session().stretch);
+        const glm::dvec3 half = world.halfSize + double(view<ShadowCubeView>().gap);
+        return pixel(world.toPhysical(
+            kCubeFaces[index].at(s * half[kCubeFaces[index].right()], t * half[kCubeFaces[index].up()], half)));
+    };
+    // The faces that are seen, each by a place of its own.
+    std::size_t seenFaces = 0;
+    const glm::dvec3 half = vis::worldFrame(cellBox(), session().stretch).halfSize + double(cube.gap);
+    for (std::size_t i = 0; i < kCubeFaces.size(); ++i) {
+        if (!facesViewer(kCubeFaces[i], half, drawnBy())) continue;
+        SCOPED_TRACE(i);
+        ++seenFaces;
+        const ImVec2 at = inFace(i, 0.6, -0.6);
+        moveTo(at);
+        EXPECT_FALSE(popup());
+        click(at, 1);
+        ASSERT_TRUE(popup());
+        EXPECT_TRUE(session() == before) << "a click magnifies nothing" << apart(before);
+        const Wall former = wallOf(std::as_const(cube), i);
+        click(item(popup(), {"##kind"}).GetCenter());
+        click(item(popup(), {"Maximum"}).GetCenter());
+        EXPECT_EQ(wallOf(view<ShadowCubeView>(), i).kind, WallKind::Maximum);
+        click(item(popup(), {"##channel"}).GetCenter());
+        click(item(popup(), {"U.y"}).GetCenter());
+        EXPECT_EQ(wallOf(view<ShadowCubeView>(), i).channel, "U.y");
+        press(key::kEscape);
+        EXPECT_FALSE(popup());
+        settle();
+        EXPECT_EQ(steps(), 2u);
+        for (std::size_t k = 0; k < kCubeFaces.size(); ++k)
+            if (k != i) {
+                EXPECT_TRUE(wallOf(view<ShadowCubeView>(), k) == wallOf(std::as_const(cube), k)) << "one face alone";
+            }
+        // The title says what it shows, and opens the same menu.
+        std::vector<ImVec2> titles;
+        for (const DrawnText& text : drawnTexts())
+            if (text.text == "maximum U.y") titles.push_back(text.middle());
+        ASSERT_EQ(titles.size(), 1u);
+        click(titles[0]);
+        ASSERT_TRUE(popup());
+        click(item(popup(), {"##kind"}).GetCenter());
+        click(item(popup(), {"Mean"}).GetCenter());
+        EXPECT_EQ(wallOf(view<ShadowCubeView>(), i).kind, WallKind::Mean);
+        press(key::kEscape);
+        settle();
+        expectSame(before.camera);
+        for (int step = 0; step < 3; ++step) undo();
+        EXPECT_TRUE(session() == before) << apart(before);
+        EXPECT_TRUE(wallOf(view<ShadowCubeView>(), i) == former);
+        settle();
+    }
+    EXPECT_EQ(seenFaces, 3u);
+    // Beside the cube there is no menu, and a drag magnifies.
+    click({picture.Min.x + 3, picture.Min.y + 3}, 1);
+    EXPECT_FALSE(popup());
+    drag(inFace(4, 0.6, -0.6), inFace(4, 0.6, 0.6), 1);
+    EXPECT_FALSE(popup());
+    EXPECT_GT(view<ShadowCubeView>().zoom, 1.1f);
+}
+
 CompareView twoVariants(CompareMode mode) {
     CompareView compare;
     compare.mode = mode;

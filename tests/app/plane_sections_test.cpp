@@ -273,26 +273,5 @@ TEST(ObliqueContours, AFigureHasThemWithValuesAndTheOutlinesOfLensesAndBrushes) 
     EXPECT_EQ(count(brushed), 0u);
 }
 
-struct PlaneSectionPixels : FedImGui {
-    PlaneSectionPixels() : FedImGui({400, 400}) {}
-};
-
-TEST_F(PlaneSectionPixels, ALensIsTakenByItsMiddle) {
-    feed([&] {
-        Session session;
-        session.lenses = {vis::Lens{}, vis::Lens{}};
-        session.lenses[0].center = session.lenses[1].center = {1, 1, 3.5};
-        const PicturePlane plane{{0, 0, 3}, glm::normalize(glm::dvec3(1, 0, 1)), {0, 1, 0}};
-        const glm::dvec2 middle = plane.along({1, 1, 3.5});
-        const PlotFrame frame{{100, 100}, {300, 300}, {middle.x * 2 - 1, middle.x * 2 + 1}, {1, 3}};
-        EXPECT_EQ(lensAtPixel(session, frame, plane, {2, 2}, {202, 199}), 1) << "later ones lie above";
-        session.lenses[1].followsCursor = true;
-        EXPECT_EQ(lensAtPixel(session, frame, plane, {2, 2}, {202, 199}), 0);
-        EXPECT_EQ(lensAtPixel(session, frame, plane, {2, 2}, {240, 199}), -1);
-        session.lenses[0].enabled = false;
-        EXPECT_EQ(lensAtPixel(session, frame, plane, {2, 2}, {202, 199}), -1);
-    });
-}
-
 } // namespace
 } // namespace tessera::app

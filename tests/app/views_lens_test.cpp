@@ -157,6 +157,134 @@ TEST_F(LensEdit, TheTopmostLensIsTaken) {
     EXPECT_EQ(lensUnder(space(), session, {60, 60}), -1);
 }
 
+/// A slice of 400 x 100 pixels of the box, stretched to half its height, a little off the middle of the lens: 200
+/// pixels a metre to the right, 100 upwards, and as many of the same length in the world.
+class LensInSlice : public FedImGui {
+protected:
+    LensInSlice() : FedImGui({500, 400}) {}
+    void SetUp() override {
+        session.stretch = {1, 0.5, 1};
+        session.cursor = {0.3, 0.5, 0.45};
+        session.lenses = {{.name = "a", .center = {1, 0.5, 0.5}, .size = glm::vec3(0.08f)}};
+        frame();
+        frame();
+    }
+    void frame() {
+        feedWindow([&] {
+            surface({50, 50}, {450, 150});
+            const PlotFrame plot{{50, 50}, {450, 150}, {0, 200}, {0, 100}}; // centimetres
+            const volume::Box box{glm::dvec3(0), {2, 1, 1}};
+            taken = editLenses(drag, session, box, plot, page, glm::dvec2(100), ImGui::IsItemHovered());
+            ImDrawList& draw = *ImGui::GetWindowDrawList();
+            const int before = draw.VtxBuffer.Size;
+            drawLensHandles(draw, drag, plot, session, box, page, glm::dvec2(100));
+            drawn = draw.VtxBuffer.Size > before;
+        });
+    }
+    void moveTo(ImVec2 at) {
+        mouse = at;
+        frame();
+    }
+    void dragBy(ImVec2 from, ImVec2 by, bool escape = false) {
+        moveTo(from);
+        ImGui::GetIO().MouseDown[0] = true;
+        frame();
+        moveTo({from.x + by.x, from.y + by.y});
+        if (escape) feedKey(ImGui::GetIO(), key::kEscape, true), frame(), feedKey(ImGui::GetIO(), key::kEscape, false);
+        ImGui::GetIO().MouseDown[0] = false;
+        frame();
+    }
+    void hold(bool alt, bool ctrl = false) { feedModifiers(ImGui::GetIO(), ctrl, false, alt); }
+    const vis::Lens& lens() const { return session.lenses.front(); }
+
+    Session session;
+    LensDrag drag;
+    PicturePlane page = planeAcross(0, 1, 2, 0.45);
+    const ImVec2 middle{250, 100}, right{282, 100}, top{250, 68}; // 0.08 of 2 m: 32 pixels
+    bool taken = false, drawn = false;
+};
+
+TEST_F(LensInSlice, SquaresResizeIt) {
+    moveTo({middle.x + 15, middle.y - 15});
+    EXPECT_TRUE(drawn) << "handles of the lens under the mouse";
+    moveTo({60, 60});
+    EXPECT_FALSE(drawn);
+    moveTo({middle.x + 15, middle.y - 15});
+    dragBy(right, {16, 7});
+    EXPECT_NEAR(lens().size.x, 0.12f, 1e-4f) << "half as far again";
+    EXPECT_NEAR(lens().size.y, 0.12f, 1e-4f) << "a ball stays one";
+    EXPECT_EQ(lens().center, glm::dvec3(1, 0.5, 0.5));
+    session.lenses[0].size = glm::vec3(0.08f);
+    moveTo({middle.x + 15, middle.y - 15});
+    hold(false, true);
+    dragBy(top, {3, 8});
+    hold(false);
+    EXPECT_NEAR(lens().size.y, 0.06f, 1e-4f) << "inwards it shrinks; with Ctrl along one axis";
+    EXPECT_EQ(lens().size.x, 0.08f);
+    session.lenses[0].size = glm::vec3(0.08f);
+    moveTo({middle.x + 15, middle.y - 15});
+    dragBy(top, {3, -20}, true);
+    EXPECT_EQ(lens().size, glm::vec3(0.08f)) << "given up";
+    session.lenses[0].shape =
+        vis::LensShape::Disc; // as it faces the viewer: its radius in any slice that it is seen in
+    session.camera.orientation = glm::quat(1, 0, 0, 0);
+    moveTo({middle.x + 12, middle.y - 12});
+    dragBy(top, {0, -16});
+    EXPECT_NEAR(lens().size.x, 0.12f, 1e-4f);
+}
+
+TEST_F(LensInSlice, TheMiddleMovesItAlongTheSlice) {
+    dragBy({middle.x + 3, middle.y + 2}, {40, -10});
+    EXPECT_NEAR(lens().center.x, 1.2, 1e-6);
+    EXPECT_NEAR(lens().center.y, 0.6, 1e-6);
+    EXPECT_EQ(lens().center.z, 0.5);
+    EXPECT_EQ(session.cursor.x, 0.3);
+    session.lenses[0].followsCursor = true;
+    dragBy({50 + 0.3f * 200, 100}, {20, 10});
+    EXPECT_NEAR(session.cursor.x, 0.4, 1e-6) << "the cross-hair goes along";
+    EXPECT_NEAR(session.cursor.y, 0.4, 1e-6);
+    EXPECT_EQ(session.cursor.z, 0.45);
+}
+
+TEST_F(LensInSlice, AltWorksAnywhereInside) {
+    const ImVec2 inside{middle.x + 16, middle.y + 12};
+    moveTo(inside);
+    ImGui::GetIO().MouseWheel = 1;
+    frame();
+    EXPECT_FALSE(taken) << "without Alt the wheel goes through the slices";
+    dragBy(inside, {20, 0});
+    EXPECT_EQ(lens().center.x, 1) << "and a drag moves the cross-hair";
+    hold(true);
+    moveTo(inside);
+    ImGui::GetIO().MouseWheel = 1;
+    frame();
+    EXPECT_TRUE(taken);
+    EXPECT_NEAR(lens().size.x, 0.088f, 1e-5f);
+    dragBy(inside, {20, 0});
+    EXPECT_NEAR(lens().center.x, 1.1, 1e-6);
+    moveTo({middle.x + 20, middle.y});
+    ImGui::GetIO().MouseDown[1] = true;
+    frame();
+    EXPECT_FALSE(taken) << "nothing is rotated in a slice";
+    ImGui::GetIO().MouseDown[1] = false;
+    hold(false);
+}
+
+TEST_F(LensInSlice, TheTopmostOfThoseThatReachTheSliceIsTaken) {
+    session.lenses.push_back(lens());
+    dragBy(middle, {10, 0});
+    EXPECT_EQ(session.lenses[0].center.x, 1);
+    EXPECT_NEAR(session.lenses[1].center.x, 1.05, 1e-6);
+    session.lenses[1].center.x = 1;
+    session.lenses[1].enabled = false;
+    dragBy(middle, {10, 0});
+    EXPECT_NEAR(session.lenses[0].center.x, 1.05, 1e-6);
+    EXPECT_EQ(session.lenses[1].center.x, 1);
+    session.lenses[0].center = {1, 0.5, 0.9};
+    dragBy(middle, {10, 0});
+    EXPECT_EQ(session.lenses[0].center.x, 1) << "what is not seen is not moved";
+}
+
 TEST(LensSection, LiesOnTheLensAndInThePlane) {
     for (const vis::LensShape shape : {vis::LensShape::Sphere, vis::LensShape::Box, vis::LensShape::Cylinder}) {
         const vis::Lens lens{.shape = shape, .size = {0.2f, 0.1f, 0.15f}, .rotation = {30, 40, 50}};

@@ -9,6 +9,7 @@
 #include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
 #include "app/views/shadow_cube/cube_faces.h"
+#include "app/views/shadow_cube/face_menu.h"
 #include "app/views/shadow_cube/wall_projection.h"
 #include "volume/base/error.h"
 #include "volume/bricks/brick_cache.h"
@@ -32,6 +33,7 @@ struct ShadowCubeCache : ViewCache {
     vis::ViewTargetPtr target;
     std::array<vis::ViewTargetPtr, 6> walls;
     LegendPlace legend; ///< where it stays while something moves
+    FaceMenu menu;
     AsyncSurfaces surfaces;
     AsyncFlow flows;
     CubeDrag drag = CubeDrag::None;
@@ -123,6 +125,10 @@ CubeDrag beginDrag(ViewContext& context, const CubeFrame& frame, ShadowCubeCache
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) return CubeDrag::Zoom;
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Middle)) return CubeDrag::Pan;
     if (!ImGui::IsMouseClicked(ImGuiMouseButton_Left)) return CubeDrag::None;
+    if (const auto titled = titledFace(cache.menu, io.MousePos)) {
+        openFaceMenu(cache.menu, *titled);
+        return CubeDrag::None;
+    }
     cache.pressed = io.MousePos;
     const auto hit = frame.hit(io.MousePos);
     if (view.brushing && hit && frame.onData(*hit)) {
@@ -138,8 +144,8 @@ CubeDrag beginDrag(ViewContext& context, const CubeFrame& frame, ShadowCubeCache
     return cache.target && context.renderer.pick(*cache.target, pixel) ? CubeDrag::Object : CubeDrag::Cube;
 }
 
-/// A click without a drag: the cursor goes to the place of the face, or to what was clicked.
-void click(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache) {
+/// A double click: the cursor goes to the place of the face, or to what was clicked.
+void goTo(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const glm::ivec2 pixel(mouse.x - frame.min.x, mouse.y - frame.min.y);
     glm::dvec3& cursor = context.session.cursor;
@@ -164,12 +170,17 @@ bool handleMouse(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& 
         magnify(std::pow(1.15f, io.MouseWheel));
         moving = true;
     }
-    if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) click(context, frame, cache);
+    if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && !titledFace(cache.menu, io.MousePos))
+        goTo(context, frame, cache);
     if (hovered && cache.drag == CubeDrag::None) {
         cache.drag = beginDrag(context, frame, cache, view);
         cache.last = io.MousePos;
     }
     if (cache.drag == CubeDrag::None) return moving;
+    const bool click = cache.drag == CubeDrag::Zoom && io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Right] <
+                                                           io.MouseDragThreshold * io.MouseDragThreshold;
+    if (click && ImGui::IsMouseReleased(ImGuiMouseButton_Right))
+        if (const auto face = faceAt(cache.menu, frame, io.MousePos)) openFaceMenu(cache.menu, *face);
     const glm::vec2 from = frame.ndc(cache.last), to = frame.ndc(io.MousePos);
     if (cache.drag == CubeDrag::Brush) {
         dragBrush(context, frame, cache, io.MousePos);
@@ -186,10 +197,10 @@ bool handleMouse(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& 
             vis::pan(cube, to - from, static_cast<float>(frame.aspect()));
             view.target = cube.target;
         }
-        if (cache.drag == CubeDrag::Zoom) magnify(std::exp((to.y - from.y) * 1.5f));
+        if (cache.drag == CubeDrag::Zoom && !click) magnify(std::exp((to.y - from.y) * 1.5f));
         moving = true;
     }
-    cache.last = io.MousePos;
+    if (!click) cache.last = io.MousePos;
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left) && !ImGui::IsMouseDown(ImGuiMouseButton_Middle) &&
         !ImGui::IsMouseDown(ImGuiMouseButton_Right))
         cache.drag = CubeDrag::None;
@@ -258,8 +269,8 @@ void drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& ca
     }
 }
 
-/// Writes what the visible faces show. `taken`: where titles do not go.
-void drawTitles(const ViewContext& context, const CubeFrame& frame, const ShadowCubeView& view,
+/// Writes what the visible faces show, and keeps where. `taken`: where titles do not go.
+void drawTitles(const ViewContext& context, const CubeFrame& frame, const ShadowCubeView& view, FaceMenu& menu,
                 std::vector<std::pair<ImVec2, ImVec2>> taken) {
     for (std::size_t i = 0; i < kCubeFaces.size(); ++i) {
         const Wall& wall = wallOf(view, i);
@@ -270,6 +281,19 @@ void drawTitles(const ViewContext& context, const CubeFrame& frame, const Shadow
                           ? "shadow of the selection"
                           : kindName(wall.kind) + " " + frame.info.channel(*channel).name,
                       taken);
+        menu.titles[i] = taken.back();
+    }
+}
+
+/// A title that can be clicked is lit; elsewhere the value of the face is read.
+void drawHovered(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache, const ShadowCubeView& view) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const auto titled = cache.drag == CubeDrag::None ? titledFace(cache.menu, mouse) : std::nullopt;
+    if (titled) {
+        lightFaceTitle(*ImGui::GetWindowDrawList(), cache.menu, *titled);
+        ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    } else if (const auto hit = frame.hit(mouse); hit && frame.onData(*hit)) {
+        drawReading(context, frame, cache, view, *hit, mouse);
     }
 }
 
@@ -349,11 +373,11 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
         const LegendArea area = drawLegends(draw, legends, room, cache.legend);
         taken.push_back({area.min, area.max});
     }
-    if (context.decoration.title) drawTitles(context, frame, view, std::move(taken));
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    if (const auto hit = hovered ? frame.hit(mouse) : std::nullopt; hit && frame.onData(*hit))
-        drawReading(context, frame, cache, view, *hit, mouse);
+    cache.menu.titles = {};
+    if (context.decoration.title) drawTitles(context, frame, view, cache.menu, std::move(taken));
+    if (hovered) drawHovered(context, frame, cache, view);
     draw.PopClipRect();
+    drawFaceMenu(cache.menu, frame, axisLabels(session, info), view);
 }
 
 } // namespace tessera::app

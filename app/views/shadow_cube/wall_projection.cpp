@@ -47,6 +47,11 @@ double greatestInterest(const volume::BrickSource& source, const Session& sessio
     return most;
 }
 
+/// In the order of kCubeFaces.
+template <class View> auto wallsOf(View& view) {
+    return std::array{&view.left, &view.right, &view.bottom, &view.top, &view.back, &view.front};
+}
+
 } // namespace
 
 glm::dvec3 CubeFace::at(double s, double t, glm::dvec3 half) const {
@@ -58,8 +63,11 @@ glm::dvec3 CubeFace::at(double s, double t, glm::dvec3 half) const {
 }
 
 const Wall& wallOf(const ShadowCubeView& view, std::size_t face) {
-    const Wall* const walls[] = {&view.left, &view.right, &view.bottom, &view.top, &view.back, &view.front};
-    return *walls[face];
+    return *wallsOf(view)[face];
+}
+
+Wall& wallOf(ShadowCubeView& view, std::size_t face) {
+    return *wallsOf(view)[face];
 }
 
 bool facesViewer(const CubeFace& face, glm::dvec3 half, const vis::Camera& camera) {

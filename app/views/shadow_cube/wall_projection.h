@@ -22,6 +22,7 @@ struct CubeFace {
 inline constexpr std::array<CubeFace, 6> kCubeFaces = {
     {{0, false}, {0, true}, {1, false}, {1, true}, {2, false}, {2, true}}};
 const Wall& wallOf(const ShadowCubeView& view, std::size_t face);
+Wall& wallOf(ShadowCubeView& view, std::size_t face);
 
 /// Whether the inner side of a face is turned to the viewer, so that it is behind the contents of the cube.
 bool facesViewer(const CubeFace& face, glm::dvec3 half, const vis::Camera& camera);

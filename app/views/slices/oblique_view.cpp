@@ -2,6 +2,7 @@
 #include "app/pane/view_parts.h"
 #include "app/queries/readout.h"
 #include "app/session/shown_scene.h"
+#include "app/tools/lens_edit.h"
 #include "app/tools/oblique_tilt.h"
 #include "app/tools/plane_sections.h"
 #include "app/tools/profile_line.h"
@@ -25,8 +26,8 @@ constexpr float kBelow = 8;   ///< em: their height below it
 
 struct ObliqueCache : ViewCache {
     vis::ViewTargetPtr target;
-    bool dragging = false;
-    int lens = -1; ///< that is dragged instead of the cross-hair
+    bool dragging = false; ///< the cross-hair
+    LensDrag lens;
     HandleDrag handles;
     ContourCache contours;
 };
@@ -119,28 +120,23 @@ void useMouse(ViewContext& context, ObliqueCache& cache, ObliqueView& view, cons
         ImGui::EndPopup();
     }
     const ImGuiIO& io = ImGui::GetIO();
-    const bool onHandle = editHandles(cache.handles, session, info, plot, flat.page(), flat.perUnit(),
-                                      ImGui::IsItemHovered() && !cache.dragging);
-    if (onHandle) context.interacting = true;
-    if (ImGui::IsItemActivated() && !onHandle) {
-        cache.dragging = true;
-        cache.lens = lensAtPixel(session, plot, flat.page(), flat.perUnit(), io.MousePos);
-    }
+    const bool free = ImGui::IsItemHovered() && !cache.dragging;
+    // With Alt a lens is meant, also where a dot of something else lies over it.
+    const bool onHandle = !cache.lens.active && editHandles(cache.handles, session, info, plot, flat.page(),
+                                                            flat.perUnit(), free && !io.KeyAlt);
+    const bool onLens = editLenses(cache.lens, session, info.bounds, plot, flat.page(), flat.perUnit(),
+                                   free && cache.handles.object.empty());
+    followPointer(session, info.bounds, plot, flat.page(), flat.perUnit(), free);
+    if (onHandle || onLens) context.interacting = true;
+    if (ImGui::IsItemActivated() && !onHandle && !onLens) cache.dragging = true;
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) cache.dragging = false;
     if (cache.dragging) {
-        const glm::dvec3 place = flat.placeAt(plot.data(io.MousePos) / flat.perUnit());
-        if (cache.lens >= 0 && cache.lens < static_cast<int>(session.lenses.size())) {
-            // Along the plane: it stays as far before or behind it.
-            glm::dvec3& center = session.lenses[static_cast<std::size_t>(cache.lens)].center;
-            const glm::dvec2 by = flat.along(place) - flat.along(center);
-            center = glm::clamp(center + flat.axes.right * by.x + flat.axes.up * by.y, info.bounds.lo, info.bounds.hi);
-        } else {
-            session.cursor = nearestInPlane(flat.plane, info.bounds, place);
-        }
+        session.cursor = nearestInPlane(flat.plane, info.bounds, flat.placeAt(plot.data(io.MousePos) / flat.perUnit()));
         context.interacting = true;
     }
     if (!ImGui::IsItemHovered()) return;
-    ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    if (cache.handles.object.empty() && cache.lens.grip == LensGrip::None) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    if (onLens) return;
     if (io.MouseWheel == 0) return;
     const double cell = info.lattice.kind == volume::LatticeKind::BCC ? 0.5 : 1;
     const double step = cell / glm::length(flat.plane.normal / info.lattice.spacing);
@@ -220,6 +216,9 @@ void drawOver(ViewContext& context, ObliqueCache& cache, const std::string& pane
     if (shown.outlines) {
         drawPlaneSections(draw, plot, planeSections(context.session, info, flat.page()), unit);
         drawProfileLines(draw, plot, context.session, flat.page(), unit);
+    }
+    if (shown.outlines && !context.figure) { // nobody can drag in a figure
+        drawLensHandles(draw, cache.lens, plot, context.session, info.bounds, flat.page(), unit);
         drawHandles(draw, cache.handles, plot, context.session, info, flat.page(), unit);
     }
     const glm::dvec2 cursor = flat.along(context.session.cursor) * unit;

@@ -142,27 +142,30 @@ void handlePlaneMouse(ViewContext& context, SlicePlanes& planes, const PlaneFram
     }
     ImGui::PopID();
     const ImGuiIO& io = ImGui::GetIO();
-    const bool onHandle = editHandles(planes.handles[static_cast<std::size_t>(index)], session, info, frame.plot,
-                                      planeAcross(axes.right, axes.up, axes.normal, session.cursor[axes.normal]),
-                                      frame.perUnit, ImGui::IsItemHovered() && planes.dragging < 0);
-    if (onHandle) context.interacting = true;
-    if (ImGui::IsItemActivated() && !onHandle) {
-        planes.dragging = index;
-        planes.lens = lensAtPixel(session, frame.plot, planeAcross(axes.right, axes.up, axes.normal, 0), frame.perUnit,
-                                  io.MousePos);
-    }
+    HandleDrag& handle = planes.handles[static_cast<std::size_t>(index)];
+    LensDrag& lens = planes.lenses[static_cast<std::size_t>(index)];
+    const PicturePlane page = planeAcross(axes.right, axes.up, axes.normal, session.cursor[axes.normal]);
+    const bool free = ImGui::IsItemHovered() && planes.dragging < 0;
+    // With Alt a lens is meant, also where a dot of something else lies over it.
+    const bool onHandle =
+        !lens.active && editHandles(handle, session, info, frame.plot, page, frame.perUnit, free && !io.KeyAlt);
+    const bool onLens =
+        editLenses(lens, session, info.bounds, frame.plot, page, frame.perUnit, free && handle.object.empty());
+    followPointer(session, info.bounds, frame.plot, page, frame.perUnit, free);
+    if (onHandle || onLens) context.interacting = true;
+    if (ImGui::IsItemActivated() && !onHandle && !onLens) planes.dragging = index;
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) planes.dragging = -1;
     if (planes.dragging == index) {
-        const bool lens = planes.lens >= 0 && planes.lens < static_cast<int>(session.lenses.size());
-        glm::dvec3& moved = lens ? session.lenses[static_cast<std::size_t>(planes.lens)].center : session.cursor;
         const glm::dvec2 at = frame.plot.data(io.MousePos) / frame.perUnit;
-        moved[axes.right] = std::clamp(at.x, info.bounds.lo[axes.right], info.bounds.hi[axes.right]);
-        moved[axes.up] = std::clamp(at.y, info.bounds.lo[axes.up], info.bounds.hi[axes.up]);
+        glm::dvec3& cursor = session.cursor;
+        cursor[axes.right] = std::clamp(at.x, info.bounds.lo[axes.right], info.bounds.hi[axes.right]);
+        cursor[axes.up] = std::clamp(at.y, info.bounds.lo[axes.up], info.bounds.hi[axes.up]);
         context.interacting = true;
     }
     if (ImGui::IsItemHovered()) {
-        ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
-        if (io.MouseWheel != 0) stepCursor(session, info, axes.normal, io.MouseWheel * (io.KeyShift ? 10.0f : 1.0f));
+        if (handle.object.empty() && lens.grip == LensGrip::None) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+        if (io.MouseWheel != 0 && !onLens)
+            stepCursor(session, info, axes.normal, io.MouseWheel * (io.KeyShift ? 10.0f : 1.0f));
     }
 }
 
@@ -224,6 +227,11 @@ void drawOverPlane(ViewContext& context, SlicePlanes& planes, const std::string&
         const PicturePlane page = planeAcross(right, up, normal, place);
         drawPlaneSections(draw, frame.plot, planeSections(session, info, page), frame.perUnit);
         drawProfileLines(draw, frame.plot, session, page, frame.perUnit);
+    }
+    if (shown.outlines && !context.figure) { // nobody can drag in a figure
+        const PicturePlane page = planeAcross(right, up, normal, place);
+        drawLensHandles(draw, planes.lenses[static_cast<std::size_t>(index)], frame.plot, session, info.bounds, page,
+                        frame.perUnit);
         drawHandles(draw, planes.handles[static_cast<std::size_t>(index)], frame.plot, session, info, page,
                     frame.perUnit);
     }

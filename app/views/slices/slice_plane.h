@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/pane/view_context.h"
+#include "app/tools/lens_edit.h"
 #include "app/tools/space_handles.h"
 #include "app/views/slices/contour_data.h"
 #include "app/views/slices/contour_lines.h"
@@ -15,9 +16,9 @@ namespace tessera::app {
 /// What the three pictures keep between frames.
 struct SlicePlanes {
     std::array<vis::ViewTargetPtr, 3> targets;
-    int dragging = -1; ///< the plane whose cross-hair or lens is being dragged
-    int lens = -1;     ///< the lens that is dragged instead of the cross-hair
+    int dragging = -1; ///< the plane whose cross-hair is being dragged
     std::array<HandleDrag, 3> handles;
+    std::array<LensDrag, 3> lenses;
     std::array<ContourCache, 3> contours;
 };
 

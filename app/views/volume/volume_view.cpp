@@ -188,8 +188,7 @@ private:
         const bool forLens = ImGui::GetIO().KeyAlt; // also where a dot of something else lies over it
         const bool onHandle = lenses && !cache_.lens.active &&
                               editHandles(cache_.handles, session_, info_, before, free && !forLens, view_.showLights);
-        const bool onLens =
-            lenses && !onHandle && cache_.handles.object.empty() && editLenses(cache_.lens, session_, before, free);
+        const bool onLens = lenses && editLenses(cache_.lens, session_, before, free && cache_.handles.object.empty());
         const bool follows = lenses && followPointer(session_, before, free);
         const bool moving = onHandle || onLens || follows ||
                             handleMouse(context_, cache_.hand, cache_.target.get(), picture_, world_, "menu");
