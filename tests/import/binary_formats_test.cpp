@@ -149,6 +149,20 @@ TEST_F(BinaryFormats, Hdf5ByPath) {
     expectCutsAreTold(path, path);
 }
 
+// A few bytes of a damaged file can state more times than their list has room for.
+TEST_F(BinaryFormats, Hdf5OfEndlessTimesIsRefused) {
+    const std::string path = (folder_ / "a.h5").string();
+    const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    const hsize_t dims[] = {hsize_t(1) << 50, 6, 4, 5}, chunk[] = {1, 6, 4, 5};
+    const hid_t space = H5Screate_simple(4, dims, nullptr), parts = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_chunk(parts, 4, chunk);
+    H5Dclose(H5Dcreate2(file, "T", H5T_NATIVE_FLOAT, space, H5P_DEFAULT, parts, H5P_DEFAULT));
+    H5Pclose(parts);
+    H5Sclose(space);
+    H5Fclose(file);
+    EXPECT_THAT(failure(path), testing::HasSubstr("array \"T\" states 1125899906842624 times, more than 10000000"));
+}
+
 TEST_F(BinaryFormats, VtkHdfImage) {
     const std::string path = (folder_ / "a.vtkhdf").string();
     const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);

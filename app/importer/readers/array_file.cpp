@@ -180,6 +180,14 @@ Dims commonGrid(const std::vector<StoredArray>& arrays) {
     return best;
 }
 
+/// Throws where a damaged file states so many times that their list alone would fill the memory.
+void refuseEndless(const std::string& name, std::size_t times) {
+    constexpr std::size_t kMostTimes = 10'000'000;
+    if (times > kMostTimes)
+        throw std::runtime_error("array \"" + name + "\" states " + std::to_string(times) + " times, more than " +
+                                 std::to_string(kMostTimes));
+}
+
 } // namespace
 
 void openArrays(std::vector<StoredArray> arrays, Source& source) {
@@ -197,6 +205,7 @@ void openArrays(std::vector<StoredArray> arrays, Source& source) {
         const std::string word = lastPart(array.name);
         if (array.dims.size() == 1) {
             const bool time = word == "t" || word == "time" || word == "times";
+            if (time) refuseEndless(array.name, array.dims[0]);
             if (time) times = numbersOf(array);
             if (time && !array.unit.empty()) source.timeUnit = array.unit;
             for (std::size_t axis = 0; axis < 3; ++axis)
@@ -207,6 +216,7 @@ void openArrays(std::vector<StoredArray> arrays, Source& source) {
             continue;
         }
         if (std::optional<Form> form = formOf(array.dims, dims)) {
+            refuseEndless(array.name, form->times);
             frames = std::max(frames, form->times);
             chosen->push_back({std::move(array), *form});
         } else {
