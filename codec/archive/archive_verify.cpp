@@ -70,10 +70,9 @@ struct Verifier {
     void frame(std::size_t number) {
         const FrameRecord& record = impl.index.frames[number];
         const std::size_t time = number / impl.components;
-        std::size_t component = number % impl.components, parameter = 0;
         const auto& parameters = impl.metadata.info.parameters;
-        while (component >= std::size_t(parameters[parameter].components))
-            component -= std::size_t(parameters[parameter++].components);
+        const std::size_t parameter = parameterOf(impl.metadata.info, number % impl.components);
+        const std::size_t component = number % impl.components - firstComponent(impl.metadata.info, int(parameter));
         std::atomic<std::uint64_t> bytes = 0, samples = 0, bad = 0;
         parallelFor(impl.bricks, [&](std::size_t brick) {
             const glm::ivec3 at = impl.metadata.grid.indexOf(brick);

@@ -125,11 +125,7 @@ struct ArchiveWriter::Impl {
 bool ArchiveWriter::Impl::mixesParts(std::size_t component) const {
     const volume::BrickGrid& grid = metadata.grid;
     if (grid.levels == 1 || grid.count() == glm::ivec3(1)) return false;
-    const auto& parameters = metadata.info.parameters;
-    std::size_t first = 0, at = 0;
-    while (component >= first + std::size_t(parameters[at].components))
-        first += std::size_t(parameters[at++].components);
-    const volume::Parameter& parameter = parameters[at];
+    const volume::Parameter& parameter = metadata.info.parameters[parameterOf(metadata.info, component)];
     return parameter.categorical ? parameter.components == 1 : volume::labelOf(metadata.info, parameter) >= 0;
 }
 

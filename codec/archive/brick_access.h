@@ -30,6 +30,13 @@ inline std::size_t firstComponent(const volume::DatasetInfo& info, int parameter
     for (int p = 0; p < parameter; ++p) first += std::size_t(info.parameters[std::size_t(p)].components);
     return first;
 }
+/// The parameter of a component, counted through all parameters.
+inline std::size_t parameterOf(const volume::DatasetInfo& info, std::size_t component) {
+    std::size_t parameter = 0;
+    while (component >= std::size_t(info.parameters[parameter].components))
+        component -= std::size_t(info.parameters[parameter++].components);
+    return parameter;
+}
 inline std::size_t componentCount(const volume::DatasetInfo& info) {
     return firstComponent(info, int(info.parameters.size()));
 }
