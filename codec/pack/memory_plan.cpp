@@ -3,12 +3,12 @@
 #include "codec/archive/brick_access.h"
 #include "codec/archive/coded_bricks.h"
 #include "volume/base/error.h"
+#include "volume/base/parallel.h"
 #include "volume/resample/series.h"
 #include "volume/system/confine.h"
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 
 namespace tessera::codec {
 
@@ -42,12 +42,12 @@ bool isBounded(const volume::Parameter& parameter, const PackOptions& options) {
 /// Memory of the bricks being coded, in bytes: samples, flags, codes and coefficients on every thread. Where
 /// coefficients are quantised, what a reader will decode is computed beside them.
 double bytesOfBricks(const volume::BrickGrid& grid, const volume::Parameter& parameter, const PackOptions& options) {
-    constexpr double kThreads = 16, kCodes = 12, kWithDecoded = 28;
+    constexpr double kCodes = 12, kWithDecoded = 28;
     const double codes = isBounded(parameter, options) ? kWithDecoded : kCodes;
-    const double brick = double(brickBytes(grid, parameter.type)),
-                 samples = brick / double(volume::byteSize(parameter.type));
-    return std::min({kThreads, double(std::thread::hardware_concurrency()), double(grid.brickCount())}) *
-           (brick + (1 + codes) * samples);
+    const std::size_t brick = brickBytes(grid, parameter.type),
+                      atOnce = std::min({std::size_t(mostThreads()), batchOf(brick), grid.brickCount()});
+    const double samples = double(brick) / double(volume::byteSize(parameter.type));
+    return double(atOnce) * (double(brick) + (1 + codes) * samples);
 }
 
 /// Memory of packing in slabs, in bytes.
@@ -149,8 +149,8 @@ MemoryPlan planMemory(const Metadata& metadata, const volume::Dataset& dataset, 
     for (const volume::Parameter& parameter : source.parameters) {
         const double bytes = double(volume::byteSize(parameter.type)) + 1; // plus a flag
         step = std::max(step, parameter.components * samples * bytes + stored * bytes + working);
-        const double bricks = isBounded(parameter, options) ? bytesOfBricks(metadata.grid, parameter, options) : 0;
-        coding = std::max(coding, parameter.components * stored * bytes + 2 * stored * bytes + bricks);
+        coding = std::max(coding, parameter.components * stored * bytes + 2 * stored * bytes +
+                                      bytesOfBricks(metadata.grid, parameter, options));
         all += parameter.components * samples * bytes;
         last += parameter.components * stored * bytes;
     }

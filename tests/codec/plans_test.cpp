@@ -3,9 +3,12 @@
 #include "codec/container/metadata.h"
 #include "codec/pack/memory_plan.h"
 #include "tests/codec/make_dataset.h"
+#include "volume/base/error.h"
 #include "volume/resample/resample.h"
 
+#include <cstdio>
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 /// What is decided before a sample is read, and what is said of it.
 namespace tessera::codec {
@@ -47,15 +50,48 @@ TEST(MemoryPlan, SlabsFitTheLimit) {
     }
 }
 
-// A brick whose coefficients may be quantised takes 33 bytes a sample while it is coded.
+/// The least memory, in MB, that packing says it needs on so many threads.
+double leastMemory(const Metadata& metadata, const volume::Dataset& made, PackOptions options, int threads) {
+    options.memoryMb = 1;
+    double least = 0;
+    tbb::task_arena(threads).execute([&] {
+        try {
+            (void)planMemory(metadata, made, options, 0);
+        } catch (const Error& error) {
+            std::sscanf(error.what(), "packing data of this size needs about %lf", &least);
+        }
+    });
+    return least;
+}
+
+// Every thread codes a brick of its own, as long as there are bricks in a batch.
+TEST(MemoryPlan, CountsTheBricksOfAllThreads) {
+    volume::Dataset made = makeDataset({256, 128, 256}, {{"v", ScalarType::U16}}, 1);
+    Metadata metadata = metadataOf(made.info, volume::LatticeKind::CC);
+    PackOptions options;
+    options.lattice = StoredLattice::CC;
+    metadata.grid.brickSize = 64; // 32 bricks, each of which takes 15 bytes a sample while it is coded
+    const double one = leastMemory(metadata, made, options, 1), brick = 64 * 64 * 64 * 15e-6;
+    EXPECT_GT(one, 64 + 256 * 128 * 256 * 9e-6);
+    EXPECT_NEAR(leastMemory(metadata, made, options, 16), one + 15 * brick, 1);
+    EXPECT_NEAR(leastMemory(metadata, made, options, 100), one + 31 * brick, 1);
+    metadata.grid.brickSize = 128; // 4 bricks
+    const double large = leastMemory(metadata, made, options, 1);
+    EXPECT_NEAR(leastMemory(metadata, made, options, 100), large + 3 * 8 * brick, 1);
+}
+
+// A brick whose coefficients may be quantised takes 33 bytes a sample while it is coded, another one 17.
 TEST(MemoryPlan, CountsBricksThatAreCodedWithinABound) {
     volume::Dataset made = makeDataset({100, 100, 100}, {{"v"}}, 1);
     Metadata metadata = metadataOf(made.info, volume::LatticeKind::CC);
     metadata.grid.brickSize = 128;
     PackOptions options;
     options.lattice = StoredLattice::CC;
-    options.memoryMb = 90;
+    options.memoryMb = 98;
     EXPECT_NO_THROW((void)planMemory(metadata, made, options, 0));
+    options.memoryMb = 94;
+    EXPECT_THROW((void)planMemory(metadata, made, options, 0), Error);
+    options.memoryMb = 98;
     options.maxError = 1e-3;
     EXPECT_THROW((void)planMemory(metadata, made, options, 0), Error);
     options.memoryMb = 120;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 namespace tessera {
 
@@ -11,6 +12,11 @@ namespace tessera {
 template <class Body> void parallelRanges(std::size_t count, Body&& body, std::size_t grain = 1) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                       [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); });
+}
+
+/// On how many threads the functions here run a body at once, at most.
+inline int mostThreads() {
+    return tbb::this_task_arena::max_concurrency();
 }
 
 /// Calls `body(i)` for every i in [0, count), on all cores.
