@@ -15,7 +15,7 @@ namespace tessera::vis::packet {
 
 using volume::LatticeKind;
 
-constexpr glm::ivec2 kSize{73, 57}; // odd: the last packets of a row are not full
+constexpr glm::ivec2 kSize{53, 41}; // odd: the last packets of a row are not full
 constexpr double kPsnr = 70;        ///< dB for a peak of 1
 /// Pixels where a yes or no (present or absent, crossed or grazed, one sample more or less) falls the other way,
 /// because samples have 15 bits.
