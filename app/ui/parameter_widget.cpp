@@ -126,14 +126,27 @@ void MemberToWidget::draw(const WidgetContext& context, Value value, const Field
     }
 }
 
-bool drawMembers(Value value, const WidgetContext& context) {
+bool drawMembers(Value value, const WidgetContext& context, const DrawMember& own) {
     bool changed = false;
     std::optional<Range> scale;
     std::string unit;
     const MemberToWidget draw{context, changed, scale, unit};
-    value.visitMembers([&](Value member, const FieldInfo& field) {
-        if (field.applies) draw(member, field);
+    std::vector<std::string_view> groups;
+    const auto drawGroup = [&](std::string_view group) {
+        value.visitMembers([&](Value member, const FieldInfo& field) {
+            if (field.applies && field.group == group && !(own && own(member, field))) draw(member, field);
+        });
+    };
+    value.visitMembers([&](Value, const FieldInfo& field) {
+        const bool shown = field.applies && !field.hidden && !field.group.empty();
+        if (shown && std::ranges::find(groups, field.group) == groups.end()) groups.push_back(field.group);
     });
+    drawGroup("");
+    for (const std::string_view group : groups) {
+        if (!beginSection(("group " + std::string(group)).c_str(), group, "")) continue;
+        drawGroup(group);
+        endSection();
+    }
     return changed;
 }
 

@@ -12,8 +12,12 @@
 /// Widgets of described values: of a whole struct, of a list of them, of one setting by its path.
 namespace tessera::app {
 
-/// Draws a widget for each member that is not hidden and applies; returns true when one changed.
-bool drawMembers(Value value, const WidgetContext& context);
+/// Draws one member in a way of its own; false: it is to be drawn as any other.
+using DrawMember = std::function<bool(Value member, const FieldInfo& field)>;
+
+/// Draws a widget for each member that is not hidden and applies: first those without a group, then a section for each
+/// group, folded at first. `own` is asked before each member of this struct. Returns true when one changed.
+bool drawMembers(Value value, const WidgetContext& context, const DrawMember& own = {});
 template <class T> bool drawDescribed(T& value, const WidgetContext& context) {
     return drawMembers(valueOf(value), context);
 }

@@ -3,10 +3,12 @@
 #include "app/ui/commands.h"
 #include "app/ui/parameter_widget.h"
 #include "app/ui/widgets.h"
+#include "tests/app/drawn_text.h"
 #include "tests/app/ui_fixture.h"
 
 #include <algorithm>
 #include <cmath>
+#include <gmock/gmock.h>
 
 namespace tessera::app {
 namespace {
@@ -70,7 +72,10 @@ TEST_F(UiTest, WhatDoesNotApplyIsNotDrawn) {
         for (int i = 0; i < 3; ++i) frame(body);
         return std::lround(rows);
     };
-    const auto all = [&] { drawDescribed(layer, {}); };
+    const auto all = [&] {
+        openSection("group Values along rays");
+        drawDescribed(layer, {});
+    };
     const auto threshold = [&] { drawParameter(session, "/layers/0/technique/threshold", {}); };
     const long composite = height(all); // classification and shading, no threshold
     EXPECT_EQ(height(threshold), 1);
@@ -79,6 +84,50 @@ TEST_F(UiTest, WhatDoesNotApplyIsNotDrawn) {
     layer.style = vis::RayStyle::LocalMaximum;
     EXPECT_EQ(height(all), composite - 2) << "no shading and look, but a threshold";
     EXPECT_EQ(height(threshold), 1);
+}
+
+/// A struct with members that matter first and others in two groups, which do not lie together.
+struct GroupedSettings {
+    bool seldom = false, often = false, rarely = false, never = false, seldomToo = false, unused = false;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.seldom, FieldInfo{.key = "seldom", .unit = "", .doc = "", .group = "Some"});
+        visit(self.often, FieldInfo{.key = "often", .unit = "", .doc = ""});
+        visit(self.rarely, FieldInfo{.key = "rarely", .unit = "", .doc = "", .group = "Others"});
+        visit(self.never, FieldInfo{.key = "never", .unit = "", .doc = "", .applies = false, .group = "None"});
+        visit(self.seldomToo, FieldInfo{.key = "seldomToo", .unit = "", .doc = "", .group = "Some"});
+        visit(self.unused, FieldInfo{.key = "unused", .unit = "", .doc = "", .hidden = true, .group = "None"});
+    }
+};
+
+TEST_F(UiTest, GroupsFoldBelowTheMembersThatMatter) {
+    GroupedSettings settings;
+    std::vector<std::string> own, unfolds;
+    const auto body = [&] {
+        ImGui::SetNextWindowSize({400, 500});
+        ImGui::Begin("test", nullptr, ImGuiWindowFlags_NoDecoration);
+        for (const std::string& group : unfolds) openSection(("group " + group).c_str());
+        drawMembers(valueOf(settings), {}, [&](Value, const FieldInfo& field) {
+            own.emplace_back(field.key);
+            return false;
+        });
+        ImGui::End();
+    };
+    const auto drawn = [&] {
+        for (int i = 0; i < 2; ++i) {
+            own.clear();
+            frame(body);
+        }
+        std::vector<std::string> texts;
+        for (const DrawnText& text : drawnTexts()) texts.push_back(text.text);
+        return texts;
+    };
+    using testing::ElementsAre;
+    EXPECT_THAT(drawn(), ElementsAre("Often", "Some", "Others"));
+    EXPECT_THAT(own, ElementsAre("often")) << "what is folded is not asked for";
+    unfolds = {"Some"};
+    EXPECT_THAT(drawn(), ElementsAre("Often", "Some", "Seldom", "Seldom too", "Others"));
+    unfolds = {"Others"}; // the other one stays as it is
+    EXPECT_THAT(drawn(), ElementsAre("Often", "Some", "Seldom", "Seldom too", "Others", "Rarely"));
 }
 
 TEST(CommandsTest, ThePaletteFindsByWordsAndLetters) {

@@ -44,6 +44,7 @@ struct VolumeLayer {
     Look look = {};                                       ///< composite only
     bool operator==(const VolumeLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
+        constexpr std::string_view kValues = "Values along rays";
         visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
         visit(self.colorBy, FieldInfo{.key = "colorBy",
                                       .unit = "",
@@ -57,14 +58,16 @@ struct VolumeLayer {
         visit(self.quantity, FieldInfo{.key = "quantity",
                                        .unit = "",
                                        .doc = "Show the value or the magnitude of its gradient",
-                                       .names = kQuantityNames});
+                                       .names = kQuantityNames,
+                                       .group = kValues});
         visit(self.classification,
               FieldInfo{.key = "classification",
                         .unit = "",
                         .doc = "Composite: colour of the interpolated value (post), interpolated colours of the "
                                "samples (pre), or mean colour of all values between two samples (preintegrated)",
                         .names = kClassificationNames,
-                        .applies = self.style == RayStyle::Composite && self.quantity == Quantity::Value});
+                        .applies = self.style == RayStyle::Composite && self.quantity == Quantity::Value,
+                        .group = kValues});
         visit(self.threshold, FieldInfo{.key = "threshold",
                                         .unit = "",
                                         .doc = "Local maximum: smallest value that counts as a maximum",
@@ -200,24 +203,29 @@ struct Layer {
     BrushEffect brushes = BrushEffect::Fade;
     bool operator==(const Layer&) const = default;
     static void describe(auto& self, auto&& visit) {
+        constexpr std::string_view kOwn = "This layer alone";
         visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name of the layer"});
         visit(self.visible, FieldInfo{.key = "visible", .unit = "", .doc = "Show the layer"});
         visit(self.technique, FieldInfo{.key = "technique", .unit = "", .doc = "What the layer draws"});
         visit(self.lens, FieldInfo{.key = "lens",
                                    .unit = "",
                                    .doc = "Lens to which the layer belongs: it is drawn only inside; empty: everywhere",
-                                   .refersTo = "lens"});
+                                   .refersTo = "lens",
+                                   .group = kOwn});
         visit(self.transfer,
               FieldInfo{.key = "transfer",
                         .unit = "",
-                        .doc = "Name of the transfer function of this layer alone; empty: that of its parameter"});
-        visit(self.timeShift, FieldInfo{.key = "timeShift", .unit = "s", .doc = "Time offset from the time shown"});
+                        .doc = "Name of the transfer function of this layer alone; empty: that of its parameter",
+                        .group = kOwn});
+        visit(self.timeShift,
+              FieldInfo{.key = "timeShift", .unit = "s", .doc = "Time offset from the time shown", .group = kOwn});
         visit(self.brushes,
               FieldInfo{.key = "brushes",
                         .unit = "",
                         .doc = "Effect of the brushes: fade what is not brushed (fade), no effect (none), draw only "
                                "what is not brushed (context) or only what is brushed (focus)",
-                        .names = kBrushEffectNames});
+                        .names = kBrushEffectNames,
+                        .group = kOwn});
     }
 };
 

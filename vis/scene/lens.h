@@ -40,8 +40,7 @@ struct Lens {
 
     bool operator==(const Lens&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name by which layers refer to the lens"});
-        visit(self.enabled, FieldInfo{.key = "enabled", .unit = "", .doc = "Apply and show this lens"});
+        constexpr std::string_view kPlace = "Place", kData = "Data inside", kList = "Name and colour";
         visit(self.shape, FieldInfo{.key = "shape",
                                     .unit = "",
                                     .doc = "Shape; a disc faces the viewer and extends through the whole depth",
@@ -56,11 +55,13 @@ struct Lens {
                         .names = kLensEffectNames});
         visit(self.center,
               FieldInfo{.key = "center", .unit = "m", .doc = "Centre of the lens", .applies = !self.followsCursor});
-        visit(self.followsCursor, FieldInfo{.key = "followsCursor", .unit = "", .doc = "Follow the linked cross-hair"});
+        visit(self.followsCursor,
+              FieldInfo{.key = "followsCursor", .unit = "", .doc = "Follow the linked cross-hair", .group = kPlace});
         visit(self.followsPointer,
               FieldInfo{.key = "followsPointer",
                         .unit = "",
-                        .doc = "Follow the mouse over 3D views and slices (F pins and releases it)"});
+                        .doc = "Follow the mouse over 3D views and slices (F pins and releases it)",
+                        .group = kPlace});
         visit(self.size, FieldInfo{.key = "size",
                                    .unit = "",
                                    .doc = "Radii or half edge lengths along its axes; longest edge of the data = 1",
@@ -70,12 +71,12 @@ struct Lens {
                                        .unit = "deg",
                                        .doc = "Rotation around x, then y, then z",
                                        .range = Range{-180, 180},
-                                       .applies = self.shape != LensShape::Disc});
+                                       .applies = self.shape != LensShape::Disc,
+                                       .group = kPlace});
         visit(self.rim, FieldInfo{.key = "rim",
                                   .unit = "",
                                   .doc = "Width of the soft edge, as a share of the radius; 0 = a sharp edge",
                                   .range = Range{0, 1}});
-        visit(self.inverted, FieldInfo{.key = "inverted", .unit = "", .doc = "Act outside instead of inside"});
         visit(self.strength,
               FieldInfo{.key = "strength", .unit = "", .doc = "Strength of the effect", .range = Range{0, 1}});
         visit(self.magnification, FieldInfo{.key = "magnification",
@@ -88,11 +89,22 @@ struct Lens {
                                      .unit = "",
                                      .doc = "Factor on the setting `render.detail` for bricks that touch the lens, in "
                                             "data too large for one texture; 0 = full resolution",
-                                     .range = Range{0, 8}});
-        visit(self.marks,
-              FieldInfo{.key = "marks", .unit = "", .doc = "Mark the samples inside the lens in plots and tables"});
-        visit(self.color,
-              FieldInfo{.key = "color", .unit = "", .doc = "Colour of its outline (sRGB)", .range = Range{0, 1}});
+                                     .range = Range{0, 8},
+                                     .group = kData});
+        visit(self.marks, FieldInfo{.key = "marks",
+                                    .unit = "",
+                                    .doc = "Mark the samples inside the lens in plots and tables",
+                                    .group = kData});
+        visit(self.name,
+              FieldInfo{.key = "name", .unit = "", .doc = "Name by which layers refer to the lens", .group = kList});
+        visit(self.enabled, FieldInfo{.key = "enabled", .unit = "", .doc = "Apply and show this lens", .group = kList});
+        visit(self.inverted,
+              FieldInfo{.key = "inverted", .unit = "", .doc = "Act outside instead of inside", .group = kList});
+        visit(self.color, FieldInfo{.key = "color",
+                                    .unit = "",
+                                    .doc = "Colour of its outline (sRGB)",
+                                    .range = Range{0, 1},
+                                    .group = kList});
     }
 };
 

@@ -166,11 +166,13 @@ struct Lighting {
 
     bool operator==(const Lighting&) const = default;
     static void describe(auto& self, auto&& visit) {
+        constexpr std::string_view kSurface = "Reflection";
         visit(self.model, FieldInfo{.key = "model",
                                     .unit = "",
                                     .doc = "Reflection model: Phong, or a physical one (GGX microfacets over a Lambert "
                                            "base, energy conserving)",
                                     .names = kLightModelNames});
+        visit(self.ambient, FieldInfo{.key = "ambient", .unit = "", .doc = "Ambient light", .range = Range{0, 1}});
         visit(self.lights,
               FieldInfo{.key = "lights", .unit = "", .doc = "Lights; up to 16, or any number with `inMaps`"});
         visit(self.inMaps,
@@ -179,39 +181,44 @@ struct Lighting {
                         .doc = "Combine all lights in cube maps: any number at the cost of one, without shadows"});
         visit(self.environment, FieldInfo{.key = "environment", .unit = "", .doc = "Light from the surroundings"});
         visit(self.shadows, FieldInfo{.key = "shadows", .unit = "", .doc = "Shadows, ambient occlusion, translucency"});
-        visit(self.ambient, FieldInfo{.key = "ambient", .unit = "", .doc = "Ambient light", .range = Range{0, 1}});
         visit(self.diffuse, FieldInfo{.key = "diffuse",
                                       .unit = "",
                                       .doc = "Diffuse reflection (Phong)",
                                       .range = Range{0, 1},
-                                      .applies = self.model == LightModel::Phong});
+                                      .applies = self.model == LightModel::Phong,
+                                      .group = kSurface});
         visit(self.specular, FieldInfo{.key = "specular",
                                        .unit = "",
                                        .doc = "Specular reflection (Phong)",
                                        .range = Range{0, 1},
-                                       .applies = self.model == LightModel::Phong});
+                                       .applies = self.model == LightModel::Phong,
+                                       .group = kSurface});
         visit(self.shininess, FieldInfo{.key = "shininess",
                                         .unit = "",
                                         .doc = "Phong exponent",
                                         .range = Range{1, 200},
                                         .logScale = true,
-                                        .applies = self.model == LightModel::Phong});
+                                        .applies = self.model == LightModel::Phong,
+                                        .group = kSurface});
         visit(self.roughness, FieldInfo{.key = "roughness",
                                         .unit = "",
                                         .doc = "Roughness of the surface: 0.05 polished, 1 dull (physical)",
                                         .range = Range{0.05, 1},
-                                        .applies = self.model == LightModel::Physical});
+                                        .applies = self.model == LightModel::Physical,
+                                        .group = kSurface});
         visit(self.metalness, FieldInfo{.key = "metalness",
                                         .unit = "",
                                         .doc = "Metalness: 1 reflects in the colour of the surface (physical)",
                                         .range = Range{0, 1},
-                                        .applies = self.model == LightModel::Physical});
+                                        .applies = self.model == LightModel::Physical,
+                                        .group = kSurface});
         visit(self.reflectance,
               FieldInfo{.key = "reflectance",
                         .unit = "",
                         .doc = "Share of light reflected at normal incidence: 0.04 plastic, 0.17 gem (physical)",
                         .range = Range{0, 1},
-                        .applies = self.model == LightModel::Physical});
+                        .applies = self.model == LightModel::Physical,
+                        .group = kSurface});
     }
 };
 

@@ -160,6 +160,7 @@ struct CharcoalDrawing {
     float hardness = 0.6f, tooth = 1, strokes = 0.7f, follow = 1, crossing = 1, angle = 0, smudge = 0.15f;
     bool operator==(const CharcoalDrawing&) const = default;
     static void describe(auto& self, auto&& visit) {
+        constexpr std::string_view kTones = "Tones", kOutlines = "Outlines", kGrain = "Grain", kStrokes = "Strokes";
         visit(self.stick, FieldInfo{.key = "stick",
                                     .unit = "",
                                     .doc = "Charcoal draws what is dark and brings light paper, chalk what is light "
@@ -184,66 +185,84 @@ struct CharcoalDrawing {
         visit(self.bare, FieldInfo{.key = "bare",
                                    .unit = "",
                                    .doc = "Share of the tones, from the lightest on, that leave the paper bare",
-                                   .range = Range{0, 0.9}});
+                                   .range = Range{0, 0.9},
+                                   .group = kTones});
         visit(self.localTone,
               FieldInfo{.key = "localTone",
                         .unit = "",
                         .doc = "Influence of the colour of the surface on darkness, beside light and shade",
-                        .range = Range{0, 1}});
+                        .range = Range{0, 1},
+                        .group = kTones});
         visit(self.steepness, FieldInfo{.key = "steepness",
                                         .unit = "",
                                         .doc = "Share of the tone that is drawn only where values change steeply",
-                                        .range = Range{0, 1}});
-        visit(self.outline,
-              FieldInfo{.key = "outline", .unit = "pixel", .doc = "Width of outlines", .range = Range{0, 12}});
-        visit(self.outlineStrength,
-              FieldInfo{.key = "outlineStrength", .unit = "", .doc = "Darkness of outlines", .range = Range{0, 1}});
+                                        .range = Range{0, 1},
+                                        .group = kTones});
+        visit(self.outline, FieldInfo{.key = "outline",
+                                      .unit = "pixel",
+                                      .doc = "Width of outlines",
+                                      .range = Range{0, 12},
+                                      .group = kOutlines});
+        visit(self.outlineStrength, FieldInfo{.key = "outlineStrength",
+                                              .unit = "",
+                                              .doc = "Darkness of outlines",
+                                              .range = Range{0, 1},
+                                              .group = kOutlines});
         visit(self.closure, FieldInfo{.key = "closure",
                                       .unit = "",
                                       .doc = "Share by which outlines are left open where light falls",
-                                      .range = Range{0, 1}});
+                                      .range = Range{0, 1},
+                                      .group = kOutlines});
         visit(self.grain, FieldInfo{.key = "grain",
                                     .unit = "pixel",
                                     .doc = "Size of the paper's grain, on the object",
                                     .range = Range{0.5, 24},
-                                    .logScale = true});
+                                    .logScale = true,
+                                    .group = kGrain});
         visit(self.hardness, FieldInfo{.key = "hardness",
                                        .unit = "",
                                        .doc = "Hardness of the grain: 1 is only ink or paper, 0 is continuous tone",
-                                       .range = Range{0, 1}});
+                                       .range = Range{0, 1},
+                                       .group = kGrain});
         const bool stroked = self.mark == Mark::Strokes;
         visit(self.tooth, FieldInfo{.key = "tooth",
                                     .unit = "",
                                     .doc = "How much the paper's grain breaks strokes: 0 = they are lines as wide as "
                                            "the tone is dark",
                                     .range = Range{0, 1},
-                                    .applies = stroked});
+                                    .applies = stroked,
+                                    .group = kStrokes});
         visit(self.strokes, FieldInfo{.key = "strokes",
                                       .unit = "",
                                       .doc = "Visibility of single strokes",
                                       .range = Range{0, 1},
-                                      .applies = stroked});
+                                      .applies = stroked,
+                                      .group = kStrokes});
         visit(self.follow, FieldInfo{.key = "follow",
                                      .unit = "",
                                      .doc = "How much the greatest curvature of the surface directs the strokes; where "
                                             "it is even, and with 0 everywhere, they keep one direction in space",
                                      .range = Range{0, 1},
-                                     .applies = stroked});
+                                     .applies = stroked,
+                                     .group = kStrokes});
         visit(self.crossing, FieldInfo{.key = "crossing",
                                        .unit = "",
                                        .doc = "Darkness from which on a second layer of strokes crosses the first; 1 = "
                                               "none",
                                        .range = Range{0, 1},
-                                       .applies = stroked});
+                                       .applies = stroked,
+                                       .group = kStrokes});
         visit(self.angle, FieldInfo{.key = "angle",
                                     .unit = "deg",
                                     .doc = "Turn of the strokes on the surface",
                                     .range = Range{-90, 90},
-                                    .applies = stroked});
+                                    .applies = stroked,
+                                    .group = kStrokes});
         visit(self.smudge, FieldInfo{.key = "smudge",
                                      .unit = "",
                                      .doc = "Smudging: 0 = grain and strokes, 1 = even tone",
-                                     .range = Range{0, 1}});
+                                     .range = Range{0, 1},
+                                     .group = kGrain});
     }
 };
 

@@ -50,6 +50,7 @@ struct RenderParams {
 
     bool operator==(const RenderParams&) const = default;
     static void describe(auto& self, auto&& visit) {
+        constexpr std::string_view kParts = "Large data", kGradients = "Gradients", kSteps = "Steps along rays";
         visit(self.filter,
               FieldInfo{
                   .key = "filter", .unit = "", .doc = "Reconstruction between lattice points", .names = kFilterNames});
@@ -69,19 +70,22 @@ struct RenderParams {
                         .unit = "level",
                         .doc = "Number of levels by which the least important bricks may be coarser than the most "
                                "important one; 0 = the level depends on the size on screen only",
-                        .range = Range{0, 4}});
-        visit(self.limits, FieldInfo{.key = "limits", .unit = "", .doc = "Limits of memory and time"});
+                        .range = Range{0, 4},
+                        .group = kParts});
+        visit(self.limits, FieldInfo{.key = "limits", .unit = "", .doc = "Limits of memory and time", .group = kParts});
         visit(self.gradient,
               FieldInfo{.key = "gradient",
                         .unit = "",
                         .doc = "How gradients are computed: by differences of the nearest neighbours in the lattice "
                                "(sharp; along the diagonals on BCC), or over two cells along the axes (smooth)",
-                        .names = volume::kGradientSpanNames});
+                        .names = volume::kGradientSpanNames,
+                        .group = kGradients});
         visit(self.normalBits,
               FieldInfo{.key = "normalBits",
                         .unit = "bit",
                         .doc = "Bits for each of the two coordinates of the gradient direction in shading; 0 = exact",
-                        .range = Range{0, 16}});
+                        .range = Range{0, 16},
+                        .group = kGradients});
         visit(self.proxy,
               FieldInfo{
                   .key = "proxy",
@@ -89,7 +93,8 @@ struct RenderParams {
                   .doc =
                       "Proxy geometry of composite volumes: rays, or for comparison planes facing the viewer (slices), "
                       "spheres around the eye (shells) or lattice planes (stacks). Other layers always use rays",
-                  .names = kProxyNames});
+                  .names = kProxyNames,
+                  .group = kSteps});
         visit(self.engine,
               FieldInfo{.key = "engine",
                         .unit = "",
@@ -101,20 +106,23 @@ struct RenderParams {
         visit(self.jitter,
               FieldInfo{.key = "jitter",
                         .unit = "",
-                        .doc = "Shift the samples of each ray at random: fine noise instead of wood-grain artefacts"});
+                        .doc = "Shift the samples of each ray at random: fine noise instead of wood-grain artefacts",
+                        .group = kSteps});
         visit(self.samples, FieldInfo{.key = "samples",
                                       .unit = "",
                                       .doc = "Rays per pixel when the picture is at rest; with depth of field 64",
                                       .range = Range{1, 64}});
         visit(self.cullHidden, FieldInfo{.key = "cullHidden",
                                          .unit = "",
-                                         .doc = "Keep bricks behind opaque ones coarse until they become visible"});
+                                         .doc = "Keep bricks behind opaque ones coarse until they become visible",
+                                         .group = kParts});
         visit(self.adaptiveStep,
               FieldInfo{.key = "adaptiveStep",
                         .unit = "",
                         .doc = "Largest change of light and opacity over one step; where volumes are smooth under "
                                "their transfer functions steps become longer. 0 = all steps have the same length",
-                        .range = Range{0, 0.1}});
+                        .range = Range{0, 0.1},
+                        .group = kSteps});
     }
 };
 

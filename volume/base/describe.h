@@ -37,6 +37,9 @@ struct FieldInfo {
     std::string_view refersTo = {};
     bool hidden = false; ///< stored and validated, but not drawn as a widget (edited by hand in a view)
     bool applies = true; ///< has an effect beside the other members as they are: else not drawn either
+    /// Heading under which its widget lies, folded, with others of the group; "": one of the few that matter first,
+    /// drawn above all groups.
+    std::string_view group = {};
 };
 
 namespace detail {
