@@ -34,6 +34,7 @@ bool Document::dirty() const {
     Session now = session_;
     now.animation.playing = saved_.animation.playing;
     now.dock = saved_.dock; // rearranging panes is not worth a question
+    followFront(now, saved_);
     now.camera = saved_.camera;
     now.time = saved_.time;
     return !(now == saved_);

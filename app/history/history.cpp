@@ -33,10 +33,9 @@ bool isDifference(const Json& patch) {
            });
 }
 
-/// Takes over changes that are not edits: those made by an animation, which tabs are in front, and the volume view
-/// clicked last.
+/// Takes over changes that are not edits: those made by an animation, and what is in front.
 void followUnrecorded(Session& base, const Session& now) {
-    followFocus(base.dock, now.dock);
+    followFront(base, now);
     if (now.animation.playing || base.animation.playing) {
         base.time = now.time;
         for (const Track& track : base.animation.tracks) setNumbersAt(base, track.path, numbersAt(now, track.path));
@@ -51,7 +50,7 @@ void followUnrecorded(Session& base, const Session& now) {
 
 /// Where a session, as JSON, differs from what its steps lead to, but for changes that are not edits. Empty: nowhere.
 std::string differenceOf(Session end, const Session& session) {
-    followFocus(end.dock, session.dock);
+    followFront(end, session);
     Json ended = app::toJson(end);
     const Json now = app::toJson(session);
     std::vector<std::string> unrecorded{"/time", "/animation/position", "/animation/playing"};
@@ -66,6 +65,16 @@ std::string differenceOf(Session end, const Session& session) {
 }
 
 } // namespace
+
+void followFront(Session& base, const Session& now) {
+    followFocus(base.dock, now.dock);
+    for (auto& [pane, view] : base.views) {
+        auto* const layers = std::get_if<LayersView>(&view);
+        const auto other = now.views.find(pane);
+        const auto* const shown = other == now.views.end() ? nullptr : std::get_if<LayersView>(&other->second);
+        if (layers && shown) *layers = {layers->selected, shown->task, shown->next};
+    }
+}
 
 void History::reset(const Session& session) {
     base_ = session;
@@ -90,6 +99,7 @@ bool History::observe(const Session& session, bool editing, double seconds, doub
         document_["animation"] = app::toJson(base_.animation);
         document_["data"] = app::toJson(base_.data);
         document_["dock"] = app::toJson(base_.dock);
+        document_["views"] = app::toJson(base_.views);
     } else {
         document_ = app::toJson(base_); // any setting may have changed
     }

@@ -15,6 +15,9 @@ struct HistoryStep {
     Json forward, inverse;
 };
 
+/// Takes over what is in front and no edit: tabs of panes and within them, and the volume view clicked last.
+void followFront(Session& base, const Session& now);
+
 class History {
 public:
     /// Starts over with this session as the base.

@@ -41,9 +41,15 @@ struct TransferView {
 };
 DrawView<TransferView> drawTransferView;
 
+/// What the pane of the layers is used for, one at a time: a tab each.
+enum class SceneTask { Layers, Brushes, Lenses, Clips, Light, Picture };
+inline constexpr std::string_view kSceneTaskNames[] = {"layers", "brushes", "lenses", "clips", "light", "picture"};
+
 struct LayersView {
     static constexpr std::string_view kType = "layers";
     int selected = 0; ///< layer whose parameters are shown
+    SceneTask task = SceneTask::Layers;
+    int next = -1; ///< entry of the task's list that the pane goes to and unfolds when it is drawn; -1: none
     bool operator==(const LayersView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.selected, FieldInfo{.key = "selected",
@@ -51,6 +57,19 @@ struct LayersView {
                                        .doc = "Layer whose settings are shown, counted from 0",
                                        .range = Range{0, 1000},
                                        .hidden = true});
+        visit(self.task,
+              FieldInfo{.key = "task",
+                        .unit = "",
+                        .doc = "What is in front: the layers, the brushes, the lenses, the clips, the light, "
+                               "or the rest of the picture",
+                        .names = kSceneTaskNames,
+                        .hidden = true});
+        visit(self.next, FieldInfo{.key = "next",
+                                   .unit = "",
+                                   .doc = "Entry of the list in front to unfold once it is drawn, counted from 0; "
+                                          "-1 = none",
+                                   .range = Range{-1, 1000},
+                                   .hidden = true});
     }
 };
 DrawView<LayersView> drawLayersView;
@@ -120,8 +139,8 @@ inline constexpr std::tuple kViewKinds{
                                               .leastHeight = 150}},
     ViewKind<LayersView, drawLayersView>{
         {.title = "Layers",
-         .help = "What the 3D views show",
-         .words = "settings lens lenses light clip clipping paper quality brushes objects flow isosurface contour",
+         .help = "What the 3D views show: layers, brushes, lenses, clips, light, camera, paper, quality",
+         .words = "settings lens clipping objects flow isosurface contour scene properties",
          .leastWidth = 210,
          .leastHeight = 150}},
     ViewKind<TimelineView, drawTimelineView>{{.title = "Timeline",

@@ -1,10 +1,10 @@
 #include "app/tools/brush_list.h"
 
+#include "app/edits/scene_task.h"
 #include "app/pane/view_parts.h"
 #include "app/tools/brush_edit.h"
 #include "app/tools/lens_list.h"
 #include "app/tools/space_handles.h"
-#include "app/ui/fitted_text.h"
 #include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
 
@@ -148,16 +148,13 @@ std::optional<SpaceShape> spaceShape(const vis::Brush& brush) {
 
 } // namespace
 
-void drawBrushList(ViewContext& context) {
+void drawBrushList(ViewContext& context, NextEntry next) {
     vis::Selection& selection = context.session.selection;
     int removed = -1;
-    const auto added = newInList("brushes", selection.brushes.size());
     for (std::size_t i = 0; i < selection.brushes.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
-        const auto unfold = added ? std::optional(i == *added) : std::nullopt; // the newest is the one to set up
-        // Those in space come by a command; a drag in a plot leaves the list where it is.
-        if (i == added && !context.headless && spaceShape(selection.brushes[i])) ImGui::SetScrollHereY(0.1f);
-        if (drawBrush(context, selection.brushes[i], i, unfold)) removed = static_cast<int>(i);
+        if (i == next.entry && !context.headless) ImGui::SetScrollHereY(0.1f); // pictures show the same
+        if (drawBrush(context, selection.brushes[i], i, next.unfolds(i))) removed = static_cast<int>(i);
         ImGui::PopID();
     }
     if (removed >= 0) selection.brushes.erase(selection.brushes.begin() + removed);
@@ -263,7 +260,7 @@ void drawBrushMenu(ViewContext& context) {
     if (ImGui::MenuItem("Brush a sphere at the cross-hair"))
         addSpaceBrush(context.session, context.source->info(), false);
     if (ImGui::MenuItem("Brush a box at the cross-hair")) addSpaceBrush(context.session, context.source->info(), true);
-    if (context.session.selection.brushes.size() > before) showLists(context.session);
+    if (context.session.selection.brushes.size() > before) showTask(context.session, SceneTask::Brushes, int(before));
     if (ImGui::MenuItem("Clear brushes", "Esc", false, !context.session.selection.brushes.empty()))
         clearBrushes(context);
 }

@@ -2,12 +2,14 @@
 
 #include "app/pane/axes3d.h"
 #include "app/pane/view_context.h"
+#include "app/ui/fitted_text.h"
 
 /// The list of brushes, and brushes in space.
 namespace tessera::app {
 
-/// Every brush with its colour, name, switches and numbers, and buttons that add brushes in space at the cursor.
-void drawBrushList(ViewContext& context);
+/// Every brush with its colour, name, switches and numbers, and buttons that add brushes in space at the cursor. The
+/// list goes to `next` and unfolds it.
+void drawBrushList(ViewContext& context, NextEntry next = {});
 
 /// The combination of the enabled brushes by their numbers: "(1 and 2) or 3", with a hint on other combinations if they
 /// only narrow the selection; "" for fewer than two.

@@ -131,6 +131,8 @@ void addBody(std::vector<HandledObject>& objects, const Session& session, const 
     const glm::dvec3 middle = world.toPhysical(body.center);
     HandledObject object;
     object.key = "clip " + std::to_string(index);
+    object.task = SceneTask::Clips;
+    object.entry = static_cast<int>(index);
     object.name = "clip " + std::to_string(index + 1);
     object.color = plotColors().text;
     object.outlined = true;

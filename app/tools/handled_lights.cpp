@@ -53,6 +53,7 @@ void addFocus(std::vector<HandledObject>& objects, const Session& session, const
     const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
     HandledObject object;
     object.key = object.name = "focus";
+    object.task = SceneTask::Picture;
     object.color = plotColors().text;
     object.handles = {{.at = world.toPhysical(glm::dvec3(session.camera.focus)), .whole = true}};
     object.outlined = true;
@@ -73,6 +74,8 @@ void addLights(std::vector<HandledObject>& objects, const Session& session, cons
         if (!light.enabled) continue;
         HandledObject object;
         object.key = "light " + std::to_string(i);
+        object.task = SceneTask::Light;
+        object.entry = static_cast<int>(i);
         object.name = "light " + std::to_string(i + 1);
         object.color = handleColor(light.color);
         object.outlined = true;

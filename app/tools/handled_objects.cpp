@@ -55,6 +55,8 @@ void addRake(std::vector<HandledObject>& objects, const Session& session, const 
     const glm::dvec3 from = physical(flow->from), to = physical(flow->to), middle = 0.5 * (from + to);
     HandledObject object;
     object.key = "rake " + std::to_string(index);
+    object.task = SceneTask::Layers;
+    object.entry = static_cast<int>(index);
     object.name = layerName(layer);
     object.color = plotColors().text;
     object.outlined = true;
@@ -124,6 +126,8 @@ void addBrush(std::vector<HandledObject>& objects, const Session& session, const
     if (!brush.enabled || (!sphere && !box)) return;
     HandledObject object;
     object.key = "brush " + std::to_string(index);
+    object.task = SceneTask::Brushes;
+    object.entry = static_cast<int>(index);
     object.name = brush.name;
     object.color = brushColor(brush);
     object.handles = sphere ? radialHandles(sphere->center, sphere->radius) : radialHandles(box->center, box->radius);

@@ -82,6 +82,8 @@ void addSlice(std::vector<HandledObject>& objects, const Session& session, const
     }
     HandledObject object = planeObject(session, info, {normal, middle}, tilts);
     object.key = "slice " + std::to_string(index);
+    object.task = SceneTask::Layers;
+    object.entry = static_cast<int>(index);
     object.name = layerName(layer);
     object.move = [index, middle, bounds = info.bounds](Session& edited, std::size_t handle, glm::dvec3 place) {
         auto& own = std::get<vis::SliceLayer>(edited.layers[index].technique);
@@ -104,6 +106,8 @@ void addClip(std::vector<HandledObject>& objects, const Session& session, const 
     HandledObject object =
         planeObject(session, info, {physicalNormal(axis, world), lo + glm::dvec3(clip.center) * size}, true);
     object.key = "clip " + std::to_string(index);
+    object.task = SceneTask::Clips;
+    object.entry = static_cast<int>(index);
     object.name = "clip " + std::to_string(index + 1);
     object.move = [index, lo, size, bounds = info.bounds,
                    normal = object.plane->normal](Session& edited, std::size_t handle, glm::dvec3 place) {

@@ -1,5 +1,6 @@
 #include "app/tools/lens_edit.h"
 
+#include "app/edits/scene_task.h"
 #include "app/tools/lens_outline.h"
 #include "app/tools/plane_sections.h"
 #include "app/tools/space_handles.h"
@@ -91,7 +92,8 @@ void turn(vis::Lens& lens, const LensDrag& drag, const vis::Camera& camera, cons
     lens.rotation = glm::vec3(glm::degrees(glm::eulerAngles(glm::normalize(now))));
 }
 
-void begin(LensDrag& drag, const Session& session, LensGrip grip, ImVec2 mouse) {
+void begin(LensDrag& drag, Session& session, LensGrip grip, ImVec2 mouse) {
+    turnToTask(session, SceneTask::Lenses, drag.lens);
     drag.active = true;
     drag.grip = grip;
     drag.start = mouse;

@@ -2,9 +2,9 @@
 
 #include "app/data/first_view.h"
 #include "app/edits/add_layer.h"
+#include "app/edits/scene_task.h"
 #include "app/pane/view_parts.h"
 #include "app/session/shown_scene.h"
-#include "app/ui/fitted_text.h"
 #include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
 
@@ -257,12 +257,6 @@ void removeLens(Session& session, std::size_t index) {
     });
 }
 
-void showLists(Session& session) {
-    if (!session.dock.maximised.empty()) return;
-    for (const auto& [pane, view] : session.views)
-        if (std::holds_alternative<LayersView>(view)) return showPane(session.dock, pane);
-}
-
 void drawLensMenu(ViewContext& context) {
     Session& session = context.session;
     const volume::DatasetInfo& info = context.source->info();
@@ -293,7 +287,7 @@ void drawLensMenu(ViewContext& context) {
                                              "Lens: suppress", "Lens: magnify",   "Lens: brushes inside"};
     for (std::size_t i = 0; i < std::size(kItems); ++i)
         if (ImGui::MenuItem(kItems[i])) addLens(session, info, static_cast<vis::LensEffect>(i));
-    if (session.lenses.size() != before) showLists(session);
+    if (session.lenses.size() != before) showTask(session, SceneTask::Lenses, int(before));
 }
 
 bool chooseLens(const char* id, const Session& session, std::string& value, const char* none) {
@@ -310,20 +304,18 @@ bool chooseLens(const char* id, const Session& session, std::string& value, cons
     return changed;
 }
 
-void drawLensList(ViewContext& context, const std::string& pane, LensStatistics& statistics) {
+void drawLensList(ViewContext& context, const std::string& pane, LensStatistics& statistics, NextEntry next) {
     Session& session = context.session;
     RowAction action = RowAction::None;
     std::size_t which = 0, from = 0, to = 0;
-    const auto added = newInList("lenses", session.lenses.size());
     for (std::size_t i = 0; i < session.lenses.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
-        const auto unfold = added ? std::optional(i == *added) : std::nullopt; // the newest is the one to set up
-        if (i == added && !context.headless) ImGui::SetScrollHereY(0.1f); // pictures show the same of the same session
+        if (i == next.entry && !context.headless) ImGui::SetScrollHereY(0.1f); // pictures show the same
         if (const int dropped = drawGrip(context, session.lenses[i], i); dropped >= 0) {
             from = static_cast<std::size_t>(dropped);
             to = i;
         }
-        if (const RowAction own = drawLens(context, pane, statistics, i, unfold); own != RowAction::None) {
+        if (const RowAction own = drawLens(context, pane, statistics, i, next.unfolds(i)); own != RowAction::None) {
             action = own;
             which = i;
         }

@@ -2,6 +2,7 @@
 
 #include "app/pane/view_context.h"
 #include "app/queries/statistics_query.h"
+#include "app/ui/fitted_text.h"
 
 #include <map>
 
@@ -13,15 +14,12 @@ struct LensStatistics {
     std::map<std::string, AsyncStatistics> byLens;
 };
 
-/// Every lens with its switches, settings, layers and numbers, and a button that adds one at the cursor.
-void drawLensList(ViewContext& context, const std::string& pane, LensStatistics& statistics);
+/// Every lens with its switches, settings, layers and numbers, and a button that adds one at the cursor. The list goes
+/// to `next` and unfolds it.
+void drawLensList(ViewContext& context, const std::string& pane, LensStatistics& statistics, NextEntry next = {});
 
 /// A lens of an effect around the cursor, with a name and colour of its own, that fits the shown box.
 vis::Lens newLens(const Session& session, const volume::DatasetInfo& info, vis::LensEffect effect);
-
-/// Brings the list of layers, lenses and brushes to the front, so that what was added can be set up; not over a pane
-/// that fills the window.
-void showLists(Session& session);
 
 /// Adds one of these.
 void addLens(Session& session, const volume::DatasetInfo& info, vis::LensEffect effect);

@@ -1,5 +1,6 @@
 #include "app/tools/space_handles.h"
 
+#include "app/edits/scene_task.h"
 #include "app/ui/keys.h"
 
 #include <algorithm>
@@ -86,7 +87,9 @@ bool editWith(HandleDrag& drag, Session& session, const volume::DatasetInfo& inf
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
         drag.active = true;
         drag.start = mouse;
-        drag.before = findObject(objects, drag.object)->handles[drag.handle];
+        const HandledObject& object = *findObject(objects, drag.object);
+        drag.before = object.handles[drag.handle];
+        if (object.task) turnToTask(session, *object.task, object.entry);
     }
     return drag.active;
 }

@@ -65,6 +65,8 @@ struct HandledObject {
     std::vector<SpaceHandle> handles;
     std::vector<SpaceLine> lines;
     std::optional<SpacePlane> plane = {}; ///< the object is one: in slices it is drawn where it crosses them
+    std::optional<SceneTask> task = {};   ///< that has its settings, in entry `entry` of its list
+    int entry = -1;
     /// Of a body: the lines that show it in a slice, none where it does not reach.
     std::function<std::vector<SpaceLine>(const PicturePlane& slice)> section = {};
     /// Puts a dot at a place (physical; of HandleWay::Anywhere in the box of the data) of a session that has the

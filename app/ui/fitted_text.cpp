@@ -50,13 +50,6 @@ bool fittedTreeNode(std::string_view text, const char* id, std::optional<bool> u
     return open;
 }
 
-std::optional<std::size_t> newInList(const char* id, std::size_t count) {
-    int& known = *ImGui::GetStateStorage()->GetIntRef(ImGui::GetID(id), -1);
-    const bool added = known >= 0 && count == static_cast<std::size_t>(known) + 1;
-    known = static_cast<int>(count);
-    return added ? std::optional(count - 1) : std::nullopt;
-}
-
 void tellWhole(ImVec2 min, ImVec2 max, std::string_view whole, std::string_view shown) {
     if (shown != whole && ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(min, max))
         ImGui::SetTooltip("%.*s", int(whole.size()), whole.data());

@@ -30,9 +30,17 @@ bool beginFittedCombo(const char* id, std::string_view chosen);
 /// true.
 bool fittedTreeNode(std::string_view text, const char* id, std::optional<bool> unfold = {});
 
-/// For a list of lines that unfold, before they are drawn: the index of the one that is new since the last frame, so
-/// that it unfolds and the others fold; nothing if none was added.
-std::optional<std::size_t> newInList(const char* id, std::size_t count);
+/// The line of a list of lines that unfold that is shown next: it unfolds and comes into view.
+struct NextEntry {
+    std::optional<std::size_t> entry = {};
+    bool alone = false; ///< the others fold
+
+    /// Whether the line `i` is to unfold (true) or to fold (false) now.
+    std::optional<bool> unfolds(std::size_t i) const {
+        if (!entry || (!alone && i != *entry)) return {};
+        return i == *entry;
+    }
+};
 
 /// Shows the whole of a text under the mouse where `shown`, drawn from `min` to `max` in the window being made, is
 /// less.

@@ -278,15 +278,29 @@ bool drawColor(const WidgetContext& context, const FieldInfo& info, float* rgb) 
     return changed;
 }
 
+namespace {
+
+/// Where it is kept that a section is to be scrolled to.
+ImGuiID comingOf(const char* id) {
+    return ImGui::GetID((std::string("comes ") + id).c_str());
+}
+
+} // namespace
+
 bool beginSection(const char* id, std::string_view label, std::string_view help) {
     const std::string text = std::string(label) + "###" + id;
+    if (bool* const comes = ImGui::GetStateStorage()->GetBoolRef(comingOf(id)); *comes) {
+        *comes = false;
+        ImGui::SetScrollHereY(0.1f);
+    }
     const bool open =
         ImGui::TreeNodeEx(text.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_FramePadding);
     if (!help.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%.*s", int(help.size()), help.data());
     return open;
 }
 
-void openSection(const char* id) {
+void openSection(const char* id, bool come) {
+    if (come) ImGui::GetStateStorage()->SetBool(comingOf(id), true);
     ImGui::GetStateStorage()->SetInt(ImGui::GetID(("###" + std::string(id)).c_str()), 1);
 }
 

@@ -62,8 +62,8 @@ bool chooseVector(const char* id, const volume::DatasetInfo* info, std::string& 
 /// A choice of colour map, with a search and a strip of each, without label (app/ui/choose_colormap.cpp).
 bool chooseColormap(const char* id, std::string& value, bool reversed = false);
 bool beginSection(const char* id, std::string_view label, std::string_view help);
-/// Unfolds a section beside this place that is not there yet.
-void openSection(const char* id);
+/// Unfolds a section beside this place, which may not be there yet, and with `come` scrolls to it when it is drawn.
+void openSection(const char* id, bool come = false);
 void endSection();
 /// A small button that adds to a list or removes from it.
 bool drawListButton(const char* label);

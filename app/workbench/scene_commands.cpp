@@ -1,10 +1,11 @@
 #include "app/edits/context_style.h"
+#include "app/edits/scene_task.h"
 #include "app/session/shown_scene.h"
 #include "app/tools/brush_list.h"
 #include "app/tools/camera_hand.h"
 #include "app/tools/lens_list.h"
 #include "app/tools/oblique_tilt.h"
-#include "app/views/data/layers_view.h"
+#include "app/views/data/layer_list.h"
 #include "app/workbench/workbench.h"
 #include "app/workbench/workbench_commands.h"
 
@@ -20,6 +21,7 @@ namespace {
 std::vector<Command> addingCommands(Workbench& workbench) {
     const auto loaded = [&workbench] { return workbench.document().loaded(); };
     std::vector<Command> commands;
+    SceneTask task{}; // that has the settings of what is added
     const auto adds = [&](std::string name, std::string help, std::string words,
                           std::function<void(Session&, const volume::DatasetInfo&)> add,
                           std::function<bool()> enabled) {
@@ -28,11 +30,11 @@ std::vector<Command> addingCommands(Workbench& workbench) {
                             .help = std::move(help),
                             .words = std::move(words),
                             .run =
-                                [&workbench, add = std::move(add)] {
+                                [&workbench, task, add = std::move(add)] {
                                     Session& session = workbench.session();
                                     const ShownScene scene(session, volumePane(session));
                                     add(session, workbench.document().info());
-                                    showLists(session);
+                                    showTask(session, task);
                                 },
                             .enabled = std::move(enabled)});
     };
@@ -53,6 +55,7 @@ std::vector<Command> addingCommands(Workbench& workbench) {
                 return loaded() && (kind != 3 || !firstVector(workbench.document().info()).empty());
             });
     }
+    task = SceneTask::Lenses;
     for (const auto& [effect, word] : {std::pair{vis::LensEffect::Replace, "cut away"},
                                        {vis::LensEffect::Only, "only this"},
                                        {vis::LensEffect::Enhance, "enhance"},
@@ -63,26 +66,30 @@ std::vector<Command> addingCommands(Workbench& workbench) {
             std::string("Add lens: ") + word, "Add a lens of this effect at the cross-hair", "new magnifier region",
             [effect = effect](Session& session, const volume::DatasetInfo& info) { addLens(session, info, effect); },
             loaded);
+    task = SceneTask::Brushes;
     for (const bool box : {false, true})
         adds(
             box ? "Brush a box at the cross-hair" : "Brush a sphere at the cross-hair",
             "Select what lies around the cross-hair", "new add selection region",
             [box](Session& session, const volume::DatasetInfo& info) { addSpaceBrush(session, info, box); }, loaded);
+    task = SceneTask::Clips;
     for (std::size_t kind = 0; kind < std::size(vis::kClipKindNames); ++kind)
         adds(
             "Add clip: " + std::string(vis::kClipKindNames[kind]),
-            "Cut the data open; Clipping in Layers has its settings", "new cut crop section plane body remove",
+            "Cut the data open; Clips in the pane Layers has its settings", "new cut crop section plane body remove",
             [kind](Session& session, const volume::DatasetInfo&) {
                 session.clips.emplace_back().kind = static_cast<vis::ClipKind>(kind);
             },
             loaded);
+    task = SceneTask::Light;
     adds(
-        "Add light", "Light the scene from a further direction; Light in Layers has its settings",
+        "Add light", "Light the scene from a further direction; Light in the pane Layers has its settings",
         "new lamp sun direction illumination shading",
         [](Session& session, const volume::DatasetInfo&) {
             session.lighting.lights.emplace_back().kind = vis::LightKind::World;
         },
         loaded);
+    task = SceneTask::Brushes;
     for (std::size_t style = 0; style < std::size(kContextStyleNames); ++style)
         adds(
             "What is not brushed: " + std::string(kContextStyleNames[style]),
@@ -96,6 +103,7 @@ std::vector<Command> addingCommands(Workbench& workbench) {
         "brush focus transfer function hidden visible",
         [](Session& session, const volume::DatasetInfo&) { makeOpaque(session); },
         [&workbench, loaded] { return loaded() && workbench.session().selection.active(); });
+    task = SceneTask::Picture;
     adds(
         "True proportions", "Show the data without stretch", "stretch scale aspect ratio exaggeration",
         [](Session& session, const volume::DatasetInfo&) { session.stretch = glm::dvec3(1); },
@@ -114,6 +122,36 @@ std::vector<Command> addingCommands(Workbench& workbench) {
                                 workbench.panes().open(session, view, workbench.look().scale());
                             },
                         .enabled = loaded});
+    return commands;
+}
+
+/// Each task of the pane of layers, which is opened where there is none.
+std::vector<Command> taskCommands(Workbench& workbench) {
+    static constexpr std::array<std::tuple<const char*, const char*, const char*>, std::size(kSceneTaskNames)> kTasks{
+        {{"layers", "What is drawn, and the settings of the layer selected", "list look"},
+         {"brushes", "Selections, and how what is not brushed is drawn", "brush selection focus context"},
+         {"lenses", "Places in which the picture is drawn in another way", "lens magnifier"},
+         {"clips", "Planes and bodies that cut the data open", "clip clipping cut crop section"},
+         {"light", "Lights, shadows and reflection", "lights lighting shading shadow environment ambient"},
+         {"picture", "Camera, paper, tone curve, proportions and quality",
+          "camera paper tone curve exposure proportions stretch quality samples step filter"}}};
+    std::vector<Command> commands;
+    for (std::size_t i = 0; i < kTasks.size(); ++i) {
+        const auto& [name, help, words] = kTasks[i];
+        commands.push_back({.menu = "",
+                            .name = std::string("Settings: ") + name,
+                            .help = help,
+                            .words = std::string("show go to open pane ") + words,
+                            .shortcut = {.key = '1' + static_cast<int>(i), .alt = true},
+                            .run =
+                                [&workbench, task = static_cast<SceneTask>(i)] {
+                                    Session& session = workbench.session();
+                                    if (turnToTask(session, task).empty())
+                                        workbench.panes().open(session, LayersView{}, workbench.look().scale());
+                                    workbench.panes().show(session, turnToTask(session, task));
+                                },
+                            .enabled = [&workbench] { return workbench.document().loaded(); }});
+    }
     return commands;
 }
 
@@ -188,6 +226,7 @@ std::vector<Command> decorationCommands(Workbench& workbench) {
 
 std::vector<Command> sceneCommands(Workbench& workbench) {
     std::vector<Command> commands = addingCommands(workbench);
+    std::ranges::move(taskCommands(workbench), std::back_inserter(commands));
     std::ranges::move(focusCommands(workbench), std::back_inserter(commands));
     std::ranges::move(decorationCommands(workbench), std::back_inserter(commands));
     return commands;

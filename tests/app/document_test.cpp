@@ -61,6 +61,7 @@ TEST_F(DocumentTest, SaysWhetherThereIsSomethingToSave) {
     EXPECT_EQ(loadSession(path).session.title, "cell");
     document.session().camera.distance *= 2;
     document.session().time = document.info().times.back();
+    std::get<LayersView>(document.session().views.at("layers")).task = SceneTask::Light;
     EXPECT_FALSE(document.dirty()) << "looking around loses nothing";
     EXPECT_FALSE(document.asSaved());
     document.setUnsaved();

@@ -35,7 +35,7 @@ TEST_F(EscapeHands, ANumberIsWhatItWas) {
         edited.layers = {{"a", true, vis::VolumeLayer{.channel = "T"}}};
         edited.selection.brushes = {{}, {}};
     });
-    const ImRect slider = item(window("layers"), {0, "##density", 0, ""});
+    const ImRect slider = item(window("Volume"), {"##density", 0, ""});
     giveUp(within(slider, 0.3, 0.5), within(slider, 0.8, 0.5));
     EXPECT_EQ(session().selection.brushes.size(), 2u);
     // And the next drag is one as ever.

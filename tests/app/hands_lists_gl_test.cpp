@@ -10,8 +10,8 @@ namespace {
 
 class ListHands : public Hands {
 protected:
-    void showLists() {
-        show(LayersView{.selected = 1}, {420, 1400}, [](Session& edited) {
+    void showLists(SceneTask task = SceneTask::Layers, glm::ivec2 size = {420, 900}) {
+        show(LayersView{.selected = 1, .task = task}, size, [](Session& edited) {
             edited.layers.clear();
             for (const char* name : {"a", "b", "c", "d"})
                 edited.layers.push_back({name, true, vis::SliceLayer{.channel = "T"}});
@@ -19,7 +19,12 @@ protected:
                 edited.lenses.push_back({.name = name, .center = {0.0135, 0.006, 0}});
         });
     }
-    ImVec2 at(std::vector<std::variant<std::string, int>> path) { return item(window("layers"), path).GetCenter(); }
+    /// The pane below the tabs, of the layers their list.
+    ImGuiWindow* inFront() { return window(std::string(kSceneTaskNames[std::size_t(view<LayersView>().task)])); }
+    ImVec2 at(std::vector<std::variant<std::string, int>> path) { return item(inFront(), path).GetCenter(); }
+    /// A button below the list of layers.
+    ImVec2 button(const char* name) { return inPane({name}).GetCenter(); }
+    using Hands::button;
     std::string layers() {
         std::string names;
         for (const vis::Layer& layer : session().layers) names += layer.name;
@@ -32,7 +37,7 @@ protected:
     }
     /// Whether a line of a list shows what is under it.
     bool unfolded(const std::vector<std::variant<std::string, int>>& path) {
-        ImGuiWindow* const in = window("layers");
+        ImGuiWindow* const in = inFront();
         ImGuiID id = in->ID;
         for (const auto& part : path)
             id = std::holds_alternative<int>(part) ? ImHashData(&std::get<int>(part), sizeof(int), id)
@@ -69,18 +74,18 @@ TEST_F(ListHands, LayersAreSelectedHiddenCopiedAndRemoved) {
     EXPECT_EQ(selected(), 2) << "the eye selects nothing";
     click(at({3, "##eye"}));
     EXPECT_TRUE(session().layers[3].visible);
-    click(at({"##copy"}));
+    click(button("##copy"));
     EXPECT_EQ(layers(), "abcc copyd");
     EXPECT_EQ(selected(), 3);
     EXPECT_EQ(session().layers[3].technique, session().layers[2].technique);
-    click(at({"##remove"}));
+    click(button("##remove"));
     EXPECT_EQ(layers(), "abcd");
-    click(at({"##remove"}));
+    click(button("##remove"));
     EXPECT_EQ(layers(), "abc");
     EXPECT_EQ(selected(), 2) << "the last one after the last one was removed";
-    for (int i = 0; i < 3; ++i) click(at({"##remove"}));
+    for (int i = 0; i < 3; ++i) click(button("##remove"));
     EXPECT_TRUE(session().layers.empty());
-    click(at({"##add"}));
+    click(button("##add"));
     ASSERT_TRUE(popup());
     click(item(popup(), {"Iso-surface"}).GetCenter());
     ASSERT_EQ(session().layers.size(), 1u);
@@ -90,7 +95,7 @@ TEST_F(ListHands, LayersAreSelectedHiddenCopiedAndRemoved) {
 TEST_F(ListHands, EveryKindOfLayerIsAdded) {
     showLists();
     const auto added = [&](const char* kind) {
-        click(at({"##add"}));
+        click(button("##add"));
         EXPECT_TRUE(popup());
         click(item(popup(), {kind}).GetCenter());
         return session().layers.back().technique;
@@ -113,7 +118,7 @@ TEST_F(ListHands, EveryKindOfLayerIsAdded) {
 TEST_F(ListHands, ALayerIsNamedAfterWhatItShowsUntilTheUserNamesIt) {
     showLists();
     const auto title = [&] { return layerTitle(session().layers.back(), workbench.numbers()->info()); };
-    click(at({"##add"}));
+    click(button("##add"));
     ASSERT_TRUE(popup());
     click(item(popup(), {"Iso-surface"}).GetCenter());
     ASSERT_EQ(session().layers.size(), 5u);
@@ -126,8 +131,9 @@ TEST_F(ListHands, ALayerIsNamedAfterWhatItShowsUntilTheUserNamesIt) {
     EXPECT_EQ(title(), "T surface 340 K");
     session().layers.back().technique = vis::SliceLayer{.channel = "c", .orientation = vis::SliceOrientation::X};
     EXPECT_EQ(title(), "c slice x");
+    settle();
     // Its name is a field that says so; what is typed stays.
-    click(at({4, "##name"}));
+    click(item(window("Slice"), {"##name"}).GetCenter());
     for (const char c : std::string("inlet")) ImGui::GetIO().AddInputCharacter(static_cast<unsigned>(c)), frame();
     press(key::kEnter);
     EXPECT_EQ(title(), "inlet");
@@ -138,7 +144,7 @@ TEST_F(ListHands, ALayerIsNamedAfterWhatItShowsUntilTheUserNamesIt) {
 }
 
 TEST_F(ListHands, SeveralBrushesAreClearedByTheCommandThatAsks) {
-    showLists();
+    showLists(SceneTask::Brushes);
     session().selection.brushes.resize(2);
     settle();
     moveTo(at({"Clear all"}));
@@ -150,8 +156,7 @@ TEST_F(ListHands, SeveralBrushesAreClearedByTheCommandThatAsks) {
 }
 
 TEST_F(ListHands, ANewClipIsUnfolded) {
-    showLists();
-    click(at({"Clipping"}));
+    showLists(SceneTask::Clips);
     for (const int number : {0, 1}) {
         click(at({"Add to clips"}));
         ASSERT_EQ(int(session().clips.size()), number + 1);
@@ -160,15 +165,15 @@ TEST_F(ListHands, ANewClipIsUnfolded) {
 }
 
 TEST_F(ListHands, ANewBrushOrLensIsUnfoldedAndTheOthersAreNot) {
-    showLists();
-    click(item(window("layers"), {"##add lens"}).GetCenter());
+    showLists(SceneTask::Lenses);
+    click(at({"##add lens"}));
     ASSERT_TRUE(popup());
     click(item(popup(), {"Lens: enhance"}).GetCenter());
     ASSERT_EQ(session().lenses.size(), 4u);
     frame();
     EXPECT_TRUE(unfolded({3, "###lens"}));
     for (const int other : {0, 1, 2}) EXPECT_FALSE(unfolded({other, "###lens"}));
-    click(item(window("layers"), {"##add lens"}).GetCenter());
+    click(at({"##add lens"}));
     click(item(popup(), {"Lens: suppress"}).GetCenter());
     frame();
     EXPECT_TRUE(unfolded({4, "###lens"}));
@@ -176,7 +181,7 @@ TEST_F(ListHands, ANewBrushOrLensIsUnfoldedAndTheOthersAreNot) {
 }
 
 TEST_F(ListHands, LensesAreOrderedByTheirGripsAndSwitches) {
-    showLists();
+    showLists(SceneTask::Lenses);
     drag(at({0, "##grip"}), at({2, "##grip"}));
     EXPECT_EQ(lenses(), "qrp");
     settle();

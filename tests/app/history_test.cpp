@@ -162,6 +162,31 @@ TEST(HistoryTest, WhichTabsAreInFrontIsNoEdit) {
     EXPECT_EQ(history.redo().camera.distance, 7);
 }
 
+TEST(HistoryTest, WhichTabIsInFrontWithinAPaneIsNoEdit) {
+    Session session;
+    session.views["layers"] = LayersView{};
+    History history;
+    history.reset(session);
+    const auto layers = [](Session& of) -> LayersView& { return std::get<LayersView>(of.views.at("layers")); };
+    layers(session).task = SceneTask::Lenses;
+    EXPECT_FALSE(history.observe(session, false, 1));
+    EXPECT_FALSE(history.pending());
+    session.camera.distance = 7;
+    layers(session).task = SceneTask::Light;
+    EXPECT_TRUE(history.observe(session, false, 2));
+    ASSERT_EQ(history.steps().size(), 1u);
+    EXPECT_EQ(history.steps()[0].forward.size(), 1u) << "the camera alone";
+    layers(session).task = SceneTask::Clips;
+    EXPECT_FALSE(history.observe(session, false, 3));
+    EXPECT_EQ(History::fromJson(history.toJson(), session).steps().size(), 1u) << "as saved";
+    Session back = history.undo();
+    EXPECT_EQ(layers(back).task, SceneTask::Clips) << "what is undone lets it be";
+    EXPECT_NE(back.camera.distance, 7);
+    layers(session).selected = 1; // another layer is one
+    session.camera = back.camera;
+    EXPECT_TRUE(history.observe(session, false, 9));
+}
+
 TEST(HistoryTest, AStepMayHaveAName) {
     Session session;
     History history;

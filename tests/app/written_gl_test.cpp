@@ -101,7 +101,7 @@ TEST_F(WrittenViews, TheMapOfBoundariesHasRoomForItsTitlesAndEmphasisOnBothSides
 
 TEST_F(WrittenViews, ALensIsTurnedInsideOutInItsRow) {
     show(fuelCell(volume::LatticeKind::CC));
-    session.layers.clear(); // so that the list of lenses is in sight
+    layersView.task = SceneTask::Lenses;
     session.lenses.resize(1);
     session.lenses[0].name = "lens";
     settle("layers", layersView, drawLayersView);

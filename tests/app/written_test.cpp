@@ -3,7 +3,7 @@
 #include "app/history/edit_titles.h"
 #include "app/history/history.h"
 #include "app/pane/plot.h"
-#include "app/views/data/layers_view.h"
+#include "app/views/data/layer_list.h"
 #include "app/views/scatter/scatter_cells.h"
 #include "app/views/tesseract/tesseract_wire.h"
 #include "app/views/transfer/region_edit.h"

@@ -1,0 +1,76 @@
+#include "app/data/first_view.h"
+#include "app/pane/view_parts.h"
+#include "app/session/shown_scene.h"
+#include "app/tools/lens_list.h"
+#include "app/ui/parameter_widget.h"
+#include "app/views/data/layer_list.h"
+#include "app/views/data/task_settings.h"
+
+#include <algorithm>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+#include <utility>
+
+/// The settings of one layer. Those whose choices are things of the session have widgets of their own.
+namespace tessera::app {
+
+namespace {
+
+/// Whether a layer of any list has this function for its own.
+bool usesFunction(const Session& session, const std::string& name) {
+    return std::ranges::any_of(layerLists(session), [&](const auto* layers) {
+        return std::ranges::any_of(*layers, [&](const vis::Layer& layer) { return layer.transfer == name; });
+    });
+}
+
+/// The lens that a layer is drawn in.
+void drawLens(const WidgetContext& widgets, const Session& session, vis::Layer& layer) {
+    if (session.lenses.empty()) return;
+    drawLabel(widgets, "Drawn", "Draw everywhere, or inside one lens only");
+    chooseLens("##lens", session, layer.lens, "everywhere");
+}
+
+/// Whether a layer has a transfer function of its own, which begins as the one that it had.
+void drawOwnFunction(const WidgetContext& widgets, Session& session, vis::Layer& layer) {
+    const auto* surface = std::get_if<vis::IsoLayer>(&layer.technique);
+    if (surface && surface->colorBy.empty()) return;
+    bool own = !layer.transfer.empty();
+    const FieldInfo field{.key = "ownTransfer",
+                          .unit = "",
+                          .doc = "Use a separate transfer function for this layer, instead of that of its parameter"};
+    if (!drawBool(widgets, field, own)) return;
+    const std::string channel = surface ? surface->colorBy : shownChannel(layer.technique);
+    const vis::TransferFunction now = transferOf(session, layer.transfer.empty() ? channel : layer.transfer);
+    std::string name = channel + " in " + layerName(layer);
+    while (own && session.transfer.contains(name)) name += "'";
+    if (own) session.transfer[name] = now;
+    const std::string former = std::exchange(layer.transfer, own ? name : "");
+    if (!own && !usesFunction(session, former)) session.transfer.erase(former);
+}
+
+} // namespace
+
+void drawLayerSettings(ViewContext& context, const WidgetContext& widgets, vis::Layer& layer, const std::string& path) {
+    const std::string before = shownChannel(layer.technique);
+    const WidgetContext place = widgets.at(path);
+    drawMembers(valueOf(layer), place, [&](Value member, const FieldInfo& field) {
+        if (field.key == "name") {
+            drawLabel(widgets, "Name", "Name of the layer; empty: what it shows");
+            ImGui::InputTextWithHint("##name", layerTitle(layer, context.source->info()).c_str(), &layer.name);
+        } else if (field.key == "technique") {
+            drawMembers(member.inside(), place.under(field.key));
+        } else if (field.key == "lens") {
+            drawLens(widgets, context.session, layer);
+        } else if (field.key == "transfer") {
+            drawOwnFunction(widgets, context.session, layer);
+        } else {
+            return field.key == "visible"; // the eye in the list
+        }
+        return true;
+    });
+    const std::string now = shownChannel(layer.technique);
+    followChannel(layer.name, before, now);
+    if (now != before) aimLayer(context.session, *context.source, layer);
+}
+
+} // namespace tessera::app
