@@ -1,6 +1,8 @@
 #include "app/edits/compare.h"
 #include "app/command/command.h"
 #include "app/command/picture_options.h"
+#include "app/data/sources.h"
+#include "app/edits/compare_files.h"
 #include "app/views/compare/compare_offers.h"
 #include "app/views/compare/compare_panes.h"
 #include "app/views/compare/compare_view.h"
@@ -60,12 +62,30 @@ std::string comparePane(Session& session, const std::string& wanted) {
     return pane;
 }
 
+/// Opens other data beside those of a document; the document's session shows both with one function.
+void openBeside(Opened& opened, const std::string& path, const Progress& progress) {
+    Session& session = opened.document.session;
+    DataRef data = session.data;
+    const DataRef other = dataNamed({path}, {});
+    data.other =
+        OtherData{.files = other.files, .model = other.model, .settings = other.settings, .import = other.import};
+    std::vector<std::string> messages;
+    ComparedData compared = openCompared(data, session, messages, progress);
+    for (const std::string& text : messages) std::fprintf(stderr, "tessera: %s\n", text.c_str());
+    if (compared.channel.empty()) throw Error("the two data sets have no parameter in common", path);
+    opened.source = std::move(compared.sources.pictures);
+    opened.numbers = std::move(compared.sources.numbers);
+    opened.origin = std::move(compared.sources.origin);
+    session.data = data;
+    showOtherDifference(session, opened.source->info(), compared.channel);
+}
+
 } // namespace
 
 void addCompareCommand(CLI::App& app) {
     struct Options {
         PictureOptions picture;
-        std::string output, csv;
+        std::string output, csv, with;
         std::vector<std::string> variants;
         int reference = -1;
     };
@@ -80,6 +100,11 @@ void addCompareCommand(CLI::App& app) {
         ->type_name("[NAME:] /POINTER=VALUE; ...")
         ->expected(1)
         ->take_all();
+    command
+        ->add_option("--with", options->with,
+                     "Another file to compare with: both in one colour bar, and the difference; the other data are "
+                     "interpolated onto the grid of the first where theirs is another")
+        ->type_name("DATA");
     command->add_option("--reference", options->reference, "Variant that the others are compared with, counted from 0")
         ->check(CLI::Range(0, 15));
     command
@@ -95,10 +120,12 @@ void addCompareCommand(CLI::App& app) {
             const auto folder = std::filesystem::absolute(path).parent_path();
             if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
         }
-        Opened opened = openForPicture(options->picture, progress.part(0, 0.5));
+        Opened opened = openForPicture(options->picture, progress.part(0, options->with.empty() ? 0.5 : 0.3));
         Session& session = opened.document.session;
+        if (!options->with.empty()) openBeside(opened, options->with, progress.part(0.3, 0.5));
         const std::string pane = comparePane(session, options->picture.view);
         auto& view = std::get<CompareView>(session.views[pane]);
+        if (!options->with.empty()) view.variants = fileVariants(session, opened.source->info());
         if (!options->variants.empty()) {
             view.variants.clear();
             for (const std::string& text : options->variants) view.variants.push_back(parseVariant(text));

@@ -1,5 +1,6 @@
 #include "app/data/sources.h"
 
+#include "app/edits/compare_files.h"
 #include "app/history/session_file.h"
 #include "codec/archive/archive.h"
 #include "codec/pack/unpack.h"
@@ -256,6 +257,31 @@ Sources openSources(const DataRef& data, std::vector<std::string>& messages, con
     sources = deriveBoth(sources, data.derived, messages, progress.part(stored, 1));
     progress.advance(1);
     return sources;
+}
+
+ComparedData openCompared(DataRef& data, const Session& session, std::vector<std::string>& messages,
+                          const Progress& progress) {
+    const std::vector<volume::DerivedParameter> kept = std::exchange(data.derived, {});
+    const Sources stored = openSources(data, messages, progress.part(0, 0.7));
+    data.derived = kept;
+    const volume::DatasetInfo& info = stored.pictures->info();
+    ComparedData made;
+    made.channel = comparedChannel(session, info);
+    const std::string difference =
+        made.channel.empty() ? std::string() : addOtherDifference(data.derived, info, made.channel);
+    made.sources = deriveBoth(stored, data.derived, messages, progress.part(0.7, 1));
+    if (made.channel.empty()) {
+        messages.push_back("nothing can be compared: no parameter has the same name and a unit that can be converted; "
+                           "those of the other file are named \"... (other)\"");
+        return made;
+    }
+    const volume::DatasetInfo& all = made.sources.numbers->info();
+    if (const auto channel = all.findChannel(difference)) {
+        const Range range = all.channelRange(all.channel(*channel));
+        messages.push_back(range.lo == 0 && range.hi == 0 ? made.channel + " is the same in both files"
+                                                          : "New parameter: " + difference);
+    }
+    return made;
 }
 
 std::shared_ptr<const volume::BrickSource> openSource(const DataRef& data, std::vector<std::string>& messages,

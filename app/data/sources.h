@@ -44,6 +44,17 @@ Sources deriveBoth(const Sources& sources, const std::vector<volume::DerivedPara
 /// The same unpacked data drawn on another lattice; nothing is read again. `derived`: the parameters they have.
 Sources drawnOn(PictureLattice lattice, const Sources& sources, const std::vector<volume::DerivedParameter>& derived);
 
+/// Data beside other data.
+struct ComparedData {
+    Sources sources;
+    std::string channel; ///< whose difference has been derived; "" = none can be
+};
+
+/// Opens data with their other data (`data.other`), and with the difference of the channel that a session compares,
+/// which is added to data.derived. Says where both are the same, and where nothing can be compared. Throws Error.
+ComparedData openCompared(DataRef& data, const Session& session, std::vector<std::string>& messages,
+                          const Progress& progress = {});
+
 /// Data as they are drawn alone.
 std::shared_ptr<const volume::BrickSource> openSource(const DataRef& data, std::vector<std::string>& messages,
                                                       const Progress& progress = {});

@@ -1,7 +1,8 @@
 #include "app/document/data_follower.h"
 
 #include "app/data/pack_child.h"
-#include "app/pane/view_parts.h"
+#include "app/data/sources.h"
+#include "app/edits/compare_files.h"
 #include "app/user_files/import_memory.h"
 #include "app/user_files/state_dir.h"
 #include "app/views/data/derived_list.h"
@@ -41,14 +42,14 @@ OpenRequest DataFollower::withChoices(OpenRequest request) const {
     return request;
 }
 
-DataFollower::CountedBy DataFollower::countedBy(const DataRef& data) {
-    return {data.axis, data.timeAxis, data.import.overTime};
+DataFollower::OpenedBy DataFollower::openedBy(const DataRef& data) {
+    return {data.axis, data.timeAxis, data.import.overTime, data.other};
 }
 
 void DataFollower::reset() {
     const DataRef& data = document_.session().data;
     derived_.settle(data.derived);
-    counted_.settle(countedBy(data));
+    opened_.settle(openedBy(data));
     lattice_.settle(data.lattice);
     labels_.settle(data.import.labels);
     shown_({});
@@ -58,8 +59,8 @@ void DataFollower::follow(bool typing, bool dragging) {
     if (!document_.loaded()) return;
     followLattice();
     followLabels(typing);
+    followOpening(dragging);
     followDerived();
-    followAxis(dragging);
     followGrowth();
 }
 
@@ -73,7 +74,7 @@ void DataFollower::take(Sources sources, std::optional<vis::SameSamples> grown) 
 bool DataFollower::moveTo(RemadeData made) {
     if (!document_.moveTo(made)) return false;
     derived_.settle(made.data.derived);
-    counted_.settle(countedBy(made.data));
+    opened_.settle(openedBy(made.data));
     lattice_.settle(made.data.lattice);
     labels_.shown = made.data.import.labels;
     shown_({});
@@ -93,40 +94,38 @@ void DataFollower::show(const DataRef& data, const std::string& title) {
                 });
 }
 
-void DataFollower::compareWith(const std::vector<std::string>& paths) {
-    const std::string title = paths.empty() ? "Without the other data" : "Comparing with another file";
-    jobs_.start("open", title,
-                [this, title, paths, from = document_.sources().pictures,
-                 data = document_.session().data](const Progress& progress) -> Jobs::Finish {
-                    const auto made = std::make_shared<RemadeData>(RemadeData{from, {}, data, {}});
-                    made->data.other.reset();
-                    if (!paths.empty()) {
-                        const DataRef other =
-                            dataOf(paths, recallOptions(paths, volume::ImportOptions{}, progress.part(0, 0.1)));
-                        made->data.other =
-                            OtherData{.files = other.files, .model = {}, .settings = {}, .import = other.import};
-                    }
-                    made->sources = openSources(made->data, made->messages, progress.part(0.1, 1));
-                    return [this, title, made] {
-                        if (!moveTo(std::move(*made)))
-                            return messages_.add(title + ": not shown, as the data have changed since");
-                        addDifference();
-                    };
-                });
+void DataFollower::compareWith(const std::vector<std::string>& paths,
+                               std::function<void(Session&, const CompareView&)> openView) {
+    const std::string title = "Comparing with another file";
+    jobs_.start(
+        "open", title,
+        [this, title, paths, openView = std::move(openView), from = document_.sources().pictures,
+         session = document_.session()](const Progress& progress) -> Jobs::Finish {
+            const auto made = std::make_shared<RemadeData>(RemadeData{from, {}, session.data, {}});
+            const DataRef other = dataOf(paths, recallOptions(paths, volume::ImportOptions{}, progress.part(0, 0.1)));
+            made->data.other = OtherData{.files = other.files, .model = {}, .settings = {}, .import = other.import};
+            const ComparedData compared = openCompared(made->data, session, made->messages, progress.part(0.1, 1));
+            made->sources = compared.sources;
+            return [this, title, made, openView, channel = compared.channel] {
+                if (document_.sources().pictures != made->from)
+                    return messages_.add(title + ": not shown, as the data have changed since");
+                Session& now = document_.session();
+                now.data.other = made->data.other;
+                moveTo(*made);
+                if (channel.empty()) return;
+                showOtherDifference(now, document_.info(), channel);
+                CompareView view;
+                view.variants = fileVariants(now, document_.info());
+                openView(now, view);
+                document_.replace(now, title);
+            };
+        });
 }
 
-/// Adds a parameter: the difference of the one shown first to the other data.
-void DataFollower::addDifference() {
-    Session& session = document_.session();
-    const volume::DatasetInfo& info = document_.info();
-    const auto channel = session.data.other ? resolveChannel(info, session, "") : std::nullopt;
-    if (!channel) return;
-    const volume::DerivedParameter difference =
-        newDifference(info, info.channel(*channel).name, {volume::OtherTime::Other});
-    if (const std::string problem = volume::derivedProblem(difference, info); problem.empty())
-        messages_.add("New parameter: " + addDerived(session, difference));
-    else
-        messages_.add("Cannot compute the difference: " + problem);
+void DataFollower::compareNoMore() {
+    Session session = document_.session();
+    dropOtherData(session);
+    document_.replace(std::move(session), "Without the other data");
 }
 
 void DataFollower::pack(const std::string& path) {
@@ -175,19 +174,20 @@ void DataFollower::followLattice() {
                 });
 }
 
-/// Opens the data again when the axis of times, the plane whose times run along an axis, or the table over time has
-/// been edited; what is shown stays until then.
-void DataFollower::followAxis(bool dragging) {
+/// Opens the data again when the axis of times, the plane whose times run along an axis, the table over time or the
+/// other data have been edited; what is shown stays until then.
+void DataFollower::followOpening(bool dragging) {
     const DataRef& data = document_.session().data;
-    const auto step = counted_.next(countedBy(data), dragging);
-    if (step == Tracked<CountedBy>::Step::Cancel) jobs_.cancel("axis");
-    if (step != Tracked<CountedBy>::Step::Make) return;
-    jobs_.start("axis", "Reading the times",
+    const auto step = opened_.next(openedBy(data), dragging);
+    if (step == Tracked<OpenedBy>::Step::Cancel) jobs_.cancel("axis");
+    if (step != Tracked<OpenedBy>::Step::Make) return;
+    const bool files = !(data.other == opened_.shown.other);
+    jobs_.start("axis", files ? "Opening the data" : "Reading the times",
                 [this, from = document_.sources().pictures, data](const Progress& progress) -> Jobs::Finish {
                     const auto made = std::make_shared<RemadeData>(RemadeData{from, {}, data, {}});
                     made->sources = openSources(data, made->messages, progress);
                     return [this, made] {
-                        if (!moveTo(std::move(*made))) counted_.giveUp();
+                        if (!moveTo(std::move(*made))) opened_.giveUp();
                     };
                 });
 }
@@ -217,6 +217,7 @@ void DataFollower::followLabels(bool typing) {
 
 /// Rebuilds the source after derived parameters have been edited; the former data are shown until then.
 void DataFollower::followDerived() {
+    if (jobs_.running("axis")) return; // derives them as well
     const auto& wanted = document_.session().data.derived;
     const auto step = derived_.next(wanted);
     if (step == decltype(derived_)::Step::Cancel) jobs_.cancel("derive");

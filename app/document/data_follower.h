@@ -35,8 +35,12 @@ public:
 
     /// Opens data in place of those shown, keeping the session.
     void show(const DataRef& data, const std::string& title);
-    /// Adds a second data set and the difference of the parameter shown first; without paths removes it.
-    void compareWith(const std::vector<std::string>& paths);
+    /// Adds a second data set and the difference of a parameter to it, and opens a comparison of both by `openView`,
+    /// all in one step of the history. `openView` is called on the GUI thread.
+    void compareWith(const std::vector<std::string>& paths,
+                     std::function<void(Session& session, const CompareView& view)> openView);
+    /// Removes the second data set with its differences and comparisons.
+    void compareNoMore();
     /// Packs the files shown into an archive and shows that.
     void pack(const std::string& path);
     /// Adds the quantities of a table to the data shown.
@@ -45,23 +49,24 @@ public:
     OpenRequest withChoices(OpenRequest request) const;
 
 private:
-    /// The parts of the session that the times of the data depend on.
-    struct CountedBy {
+    /// The parts of the session after whose edits the data are opened again: what their times depend on, and the other
+    /// data beside them.
+    struct OpenedBy {
         std::string axis;
         std::optional<volume::TimeAxis> along;
         std::string overTime;
-        bool operator==(const CountedBy&) const = default;
+        std::optional<OtherData> other;
+        bool operator==(const OpenedBy&) const = default;
     };
-    static CountedBy countedBy(const DataRef& data);
+    static OpenedBy openedBy(const DataRef& data);
 
     bool moveTo(RemadeData made);
     void take(Sources sources, std::optional<vis::SameSamples> grown = {});
     void followLattice();
     void followLabels(bool typing);
     void followDerived();
-    void followAxis(bool dragging);
+    void followOpening(bool dragging);
     void followGrowth();
-    void addDifference();
 
     Document& document_;
     Jobs& jobs_;
@@ -70,7 +75,7 @@ private:
     std::function<void(std::optional<vis::SameSamples>)> shown_;
     Tracked<std::vector<volume::DerivedParameter>> derived_;
     Tracked<PictureLattice> lattice_;
-    Tracked<CountedBy> counted_;
+    Tracked<OpenedBy> opened_;
     Tracked<std::vector<std::string>> labels_; ///< names given to regions
     ArchiveGrowth growth_;
 };

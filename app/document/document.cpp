@@ -62,12 +62,14 @@ bool Document::moveTo(RemadeData& made) {
     data.derived = now.derived; // changed meanwhile: computed next
     data.lattice = now.lattice;
     data.axis = now.axis;
+    data.other = now.other;
     data.import.overTime = now.import.overTime;
     if (data.files == now.files) data.import.labels = now.import.labels;
     const DataRef recorded = history_.data();
     app::moveTo(session_, history_, &info(), made.sources.pictures->info(), data, made.messages);
     data.lattice = recorded.lattice;
     data.axis = recorded.axis;
+    data.other = recorded.other;
     data.import.overTime = recorded.import.overTime;
     if (data.files == recorded.files) data.import.labels = recorded.import.labels;
     data.derived = recorded.derived; // an edit in progress has yet to become a step

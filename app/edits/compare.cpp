@@ -54,6 +54,19 @@ std::string differingText(const Json& now, const Json& before) {
     return text;
 }
 
+/// The names of layers that replace those of a session.
+std::string layersText(const Session& session, const std::string& layers) {
+    CompareVariant variant;
+    variant.changes["/layers"] = layers;
+    std::string text;
+    try {
+        for (const vis::Layer& layer : variantSession(session, variant).layers)
+            text += (text.empty() ? "" : " and ") + layerName(layer);
+    } catch (const Error&) { // the picture says so
+    }
+    return text;
+}
+
 } // namespace
 
 std::string changesText(const Session& session, const CompareVariant& variant) {
@@ -75,6 +88,7 @@ std::string changesText(const Session& session, const CompareVariant& variant) {
             continue;
         }
         if (parsed.is_null()) shown = "none";
+        if (path == "/layers") title = "shows", shown = layersText(session, value);
         text += (text.empty() ? "" : ", ") + title + (shown.empty() ? "" : " " + shown);
     }
     return text.empty() ? "unchanged" : text;

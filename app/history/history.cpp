@@ -48,12 +48,13 @@ void followUnrecorded(Session& base, const Session& now) {
     base.animation.playing = now.animation.playing;
 }
 
-/// Where a session, as JSON, differs from what its steps lead to, but for changes that are not edits. Empty: nowhere.
+/// Where a session, as JSON, differs from what its steps lead to, but for changes that are not edits, and for where
+/// other data lie, which a saved session says from its own place. Empty: nowhere.
 std::string differenceOf(Session end, const Session& session) {
     followFront(end, session);
     Json ended = app::toJson(end);
     const Json now = app::toJson(session);
-    std::vector<std::string> unrecorded{"/time", "/animation/position", "/animation/playing"};
+    std::vector<std::string> unrecorded{"/time", "/animation/position", "/animation/playing", "/data/other"};
     for (const Track& track : session.animation.tracks)
         if (!numbersAt(session, track.path).empty()) unrecorded.push_back(track.path);
     for (const std::string& path : unrecorded) {

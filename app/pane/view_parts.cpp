@@ -205,7 +205,7 @@ std::vector<LegendEntry> sceneLegends(const Session& session, const volume::Data
             std::visit([](const auto& technique) -> const std::string& { return technique.channel; }, layer.technique);
         const auto channel = info.findChannel(name);
         if (!channel) continue;
-        LegendEntry entry = legendOf(session, info, *channel);
+        LegendEntry entry = legendOf(session, info, *channel, layer.transfer);
         const std::string& colorBy = vis::colorByOf(layer.technique);
         const auto color = colorBy.empty() ? std::nullopt : info.findChannel(colorBy);
         const auto* iso = std::get_if<vis::IsoLayer>(&layer.technique);

@@ -1,5 +1,7 @@
 #include "app/dialogs/import_form.h"
 #include "app/document/surface_export.h"
+#include "app/edits/compare_files.h"
+#include "app/session/shown_scene.h"
 #include "app/ui/keys.h"
 #include "app/workbench/workbench.h"
 #include "app/workbench/workbench_commands.h"
@@ -41,9 +43,9 @@ void askPack(Workbench& workbench) {
 }
 
 void askCompared(Workbench& workbench) {
-    if (workbench.session().data.other) return workbench.data().compareWith({});
+    if (workbench.session().data.other) return workbench.data().compareNoMore();
     workbench.files().askOpen(
-        "Compare with", [&workbench](const std::vector<std::string>& paths) { workbench.data().compareWith(paths); });
+        "Compare with", [&workbench](const std::vector<std::string>& paths) { compareWithFiles(workbench, paths); });
 }
 
 void askSurface(Workbench& workbench) {
@@ -113,6 +115,22 @@ void dropFiles(Workbench& workbench, const std::vector<std::string>& paths) {
     workbench.open(std::move(request));
 }
 
+void compareWithFiles(Workbench& workbench, const std::vector<std::string>& paths) {
+    workbench.data().compareWith(paths, [&workbench](Session& session, const CompareView& view) {
+        for (auto& [pane, each] : session.views)
+            if (auto* const open = std::get_if<CompareView>(&each))
+                if (std::ranges::any_of(open->variants, showsOtherData)) {
+                    *open = view;
+                    return workbench.panes().show(session, pane);
+                }
+        // In the place of the picture that is compared, wherever the mouse was in the dialog.
+        const std::string scene = volumePane(session), pane = addView(session, view);
+        if (const int id = stackWith(session.dock.root, scene)) insertPane(session.dock, pane, id, DockSide::Center);
+        session.dock.maximised.clear();
+        workbench.panes().show(session, pane);
+    });
+}
+
 std::vector<Command> fileCommands(Workbench& workbench) {
     const auto loaded = [&workbench] { return workbench.document().loaded(); };
     return {{.menu = "File",
@@ -143,8 +161,8 @@ std::vector<Command> fileCommands(Workbench& workbench) {
              .enabled = [&workbench] { return showsDataFiles(workbench.document()); }},
             {.menu = "File",
              .name = "Compare with another file...",
-             .help = "Add the parameters of another data set, interpolated onto this grid, and their differences",
-             .words = "difference second data set",
+             .help = "Show another file beside this one, with one colour bar and the difference; again: no longer",
+             .words = "difference second data set two files side by side versus minus diff",
              .run = [&workbench] { askCompared(workbench); },
              .enabled = loaded,
              .checked = [&workbench] { return workbench.session().data.other.has_value(); }},

@@ -22,6 +22,9 @@ std::vector<Command> volumeViewCommands(Workbench& workbench);
 std::vector<Command> sceneCommands(Workbench& workbench);
 std::vector<Command> helpCommands(Workbench& workbench);
 
+/// Shows the data beside those of other files, in the comparison that shows files or in a new one.
+void compareWithFiles(Workbench& workbench, const std::vector<std::string>& paths);
+
 /// Opens files that were dropped on the window. If the dialog for opening is shown they are chosen in it, and it is
 /// shown for a raw file whose layout must be stated. Below other dialogs nothing is opened: they ask about what is
 /// shown.

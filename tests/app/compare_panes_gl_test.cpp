@@ -180,6 +180,24 @@ TEST_F(CompareLayouts, DifferentLegendsStandEachBelowItsPicture) {
     }
 }
 
+// Of two files with one function; that of their difference has its own.
+TEST_F(CompareLayouts, BarsOfTwoFilesAreOneBelowBoth) {
+    LegendEntry other = bar("T (other)");
+    other.data = {0.2, 3};
+    const CompareLayout made = layout({{bar("T")}, {other}, {bar("T minus other")}}, 3, {700, 200});
+    ASSERT_EQ(made.places.size(), 2u);
+    ASSERT_EQ(made.legends.size(), 2u);
+    expectApart(made);
+    EXPECT_EQ(made.legends[0][0].title, "T");
+    EXPECT_EQ(made.legends[0][0].data, (Range{0, 3}));
+    EXPECT_EQ(made.places[0].min.x, made.pictures[0].min.x);
+    EXPECT_GT(made.places[0].max().x, made.pictures[1].min.x + made.pictures[1].size.x / 2);
+    EXPECT_EQ(made.places[1].min.x, made.pictures[2].min.x);
+    other.range = {0, 3};
+    EXPECT_EQ(layout({{bar("T")}, {other}}, 2).legends.size(), 2u) << "other colours for a value";
+    EXPECT_EQ(layout({{bar("T")}, {bar("T (other)")}}, 2).legends.size(), 1u);
+}
+
 TEST_F(CompareLayouts, LegendsOfOnePictureStandBesideEachOther) {
     const CompareLayout made = layout({{bar("T")}, {bar("O2")}}, 1);
     ASSERT_EQ(made.pictures.size(), 1u);

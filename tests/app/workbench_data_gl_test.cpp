@@ -1,3 +1,5 @@
+#include "app/edits/compare.h"
+#include "app/workbench/workbench_commands.h"
 #include "tests/app/workbench_fixture.h"
 #include "tests/resident_memory.h"
 
@@ -232,34 +234,106 @@ TEST_F(WorkbenchData, ADifferenceFromTheFirstTimeIsOneStep) {
     EXPECT_FALSE(workbench.source()->info().findChannel("rho minus first"));
 }
 
-// A file beside the one shown, and away again: the only parameters of both are compared, whatever their names.
-TEST_F(WorkbenchData, AnotherFileStandsBeside) {
-    std::ofstream("other.raw", std::ios::binary) << std::string(8 * 9 * 10, '\x05');
-    std::ofstream("other.json") << R"({"dims": [8, 9, 10], "dtype": "uint8"})";
-    std::ofstream("ramp.json") << R"({"dims": [8, 9, 10], "dtype": "uint8"})";
-    OpenRequest request;
-    request.paths = {(folder / "ramp.raw").string()};
-    request.import.emplace();
-    request.import->rename = {{"value", "slope"}};
-    workbench.install(open(request));
-    settle();
-    const std::string shown = workbench.source()->info().channel(0).name;
-    ASSERT_EQ(shown, "slope");
-    workbench.data().compareWith({(folder / "other.raw").string()});
-    settle(); // the other file is read, then
-    settle(); // the difference is made
+/// A file beside the one shown; each has one parameter, whatever its name.
+struct ComparedFiles : WorkbenchData {
+    void SetUp() override {
+        WorkbenchData::SetUp();
+        std::ofstream("other.raw", std::ios::binary) << std::string(8 * 9 * 10, '\x05');
+        std::ofstream("other.json") << R"({"dims": [8, 9, 10], "dtype": "uint8"})";
+        std::ofstream("ramp.json") << R"({"dims": [8, 9, 10], "dtype": "uint8"})";
+        OpenRequest request;
+        request.paths = {(folder / "ramp.raw").string()};
+        request.import.emplace();
+        request.import->rename = {{"value", "slope"}};
+        workbench.install(open(request));
+        settle();
+        start = workbench.session();
+    }
+    void compare() {
+        compareWithFiles(workbench, {(folder / "other.raw").string()});
+        settle();
+    }
+    const CompareView* comparison() const {
+        for (const auto& [pane, view] : workbench.session().views)
+            if (const auto* compare = std::get_if<CompareView>(&view)) return compare;
+        return nullptr;
+    }
+    bool knows(const std::string& name) const { return workbench.source()->info().findChannel(name).has_value(); }
+
+    Session start;
+};
+
+TEST_F(ComparedFiles, StandSideBySideAtOnceWithTheirDifference) {
+    compare();
+    ASSERT_TRUE(knows("slope minus other"));
     const auto source = workbench.source();
-    ASSERT_TRUE(source->info().findChannel(shown + " minus other"));
-    const volume::BrickSamples d =
-        workbench.source()->read({*source->info().findChannel(shown + " minus other"), 0, 0, {0, 0, 0}});
-    const volume::BrickSamples a = workbench.source()->read({0, 0, 0, {0, 0, 0}});
-    ASSERT_EQ(d.values.size(), a.values.size());
-    for (std::size_t i = 0; i < d.values.size(); ++i) EXPECT_NEAR(d.values[i], a.values[i] - 5, 1e-3);
-    EXPECT_TRUE(workbench.session().data.other);
-    ASSERT_TRUE(run("Compare with another file...")); // off
+    const auto samples = [&](const char* name) {
+        return source->read({*source->info().findChannel(name), 0, 0, {0, 0, 0}}).values;
+    };
+    const std::vector<float> d = samples("slope minus other"), a = samples("slope");
+    ASSERT_EQ(d.size(), a.size());
+    for (std::size_t i = 0; i < d.size(); ++i) EXPECT_NEAR(d[i], a[i] - 5, 1e-3);
+    const CompareView* view = comparison();
+    ASSERT_TRUE(view);
+    ASSERT_EQ(view->variants.size(), 3u);
+    const auto shown = [&](std::size_t index) {
+        const Session session = variantSession(workbench.session(), view->variants[index]);
+        return std::get<vis::VolumeLayer>(session.layers.front().technique).channel;
+    };
+    EXPECT_EQ(shown(0), "slope");
+    EXPECT_EQ(shown(1), "slope (other)");
+    EXPECT_EQ(shown(2), "slope minus other");
+    EXPECT_EQ(view->variants[0].name, "ramp.raw");
+    EXPECT_EQ(view->variants[1].name, "other.raw");
+    EXPECT_EQ(view->variants[2].name, "ramp.raw minus other.raw");
+    EXPECT_EQ(workbench.panes().current(workbench.session()), "compare") << "it is in front";
+    const DockNode& root = workbench.session().dock.root;
+    EXPECT_EQ(stackWith(root, "compare"), stackWith(root, "volume"));
+}
+
+// With what was edited meanwhile; the files that are open are as they were.
+TEST_F(ComparedFiles, AreOneStepBackAndForth) {
+    compare();
+    ASSERT_EQ(workbench.history().steps().size(), 1u);
+    const Session both = workbench.session();
+    EXPECT_TRUE(both.data.other);
+    ASSERT_TRUE(run("Undo"));
+    settle();
+    EXPECT_TRUE(workbench.session() == start);
+    EXPECT_FALSE(knows("slope (other)"));
+    EXPECT_FALSE(knows("slope minus other"));
+    ASSERT_TRUE(run("Redo"));
+    settle();
+    EXPECT_TRUE(workbench.session() == both);
+    EXPECT_TRUE(knows("slope (other)"));
+    EXPECT_TRUE(knows("slope minus other"));
+}
+
+TEST_F(ComparedFiles, GoAwayByTheSameCommand) {
+    compare();
+    ASSERT_TRUE(run("Compare with another file..."));
     settle();
     EXPECT_FALSE(workbench.session().data.other);
-    EXPECT_FALSE(workbench.source()->info().findChannel(shown + " (other)"));
+    EXPECT_TRUE(workbench.session().data.derived.empty());
+    EXPECT_FALSE(knows("slope (other)"));
+    EXPECT_FALSE(comparison());
+}
+
+// The step holds where the other file lies, which a saved session says in other words.
+TEST_F(ComparedFiles, AreStillOneStepAfterTheSessionWasSaved) {
+    compare();
+    workbench.document().save((folder / "both.tessera.json").string());
+    OpenRequest request;
+    request.paths = {(folder / "both.tessera.json").string()};
+    workbench.install(open(request));
+    settle();
+    ASSERT_EQ(workbench.history().steps().size(), 1u);
+    ASSERT_TRUE(run("Undo"));
+    settle();
+    EXPECT_FALSE(knows("slope (other)"));
+    ASSERT_TRUE(run("Redo"));
+    settle();
+    EXPECT_TRUE(knows("slope minus other"));
 }
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)

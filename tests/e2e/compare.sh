@@ -32,6 +32,16 @@ done
 compare -o bad.png --reference 7 && die "a reference that is none passes"
 [ -e bad.png ] && die "a failed comparison left a picture"
 
+# Another file: both, and the difference.
+"$tessera" generate fuel-cell -o other.tsr --size 9x13x20 --times 3 > /dev/null 2> err || die "generate other"
+compare --with other.tsr -o both.png --csv both.csv || die "compare --with: $(cat err)"
+python3 - <<'PY' || die "the table of two files is wrong: $(cat both.csv)"
+import csv
+assert [row["variant"] for row in csv.DictReader(open("both.csv"))] == ["cell.tsr", "other.tsr", "cell.tsr minus other.tsr"]
+PY
+compare --with missing.tsr -o bad.png && die "a file that is not there passes"
+[ -e bad.png ] && die "a failed comparison left a picture"
+
 # Keyframes: first, middle and last picture differ, and the way back ends where it began.
 cat > keys.json <<'JSON'
 [{"path": "/camera/distance", "keys": [{"at": 0, "value": [2.2]}, {"at": 1, "value": [1.2], "easing": "linear"}, {"at": 2, "value": [2.2]}]},

@@ -1,6 +1,7 @@
 #include "app/views/compare/compare_layout.h"
 
 #include "app/pane/view_parts.h"
+#include "volume/derived/other_source.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,11 +22,46 @@ float mostBelow(float height) {
     return height * 0.5f;
 }
 
+/// Whether two bars differ only in the file that they are of.
+bool sameBar(LegendEntry a, LegendEntry b) {
+    for (LegendEntry* each : {&a, &b})
+        if (each->title.ends_with(volume::kOtherSuffix))
+            each->title.erase(each->title.size() - volume::kOtherSuffix.size());
+    b.data = a.data;
+    return a == b;
+}
+
+/// Makes bars equal that differ only in the file that they are of.
+void joinFiles(CompareLegends& legends) {
+    for (std::size_t i = 0; i < legends.size(); ++i)
+        for (std::size_t k = i + 1; k < legends.size(); ++k) {
+            if (!std::ranges::equal(legends[i], legends[k], sameBar)) continue;
+            for (std::size_t n = 0; n < legends[i].size(); ++n) {
+                LegendEntry &a = legends[i][n], &b = legends[k][n];
+                if (a.title.size() > b.title.size()) a.title = b.title;
+                a.data = {std::min(a.data.lo, b.data.lo), std::max(a.data.hi, b.data.hi)};
+            }
+            legends[k] = legends[i];
+        }
+}
+
+/// Gives neighbours in a row that have the same legends one place for them.
+void joinNeighbours(CompareLayout& layout) {
+    for (std::size_t i = layout.places.size(); i-- > 1;) {
+        PictureBox &before = layout.places[i - 1], &own = layout.places[i];
+        if (before.min.y != own.min.y || !(layout.legends[i - 1] == layout.legends[i])) continue;
+        before.size.x = own.max().x - before.min.x;
+        layout.places.erase(layout.places.begin() + static_cast<std::ptrdiff_t>(i));
+        layout.legends.erase(layout.legends.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+}
+
 } // namespace
 
 CompareLayout compareLayout(CompareLegends legends, int count, ImVec2 at, ImVec2 area) {
     CompareLayout layout;
     layout.legends = std::move(legends);
+    joinFiles(layout.legends);
     const bool same = std::ranges::all_of(layout.legends, [&](const auto& own) { return own == layout.legends[0]; });
     if (same && !layout.legends.empty()) layout.legends.resize(1);
     const float common = same ? stripHeight(layout.legends, area.x, mostBelow(area.y)) : 0;
@@ -46,6 +82,7 @@ CompareLayout compareLayout(CompareLegends legends, int count, ImVec2 at, ImVec2
             layout.places.push_back(
                 {{min.x + width * static_cast<float>(k), min.y + cell.y - own}, {width - em(), own}});
     }
+    if (own > 0) joinNeighbours(layout);
     if (common > 0) layout.places.push_back({{at.x, at.y + area.y - common}, {area.x, common}});
     return layout;
 }

@@ -1,6 +1,7 @@
 #include "app/views/compare/compare_offers.h"
 
 #include "app/described/describe_json.h"
+#include "app/edits/compare_files.h"
 #include "app/ui/ticks.h"
 #include "codec/remote/address.h"
 
@@ -60,6 +61,14 @@ std::string ofFirstLayer(const char* key) {
     return std::string("/layers/0/technique/") + key;
 }
 
+/// What is shown, of the other file, and the difference.
+CompareOffers otherFile(const Session& session, const volume::DatasetInfo& info) {
+    std::vector<CompareVariant> variants = fileVariants(session, info);
+    if (variants.empty()) return {};
+    variants.erase(variants.begin());
+    return oneByOne("The other file", "Both files and their difference", std::move(variants));
+}
+
 CompareOffers otherParameters(const Session& session, const volume::DatasetInfo& info) {
     std::vector<CompareVariant> variants;
     if (!session.layers.empty())
@@ -106,8 +115,8 @@ CompareOffers technique(CompareOffers group) {
 } // namespace
 
 std::vector<CompareOffers> compareOffers(const Session& session, const volume::DatasetInfo& info) {
-    std::vector<CompareOffers> groups{otherTimes(session, info), otherParameters(session, info), otherStyles(session),
-                                      compressions(session)};
+    std::vector<CompareOffers> groups{otherFile(session, info), otherTimes(session, info),
+                                      otherParameters(session, info), otherStyles(session), compressions(session)};
     groups.push_back(
         technique(oneByOne("Another filter", "Every filter",
                            ofNames("/render/filter", vis::kFilterNames, std::size_t(session.render.filter)))));

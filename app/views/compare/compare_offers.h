@@ -23,8 +23,8 @@ struct CompareOffers {
     bool technique = false; ///< of the renderer and the lattice: for those who compare techniques
 };
 
-/// What differs from what the session shows, the plainest first: other times, parameters of the first layer, styles,
-/// looks and compressions; then techniques. Groups with nothing to offer are left out.
+/// What differs from what the session shows, the plainest first: the other file, other times, parameters of the first
+/// layer, styles, looks and compressions; then techniques. Groups with nothing to offer are left out.
 std::vector<CompareOffers> compareOffers(const Session& session, const volume::DatasetInfo& info);
 
 /// The variants of a view: its own, or where it has none the session as it is and the first other one that
