@@ -11,13 +11,10 @@ namespace {
 
 /// Keys are never changed, so that old sessions open; what users read follows docs/glossary.md.
 constexpr std::pair<std::string_view, std::string_view> kReplacements[] = {
-    {"channel", "parameter"}, {"channels", "parameters"},
-    {"color", "colour"},      {"colormap", "colour map"},
-    {"colors", "colours"},    {"cursor", "cross-hair"},
-    {"dpi", "DPI"},           {"least", "minimum"},
-    {"most", "maximum"},      {"pdf", "PDF"},
-    {"png", "PNG"},           {"pointer", "mouse"},
-    {"svg", "SVG"},           {"xray", "X-ray"},
+    {"channel", "parameter"}, {"channels", "parameters"},    {"color", "colour"}, {"colormap", "colour map"},
+    {"colors", "colours"},    {"cursor", "cross-hair"},      {"dpi", "DPI"},      {"hardpencil", "hard pencil"},
+    {"least", "minimum"},     {"most", "maximum"},           {"pdf", "PDF"},      {"png", "PNG"},
+    {"pointer", "mouse"},     {"softpencil", "soft pencil"}, {"svg", "SVG"},      {"xray", "X-ray"},
 };
 
 std::string_view replaced(std::string_view word) {

@@ -85,13 +85,41 @@ TEST(CompareOffers, ParametersAndStylesAreThoseOfTheFirstLayerNotShown) {
     EXPECT_EQ(parameters->offers[0].title, "One view per parameter");
     const CompareOffers* styles = find(groups, "Another style");
     ASSERT_TRUE(styles);
-    EXPECT_EQ(styles->offers[0].variants.size(), vis::kVolumeStyleNames.size() - 1);
-    for (const CompareVariant& variant : styles->offers[0].variants)
+    const auto titled = [&](const char* title) {
+        return *std::ranges::find(styles->offers, title, &CompareOffer::title);
+    };
+    EXPECT_EQ(titled("Every style of rays").variants.size(), vis::kVolumeStyleNames.size() - 1);
+    for (const CompareVariant& variant : titled("Every style of rays").variants)
         EXPECT_NE(std::get<vis::VolumeLayer>(variantSession(session, variant).layers[0].technique).style,
                   vis::RayStyle::Composite);
     Session surface = session;
     surface.layers[0].technique = vis::IsoLayer{.channel = "O2"};
     EXPECT_FALSE(find(compareOffers(surface, offeredInfo()), "Another parameter")) << "its value is one of O2";
+}
+
+// The first of another style, by the names that the settings of a layer have for them.
+TEST(CompareOffers, DrawingStylesAreStyles) {
+    const Session session = offeredSession();
+    const auto groups = compareOffers(session, offeredInfo());
+    const CompareOffers* styles = find(groups, "Another style");
+    ASSERT_TRUE(styles);
+    EXPECT_EQ(styles->offers[0].title, "Six drawing styles");
+    EXPECT_EQ(styles->offers[0].variants.size(), 6u);
+    EXPECT_THAT(titles(*styles), testing::IsSupersetOf({"tone", "charcoal", "soft pencil", "pencil", "chalk"}));
+    EXPECT_THAT(titles(*styles), testing::Not(testing::Contains("plain"))) << "it is";
+    const auto look = [](const Session& of) { return std::get<vis::VolumeLayer>(of.layers[0].technique); };
+    for (const CompareOffer& offer : styles->offers)
+        if (offer.title == "charcoal") {
+            EXPECT_TRUE(look(variantSession(session, offer.variants[0])).look == *vis::Look::preset("charcoal"));
+        }
+    Session maximum = session;
+    std::get<vis::VolumeLayer>(maximum.layers[0].technique).style = vis::RayStyle::Maximum;
+    const auto others = compareOffers(maximum, offeredInfo());
+    for (const CompareVariant& variant : find(others, "Another style")->offers[0].variants)
+        EXPECT_EQ(look(variantSession(maximum, variant)).style, vis::RayStyle::Composite) << "others have no look";
+    Session surface = session;
+    surface.layers[0].technique = vis::IsoLayer{.channel = "O2"};
+    EXPECT_TRUE(find(compareOffers(surface, offeredInfo()), "Another style"));
 }
 
 TEST(CompareOffers, EveryOfferFitsTheSession) {

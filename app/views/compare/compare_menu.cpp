@@ -47,7 +47,8 @@ void drawOffers(CompareView& view, std::vector<CompareVariant>& variants, const 
                             variants.size() + offer.variants.size() <= kMostVariants))
             for (const CompareVariant& variant : offer.variants) add(view, variants, variant);
         ImGui::PopID();
-        if (i == 0 && offer.variants.size() > 1) ImGui::Separator();
+        const bool ends = i + 1 < group.offers.size() && group.offers[i + 1].variants.size() > 1;
+        if ((i == 0 && offer.variants.size() > 1) || ends) ImGui::Separator();
     }
     ImGui::EndMenu();
 }

@@ -1,6 +1,7 @@
 #include "app/views/compare/compare_offers.h"
 
 #include "app/described/describe_json.h"
+#include "app/described/key_words.h"
 #include "app/edits/compare_files.h"
 #include "app/ui/ticks.h"
 #include "codec/remote/address.h"
@@ -84,12 +85,44 @@ CompareOffers otherParameters(const Session& session, const volume::DatasetInfo&
     return oneByOne("Another parameter", "One view per parameter", std::move(variants));
 }
 
+/// Drawing styles of a layer but the one that it has.
+std::vector<CompareVariant> otherLooks(const vis::Look& now, bool composite) {
+    std::vector<CompareVariant> looks;
+    for (const std::string_view name : vis::Look::kPresetNames) {
+        if (composite && now == *vis::Look::preset(name)) continue;
+        CompareVariant look = changed(keyWords(name), ofFirstLayer("look"), std::string(name));
+        if (!composite) look.changes[ofFirstLayer("style")] = vis::kVolumeStyleNames[0];
+        looks.push_back(std::move(look));
+    }
+    return looks;
+}
+
+/// Drawing styles of the first layer, a choice of which can be added at once, then other ways to sum up along a ray.
 CompareOffers otherStyles(const Session& session) {
-    const vis::VolumeLayer* layer =
-        session.layers.empty() ? nullptr : std::get_if<vis::VolumeLayer>(&session.layers[0].technique);
-    if (!layer) return {};
-    return oneByOne("Another style", "Every style",
-                    ofNames(ofFirstLayer("style"), vis::kVolumeStyleNames, std::size_t(layer->style)));
+    static constexpr std::string_view kTelling[] = {"illustration", "cartoon",  "charcoal",
+                                                    "pencil",       "hatching", "stipple"};
+    if (session.layers.empty()) return {};
+    CompareOffers group;
+    group.title = "Another style";
+    const vis::Technique& technique = session.layers[0].technique;
+    const auto* volume = std::get_if<vis::VolumeLayer>(&technique);
+    std::visit(
+        [&](const auto& own) {
+            if constexpr (requires { own.look; }) {
+                group = oneByOne(group.title, "Six drawing styles",
+                                 otherLooks(own.look, !volume || volume->style == vis::RayStyle::Composite));
+                std::erase_if(group.offers.front().variants, [](const CompareVariant& variant) {
+                    return std::ranges::find(kTelling, variant.name) == std::end(kTelling);
+                });
+            }
+        },
+        technique);
+    if (!volume) return group;
+    const CompareOffers rays =
+        oneByOne(group.title, "Every style of rays",
+                 ofNames(ofFirstLayer("style"), vis::kVolumeStyleNames, std::size_t(volume->style)));
+    group.offers.insert(group.offers.end(), rays.offers.begin(), rays.offers.end());
+    return group;
 }
 
 /// How data that are not packed look when they are, lossless or with a bounded error.
