@@ -173,18 +173,20 @@ void drawBrushList(ViewContext& context, NextEntry next) {
     };
     if (button("Sphere at cross-hair", true)) addSpaceBrush(context.session, context.source->info(), false);
     if (button("Box at cross-hair")) addSpaceBrush(context.session, context.source->info(), true);
-    if (!context.session.lenses.empty() && button("Inside the lens")) {
-        vis::Brush brush;
-        brush.name = newBrushName(selection, context.session.lenses.back().name);
-        brush.color = newBrushColor(selection);
-        brush.region = vis::LensRegion{context.session.lenses.back().name};
-        selection.brushes.push_back(std::move(brush));
-    }
+    if (!context.session.lenses.empty() && button("Inside the lens")) addLensBrush(context.session);
     if (!selection.brushes.empty() && button("Clear all")) clearBrushes(context);
     if (selection.active() && button("Make selection opaque")) makeOpaque(context.session);
     if (selection.active() && ImGui::IsItemHovered())
         tooltip("Gives every volume the same opacity for all values, so that selected samples are visible even where "
                 "the transfer function hides them");
+}
+
+void addLensBrush(Session& session) {
+    vis::Brush brush;
+    brush.name = newBrushName(session.selection, session.lenses.back().name);
+    brush.color = newBrushColor(session.selection);
+    brush.region = vis::LensRegion{session.lenses.back().name};
+    session.selection.brushes.push_back(std::move(brush));
 }
 
 void makeOpaque(Session& session) {

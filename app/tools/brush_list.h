@@ -21,6 +21,9 @@ vis::Brush spaceBrush(const Session& session, const volume::DatasetInfo& info, b
 /// Adds one with a name and colour of its own, as "or" beside others in space.
 void addSpaceBrush(Session& session, const volume::DatasetInfo& info, bool box);
 
+/// Adds a brush of what is inside the newest lens. There must be one.
+void addLensBrush(Session& session);
+
 /// Gives each visible volume a function of its own that hides nothing.
 void makeOpaque(Session& session);
 

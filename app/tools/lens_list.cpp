@@ -223,6 +223,19 @@ void addLensWith(Session& session, const volume::DatasetInfo& info, vis::Techniq
     addLayer(session, std::move(layer));
 }
 
+void addLensOf(Session& session, const volume::BrickSource& source, const std::string& channel, bool surface) {
+    const volume::DatasetInfo& info = source.info();
+    const auto found = info.findChannel(channel);
+    if (!found) return;
+    if (surface) {
+        const Range range = info.channelRange(info.channel(*found));
+        addLensWith(session, info, vis::IsoLayer{.channel = channel, .value = 0.5 * (range.lo + range.hi)});
+    } else {
+        addLensWith(session, info, vis::VolumeLayer{.channel = channel});
+    }
+    aimLayer(session, source, session.layers.back());
+}
+
 void renameLens(Session& session, std::size_t index, const std::string& name) {
     const std::string before = session.lenses[index].name, now = freeName(session, name, index);
     session.lenses[index].name = now;
@@ -260,29 +273,14 @@ void removeLens(Session& session, std::size_t index) {
 void drawLensMenu(ViewContext& context) {
     Session& session = context.session;
     const volume::DatasetInfo& info = context.source->info();
-    const auto channels = info.channels();
     const std::size_t before = session.lenses.size();
-    const auto each = [&](const auto& add) {
-        for (const int channel : comparedChannels(info)) {
-            const volume::Channel& own = channels[static_cast<std::size_t>(channel)];
-            if (ImGui::MenuItem(own.name.c_str())) add(own);
+    for (const bool surface : {false, true})
+        if (ImGui::BeginMenu(surface ? "Lens: an iso-surface" : "Lens: another parameter")) {
+            for (const int channel : comparedChannels(info))
+                if (const std::string name = info.channel(channel).name; ImGui::MenuItem(name.c_str()))
+                    addLensOf(session, *context.source, name, surface);
+            ImGui::EndMenu();
         }
-    };
-    if (ImGui::BeginMenu("Lens: another parameter")) {
-        each([&](const volume::Channel& channel) {
-            addLensWith(session, info, vis::VolumeLayer{.channel = channel.name});
-            aimLayer(session, *context.source, session.layers.back());
-        });
-        ImGui::EndMenu();
-    }
-    if (ImGui::BeginMenu("Lens: an iso-surface")) {
-        each([&](const volume::Channel& channel) {
-            const Range range = info.channelRange(channel);
-            addLensWith(session, info, vis::IsoLayer{.channel = channel.name, .value = 0.5 * (range.lo + range.hi)});
-            aimLayer(session, *context.source, session.layers.back());
-        });
-        ImGui::EndMenu();
-    }
     static constexpr const char* kItems[] = {"Lens: cut away", "Lens: only this", "Lens: enhance",
                                              "Lens: suppress", "Lens: magnify",   "Lens: brushes inside"};
     for (std::size_t i = 0; i < std::size(kItems); ++i)

@@ -27,6 +27,9 @@ void addLens(Session& session, const volume::DatasetInfo& info, vis::LensEffect 
 /// Adds a lens at the cross-hair in which a technique replaces the other layers.
 void addLensWith(Session& session, const volume::DatasetInfo& info, vis::Technique technique);
 
+/// Adds a lens in which a parameter is drawn instead, as a volume or as an iso-surface that shows something.
+void addLensOf(Session& session, const volume::BrickSource& source, const std::string& channel, bool surface);
+
 /// Renames a lens; references to it follow.
 void renameLens(Session& session, std::size_t index, const std::string& name);
 

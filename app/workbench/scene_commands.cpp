@@ -1,5 +1,8 @@
+#include "app/data/library.h"
+#include "app/described/key_words.h"
 #include "app/edits/context_style.h"
 #include "app/edits/scene_task.h"
+#include "app/pane/view_parts.h"
 #include "app/session/shown_scene.h"
 #include "app/tools/brush_list.h"
 #include "app/tools/camera_hand.h"
@@ -17,6 +20,18 @@
 namespace tessera::app {
 
 namespace {
+
+/// The first parameter that no layer draws; "" if all are drawn.
+std::string otherParameter(const Session& session, const volume::DatasetInfo& info) {
+    for (const int channel : comparedChannels(info)) {
+        const std::string name = info.channel(channel).name;
+        const auto draws = [&](const vis::Layer& layer) {
+            return std::visit([&](const auto& own) { return own.channel == name; }, layer.technique);
+        };
+        if (std::ranges::none_of(session.layers, draws)) return name;
+    }
+    return {};
+}
 
 std::vector<Command> addingCommands(Workbench& workbench) {
     const auto loaded = [&workbench] { return workbench.document().loaded(); };
@@ -66,12 +81,33 @@ std::vector<Command> addingCommands(Workbench& workbench) {
             std::string("Add lens: ") + word, "Add a lens of this effect at the cross-hair", "new magnifier region",
             [effect = effect](Session& session, const volume::DatasetInfo& info) { addLens(session, info, effect); },
             loaded);
+    adds(
+        "Lens: another parameter", "Add a lens at the cross-hair in which a parameter not shown yet is drawn instead",
+        "new magnifier region volume inside",
+        [&workbench](Session& session, const volume::DatasetInfo& info) {
+            addLensOf(session, *workbench.source(), otherParameter(session, info), false);
+        },
+        [&workbench, loaded] {
+            return loaded() && !otherParameter(workbench.session(), workbench.document().info()).empty();
+        });
+    adds(
+        "Lens: an iso-surface", "Add a lens at the cross-hair in which the parameter is drawn as a surface instead",
+        "new magnifier region isosurface contour inside",
+        [&workbench](Session& session, const volume::DatasetInfo& info) {
+            if (const auto channel = resolveChannel(info, session, ""))
+                addLensOf(session, *workbench.source(), info.channel(*channel).name, true);
+        },
+        loaded);
     task = SceneTask::Brushes;
     for (const bool box : {false, true})
         adds(
             box ? "Brush a box at the cross-hair" : "Brush a sphere at the cross-hair",
             "Select what lies around the cross-hair", "new add selection region",
             [box](Session& session, const volume::DatasetInfo& info) { addSpaceBrush(session, info, box); }, loaded);
+    adds(
+        "Brush inside the lens", "Select what lies inside the newest lens", "new add selection region",
+        [](Session& session, const volume::DatasetInfo&) { addLensBrush(session); },
+        [&workbench, loaded] { return loaded() && !workbench.session().lenses.empty(); });
     task = SceneTask::Clips;
     for (std::size_t kind = 0; kind < std::size(vis::kClipKindNames); ++kind)
         adds(
@@ -155,6 +191,87 @@ std::vector<Command> taskCommands(Workbench& workbench) {
     return commands;
 }
 
+/// The look of the layer selected; null where it has none.
+vis::Look* selectedLook(Session& session) {
+    const std::size_t selected = selectedLayer(session);
+    if (selected >= session.layers.size()) return nullptr;
+    return std::visit(
+        [](auto& own) -> vis::Look* {
+            if constexpr (requires { own.look; }) return &own.look;
+            return nullptr;
+        },
+        session.layers[selected].technique);
+}
+
+/// The flow layer selected, else the first; null if there is none.
+vis::FlowLayer* flowOf(Session& session) {
+    if (const std::size_t selected = selectedLayer(session); selected < session.layers.size())
+        if (auto* const flow = std::get_if<vis::FlowLayer>(&session.layers[selected].technique)) return flow;
+    for (vis::Layer& layer : session.layers)
+        if (auto* const flow = std::get_if<vis::FlowLayer>(&layer.technique)) return flow;
+    return nullptr;
+}
+
+/// What layers have: drawing styles, seeds in the selection.
+std::vector<Command> layerCommands(Workbench& workbench) {
+    std::vector<Command> commands;
+    // Of the layers that the volume view clicked last shows.
+    const auto shown = [&workbench](const auto& act) {
+        Session& session = workbench.session();
+        const ShownScene scene(session, volumePane(session));
+        return act(session);
+    };
+    for (const std::string_view name : vis::Look::kPresetNames) {
+        const auto drawnSo = [name](Session& session) {
+            const vis::Look* const look = selectedLook(session);
+            return look && *look == *vis::Look::preset(name);
+        };
+        commands.push_back({.menu = "",
+                            .name = "Look: " + keyWords(name),
+                            .help = "Draw the selected layer, a volume or a surface, in this style",
+                            .words = "drawing style preset illustration npr non-photorealistic",
+                            .run =
+                                [shown, name] {
+                                    shown([name](Session& session) {
+                                        if (vis::Look* const look = selectedLook(session))
+                                            *look = *vis::Look::preset(name);
+                                    });
+                                },
+                            .enabled =
+                                [&workbench, shown] {
+                                    return workbench.document().loaded() &&
+                                           shown([](Session& session) { return selectedLook(session) != nullptr; });
+                                },
+                            .checked = [shown, drawnSo] { return shown(drawnSo); },
+                            .needs = "a volume or a surface selected in Layers"});
+    }
+    commands.push_back({.menu = "",
+                        .name = "Seed brushed",
+                        .help = "Start the lines of the flow layer in the selection, or anywhere",
+                        .words = "flow streamlines seeds selection brush interest",
+                        .run =
+                            [shown] {
+                                shown([](Session& session) {
+                                    if (vis::FlowLayer* const flow = flowOf(session))
+                                        flow->seedBrushed = !flow->seedBrushed;
+                                });
+                            },
+                        .enabled =
+                            [&workbench, shown] {
+                                return workbench.document().loaded() &&
+                                       shown([](Session& session) { return flowOf(session) != nullptr; });
+                            },
+                        .checked =
+                            [shown] {
+                                return shown([](Session& session) {
+                                    const vis::FlowLayer* const flow = flowOf(session);
+                                    return flow && flow->seedBrushed;
+                                });
+                            },
+                        .needs = "a flow layer"});
+    return commands;
+}
+
 /// The volume view used last, or the first there is; null if there is none.
 VolumeView* volumeOf(Workbench& workbench) {
     auto& views = workbench.session().views;
@@ -200,6 +317,8 @@ std::vector<Command> decorationCommands(Workbench& workbench) {
          {std::tuple{"Show box", &VolumeView::showBox, "bounding frame outline hide"},
           {"Show axes", &VolumeView::showAxes, "ticks labels units coordinates hide"},
           {"Show legends", &VolumeView::showLegend, "color bar colour bar scale hide"},
+          {"Show legends of drawings", &VolumeView::drawingLegend, "charcoal pencil color bar colour bar scale hide"},
+          {"Show box and cross-hair of drawings", &VolumeView::drawingBox, "charcoal pencil frame cursor hide"},
           {"Show cross-hair", &VolumeView::showCursor, "cursor hide"},
           {"Show direction gizmo", &VolumeView::showGizmo, "triad orientation xyz hide"},
           {"Show scale bar", &VolumeView::showScaleBar, "length ruler hide"},
@@ -219,6 +338,19 @@ std::vector<Command> decorationCommands(Workbench& workbench) {
                                     const VolumeView* const view = volumeOf(workbench);
                                     return view && view->*member;
                                 }});
+    const auto along = [&workbench] { return workbench.session().data.timeAxis && volumeOf(workbench); };
+    commands.push_back({.menu = "",
+                        .name = "Data in space",
+                        .help = "The volume view used last shows the data in space, or the plane with time along an "
+                                "axis",
+                        .words = "time along axis plane space-time",
+                        .run =
+                            [&workbench, along] {
+                                if (along()) volumeOf(workbench)->inSpace = !volumeOf(workbench)->inSpace;
+                            },
+                        .enabled = along,
+                        .checked = [&workbench, along] { return along() && volumeOf(workbench)->inSpace; },
+                        .needs = "time along an axis"});
     return commands;
 }
 
@@ -227,6 +359,7 @@ std::vector<Command> decorationCommands(Workbench& workbench) {
 std::vector<Command> sceneCommands(Workbench& workbench) {
     std::vector<Command> commands = addingCommands(workbench);
     std::ranges::move(taskCommands(workbench), std::back_inserter(commands));
+    std::ranges::move(layerCommands(workbench), std::back_inserter(commands));
     std::ranges::move(focusCommands(workbench), std::back_inserter(commands));
     std::ranges::move(decorationCommands(workbench), std::back_inserter(commands));
     return commands;

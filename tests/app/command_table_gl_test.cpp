@@ -1,7 +1,9 @@
 #include "app/data/apply_layout.h"
 #include "app/data/open.h"
+#include "app/described/key_words.h"
 #include "app/edits/context_style.h"
 #include "app/session/shown_scene.h"
+#include "app/tools/lens_list.h"
 #include "tests/app/workbench_fixture.h"
 
 #include <algorithm>
@@ -23,7 +25,7 @@ const std::set<std::string> kElsewhere = {
     "Save session",                 // WorkbenchLeaving.ACancelledSaveLeavesEverythingAsItIs
     "Save session as...",           // the same
     "Pack into an archive...",      // WorkbenchData.WhatIsEditedWhilePackingStays
-    "Compare with another file...", // WorkbenchData.AnotherFileStandsBeside
+    "Compare with another file...", // ComparedFiles
     "Save picture...",              // tests/e2e/window.sh
     "Export surface...",            // AsyncQueries, tests/e2e/mesh.sh
     "Cancel jobs",                  // WorkbenchData.CancelJobsLeavesThoseThatAreNotListed
@@ -33,6 +35,9 @@ const std::set<std::string> kElsewhere = {
     "Undo",                         // every case here
     "Redo",                         // every case here
     "Add flow layer",               // Palette.FindsByOtherWords
+    "Seed brushed",                 // Palette.ALensOfAnotherParameterAndSeedsInTheSelectionAreOneStepEach
+    "Lens: another parameter",      // the same
+    "Data in space",                // TimeAlongWorkbench.TheDataInSpaceStandBesideAsTheyWere
     "Shortcuts",                    // CommandTable.HelpAndPaletteOpen
     "Menu bar",                     // Keyboard.AltAndF10OpenTheMenusAndArrowsWalkThem
     "Next part of the window",      // Keyboard.F6GoesToEveryPaneAndBack
@@ -118,6 +123,15 @@ Check lensAdded(vis::LensEffect effect) {
         ASSERT_EQ(after.lenses.size(), before.lenses.size() + 1);
         EXPECT_EQ(after.lenses.back().effect, effect);
         EXPECT_EQ(after.lenses.back().center, after.cursor);
+    };
+}
+
+/// The selected layer, the only one, is drawn in this style.
+Check drawnIn(std::string_view look) {
+    return [look](const Session& before, const Session& after) {
+        Session wanted = before;
+        std::get<vis::VolumeLayer>(wanted.layers.front().technique).look = *vis::Look::preset(look);
+        EXPECT_TRUE(after == wanted);
     };
 }
 
@@ -216,6 +230,18 @@ const std::map<std::string, Check>& checks() {
             {"Add lens: suppress", lensAdded(vis::LensEffect::Suppress)},
             {"Add lens: magnify", lensAdded(vis::LensEffect::Magnify)},
             {"Add lens: brushes inside", lensAdded(vis::LensEffect::Focus)},
+            {"Lens: an iso-surface",
+             [](const Session& before, const Session& after) {
+                 layerAdded<vis::IsoLayer>(before, after);
+                 lensAdded(vis::LensEffect::Replace)(before, after);
+                 EXPECT_EQ(after.layers.back().lens, after.lenses.back().name);
+             }},
+            {"Brush inside the lens",
+             [](const Session& before, const Session& after) {
+                 ASSERT_EQ(after.selection.brushes.size(), before.selection.brushes.size() + 1);
+                 EXPECT_EQ(std::get<vis::LensRegion>(after.selection.brushes.back().region).lens,
+                           before.lenses.back().name);
+             }},
             {"Add clip: plane", clipAdded(vis::ClipKind::Plane)},
             {"Add clip: box", clipAdded(vis::ClipKind::Box)},
             {"Add clip: sphere", clipAdded(vis::ClipKind::Sphere)},
@@ -236,6 +262,8 @@ const std::map<std::string, Check>& checks() {
             {"Show box", turned(&VolumeView::showBox)},
             {"Show axes", turned(&VolumeView::showAxes)},
             {"Show legends", turned(&VolumeView::showLegend)},
+            {"Show legends of drawings", turned(&VolumeView::drawingLegend)},
+            {"Show box and cross-hair of drawings", turned(&VolumeView::drawingBox)},
             {"Show cross-hair", turned(&VolumeView::showCursor)},
             {"Show direction gizmo", turned(&VolumeView::showGizmo)},
             {"Show scale bar", turned(&VolumeView::showScaleBar)},
@@ -293,6 +321,7 @@ const std::map<std::string, Check>& checks() {
         for (std::size_t style = 0; style < std::size(kContextStyleNames); ++style)
             made["What is not brushed: " + std::string(kContextStyleNames[style])] =
                 contextStyled(static_cast<ContextStyle>(style));
+        for (const std::string_view look : vis::Look::kPresetNames) made["Look: " + keyWords(look)] = drawnIn(look);
         forEachViewKind([&]<class Kind>(const Kind& kind) {
             using State = typename Kind::State;
             constexpr bool same =
@@ -306,14 +335,15 @@ const std::map<std::string, Check>& checks() {
 
 class CommandTable : public DrawnWorkbench {
 protected:
-    /// Three times of a small volume, the second one shown, one brush; only the list of layers is drawn, which is
-    /// quick.
+    /// Three times of a small volume, the second one shown, one brush, one lens; only the list of layers is drawn,
+    /// which is quick.
     void begin() {
         Opened opened = smallSignal();
         Session& session = opened.document.session;
         session.time = 1.0 / 3;
         session.stretch = {1, 2, 1};
         session.selection.brushes = {vis::rangeBrush({{.channel = "rho", .lo = 0.2, .hi = 0.6}}, "half")};
+        session.lenses = {newLens(session, opened.source->info(), vis::LensEffect::Enhance)};
         session.dock.maximised = "layers";
         workbench.session().appearance = {};
         opened.document.history.reset(session);

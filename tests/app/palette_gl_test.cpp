@@ -55,6 +55,9 @@ TEST_F(Palette, FindsByOtherWords) {
                                         {"sphere", "Brush a sphere at the cross-hair"},
                                         {"orthographic", "Parallel projection"},
                                         {"histogram", "New: Histogram"},
+                                        {"charcoal", "Look: charcoal"},
+                                        {"drawing style", "Look: hatching"},
+                                        {"versus", "Compare with another file..."},
                                         {"difference", "Compare with another file..."}})
         EXPECT_TRUE(finds(typed, wanted)) << typed << " should find " << wanted;
     EXPECT_EQ(found("flow").front(), "Add flow layer");
@@ -86,6 +89,15 @@ TEST_F(Palette, HasEveryPaneAndEveryItemOfAMenu) {
                              "sphere at the cross-hair",
                              "box at the cross-hair",
                              "clear brushes",
+                             "inside the lens",
+                             "legends of drawings",
+                             "box and cross-hair of drawings",
+                             "data in space",
+                             "seed brushed",
+                             "look: charcoal",
+                             "soft pencil",
+                             "lens: another parameter",
+                             "lens: an iso-surface",
                              "lens: cut away",
                              "lens: only this",
                              "lens: enhance",
@@ -110,6 +122,37 @@ TEST_F(Palette, HasEveryPaneAndEveryItemOfAMenu) {
         const std::string name = match.front()->menu + ": " + match.front()->title();
         EXPECT_GE(matchScore(item, name, match.front()->words), kWholeWords) << item;
     }
+}
+
+// What it adds is selected, and gone again by one step back.
+TEST_F(Palette, ALensOfAnotherParameterAndSeedsInTheSelectionAreOneStepEach) {
+    const auto selected = [&] { return std::get<LayersView>(workbench.session().views.at("layers")).selected; };
+    const Session start = workbench.session();
+    ASSERT_TRUE(run("Lens: another parameter"));
+    settle();
+    const Session lens = workbench.session();
+    ASSERT_EQ(lens.layers.size(), start.layers.size() + 1);
+    ASSERT_EQ(lens.lenses.size(), start.lenses.size() + 1);
+    EXPECT_EQ(lens.layers.back().lens, lens.lenses.back().name);
+    const std::string other = std::get<vis::VolumeLayer>(lens.layers.back().technique).channel;
+    for (const vis::Layer& layer : start.layers)
+        EXPECT_NE(std::visit([](const auto& own) { return own.channel; }, layer.technique), other);
+    EXPECT_EQ(selected(), int(start.layers.size()));
+    ASSERT_TRUE(run("Undo"));
+    settle();
+    EXPECT_TRUE(workbench.session() == start);
+
+    ASSERT_FALSE(run("Seed brushed")) << "there is no flow";
+    ASSERT_TRUE(run("Add flow layer"));
+    settle();
+    const Session flow = workbench.session();
+    ASSERT_FALSE(run("Look: charcoal")) << "flow is selected, which has no look";
+    ASSERT_TRUE(run("Seed brushed"));
+    settle();
+    EXPECT_TRUE(std::get<vis::FlowLayer>(workbench.session().layers.back().technique).seedBrushed);
+    ASSERT_TRUE(run("Undo"));
+    settle();
+    EXPECT_TRUE(workbench.session() == flow);
 }
 
 TEST_F(Palette, WhatIsTypedIsRunByEnter) {

@@ -249,6 +249,7 @@ TEST_F(TimeAlongWorkbench, TheDataInSpaceStandBesideAsTheyWere) {
     const vis::Camera camera = workbench.session().camera;
     const vis::Image before = pictureOf("volume");
     EXPECT_EQ(besidePane(), "");
+    EXPECT_FALSE(run("Data in space")) << "all are";
     ASSERT_TRUE(run("Time along z"));
     settle();
     const std::string beside = besidePane();
@@ -258,6 +259,16 @@ TEST_F(TimeAlongWorkbench, TheDataInSpaceStandBesideAsTheyWere) {
     const vis::Image along = pictureOf("volume"), space = pictureOf(beside);
     EXPECT_LT(differing(before, space), 0.01) << "the same data at the same time";
     EXPECT_GT(differing(before, along), 0.02) << "the plane at all times looks otherwise";
+    // By the command, the view that stands alone now shows the plane, and the data again.
+    const auto inSpace = [&] { return std::get<VolumeView>(workbench.session().views.at(beside)).inSpace; };
+    ASSERT_TRUE(inSpace());
+    const Session shown = workbench.session();
+    ASSERT_TRUE(run("Data in space"));
+    settle();
+    EXPECT_FALSE(inSpace());
+    ASSERT_TRUE(run("Undo"));
+    settle();
+    EXPECT_TRUE(workbench.session() == shown);
     // Another place: read again once nothing is dragged.
     const auto numbers = workbench.numbers();
     workbench.session().data.timeAxis->place = 0.9;
