@@ -24,10 +24,9 @@ double middleOfBin(std::size_t bin, Range range) {
     return range.lo + (static_cast<double>(bin) + 0.5) / kValueBins * (range.hi - range.lo);
 }
 
-/// Adds |grad f|^3 of the samples of a brick, but for those on its faces, to the bins of their values. `step`: distance
-/// of the neighbours in the array; `cell`: half their distance in space, in any unit.
-void addGradients(const volume::BrickSamples& samples, glm::ivec3 step, glm::dvec3 cell, Range range,
-                  std::array<double, kValueBins>& sums) {
+/// Calls use(value, |grad f|) for the samples of a brick, but for those on its faces. `step`: distance of the
+/// neighbours in the array; `cell`: half their distance in space, in any unit.
+template <class Use> void forGradients(const volume::BrickSamples& samples, glm::ivec3 step, glm::dvec3 cell, Use use) {
     const glm::ivec3 size = samples.size;
     const std::array<std::size_t, 3> stride{1, std::size_t(size.x), std::size_t(size.x) * std::size_t(size.y)};
     for (int k = step.z; k < size.z - step.z; ++k)
@@ -43,8 +42,69 @@ void addGradients(const volume::BrickSamples& samples, glm::ivec3 step, glm::dve
                     gradient[axis] =
                         (double(samples.values[at + away]) - double(samples.values[at - away])) / (2 * cell[axis]);
                 }
-                if (whole) sums[binOf(samples.values[at], range)] += std::pow(glm::length(gradient), 3);
+                if (whole) use(double(samples.values[at]), glm::length(gradient));
             }
+}
+
+/// The same for a coarse level of a whole time; lengths in the shortest edge of a cell.
+template <class Use> void forGradients(const volume::BrickSource& source, int channel, int time, Use use) {
+    const volume::BrickGrid& grid = source.grid();
+    // Storage of BCC holds the two sublattices in alternating planes.
+    const glm::ivec3 step(1, 1, grid.lattice.kind == volume::LatticeKind::BCC ? 2 : 1);
+    const glm::dvec3 spacing = grid.lattice.spacing;
+    const glm::dvec3 cell = spacing / std::max(std::min({spacing.x, spacing.y, spacing.z}), 1e-300);
+    forBricks(source, channel, time, grid.levelWithin(kQuickSamples), kEveryBrick,
+              [&](glm::ivec3, const volume::BrickSamples& samples) { forGradients(samples, step, cell, use); });
+}
+
+/// The bin in [first, end) with the greatest sum, smoothed since scans do not have every value; nullopt: all are 0.
+std::optional<std::size_t> peakOf(const std::array<double, kValueBins>& sums, int first, int end = kValueBins) {
+    constexpr int kSmooth = 4; // bins on either side
+    std::optional<std::size_t> best;
+    double most = 0;
+    for (int bin = first; bin < end; ++bin) {
+        double sum = 0;
+        for (int near = std::max(bin - kSmooth, 0); near <= std::min(bin + kSmooth, kValueBins - 1); ++near)
+            sum += (kSmooth + 1 - std::abs(near - bin)) * sums[std::size_t(near)];
+        if (sum > most) most = sum, best = std::size_t(bin);
+    }
+    return best;
+}
+
+constexpr int kClusterBins = kValueBins / 10;
+
+/// Neighbouring bins that hold most of what is counted, outside of `taken`.
+struct Cluster {
+    int begin = 0, end = 0;
+    double count = 0;
+};
+Cluster largestCluster(const std::array<double, kValueBins>& count, const Cluster& taken = {}) {
+    Cluster best;
+    for (int begin = 0; begin + kClusterBins <= kValueBins; ++begin) {
+        const int end = begin + kClusterBins;
+        if (begin < taken.end && end > taken.begin) continue;
+        const double sum = std::accumulate(count.begin() + begin, count.begin() + end, 0.0);
+        if (sum > best.count) best = {begin, end, sum};
+    }
+    return best;
+}
+
+/// Share of the samples on the outer faces of the box that are below a value.
+double shareOfFacesBelow(const volume::BrickSource& source, int channel, int time, double value) {
+    const int level = source.grid().levelWithin(kQuickSamples);
+    const glm::ivec3 last = source.grid().levelSamples(level) - 1;
+    double below = 0, all = 0;
+    forSamples(
+        source, channel, time, level,
+        [](glm::ivec3 index, glm::ivec3 count) {
+            return glm::any(glm::equal(index, glm::ivec3(0))) || glm::any(glm::equal(index, count - 1));
+        },
+        [&](glm::ivec3 at, float sample) {
+            if (!glm::any(glm::equal(at, glm::ivec3(0))) && !glm::any(glm::equal(at, last))) return;
+            below += double(sample) < value ? 1 : 0;
+            all += 1;
+        });
+    return all > 0 ? below / all : 0;
 }
 
 } // namespace
@@ -86,26 +146,49 @@ std::optional<double> backgroundShare(const volume::BrickSource& source, int cha
 std::optional<double> boundaryValue(const volume::BrickSource& source, int channel, int time) {
     const Range range = source.info().channelRange(source.info().channel(channel));
     if (!(range.hi > range.lo)) return std::nullopt;
-    const volume::BrickGrid& grid = source.grid();
-    const int level = grid.levelWithin(kQuickSamples);
-    // Storage of BCC holds the two sublattices in alternating planes.
-    const glm::ivec3 step(1, 1, grid.lattice.kind == volume::LatticeKind::BCC ? 2 : 1);
-    const glm::dvec3 spacing = grid.lattice.spacing;
-    const glm::dvec3 cell = spacing / std::max(std::min({spacing.x, spacing.y, spacing.z}), 1e-300);
     std::array<double, kValueBins> sums{};
-    forBricks(source, channel, time, level, kEveryBrick,
-              [&](glm::ivec3, const volume::BrickSamples& samples) { addGradients(samples, step, cell, range, sums); });
+    forGradients(source, channel, time,
+                 [&](double value, double gradient) { sums[binOf(value, range)] += std::pow(gradient, 3); });
     const double background = backgroundShare(source, channel, time).value_or(0);
-    std::size_t best = 0;
-    double most = 0;
-    constexpr int kSmooth = 4; // bins on either side: scans do not have every value
-    for (int bin = static_cast<int>(std::ceil(background * kValueBins)); bin < kValueBins; ++bin) {
-        double sum = 0;
-        for (int near = std::max(bin - kSmooth, 0); near <= std::min(bin + kSmooth, kValueBins - 1); ++near)
-            sum += (kSmooth + 1 - std::abs(near - bin)) * sums[std::size_t(near)];
-        if (sum > most) most = sum, best = std::size_t(bin);
-    }
-    return most > 0 ? std::optional(middleOfBin(best, range)) : std::nullopt;
+    const auto best = peakOf(sums, static_cast<int>(std::ceil(background * kValueBins)));
+    return best ? std::optional(middleOfBin(*best, range)) : std::nullopt;
+}
+
+std::optional<Materials> materialsOf(const volume::BrickSource& source, int channel, int time) {
+    // Of the range: change per cell up to which nothing changes, and from which a boundary is steep.
+    constexpr double kFlat = 0.04, kSteep = 0.08;
+    constexpr double kFlatShare = 0.5, kClustered = 0.8, kLeastCluster = 0.005, kLeastFaces = 0.3; // of the samples
+    const volume::DatasetInfo& info = source.info();
+    const volume::Channel what = info.channel(channel);
+    const Range range = info.channelRange(what);
+    if (info.parameters[static_cast<std::size_t>(what.parameter)].categorical || !(range.hi > range.lo))
+        return std::nullopt;
+    std::array<double, kValueBins> flat{}, sums{}, steepness{}, count{};
+    double all = 0, flats = 0;
+    forGradients(source, channel, time, [&](double value, double gradient) {
+        const double change = gradient / (range.hi - range.lo);
+        const std::size_t bin = binOf(value, range);
+        all += 1;
+        count[bin] += 1;
+        steepness[bin] += change;
+        sums[bin] += std::pow(change, 3);
+        if (change < kFlat) flat[bin] += 1, flats += 1;
+    });
+    if (!(flats > kFlatShare * all)) return std::nullopt;
+    const Cluster one = largestCluster(flat), two = largestCluster(flat, one);
+    const Cluster &lower = one.begin < two.begin ? one : two, &upper = one.begin < two.begin ? two : one;
+    if (one.count + two.count < kClustered * flats || two.count < kLeastCluster * all) return std::nullopt;
+    if (upper.begin - lower.end < kClusterBins / 2) return std::nullopt; // one that is wide
+    const auto peak = peakOf(sums, lower.end, upper.end);
+    if (!peak) return std::nullopt;
+    const double steep = steepness[*peak] / std::max(count[*peak], 1.0);
+    if (steep < kSteep) return std::nullopt;
+    const double boundary = middleOfBin(*peak, range);
+    if (shareOfFacesBelow(source, channel, time, boundary) < kLeastFaces) return std::nullopt;
+    double passed = 0;
+    int top = lower.begin;
+    while (top + 1 < lower.end && (passed += flat[std::size_t(top)]) < 0.99 * lower.count) ++top;
+    return Materials{(top + 1.0) / kValueBins, (boundary - range.lo) / (range.hi - range.lo)};
 }
 
 std::optional<double> middleValue(const volume::BrickSource& source, int channel, int time) {

@@ -18,6 +18,19 @@ std::optional<double> backgroundShare(const volume::BrickSource& source, int cha
 /// time, by differences inside bricks. nullopt: no gradient at all. Throws Error when a brick is damaged.
 std::optional<double> boundaryValue(const volume::BrickSource& source, int channel, int time);
 
+/// Two materials, as shares 0..1 of a channel's range.
+struct Materials {
+    double below = 0;    ///< just above the values of the lower one
+    double boundary = 0; ///< in the middle of the strongest boundary above it
+    bool operator==(const Materials&) const = default;
+};
+
+/// Whether a field, of whole numbers or not, is made of materials: most samples lie where nearly nothing changes, at
+/// values around one of two, and between these it changes steeply. The lower one must reach the outer faces of the box,
+/// so that it hides what is inside. From a coarse level of one time; nullopt: a field that varies smoothly, or labels.
+/// Throws Error when a brick is damaged.
+std::optional<Materials> materialsOf(const volume::BrickSource& source, int channel, int time);
+
 /// A value for a surface in a field without such boundaries: the middle between the 2 % and 98 % quantiles; nullopt:
 /// these are equal, or there is no sample. Throws Error when a brick is damaged.
 std::optional<double> middleValue(const volume::BrickSource& source, int channel, int time);

@@ -46,7 +46,7 @@ std::optional<glm::dvec3> middleOfSamples(const volume::BrickSource& source, int
 }
 
 constexpr int kViewBins = 256;
-/// Where the opacity of scans begins, between their background (0) and their strongest boundary (1).
+/// Where the opacity of materials begins, between the lower one (0) and the strongest boundary (1).
 constexpr double kBelowBoundary = 0.4;
 /// Share of the grid's samples (absent ones included) that should be visible at first: fewer are hard to find in the
 /// box, more hide what is behind them.
@@ -94,7 +94,9 @@ void showTails(vis::TransferFunction& function, const volume::BrickSource& sourc
         return;
     }
     const double seen = vis::seenShare(occurrence.count, occurrence.places, function.opacity);
-    if (seen < kLeastSeen || seen > kMostSeen) function.opacity = vis::tailOpacity(occurrence.count, kMostSeen);
+    if (seen >= kLeastSeen && seen <= kMostSeen) return;
+    function.opacity = vis::tailOpacity(occurrence.count, kMostSeen);
+    vis::seeAtLeast(function.opacity, occurrence.count, occurrence.places, kLeastSeen);
 }
 
 /// Chooses the opacity curve of a channel from its values, unless its function was changed.
@@ -105,14 +107,20 @@ void chooseCurve(Session& session, const volume::BrickSource& source, int channe
     const volume::Channel what = info.channels()[static_cast<std::size_t>(channel)];
     const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(what.parameter)];
     if (parameter.categorical) return;
-    if (parameter.type == volume::ScalarType::F32) {
-        showTails(transfer->second, source, channel, time);
-    } else if (const auto share = backgroundShare(source, channel, time)) {
-        const Range range = info.channelRange(what);
+    const Range range = info.channelRange(what);
+    std::optional<Materials> materials;
+    if (const auto share = backgroundShare(source, channel, time)) {
         const auto boundary = boundaryValue(source, channel, time);
-        const double middle = boundary ? (*boundary - range.lo) / (range.hi - range.lo) : *share;
-        const float x = static_cast<float>(*share + kBelowBoundary * std::max(middle - *share, 0.0));
+        materials = {*share, boundary ? (*boundary - range.lo) / (range.hi - range.lo) : *share};
+    } else {
+        materials = materialsOf(source, channel, time);
+    }
+    if (materials) {
+        const double above = std::max(materials->boundary - materials->below, 0.0);
+        const float x = static_cast<float>(materials->below + kBelowBoundary * above);
         transfer->second.opacity = {{0.0f, 0.0f}, {x, 0.0f}, {1.0f, 0.8f}};
+    } else if (parameter.type == volume::ScalarType::F32) {
+        showTails(transfer->second, source, channel, time);
     }
 }
 

@@ -15,8 +15,8 @@ double firstAspect(const volume::DatasetInfo& info);
 
 /// Moves the camera so that the box fills the picture (`aspect`: width over height), from vis::firstOrientation()
 /// unless the session has a direction of its own; if the first layer's parameter is absent at the cross-hair, moves the
-/// cross-hair to the middle of its samples; makes the background of scans transparent in the default opacity curves, up
-/// to near their strongest boundary. If a brick is damaged, the rest is unchanged.
+/// cross-hair to the middle of its samples; makes the background of scans, or the lower one of materials, transparent
+/// in the default opacity curves, up to near their strongest boundary. If a brick is damaged, the rest is unchanged.
 void aimFirstView(Session& session, const volume::BrickSource& source, double aspect);
 
 /// The last time, with a message, if the first volume of a layout hardly shows a sample at the session's time and more

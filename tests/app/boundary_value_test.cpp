@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <gtest/gtest.h>
 
 /// Values for a first picture, from fields whose boundaries are known.
@@ -64,6 +65,35 @@ TEST(BoundaryValue, NothingOfTheBackgroundCounts) {
     EXPECT_GT(*backgroundShare(*scan, 0, 0), 60.0 / 200) << "all of the noise is background";
     EXPECT_LT(*backgroundShare(*scan, 0, 0), 0.5);
     EXPECT_GT(*boundaryValue(*scan, 0, 0), 200 * *backgroundShare(*scan, 0, 0));
+}
+
+/// A soft body at 100 that all faces of the box cut, with a hard slab at 200 across it, blurred by a cell.
+double inner(int x, int, int) {
+    const int depth = std::min(x - 16, 23 - x);
+    return depth < -1 ? 100 : depth < 0 ? 125 : depth < 1 ? 175 : 200;
+}
+
+TEST(BoundaryValue, MaterialsAreFoundInAnyTypeOfNumber) {
+    for (const auto type : {volume::ScalarType::U8, volume::ScalarType::F32})
+        for (const bool bcc : {false, true}) {
+            const auto scan = field(type, {0, 200}, inner, bcc);
+            ASSERT_FALSE(backgroundShare(*scan, 0, 0)) << "what is around fills half of the range";
+            const auto found = materialsOf(*scan, 0, 0);
+            ASSERT_TRUE(found) << int(type) << bcc;
+            EXPECT_NEAR(found->below, 0.5, 0.02);
+            EXPECT_NEAR(found->boundary, 0.75, 0.14);
+        }
+}
+
+TEST(BoundaryValue, SmoothFieldsAndHidingOnesAreNoMaterials) {
+    const auto rising = [](int x, int, int) { return 5 * x; };
+    EXPECT_FALSE(materialsOf(*field(volume::ScalarType::F32, {0, 200}, rising), 0, 0));
+    const auto wave = [](int x, int y, int z) { return 100 + 90 * std::sin(0.2 * x) * std::cos(0.3 * (y + z)); };
+    EXPECT_FALSE(materialsOf(*field(volume::ScalarType::F32, {0, 200}, wave), 0, 0));
+    const auto inverse = [](int x, int y, int z) { return 200 - inner(x, y, z); };
+    EXPECT_FALSE(materialsOf(*field(volume::ScalarType::F32, {0, 200}, inverse), 0, 0)) << "the greatest are around";
+    const auto flat = [](int, int, int) { return 5; };
+    EXPECT_FALSE(materialsOf(*field(volume::ScalarType::F32, {0, 200}, flat), 0, 0));
 }
 
 TEST(BoundaryValue, ComputedFieldsHaveTheMiddleOfTheirUsualValues) {

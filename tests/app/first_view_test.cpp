@@ -101,6 +101,16 @@ TEST(FirstView, AComputedFieldShowsWhatIsRare) {
     EXPECT_EQ(shown(*rare, {"f"}).transfer, defaultSession(rare->info(), {}).transfer);
 }
 
+TEST(FirstView, WhatIsMadeOfMaterialsShowsTheUpperOne) {
+    // 40 beside 90, as numbers with fractions: a float scan of which the box shows a part.
+    const auto value = [](int x, int, int) { return x < 6 ? 40.25 : x < 7 ? 65.5 : 90.75; };
+    const auto source = computed("", {1, 94}, value);
+    const auto opacity = shown(*source, {"f"}).transfer.at("f").opacity;
+    ASSERT_EQ(opacity.size(), 3u);
+    EXPECT_EQ(vis::curveAt(opacity, (40.25 - 1) / 93), 0);
+    EXPECT_GT(vis::curveAt(opacity, (90.75 - 1) / 93), 0.5);
+}
+
 TEST(FirstView, ValuesOfBothSignsHaveDivergingColoursAboutZero) {
     const auto value = [](int x, int, int) { return x - 4; }; // -4 to 7
     const auto function = shown(*computed("m", {-4, 7}, value), {"f"}).transfer.at("f");

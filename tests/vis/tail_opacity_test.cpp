@@ -2,7 +2,9 @@
 
 #include "vis/transfer/transfer_function.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <numeric>
 
 /// Opacity curves made of histograms.
 namespace tessera::vis {
@@ -46,6 +48,27 @@ TEST(TailOpacity, ALongTailIsShownAndTheBulkIsClear) {
 }
 
 // Half of the values are the bulk, whatever share is asked for.
+// One value a hundred times as great as the rest makes the rise so slow that nothing is seen.
+TEST(TailOpacity, OfWhatIsNotTheBulkSomeIsSeen) {
+    for (const bool low : {false, true}) {
+        std::vector<std::uint64_t> count(256, 0);
+        for (int bin = 0; bin < 8; ++bin) count[std::size_t(bin)] = std::uint64_t(6400 >> bin);
+        for (std::size_t bin = 8; bin < 256; ++bin) count[bin] = bin % 9 == 0 ? 1 : 0;
+        if (low) std::ranges::reverse(count);
+        const std::uint64_t all = std::accumulate(count.begin(), count.end(), std::uint64_t(0));
+        auto curve = tailOpacity(count, 0.2);
+        ASSERT_LT(seenShare(count, all, curve), 0.02) << "this is what it is for";
+        seeAtLeast(curve, count, all, 0.02);
+        EXPECT_GE(seenShare(count, all, curve), 0.02);
+        EXPECT_LE(seenShare(count, all, curve), 0.2);
+        EXPECT_EQ(curveAt(curve, low ? 1 : 0), 0);
+        EXPECT_TRUE(std::ranges::is_sorted(curve, {}, &glm::vec2::x));
+        const auto again = curve;
+        seeAtLeast(curve, count, all, 0.02);
+        EXPECT_EQ(curve, again);
+    }
+}
+
 TEST(TailOpacity, TheBulkStaysClear) {
     const auto curve = tailOpacity(histogram([](int) { return 10; }), 0.9);
     for (const double x : {0.0, 0.2, 0.45, 0.5}) EXPECT_EQ(at(curve, x), 0) << x;

@@ -78,6 +78,31 @@ std::vector<glm::vec2> tailOpacity(std::span<const std::uint64_t> count, double 
     return curve;
 }
 
+void seeAtLeast(std::vector<glm::vec2>& curve, std::span<const std::uint64_t> count, std::uint64_t places,
+                double least) {
+    if (seenShare(count, places, curve) >= least || curve.size() < 2) return;
+    constexpr float kSeen = float(kSeenOpacity) * 1.05f;
+    const bool low = curve.front().y > 0, high = curve.back().y > 0;
+    const double each = least * double(places) / (low && high ? 2 : 1), bins = double(count.size());
+    // The number of bins at one end that together hold `each`.
+    const auto from = [&](auto end, auto clear) {
+        std::size_t held = 0;
+        double sum = 0;
+        while (end != clear && (sum += double(*end++)) < each) ++held;
+        return std::min<double>(double(held) + 1, bins);
+    };
+    if (high) {
+        const float edge = curve[curve.size() - 2].x, x = 1 - float(from(count.rbegin(), count.rend()) / bins);
+        const float at = std::max(x, edge + float(1 / bins));
+        if (at < 1 && kSeen > float(curveAt(curve, double(at)))) curve.insert(curve.end() - 1, {at, kSeen});
+    }
+    if (low) {
+        const float edge = curve[1].x, x = float(from(count.begin(), count.end()) / bins);
+        const float at = std::min(x, edge - float(1 / bins));
+        if (at > 0 && kSeen > float(curveAt(curve, double(at)))) curve.insert(curve.begin() + 1, {at, kSeen});
+    }
+}
+
 std::vector<glm::vec2> signedTailOpacity(std::span<const std::uint64_t> count, double share) {
     const std::size_t half = count.size() / 2;
     const double most = share * sumOf(count);

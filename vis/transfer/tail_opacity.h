@@ -21,7 +21,12 @@ double seenShare(std::span<const std::uint64_t> count, std::uint64_t places, std
 /// than half as long as the other one stays transparent. Without tails, a straight line from 0 to 0.8.
 std::vector<glm::vec2> tailOpacity(std::span<const std::uint64_t> count, double share);
 
-/// The same for signed values over a range symmetric about 0: rises on both sides from the magnitude beyond which
+/// Makes a curve of tailOpacity() steeper at its start, where it rises so slowly that less than `least` of the places
+/// are seen: from the quantile on beyond which so many lie, but not in the bulk, which stays clear.
+void seeAtLeast(std::vector<glm::vec2>& curve, std::span<const std::uint64_t> count, std::uint64_t places,
+                double least);
+
+/// tailOpacity() for signed values over a range symmetric about 0: rises on both sides from the magnitude beyond which
 /// `share` of the values lie.
 std::vector<glm::vec2> signedTailOpacity(std::span<const std::uint64_t> count, double share);
 
