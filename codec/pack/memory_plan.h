@@ -17,11 +17,12 @@ struct MemoryPlan {
 /// The fastest plan within the memory limit, which includes the program itself. Whole frames need the larger of the
 /// memory for reading and for coding one time of one parameter with all its components: for reading, samples and a flag
 /// each, and one resampled component with the working memory of its filter; for coding, the stored samples twice more,
-/// for the bricks and their bytes, and the bricks that all threads code at a time; with D4* also six times of every parameter. If that exceeds the limit and frames can
-/// be read in slices, they are processed in slabs of as many brick layers as fit, at least one: the source slices of a
-/// slab for one component (on D4* for every time that the filter spans), the slab twice, and some bricks with their
-/// bytes. Files read through another program need that program's memory. `slabLayers`: number of brick layers even if
-/// whole frames fit; 0: as many as fit. Throws Error when an explicit limit is below the minimum.
+/// for the bricks and their bytes, and the bricks that all threads code at a time; with D4* also six times of every
+/// parameter. If that exceeds the limit and frames can be read in slices, they are processed in slabs of as many brick
+/// layers as fit, at least one: the source slices of a slab for one component (on D4* for every time that the filter
+/// spans), the slab twice, and some bricks with their bytes. Files read through another program need that program's
+/// memory. `slabLayers`: number of brick layers even if whole frames fit; 0: as many as fit. Throws Error when an
+/// explicit limit is below the minimum.
 MemoryPlan planMemory(const Metadata& metadata, const volume::Dataset& source, const PackOptions& options,
                       int slabLayers);
 
