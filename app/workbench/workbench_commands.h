@@ -18,7 +18,9 @@ std::vector<Command> viewCommands(Workbench& workbench);
 std::vector<Command> layoutCommands(Workbench& workbench);
 /// What volume views share or own; they end the menu View.
 std::vector<Command> volumeViewCommands(Workbench& workbench);
-/// Commands that add to the scene and hide parts of it; they are in no menu of the window.
+/// Commands that add to the scene, or choose one of few ways to show it, a part of the next.
+std::vector<Command> addingCommands(Workbench& workbench);
+/// Commands that change the scene; they are in no menu of the window.
 std::vector<Command> sceneCommands(Workbench& workbench);
 std::vector<Command> helpCommands(Workbench& workbench);
 
