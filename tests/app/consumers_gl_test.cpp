@@ -82,7 +82,7 @@ constexpr Consumer kConsumers[] = {
     {"slices",          "F F F F . F F . F . F F F . F F . . . F"},
     {"scatterMatrix",   "F F . . . F . . . . . F . . . F . . . F"},
     {"transfer",        "F F F . . F F . . . . F . . . . . F . F"},
-    {"layers",          ". . . . . F . F . . . F . . . . . F . ."},
+    {"layers",          ". . . . . F . F . . F F . . . . . F . ."},
     {"timeline",        "F F . . . . . . . . . . . . . . . . . ."},
     {"data",            "F F . . . F . . . . . F . . F F . . . F"},
     {"history",         ""}, // lists the edits themselves

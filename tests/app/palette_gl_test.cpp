@@ -140,7 +140,10 @@ TEST_F(Palette, ALensOfAnotherParameterAndSeedsInTheSelectionAreOneStepEach) {
     EXPECT_EQ(selected(), int(start.layers.size()));
     ASSERT_TRUE(run("Undo"));
     settle();
-    EXPECT_TRUE(workbench.session() == start);
+    Session undone = workbench.session();
+    EXPECT_EQ(std::get<LayersView>(undone.views.at("layers")).task, SceneTask::Lenses) << "the tab in front is no edit";
+    std::get<LayersView>(undone.views.at("layers")).task = SceneTask::Layers;
+    EXPECT_TRUE(undone == start);
 
     ASSERT_FALSE(run("Seed brushed")) << "there is no flow";
     ASSERT_TRUE(run("Add flow layer"));

@@ -1,6 +1,7 @@
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
 #include "codec/pack/pack_size.h"
+#include "tests/codec/least_memory.h"
 #include "tests/codec/make_dataset.h"
 
 #include <algorithm>
@@ -154,7 +155,7 @@ TEST(PackMemory, ALimitThatCannotBeKeptIsAnError) {
 // Reading goes on while coding does; never more than one frame is read at a time, and a tight limit reads none ahead.
 TEST(PackFeed, ReadsOneStepAheadOrNone) {
     const TemporaryFolder folder;
-    const auto countThreads = [&](double memoryMb) {
+    const auto countThreads = [&](double memoryMb, const std::string& name) {
         volume::Dataset made = waves(3);
         std::atomic<int> inside = 0;
         std::set<std::thread::id> threads;
@@ -167,13 +168,14 @@ TEST(PackFeed, ReadsOneStepAheadOrNone) {
         };
         PackOptions options;
         options.memoryMb = memoryMb;
-        pack(made, options, folder / (std::to_string(memoryMb) + ".tsr"));
+        pack(made, options, folder / name);
         return threads.size();
     };
-    EXPECT_GT(countThreads(1000), 1u);
-    EXPECT_EQ(countThreads(65.2), 1u);
+    EXPECT_GT(countThreads(1000, "ample.tsr"), 1u);
+    const double least = leastMemory([&](double limit) { countThreads(limit, "trial.tsr"); });
+    EXPECT_EQ(countThreads(least, "tight.tsr"), 1u);
     // The limit is no part of what is stored but among the options.
-    const Archive ample(folder / "1000.000000.tsr"), tight(folder / "65.200000.tsr");
+    const Archive ample(folder / "ample.tsr"), tight(folder / "tight.tsr");
     for (int t = 0; t < 3; ++t) EXPECT_EQ(readField(ample, 0, 0, t).samples, readField(tight, 0, 0, t).samples);
 }
 

@@ -2,11 +2,11 @@
 #include "codec/container/container.h"
 #include "codec/container/metadata.h"
 #include "codec/pack/memory_plan.h"
+#include "tests/codec/least_memory.h"
 #include "tests/codec/make_dataset.h"
 #include "volume/base/error.h"
 #include "volume/resample/resample.h"
 
-#include <cstdio>
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
@@ -50,18 +50,14 @@ TEST(MemoryPlan, SlabsFitTheLimit) {
     }
 }
 
-/// The least memory, in MB, that packing says it needs on so many threads.
-double leastMemory(const Metadata& metadata, const volume::Dataset& made, PackOptions options, int threads) {
-    options.memoryMb = 1;
-    double least = 0;
-    tbb::task_arena(threads).execute([&] {
-        try {
+/// The least memory, in MB, for packing on so many threads.
+double leastOn(int threads, const Metadata& metadata, const volume::Dataset& made, PackOptions options) {
+    return tbb::task_arena(threads).execute([&] {
+        return leastMemory([&](double limit) {
+            options.memoryMb = limit;
             (void)planMemory(metadata, made, options, 0);
-        } catch (const Error& error) {
-            std::sscanf(error.what(), "packing data of this size needs about %lf", &least);
-        }
+        });
     });
-    return least;
 }
 
 // Every thread codes a brick of its own, as long as there are bricks in a batch.
@@ -71,13 +67,13 @@ TEST(MemoryPlan, CountsTheBricksOfAllThreads) {
     PackOptions options;
     options.lattice = StoredLattice::CC;
     metadata.grid.brickSize = 64; // 32 bricks, each of which takes 15 bytes a sample while it is coded
-    const double one = leastMemory(metadata, made, options, 1), brick = 64 * 64 * 64 * 15e-6;
+    const double one = leastOn(1, metadata, made, options), brick = 64 * 64 * 64 * 15e-6;
     EXPECT_GT(one, 64 + 256 * 128 * 256 * 9e-6);
-    EXPECT_NEAR(leastMemory(metadata, made, options, 16), one + 15 * brick, 1);
-    EXPECT_NEAR(leastMemory(metadata, made, options, 100), one + 31 * brick, 1);
+    EXPECT_NEAR(leastOn(16, metadata, made, options), one + 15 * brick, 0.2);
+    EXPECT_NEAR(leastOn(100, metadata, made, options), one + 31 * brick, 0.2);
     metadata.grid.brickSize = 128; // 4 bricks
-    const double large = leastMemory(metadata, made, options, 1);
-    EXPECT_NEAR(leastMemory(metadata, made, options, 100), large + 3 * 8 * brick, 1);
+    const double large = leastOn(1, metadata, made, options);
+    EXPECT_NEAR(leastOn(100, metadata, made, options), large + 3 * 8 * brick, 0.2);
 }
 
 // A brick whose coefficients may be quantised takes 33 bytes a sample while it is coded, another one 17.
