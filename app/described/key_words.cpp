@@ -11,10 +11,23 @@ namespace {
 
 /// Keys are never changed, so that old sessions open; what users read follows docs/glossary.md.
 constexpr std::pair<std::string_view, std::string_view> kReplacements[] = {
-    {"channel", "parameter"}, {"channels", "parameters"},    {"color", "colour"}, {"colormap", "colour map"},
-    {"colors", "colours"},    {"cursor", "cross-hair"},      {"dpi", "DPI"},      {"hardpencil", "hard pencil"},
-    {"least", "minimum"},     {"most", "maximum"},           {"pdf", "PDF"},      {"png", "PNG"},
-    {"pointer", "mouse"},     {"softpencil", "soft pencil"}, {"svg", "SVG"},      {"xray", "X-ray"},
+    {"channel", "parameter"},
+    {"channels", "parameters"},
+    {"color", "colour"},
+    {"colormap", "colour map"},
+    {"colors", "colours"},
+    {"cursor", "cross-hair"},
+    {"dpi", "DPI"},
+    {"hardpencil", "hard pencil"},
+    {"least", "minimum"},
+    {"localmaximum", "local maximum"},
+    {"most", "maximum"},
+    {"pdf", "PDF"},
+    {"png", "PNG"},
+    {"pointer", "mouse"},
+    {"softpencil", "soft pencil"},
+    {"svg", "SVG"},
+    {"xray", "X-ray"},
 };
 
 std::string_view replaced(std::string_view word) {
@@ -38,6 +51,12 @@ std::string keyWords(std::string_view key) {
     }
     endWord();
     return out;
+}
+
+std::string oneOf(std::string_view list) {
+    std::string words = keyWords(list);
+    if (words.ends_with('s')) words.pop_back();
+    return words;
 }
 
 } // namespace tessera::app

@@ -9,4 +9,7 @@ namespace tessera::app {
 /// that texts do not use. "contextOpacity" -> "context opacity", "channel" -> "parameter".
 std::string keyWords(std::string_view key);
 
+/// The same for one of what a list holds. "clips" -> "clip".
+std::string oneOf(std::string_view list);
+
 } // namespace tessera::app

@@ -1,5 +1,6 @@
 #include "app/ui/parameter_widget.h"
 
+#include "app/described/key_words.h"
 #include "app/history/edit_titles.h"
 #include "app/history/parameter_path.h"
 
@@ -156,7 +157,7 @@ bool drawList(const WidgetContext& context, const FieldInfo& info, Value list) {
     std::size_t removed = size;
     for (std::size_t i = 0; i < size; ++i) {
         const std::string id = std::string(info.key) + std::to_string(i);
-        if (!beginSection(id.c_str(), labelOf(info.key) + " " + std::to_string(i + 1), info.doc)) continue;
+        if (!beginSection(id.c_str(), labelOf(oneOf(info.key)) + " " + std::to_string(i + 1), info.doc)) continue;
         changed |= drawMembers(list.element(i), context.under(std::to_string(i)));
         if (drawListButton("Remove")) removed = i;
         endSection();
@@ -165,7 +166,7 @@ bool drawList(const WidgetContext& context, const FieldInfo& info, Value list) {
         list.type->erase(list.at, removed);
         changed = true;
     }
-    if (!drawListButton(("Add to " + std::string(info.key)).c_str())) return changed;
+    if (!drawListButton(("Add " + oneOf(info.key)).c_str())) return changed;
     list.type->resize(list.at, list.size() + 1);
     openSection((std::string(info.key) + std::to_string(size - (removed < size ? 1 : 0))).c_str());
     return true;

@@ -92,6 +92,7 @@ TEST(CompareOffers, ParametersAndStylesAreThoseOfTheFirstLayerNotShown) {
     for (const CompareVariant& variant : titled("Every style of rays").variants)
         EXPECT_NE(std::get<vis::VolumeLayer>(variantSession(session, variant).layers[0].technique).style,
                   vis::RayStyle::Composite);
+    EXPECT_THAT(titles(*styles), testing::IsSupersetOf({"X-ray", "local maximum"}));
     Session surface = session;
     surface.layers[0].technique = vis::IsoLayer{.channel = "O2"};
     EXPECT_FALSE(find(compareOffers(surface, offeredInfo()), "Another parameter")) << "its value is one of O2";

@@ -158,7 +158,7 @@ TEST_F(ListHands, SeveralBrushesAreClearedByTheCommandThatAsks) {
 TEST_F(ListHands, ANewClipIsUnfolded) {
     showLists(SceneTask::Clips);
     for (const int number : {0, 1}) {
-        click(at({"Add to clips"}));
+        click(at({"Add clip"}));
         ASSERT_EQ(int(session().clips.size()), number + 1);
         EXPECT_TRUE(unfolded({"###clips" + std::to_string(number)})) << number;
     }

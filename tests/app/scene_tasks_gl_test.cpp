@@ -284,7 +284,7 @@ TEST_F(TaskTexts, EverySettingIsBelowOneOfTheTabs) {
     for (const vis::LightModel model : {vis::LightModel::Phong, vis::LightModel::Physical}) {
         session.lighting.model = model;
         std::vector<std::string> names = labels(session.lighting);
-        std::replace(names.begin(), names.end(), std::string("Lights"), std::string("Lights 1"));
+        std::replace(names.begin(), names.end(), std::string("Lights"), std::string("Light 1"));
         expectLabels(of(SceneTask::Light), names);
         expectLabels(of(SceneTask::Light), labels(session.lighting.lights[0]));
     }

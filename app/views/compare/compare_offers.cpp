@@ -34,7 +34,7 @@ CompareOffers oneByOne(std::string title, const std::string& all, std::vector<Co
 std::vector<CompareVariant> ofNames(const std::string& path, std::span<const std::string_view> names, std::size_t set) {
     std::vector<CompareVariant> variants;
     for (std::size_t i = 0; i < names.size(); ++i)
-        if (i != set) variants.push_back(changed(std::string(names[i]), path, std::string(names[i])));
+        if (i != set) variants.push_back(changed(keyWords(names[i]), path, std::string(names[i])));
     return variants;
 }
 
