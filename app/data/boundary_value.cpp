@@ -89,21 +89,27 @@ Cluster largestCluster(const std::array<double, kValueBins>& count, const Cluste
     return best;
 }
 
-/// Share of the samples on the outer faces of the box that are below a value.
-double shareOfFacesBelow(const volume::BrickSource& source, int channel, int time, double value) {
+/// Calls use(value) for the samples of a coarse level on the outer faces of the box.
+template <class Use> void forFaces(const volume::BrickSource& source, int channel, int time, Use use) {
     const int level = source.grid().levelWithin(kQuickSamples);
     const glm::ivec3 last = source.grid().levelSamples(level) - 1;
-    double below = 0, all = 0;
+    const auto isOuter = [](glm::ivec3 at, glm::ivec3 end) {
+        return glm::any(glm::equal(at, glm::ivec3(0))) || glm::any(glm::equal(at, end));
+    };
     forSamples(
-        source, channel, time, level,
-        [](glm::ivec3 index, glm::ivec3 count) {
-            return glm::any(glm::equal(index, glm::ivec3(0))) || glm::any(glm::equal(index, count - 1));
-        },
-        [&](glm::ivec3 at, float sample) {
-            if (!glm::any(glm::equal(at, glm::ivec3(0))) && !glm::any(glm::equal(at, last))) return;
-            below += double(sample) < value ? 1 : 0;
-            all += 1;
+        source, channel, time, level, [&](glm::ivec3 index, glm::ivec3 count) { return isOuter(index, count - 1); },
+        [&](glm::ivec3 at, float value) {
+            if (isOuter(at, last)) use(value);
         });
+}
+
+/// Share of the samples on the outer faces of the box that are below a value.
+double shareOfFacesBelow(const volume::BrickSource& source, int channel, int time, double value) {
+    double below = 0, all = 0;
+    forFaces(source, channel, time, [&](float sample) {
+        below += double(sample) < value ? 1 : 0;
+        all += 1;
+    });
     return all > 0 ? below / all : 0;
 }
 
@@ -116,22 +122,13 @@ std::optional<double> backgroundShare(const volume::BrickSource& source, int cha
     const Range range = info.channelRange(what);
     const bool integer = parameter.type != volume::ScalarType::F32 && !parameter.categorical;
     if (!integer || !(range.hi > range.lo)) return std::nullopt;
-    const volume::BrickGrid& grid = source.grid();
-    const int level = grid.levelWithin(kQuickSamples);
-    const glm::ivec3 last = grid.levelSamples(level) - 1;
     std::vector<std::uint64_t> histogram(256, 0);
     std::uint64_t total = 0;
-    forSamples(
-        source, channel, time, level,
-        [](glm::ivec3 index, glm::ivec3 count) {
-            return glm::any(glm::equal(index, glm::ivec3(0))) || glm::any(glm::equal(index, count - 1));
-        },
-        [&](glm::ivec3 at, float value) {
-            if (!glm::any(glm::equal(at, glm::ivec3(0))) && !glm::any(glm::equal(at, last))) return;
-            const double share = (value - range.lo) / (range.hi - range.lo);
-            ++histogram[static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * 255)];
-            ++total;
-        });
+    forFaces(source, channel, time, [&](float value) {
+        const double share = (value - range.lo) / (range.hi - range.lo);
+        ++histogram[static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * 255)];
+        ++total;
+    });
     std::uint64_t below = 0;
     for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
         below += histogram[bin];
