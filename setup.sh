@@ -17,6 +17,7 @@ packages=(
 )
 test_packages=( # only ./test.sh needs these
     libgtest-dev libgmock-dev clang-format glslang-tools xvfb xdotool xauth
+    mesa-vulkan-drivers                                   # a second driver
     poppler-utils librsvg2-bin                            # figures as other programs read them
     pybind11-dev python3-dev python3-numpy python3-xarray # the Python package
 )
