@@ -5,10 +5,9 @@
 #include "codec/archive/brick_input.h"
 #include "codec/archive/coded_bricks.h"
 #include "codec/archive/coded_mask.h"
+#include "codec/archive/frame_coding.h"
 #include "codec/archive/frame_model.h"
 #include "codec/archive/frame_steps.h"
-#include "codec/brick/subsamples.h"
-#include "codec/brick/whole_brick.h"
 #include "codec/bytes/lzma.h"
 #include "codec/container/growing_file.h"
 #include "codec/container/mask_hash.h"
@@ -21,69 +20,6 @@
 #include <map>
 
 namespace tessera::codec {
-
-namespace {
-
-/// A frame being coded: the coding parameters of its bricks, and their statistics.
-struct FrameCoding {
-    const volume::BrickGrid& grid;
-    FrameRecord frame;
-    double maxError = 0;                ///< of its samples
-    const SeenFrame* before = nullptr;  ///< earlier frame whose bricks may be repeated
-    std::vector<std::uint8_t> repeated; ///< flag per brick
-    std::vector<std::uint8_t> whole;    ///< flag per brick: no token was coded
-    std::vector<volume::BrickImportance> importance;
-    Taken taken;
-    Model model;
-    int step = 1;            ///< times since `before`
-    bool statistics = false; ///< store statistics of bricks
-    bool keeps = false;      ///< keep samples and sizes for later frames
-    SeenFrame seen;
-
-    explicit FrameCoding(const volume::BrickGrid& of) : grid(of) {}
-
-    /// Codes brick `brick` of `part` (a slab with grid `own`, where its index is `ownNumber`) into segments.
-    std::vector<Bytes> code(std::size_t brick, const volume::Field& part, const volume::BrickGrid& own,
-                            std::size_t ownNumber, const BandEncoder& encoder, Compressor& compressor,
-                            BrickInput& input, SplitMemory& memory);
-};
-
-std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, const volume::BrickGrid& own,
-                                     std::size_t ownNumber, const BandEncoder& encoder, Compressor& compressor,
-                                     BrickInput& input, SplitMemory& memory) {
-    const glm::ivec3 brick = grid.indexOf(b);
-    std::vector<Bytes> segments;
-    FrameBrick& about = frame.bricks[b];
-    whole[b] = 1;
-    if (repeated[b] != 0) {
-        about = before->bricks[b];
-        about.notes.repeats += step;
-        about.histogram = {};
-        segments.resize(std::size_t(grid.levels));
-        seen.bytes[b] = before->bytes[b];
-        input.take(grid, brick, before->field, false);
-    } else {
-        const BrickFormat format = brickFormat(grid, brick, part.type, frame);
-        input.take(own, own.indexOf(ownNumber), part, frame.mask >= 0);
-        if (!taken.bricks[b])
-            taken.bricks[b] = prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory);
-        segments = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
-        whole[b] = !segments[0].empty() && isWhole(segments[0][0]) ? 1 : 0;
-        roundAsDecoded(format, maxError, taken.bricks[b]->decoded, input);
-        if (format.subsampled) addSubsamples(format, input.samples, input.present, compressor, segments);
-        for (const Bytes& segment : segments) seen.bytes[b] += segment.size();
-        about = statisticsOf(part, input, statistics);
-    }
-    taken.bricks[b].reset();
-    about.notes.importance = importance[b];
-    if (keeps) {
-        putSamples(grid, brick, input.samples, seen.field);
-        if (before) about.notes.change = volume::changeOfBrick(grid, brick, before->field, seen.field);
-    }
-    return segments;
-}
-
-} // namespace
 
 struct ArchiveWriter::Impl {
     GrowingFile file;

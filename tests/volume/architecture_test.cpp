@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-/// The shape of the house: which room may include which, and where GLSL may stand.
+/// The shape of the house: which room may include which, how long files and functions are, and where GLSL may stand.
 namespace {
 
 namespace fs = std::filesystem;
@@ -121,6 +121,46 @@ TEST(Architecture, IncludesOnlyPointUpTheListOfRooms) {
         EXPECT_LE(files[room], 28) << room << " is no longer seen at a glance: split it";
         std::printf("%3d files  %s\n", files[room], room.c_str());
     }
+}
+
+TEST(Architecture, FilesAreReadInAFewScreens) {
+    for (const std::string part : {"volume", "codec", "vis", "app"})
+        for (const std::string& file : filesOf(part, {".h", ".cpp", ".inc", ".glsl"}))
+            EXPECT_LE(linesOf(textOf(kRoot / file)).size(), 400u) << file;
+}
+
+/// Functions at the left edge of a formatted file: their first lines and how many lines they have.
+std::vector<std::pair<std::string, std::size_t>> functionsOf(const std::string& text) {
+    std::vector<std::pair<std::string, std::size_t>> functions;
+    std::string head;
+    std::size_t lines = 0;
+    for (const std::string& line : linesOf(text)) {
+        ++lines;
+        if (line == "}") {
+            const bool other = startsWithAny(head, {"struct ", "class ", "namespace ", "enum ", "union ", "extern "});
+            if (head.find('(') != std::string::npos && !other) functions.emplace_back(head, lines);
+            head.clear();
+        } else if (!line.empty() && std::string(" #}/").find(line[0]) == std::string::npos) {
+            head = line;
+            lines = 1;
+        }
+    }
+    return functions;
+}
+
+TEST(Architecture, FunctionsAreSeenAtOnce) {
+    std::size_t seen = 0;
+    for (const std::string part : {"volume", "codec", "vis", "app"})
+        for (const std::string& file : filesOf(part, {".cpp"}))
+            for (const auto& [head, lines] : functionsOf(textOf(kRoot / file))) {
+                ++seen;
+                EXPECT_LE(lines, 80u) << file << ": " << head;
+            }
+    EXPECT_GT(seen, 3000u);
+    const auto found = functionsOf("struct A {\n    int b(int c) {\n        return c;\n    }\n};\n\n"
+                                   "int d(int e,\n      int f) {\n    return e;\n}\nstruct G {\n}\n");
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].second, 4u);
 }
 
 // "| Where is ...? | `file` |"

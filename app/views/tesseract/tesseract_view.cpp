@@ -5,6 +5,7 @@
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "app/views/tesseract/tesseract_query.h"
+#include "app/views/tesseract/tesseract_turn.h"
 #include "app/views/tesseract/tesseract_wire.h"
 #include "vis/passes/point_cloud.h"
 
@@ -49,22 +50,6 @@ glm::dvec4 halfOf(const TesseractView& view, const volume::Box& bounds, glm::dve
         half = glm::dvec4(world / longest, 1);
     }
     return half / std::max(glm::length(half), 1e-12);
-}
-
-vis::Angles4 anglesOf(const TesseractView& view) {
-    return {double(view.turn.x),  double(view.turn.y),  double(view.turn.z),
-            double(view.turn4.x), double(view.turn4.y), double(view.turn4.z)};
-}
-
-void setAngles(TesseractView& view, const vis::Angles4& angles) {
-    view.turn = {angles[0], angles[1], angles[2]};
-    view.turn4 = {angles[3], angles[4], angles[5]};
-}
-
-/// Turns what is seen: `first` and `second` in radians in two planes of the picture.
-void turn(TesseractView& view, vis::Plane4 a, double first, vis::Plane4 b, double second) {
-    const glm::dmat4 now = vis::rotationOf(anglesOf(view));
-    setAngles(view, vis::anglesOf(vis::planeRotation(a, first) * vis::planeRotation(b, second) * now));
 }
 
 void reset(TesseractView& view, TesseractCache& cache) {

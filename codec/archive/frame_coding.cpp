@@ -1,0 +1,43 @@
+#include "codec/archive/frame_coding.h"
+
+#include "codec/brick/subsamples.h"
+#include "codec/brick/whole_brick.h"
+
+namespace tessera::codec {
+
+std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, const volume::BrickGrid& own,
+                                     std::size_t ownNumber, const BandEncoder& encoder, Compressor& compressor,
+                                     BrickInput& input, SplitMemory& memory) {
+    const glm::ivec3 brick = grid.indexOf(b);
+    std::vector<Bytes> segments;
+    FrameBrick& about = frame.bricks[b];
+    whole[b] = 1;
+    if (repeated[b] != 0) {
+        about = before->bricks[b];
+        about.notes.repeats += step;
+        about.histogram = {};
+        segments.resize(std::size_t(grid.levels));
+        seen.bytes[b] = before->bytes[b];
+        input.take(grid, brick, before->field, false);
+    } else {
+        const BrickFormat format = brickFormat(grid, brick, part.type, frame);
+        input.take(own, own.indexOf(ownNumber), part, frame.mask >= 0);
+        if (!taken.bricks[b])
+            taken.bricks[b] = prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory);
+        segments = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
+        whole[b] = !segments[0].empty() && isWhole(segments[0][0]) ? 1 : 0;
+        roundAsDecoded(format, maxError, taken.bricks[b]->decoded, input);
+        if (format.subsampled) addSubsamples(format, input.samples, input.present, compressor, segments);
+        for (const Bytes& segment : segments) seen.bytes[b] += segment.size();
+        about = statisticsOf(part, input, statistics);
+    }
+    taken.bricks[b].reset();
+    about.notes.importance = importance[b];
+    if (keeps) {
+        putSamples(grid, brick, input.samples, seen.field);
+        if (before) about.notes.change = volume::changeOfBrick(grid, brick, before->field, seen.field);
+    }
+    return segments;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "codec/archive/archive_state.h"
+#include "codec/archive/brick_access.h"
+#include "codec/archive/brick_input.h"
+#include "codec/archive/coded_bricks.h"
+#include "codec/archive/frame_model.h"
+#include "codec/archive/frame_steps.h"
+
+#include <vector>
+
+namespace tessera::codec {
+
+/// A frame being coded: the coding parameters of its bricks, and their statistics.
+struct FrameCoding {
+    const volume::BrickGrid& grid;
+    FrameRecord frame;
+    double maxError = 0;                ///< of its samples
+    const SeenFrame* before = nullptr;  ///< earlier frame whose bricks may be repeated
+    std::vector<std::uint8_t> repeated; ///< flag per brick
+    std::vector<std::uint8_t> whole;    ///< flag per brick: no token was coded
+    std::vector<volume::BrickImportance> importance;
+    Taken taken;
+    Model model;
+    int step = 1;            ///< times since `before`
+    bool statistics = false; ///< store statistics of bricks
+    bool keeps = false;      ///< keep samples and sizes for later frames
+    SeenFrame seen;
+
+    explicit FrameCoding(const volume::BrickGrid& of) : grid(of) {}
+
+    /// Codes brick `brick` of `part` (a slab with grid `own`, where its index is `ownNumber`) into segments.
+    std::vector<Bytes> code(std::size_t brick, const volume::Field& part, const volume::BrickGrid& own,
+                            std::size_t ownNumber, const BandEncoder& encoder, Compressor& compressor,
+                            BrickInput& input, SplitMemory& memory);
+};
+
+} // namespace tessera::codec
