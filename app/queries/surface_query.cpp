@@ -78,7 +78,7 @@ std::vector<vis::GeometryLayer> AsyncSurfaces::get(ViewContext& context, const s
         if (moving && made->result.mesh.triangles.size() > kMovingTriangles)
             if (const auto coarse = query_.coarsest(made->query)) made = coarse;
         out.push_back({.geometry = {made, &made->result},
-                       .style = {.color = iso->color, .opacity = iso->opacity, .look = iso->look},
+                       .style = {.color = iso->color, .opacity = iso->opacity, .cutByBox = true, .look = iso->look},
                        .channel = made->query.colorBy >= 0 ? iso->colorBy : std::string(),
                        .lens = layer.lens,
                        .transfer = layer.transfer,

@@ -56,6 +56,12 @@ const Mode kOnSurfaces[] = {
          s.background = {1, 1, 1};
          s.lighting.lights = {Light{.kind = LightKind::Point, .position = {0.6f, 0.2f, 0.7f}}};
      }},
+    {"rims where the box cuts",
+     [](Scene& s) {
+         Look look = *Look::preset("cartoon");
+         look.cartoon->outline = 6;
+         s.layers = {surfaceIn("a", 335, look)};
+     }},
     {"wire", [](Scene& s) { s.layers = {surfaceIn("b", 0.5, *Look::preset("wire"))}; }},
     {"drawn context",
      [](Scene& s) {

@@ -19,7 +19,7 @@ protected:
     static constexpr const char* kHead =
         "#include \"lib/look.glsl\"\n"
         "LookSample at(vec4 a, vec4 b) { return LookSample(a.x, abs(a.y), abs(a.z), abs(a.w) * 1.2, 40.0 * abs(b.x), "
-        "abs(b.y), 0.005, 1.0, 0.0, vec3(0.0), vec3(0.0), vec3(0.0)); }\n";
+        "abs(b.y), 0.005, 1.0, 0.0, 10.0 * abs(b.x), vec3(0.0), vec3(0.0), vec3(0.0)); }\n";
     vis::LookSample sample(int i) const {
         vis::LookSample out;
         const double facing = std::abs(a[i].y);
@@ -32,6 +32,7 @@ protected:
         out.curvature = 40 * std::abs(b[i].x);
         out.depth = std::abs(b[i].y);
         out.pixel = 0.005;
+        out.cut = 10 * std::abs(b[i].x);
         const glm::dvec4 grain = glm::abs(glm::dvec4(b[i].z, b[i].w, b[i].x, b[i].y));
         out.grain = {grain.x, grain.y, grain.z, grain.w};
         return out;
@@ -66,6 +67,30 @@ TEST_F(LookLib, WiresAgree) {
     }
     EXPECT_LE(differ, 2);
     EXPECT_GT(lines, 2);
+}
+
+/// And the line along a cut is as wide as asked for, at any tilt of the surface.
+TEST_F(LookLib, CutsAgree) {
+    const glm::dvec3 half(0.9, 0.7, 0.8);
+    const auto got = evaluate(kHead, "vec4(cutDistance(a[i].xyz, normalize(b[i].xyz + 0.01), normalize(c[i].xyz + "
+                                     "vec3(0.0, 0.0, 2.0)), vec3(0.9, 0.7, 0.8), 0.004), cutLine(3.0 * abs(a[i].x), "
+                                     "2.0), 0.0, 0.0)");
+    int near = 0;
+    for (int i = 0; i < kCases; ++i) {
+        const glm::dvec3 place(a[i]), normal = glm::normalize(glm::dvec3(b[i]) + 0.01);
+        const glm::dvec3 viewer = glm::normalize(glm::dvec3(c[i]) + glm::dvec3(0, 0, 2));
+        const double wanted = vis::cutDistance(place, normal, viewer, half, 0.004);
+        EXPECT_NEAR(got[i].x, wanted, 0.01 + 1e-4 * wanted) << i;
+        EXPECT_NEAR(got[i].y, vis::cutLine<double>(3 * std::abs(double(a[i].x)), 2), 1e-5);
+        near += wanted < 100;
+    }
+    EXPECT_GT(near, 5);
+    for (const double tilt :
+         {-1.1, -0.3, 0.4, 1.2}) { // a plane that x = 0.9 cuts, seen along z, 7 pixels beside the cut
+        const glm::dvec3 normal(std::sin(tilt), 0, std::cos(tilt));
+        EXPECT_NEAR(vis::cutDistance(glm::dvec3(0.9 - 7 * 0.004, 0, 0), normal, {0, 0, 1}, half, 0.004), 7, 1e-9);
+    }
+    EXPECT_GE(vis::cutDistance(glm::dvec3(0, 0, 0.8), {0, 0, 1}, {0, 0, 1}, half, 0.004), 100) << "parallel to a face";
 }
 
 TEST_F(LookLib, InkAgrees) {

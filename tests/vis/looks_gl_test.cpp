@@ -83,6 +83,18 @@ TEST_P(Looks, PartsComposeWithBrushesAndLayers) {
     check("all parts", scene);
 }
 
+/// The rims of surfaces that the box cuts are drawn, by broad lines here.
+TEST_P(Looks, RimsOfSurfacesAgreeWithTheReference) {
+    Scene scene = baseScene(true);
+    for (const std::string_view name : {"cartoon", "hatching"}) {
+        Look look = *Look::preset(name);
+        if (look.cartoon) look.cartoon->outline = 6;
+        if (look.charcoal) look.charcoal->outline = 6;
+        scene.layers = {{"", true, IsoLayer{.channel = "a", .value = 335, .look = look}}};
+        check(std::string(name), scene);
+    }
+}
+
 TEST(LooksOfABall, SilhouettesAreTheRim) {
     Ball ball;
     IsoLayer& layer = ball.surface();

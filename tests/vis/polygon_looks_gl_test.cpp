@@ -94,6 +94,41 @@ struct MeshBall {
     }
 };
 
+/// An iso-surface ends where the box cuts it, and drawings outline that rim; a mesh as large has none.
+TEST(PolygonLooks, RimsOfCutSurfacesAreOutlined) {
+    MeshBall ball;
+    const auto square = std::make_shared<Geometry>();
+    for (const glm::vec3 corner : {glm::vec3(0), glm::vec3(40, 0, 0), glm::vec3(40, 40, 0), glm::vec3(0, 40, 0)}) {
+        square->mesh.positions.push_back(corner + glm::vec3(0, 0, 20));
+        square->mesh.normals.push_back({0, 0, 1});
+    }
+    square->mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    ball.scene.camera.distance = 3;
+    ball.scene.paper = Paper{.color = glm::vec3(1), .tooth = 0};
+    ball.scene.lighting.lights = {{.azimuth = 0, .elevation = 0}}; // from the camera: nothing is in the shade
+    GeometryStyle& style = ball.scene.geometry[0].style;
+    ball.scene.geometry[0].geometry = square;
+    for (const std::string_view name : {"cartoon", "hatching", "stipple"}) {
+        const auto darkest = [&](bool cut, double from, double to) { // of what is from .. to half edges off the middle
+            style.look = *Look::preset(name);
+            style.cutByBox = cut;
+            const std::vector<glm::vec4> picture = ball.draw();
+            double lowest = 1;
+            for (int y = 0; y < kBallPicture.y; ++y)
+                for (int x = 0; x < kBallPicture.x; ++x) {
+                    const glm::dvec2 at = glm::abs(ball.place(x, y)) * kBallRadius * 2.0;
+                    const double off = std::max(at.x, at.y);
+                    const glm::vec4 pixel = picture[std::size_t(y * kBallPicture.x + x)];
+                    if (off > from && off < to) lowest = std::min(lowest, luminance(glm::dvec3(pixel)));
+                }
+            return lowest;
+        };
+        const double pixel = std::abs(ball.place(1, 0).x - ball.place(0, 0).x) * kBallRadius * 2, edge = 1 - 2 * pixel;
+        EXPECT_LT(darkest(true, edge, 1), 0.5 * darkest(false, edge, 1)) << name;
+        EXPECT_EQ(darkest(true, 0.2, 0.8), darkest(false, 0.2, 0.8)) << name << ": nothing changes away from the rim";
+    }
+}
+
 TEST(PolygonLooks, PresetsFollowTheFormulas) {
     MeshBall ball;
     for (const std::string_view name : Look::kPresetNames) {

@@ -13,6 +13,7 @@ template <class N> struct LookPlaceOf {
     N share{1}, steepness{0};       ///< as in LookSampleOf
     glm::vec<3, N> gradient;        ///< in world axes, or the normal of a mesh; 0: there is no surface
     N weight{0};                    ///< of the surface, if there is one
+    bool cut = false;               ///< whether the surface ends where the box cuts it (a volume does not)
 };
 
 /// All but curvature and grain.
@@ -35,6 +36,8 @@ template <class N> LookSampleOf<N> lookSampleAt(const Look& look, const LookView
     if (look.wire)
         sample.wire = sample.weight * wireCoverage(place.world, sample.at.normal, sample.at.toViewer,
                                                    double(look.wire->spacing), double(look.wire->width), sample.pixel);
+    if (place.cut && (look.charcoal || look.cartoon))
+        sample.cut = cutDistance<N>(place.world, sample.at.normal, sample.at.toViewer, view.halfSize, sample.pixel);
     return sample;
 }
 

@@ -26,6 +26,7 @@ LookView lookView(const Scene& scene, glm::dvec3 halfSize, glm::dvec3 cell, glm:
         glm::dvec2(glm::length(up.origin - middle.origin), glm::length(slope)) * 2.0 / double(std::max(size.y, 1));
     view.reach = std::min({cell.x, cell.y, cell.z});
     view.ground = linearFromSrgb(glm::dvec3(groundColor(scene)));
+    view.halfSize = halfSize;
     return view;
 }
 

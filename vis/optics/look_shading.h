@@ -11,6 +11,8 @@
 /// one, as in shading.
 namespace tessera::vis {
 
+inline constexpr double kNoCut = 1e4; ///< a distance in pixels from a cut that is none
+
 /// marksAt().
 template <class N> struct GrainMarks { N tooth{0.5}, stroke{0.5}, crossing{0.5}, dots{0.5}; };
 
@@ -24,6 +26,7 @@ template <class N> struct LookSampleOf {
     N pixel{0};     ///< world edge of a pixel at that distance
     glm::vec<3, N> toLight{N(0), N(0), N(0)}; ///< unit vector
     N wire{0};                                ///< wireCoverage() times weight; for wire frames only
+    N cut{kNoCut};                            ///< cutDistance(); for surfaces only
     GrainMarks<N> grain;                      ///< for charcoal only
     N share{1};                               ///< fraction of the look that applies here
 
@@ -40,6 +43,7 @@ struct LookView {
     glm::dvec2 pixel{0};              ///< world edge of a pixel: x + y * distance along the ray
     double reach = 1;                 ///< world distance over which curvature is measured: the shortest cell edge
     glm::dvec3 ground{0};             ///< linear colour of paper or background
+    glm::dvec3 halfSize{0.5};         ///< of the box
 };
 /// `size`: of the picture in pixels; `cell`: worldCell().
 LookView lookView(const Scene& scene, glm::dvec3 halfSize, glm::dvec3 cell, glm::ivec2 size);
@@ -118,6 +122,30 @@ template <class N> N outline(N facing, N curvature, N thickness) {
     return N(1) - smoothStep(N(0.5), N(1), facing / larger(limit, N(1e-6)));
 }
 
+/// Distance in pixels from a place of a surface to where a face of the box cuts it off, at most kNoCut: that of each
+/// coordinate to the face, divided by its change across the picture as in wireCoverage(). Surfaces nearly parallel to a
+/// face (within 6 to 20 degrees) are not cut by it.
+template <class N>
+N cutDistance(const glm::vec<3, N>& world, const glm::vec<3, N>& normal, const glm::vec<3, N>& toViewer,
+              const glm::dvec3& halfSize, N pixel) {
+    N along = inner(normal, toViewer), nearest(kNoCut);
+    along = choose(along < N(0), smaller(along, N(-0.02)), larger(along, N(0.02)));
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::vec<3, N> change = normal * (-toViewer[axis] / along);
+        change[axis] += N(1);
+        const N left = larger(N(halfSize[axis]) - magnitude(world[axis]), N(0));
+        const N slope = squareRoot(larger(N(0), N(1) - normal[axis] * normal[axis]));
+        const N parallel = N(kNoCut) * (N(1) - smoothStep(N(0.1), N(0.35), slope));
+        nearest = smaller(nearest, left / larger(lengthOf(change) * pixel, N(1e-6)) + parallel);
+    }
+    return nearest;
+}
+
+/// Coverage of a pixel by the line along a cut.
+template <class N> N cutLine(N cut, N width) {
+    return clamped(width + N(0.5) - cut, N(0), N(1));
+}
+
 /// n.l quantised: min(n - 1, floor(n max(0, n.l))) / (n - 1).
 template <class N> N lightStep(N light, int steps) {
     return smaller(N(steps - 1), roundDown(N(steps) * larger(N(0), light))) / N(steps - 1);
@@ -155,7 +183,8 @@ double grainSoftness(const CharcoalDrawing& charcoal);
 ///   paper
 ///          leaves the lightness 1 - x (`light`: x^2, which has the lightness x)
 ///   line = outlineStrength weight outline mix(1, smoothstep(0.1, 0.6, 1 - e), closure)
-///          (1 - 0.8 smoothstep(0.12, 0.45, T k)): less where lines would fill what is as small as they are wide
+///          (1 - 0.8 smoothstep(0.12, 0.45, T k)): less where lines would fill what is as small as they are wide;
+///          at least outlineStrength weight cutLine(): the rim of a surface is never left open
 ///   D = pressure tone, L = pressure line, both = 1 - (1 - D) (1 - L)
 ///   ink = mix(marks, both, smudge)
 /// With dots, marks = m(both, t), t the dots' threshold and m(x, h) = smoothstep(h - s, h + s, x (1 + 2 s) - s), s =
@@ -175,8 +204,9 @@ N charcoalInk(const CharcoalDrawing& charcoal, const glm::vec<3, N>& lit, const 
     const N open = blended(one, smoothStep(N(0.1), N(0.6), one - bright), N(charcoal.closure));
     const N width = N(charcoal.outline) * sample.pixel;
     const N thin = one - N(0.8) * smoothStep(N(0.12), N(0.45), width * sample.curvature);
+    const N outlined = open * thin * outline(sample.facing(), sample.curvature, width);
     const N line =
-        N(charcoal.outlineStrength) * sample.weight * open * thin * outline(sample.facing(), sample.curvature, width);
+        N(charcoal.outlineStrength) * sample.weight * larger(outlined, cutLine(sample.cut, N(charcoal.outline)));
     const N pressure(charcoal.pressure), drawnTone = pressure * tone, drawnLine = pressure * line;
     const N both = one - (one - drawnTone) * (one - drawnLine), soft(grainSoftness(charcoal));
     const auto mark = [&](N amount, N threshold) {
@@ -202,7 +232,8 @@ N charcoalInk(const CharcoalDrawing& charcoal, const glm::vec<3, N>& lit, const 
 ///   1. cartoon, by weight: albedo mix(shadow, 1, step of n.l)
 ///   2. tone, by weight: mix(cool, warm, (1 + l) / 2) mix(1, albedo, min(1, ownColor)); l = n.l, or its step in
 ///   cartoons
-///   3. outlines of cartoons: their colour; without one, inkOn(albedo) and over it inkOn(ground) in the outer half of
+///   3. outlines of cartoons, and cutLine(): their colour; without one, inkOn(albedo) and over it inkOn(ground) in the
+///   outer half of
 ///      the width
 ///      silhouettes, by ink weight (1 - |n.v|)^exponent: their colour, or inkOn(ground)
 ///   4. charcoal: mix(paper, stick, ink)
@@ -232,9 +263,12 @@ glm::vec<3, N> lookColor(const Look& look, const glm::vec<3, N>& albedo, const g
         const N width = N(own->outline) * sample.pixel, amount = N(own->amount) * sample.weight * sample.share;
         const glm::vec<3, N> within =
             own->outlineColor ? linear(*own->outlineColor) : inkOn(inner(albedo, spreadOut<N>(kLuminance)));
-        color = blended(color, within, amount * outline(sample.facing(), sample.curvature, width));
-        color = blended(color, own->outlineColor ? within : inkOnGround(),
-                        amount * outline(sample.facing(), sample.curvature, N(0.5) * width));
+        const auto line = [&](double share) {
+            return amount * larger(outline(sample.facing(), sample.curvature, N(share) * width),
+                                   cutLine(sample.cut, N(share * own->outline)));
+        };
+        color = blended(color, within, line(1));
+        color = blended(color, own->outlineColor ? within : inkOnGround(), line(0.5));
     }
     if (const auto& own = look.silhouette) {
         const N turned = power(N(1) - smaller(sample.facing(), N(1)), N(own->exponent));

@@ -21,6 +21,7 @@ struct Looked {
     Floats distance, doi;        ///< along the ray; degree of interest
     Vec narrow;                  ///< gradient in world axes
     Floats steepness, weight;    ///< change over a cell; of the surface
+    bool surface = false;        ///< an iso-surface
 };
 
 /// Moved into the box.
@@ -53,7 +54,8 @@ LookSampleOf<Floats> lookSample(const CastJob& job, const Looked& at, const Valu
                                     .share = lookShare(look.part, at.doi),
                                     .steepness = at.steepness * Floats(at.layer.gradientScale),
                                     .gradient = gradient,
-                                    .weight = at.weight};
+                                    .weight = at.weight,
+                                    .cut = at.surface};
     return lookSampleAt<Floats>(look, job.look, place,
                                 [&](const Vec& offset) { return value(at.cells + offset * perWorld); });
 }

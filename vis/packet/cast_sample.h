@@ -133,8 +133,8 @@ template <bool Bcc, bool Exact> struct SampleCaster {
         if (!layer.volume->labels) narrow = choose(lanes, gradient(read, cells, lanes), none);
         const Floats steep = steepness(narrow), weight = smaller(Floats(1), steep * Floats(layer.surfaceScale));
         const Looked at{
-            layer, cells,  packet.world(k), packet.ray.direction,    packet.enter + (k + packet.phase) * packet.step,
-            doi,   narrow, steep,           iso ? Floats(1) : weight};
+            layer, cells,  packet.world(k), packet.ray.direction,     packet.enter + (k + packet.phase) * packet.step,
+            doi,   narrow, steep,           iso ? Floats(1) : weight, iso};
         const Floats part = read.part(cells, lanes);
         const auto value = [&](const Vec& place) {
             count(lanes);

@@ -247,6 +247,7 @@ void GeometryPass::drawOne(const Draw& each, const GeometryJob& job, int peel) c
     own.set("opacity", layer.style.opacity);
     own.set("lens", each.lens);
     own.set("lineWidth", layer.style.lineWidth);
+    own.set("cutByBox", int(layer.style.cutByBox));
     own.set("brushEffect", float(int(layer.brushes)));
     // Layers share program variants, so the uniforms of looks are set for each.
     setLookUniforms(own, {layer.style.look.any() ? &layer.style.look : nullptr}, job.scene, frame, job.info.lattice,

@@ -82,8 +82,9 @@ glm::dvec3 SurfaceShading::lit(glm::dvec3 albedo, glm::dvec3 normal, glm::dvec3 
 }
 
 /// `normals`: of the places of a spot, of length 1.
-LookSample SurfaceShading::lookSample(const Look& look, const SurfaceSpot& spot,
+LookSample SurfaceShading::lookSample(const GeometryLayer& layer, const SurfaceSpot& spot,
                                       const std::array<glm::dvec3, 3>& normals) const {
+    const Look& look = layer.style.look;
     const glm::dvec3 world = spot.here.world;
     LookSample at = lookSampleAt<double>(look, look_,
                                          {.world = world,
@@ -93,7 +94,8 @@ LookSample SurfaceShading::lookSample(const Look& look, const SurfaceSpot& spot,
                                           .share = 1,
                                           .steepness = 1,
                                           .gradient = normals[0],
-                                          .weight = 1});
+                                          .weight = 1,
+                                          .cut = layer.style.cutByBox});
     at.curvature = curvatureOf(at, spot.right.world - world, spot.above.world - world, normals[1] - normals[0],
                                normals[2] - normals[0]);
     if (look.charcoal) at.grain = marksAt(*look.charcoal, world, at.at.normal, SurfaceBend(0), at.pixel);
@@ -122,7 +124,7 @@ std::optional<SurfaceColor> SurfaceShading::operator()(const SurfaceLayer& layer
     const Look& look = layer.layer->style.look;
     if (look.any()) {
         const LookSample at = lookSample(
-            look, spot,
+            *layer.layer, spot,
             {glm::normalize(normal), glm::normalize(normalOf(spot.right)), glm::normalize(normalOf(spot.above))});
         opacity = lookOpacity(look, opacity, at);
         if (opacity < 0.002) return std::nullopt;

@@ -46,7 +46,8 @@ public:
 private:
     glm::dvec3 toViewer(glm::dvec3 world) const;
     glm::dvec3 ownColor(const SurfaceLayer& layer, double value) const;
-    LookSample lookSample(const Look& look, const SurfaceSpot& spot, const std::array<glm::dvec3, 3>& normals) const;
+    LookSample lookSample(const GeometryLayer& layer, const SurfaceSpot& spot,
+                          const std::array<glm::dvec3, 3>& normals) const;
     glm::dvec3 lit(glm::dvec3 albedo, glm::dvec3 normal, glm::dvec3 world) const;
 
     const Scene& scene_;

@@ -132,7 +132,8 @@ template <class Number> struct Caster {
                                      .share = lookShare(look.part, doi),
                                      .steepness = scene.steepPlace(layer, place),
                                      .gradient = gradient,
-                                     .weight = surfaceWeight(layer, place)};
+                                     .weight = surfaceWeight(layer, place),
+                                     .cut = std::holds_alternative<IsoLayer>(*layer.technique)};
         return lookSampleAt<double>(
             look, scene.look, at, [&](glm::dvec3 offset) { return scene.beside(*layer.samples, place, part, offset); });
     }

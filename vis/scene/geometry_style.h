@@ -10,8 +10,9 @@ namespace tessera::vis {
 struct GeometryStyle {
     glm::vec3 color{0.8f}; ///< sRGB; without scalars, or where a scalar is NaN
     float opacity = 1;
-    float lineWidth = 2; ///< pixels
-    Look look = {};      ///< a surface has no scalar field, so its steepness is maximal
+    float lineWidth = 2;   ///< pixels
+    bool cutByBox = false; ///< ends where the box cuts it, as iso-surfaces do: drawings outline that rim
+    Look look = {};        ///< a surface has no scalar field, so its steepness is maximal
     bool operator==(const GeometryStyle&) const = default;
 };
 

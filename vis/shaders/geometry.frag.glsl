@@ -7,6 +7,7 @@
 #include "lib/shade.glsl"
 #if LOOKS
 #include "lib/draw_look.glsl"
+uniform int cutByBox; // 1: an iso-surface, which ends where the box cuts it
 #endif
 
 in vec3 world, direction;
@@ -54,6 +55,7 @@ LookSample surfaceLook(vec3 normal, vec3 toViewer, float along, vec3 dx, vec3 dy
     at.normal = normal;
     at.bend = vec3(0.0);
     at.wire = 0.0;
+    at.cut = cutByBox == 1 ? cutDistance(world, normal, toViewer, halfSize, at.pixel) : kNoCut;
 #if (LOOKS & LOOK_WIRE)
     at.wire = wireCoverage(world, normal, toViewer, lookWire[0].x, lookWire[0].y, at.pixel);
 #endif

@@ -110,8 +110,10 @@ vec3 lookColor(int i, vec3 albedo, vec3 lit, LookSample at) {
     {
         float width = lookOutline[i].a * at.pixel, amount = lookCartoon[i].x * at.weight * at.share;
         vec3 inner = lookCartoon[i].w > 0.5 ? lookOutline[i].rgb : inkOn(albedo, lookDarkInk, lookLightInk);
-        color = mix(color, inner, amount * outline(at.facing, at.curvature, width));
-        color = mix(color, lookOutline[i].rgb, amount * outline(at.facing, at.curvature, 0.5 * width));
+        float line = max(outline(at.facing, at.curvature, width), cutLine(at.cut, lookOutline[i].a));
+        float outer = max(outline(at.facing, at.curvature, 0.5 * width), cutLine(at.cut, 0.5 * lookOutline[i].a));
+        color = mix(color, inner, amount * line);
+        color = mix(color, lookOutline[i].rgb, amount * outer);
     }
 #endif
 #if (LOOKS & LOOK_SILHOUETTE)

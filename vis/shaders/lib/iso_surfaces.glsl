@@ -42,6 +42,9 @@ void showSurfaces(int k) {
         if (LAYER_LOOK(i) != 0) {
             drawn = lookGradient(i, field, readAt(field, q), q, centre, g, crossed);
             look = lookSample(i, field, q, centre, g, drawn, 1.0, world, distanceAt(at), ray.direction, doi, crossed);
+#if (LOOKS & LOOK_OUTLINE)
+            look.cut = cutDistance(world, look.normal, -ray.direction, halfSize, look.pixel);
+#endif
             alpha = lookOpacity(i, alpha, look);
             c = lookAlbedo(i, albedo, look);
         }

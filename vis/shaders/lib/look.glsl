@@ -4,7 +4,7 @@
 // Inputs of a look: n.l of the visible side, |n.v|, the rest as in LookSample (C++). World position, normal and bend of
 // the surface say where and which way marks lie.
 struct LookSample {
-    float light, facing, weight, steepness, curvature, depth, pixel, share, wire;
+    float light, facing, weight, steepness, curvature, depth, pixel, share, wire, cut;
     vec3 world, normal, bend;
 };
 
@@ -46,6 +46,26 @@ float outline(float facing, float curvature, float thickness) {
     return 1.0 - smoothstep(0.5, 1.0, facing / max(limit, 1e-6));
 }
 
+const float kNoCut = 1e4;
+
+// Distance in pixels from a place of a surface to where a face of the box cuts it off.
+float cutDistance(vec3 world, vec3 normal, vec3 toViewer, vec3 halfSize, float pixel) {
+    float along = dot(normal, toViewer), nearest = kNoCut;
+    along = along < 0.0 ? min(along, -0.02) : max(along, 0.02);
+    for (int axis = 0; axis < 3; ++axis) {
+        vec3 change = -toViewer[axis] / along * normal;
+        change[axis] += 1.0;
+        float left = max(halfSize[axis] - abs(world[axis]), 0.0);
+        float slope = sqrt(max(0.0, 1.0 - normal[axis] * normal[axis]));
+        float parallel = kNoCut * (1.0 - smoothstep(0.1, 0.35, slope));
+        nearest = min(nearest, left / max(length(change) * pixel, 1e-6) + parallel);
+    }
+    return nearest;
+}
+float cutLine(float cut, float width) {
+    return clamp(width + 0.5 - cut, 0.0, 1.0);
+}
+
 float lightStep(float light, float steps) {
     return min(steps - 1.0, floor(steps * max(0.0, light))) / (steps - 1.0);
 }
@@ -68,7 +88,8 @@ vec2 charcoalDensity(vec3 lit, LookSample at, vec4 tone, vec3 line, float pressu
     float filled = drawn * (tone.z > 0.5 ? drawn : 2.0 - drawn) * steep;
     float open = mix(1.0, smoothstep(0.1, 0.6, 1.0 - bright), line.z);
     float width = line.x * at.pixel, thin = 1.0 - 0.8 * smoothstep(0.12, 0.45, width * at.curvature);
-    float drawnLine = line.y * at.weight * open * thin * outline(at.facing, at.curvature, width);
+    float outlined = open * thin * outline(at.facing, at.curvature, width);
+    float drawnLine = line.y * at.weight * max(outlined, cutLine(at.cut, line.x));
     return pressure * vec2(filled, drawnLine);
 }
 

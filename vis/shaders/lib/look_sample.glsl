@@ -56,6 +56,7 @@ LookSample lookSample(int i, int field, vec3 p, float centre, vec3 perCell, vec3
     at.normal = normal;
     at.bend = vec3(0.0);
     at.wire = 0.0;
+    at.cut = kNoCut;
 #if (LOOKS & LOOK_WIRE)
     if ((LAYER_LOOK(i) & LOOK_WIRE) != 0)
         at.wire = at.weight * wireCoverage(world, normal, -direction, lookWire[i].x, lookWire[i].y, at.pixel);
