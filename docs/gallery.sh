@@ -62,17 +62,25 @@ picture look-context --set '/selection/contextOpacity=0.8' --set /selection/cont
     --set '/transfer/T={"colormap":"inferno","opacity":[[0,0],[0.6,0],[0.7,0.5],[1,0.9]]}' \
     --set '/selection/brushes=[{"name":"hot","region":{"type":"range","intervals":[{"channel":"T","lo":356.2,"hi":400,"soft":0.2}]}}]'
 # Drawings of four things in four styles, for print
-drawings() { # drawings BASE NAME LAYER ARGUMENTS...: LAYER contains LOOK in place of its look
-    local from=$1 name=$2 layer=$3
+drawings() { # drawings BASE NAME LAYERS ARGUMENTS...: LAYERS contain LOOK in place of their look
+    local from=$1 name=$2 layers=$3
     shift 3
     for look in cartoon pencil hatching stipple; do
-        picture_of "$from" "drawing-$name-$look" --set "/layers=[${layer/LOOK/\"$look\"}]" \
+        picture_of "$from" "drawing-$name-$look" --set "/layers=[${layers//LOOK/\"$look\"}]" \
             --set '/paper={"color":[1,1,1],"tooth":0}' --without legend,axes,gizmo,scaleBar,cursor,box,title "$@"
     done
 }
 drawings scan casting "$(surface density 60 0.75,0.78,0.82 1 '"look":LOOK')"
 base rings charcoal
 drawings rings signal "$(surface rho 0.5 0.85,0.6,0.3 1 '"look":LOOK')"
+base sheets illustration --set "$cell" --set /camera/distance=1.5
+drawings sheets cell "$(surface T 355 0.95,0.6,0.3 1 '"look":LOOK'),$(surface O2 2.5 0.35,0.6,0.85 1 '"look":LOOK')"
+base tubes flow --set "$cell" --set /camera/distance=1.3
+tubes() { # tubes CHANNEL FROM TO: those of one gas
+    echo "{\"name\":\"$1\",\"technique\":{\"type\":\"flow\",\"vector\":\"U\",\"channel\":\"$1\",\"count\":12,\"length\":4," \
+        "\"radius\":0.014,\"from\":$2,\"to\":$3,\"look\":LOOK}}"
+}
+drawings tubes flow "$(tubes O2 '[0,0.5,0]' '[1,1,1]'),$(tubes H2 '[0,0,0]' '[1,0.5,1]')"
 # Classification
 for kind in post pre preintegrated; do
     signal "classification-$kind" --set "/layers=[$(volume rho "\"classification\":\"$kind\",\"shaded\":false")]" \
