@@ -135,6 +135,25 @@ TEST_F(TextFormats, CsvOfScatteredPointsTakesTheNearest) {
     EXPECT_GT(present, 200);
 }
 
+// A thin axis among points far apart made steps as small as itself, and a thousand samples along the others.
+TEST_F(TextFormats, CsvOfFewPointsFarApartHasFewSamples) {
+    for (const double thin : {1e-3, 1e-9, 1.0}) {
+        std::string text = "x,y,z,T\n";
+        for (int n = 0; n < 14; ++n)
+            text += std::to_string(1e6 * (n * 37 % 101)) + "," + std::to_string(1e6 * (n * 53 % 97)) + "," +
+                    std::to_string(n * 29 % 31) + (thin < 1 ? (thin < 1e-6 ? "e-9," : "e-3,") : ",") +
+                    std::to_string(300 + n) + "\n";
+        ASSERT_LT(text.size(), 600u);
+        const Dataset dataset = openFiles({write("a.csv", text)}, {});
+        EXPECT_LT(dataset.info.lattice.count(), 200u) << thin;
+        EXPECT_GT(dataset.info.lattice.count(), 7u) << thin;
+        const Field field = dataset.read(0, 0, 0);
+        int present = 0;
+        for (std::size_t i = 0; i < field.count(); ++i) present += field.present(i) ? 1 : 0;
+        EXPECT_GT(present, 7) << thin;
+    }
+}
+
 TEST_F(TextFormats, CsvOverTime) {
     std::vector<std::string> lines;
     for (const int t : {0, 1, 2})

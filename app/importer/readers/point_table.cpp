@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -130,28 +131,42 @@ vtkSmartPointer<vtkDataSet> image(const PointTable& table, const std::array<std:
     return grid;
 }
 
+/// The sizes of a grid over a box with about as many samples as there are points, and steps as equal as can be. An axis
+/// thinner than a step gets two samples, and the others share out the points left: steps as small as its extent would
+/// make millions of samples of a few points that are far apart.
+std::array<std::size_t, 3> sizesFor(const std::array<double, 3>& extent, double points) {
+    std::array<std::size_t, 3> sizes{1, 1, 1};
+    std::vector<std::size_t> axes; // the thinnest last
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (extent[axis] > 0) axes.push_back(axis);
+    std::ranges::sort(axes, std::ranges::greater(), [&](std::size_t axis) { return extent[axis]; });
+    const auto steps = [&](std::size_t axis) { // by logarithms, since volumes may over- and underflow
+        double volume = 0;
+        for (const std::size_t each : axes) volume += std::log(extent[each]);
+        return std::exp(std::log(extent[axis]) - (volume - std::log(points)) / double(axes.size()));
+    };
+    for (; axes.size() > 1 && steps(axes.back()) < 1; axes.pop_back()) {
+        sizes[axes.back()] = 2;
+        points = std::max(1.0, points / 2);
+    }
+    for (const std::size_t axis : axes)
+        sizes[axis] = static_cast<std::size_t>(std::clamp(std::round(steps(axis)), 1.0, 1023.0)) + 1;
+    return sizes;
+}
+
 vtkSmartPointer<vtkDataSet> scattered(const PointTable& table, const std::array<std::vector<double>, 3>& places,
                                       Source& source) {
     std::array<double, 3> lo{}, step{1, 1, 1};
-    std::array<std::size_t, 3> sizes{1, 1, 1};
-    double volume = 1;
-    int axes = 0;
     std::array<double, 3> extent{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto [least, most] = std::minmax_element(places[axis].begin(), places[axis].end());
         lo[axis] = *least;
         extent[axis] = *most - *least;
-        if (extent[axis] <= 0) continue;
-        volume *= extent[axis];
-        ++axes;
     }
-    if (axes == 0) throw std::runtime_error("holds a single point");
-    const double even = std::pow(volume / double(table.rows()), 1.0 / axes);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (extent[axis] <= 0) continue;
-        sizes[axis] = static_cast<std::size_t>(std::clamp(std::round(extent[axis] / even), 1.0, 1023.0)) + 1;
-        step[axis] = extent[axis] / double(sizes[axis] - 1);
-    }
+    if (extent == std::array<double, 3>{}) throw std::runtime_error("holds a single point");
+    const std::array<std::size_t, 3> sizes = sizesFor(extent, double(table.rows()));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (sizes[axis] > 1) step[axis] = extent[axis] / double(sizes[axis] - 1);
     const auto numberOf = [&](const std::array<std::ptrdiff_t, 3>& at) {
         return (std::size_t(at[2]) * sizes[1] + std::size_t(at[1])) * sizes[0] + std::size_t(at[0]);
     };
