@@ -163,6 +163,52 @@ TEST_F(BinaryFormats, Hdf5OfEndlessTimesIsRefused) {
     EXPECT_THAT(failure(path), testing::HasSubstr("array \"T\" states 1125899906842624 times, more than 10000000"));
 }
 
+/// A dataset of 2 GB in a few KB: only its first chunk is written, if any.
+std::string hollow(const std::string& path, bool written) {
+    const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    const hsize_t dims[] = {1000, 1000, 500}, chunk[] = {1, 10, 500}, begin[] = {0, 0, 0};
+    const hid_t space = H5Screate_simple(3, dims, nullptr), part = H5Screate_simple(3, chunk, nullptr);
+    const hid_t parts = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_chunk(parts, 3, chunk);
+    H5Pset_deflate(parts, 9);
+    const hid_t dataset = H5Dcreate2(file, "T", H5T_NATIVE_FLOAT, space, H5P_DEFAULT, parts, H5P_DEFAULT);
+    const std::vector<float> values(5000, 1);
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, begin, nullptr, chunk, nullptr);
+    if (written) H5Dwrite(dataset, H5T_NATIVE_FLOAT, part, space, H5P_DEFAULT, values.data());
+    H5Dclose(dataset);
+    H5Pclose(parts);
+    H5Sclose(part);
+    H5Sclose(space);
+    H5Fclose(file);
+    return path;
+}
+
+TEST_F(BinaryFormats, Hdf5OfFarMoreThanIsStoredIsRefusedAtOnce) {
+    for (const bool written : {false, true}) {
+        const std::string path = hollow((folder_ / "a.h5").string(), written);
+        EXPECT_LT(fs::file_size(path), 10000u);
+        EXPECT_THAT(failure(path), testing::HasSubstr("array \"T\" states 2 GB, of which")) << written;
+    }
+    // As densely as deflate can pack it, and small ones without any stored sample: both are read.
+    const std::string path = (folder_ / "b.h5").string();
+    const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    const hsize_t dims[] = {300, 300, 300}, chunk[] = {300, 300, 300};
+    for (const bool written : {false, true}) {
+        const hid_t space = H5Screate_simple(3, dims, nullptr), parts = H5Pcreate(H5P_DATASET_CREATE);
+        H5Pset_chunk(parts, 3, chunk);
+        H5Pset_deflate(parts, 9);
+        const hid_t dataset =
+            H5Dcreate2(file, written ? "dense" : "unwritten", H5T_NATIVE_UCHAR, space, H5P_DEFAULT, parts, H5P_DEFAULT);
+        const std::vector<std::uint8_t> values(27'000'000, 7);
+        if (written) H5Dwrite(dataset, H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+        H5Dclose(dataset);
+        H5Pclose(parts);
+        H5Sclose(space);
+    }
+    H5Fclose(file);
+    EXPECT_EQ(openFiles({path}, {}).info.parameters.size(), 2u);
+}
+
 TEST_F(BinaryFormats, VtkHdfImage) {
     const std::string path = (folder_ / "a.vtkhdf").string();
     const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);

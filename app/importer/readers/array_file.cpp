@@ -1,5 +1,7 @@
 #include "app/importer/readers/array_file.h"
 
+#include "volume/base/byte_text.h"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -190,6 +192,15 @@ void refuseEndless(const std::string& name, std::size_t times) {
 
 } // namespace
 
+void refuseHollow(const StoredArray& array) {
+    // Of the filters in use zstd packs equal numbers most densely, 128 KiB in a block of 4 bytes: 32768 to 1 (deflate
+    // reaches 1032 to 1). Small arrays may be left to their fill value altogether.
+    constexpr double kMostPerByte = 40'000, kHarmless = double(64 << 20);
+    if (array.statedBytes <= kHarmless + kMostPerByte * array.storedBytes) return;
+    throw std::runtime_error("array \"" + array.name + "\" states " + textOfBytes(array.statedBytes) + ", of which " +
+                             textOfBytes(array.storedBytes) + " are stored");
+}
+
 void openArrays(std::vector<StoredArray> arrays, Source& source) {
     const Dims dims = commonGrid(arrays);
     Grid grid;
@@ -206,10 +217,12 @@ void openArrays(std::vector<StoredArray> arrays, Source& source) {
         if (array.dims.size() == 1) {
             const bool time = word == "t" || word == "time" || word == "times";
             if (time) refuseEndless(array.name, array.dims[0]);
+            if (time) refuseHollow(array);
             if (time) times = numbersOf(array);
             if (time && !array.unit.empty()) source.timeUnit = array.unit;
             for (std::size_t axis = 0; axis < 3; ++axis)
                 if (word == std::string(1, char('x' + axis)) && array.dims[0] == grid.size[axis]) {
+                    refuseHollow(array);
                     grid.places[axis] = placesOf(numbersOf(array));
                     if (!array.unit.empty()) source.lengthUnit = array.unit;
                 }
@@ -217,6 +230,7 @@ void openArrays(std::vector<StoredArray> arrays, Source& source) {
         }
         if (std::optional<Form> form = formOf(array.dims, dims)) {
             refuseEndless(array.name, form->times);
+            refuseHollow(array);
             frames = std::max(frames, form->times);
             chosen->push_back({std::move(array), *form});
         } else {

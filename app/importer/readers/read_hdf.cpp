@@ -2,6 +2,7 @@
 #include "app/importer/readers/array_file.h"
 #include "app/importer/readers/read_files.h"
 
+#include <algorithm>
 #include <hdf5.h>
 #include <memory>
 #include <stdexcept>
@@ -105,6 +106,18 @@ vtkSmartPointer<vtkDataArray> readSlab(hid_t file, const std::string& name, int 
     return out;
 }
 
+/// Bytes of the file that hold the samples of a dataset. Those of other files, which a virtual or external dataset
+/// names, are not known: as if they were all there.
+double storedBytes(hid_t file, hid_t dataset, double stated) {
+    const Handle made(H5Dget_create_plist(dataset), H5Pclose);
+    std::size_t parts = 0; // fails where there can be none
+    const bool isVirtual = H5Pget_virtual_count(made.id(), &parts) >= 0 && parts > 0;
+    if (isVirtual || H5Pget_external_count(made.id()) > 0) return stated;
+    hsize_t whole = 0; // a damaged layout may state more than the file has
+    H5Fget_filesize(file, &whole);
+    return std::min(double(H5Dget_storage_size(dataset)), double(whole));
+}
+
 struct Visit {
     std::shared_ptr<const Handle> file;
     std::vector<StoredArray> arrays;
@@ -121,7 +134,14 @@ herr_t visitDataset(hid_t root, const char* name, const H5O_info_t* info, void* 
     if ((kind != H5T_FLOAT && kind != H5T_INTEGER) || axes < 1 || axes > 8) return 0;
     std::vector<hsize_t> dims(static_cast<std::size_t>(axes));
     H5Sget_simple_extent_dims(space.id(), dims.data(), nullptr);
-    StoredArray array{name, unitOf(dataset.id()), {dims.begin(), dims.end()}, {}};
+    double stated = double(H5Tget_size(type.id()));
+    for (const hsize_t n : dims) stated *= double(n);
+    StoredArray array{name,
+                      unitOf(dataset.id()),
+                      {dims.begin(), dims.end()},
+                      stated,
+                      storedBytes(visit.file->id(), dataset.id(), stated),
+                      {}};
     array.read = [file = visit.file, path = array.name, vtkType = vtkTypeOf(type.id())](std::size_t first,
                                                                                         std::size_t count) {
         return readSlab(file->id(), path, vtkType, first, count);
@@ -139,12 +159,7 @@ void openHdf(Source& source) {
     if (file->id() < 0)
         throw std::runtime_error(H5Fis_hdf5(source.path.c_str()) > 0 ? "is truncated or damaged"
                                                                      : "is not an HDF5 file");
-    if (H5Lexists(file->id(), "VTKHDF", H5P_DEFAULT) > 0) {
-        vtkNew<vtkHDFReader> reader;
-        reader->SetFileName(source.path.c_str());
-        source.reader = reader;
-        return;
-    }
+    const bool ofVtk = H5Lexists(file->id(), "VTKHDF", H5P_DEFAULT) > 0;
     if (H5Lexists(file->id(), "CGNSLibraryVersion", H5P_DEFAULT) > 0)
         throw std::runtime_error("is a CGNS file: give it the ending .cgns");
     if (H5Lexists(file->id(), "meshes", H5P_DEFAULT) > 0 && H5Lexists(file->id(), "settings", H5P_DEFAULT) > 0)
@@ -157,6 +172,13 @@ void openHdf(Source& source) {
     const herr_t visited = H5Ovisit(file->id(), H5_INDEX_NAME, H5_ITER_INC, visitDataset, &visit);
 #endif
     if (visited < 0) throw std::runtime_error("is truncated or damaged");
+    if (ofVtk) {
+        std::ranges::for_each(visit.arrays, refuseHollow);
+        vtkNew<vtkHDFReader> reader;
+        reader->SetFileName(source.path.c_str());
+        source.reader = reader;
+        return;
+    }
     openArrays(std::move(visit.arrays), source);
 }
 
