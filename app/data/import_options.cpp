@@ -130,7 +130,7 @@ void addImportOptions(CLI::App& command, volume::ImportOptions& options) {
         ->group("Import");
     command
         .add_option("--length-unit", options.lengthUnit,
-                    "Unit of positions (default: that of the file, else m; none for raw and NRRD files)")
+                    "Unit of positions (default: that which the file states, else none)")
         ->group("Import");
     command.add_option("--times", options.times, "Times of the series, separated by commas")
         ->delimiter(',')

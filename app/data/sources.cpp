@@ -188,8 +188,7 @@ Sources withOther(const Sources& whole, const Sources& other) {
         originText(other.origin, other.numbers->info(), {}) + ", " + volume::otherText(*whole.numbers, *other.numbers);
     const auto numbers = volume::withOther(whole.numbers, other.numbers);
     if (whole.pictures == whole.numbers) return {numbers, numbers, std::move(origin)};
-    const std::string& unit = whole.pictures->info().lengthUnit;
-    const bool alike = volume::SampledOnto(other.pictures, whole.pictures->grid(), unit).sameGrid();
+    const bool alike = volume::SampledOnto(other.pictures, *whole.pictures).sameGrid();
     return {volume::withOther(whole.pictures, alike ? other.pictures : other.numbers), numbers, std::move(origin)};
 }
 
@@ -211,9 +210,15 @@ Sources openStored(const DataRef& data, std::vector<std::string>& messages, cons
     Sources whole = openWhole(data, messages, progress.part(0, data.other ? 0.5 : 1));
     if (data.other) {
         const Sources other = openOther(data, messages, progress.part(0.5, 1));
-        messages.push_back(other.numbers->info().name + " is shown beside it, " +
-                           volume::otherText(*whole.numbers, *other.numbers));
-        whole = withOther(whole, other);
+        const std::string path = data.other->files.empty() ? std::string() : data.other->files.front().path;
+        try {
+            const std::string how = volume::otherText(*whole.numbers, *other.numbers);
+            whole = withOther(whole, other);
+            messages.push_back((path.empty() ? other.numbers->info().name : fs::path(path).filename().string()) +
+                               " is shown beside it, " + how);
+        } catch (const Error& error) {
+            throw Error(error.reason(), error.file().empty() ? path : error.file(), error.place());
+        }
     }
     if (!data.timeAxis) return whole;
     const auto along = [&](const std::shared_ptr<const volume::BrickSource>& source) {

@@ -308,7 +308,7 @@ std::optional<FileDialog::Answer> FileDialog::draw() {
     ImGui::InputTextWithHint("##filter", "Filter", &filter_);
     if (!into.empty()) enter(into);
 
-    const float footer = ImGui::GetFrameHeightWithSpacing() * (options && mode_ == FileMode::Open ? 3.7f : 1.3f) +
+    const float footer = ImGui::GetFrameHeightWithSpacing() * (options && mode_ == FileMode::Open ? 4.7f : 1.3f) +
                          ImGui::GetTextLineHeightWithSpacing();
     const bool previews = mode_ == FileMode::Open && preview;
     const float height = std::max(ImGui::GetContentRegionAvail().y - footer, em * 6);

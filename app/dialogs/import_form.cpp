@@ -7,6 +7,7 @@
 #include "codec/remote/address.h"
 #include "volume/base/byte_text.h"
 #include "volume/base/error.h"
+#include "volume/base/trimmed.h"
 #include "volume/import/files/raw.h"
 #include "volume/import/import.h"
 
@@ -31,7 +32,7 @@ std::string describe(const volume::ImportPreview& preview) {
          << info.lattice.size.x << " x " << info.lattice.size.y << " x " << info.lattice.size.z << " samples, "
          << textOfBytes(preview.bytes) << "\n"
          << "extent " << size.x << " x " << size.y << " x " << size.z << " "
-         << (info.lengthUnit.empty() ? "(no unit stated)" : info.lengthUnit) << "\n";
+         << (info.lengthUnit.empty() ? "(no unit of length stated)" : info.lengthUnit) << "\n";
     if (info.times.size() > 1)
         text << info.times.size() << " times, " << timeText(info, info.times.front()) << " to "
              << timeValueText(info, info.times.back()) << "\n";
@@ -166,6 +167,8 @@ void ImportForm::filesChosen(const std::vector<std::string>& paths) {
 
 void ImportForm::draw() {
     const float em = ImGui::GetFontSize();
+    // A unit of lengths is of one file: that of the last one is not true of the next.
+    if (ImGui::IsWindowAppearing() && !lengths_.empty()) lengths_.clear(), readFields();
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("Raw layout");
     ImGui::SameLine(em * 7);
@@ -190,6 +193,7 @@ void ImportForm::draw() {
     field("Absent", 31, 4, -FLT_MIN, "O2=region:0,3  T=nan", absent_);
     field("Units", 0, 7, em * 22, "O2=mol/m3  T=K (remembered)", units_);
     field("Names", 31, 4, -FLT_MIN, "O2.air=O2  wO2=O2", names_);
+    field("Lengths in", 0, 7, em * 22, "mm, where the file states no unit of length", lengths_);
     ImGui::Spacing();
     if (changed) readFields();
 }
@@ -201,6 +205,7 @@ void ImportForm::readFields() {
     for (std::string word; words >> word;) stated_.absent.push_back(word);
     stated_.units = pairsIn(units_);
     stated_.rename = pairsIn(names_);
+    stated_.lengthUnit = std::string(volume::trimmed(lengths_));
     previews_.clear();
 }
 

@@ -32,8 +32,8 @@ private:
 
     Jobs& jobs_;
     volume::ImportOptions stated_;
-    std::string absent_, units_, names_; ///< as typed
-    bool sidecar_ = false;               ///< the files have one, which takes precedence over a typed layout
+    std::string absent_, units_, names_, lengths_; ///< as typed
+    bool sidecar_ = false;                         ///< the files have one, which takes precedence over a typed layout
     std::map<std::string, FilePreview> previews_;
 };
 

@@ -161,14 +161,14 @@ void finish(Source& source, BlockRef& ref) {
     for (ArrayRef& array : ref.arrays)
         if (const auto unit = source.units.find(array.vtkName); unit != source.units.end())
             array.form.unit = unit->second;
-    if (!source.lengthUnit.empty()) ref.block.lengthUnit = source.lengthUnit;
+    const std::string unit = source.lengthUnit.empty() ? lengthUnitInHeader(source) : source.lengthUnit;
+    if (!unit.empty()) ref.block.lengthUnit = unit;
     if (!source.timeUnit.empty()) ref.block.timeUnit = source.timeUnit;
     ref.block.note = source.note;
     if (auto* nifti = vtkNIFTIImageReader::SafeDownCast(source.reader)) {
         ref.scale = nifti->GetRescaleSlope();
         ref.offset = nifti->GetRescaleIntercept();
         if (ref.scale == 0) ref.scale = 1;
-        ref.block.lengthUnit = "mm";
         if (ref.scale != 1 || ref.offset != 0)
             for (ArrayRef& array : ref.arrays) array.form.type = ScalarType::F32;
     }

@@ -3,11 +3,14 @@
 #include "app/importer/readers/foam_units.h"
 #include "app/importer/readers/read_files.h"
 #include "app/importer/readers/whole_file.h"
+#include "volume/base/unit_conversion.h"
 
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 #include <vtkGenericDataObjectReader.h>
 #include <vtkGenericEnSightReader.h>
 #include <vtkMetaImageReader.h>
@@ -23,6 +26,7 @@
 #include <vtkXMLRectilinearGridReader.h>
 #include <vtkXMLStructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
+#include <vtk_netcdf.h>
 
 namespace tessera::importer {
 
@@ -66,6 +70,32 @@ void openFoam(Source& source) {
     };
 }
 
+/// The unit that the axes "(time, z, y, x)" state, where those of space agree: of degrees and a height there is none.
+std::string unitOfAxes(const std::string& path, std::string axes) {
+    int file = 0;
+    if (nc_open(path.c_str(), NC_NOWRITE, &file) != NC_NOERR) return {};
+    for (char& c : axes)
+        if (c == '(' || c == ')' || c == ',') c = ' ';
+    std::istringstream names(axes);
+    std::vector<std::string> units;
+    for (std::string name; names >> name;) { // VTK knows the units of other variables alone
+        int variable = 0;
+        nc_type type = NC_NAT;
+        std::size_t length = 0;
+        std::string unit;
+        if (nc_inq_varid(file, name.c_str(), &variable) == NC_NOERR &&
+            nc_inq_att(file, variable, "units", &type, &length) == NC_NOERR && type == NC_CHAR && length < 1000) {
+            unit.resize(length);
+            if (nc_get_att_text(file, variable, "units", unit.data()) != NC_NOERR) unit.clear();
+            unit.resize(std::min(unit.find('\0'), unit.size()));
+        }
+        const bool isTime = unit.find(" since ") != std::string::npos || volume::unitConversion(unit, "s");
+        if (!isTime) units.push_back(unit);
+    }
+    nc_close(file);
+    return volume::lengthUnitOfAxes(units);
+}
+
 /// Reads the variables of those dimensions that most share; others are on other grids.
 void openNetCdf(Source& source) {
     checkNetCdf(source.path);
@@ -89,6 +119,7 @@ void openNetCdf(Source& source) {
         }
     }
     if (!best.empty()) reader->SetDimensions(best.c_str());
+    source.lengthUnit = unitOfAxes(source.path, best);
     source.reader = reader;
 }
 

@@ -192,9 +192,14 @@ TEST(Differences, OfTheFuelCellAreThoseOfItsFiles) {
 TEST(NewDerived, MakesUpNoUnitOfLength) {
     volume::DatasetInfo info = opened(cell()).pictures->info();
     EXPECT_EQ(newDerived(info, 2, "T").unit, "K/m");
+    const auto unitOf = [&](std::size_t kind) { return newDerived(info, kind, "T").unit; };
+    EXPECT_EQ(unitOf(4), "1/s") << "of U in m/s";
+    info.lengthUnit = "mm";
+    EXPECT_EQ(unitOf(4), "m/s/mm") << "which is not 1/s";
     info.lengthUnit.clear(); // nobody states one
-    EXPECT_EQ(newDerived(info, 2, "T").unit, "");
-    EXPECT_EQ(newDerived(info, 7, "T").unit, "");
+    EXPECT_EQ(unitOf(2), "K/length");
+    EXPECT_EQ(unitOf(3), "m/(s length)");
+    EXPECT_EQ(unitOf(7), "");
 }
 
 } // namespace

@@ -84,6 +84,15 @@ TEST(RegionData, SectionsHaveUnitsAndCurvesARegionEach) {
     volume::DatasetInfo inMillimetres = info;
     inMillimetres.lengthUnit = "mm";
     EXPECT_NEAR(measureUnit(inMillimetres, 0, "U", SectionMeasure::Flux).factor, 1e-6, 1e-18);
+    volume::DatasetInfo unstated = info;
+    unstated.lengthUnit.clear();
+    EXPECT_EQ(measureUnit(unstated, 0, "U", SectionMeasure::Integral).unit, "mol length2/m3");
+    EXPECT_EQ(measureUnit(unstated, 0, "U", SectionMeasure::Flux).unit, "mol length2/(m2 s)");
+    EXPECT_EQ(measureUnit(unstated, 0, "U", SectionMeasure::Area).unit, "");
+    for (volume::Parameter& parameter : unstated.parameters)
+        if (parameter.name == "U") parameter.unit.clear();
+    unstated.timeUnit.clear();
+    EXPECT_EQ(measureUnit(unstated, 0, "U", SectionMeasure::Flow).unit, "length3/time");
 
     const auto csv = rowsOf(sectionCsv(info, curves));
     ASSERT_EQ(csv.size(), 1u + 3 * 2 * 9);
@@ -210,6 +219,8 @@ TEST(RegionData, BalancesSayWhatCarriesAndInWhichUnit) {
     std::vector<std::string> taken = notes();
     ASSERT_EQ(taken.size(), stated.size() + 1);
     EXPECT_EQ(taken.back(), "U has no unit: taken as mm/s");
+    data.info.lengthUnit.clear();
+    EXPECT_EQ(notes().back(), "U has no unit: taken as length/s");
     taken.pop_back();
     EXPECT_EQ(taken, stated);
 }
@@ -240,6 +251,7 @@ TEST(RegionData, OxygenOfTheSharedCellFallsAlongItsChannel) {
     DataRef data;
     data.files = {{.path = file.string(), .absolutePath = file.string(), .bytes = 0, .hash = ""}};
     data.import.labels = {"region:1=cathode,3=anode,0=solid"};
+    data.import.lengthUnit = "m"; // which the file does not state
     std::vector<std::string> messages;
     const Sources sources = openSources(data, messages); // pictures are on BCC
     const volume::DatasetInfo& info = sources.numbers->info();

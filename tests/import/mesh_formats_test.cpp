@@ -84,7 +84,8 @@ void put(hid_t group, const char* name, std::vector<hsize_t> dims, hid_t type, c
     H5Sclose(space);
 }
 
-void writeCgns(const std::string& path) {
+/// `length`: the word of DimensionalUnits_t; "": there is none.
+void writeCgns(const std::string& path, const std::string& length = "") {
     const hid_t ordered = H5Pcreate(H5P_FILE_CREATE);
     H5Pset_link_creation_order(ordered, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
     const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, ordered, H5P_DEFAULT);
@@ -113,6 +114,13 @@ void writeCgns(const std::string& path) {
     put(add(file, "CGNSLibraryVersion", "CGNSLibraryVersion_t", "R4"), " data", {1}, H5T_NATIVE_FLOAT, &version);
     const hid_t base = add(file, "Base", "CGNSBase_t", "I4");
     put(base, " data", {2}, H5T_NATIVE_INT, std::vector<int>{3, 3}.data());
+    if (!length.empty()) {
+        std::string words;
+        for (const std::string& word :
+             {std::string("Kilogram"), length, std::string("Second"), std::string("Kelvin"), std::string("Radian")})
+            words += word + std::string(32 - word.size(), ' ');
+        put(add(base, "DimensionalUnits", "DimensionalUnits_t", "C1"), " data", {5, 32}, H5T_NATIVE_CHAR, words.data());
+    }
     const hid_t zone = add(base, "Zone", "Zone_t", "I4");
     put(zone, " data", {3, 3}, H5T_NATIVE_INT, std::vector<int>{5, 4, 6, 4, 3, 5, 0, 0, 0}.data());
     put(add(zone, "ZoneType", "ZoneType_t", "C1"), " data", {10}, H5T_NATIVE_CHAR, "Structured");
@@ -136,7 +144,13 @@ TEST_F(MeshFormats, Cgns) {
     expectLinear(dataset, "Temperature");
     EXPECT_EQ(dataset.info.parameters[0].unit, "K");
     EXPECT_TRUE(dataset.info.parameters[0].unitGuessed);
+    EXPECT_EQ(dataset.info.lengthUnit, "") << "none is stated";
     expectCutsAreTold(path, path, {}, 16);
+    for (const auto& [word, unit] :
+         {std::pair{"Meter", "m"}, {"Millimeter", "mm"}, {"Inch", "in"}, {"UserDefined", ""}}) {
+        writeCgns(path, word);
+        EXPECT_EQ(openFiles({path}, {}).info.lengthUnit, unit) << word;
+    }
 }
 
 TEST_F(MeshFormats, Exodus) {

@@ -132,6 +132,9 @@ TEST(Curves, IntegralsAreInAUnitThatIsTheirs) {
     const Curves curves = computeCurves(*makeMemorySource(dataset, {.lattice = LatticeKind::CC}), query);
     EXPECT_EQ(curves.y[0].unit, "mol");
     EXPECT_EQ(curves.y[1].unit, "") << "mol per mm3: the numbers would have to change";
+    dataset.info.lengthUnit.clear();
+    const Curves unstated = computeCurves(*makeMemorySource(dataset, {.lattice = LatticeKind::CC}), query);
+    EXPECT_EQ(unstated.y[0].unit, "mol length3/m3") << "no unit of length is made up";
     // A degree of interest of one half everywhere is half of it.
     CurvesQuery half = query;
     half.doi = [](std::span<const float>, glm::dvec3) { return 0.5; };

@@ -184,6 +184,27 @@ TEST(OtherSource, KnowsEveryNameOfALength) {
     }
 }
 
+TEST(OtherSource, AUnitOfLengthThatOnlyOneStatesIsThatOfBoth) {
+    const auto in = [](const std::string& unit, const std::string& name) {
+        return make({.lengthUnit = unit, .form = linear}, name);
+    };
+    EXPECT_EQ(otherText(*in("mm", "a"), *in("", "b")),
+              "on the same grid, its lengths taken in mm, as its file states no unit of length");
+    EXPECT_EQ(otherText(*in("", "a"), *in("mm", "b")),
+              "on the same grid, lengths of a taken in mm, as its file states no unit of length");
+    EXPECT_EQ(otherText(*in("", "a"), *in("", "b")), "on the same grid");
+    EXPECT_EQ(withOther(in("", "a"), in("px", "b"))->info().lengthUnit, "") << "that of the first stays";
+    const auto difference = differenceSource({in("mm", "a"), 0, {}}, {in("", "b"), 0, {}});
+    EXPECT_EQ(difference->info().parameters.front().ranges.front(), (Range{0, 0}));
+}
+
+TEST(OtherSource, FeetAndInchesAreLengths) {
+    const Lattice inInches{LatticeKind::CC, {9, 8, 7}, {6, 12, 24}, {-12, 36, 0}};
+    const auto a = make({.lengthUnit = "ft", .form = linear}, "a"),
+               b = make({.lattice = inInches, .lengthUnit = "in", .form = linear}, "b");
+    EXPECT_EQ(otherText(*a, *b), "on the same grid");
+}
+
 TEST(OtherSource, BesideASmallerGridItIsInterpolated) {
     // The same samples as far as it goes, in the same bricks.
     const Lattice part{LatticeKind::CC, {5, 8, 7}, {0.5, 1, 2}, {-1, 3, 0}};
@@ -227,7 +248,7 @@ TEST(OtherSource, WhatCannotBeComparedIsSaid) {
         return "";
     };
     EXPECT_EQ(reason([&] { withOther(a, make({.lengthUnit = "px", .form = other}, "b")); }),
-              "lengths in m and in px cannot be compared");
+              "lengths of a in m and of b in px cannot be compared");
     EXPECT_EQ(reason([&] { withOther(a, make({.timeUnit = "V", .form = other}, "b")); }),
               "times in time [s] and time [V] cannot be compared");
     const auto celsius = withOther(a, make({.unit = "degC", .form = other}, "b"));

@@ -51,7 +51,7 @@ Terms termsOf(const DatasetInfo& info) {
 
 /// Factor for values times volumes in the unit of lengths: mol/m3 times mm3 are 1e-9 mol.
 ComposedUnit integralUnit(const DatasetInfo& info, int channel) {
-    const std::array<UnitPower, 2> factors{{{info.channel(channel).unit, 1}, {info.lengthUnit, 3}}};
+    const std::array<UnitPower, 2> factors{{{info.channel(channel).unit, 1}, {info.lengthFactor(), 3}}};
     return composedUnit(factors);
 }
 

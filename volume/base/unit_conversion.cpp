@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <string_view>
@@ -142,6 +143,32 @@ std::optional<UnitConversion> unitConversion(const std::string& from, const std:
     }
     if (sides[0].powers != sides[1].powers || sides[0].others != sides[1].others) return std::nullopt;
     return UnitConversion{sides[0].factor / sides[1].factor, 0};
+}
+
+std::string lengthUnitNamed(std::string_view word) {
+    static constexpr std::pair<std::string_view, std::string_view> kWords[] = {
+        {"meter", "m"},       {"millimeter", "mm"}, {"centimeter", "cm"}, {"kilometer", "km"},
+        {"micrometer", "um"}, {"micron", "um"},     {"nanometer", "nm"},  {"foot", "ft"},
+        {"feet", "ft"},       {"inch", "in"},       {"inches", "in"}};
+    std::string plain;
+    for (const char c : word) plain += char(std::tolower(static_cast<unsigned char>(c)));
+    if (plain.ends_with("metre") || plain.ends_with("metres")) plain.replace(plain.rfind("tre"), 3, "ter");
+    if (plain.ends_with("s") && !plain.ends_with("es")) plain.pop_back();
+    for (const auto& [known, unit] : kWords)
+        if (plain == known) return std::string(unit);
+    const std::string unit(word);
+    const auto metres = unitConversion(unit, "m");
+    return metres && unit.find_first_of("/ *^0123456789") == std::string::npos ? unit : std::string();
+}
+
+std::string lengthUnitOfAxes(std::span<const std::string> axes) {
+    std::string all;
+    for (const std::string& axis : axes) {
+        const std::string unit = lengthUnitNamed(axis);
+        if (unit.empty() || (!all.empty() && unit != all)) return {};
+        all = unit;
+    }
+    return all;
 }
 
 } // namespace tessera::volume

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace tessera::volume {
 
@@ -16,5 +18,12 @@ struct UnitConversion {
 /// measure different things. Equal texts need no conversion, whatever they say; of others a name that is not known
 /// (or "", no unit stated) is convertible only to itself.
 std::optional<UnitConversion> unitConversion(const std::string& from, const std::string& to);
+
+/// The short name of a unit of length as files spell it: "m" for "m", "Meter" or "metres", "mm" for "Millimeter", "ft"
+/// for "Foot"; "" for what is no length, such as "degrees_north".
+std::string lengthUnitNamed(std::string_view word);
+
+/// The unit of lengths of a file that states one for each axis: theirs if all agree, else "".
+std::string lengthUnitOfAxes(std::span<const std::string> axes);
 
 } // namespace tessera::volume

@@ -11,7 +11,6 @@
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 #include <limits>
-#include <map>
 
 namespace tessera::volume {
 
@@ -20,23 +19,17 @@ namespace {
 constexpr std::size_t kOtherBudget = std::size_t(192) << 20;
 constexpr double kOtherRangeSamples = 3e6;
 
-double metres(const std::string& unit) {
-    static const std::map<std::string, double, std::less<>> known = {{"m", 1},          {"cm", 1e-2},    {"mm", 1e-3},
-                                                                     {"um", 1e-6},      {"nm", 1e-9},    {"km", 1e3},
-                                                                     {"\u00b5m", 1e-6}, {"micron", 1e-6}};
-    const auto found = known.find(unit);
-    return found == known.end() ? 0 : found->second;
-}
-
-/// Units of length `to` per one of `from`.
-double lengthScale(const std::string& from, const std::string& to) {
-    if (from == to) return 1;
-    if (metres(from) == 0 || metres(to) == 0)
-        throw Error("lengths in " + (from.empty() ? "no unit" : from) + " and in " + (to.empty() ? "no unit" : to) +
-                    " cannot be compared");
-    // Of a power of ten and its inverse only one is exact: divide or multiply by that one.
-    const double ratio = metres(from) / metres(to);
-    return ratio >= 1 ? std::round(ratio) : 1 / std::round(1 / ratio);
+/// Units of length of `to` per one of `from`. One that states none is taken to have that of the other.
+double lengthScale(const DatasetInfo& from, const DatasetInfo& to) {
+    if (from.lengthUnit == to.lengthUnit || from.lengthUnit.empty() || to.lengthUnit.empty()) return 1;
+    const auto conversion = unitConversion(from.lengthUnit, to.lengthUnit);
+    if (!conversion)
+        throw Error("lengths of " + from.name + " in " + from.lengthUnit + " and of " + to.name + " in " +
+                    to.lengthUnit + " cannot be compared");
+    // Of a power of ten and its inverse only one is exact: multiply or divide by that one.
+    const double ratio = conversion->factor, whole = std::round(ratio >= 1 ? ratio : 1 / ratio);
+    if (std::abs((ratio >= 1 ? ratio : 1 / ratio) - whole) > 1e-9 * whole) return ratio;
+    return ratio >= 1 ? whole : 1 / whole;
 }
 
 bool near(glm::dvec3 a, glm::dvec3 b, glm::dvec3 scale) {
@@ -55,7 +48,7 @@ bool sameSamples(const BrickGrid& a, const BrickGrid& b, double scale) {
 bool samePlaces(const BrickSource& source, const BrickSource& other) {
     BrickGrid a = other.grid();
     a.brickSize = source.grid().brickSize, a.levels = source.grid().levels, a.phase = source.grid().phase;
-    return sameSamples(a, source.grid(), lengthScale(source.info().lengthUnit, other.info().lengthUnit));
+    return sameSamples(a, source.grid(), lengthScale(source.info(), other.info()));
 }
 
 BrickSamples absentBrick(const BrickGrid& grid, const BrickKey& key) {
@@ -69,11 +62,9 @@ BrickSamples absentBrick(const BrickGrid& grid, const BrickKey& key) {
 
 } // namespace
 
-SampledOnto::SampledOnto(std::shared_ptr<const BrickSource> source, const BrickGrid& grid,
-                         const std::string& lengthUnit)
-    : source_(std::make_shared<const BrickCache>(source, kOtherBudget)), grid_(grid),
-      scale_(lengthScale(lengthUnit, source->info().lengthUnit)), sameGrid_(sameSamples(source->grid(), grid, scale_)) {
-}
+SampledOnto::SampledOnto(std::shared_ptr<const BrickSource> source, const BrickSource& onto)
+    : source_(std::make_shared<const BrickCache>(source, kOtherBudget)), grid_(onto.grid()),
+      scale_(lengthScale(onto.info(), source->info())), sameGrid_(sameSamples(source->grid(), grid_, scale_)) {}
 
 BrickSamples SampledOnto::read(const BrickSource& at, const BrickKey& key) const {
     if (sameGrid_) return at.read(key);
@@ -102,8 +93,7 @@ namespace {
 class WithOther final : public BrickSource {
 public:
     WithOther(std::shared_ptr<const BrickSource> source, std::shared_ptr<const BrickSource> other)
-        : source_(std::move(source)), other_(std::move(other)),
-          onto_(other_, source_->grid(), source_->info().lengthUnit), info_(source_->info()),
+        : source_(std::move(source)), other_(std::move(other)), onto_(other_, *source_), info_(source_->info()),
           own_(int(info_.channels().size())) {
         matchTimes();
         const bool single = info_.parameters.size() == 1 && other_->info().parameters.size() == 1;
@@ -188,9 +178,8 @@ private:
 class Difference final : public BrickSource {
 public:
     Difference(const FieldAt& of, const FieldAt& minus, const Progress& progress)
-        : onto_(of.source, minus.source->grid(), minus.source->info().lengthUnit),
-          of_(sourceAt(onto_.source(), of.time)), minus_(sourceAt(minus.source, minus.time)), ofChannel_(of.channel),
-          minusChannel_(minus.channel) {
+        : onto_(of.source, *minus.source), of_(sourceAt(onto_.source(), of.time)),
+          minus_(sourceAt(minus.source, minus.time)), ofChannel_(of.channel), minusChannel_(minus.channel) {
         const DatasetInfo &left = of.source->info(), &right = minus.source->info();
         const Channel a = left.channel(of.channel), b = right.channel(minus.channel);
         const auto toUnit = unitConversion(b.unit, a.unit);
@@ -279,6 +268,10 @@ std::string otherText(const BrickSource& source, const BrickSource& other) {
         if (same != other.info().parameters.end() && same->unit != own.unit && unitConversion(same->unit, own.unit))
             text += ", " + own.name + " from " + same->unit + " to " + (own.unit.empty() ? "1" : own.unit);
     }
+    const std::string &own = source.info().lengthUnit, &others = other.info().lengthUnit;
+    if (own.empty() != others.empty())
+        text += (others.empty() ? ", its lengths" : ", lengths of " + source.info().name) + " taken in " + own +
+                others + ", as its file states no unit of length";
     return text;
 }
 

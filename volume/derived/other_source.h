@@ -20,9 +20,9 @@ inline constexpr std::string_view kOtherSuffix = " (other)";
 /// nearest sample.
 class SampledOnto {
 public:
-    /// `grid`: the grid to sample onto, with lengths in `lengthUnit`. Throws Error when the units of length cannot be
-    /// converted.
-    SampledOnto(std::shared_ptr<const BrickSource> source, const BrickGrid& grid, const std::string& lengthUnit);
+    /// Samples onto the grid of `onto`. Lengths of a source that states no unit of them are taken in that of the other.
+    /// Throws Error when the units of length cannot be converted.
+    SampledOnto(std::shared_ptr<const BrickSource> source, const BrickSource& onto);
     bool sameGrid() const { return sameGrid_; }
     /// key.channel and key.time refer to `at`, which is the source or sourceAt(it); the rest of the key refers to the
     /// grid.
@@ -49,8 +49,9 @@ std::shared_ptr<const BrickSource> otherOf(const BrickSource& source);
 /// The first data set of a source made by withOther.
 std::shared_ptr<const BrickSource> besideOther(const BrickSource& source);
 
-/// "interpolated onto the grid of A" or, where nothing is interpolated, "on the same grid", and which parameters are
-/// converted before their difference is taken: ", p from bar to Pa".
+/// "interpolated onto the grid of A" or, where nothing is interpolated, "on the same grid", which parameters are
+/// converted before their difference is taken: ", p from bar to Pa", and where only one states a unit of length, what
+/// that of the other is taken to be: ", its lengths taken in mm, as its file states no unit of length".
 std::string otherText(const BrickSource& source, const BrickSource& other);
 
 /// The channel of the other data set with the same name; empty if there is none.

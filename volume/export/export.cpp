@@ -54,6 +54,8 @@ std::string writeNrrd(const Dataset& dataset, const ExportSelection& selection, 
             exactText(lattice.spacing.y) + ",0) (0,0," + exactText(lattice.spacing.z) + ")\n";
     head += "space origin: (" + exactText(lattice.origin.x) + "," + exactText(lattice.origin.y) + "," +
             exactText(lattice.origin.z) + ")\nkinds: domain domain domain\nencoding: raw\n";
+    if (const std::string& unit = info.lengthUnit; !unit.empty() && unit.find('"') == std::string::npos)
+        head += "space units: \"" + unit + "\" \"" + unit + "\" \"" + unit + "\"\n";
     if (field.type != ScalarType::U8) head += "endian: little\n";
     head += "content: " + channel.name + "\nunit:=" + channel.unit +
             "\ntime:=" + exactText(info.times[std::size_t(times[0])]) + "\n\n";

@@ -61,7 +61,7 @@ struct DatasetInfo {
     std::string name;
     Lattice lattice;
     Box bounds; ///< what is shown: the box of the first to the last sample of the CC grid it came from
-    std::string lengthUnit = "m";
+    std::string lengthUnit = "m"; ///< "" where none is stated
     std::vector<Parameter> parameters;
     std::vector<double> times{0};     ///< strictly increasing
     std::string timeName = "time";    ///< what `times` count: time, operating point, voltage, step
@@ -71,6 +71,11 @@ struct DatasetInfo {
     bool remote = false;              ///< on another machine: reading a sample costs far more than decoding it
     bool operator==(const DatasetInfo&) const = default;
 
+    /// The unit of lengths as a factor of other units: "length" where none is stated, so that a gradient of K has
+    /// K/length.
+    std::string lengthFactor() const { return lengthUnit.empty() ? "length" : lengthUnit; }
+    /// The unit of what moves with time: m/s; "length" and "time" stand for units that are not stated.
+    std::string speedUnit() const { return lengthFactor() + "/" + (timeUnit.empty() ? "time" : timeUnit); }
     /// Every channel: parameters in order, for vectors the components, then the magnitude.
     std::vector<Channel> channels() const;
     /// One of them, 0 .. channels().size() - 1; throws std::out_of_range.

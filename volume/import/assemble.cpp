@@ -330,11 +330,9 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
     info.name = dataName(all->files);
     info.lattice = all->lattice;
     info.times = all->times = timesOf(all->groups);
-    // Voxel files of scanners and volume archives omit units; simulations use metres and seconds.
-    const std::string& format = all->groups.front().files.front()->blocks.front().format;
-    const FileFormat* row = formatNamed(format);
-    info.lengthUnit = row != nullptr ? row->lengthUnit : format == "raw" ? "" : "m";
-    info.timeUnit = ""; // few files state it
+    const FileFormat* row = formatNamed(all->groups.front().files.front()->blocks.front().format);
+    info.lengthUnit = row != nullptr ? row->lengthUnit : ""; // unless the file states one, below
+    info.timeUnit = "";                                      // few files state it
     const bool numbers = std::ranges::any_of(all->groups, &FileGroup::timesAreNumbers);
     if (numbers) info.timeName = "step";
 

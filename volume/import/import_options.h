@@ -18,7 +18,7 @@ struct ImportOptions {
     std::vector<std::string> absent;
     std::map<std::string, std::string> rename; ///< file's array name -> parameter name
     std::map<std::string, std::string> units;  ///< parameter name -> unit
-    std::string lengthUnit;                    ///< "" = what the file says, else m for simulations, none for voxels
+    std::string lengthUnit;                    ///< "" = what the file or its format states
     std::vector<double> times;                 ///< overrides the times of a series
     std::vector<std::string> parameters;       ///< only these (by final name); empty = all
     /// Find a label such as `region` and parameters that are exactly 0 wherever the label has certain values, and treat

@@ -1,10 +1,13 @@
 // Mesh formats read by VTK, with their solution files.
 #include "app/importer/readers/read_files.h"
 #include "app/importer/readers/whole_file.h"
+#include "volume/base/unit_conversion.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
+#include <hdf5.h>
 #include <stdexcept>
 #include <string>
 #include <vtkCGNSReader.h>
@@ -54,6 +57,38 @@ void checkFluent(const std::string& path) {
     if (sections == 0) throw std::runtime_error("its file " + name + " is no Fluent file");
 }
 
+/// The length of a node DimensionalUnits_t below the first base that has one: five words of 32 letters, mass and length
+/// first. Files in HDF5 only, as all of CGNS 3 and later are by default.
+std::string lengthUnitOfCgns(const std::string& path) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    if (file < 0) return {};
+    std::string unit;
+    const auto read = [](hid_t root, const char* name, const H5O_info_t* info, void* to) -> herr_t {
+        const std::string place = name;
+        if (info->type != H5O_TYPE_DATASET || !place.ends_with("/ data")) return 0;
+        const std::string group = place.substr(0, place.size() - 6);
+        if (std::ranges::count(group, '/') != 1 || group.substr(group.find('/') + 1) != "DimensionalUnits") return 0;
+        const hid_t dataset = H5Dopen2(root, name, H5P_DEFAULT);
+        std::array<char, 160> words{};
+        if (H5Dget_storage_size(dataset) == words.size() &&
+            H5Dread(dataset, H5T_NATIVE_CHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, words.data()) >= 0) {
+            std::string length(words.data() + 32, 32);
+            length.erase(length.find_last_not_of(std::string(" \0", 2)) + 1);
+            *static_cast<std::string*>(to) = volume::lengthUnitNamed(length);
+        }
+        H5Dclose(dataset);
+        return 1; // found
+    };
+#if H5_VERSION_GE(1, 12, 0) // takes the fields to query as a further argument
+    H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, read, &unit, H5O_INFO_BASIC);
+#else
+    H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, read, &unit);
+#endif
+    H5Fclose(file);
+    return unit;
+}
+
 } // namespace
 
 void openCgns(Source& source) {
@@ -66,6 +101,7 @@ void openCgns(Source& source) {
     reader->EnableAllPointArrays();
     reader->EnableAllCellArrays();
     source.reader = reader;
+    source.lengthUnit = lengthUnitOfCgns(source.path);
 }
 
 void openExodus(Source& source) {

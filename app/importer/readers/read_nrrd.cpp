@@ -43,6 +43,9 @@ void openNrrd(Source& source) {
     if (reader->CanReadFile(source.path.c_str()) == 0) throw std::runtime_error("is damaged or has another format");
     checkNrrd(source.path);
     reader->SetFileName(source.path.c_str());
+    constexpr std::size_t kHead = 1 << 20;
+    const std::string head = readPart(source.path, 0, kHead);
+    source.lengthUnit = volume::lengthUnitOfNrrd(head);
     if (!textOfNrrd(source.path)) {
         source.reader = reader;
         return;
@@ -56,8 +59,6 @@ void openNrrd(Source& source) {
     std::string name = "value";
     int components = reader->GetNumberOfScalarComponents();
     // VTK takes a first axis of up to nine samples as components; the header states which axes are spatial.
-    constexpr std::size_t kHead = 1 << 20;
-    const std::string head = readPart(source.path, 0, kHead);
     if (const auto scalar = volume::parseNrrd(head, {}, volume::NrrdEncoding::Text)) {
         const volume::Lattice& lattice = scalar->lattice;
         form->SetDimensions(lattice.size.x, lattice.size.y, lattice.size.z);

@@ -44,7 +44,7 @@ volume::Channel channelOf(const volume::DatasetInfo& info, int channel) {
 std::string velocityUnit(const volume::DatasetInfo& info, const std::string& velocity) {
     for (const volume::Parameter& parameter : info.parameters)
         if (parameter.name == velocity && !parameter.unit.empty()) return parameter.unit;
-    return info.lengthUnit.empty() || info.timeUnit.empty() ? "" : info.lengthUnit + "/" + info.timeUnit;
+    return info.speedUnit();
 }
 
 } // namespace
@@ -82,7 +82,7 @@ SectionCurves readSections(const std::shared_ptr<const volume::BrickSource>& sou
 volume::ComposedUnit measureUnit(const volume::DatasetInfo& info, int channel, const std::string& velocity,
                                  SectionMeasure measure) {
     const std::string own = channelOf(info, channel).unit, speed = velocityUnit(info, velocity);
-    const volume::UnitPower area{info.lengthUnit, 2};
+    const volume::UnitPower area{info.lengthFactor(), 2};
     std::vector<volume::UnitPower> factors;
     switch (measure) {
     case SectionMeasure::Mean:
@@ -99,7 +99,7 @@ volume::ComposedUnit measureUnit(const volume::DatasetInfo& info, int channel, c
         factors = {{speed, 1}, area};
         break;
     case SectionMeasure::Area:
-        factors = {area};
+        factors = {{info.lengthUnit, 2}}; // a number alone where no unit is stated
         break;
     }
     return volume::composedUnit(factors);

@@ -58,7 +58,7 @@ std::string sizeText(const volume::DatasetInfo& info) {
         const LengthUnit unit = suitableLength(info.lengthUnit, size);
         text += (axis ? " \u00d7 " : "") + formatQuantity(size * unit.perUnit, unit.name, size * unit.perUnit / 1000);
     }
-    return text;
+    return text + (info.lengthUnit.empty() ? ", no unit stated" : "");
 }
 
 /// Chooses the lattice of pictures, if there is a choice.

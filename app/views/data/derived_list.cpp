@@ -2,9 +2,11 @@
 
 #include "app/pane/view_parts.h"
 #include "app/ui/parameter_widget.h"
+#include "volume/base/unit_product.h"
 #include "volume/derived/other_source.h"
 
 #include <algorithm>
+#include <array>
 #include <imgui_stdlib.h>
 
 namespace tessera::app {
@@ -96,6 +98,20 @@ void drawOne(ViewContext& context, DerivedDraft& draft, std::size_t index, int& 
     ImGui::TreePop();
 }
 
+/// The unit of a derivative in space: K/m of K, 1/s of m/s; K/length where no unit of lengths is stated.
+std::string perLength(const volume::DatasetInfo& info, const std::string& unit) {
+    const std::array<volume::UnitPower, 2> factors{{{unit, 1}, {info.lengthFactor(), -1}}};
+    const volume::ComposedUnit composed = volume::composedUnit(factors);
+    // m/s and mm do not cancel without a factor, which the values do not get.
+    return composed.factor == 1 ? composed.unit : (unit.empty() ? "1" : unit) + "/" + info.lengthFactor();
+}
+
+/// The stated unit of a vector, or that of a velocity.
+std::string unitOfVector(const volume::DatasetInfo& info, const std::string& name) {
+    const auto found = std::ranges::find(info.parameters, name, &volume::Parameter::name);
+    return found != info.parameters.end() && !found->unit.empty() ? found->unit : info.speedUnit();
+}
+
 } // namespace
 
 volume::DerivedParameter newDerived(const volume::DatasetInfo& info, std::size_t kind, const std::string& channel) {
@@ -118,9 +134,8 @@ volume::DerivedParameter newDerived(const volume::DatasetInfo& info, std::size_t
                            [&](const volume::Parameter& own) { return own.name == name; });
     };
     for (int i = 2; taken(made.name); ++i) made.name = base + " " + std::to_string(i);
-    const std::string& length = info.lengthUnit; // "": none is stated, and none of its own is made up
-    made.unit = kind == 2                ? (length.empty() ? std::string() : (unit.empty() ? "1" : unit) + "/" + length)
-                : kind == 3 || kind == 4 ? (info.timeUnit.empty() ? std::string() : "1/" + info.timeUnit)
+    made.unit = kind == 2                ? perLength(info, unit)
+                : kind == 3 || kind == 4 ? perLength(info, unitOfVector(info, of))
                 : kind == 7              ? info.lengthUnit
                 : kind == 8              ? info.timeUnit
                                          : unit;

@@ -135,15 +135,15 @@ BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balanc
                        balance.velocity + " exist on both sides",
                    "reacts = out - in, in the row of totals; it includes reactions, diffusion through the surfaces, "
                    "and the change of what is stored over time"};
-    if (speed.empty() && !info.lengthUnit.empty() && !info.timeUnit.empty()) {
-        speed = info.lengthUnit + "/" + info.timeUnit;
+    if (speed.empty()) {
+        speed = info.speedUnit();
         table.notes.push_back(balance.velocity + " has no unit: taken as " + speed);
     }
     const auto composed = [](std::vector<volume::UnitPower> factors) { return volume::composedUnit(factors); };
-    const volume::ComposedUnit unit = composed({{channel.unit, 1}, {speed, 1}, {info.lengthUnit, 2}}),
-                               flow = composed({{speed, 1}, {info.lengthUnit, 2}}),
-                               area = composed({{info.lengthUnit, 2}}),
-                               inside = composed({{channel.unit, 1}, {info.lengthUnit, 3}});
+    const std::string length = info.lengthFactor();
+    const volume::ComposedUnit unit = composed({{channel.unit, 1}, {speed, 1}, {length, 2}}),
+                               flow = composed({{speed, 1}, {length, 2}}), area = composed({{info.lengthUnit, 2}}),
+                               inside = composed({{channel.unit, 1}, {length, 3}});
     table.parameter = channel.name;
     table.unit = unit.unit;
     table.flowUnit = flow.unit;

@@ -11,7 +11,7 @@ struct FileFormat {
     std::string_view name;       ///< as `tessera info` says it
     std::string_view suffixes;   ///< in small letters, separated by blanks; the longest that fits a file counts
     std::string_view advice;     ///< for formats without a reader: which one the program that wrote it can write
-    std::string_view lengthUnit; ///< taken where a file says none; simulations write metres
+    std::string_view lengthUnit; ///< of every file of this format; "": each file may state one
     bool slices = false;         ///< files numbered alike are slices of one volume (single-page TIFF, DICOM)
 };
 

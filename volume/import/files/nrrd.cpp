@@ -1,10 +1,12 @@
 #include "volume/import/files/nrrd.h"
 
 #include "volume/base/error.h"
+#include "volume/base/unit_conversion.h"
 #include "volume/import/files/import_limits.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 #include <vector>
 
@@ -57,6 +59,7 @@ std::vector<double> lengths(const std::string& text, const std::string& file, co
 
 /// What a header says, field by field.
 struct Header {
+    std::string spaceUnits, axisUnits; ///< words in quotes, one for each axis
     std::optional<RawType> type;
     std::vector<double> sizes, spacing, origin;
     std::string encoding, kinds, content;
@@ -88,6 +91,10 @@ void takeField(const std::string& key, const std::string& value, const std::stri
         header.origin = numbers(value.substr(1, value.size() - 2), file, key);
     else if (key == "kinds")
         header.kinds = value;
+    else if (key == "space units")
+        header.spaceUnits = value;
+    else if (key == "units")
+        header.axisUnits = value;
     else if (key == "content")
         header.content = value;
     else if (key == "endian")
@@ -96,6 +103,20 @@ void takeField(const std::string& key, const std::string& value, const std::stri
         form.dataFile = value;
     else if (key == "line skip" || key == "lineskip" || key == "byte skip" || key == "byteskip")
         header.skips = header.skips || value != "0";
+}
+
+/// The unit of "\"mm\" \"mm\" \"mm\"", "" where axes differ or state none.
+std::string unitOfAxes(const std::string& quoted) {
+    std::vector<std::string> axes;
+    std::istringstream in(quoted);
+    for (std::string word; in >> std::quoted(word);)
+        if (!word.empty() && axes.size() < 3) axes.push_back(word); // a further axis counts components or times
+    return lengthUnitOfAxes(axes);
+}
+
+std::string lengthUnitOf(const Header& header) {
+    const std::string unit = unitOfAxes(header.spaceUnits);
+    return unit.empty() ? unitOfAxes(header.axisUnits) : unit;
 }
 
 Header readHeader(std::string_view head, const std::string& file, RawForm& form, RawForm::Component& component) {
@@ -125,6 +146,12 @@ Header readHeader(std::string_view head, const std::string& file, RawForm& form,
 }
 
 } // namespace
+
+std::string lengthUnitOfNrrd(std::string_view head) {
+    RawForm form;
+    RawForm::Component component;
+    return lengthUnitOf(readHeader(head, {}, form, component));
+}
 
 std::optional<RawForm> parseNrrd(std::string_view head, const std::string& file, NrrdEncoding wanted) {
     if (!head.starts_with("NRRD")) throw Error("is not an NRRD file", file);
@@ -158,6 +185,7 @@ std::optional<RawForm> parseNrrd(std::string_view head, const std::string& file,
     component.type = *header.type;
     if (form.dataFile.empty()) form.skip = header.end;
     form.components.push_back(std::move(component));
+    form.lengthUnit = lengthUnitOf(header);
     return form;
 }
 

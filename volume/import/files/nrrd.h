@@ -16,4 +16,8 @@ enum class NrrdEncoding { Raw, Text };
 std::optional<RawForm> parseNrrd(std::string_view head, const std::string& file,
                                  NrrdEncoding wanted = NrrdEncoding::Raw);
 
+/// The unit of lengths that such a header states for its axes, of any encoding; "" where it states none, or they
+/// differ. Throws Error for a broken header.
+std::string lengthUnitOfNrrd(std::string_view head);
+
 } // namespace tessera::volume
