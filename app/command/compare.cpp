@@ -88,6 +88,7 @@ void addCompareCommand(CLI::App& app) {
         std::string output, csv, with;
         std::vector<std::string> variants;
         int reference = -1;
+        std::optional<double> time;
     };
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("compare", "Draw the 3D scene, or the view named by --view, with several "
@@ -105,6 +106,7 @@ void addCompareCommand(CLI::App& app) {
                      "Another file to compare with: both in one colour bar, and the difference; the other data are "
                      "interpolated onto the grid of the first where theirs is another")
         ->type_name("DATA");
+    addTimeOption(*command, options->time);
     command->add_option("--reference", options->reference, "Variant that the others are compared with, counted from 0")
         ->check(CLI::Range(0, 15));
     command
@@ -123,6 +125,7 @@ void addCompareCommand(CLI::App& app) {
         Opened opened = openForPicture(options->picture, progress.part(0, options->with.empty() ? 0.5 : 0.3));
         Session& session = opened.document.session;
         if (!options->with.empty()) openBeside(opened, options->with, progress.part(0.3, 0.5));
+        if (options->time) showTime(session, opened.source->info(), *options->time, viewsOf(options->picture));
         const std::string pane = comparePane(session, options->picture.view);
         auto& view = std::get<CompareView>(session.views[pane]);
         if (!options->with.empty()) view.variants = fileVariants(session, opened.source->info());

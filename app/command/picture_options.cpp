@@ -5,6 +5,8 @@
 #include "app/data/library.h"
 #include "app/described/describe_cli.h"
 #include "app/history/parameter_path.h"
+#include "app/session/shown_scene.h"
+#include "app/ui/ticks.h"
 #include "app/user_files/own_functions.h"
 #include "app/user_files/state_dir.h"
 #include "codec/remote/address.h"
@@ -128,6 +130,24 @@ void addTransferOption(CLI::App& command, std::vector<std::string>& transfer) {
         ->type_name("[PARAMETER=]NAME")
         ->expected(1)
         ->take_all();
+}
+
+void addTimeOption(CLI::App& command, std::optional<double>& time) {
+    command.add_option("--time", time,
+                       "Time to show, in the unit of the data; in the whole window that of the timeline, which views "
+                       "with a time of their own do not follow");
+}
+
+void showTime(Session& session, const volume::DatasetInfo& info, double time, const std::vector<std::string>& views) {
+    const std::vector<double>& times = info.times;
+    if (time < times.front() || time > times.back())
+        throw Error("is not in " + formatNumber(times.front()) + " .. " + formatNumber(times.back()), "--time",
+                    formatNumber(time));
+    session.time = time;
+    for (const std::string& name : views) {
+        VolumeView* const view = volumeView(session, paneOf(session, name));
+        if (view && view->time) view->time = time;
+    }
 }
 
 void addPictureOptions(CLI::App& command, PictureOptions& options) {

@@ -5,6 +5,7 @@
 #include "app/platform/headless.h"
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,12 @@ void addTransferOption(CLI::App& command, std::vector<std::string>& transfer);
 
 /// Adds them to a command; `options` must outlive the parsing.
 void addPictureOptions(CLI::App& command, PictureOptions& options);
+
+/// The option --time, for showTime().
+void addTimeOption(CLI::App& command, std::optional<double>& time);
+
+/// Shows that time, also in those of the views that have a time of their own. Throws Error if the data do not reach it.
+void showTime(Session& session, const volume::DatasetInfo& info, double time, const std::vector<std::string>& views);
 
 /// Opens what the options name, with the settings applied. Throws Error, also for data that cannot be found.
 Opened openForPicture(const PictureOptions& options, const Progress& progress);

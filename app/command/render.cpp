@@ -1,7 +1,5 @@
 #include "app/command/command.h"
 #include "app/command/picture_options.h"
-#include "app/session/shown_scene.h"
-#include "app/ui/ticks.h"
 #include "volume/base/error.h"
 #include "volume/system/atomic_file.h"
 
@@ -33,9 +31,7 @@ void addRenderCommand(CLI::App& app) {
         "render",
         "Draw the window or views to a PNG, SVG or PDF, or write the table of a view, without opening a window");
     addPictureOptions(*command, options->picture);
-    command->add_option("--time", options->time,
-                        "Time to show, in the unit of the data; in the whole window that of the timeline, which "
-                        "views with a time of their own do not follow");
+    addTimeOption(*command, options->time);
     command
         ->add_option("-o,--output", options->output,
                      "File to write: a picture (.png) or a figure (.svg, .pdf), which contain the session, or with "
@@ -52,17 +48,7 @@ void addRenderCommand(CLI::App& app) {
         if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
         Opened opened = openForPicture(options->picture, progress);
         Session& session = opened.document.session;
-        if (options->time) {
-            const auto& times = opened.source->info().times;
-            if (*options->time < times.front() || *options->time > times.back())
-                throw Error("is not in " + formatNumber(times.front()) + " .. " + formatNumber(times.back()), "--time",
-                            formatNumber(*options->time));
-            session.time = *options->time;
-            for (const std::string& name : viewsOf(options->picture)) {
-                VolumeView* const view = volumeView(session, paneOf(session, name));
-                if (view && view->time) view->time = options->time;
-            }
-        }
+        if (options->time) showTime(session, opened.source->info(), *options->time, viewsOf(options->picture));
         opened.document.history.reset(session);
         PictureMaker maker;
         const PictureRequest request = pictureRequest(options->picture, session);

@@ -39,6 +39,11 @@ python3 - <<'PY' || die "the table of two files is wrong: $(cat both.csv)"
 import csv
 assert [row["variant"] for row in csv.DictReader(open("both.csv"))] == ["cell.tsr", "other.tsr", "cell.tsr minus other.tsr"]
 PY
+# At another time, which both files have.
+compare --with other.tsr -o late.png --csv late.csv --time 0.03 || die "compare --time: $(cat err)"
+cmp -s late.csv both.csv && die "another time changes nothing"
+compare -o bad.png --time 7 && die "a time that is not there passes"
+grep -q -- '--time: 7: is not in' err || die "a wrong time is not said: $(cat err)"
 compare --with missing.tsr -o bad.png && die "a file that is not there passes"
 [ -e bad.png ] && die "a failed comparison left a picture"
 
