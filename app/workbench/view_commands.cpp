@@ -194,7 +194,8 @@ void showLayout(Workbench& workbench, const std::string& name, const std::string
             return workbench.open(std::move(request));
         }
         Session next = changeLayout(layout, *workbench.source(), workbench.session(), messages);
-        showWholeBox(next, workbench.document().info(), workbench.look().scale());
+        const WindowLook& look = workbench.look();
+        showWholeBox(next, workbench.document().info(), look.scale(), look.scaleWith(next.appearance));
         workbench.document().replace(std::move(next), "Layout: " + title);
         for (const std::string& text : messages) workbench.message(text);
     } catch (const Error& error) {

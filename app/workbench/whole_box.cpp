@@ -16,17 +16,49 @@ namespace {
 
 constexpr double kAlmost = 1.1; ///< of the picture: a box whose corners alone are cut off is meant to be seen whole
 
+/// The window, in pixels, and its pixels per design pixel.
+struct Window {
+    ImVec2 size;
+    float scale = 1;
+};
+Window windowNow(float scale) {
+    return {ImGui::GetMainViewport()->Size, scale};
+}
+
+ImVec2 sizeIn(const Window& window, const Session& session, const DockNode& part) {
+    DockTree tree = session.dock;
+    const WindowBars bars = windowBars();
+    const ImVec2 whole{window.size.x, std::max(1.0f, window.size.y - bars.menu - bars.status)};
+    const LeastSizes least = [&session](const std::string& pane) {
+        const auto view = session.views.find(pane);
+        if (view == session.views.end()) return ImVec2{0, 0};
+        const ViewTraits& traits = traitsOf(view->second);
+        return ImVec2{traits.leastWidth, traits.leastHeight};
+    };
+    const auto rects = layoutDock(tree, {{0, 0}, whole}, window.scale, {}, least).rects;
+    ImVec2 lo{1e9f, 1e9f}, hi{-1e9f, -1e9f};
+    const std::function<void(const DockNode&)> add = [&](const DockNode& node) {
+        if (const auto rect = rects.find(node.id); rect != rects.end()) {
+            lo = {std::min(lo.x, rect->second.lo.x), std::min(lo.y, rect->second.lo.y)};
+            hi = {std::max(hi.x, rect->second.hi.x), std::max(hi.y, rect->second.hi.y)};
+        }
+        for (const DockNode& child : node.children) add(child);
+    };
+    add(part);
+    return hi.x > lo.x && hi.y > lo.y ? ImVec2{hi.x - lo.x, hi.y - lo.y} : whole;
+}
+
 /// Size of a pane, below its tab.
-ImVec2 paneSize(const Session& session, const std::string& pane, float scale) {
+ImVec2 paneSize(const Window& window, const Session& session, const std::string& pane) {
     DockNode stack;
     stack.id = stackWith(session.dock.root, pane);
-    const ImVec2 size = sizeOf(session, stack, scale);
-    return {size.x, std::max(1.0f, size.y - float(kTabStrip) * scale)};
+    const ImVec2 size = sizeIn(window, session, stack);
+    return {size.x, std::max(1.0f, size.y - float(kTabStrip) * window.scale)};
 }
 
 /// Width by height of the picture in a pane.
-double aspectOf(const Session& session, const std::string& pane, float scale) {
-    const ImVec2 size = paneSize(session, pane, scale);
+double aspectOf(const Window& window, const Session& session, const std::string& pane) {
+    const ImVec2 size = paneSize(window, session, pane);
     return double(size.x) / double(size.y);
 }
 
@@ -34,6 +66,11 @@ double aspectOf(const Session& session, const std::string& pane, float scale) {
 double coveredShare(const vis::Camera& camera, const vis::WorldFrame& world, double aspect) {
     const glm::dvec2 extent = boxExtent(camera, world);
     return std::max(extent.y, extent.x / aspect);
+}
+
+void fitTo(Session& session, const std::string& pane, const vis::WorldFrame& world, double aspect) {
+    VolumeView* const view = volumeView(session, pane);
+    vis::fit(view && view->camera ? *view->camera : session.camera, world, aspect);
 }
 
 /// The camera of a volume view, or the one it shares.
@@ -49,27 +86,7 @@ WindowBars windowBars() {
 }
 
 ImVec2 sizeOf(const Session& session, const DockNode& part, float scale) {
-    DockTree tree = session.dock;
-    const WindowBars bars = windowBars();
-    const ImVec2 window = ImGui::GetMainViewport()->Size;
-    const ImVec2 whole{window.x, std::max(1.0f, window.y - bars.menu - bars.status)};
-    const LeastSizes least = [&session](const std::string& pane) {
-        const auto view = session.views.find(pane);
-        if (view == session.views.end()) return ImVec2{0, 0};
-        const ViewTraits& traits = traitsOf(view->second);
-        return ImVec2{traits.leastWidth, traits.leastHeight};
-    };
-    const auto rects = layoutDock(tree, {{0, 0}, whole}, scale, {}, least).rects;
-    ImVec2 lo{1e9f, 1e9f}, hi{-1e9f, -1e9f};
-    const std::function<void(const DockNode&)> add = [&](const DockNode& node) {
-        if (const auto rect = rects.find(node.id); rect != rects.end()) {
-            lo = {std::min(lo.x, rect->second.lo.x), std::min(lo.y, rect->second.lo.y)};
-            hi = {std::max(hi.x, rect->second.hi.x), std::max(hi.y, rect->second.hi.y)};
-        }
-        for (const DockNode& child : node.children) add(child);
-    };
-    add(part);
-    return hi.x > lo.x && hi.y > lo.y ? ImVec2{hi.x - lo.x, hi.y - lo.y} : whole;
+    return sizeIn(windowNow(scale), session, part);
 }
 
 glm::dvec2 boxExtent(const vis::Camera& camera, const vis::WorldFrame& world) {
@@ -86,26 +103,28 @@ glm::dvec2 boxExtent(const vis::Camera& camera, const vis::WorldFrame& world) {
 }
 
 bool seesWholeBox(const Session& session, const std::string& pane, const vis::WorldFrame& world, float scale) {
-    return coveredShare(cameraOf(session, pane), world, aspectOf(session, pane, scale)) <= kAlmost;
+    return coveredShare(cameraOf(session, pane), world, aspectOf(windowNow(scale), session, pane)) <= kAlmost;
 }
 
-void showWholeBox(Session& session, const volume::DatasetInfo& info, float scale) {
-    if (const ImVec2 window = ImGui::GetMainViewport()->Size; window.x <= 0 || window.y <= 0) return;
+void showWholeBox(Session& session, const volume::DatasetInfo& info, float scale, float next) {
+    Window window = windowNow(scale);
+    if (window.size.x <= 0 || window.size.y <= 0 || scale <= 0) return;
+    // Text and bars are still drawn at the old scale: the window is measured in what will be its pixels.
+    window.size = {window.size.x * scale / next, window.size.y * scale / next};
     const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
     for (const auto& [pane, view] : session.views) {
         if (std::holds_alternative<VolumeView>(view)) {
-            const double aspect = aspectOf(session, pane, scale);
-            if (coveredShare(cameraOf(session, pane), world, aspect) > 1) fitToPane(session, pane, world, scale);
+            const double aspect = aspectOf(window, session, pane);
+            if (coveredShare(cameraOf(session, pane), world, aspect) > 1) fitTo(session, pane, world, aspect);
         } else if (const auto* compare = std::get_if<CompareView>(&view); compare && compare->shows.empty()) {
-            const double aspect = comparedAspect(*compare, session, info, paneSize(session, pane, scale));
+            const double aspect = comparedAspect(*compare, session, info, paneSize(window, session, pane));
             if (coveredShare(session.camera, world, aspect) > 1) vis::fit(session.camera, world, aspect);
         }
     }
 }
 
 void fitToPane(Session& session, const std::string& pane, const vis::WorldFrame& world, float scale) {
-    VolumeView* const view = volumeView(session, pane);
-    vis::fit(view && view->camera ? *view->camera : session.camera, world, aspectOf(session, pane, scale));
+    fitTo(session, pane, world, aspectOf(windowNow(scale), session, pane));
 }
 
 } // namespace tessera::app

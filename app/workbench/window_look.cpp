@@ -5,7 +5,8 @@
 namespace tessera::app {
 
 bool WindowLook::prepare(float contentScale, const Appearance& appearance) {
-    const float scale = std::clamp(contentScale * appearance.scale, kLeastScale, kLargestScale);
+    contentScale_ = contentScale;
+    const float scale = scaleWith(appearance);
     const bool rebuilt = scale != scale_;
     if (rebuilt) {
         scale_ = scale;
@@ -18,6 +19,10 @@ bool WindowLook::prepare(float contentScale, const Appearance& appearance) {
         styled_ = true;
     }
     return rebuilt;
+}
+
+float WindowLook::scaleWith(const Appearance& appearance) const {
+    return std::clamp(contentScale_ * appearance.scale, kLeastScale, kLargestScale);
 }
 
 } // namespace tessera::app

@@ -12,10 +12,12 @@ public:
     const Fonts& fonts() const { return fonts_; }
     bool hasIcons() const { return fonts_.icons != nullptr; }
     float scale() const { return scale_; } ///< pixels per design pixel
+    /// The scale once these settings apply.
+    float scaleWith(const Appearance& appearance) const;
 
 private:
     Fonts fonts_;
-    float scale_ = 0;
+    float scale_ = 0, contentScale_ = 1;
     Theme theme_ = Theme::Dark;
     bool styled_ = false;
 };

@@ -153,7 +153,7 @@ void Workbench::recover(const Recovery& recovery) {
 void Workbench::install(Opened opened) {
     if (opened.firstView && opened.source && !options_.headless) {
         Session& session = opened.document.session;
-        showWholeBox(session, opened.source->info(), look_.scale());
+        showWholeBox(session, opened.source->info(), look_.scale(), look_.scaleWith(session.appearance));
         opened.document.history.reset(session);
     }
     const std::vector<std::string> said = std::move(opened.messages), warned = std::move(opened.warnings);

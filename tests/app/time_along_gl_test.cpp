@@ -244,6 +244,27 @@ TEST_F(TimeAlongWorkbench, TheBoxIsWholeInBothHalvesOfThePane) {
     EXPECT_EQ(workbench.session().camera, close);
 }
 
+// The bars of the window and the tabs grow with the scale, and the panes are left less room.
+TEST_F(TimeAlongWorkbench, AScaleThatALayoutBringsIsThatOfThePanesItIsFittedTo) {
+    const volume::DatasetInfo info = workbench.document().info();
+    const auto fitted = [&](Session next) {
+        next.camera.distance = 0.2f;
+        const WindowLook& look = workbench.look();
+        showWholeBox(next, info, look.scale(), look.scaleWith(next.appearance));
+        return next;
+    };
+    Session next = workbench.session();
+    next.appearance.scale = 2.5f;
+    const Session before = fitted(next);
+    EXPECT_GT(std::abs(before.camera.distance / fitted(workbench.session()).camera.distance - 1), 0.05)
+        << "the scale matters";
+    workbench.session() = before;
+    settle();
+    ASSERT_NEAR(workbench.look().scale(), 2.5f, 1e-6);
+    EXPECT_NEAR(before.camera.distance, fitted(before).camera.distance, 0.02f * before.camera.distance);
+    EXPECT_LE(coveredWidth(workbench, "volume"), 1.02);
+}
+
 TEST_F(TimeAlongWorkbench, TheDataInSpaceStandBesideAsTheyWere) {
     workbench.session().time = workbench.source()->info().times[1];
     const vis::Camera camera = workbench.session().camera;
