@@ -18,12 +18,13 @@ FileQuestions::FileQuestions(Jobs& jobs) : form_(jobs) {
         return preview;
     };
     dialog_.filesChosen = [this](const std::vector<std::string>& paths) { form_.filesChosen(paths); };
-    dialog_.options = [this] { form_.draw(); };
 }
 
-void FileQuestions::askData(std::function<void(const std::vector<std::string>&, const volume::ImportOptions&)> answer) {
+void FileQuestions::askData(const std::string& title,
+                            std::function<void(const std::vector<std::string>&, const volume::ImportOptions&)> answer) {
     answer_ = [this, answer = std::move(answer)](const auto& paths) { answer(paths, form_.stated()); };
-    dialog_.show(FileMode::Open, "Open", kData, dialog_.folder());
+    dialog_.options = [this] { form_.draw(); };
+    dialog_.show(FileMode::Open, title, kData, dialog_.folder());
 }
 
 bool FileQuestions::asksData() const {
@@ -33,6 +34,7 @@ bool FileQuestions::asksData() const {
 void FileQuestions::askOpen(const std::string& title, std::function<void(const std::vector<std::string>&)> answer,
                             const std::string& folder) {
     answer_ = std::move(answer);
+    dialog_.options = nullptr; // nothing can be stated of files that are not imported
     dialog_.show(FileMode::Open, title, "", folder.empty() ? dialog_.folder() : folder);
 }
 

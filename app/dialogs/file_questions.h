@@ -16,7 +16,8 @@ public:
 
     /// Asks for data or a session; the answer includes the import options.
     void
-    askData(std::function<void(const std::vector<std::string>& paths, const volume::ImportOptions& stated)> answer);
+    askData(const std::string& title,
+            std::function<void(const std::vector<std::string>& paths, const volume::ImportOptions& stated)> answer);
     bool asksData() const;
     /// Chooses files of one folder in the question that is shown.
     void choose(const std::vector<std::string>& paths) { dialog_.choose(paths); }

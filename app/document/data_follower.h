@@ -36,8 +36,8 @@ public:
     /// Opens data in place of those shown, keeping the session.
     void show(const DataRef& data, const std::string& title);
     /// Adds a second data set and the difference of a parameter to it, and opens a comparison of both by `openView`,
-    /// all in one step of the history. `openView` is called on the GUI thread.
-    void compareWith(const std::vector<std::string>& paths,
+    /// all in one step of the history. `stated`: what the files do not contain. `openView` is called on the GUI thread.
+    void compareWith(const std::vector<std::string>& paths, const volume::ImportOptions& stated,
                      std::function<void(Session& session, const CompareView& view)> openView);
     /// Removes the second data set with its differences and comparisons.
     void compareNoMore();

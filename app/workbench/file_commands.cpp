@@ -20,12 +20,13 @@ namespace fs = std::filesystem;
 namespace {
 
 void askWhatToOpen(Workbench& workbench) {
-    workbench.files().askData([&workbench](const std::vector<std::string>& paths, const volume::ImportOptions& stated) {
+    const auto open = [&workbench](const std::vector<std::string>& paths, const volume::ImportOptions& stated) {
         OpenRequest request;
         request.paths = paths;
         request.import = stated;
         workbench.open(std::move(request));
-    });
+    };
+    workbench.files().askData("Open", open);
 }
 
 /// Whether the dialog can show these as chosen: files of one folder.
@@ -44,8 +45,10 @@ void askPack(Workbench& workbench) {
 
 void askCompared(Workbench& workbench) {
     if (workbench.session().data.other) return workbench.data().compareNoMore();
-    workbench.files().askOpen(
-        "Compare with", [&workbench](const std::vector<std::string>& paths) { compareWithFiles(workbench, paths); });
+    const auto compare = [&workbench](const std::vector<std::string>& paths, const volume::ImportOptions& stated) {
+        compareWithFiles(workbench, paths, stated);
+    };
+    workbench.files().askData("Compare with", compare);
 }
 
 void askSurface(Workbench& workbench) {
@@ -115,8 +118,9 @@ void dropFiles(Workbench& workbench, const std::vector<std::string>& paths) {
     workbench.open(std::move(request));
 }
 
-void compareWithFiles(Workbench& workbench, const std::vector<std::string>& paths) {
-    workbench.data().compareWith(paths, [&workbench](Session& session, const CompareView& view) {
+void compareWithFiles(Workbench& workbench, const std::vector<std::string>& paths,
+                      const volume::ImportOptions& stated) {
+    workbench.data().compareWith(paths, stated, [&workbench](Session& session, const CompareView& view) {
         for (auto& [pane, each] : session.views)
             if (auto* const open = std::get_if<CompareView>(&each))
                 if (std::ranges::any_of(open->variants, showsOtherData)) {

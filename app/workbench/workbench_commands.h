@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/ui/commands.h"
+#include "volume/import/import_options.h"
 
 #include <string>
 #include <vector>
@@ -24,8 +25,10 @@ std::vector<Command> addingCommands(Workbench& workbench);
 std::vector<Command> sceneCommands(Workbench& workbench);
 std::vector<Command> helpCommands(Workbench& workbench);
 
-/// Shows the data beside those of other files, in the comparison that shows files or in a new one.
-void compareWithFiles(Workbench& workbench, const std::vector<std::string>& paths);
+/// Shows the data beside those of other files, of which the user states what they do not contain, in the comparison
+/// that shows files or in a new one.
+void compareWithFiles(Workbench& workbench, const std::vector<std::string>& paths,
+                      const volume::ImportOptions& stated = {});
 
 /// Opens files that were dropped on the window. If the dialog for opening is shown they are chosen in it, and it is
 /// shown for a raw file whose layout must be stated. Below other dialogs nothing is opened: they ask about what is

@@ -291,6 +291,23 @@ TEST_F(ComparedFiles, StandSideBySideAtOnceWithTheirDifference) {
     EXPECT_EQ(stackWith(root, "compare"), stackWith(root, "volume"));
 }
 
+TEST_F(ComparedFiles, AreReadAsTheUserStatesThem) {
+    volume::ImportOptions stated;
+    stated.lengthUnit = "mm";
+    compareWithFiles(workbench, {(folder / "other.raw").string()}, stated);
+    settle();
+    ASSERT_TRUE(workbench.session().data.other);
+    EXPECT_EQ(workbench.session().data.other->import.lengthUnit, "mm");
+    const auto& said = workbench.messages().list();
+    EXPECT_EQ(std::ranges::count_if(said,
+                                    [](const auto& message) {
+                                        return message.text.find("other.raw is shown beside it, on the same grid, "
+                                                                 "lengths of ramp taken in mm, as its file states no "
+                                                                 "unit of length") != std::string::npos;
+                                    }),
+              1);
+}
+
 // With what was edited meanwhile; the files that are open are as they were.
 TEST_F(ComparedFiles, AreOneStepBackAndForth) {
     compare();
