@@ -6,6 +6,7 @@
 #include "codec/remote/address.h"
 #include "volume/base/csv_text.h"
 #include "volume/base/error.h"
+#include "volume/derived/other_source.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +24,20 @@ Session withOptionalData(Session session) {
     return session;
 }
 
+/// Views that know no layers show a parameter of the other data by its own function: where a layer of them has that of
+/// the first data, they have it too, as it is now.
+void followSharedFunctions(Session& session) {
+    for (const vis::Layer& layer : session.layers) {
+        const std::string channel = std::visit([](const auto& own) { return own.channel; }, layer.technique);
+        std::string plain = channel; // "T" of "T (other)", "|U|" of "|U (other)|"
+        const auto suffix = plain.find(volume::kOtherSuffix);
+        if (suffix != std::string::npos) plain.erase(suffix, volume::kOtherSuffix.size());
+        if (suffix == std::string::npos || plain != layer.transfer) continue;
+        if (const auto shared = session.transfer.find(layer.transfer); shared != session.transfer.end())
+            session.transfer[channel] = shared->second;
+    }
+}
+
 } // namespace
 
 Session variantSession(const Session& session, const CompareVariant& variant) {
@@ -36,6 +51,7 @@ Session variantSession(const Session& session, const CompareVariant& variant) {
     std::vector<JsonIssue> unknown;
     Session out = sessionFromJson(document, {}, &unknown);
     if (!unknown.empty()) throw Error("unknown key", {}, unknown.front().path);
+    followSharedFunctions(out);
     return out;
 }
 

@@ -83,6 +83,24 @@ TEST(CompareFiles, TheDifferenceIsThatOfTheFirstLayer) {
     EXPECT_EQ(offers.front().offers.front().variants.size(), 2u);
 }
 
+// Slices and plots know no layers: they show a parameter by the function of its name.
+TEST(CompareFiles, ViewsWithoutLayersFollowTheFunctionOfTheFirst) {
+    Session session = twoFilesSession();
+    const volume::DatasetInfo info = twoFiles();
+    showOtherDifference(session, info, "T");
+    const auto variants = fileVariants(session, info);
+    session.transfer["T"].colormap = "inferno";
+    session.transfer["T"].range = {2, 3};
+    const Session other = variantSession(session, variants[1]);
+    EXPECT_TRUE(other.transfer.at("T (other)") == session.transfer.at("T"));
+    const Session first = variantSession(session, variants[0]);
+    EXPECT_EQ(first.transfer.at("T").colormap, "inferno");
+    // One of its own is its own.
+    session.layers[0].transfer = session.layers[1].transfer = "mine";
+    const Session own = variantSession(session, fileVariants(session, info)[1]);
+    EXPECT_NE(own.transfer.at("T (other)").colormap, "inferno");
+}
+
 TEST(CompareFiles, WhatIsShownOfTheFirstKeepsItsValues) {
     Session session = twoFilesSession();
     const volume::DatasetInfo info = twoFiles();
