@@ -127,6 +127,7 @@ void print(const std::vector<DiffRow>& rows, const DiffRequest& request, const s
     std::printf("%s minus %s, %s, over all times\n", request.first.c_str(), request.second.c_str(), how.c_str());
     std::printf("  %-16s %-8s %12s %12s %12s %12s %10s %10s\n", "parameter", "unit", "min", "mean", "RMS", "max",
                 "samples", "in one");
+    bool equal = true;
     for (std::size_t i = 0; i < rows.size();) {
         DiffRow all = rows[i];
         for (++i; i < rows.size() && rows[i].channel == all.channel; ++i) all.add(rows[i]);
@@ -134,7 +135,9 @@ void print(const std::vector<DiffRow>& rows, const DiffRequest& request, const s
         std::printf("  %-16s %-8s %12s %12s %12s %12s %10zu %10zu\n", all.channel.name.c_str(),
                     all.channel.unit.c_str(), number(all.least).c_str(), number(all.mean()).c_str(),
                     number(all.rms()).c_str(), number(all.most).c_str(), all.samples, all.alone);
+        equal = equal && all.samples > 0 && all.alone == 0 && all.least == 0 && all.most == 0;
     }
+    if (equal) std::printf("  no sample differs\n");
 }
 
 std::string csv(const std::vector<DiffRow>& rows, const volume::DatasetInfo& info, const NumberOrigin& origin) {

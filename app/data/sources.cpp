@@ -260,6 +260,9 @@ Sources openSources(const DataRef& data, std::vector<std::string>& messages, con
     const double stored = data.derived.empty() ? 1 : 0.7;
     Sources sources = openStored(data, messages, progress.part(0, stored));
     sources = deriveBoth(sources, data.derived, messages, progress.part(stored, 1));
+    for (const volume::DerivedParameter& derived : data.derived)
+        if (const std::string text = equalText(data, sources.numbers->info(), derived.name); !text.empty())
+            messages.push_back(text);
     progress.advance(1);
     return sources;
 }
@@ -282,9 +285,8 @@ ComparedData openCompared(DataRef& data, const Session& session, std::vector<std
     }
     const volume::DatasetInfo& all = made.sources.numbers->info();
     if (const auto channel = all.findChannel(difference)) {
-        const Range range = all.channelRange(all.channel(*channel));
-        messages.push_back(range.lo == 0 && range.hi == 0 ? made.channel + " is the same in both files"
-                                                          : "New parameter: " + difference);
+        const std::string equal = equalText(data, all, all.channel(*channel).name);
+        messages.push_back(equal.empty() ? "New parameter: " + difference : equal);
     }
     return made;
 }

@@ -2,6 +2,7 @@
 
 #include "app/described/describe_json.h"
 #include "app/session/session_json.h"
+#include "volume/derived/derived.h"
 #include "volume/derived/other_source.h"
 
 #include <algorithm>
@@ -174,6 +175,30 @@ std::vector<CompareVariant> fileVariants(const Session& session, const volume::D
         variants.push_back({.name = own + " minus " + other, .changes = {{"/layers", toJson(shown)["layers"].dump()}}});
     }
     return variants;
+}
+
+std::string equalText(const DataRef& data, const volume::DatasetInfo& info, const std::string& channel) {
+    const auto found = info.findChannel(channel);
+    if (!found) return {};
+    const volume::Channel own = info.channel(*found);
+    const std::string& name = info.parameters[std::size_t(own.parameter)].name;
+    const bool isDifference = std::ranges::any_of(data.derived, [&](const volume::DerivedParameter& derived) {
+        return derived.name == name && std::holds_alternative<volume::DifferenceRecipe>(derived.recipe);
+    });
+    if (!isDifference || !(info.channelRange(own) == Range{0, 0})) return {};
+    return channel + (volume::zeroIsOfAllSamples(info) ? " is 0 everywhere: nothing differs"
+                                                       : " is 0 wherever it was looked at: nothing seems to differ");
+}
+
+std::string equalText(const Session& session, const volume::DatasetInfo& info) {
+    std::string all;
+    for (const vis::Layer& layer : session.layers) {
+        if (!layer.visible) continue;
+        const std::string text = equalText(session.data, info, channelOf(layer.technique));
+        if (text.empty()) return {};
+        if (all.empty()) all = text;
+    }
+    return all;
 }
 
 bool showsOtherData(const CompareVariant& variant) {

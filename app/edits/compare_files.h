@@ -29,6 +29,12 @@ void showOtherDifference(Session& session, const volume::DatasetInfo& info, cons
 /// compared channel, where it has been derived. None without other data.
 std::vector<CompareVariant> fileVariants(const Session& session, const volume::DatasetInfo& info);
 
+/// "T minus other is 0 everywhere: nothing differs" where a derived difference is that, "" for other channels.
+std::string equalText(const DataRef& data, const volume::DatasetInfo& info, const std::string& channel);
+
+/// The same where all that the visible layers of a session show is such a difference: there is nothing to see.
+std::string equalText(const Session& session, const volume::DatasetInfo& info);
+
 /// Whether a variant shows something of the other data.
 bool showsOtherData(const CompareVariant& variant);
 

@@ -101,6 +101,28 @@ TEST(CompareFiles, ViewsWithoutLayersFollowTheFunctionOfTheFirst) {
     EXPECT_NE(own.transfer.at("T (other)").colormap, "inferno");
 }
 
+TEST(CompareFiles, ADifferenceThatIsNothingSaysSo) {
+    Session session = twoFilesSession();
+    volume::DatasetInfo info = twoFiles();
+    showOtherDifference(session, info, "T");
+    volume::Parameter difference = info.parameters.back();
+    difference.name = "T minus other";
+    difference.ranges = {{0, 0}};
+    info.parameters.push_back(difference);
+    EXPECT_EQ(equalText(session.data, info, "T minus other"), "T minus other is 0 everywhere: nothing differs");
+    EXPECT_EQ(equalText(session, info), "") << "T is shown";
+    session.layers = {{"", true, vis::VolumeLayer{.channel = "T minus other"}},
+                      {"", false, vis::VolumeLayer{.channel = "T"}}};
+    EXPECT_EQ(equalText(session, info), "T minus other is 0 everywhere: nothing differs");
+    info.parameters.back().ranges = {{-1, 0}};
+    EXPECT_EQ(equalText(session, info), "");
+    info.parameters[2].ranges = {{0, 0}};
+    EXPECT_EQ(equalText(session.data, info, "T"), "") << "a value, no difference";
+    info.parameters.back().ranges = {{0, 0}};
+    info.remote = true;
+    EXPECT_THAT(equalText(session, info), testing::HasSubstr("wherever it was looked at"));
+}
+
 TEST(CompareFiles, WhatIsShownOfTheFirstKeepsItsValues) {
     Session session = twoFilesSession();
     const volume::DatasetInfo info = twoFiles();

@@ -44,6 +44,9 @@ compare --with other.tsr -o late.png --csv late.csv --time 0.03 || die "compare 
 cmp -s late.csv both.csv && die "another time changes nothing"
 compare -o bad.png --time 7 && die "a time that is not there passes"
 grep -q -- '--time: 7: is not in' err || die "a wrong time is not said: $(cat err)"
+# What is the same says so.
+compare --with cell.tsr -o equal.png || die "compare with itself: $(cat err)"
+grep -q 'is 0 everywhere: nothing differs' err || die "equal files do not say so: $(cat err)"
 compare --with missing.tsr -o bad.png && die "a file that is not there passes"
 [ -e bad.png ] && die "a failed comparison left a picture"
 

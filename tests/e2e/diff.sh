@@ -31,6 +31,7 @@ check "what it holds" 0 "$tessera" info field.tsr
 say "T minus other" out.txt
 check "a file and itself" 0 "$tessera" diff fine.raw fine.raw
 say "on the same grid" out.txt
+say "no sample differs" out.txt
 check "nothing in common" 2 "$tessera" diff coarse.raw a.vti
 check "an unknown parameter" 2 "$tessera" diff coarse.raw fine.raw -p nothing
 say "nothing" err.txt

@@ -17,6 +17,10 @@ namespace {
 
 constexpr double kRangeSamples = 3e6; // samples read to find a range, over all times
 
+bool isZero(Range range) {
+    return range.lo == 0 && range.hi == 0;
+}
+
 class DerivedSource final : public BrickSource {
 public:
     /// `known`: the ranges; empty: compute them.
@@ -78,6 +82,16 @@ private:
         if (std::holds_alternative<TimeRecipe>(derived_.recipe)) return {{info_.times.front(), info_.times.back()}};
         const BrickGrid& bricks = grid();
         const int level = bricks.levelWithin(kRangeSamples / double(info_.times.size()));
+        const std::vector<Range> coarse = scanLevel(channels, level, level > 0 ? progress.part(0, 0.3) : progress);
+        // Where nothing seems to differ, that is said: all samples are asked.
+        const bool isDifference = std::holds_alternative<DifferenceRecipe>(derived_.recipe);
+        if (level > 0 && isDifference && std::ranges::all_of(coarse, isZero) && zeroIsOfAllSamples(info_))
+            return scanLevel(channels, 0, progress.part(0.3, 1));
+        return coarse;
+    }
+
+    std::vector<Range> scanLevel(int channels, int level, const Progress& progress) const {
+        const BrickGrid& bricks = grid();
         std::vector<Range> ranges(std::size_t(channels),
                                   {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
         const std::size_t count = bricks.brickCount(), total = count * info_.times.size();
@@ -113,6 +127,11 @@ private:
 };
 
 } // namespace
+
+bool zeroIsOfAllSamples(const DatasetInfo& info) {
+    constexpr double kMost = 2.5e8; // samples over all times
+    return !info.remote && double(info.lattice.count()) * double(info.times.size()) <= kMost;
+}
 
 std::shared_ptr<const BrickSource> derive(std::shared_ptr<const BrickSource> source, const DerivedParameter& parameter,
                                           const Progress& progress) {

@@ -18,6 +18,10 @@ namespace tessera::volume {
 std::shared_ptr<const BrickSource> derive(std::shared_ptr<const BrickSource> source, const DerivedParameter& parameter,
                                           const Progress& progress = {});
 
+/// Whether a difference with a range of 0 to 0 is 0 at every sample of the data; else, where these are very many or far
+/// away, at those of a coarse level.
+bool zeroIsOfAllSamples(const DatasetInfo& info);
+
 /// Adds several derived parameters, each of which may use those before it; invalid ones are skipped with a message.
 std::shared_ptr<const BrickSource> deriveAll(std::shared_ptr<const BrickSource> source,
                                              const std::vector<DerivedParameter>& parameters,

@@ -1,5 +1,6 @@
 #include "app/views/compare/compare_view.h"
 
+#include "app/edits/compare_files.h"
 #include "app/pane/axes3d.h"
 #include "app/pane/figure.h"
 #include "app/pane/view_parts.h"
@@ -85,12 +86,14 @@ bool picture(const Frame& frame, std::size_t index, const PictureBox& box, bool 
     return moving;
 }
 
-/// A cell's picture, or why there is none.
+/// A cell's picture, or why there is none or nothing in it.
 void drawCell(const Frame& frame, std::size_t index, const PictureBox& box) {
     const CompareCell& cell = *frame.cache.pictures.cells()[index];
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    if (cell.drawn) return addPicture(draw, cell.status.texture, box.min, box.max());
-    const std::string text = cell.failure.empty() ? "Opening the data" : cell.failure;
+    if (cell.drawn) addPicture(draw, cell.status.texture, box.min, box.max());
+    std::string text = cell.failure.empty() ? "Opening the data" : cell.failure;
+    if (cell.drawn) text = equalText(cell.session, cell.source(frame.context)->info());
+    if (text.empty()) return;
     addFittedWithBackdrop(draw, {box.min.x + box.size.x / 2, box.min.y + box.size.y / 2}, {0.5f, 0.5f},
                           plotColors().faint, text, box.size.x - em());
 }
@@ -125,7 +128,9 @@ void drawGrid(const Frame& frame, const std::vector<PictureBox>& boxes, bool dif
 /// What is shown, then RMS and largest difference of the samples as far as they are known.
 std::vector<std::string> valuesText(const CompareCell& cell) {
     std::vector<std::string> lines{"minus reference, on the planes through the cross-hair"};
-    if (cell.samples && cell.samples->samples > 0)
+    if (cell.samples && cell.samples->samples > 0 && cell.samples->largest == 0)
+        lines.push_back("all samples drawn are equal");
+    else if (cell.samples && cell.samples->samples > 0)
         lines.push_back("all samples drawn: RMS " + formatQuantity(cell.samples->rms, cell.values.unit()) +
                         ", maximum " + formatQuantity(cell.samples->largest, cell.values.unit()));
     return lines;

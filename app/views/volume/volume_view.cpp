@@ -1,3 +1,4 @@
+#include "app/edits/compare_files.h"
 #include "app/pane/axes3d.h"
 #include "app/pane/corner_legends.h"
 #include "app/pane/scale_bar.h"
@@ -160,6 +161,7 @@ public:
         if (hasTriad_ && shown_.gizmo) drawTriadAt(labels);
         if (view_.showScaleBar && shown_.scaleBar && !timeAxisOf(session_, info_)) drawBar();
         if (shown_.title) drawTexts();
+        drawCentred(equalText(session_, info_));
         if (!status.complete && !context_.headless && !request.moving) drawProgress(status);
         if (view_.showAxes && shown_.axes) drawAxes3d(*list_, space, session_.camera, labels, taken_);
         list_->PopClipRect();
@@ -299,6 +301,13 @@ private:
             text += ", " + formatCount(status.bricksMissing) + (status.bricksMissing == 1 ? " brick" : " bricks") +
                     " still loading";
         drawUpperLeft(text, plotColors().faint);
+    }
+
+    /// In place of a picture that shows nothing.
+    void drawCentred(const std::string& text) {
+        if (text.empty()) return;
+        addFittedWithBackdrop(*list_, {picture_.min.x + picture_.size.x / 2, picture_.min.y + picture_.size.y / 2},
+                              {0.5f, 0.5f}, plotColors().text, text, picture_.size.x - em());
     }
 
     void drawUpperLeft(const std::string& text, ImU32 color) {
