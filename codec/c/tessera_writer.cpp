@@ -137,7 +137,7 @@ std::unique_ptr<tessera_writer> opened(const char* path, const tessera_grid* gri
     volume::DatasetInfo& info = writer->info;
     info.lattice = latticeOf(*grid, path);
     info.bounds = {info.lattice.origin, info.lattice.position(info.lattice.size - 1)};
-    info.lengthUnit = textOr(grid->length_unit, "m");
+    info.lengthUnit = textOr(grid->length_unit, "");
     info.timeUnit = textOr(grid->time_unit, "s");
     info.name = textOr(grid->name, "");
     if (info.name.empty()) info.name = std::filesystem::path(path).stem().string();

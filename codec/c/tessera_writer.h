@@ -41,7 +41,7 @@ typedef struct {
     int size[3];             /* number of samples along x, y and z */
     double spacing[3];       /* between samples, in length_unit */
     double origin[3];        /* position of the first sample */
-    const char* length_unit; /* NULL: "m" */
+    const char* length_unit; /* of spacing and origin, such as "m"; NULL: not stated */
     const char* time_unit;   /* NULL: "s" */
     const char* name;        /* of the data; NULL: the name of the file */
     int lattice;             /* TESSERA_CC or TESSERA_BCC */

@@ -129,6 +129,8 @@ class Writing(unittest.TestCase):
         back = tessera.open("w.tsr")
         self.assertEqual(list(back.times), [0.5, 2])
         self.assertEqual((back["T"].unit, back.length_unit, back.name, back.lossless), ("K", "mm", "made", True))
+        tessera.write("plain.tsr", {"T": self.T})
+        self.assertEqual(tessera.open("plain.tsr").length_unit, "")  # not stated
         self.assertEqual(list(back.quantities["voltage"]), [0.7, 0.5])
         self.assertEqual(back.quantity_units["voltage"], "V")
         self.assertEqual(back["region"].labels, {1: "air", 2: "fuel"})

@@ -8,6 +8,7 @@ times=40
 
 check "wrong arguments" 0 "$solver" arguments wrong.tsr
 check "after them" 0 "$tessera" verify wrong.tsr
+say '"lengthUnit": ""' <("$tessera" info wrong.tsr --json) # the solver states none there
 [ "$(ls wrong.tsr*)" = wrong.tsr ] || fail "parts are left: $(ls wrong.tsr*)"
 
 samples() { # samples ARCHIVE TIMES BOUND: intact, and each sample what solver.c computes, within so much of its range

@@ -169,14 +169,14 @@ def open(path):
 
 
 def write(path, parameters, times=None, spacing=(1, 1, 1), origin=(0, 0, 0), *, units=None, labels=None, name="",
-          length_unit="m", time_name="time", time_unit="s", quantities=None, lattice="cc", max_error=0, **options):
+          length_unit="", time_name="time", time_unit="s", quantities=None, lattice="cc", max_error=0, **options):
     """Packs arrays into an archive.
 
     parameters: arrays by name, [z, y, x] or [time, z, y, x], vectors with a last axis of 3; uint8, int16, uint16, int32
         or float32 (float64 is rounded to float32). Masked and NaN samples are absent. Without `times`, or with one, an
         array of four axes whose last has 3 members is a vector at one time.
     times: one number for each time, rising; by default 0, 1, ...
-    spacing, origin: (x, y, z) in length_unit.
+    spacing, origin: (x, y, z) in length_unit ("": not stated).
     units: by parameter. labels: {parameter: {value: name}} makes a parameter of integers a label.
     quantities: {name: (unit, values over times)}.
     lattice: "cc" keeps every sample, "bcc" resamples to 70.7 % of them, "d4" to 50 % in space and time.

@@ -38,7 +38,7 @@ class TesseraBackend(BackendEntrypoint):
     def open_dataset(self, filename_or_obj, *, drop_variables=None):
         archive = tessera.open(filename_or_obj)
         x, y, z = archive.coordinates()
-        length = {"units": archive.length_unit}
+        length = {"units": archive.length_unit} if archive.length_unit else {}
         coordinates = {"x": ("x", x, length), "y": ("y", y, length), "z": ("z", z, length),
                        "time": ("time", archive.times, {"long_name": archive.time_name})}
         if archive.time_unit and archive.time_name != "time":
