@@ -2,6 +2,7 @@
 
 #include "app/data/boundary_value.h"
 #include "app/data/coarse_samples.h"
+#include "app/session/own_functions.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -39,10 +40,7 @@ std::optional<FunctionOfLayer> functionOfLayer(const Session& session, const vol
                                                std::size_t layer) {
     if (layer >= session.layers.size()) return std::nullopt;
     const vis::Layer& of = session.layers[layer];
-    const auto* surface = std::get_if<vis::IsoLayer>(&of.technique);
-    const std::string name = surface && !surface->colorBy.empty()
-                                 ? surface->colorBy
-                                 : std::visit([](const auto& own) { return own.channel; }, of.technique);
+    const std::string& name = channelOfFunction(of.technique);
     const auto channel = info.findChannel(name);
     if (!channel) return std::nullopt;
     return FunctionOfLayer{of.transfer.empty() ? name : of.transfer, *channel};

@@ -1,3 +1,4 @@
+#include "app/session/own_functions.h"
 #include "app/session/session.h"
 #include "app/session/shown_scene.h"
 
@@ -34,13 +35,9 @@ public:
     }
 
     void views() {
-        const auto owned = [&](const std::string& name) { // by a layer alone
-            return !name.empty() && std::ranges::any_of(layerLists(session_), [&](const auto* layers) {
-                return std::ranges::any_of(*layers, [&](const vis::Layer& layer) { return layer.transfer == name; });
-            });
-        };
         for (auto& [key, view] : session_.views) {
-            if (const auto* transfer = std::get_if<TransferView>(&view); transfer && owned(transfer->channel)) continue;
+            const auto* transfer = std::get_if<TransferView>(&view);
+            if (transfer && ownFunction(session_, transfer->channel)) continue; // shows that of a layer or face alone
             std::visit([&](auto& each) { fitNames(each); }, view);
             if (auto* plots = std::get_if<ScatterMatrixView>(&view); plots && plots->enlarged.size() != 2)
                 plots->enlarged.clear();

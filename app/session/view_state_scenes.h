@@ -6,6 +6,7 @@
 #include "vis/scene/layers.h"
 #include "volume/base/describe.h"
 
+#include <array>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -93,6 +94,7 @@ inline constexpr std::string_view kWallKindNames[] = {"slice", "mean", "maximum"
 struct Wall {
     std::string channel = {}; ///< "" = the channel of the first layer
     WallKind kind = WallKind::Mean;
+    std::string transfer = {}; ///< name of its own transfer function; "": that of its channel
     bool operator==(const Wall&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
@@ -101,6 +103,10 @@ struct Wall {
                                    .doc = "Projection along the axis: slice at the cross-hair, mean, maximum, "
                                           "absorption by the transfer function, or shadow of the selection",
                                    .names = kWallKindNames});
+        visit(self.transfer,
+              FieldInfo{.key = "transfer",
+                        .unit = "",
+                        .doc = "Name of the transfer function of this face alone; empty: that of its parameter"});
     }
 };
 
@@ -115,6 +121,10 @@ struct ShadowCubeView {
     glm::quat orientation{1, 0, 0, 0};
     bool brushing = false;
     bool operator==(const ShadowCubeView&) const = default;
+    /// Its faces, in this order.
+    static auto walls(auto& self) {
+        return std::array{&self.left, &self.right, &self.bottom, &self.top, &self.back, &self.front};
+    }
     static void describe(auto& self, auto&& visit) {
         visit(self.left, FieldInfo{.key = "left", .unit = "", .doc = "Face at the lower end of x"});
         visit(self.right, FieldInfo{.key = "right", .unit = "", .doc = "Face at the upper end of x"});

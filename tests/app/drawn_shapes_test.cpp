@@ -252,8 +252,8 @@ TEST(WallScene, HasTheWallAlone) {
     scene.lenses.resize(1);
     for (const WallKind kind : {WallKind::Mean, WallKind::Maximum, WallKind::Shadow, WallKind::Slice})
         for (const CubeFace& face : kCubeFaces) {
-            const vis::Scene wall =
-                wallScene(scene, "T", kind, face, vis::worldFrame({glm::dvec3(0), {2, 1, 1}}, glm::dvec3(1)), {});
+            const vis::Scene wall = wallScene(scene, "T", {.kind = kind}, face,
+                                              vis::worldFrame({glm::dvec3(0), {2, 1, 1}}, glm::dvec3(1)), {});
             EXPECT_FALSE(wall.showBox);
             EXPECT_FALSE(wall.showGround);
             EXPECT_EQ(wall.layers.size(), 1u);

@@ -275,17 +275,18 @@ TEST(Scenarios, WallsReadTheMaximumAndTheMeanBehindThem) {
     };
     for (const double z : {0.004, 0.0115, 0.012, 0.022, 0.03}) {
         const glm::dvec3 at{1.1e-3, 0, z};
-        const auto read = readWall(*task.source, session, heat, WallKind::Maximum, bottom, at, time);
+        const auto read = readWall(*task.source, session, heat, {.kind = WallKind::Maximum}, bottom, at, time);
         // It looks at quarters of cells: of the peak of the hot spot it may miss a part.
         EXPECT_LE(read.value(), highest(at) + 1e-3) << z;
         EXPECT_GE(read.value(), highest(at) - 0.05 - 0.15 * (highest(at) - task.range("T").lo)) << z;
     }
     const auto wall = [&](double z) {
-        return readWall(*task.source, session, heat, WallKind::Maximum, bottom, {1.1e-3, 0, z}, time).value();
+        return readWall(*task.source, session, heat, {.kind = WallKind::Maximum}, bottom, {1.1e-3, 0, z}, time).value();
     };
     EXPECT_GT(wall(planted::kHotSpot.z), wall(0.03) + 6) << "the hot spot shows on the wall";
     const auto oxygen = [&](double z) {
-        return readWall(*task.source, session, task.channel("O2"), WallKind::Mean, kCubeFaces[0], {0, 1e-3, z}, time)
+        return readWall(*task.source, session, task.channel("O2"), {.kind = WallKind::Mean}, kCubeFaces[0],
+                        {0, 1e-3, z}, time)
             .value();
     };
     EXPECT_LT(oxygen(0.026), 0.8 * oxygen(0.02)) << "the flooded box shows on the wall";

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <gtest/gtest.h>
 
 /// What the faces of the shadow cube show and read, on a small grid whose sums are known.
@@ -39,11 +40,13 @@ protected:
         }
         return sum / (kEdge - 1);
     }
+    void expectMeans(const Wall& wall, const std::function<double(double)>& place);
     std::shared_ptr<vis::FunctionSource> source;
     Session session;
 };
 
-TEST_F(ShadowCube, MeanOfAFaceIsTheSumOverTheGrid) {
+/// Draws every face with a mean over the grid, and compares its grey with `place`, of a mean in its function.
+void ShadowCube::expectMeans(const Wall& wall, const std::function<double(double)>& place) {
     const vis::HeadlessContext context;
     vis::RendererOptions options;
     options.exactTextures = true;
@@ -51,7 +54,7 @@ TEST_F(ShadowCube, MeanOfAFaceIsTheSumOverTheGrid) {
     renderer.setSource(source);
     const vis::WorldFrame world = vis::worldFrame(info().bounds, glm::dvec3(1));
     for (const CubeFace& face : kCubeFaces) {
-        vis::Scene scene = wallScene(sceneOf(session), "v", WallKind::Mean, face, world, glm::vec3(0));
+        vis::Scene scene = wallScene(sceneOf(session), "v", wall, face, world, glm::vec3(0));
         scene.render.filter = vis::Filter::Average;
         const vis::ViewTargetPtr target = renderer.makeTarget();
         vis::FrameRequest request;
@@ -67,10 +70,26 @@ TEST_F(ShadowCube, MeanOfAFaceIsTheSumOverTheGrid) {
                                         4;
                 const glm::vec4 pixel = picture[std::size_t(y * (kEdge - 1) + x)];
                 EXPECT_NEAR(pixel.a, 1, 1e-5);
-                const double place = vis::srgbFromLinear(double(pixel.g)); // the map is grey, from 0 to 1
-                EXPECT_NEAR(-1 + 6 * place, expected, 0.01) << face.axis << ' ' << x << ' ' << y;
+                // The maps are grey, from 0 to 1.
+                EXPECT_NEAR(vis::srgbFromLinear(double(pixel.g)), place(expected), 0.01 / 6)
+                    << face.axis << ' ' << x << ' ' << y;
             }
     }
+}
+
+TEST_F(ShadowCube, MeanOfAFaceIsTheSumOverTheGrid) {
+    expectMeans({.kind = WallKind::Mean}, [](double mean) { return (mean + 1) / 6; });
+}
+
+TEST_F(ShadowCube, AFaceHasTheColoursOfItsOwnFunction) {
+    vis::TransferFunction& own = session.transfer["means"];
+    own.colormap = "gray";
+    own.reversed = true;
+    own.autoRange = false;
+    own.range = {1.5, 3.5}; // means vary less than values
+    expectMeans({.kind = WallKind::Mean, .transfer = "means"},
+                [](double mean) { return 1 - std::clamp((mean - 1.5) / 2, 0.0, 1.0); });
+    expectMeans({.kind = WallKind::Mean}, [](double mean) { return (mean + 1) / 6; }); // others keep the parameter's
 }
 
 TEST_F(ShadowCube, FacesReadWhatTheyShow) {
@@ -79,7 +98,7 @@ TEST_F(ShadowCube, FacesReadWhatTheyShow) {
             glm::dvec3 at(0);
             at[face.right()] = i, at[face.up()] = 2;
             const auto read = [&](WallKind kind) {
-                return readWall(*source, session, 0, kind, face, at, 0).value_or(-99);
+                return readWall(*source, session, 0, {.kind = kind}, face, at, 0).value_or(-99);
             };
             EXPECT_NEAR(read(WallKind::Mean), column(face.axis, i, 2), 1e-5);
             glm::dvec3 p = at;
@@ -97,8 +116,13 @@ TEST_F(ShadowCube, FacesReadWhatTheyShow) {
         }
     session.transfer["v"].opacity = {{0, 0.3f}, {1, 0.3f}};
     const vis::WorldFrame world = vis::worldFrame(info().bounds, glm::dvec3(1));
-    const double absorbed = readWall(*source, session, 0, WallKind::XRay, kCubeFaces[0], {4, 4, 4}, 0).value_or(-1);
+    const double absorbed =
+        readWall(*source, session, 0, {.kind = WallKind::XRay}, kCubeFaces[0], {4, 4, 4}, 0).value_or(-1);
     EXPECT_NEAR(absorbed, vis::correctedOpacity(double(0.3f), 2 * world.halfSize.x, 1), 1e-9);
+    session.transfer["thick"].opacity = {{0, 0.8f}, {1, 0.8f}};
+    const Wall own{.kind = WallKind::XRay, .transfer = "thick"};
+    EXPECT_NEAR(readWall(*source, session, 0, own, kCubeFaces[0], {4, 4, 4}, 0).value_or(-1),
+                vis::correctedOpacity(double(0.8f), 2 * world.halfSize.x, 1), 1e-9);
 }
 
 TEST_F(ShadowCube, BrushSelectsThePrismBehindTheFace) {
@@ -117,8 +141,8 @@ TEST_F(ShadowCube, BrushSelectsThePrismBehindTheFace) {
                     EXPECT_EQ(interest({}, {x, y, z}), x > 1 && x < 4 && z > 2 && z < 6 ? 1 : 0) << x << y << z;
                 }
             }
-    EXPECT_EQ(readWall(*source, session, 0, WallKind::Shadow, face, {3, 0, 4}, 0), 1);
-    EXPECT_EQ(readWall(*source, session, 0, WallKind::Shadow, face, {7, 0, 4}, 0), 0);
+    EXPECT_EQ(readWall(*source, session, 0, {.kind = WallKind::Shadow}, face, {3, 0, 4}, 0), 1);
+    EXPECT_EQ(readWall(*source, session, 0, {.kind = WallKind::Shadow}, face, {7, 0, 4}, 0), 0);
 }
 
 TEST_F(ShadowCube, OnlyFacesBehindTheObjectAreSeen) {

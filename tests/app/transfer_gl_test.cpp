@@ -1,5 +1,6 @@
 #include "app/pane/view_parts.h"
 #include "app/queries/derivative_query.h"
+#include "app/session/own_functions.h"
 #include "app/ui/theme.h"
 #include "app/views/transfer/color_edit.h"
 #include "app/views/transfer/transfer_controls.h"
@@ -78,16 +79,22 @@ TEST(ColorEdit, OwnColorsBeginAsTheMapThatWasInUse) {
     EXPECT_EQ(ownColors(gray).size(), 2u) << "as few as do";
 }
 
-TEST(FunctionName, IsTheOwnOneOfALayerThatHasIt) {
+TEST(FunctionName, IsTheOwnOneOfALayerOrFaceThatHasIt) {
     Session session;
     session.layers = {{"a", true, vis::VolumeLayer{.channel = "T"}},
                       {"b", true, vis::VolumeLayer{.channel = "T"}, "", "own"}};
     EXPECT_EQ(functionName(session, {.channel = "own"}, "T"), "own");
-    EXPECT_EQ(layerOfFunction(session, "own"), &session.layers[1]);
+    EXPECT_EQ(ownFunction(session, "own")->channel, "T");
     EXPECT_EQ(functionName(session, {.channel = "O2"}, "T"), "T") << "a channel, or nothing that is there";
     EXPECT_EQ(functionName(session, {}, "T"), "T");
-    EXPECT_EQ(layerOfFunction(session, "O2"), nullptr);
-    EXPECT_EQ(layerOfFunction(session, ""), nullptr);
+    EXPECT_FALSE(ownFunction(session, "O2"));
+    EXPECT_FALSE(ownFunction(session, ""));
+    ShadowCubeView cube;
+    cube.front = {.channel = "O2", .transfer = "far"};
+    session.views["cube"] = cube;
+    EXPECT_EQ(functionName(session, {.channel = "far"}, "T"), "far");
+    EXPECT_EQ(ownFunction(session, "far")->channel, "O2");
+    EXPECT_EQ(ownFunctions(session).size(), 2u);
 }
 
 /// The transfer function view in a window of its own, without a window system.

@@ -1,27 +1,18 @@
 #include "app/data/first_view.h"
 #include "app/pane/view_parts.h"
-#include "app/session/shown_scene.h"
+#include "app/session/own_functions.h"
 #include "app/tools/lens_list.h"
 #include "app/ui/parameter_widget.h"
 #include "app/views/data/layer_list.h"
 #include "app/views/data/task_settings.h"
 
-#include <algorithm>
 #include <imgui.h>
 #include <imgui_stdlib.h>
-#include <utility>
 
 /// The settings of one layer. Those whose choices are things of the session have widgets of their own.
 namespace tessera::app {
 
 namespace {
-
-/// Whether a layer of any list has this function for its own.
-bool usesFunction(const Session& session, const std::string& name) {
-    return std::ranges::any_of(layerLists(session), [&](const auto* layers) {
-        return std::ranges::any_of(*layers, [&](const vis::Layer& layer) { return layer.transfer == name; });
-    });
-}
 
 /// The lens that a layer is drawn in.
 void drawLens(const WidgetContext& widgets, const Session& session, vis::Layer& layer) {
@@ -39,13 +30,8 @@ void drawOwnFunction(const WidgetContext& widgets, Session& session, vis::Layer&
                           .unit = "",
                           .doc = "Use a separate transfer function for this layer, instead of that of its parameter"};
     if (!drawBool(widgets, field, own)) return;
-    const std::string channel = surface ? surface->colorBy : shownChannel(layer.technique);
-    const vis::TransferFunction now = transferOf(session, layer.transfer.empty() ? channel : layer.transfer);
-    std::string name = channel + " in " + layerName(layer);
-    while (own && session.transfer.contains(name)) name += "'";
-    if (own) session.transfer[name] = now;
-    const std::string former = std::exchange(layer.transfer, own ? name : "");
-    if (!own && !usesFunction(session, former)) session.transfer.erase(former);
+    const std::string channel = channelOfFunction(layer.technique);
+    setOwnFunction(session, layer.transfer, channel, own, channel + " in " + layerName(layer));
 }
 
 } // namespace

@@ -1,13 +1,34 @@
 #include "app/views/shadow_cube/face_menu.h"
 
+#include "app/session/own_functions.h"
 #include "app/ui/keys.h"
 #include "app/ui/parameter_widget.h"
+#include "app/views/shadow_cube/cube_legends.h"
+
+#include <algorithm>
 
 namespace tessera::app {
 
 namespace {
 
 constexpr const char* kFaceMenu = "face";
+
+/// What a face shows, and by which function.
+void drawWall(Session& session, const WidgetContext& widgets, Wall& wall, std::size_t face) {
+    drawMembers(valueOf(wall), widgets, [&](Value, const FieldInfo& field) {
+        if (field.key != "transfer") return false;
+        const auto channel = resolveChannel(*widgets.info, session, wall.channel);
+        bool own = !wall.transfer.empty();
+        const FieldInfo ownField{.key = "ownTransfer",
+                                 .unit = "",
+                                 .doc = "Use a separate transfer function for this face, with colours and a range of "
+                                        "its own, instead of that of its parameter"};
+        if (!channel || !drawBool(widgets, ownField, own)) return true;
+        const std::string name = widgets.info->channel(*channel).name;
+        setOwnFunction(session, wall.transfer, name, own, kindName(wall.kind) + " " + name + ", " + faceName(face));
+        return true;
+    });
+}
 
 } // namespace
 
@@ -32,15 +53,29 @@ void openFaceMenu(FaceMenu& menu, std::size_t face) {
     ImGui::OpenPopup(kFaceMenu);
 }
 
-void drawFaceMenu(const FaceMenu& menu, const CubeFrame& frame, const AxisLabels& labels, ShadowCubeView& view) {
+void drawFaceMenu(const FaceMenu& menu, const CubeFrame& frame, Session& session, ShadowCubeView& view) {
     if (!ImGui::BeginPopup(kFaceMenu)) return;
     if (escapePressed()) ImGui::CloseCurrentPopup();
     const CubeFace& face = kCubeFaces[menu.face];
     ImGui::TextDisabled("Face at the %s end of %s", face.upper ? "upper" : "lower",
-                        labels[static_cast<std::size_t>(face.axis)].name.c_str());
+                        axisLabels(session, frame.info)[static_cast<std::size_t>(face.axis)].name.c_str());
     ImGui::Dummy({em() * 20, 0}); // its least width
-    drawDescribed(wallOf(view, menu.face), {.info = &frame.info});
+    drawWall(session, {.info = &frame.info}, wallOf(view, menu.face), menu.face);
     ImGui::EndPopup();
+}
+
+void drawFaceSettings(Session& session, const volume::DatasetInfo& info, ShadowCubeView& view) {
+    const WidgetContext widgets{.info = &info};
+    drawMembers(valueOf(view), widgets, [&](Value member, const FieldInfo& field) {
+        const auto walls = ShadowCubeView::walls(view);
+        const auto wall = std::ranges::find_if(walls, [&](const Wall* each) { return each == member.at; });
+        if (wall == walls.end()) return false;
+        const std::string id(field.key);
+        if (!beginSection(id.c_str(), labelOf(field.key), field.doc)) return true;
+        drawWall(session, widgets.under(field.key), **wall, static_cast<std::size_t>(wall - walls.begin()));
+        endSection();
+        return true;
+    });
 }
 
 void lightFaceTitle(ImDrawList& draw, const FaceMenu& menu, std::size_t face) {

@@ -18,7 +18,10 @@ std::optional<std::size_t> titledFace(const FaceMenu& menu, ImVec2 at);
 std::optional<std::size_t> faceAt(const FaceMenu& menu, const CubeFrame& frame, ImVec2 at);
 
 void openFaceMenu(FaceMenu& menu, std::size_t face);
-void drawFaceMenu(const FaceMenu& menu, const CubeFrame& frame, const AxisLabels& labels, ShadowCubeView& view);
+void drawFaceMenu(const FaceMenu& menu, const CubeFrame& frame, Session& session, ShadowCubeView& view);
+
+/// The settings of the cube and of all its faces.
+void drawFaceSettings(Session& session, const volume::DatasetInfo& info, ShadowCubeView& view);
 
 /// A title under the mouse is lit: it can be clicked.
 void lightFaceTitle(ImDrawList& draw, const FaceMenu& menu, std::size_t face);

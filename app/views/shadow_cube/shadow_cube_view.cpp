@@ -9,6 +9,7 @@
 #include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
 #include "app/views/shadow_cube/cube_faces.h"
+#include "app/views/shadow_cube/cube_legends.h"
 #include "app/views/shadow_cube/face_menu.h"
 #include "app/views/shadow_cube/wall_projection.h"
 #include "volume/base/error.h"
@@ -18,7 +19,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 
 namespace tessera::app {
 
@@ -46,11 +46,6 @@ struct ShadowCubeCache : ViewCache {
     std::shared_ptr<const volume::BrickSource> bricksOf;
 };
 
-std::string kindName(WallKind kind) {
-    static constexpr const char* kNames[] = {"slice", "mean", "maximum", "absorption", "shadow"};
-    return kNames[static_cast<std::size_t>(kind)];
-}
-
 /// Draws the value of the face under the mouse, with its unit, beside the mouse.
 void drawReading(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache, const ShadowCubeView& view,
                  const FaceHit& hit, ImVec2 mouse) {
@@ -65,7 +60,7 @@ void drawReading(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& 
     try {
         const volume::SourceAtTime shown =
             volume::sourceAt(cache.bricks, volume::timesAround(frame.info.times, context.session.time));
-        const auto value = readWall(*shown.source, context.session, *channel, wall.kind, kCubeFaces[hit.face],
+        const auto value = readWall(*shown.source, context.session, *channel, wall, kCubeFaces[hit.face],
                                     frame.physical(hit), shown.time);
         const volume::Channel known = frame.info.channel(*channel);
         const bool share = wall.kind == WallKind::XRay || wall.kind == WallKind::Shadow;
@@ -223,35 +218,20 @@ void drawToolbar(ViewContext& context, const volume::DatasetInfo& info, ShadowCu
     if (ImGui::BeginPopup("faces")) {
         ImGui::PushItemWidth(em() * 12);
         ImGui::Dummy({em() * 22, 0});
-        drawDescribed(view, {.info = &info});
+        drawFaceSettings(context.session, info, view);
         ImGui::PopItemWidth();
         ImGui::EndPopup();
     }
 }
 
-/// The legends of the visible faces, a parameter's once.
-std::vector<LegendEntry> wallLegends(const ViewContext& context, const CubeFrame& frame, const ShadowCubeView& view) {
-    std::set<int> channels;
-    for (std::size_t i = 0; i < kCubeFaces.size(); ++i)
-        if (wallOf(view, i).kind != WallKind::Shadow && facesViewer(kCubeFaces[i], frame.half, frame.camera))
-            if (const auto channel = resolveChannel(frame.info, context.session, wallOf(view, i).channel))
-                channels.insert(*channel);
-    std::vector<LegendEntry> legends;
-    for (const int channel : channels) legends.push_back(legendOf(context.session, frame.info, channel));
-    return legends;
-}
-
 /// Draws the visible faces.
 void drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache, const ShadowCubeView& view,
-               bool moving) {
+               const std::vector<ShownFace>& faces, bool moving) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const vis::Scene scene = sceneWithLimits(context);
-    for (std::size_t i = 0; i < kCubeFaces.size(); ++i) {
+    for (const ShownFace& shown : faces) {
+        const std::size_t i = shown.face;
         const CubeFace& face = kCubeFaces[i];
-        const Wall& wall = wallOf(view, i);
-        const auto channel = resolveChannel(frame.info, context.session, wall.channel);
-        if (!channel || !facesViewer(face, frame.half, frame.camera)) continue;
-        const std::string name = frame.info.channel(*channel).name;
         const double width = std::max(frame.world.halfSize[face.right()], 1e-3),
                      height = std::max(frame.world.halfSize[face.up()], 1e-3), longer = std::max(width, height);
         vis::FrameRequest request;
@@ -262,7 +242,9 @@ void drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& ca
         if (!cache.walls[i]) cache.walls[i] = context.renderer.makeTarget();
         const glm::vec3 shadow = darkTheme() ? glm::vec3(1, 0.69f, 0.25f) : glm::vec3(0.25f, 0.2f, 0.15f);
         const vis::FrameStatus status = context.renderer.render(
-            *cache.walls[i], wallScene(scene, name, wall.kind, face, frame.world, shadow), request);
+            *cache.walls[i],
+            wallScene(scene, frame.info.channel(shown.channel).name, wallOf(view, i), face, frame.world, shadow),
+            request);
         context.follow(status);
         drawFace(draw, frame, face, status.texture);
         drawMarks(draw, frame, context.session, context.decoration, i);
@@ -270,18 +252,10 @@ void drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& ca
 }
 
 /// Writes what the visible faces show, and keeps where. `taken`: where titles do not go.
-void drawTitles(const ViewContext& context, const CubeFrame& frame, const ShadowCubeView& view, FaceMenu& menu,
-                std::vector<std::pair<ImVec2, ImVec2>> taken) {
-    for (std::size_t i = 0; i < kCubeFaces.size(); ++i) {
-        const Wall& wall = wallOf(view, i);
-        const auto channel = resolveChannel(frame.info, context.session, wall.channel);
-        if (!channel || !facesViewer(kCubeFaces[i], frame.half, frame.camera)) continue;
-        drawFaceTitle(*ImGui::GetWindowDrawList(), frame, i,
-                      wall.kind == WallKind::Shadow && context.session.selection.active()
-                          ? "shadow of the selection"
-                          : kindName(wall.kind) + " " + frame.info.channel(*channel).name,
-                      taken);
-        menu.titles[i] = taken.back();
+void drawTitles(const CubeFrame& frame, const std::vector<ShownFace>& faces, FaceMenu& menu, Rectangles taken) {
+    for (const ShownFace& shown : faces) {
+        drawFaceTitle(*ImGui::GetWindowDrawList(), frame, shown.face, shown.title, taken);
+        menu.titles[shown.face] = taken.back();
     }
 }
 
@@ -336,14 +310,15 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     draw.PushClipRect(frame.min, frame.max(), true);
     const bool moving = (moved || context.interacting || session.animation.playing) && !context.headless;
-    const std::vector<LegendEntry> legends = wallLegends(context, frame, view);
+    const std::vector<ShownFace> faces = shownFaces(session, frame, view);
+    const std::vector<LegendEntry> legends = faceLegends(session, info, view, faces);
     const LegendRoom room{frame.min, frame.max()};
     const bool explained = context.decoration.legend && !legends.empty();
     if (!moving) {
         const auto covered = [&](ImVec2 lo, ImVec2 hi) { return coveredByCube(frame, lo, hi); };
         cache.legend = placeLegends(legends, room, {covered}, figureLegends(context));
     }
-    drawWalls(context, frame, cache, view, moving);
+    drawWalls(context, frame, cache, view, faces, moving);
 
     vis::Scene scene = sceneWithLimits(context);
     vis::Camera seen = frame.camera;
@@ -368,16 +343,16 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
         draw.AddCircle(*at, em() * 0.35f, colors.backdrop, 20, 3);
         draw.AddCircle(*at, em() * 0.35f, colors.cursor, 20, 1.5f);
     }
-    std::vector<std::pair<ImVec2, ImVec2>> taken;
+    Rectangles taken;
     if (explained) {
         const LegendArea area = drawLegends(draw, legends, room, cache.legend);
         taken.push_back({area.min, area.max});
     }
     cache.menu.titles = {};
-    if (context.decoration.title) drawTitles(context, frame, view, cache.menu, std::move(taken));
+    if (context.decoration.title) drawTitles(frame, faces, cache.menu, std::move(taken));
     if (hovered) drawHovered(context, frame, cache, view);
     draw.PopClipRect();
-    drawFaceMenu(cache.menu, frame, axisLabels(session, info), view);
+    drawFaceMenu(cache.menu, frame, session, view);
 }
 
 } // namespace tessera::app

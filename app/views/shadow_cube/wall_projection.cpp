@@ -47,11 +47,6 @@ double greatestInterest(const volume::BrickSource& source, const Session& sessio
     return most;
 }
 
-/// In the order of kCubeFaces.
-template <class View> auto wallsOf(View& view) {
-    return std::array{&view.left, &view.right, &view.bottom, &view.top, &view.back, &view.front};
-}
-
 } // namespace
 
 glm::dvec3 CubeFace::at(double s, double t, glm::dvec3 half) const {
@@ -63,11 +58,11 @@ glm::dvec3 CubeFace::at(double s, double t, glm::dvec3 half) const {
 }
 
 const Wall& wallOf(const ShadowCubeView& view, std::size_t face) {
-    return *wallsOf(view)[face];
+    return *ShadowCubeView::walls(view)[face];
 }
 
 Wall& wallOf(ShadowCubeView& view, std::size_t face) {
-    return *wallsOf(view)[face];
+    return *ShadowCubeView::walls(view)[face];
 }
 
 bool facesViewer(const CubeFace& face, glm::dvec3 half, const vis::Camera& camera) {
@@ -100,8 +95,9 @@ vis::Camera cubeCamera(const ShadowCubeView& view, vis::Camera camera, glm::dvec
     return camera;
 }
 
-vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, WallKind kind, const CubeFace& face,
+vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, const Wall& wall, const CubeFace& face,
                      const vis::WorldFrame& world, glm::vec3 shadow) {
+    const WallKind kind = wall.kind;
     vis::Scene out = scene;
     out.geometry.clear();
     out.clips.clear();
@@ -114,7 +110,7 @@ vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, WallKi
     out.render.proxy = vis::Proxy::Rays;
     const bool selected = scene.selection.active();
     out.selection = {};
-    vis::TransferFunction& function = out.transfer[channel];
+    vis::TransferFunction& function = out.transfer[wall.transfer.empty() ? channel : wall.transfer];
     vis::VolumeLayer layer{.channel = channel};
     if (kind == WallKind::Mean || kind == WallKind::Maximum) {
         layer.style = kind == WallKind::Mean ? vis::RayStyle::Average : vis::RayStyle::Maximum;
@@ -129,7 +125,7 @@ vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, WallKi
         if (selected) function.opacity = {{0, 0.6f}, {1, 0.6f}};
         layer.density = 4;
     }
-    out.layers = {{"wall", true, layer}};
+    out.layers = {{.name = "wall", .technique = layer, .transfer = wall.transfer}};
     if (kind == WallKind::Slice)
         out.layers[0].technique =
             vis::SliceLayer{.channel = channel, .orientation = static_cast<vis::SliceOrientation>(face.axis)};
@@ -145,8 +141,9 @@ vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, WallKi
     return out;
 }
 
-std::optional<double> readWall(const volume::BrickSource& source, const Session& session, int channel, WallKind kind,
+std::optional<double> readWall(const volume::BrickSource& source, const Session& session, int channel, const Wall& wall,
                                const CubeFace& face, glm::dvec3 position, int time) {
+    const WallKind kind = wall.kind;
     const volume::DatasetInfo& info = source.info();
     if (kind == WallKind::Slice) {
         position[face.axis] = session.cursor[face.axis];
@@ -156,7 +153,7 @@ std::optional<double> readWall(const volume::BrickSource& source, const Session&
     if (kind == WallKind::Shadow) return greatestInterest(source, session, places, time);
     const volume::Channel known = info.channel(channel);
     const vis::Scene scene = sceneOf(session);
-    const vis::TransferFunction& function = vis::transferFor(scene, known.name);
+    const vis::TransferFunction& function = vis::transferFor(scene, wall.transfer.empty() ? known.name : wall.transfer);
     const Range range = vis::effectiveRange(function, info.channelRange(known));
     const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
     const double step = 2 * world.halfSize[face.axis] / double(places.size());

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 
 /// Faces of the shadow cube: their projections as scenes of the renderer, and as numbers at a position.
 namespace tessera::app {
@@ -38,15 +39,16 @@ std::optional<FaceHit> hitFace(const vis::Ray& ray, glm::dvec3 half, const vis::
 vis::Camera cubeCamera(const ShadowCubeView& view, vis::Camera camera, glm::dvec3 half, double aspect);
 
 /// The scene whose parallel picture, as wide and high as the data along the face's axes, is the face's; colours by the
-/// parameter's transfer function. Means, maxima, absorption and slices are of all samples; the shadow is the absorption
-/// of what is selected (or, without a selection, of what the transfer function shows), in `shadow` (sRGB).
-vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, WallKind kind, const CubeFace& face,
+/// parameter's transfer function or the wall's own. Means, maxima, absorption and slices are of all samples; the shadow
+/// is the absorption of what is selected (or, without a selection, of what the transfer function shows), in `shadow`
+/// (sRGB).
+vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, const Wall& wall, const CubeFace& face,
                      const vis::WorldFrame& world, glm::vec3 shadow);
 
 /// The value that a face shows at a physical position: the value at the cursor's plane, the mean or maximum along the
 /// box, the absorbed share (0..1) by the transfer function, or the greatest degree of interest. Means are integrals of
 /// the linear interpolation: on CC the trapezoidal sum over the grid. Nothing if all samples are absent. Throws Error.
-std::optional<double> readWall(const volume::BrickSource& source, const Session& session, int channel, WallKind kind,
+std::optional<double> readWall(const volume::BrickSource& source, const Session& session, int channel, const Wall& wall,
                                const CubeFace& face, glm::dvec3 position, int time);
 
 /// The box through the data behind a rectangle of a face, given by two physical positions.

@@ -3,7 +3,7 @@
 #include "app/described/describe_json.h"
 #include "app/pane/tool_row.h"
 #include "app/pane/view_parts.h"
-#include "app/session/shown_scene.h"
+#include "app/session/own_functions.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
 #include "app/user_files/colormap_file.h"
@@ -159,23 +159,13 @@ void drawCurveControls(ToolRow& tools, TransferView& view, vis::TransferFunction
     check("visible", view.visibility, "Show which values contribute how much to the visible 3D picture");
 }
 
-/// Functions that layers have of their own, in the order of the layers.
-std::vector<std::string> ownFunctions(const Session& session) {
-    std::vector<std::string> names;
-    for (const auto* layers : layerLists(session))
-        for (const vis::Layer& layer : *layers)
-            if (!layer.transfer.empty() && std::ranges::find(names, layer.transfer) == names.end())
-                names.push_back(layer.transfer);
-    return names;
-}
-
-/// A choice among a parameter's own function and those of layers.
+/// A choice among a parameter's function and those that layers and faces have of their own.
 void chooseFunction(const Session& session, TransferView& view, const std::string& channel) {
-    const std::string shown = layerOfFunction(session, view.channel) ? view.channel : "all layers";
-    if (!ImGui::BeginCombo("##function", shown.c_str())) return;
-    if (ImGui::Selectable("all layers", shown == "all layers")) view.channel = channel;
-    for (const std::string& name : ownFunctions(session))
-        if (ImGui::Selectable(name.c_str(), name == view.channel)) view.channel = name;
+    const bool own = ownFunction(session, view.channel).has_value();
+    if (!ImGui::BeginCombo("##function", own ? view.channel.c_str() : "shared")) return;
+    if (ImGui::Selectable("shared", !own)) view.channel = channel;
+    for (const OwnFunction& each : ownFunctions(session))
+        if (ImGui::Selectable(each.name.c_str(), own && each.name == view.channel)) view.channel = each.name;
     ImGui::EndCombo();
 }
 
@@ -229,16 +219,8 @@ void drawColorTools(ViewContext& context, vis::TransferFunction& function, const
 
 } // namespace
 
-const vis::Layer* layerOfFunction(const Session& session, const std::string& name) {
-    if (name.empty()) return nullptr;
-    for (const auto* layers : layerLists(session))
-        for (const vis::Layer& layer : *layers)
-            if (layer.transfer == name) return &layer;
-    return nullptr;
-}
-
 std::string functionName(const Session& session, const TransferView& view, const std::string& channel) {
-    return layerOfFunction(session, view.channel) ? view.channel : channel;
+    return ownFunction(session, view.channel) ? view.channel : channel;
 }
 
 void drawTransferControls(ViewContext& context, TransferView& view, const FindingPages& pages,
@@ -254,7 +236,8 @@ void drawTransferControls(ViewContext& context, TransferView& view, const Findin
     if (!ownFunctions(context.session).empty() && tools.next(combo)) {
         ImGui::SetNextItemWidth(combo);
         chooseFunction(context.session, view, channel);
-        if (ImGui::IsItemHovered()) tooltip("Transfer function of all layers, or of one layer that has its own");
+        if (ImGui::IsItemHovered())
+            tooltip("Transfer function of the parameter, or of a layer or face that has its own");
     }
     const std::string name = functionName(context.session, view, channel);
     vis::TransferFunction& function = transferOf(context.session, name);

@@ -5,10 +5,7 @@
 /// The rows of controls above the transfer function view: what is edited, its colours, its range, by which page.
 namespace tessera::app {
 
-/// The layer whose own function a name is, null if none.
-const vis::Layer* layerOfFunction(const Session& session, const std::string& name);
-
-/// The name of the function that is edited: a layer's own, or the channel's.
+/// The name of the function that is edited: that of a layer or face alone, or the channel's.
 std::string functionName(const Session& session, const TransferView& view, const std::string& channel);
 
 /// The pages that begin with something found in the data when they are chosen.

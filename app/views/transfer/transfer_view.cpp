@@ -2,6 +2,7 @@
 #include "app/queries/async_query.h"
 #include "app/queries/derivative_query.h"
 #include "app/queries/readout.h"
+#include "app/session/own_functions.h"
 #include "app/session/shown_scene.h"
 #include "app/views/transfer/curve_page.h"
 #include "app/views/transfer/library_page.h"
@@ -25,13 +26,6 @@ struct TransferCache : ViewCache {
     std::string shown;                                 ///< function that the pages were last drawn for
     std::shared_ptr<const volume::BrickSource> source; ///< and data
 };
-
-/// The parameter that a layer's own function is of: of a surface, the one that colours it.
-std::string colouringParameter(const vis::Technique& technique) {
-    const auto* surface = std::get_if<vis::IsoLayer>(&technique);
-    if (surface && !surface->colorBy.empty()) return surface->colorBy;
-    return std::visit([](const auto& own) { return own.channel; }, technique);
-}
 
 using Derivatives = std::shared_ptr<const DerivativeResult>;
 
@@ -84,8 +78,8 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
     }
     const volume::DatasetInfo& info = context.source->info();
     const auto channelNow = [&] {
-        const vis::Layer* own = layerOfFunction(context.session, view.channel);
-        const std::string name = own ? colouringParameter(own->technique) : view.channel;
+        const auto own = ownFunction(context.session, view.channel);
+        const std::string name = own ? own->channel : view.channel;
         const ShownScene scene(context.session, volumePane(context.session)); // has the first layer
         return resolveChannel(info, context.session, name);
     };

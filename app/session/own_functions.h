@@ -1,0 +1,30 @@
+#pragma once
+
+#include "app/session/session.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Transfer functions that a layer or a face of a shadow cube has of its own, in place of that of its parameter.
+namespace tessera::app {
+
+struct OwnFunction {
+    std::string name;    ///< in Session::transfer
+    std::string channel; ///< whose values it maps, by the first that has it; "" = the channel of the first layer
+};
+
+/// Those in use, each once: of layers in their order, then of faces.
+std::vector<OwnFunction> ownFunctions(const Session& session);
+/// The one of a name; nothing if there is none.
+std::optional<OwnFunction> ownFunction(const Session& session, const std::string& name);
+
+/// The parameter whose values a layer's own function maps: of a surface, the one that colours it.
+const std::string& channelOfFunction(const vis::Technique& technique);
+
+/// Gives what has `transfer` for the name of its function one of its own, which begins as that of `channel` and views
+/// of the transfer function then show; or takes it away, and with it a function that nothing else has.
+void setOwnFunction(Session& session, std::string& transfer, const std::string& channel, bool own,
+                    const std::string& name);
+
+} // namespace tessera::app
