@@ -26,16 +26,6 @@ std::pair<ImVec2, ImVec2> besides(ImVec2 at, ImVec2 direction, ImVec2 size) {
     return {min, {min.x + size.x, min.y + size.y}};
 }
 
-/// The eye in the world, or in parallel projection far away in its direction.
-glm::dvec3 eyeOf(const vis::Camera& camera) {
-    if (camera.projection == vis::Projection::Perspective) return vis::cameraRay(camera, 1, {0, 0}).origin;
-    glm::dvec3 eye = -1e6 * vis::cameraRay(camera, 1, {0, 0}).direction;
-    // Directions along a face must count as "not seen" in spite of rounding.
-    for (int axis = 0; axis < 3; ++axis)
-        if (std::abs(eye[axis]) < 1) eye[axis] = 0;
-    return eye;
-}
-
 /// The part of an edge where the middle of a number beside it would be taken.
 float takenBeside(const LabelledEdge& edge, const Rectangles& taken) {
     constexpr int kPlaces = 16;
@@ -103,6 +93,15 @@ double coveredByBox(const SpaceFrame& frame, ImVec2 min, ImVec2 max) {
     });
 }
 
+glm::dvec3 eyeOf(const vis::Camera& camera) {
+    if (camera.projection == vis::Projection::Perspective) return vis::cameraRay(camera, 1, {0, 0}).origin;
+    glm::dvec3 eye = -1e6 * vis::cameraRay(camera, 1, {0, 0}).direction;
+    // Directions along a face must count as "not seen" in spite of rounding.
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(eye[axis]) < 1) eye[axis] = 0;
+    return eye;
+}
+
 std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eye, const Rectangles& taken) {
     // A face is visible if the eye is beyond it; `eye` is a world position, or a direction in parallel projection.
     const auto seen = [&](int axis, bool high) {
@@ -154,8 +153,7 @@ std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eye,
     return edges;
 }
 
-double coveredByAxes(const SpaceFrame& frame, const vis::Camera& camera, ImVec2 min, ImVec2 max) {
-    const std::vector<LabelledEdge> edges = labelledEdges(frame, eyeOf(camera));
+double coveredByEdges(const std::vector<LabelledEdge>& edges, ImVec2 min, ImVec2 max) {
     return coveredShareOf(min, max, [&](ImVec2 at) {
         return std::ranges::any_of(edges, [&](const LabelledEdge& edge) {
             const ImVec2 along{edge.b.x - edge.a.x, edge.b.y - edge.a.y}, away{at.x - edge.a.x, at.y - edge.a.y};
@@ -169,8 +167,35 @@ double coveredByAxes(const SpaceFrame& frame, const vis::Camera& camera, ImVec2 
     });
 }
 
+double coveredByAxes(const SpaceFrame& frame, const vis::Camera& camera, ImVec2 min, ImVec2 max) {
+    return coveredByEdges(labelledEdges(frame, eyeOf(camera)), min, max);
+}
+
+TickLabels ticksAlong(const LabelledEdge& edge, const AxisLabel& label) {
+    const float pixels = length({edge.b.x - edge.a.x, edge.b.y - edge.a.y});
+    const double perUnit = label.unit.perUnit;
+    const Range range{edge.from[edge.axis] * perUnit, edge.to[edge.axis] * perUnit};
+    TickLabels ticks;
+    // As many as fit along this edge on screen without overlap.
+    const float dx = std::abs(edge.b.x - edge.a.x) / pixels, dy = std::abs(edge.b.y - edge.a.y) / pixels;
+    for (int most : {8, 6, 5, 4, 3, 2, 1}) {
+        ticks = tickLabels(range, most);
+        float widest = 0;
+        for (const std::string& text : ticks.texts) widest = std::max(widest, ImGui::CalcTextSize(text.c_str()).x);
+        const double step = ticks.values.size() > 1 ? ticks.values[1] - ticks.values[0] : range.hi - range.lo;
+        const double between = step / std::max(1e-300, range.hi - range.lo) * pixels;
+        if (between * dx >= widest + em() || between * dy >= em() * 1.4f) break;
+    }
+    return ticks;
+}
+
 void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& camera, const AxisLabels& labels,
                 Rectangles avoid) {
+    drawLabelledEdges(draw, frame, labelledEdges(frame, eyeOf(camera), avoid), labels, avoid);
+}
+
+void drawLabelledEdges(ImDrawList& draw, const SpaceFrame& frame, const std::vector<LabelledEdge>& edges,
+                       const AxisLabels& labels, Rectangles& avoid) {
     const PlotColors colors = plotColors();
     const auto place = [&](std::pair<ImVec2, ImVec2> box, ImU32 color, const std::string& text) {
         const float margin = em() * 0.4f;
@@ -183,28 +208,17 @@ void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& ca
         avoid.push_back(box);
         return true;
     };
-    for (const LabelledEdge& edge : labelledEdges(frame, eyeOf(camera), avoid)) {
+    for (const LabelledEdge& edge : edges) {
         const float pixels = length({edge.b.x - edge.a.x, edge.b.y - edge.a.y});
-        const auto& [name, unit] = labels[static_cast<std::size_t>(edge.axis)];
-        const Range range{edge.from[edge.axis] * unit.perUnit, edge.to[edge.axis] * unit.perUnit};
-        TickLabels ticks;
-        // As many as fit along this edge on screen without overlap.
-        const float dx = std::abs(edge.b.x - edge.a.x) / pixels, dy = std::abs(edge.b.y - edge.a.y) / pixels;
-        for (int most : {8, 6, 5, 4, 3, 2, 1}) {
-            ticks = tickLabels(range, most);
-            float widest = 0;
-            for (const std::string& text : ticks.texts) widest = std::max(widest, ImGui::CalcTextSize(text.c_str()).x);
-            const double step = ticks.values.size() > 1 ? ticks.values[1] - ticks.values[0] : range.hi - range.lo;
-            const double between = step / std::max(1e-300, range.hi - range.lo) * pixels;
-            if (between * dx >= widest + em() || between * dy >= em() * 1.4f) break;
-        }
+        const AxisLabel& label = labels[static_cast<std::size_t>(edge.axis)];
+        const TickLabels ticks = ticksAlong(edge, label);
         const ImU32 color = axisColor(edge.axis);
         draw.AddLine(edge.a, edge.b, color, std::max(1.0f, em() * 0.09f));
         float furthest = 0;
         const float tick = em() * 0.35f;
         for (std::size_t i = 0; i < ticks.values.size(); ++i) {
             glm::dvec3 at = edge.from;
-            at[edge.axis] = ticks.values[i] / unit.perUnit;
+            at[edge.axis] = ticks.values[i] / label.unit.perUnit;
             const auto pixel = frame.pixel(at);
             if (!pixel) continue;
             const ImVec2 end{pixel->x + edge.outward.x * tick, pixel->y + edge.outward.y * tick};
@@ -214,7 +228,7 @@ void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& ca
             if (place(besides(start, edge.outward, size), colors.text, ticks.texts[i]))
                 furthest = std::max(furthest, std::abs(edge.outward.x) * size.x + std::abs(edge.outward.y) * size.y);
         }
-        std::string title = titleWithUnit(name, unit.name);
+        std::string title = titleWithUnit(label.name, label.unit.name);
         if (!ticks.note.empty()) title += "  " + ticks.note;
         const ImVec2 size = ImGui::CalcTextSize(title.c_str());
         bool placed = false;
@@ -225,20 +239,22 @@ void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& ca
             placed = place(besides(at, edge.outward, size), color, title);
             if (placed) break;
         }
-        // No room beside the edge: beyond one of its ends, at last moved into the picture, where it may lie over the
-        // box.
-        for (const auto& [sign, moved] : {std::pair(1.0f, false), {-1.0f, false}, {1.0f, true}, {-1.0f, true}}) {
-            if (placed) break;
-            const ImVec2 end = sign > 0 ? edge.b : edge.a;
-            const ImVec2 on{sign * (edge.b.x - edge.a.x) / pixels, sign * (edge.b.y - edge.a.y) / pixels};
-            auto box = besides({end.x + on.x * em() * 0.6f, end.y + on.y * em() * 0.6f}, on, size);
-            const float shift = std::max(0.0f, frame.min.x + em() * 0.5f - box.first.x) +
-                                std::min(0.0f, frame.max.x - em() * 0.5f - box.second.x);
-            if (shift != 0 && !moved) continue;
-            box.first.x += shift;
-            box.second.x += shift;
-            placed = place(box, color, title);
-        }
+        // No room beside the edge: beyond one of its ends, or farther where a number stands there; at last moved into
+        // the picture, where it may lie over the box.
+        for (const bool moved : {false, true})
+            for (const float away : {0.6f, 2.2f})
+                for (const float sign : {1.0f, -1.0f}) {
+                    if (placed) break;
+                    const ImVec2 end = sign > 0 ? edge.b : edge.a;
+                    const ImVec2 on{sign * (edge.b.x - edge.a.x) / pixels, sign * (edge.b.y - edge.a.y) / pixels};
+                    auto box = besides({end.x + on.x * em() * away, end.y + on.y * em() * away}, on, size);
+                    const float shift = std::max(0.0f, frame.min.x + em() * 0.5f - box.first.x) +
+                                        std::min(0.0f, frame.max.x - em() * 0.5f - box.second.x);
+                    if (shift != 0 && !moved) continue;
+                    box.first.x += shift;
+                    box.second.x += shift;
+                    placed = place(box, color, title);
+                }
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include "app/pane/axis_label.h"
 #include "app/pane/plot.h"
+#include "app/ui/ticks.h"
 #include "vis/scene/camera.h"
 #include "volume/field/dataset.h"
 
@@ -36,15 +37,25 @@ struct LabelledEdge {
 };
 using Rectangles = std::vector<std::pair<ImVec2, ImVec2>>; ///< corners of each, pixels
 
+/// The eye in the world, or in parallel projection far away in its direction.
+glm::dvec3 eyeOf(const vis::Camera& camera);
+
 /// For each axis that is long enough on screen the outline edge that lies furthest to the bottom (left for upright
 /// ones), so that texts stand beside the box and not over it; another one where much of their room is taken.
-std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eyeDirection, const Rectangles& taken = {});
+std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eye, const Rectangles& taken = {});
 
-/// The share of a rectangle of the picture that the labelled edges with their numbers and titles take.
+/// The share of a rectangle of the picture that labelled edges with their numbers and titles take; those of a box.
+double coveredByEdges(const std::vector<LabelledEdge>& edges, ImVec2 min, ImVec2 max);
 double coveredByAxes(const SpaceFrame& frame, const vis::Camera& camera, ImVec2 min, ImVec2 max);
 
-/// Ticks, numbers and units on the labelled edges; texts that would overlap or leave the picture are left out.
-/// `avoid` are rectangles already taken.
+/// Ticks along an edge in the unit of its label, as many as have room for their numbers.
+TickLabels ticksAlong(const LabelledEdge& edge, const AxisLabel& label);
+
+/// Ticks, numbers and units on labelled edges; texts that would overlap or leave the picture are left out. `avoid` are
+/// rectangles already taken, to which those of the texts are added.
+void drawLabelledEdges(ImDrawList& draw, const SpaceFrame& frame, const std::vector<LabelledEdge>& edges,
+                       const AxisLabels& labels, Rectangles& avoid);
+/// The same on those of the box.
 void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& camera, const AxisLabels& labels,
                 Rectangles avoid = {});
 

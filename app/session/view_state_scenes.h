@@ -119,6 +119,7 @@ struct ShadowCubeView {
     glm::vec3 target{0};
     bool together = true;
     glm::quat orientation{1, 0, 0, 0};
+    bool showAxes = true;
     bool brushing = false;
     bool operator==(const ShadowCubeView&) const = default;
     /// Its faces, in this order.
@@ -150,6 +151,8 @@ struct ShadowCubeView {
                                           .unit = "",
                                           .doc = "Rotation of the cube while it is turned by itself",
                                           .hidden = true});
+        visit(self.showAxes,
+              FieldInfo{.key = "axes", .unit = "", .doc = "Draw axes with ticks and units at the edges of the cube"});
         visit(
             self.brushing,
             FieldInfo{.key = "brushing", .unit = "", .doc = "Select the prism behind a face by dragging on the face"});

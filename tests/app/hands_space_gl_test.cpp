@@ -1,5 +1,5 @@
 #include "app/pane/axes3d.h"
-#include "app/views/shadow_cube/wall_projection.h"
+#include "app/views/shadow_cube/cube_axes.h"
 #include "tests/app/drawn_text.h"
 #include "tests/app/hands_fixture.h"
 
@@ -48,7 +48,7 @@ protected:
         const auto* cube = std::get_if<ShadowCubeView>(&session().views.at("pane"));
         if (!cube) return camera();
         const glm::dvec3 half = vis::worldFrame(cellBox(), session().stretch).halfSize + double(cube->gap);
-        return cubeCamera(*cube, camera(), half, aspect());
+        return cubeCamera(*cube, camera(), half, aspect(), cubeShare(*cube, picture.GetSize()));
     }
     ImVec2 pixel(glm::dvec3 physical) {
         return *spaceFrame(picture.Min, picture.Max, drawnBy(), cellBox(), session().stretch).pixel(physical);

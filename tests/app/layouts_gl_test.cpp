@@ -106,7 +106,7 @@ const std::vector<Shipped>& shipped() {
         {"shadowcube",
          "data layers shadowCube slices timeline transfer",
          kTemperature,
-         {{"shadowCube", Warm, 0.0936}, {"shadowCube", Green, 0.0311}}},
+         {{"shadowCube", Warm, 0.0694}, {"shadowCube", Green, 0.0311}}},
         {"starved",
          "data history layers log scatterMatrix slices timeline transfer volume",
          kTemperature,

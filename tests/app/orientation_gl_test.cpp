@@ -135,6 +135,7 @@ TEST_F(Orientation, OfTheWallsOfTheShadowCubeIsThatOfTheDataBeforeThem) {
     const Wall wall{"beacon", WallKind::Maximum};
     ShadowCubeView view;
     view.left = view.right = view.bottom = view.top = view.back = view.front = wall;
+    view.showAxes = false; // the cube fills the picture
     show(view, [](Session& session) { session.layers.clear(); });
     constexpr glm::ivec2 kSize{300, 420}; // the legend has its place below the cube or above it
     const vis::WorldFrame world = vis::worldFrame(workbench.source()->info().bounds, glm::dvec3(1));

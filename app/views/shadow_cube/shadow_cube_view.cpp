@@ -8,6 +8,7 @@
 #include "app/ui/keys.h"
 #include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
+#include "app/views/shadow_cube/cube_axes.h"
 #include "app/views/shadow_cube/cube_faces.h"
 #include "app/views/shadow_cube/cube_legends.h"
 #include "app/views/shadow_cube/face_menu.h"
@@ -224,9 +225,10 @@ void drawToolbar(ViewContext& context, const volume::DatasetInfo& info, ShadowCu
     }
 }
 
-/// Draws the visible faces.
+/// Draws the visible faces, with lines at the ticks of the axes.
 void drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache, const ShadowCubeView& view,
-               const std::vector<ShownFace>& faces, bool moving) {
+               const std::vector<ShownFace>& faces, const std::vector<LabelledEdge>& axes, bool moving) {
+    const AxisLabels labels = axisLabels(context.session, frame.info);
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const vis::Scene scene = sceneWithLimits(context);
     for (const ShownFace& shown : faces) {
@@ -247,6 +249,7 @@ void drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& ca
             request);
         context.follow(status);
         drawFace(draw, frame, face, status.texture);
+        drawFaceTicks(draw, frame, axes, labels, face);
         drawMarks(draw, frame, context.session, context.decoration, i);
     }
 }
@@ -295,7 +298,7 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     const auto look = [&] {
         frame.camera = session.camera;
         if (!view.together) frame.camera.orientation = view.orientation;
-        frame.camera = cubeCamera(view, frame.camera, frame.half, frame.aspect());
+        frame.camera = cubeCamera(view, frame.camera, frame.half, frame.aspect(), cubeShare(view, frame.size));
         frame.space = spaceFrame(frame.min, frame.max(), frame.camera, info.bounds, session.stretch);
     };
     look();
@@ -315,10 +318,20 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     const LegendRoom room{frame.min, frame.max()};
     const bool explained = context.decoration.legend && !legends.empty();
     if (!moving) {
-        const auto covered = [&](ImVec2 lo, ImVec2 hi) { return coveredByCube(frame, lo, hi); };
-        cache.legend = placeLegends(legends, room, {covered}, figureLegends(context));
+        // Flat projections are small: a little of one matters.
+        const auto covered = [&](ImVec2 lo, ImVec2 hi) { return std::min(4 * coveredByCube(frame, lo, hi), 1.0); };
+        const std::vector<LabelledEdge> beside = view.showAxes ? cubeEdges(frame) : std::vector<LabelledEdge>();
+        const auto numbers = [&](ImVec2 lo, ImVec2 hi) { return coveredByEdges(beside, lo, hi); };
+        cache.legend = placeLegends(legends, room, {covered, numbers}, figureLegends(context));
     }
-    drawWalls(context, frame, cache, view, faces, moving);
+    Rectangles taken;
+    if (explained) {
+        const LegendArea area = legendArea(legends, room, cache.legend);
+        taken.push_back({area.min, area.max});
+    }
+    const bool numbered = view.showAxes && context.decoration.axes;
+    const std::vector<LabelledEdge> axes = numbered ? cubeEdges(frame, taken) : std::vector<LabelledEdge>();
+    drawWalls(context, frame, cache, view, faces, axes, moving);
 
     vis::Scene scene = sceneWithLimits(context);
     vis::Camera seen = frame.camera;
@@ -343,11 +356,8 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
         draw.AddCircle(*at, em() * 0.35f, colors.backdrop, 20, 3);
         draw.AddCircle(*at, em() * 0.35f, colors.cursor, 20, 1.5f);
     }
-    Rectangles taken;
-    if (explained) {
-        const LegendArea area = drawLegends(draw, legends, room, cache.legend);
-        taken.push_back({area.min, area.max});
-    }
+    if (explained) drawLegends(draw, legends, room, cache.legend);
+    drawCubeAxes(draw, frame, axes, axisLabels(session, info), taken);
     cache.menu.titles = {};
     if (context.decoration.title) drawTitles(frame, faces, cache.menu, std::move(taken));
     if (hovered) drawHovered(context, frame, cache, view);

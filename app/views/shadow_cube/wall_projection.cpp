@@ -69,7 +69,8 @@ bool facesViewer(const CubeFace& face, glm::dvec3 half, const vis::Camera& camer
     const vis::Ray middle = vis::cameraRay(camera, 1, {0, 0});
     const double outward = face.upper ? 1 : -1;
     // Visible from inside: the direction from the eye to the face points outwards.
-    if (camera.projection == vis::Projection::Orthographic) return middle.direction[face.axis] * outward > 0;
+    // A face seen edge on does not count in spite of rounding.
+    if (camera.projection == vis::Projection::Orthographic) return middle.direction[face.axis] * outward > 1e-6;
     return (outward * half[face.axis] - middle.origin[face.axis]) * outward > 0;
 }
 
@@ -86,11 +87,12 @@ std::optional<FaceHit> hitFace(const vis::Ray& ray, glm::dvec3 half, const vis::
     return std::nullopt;
 }
 
-vis::Camera cubeCamera(const ShadowCubeView& view, vis::Camera camera, glm::dvec3 half, double aspect) {
+vis::Camera cubeCamera(const ShadowCubeView& view, vis::Camera camera, glm::dvec3 half, double aspect,
+                       glm::dvec2 share) {
     vis::WorldFrame cube;
     cube.halfSize = half;
-    vis::fit(camera, cube, aspect);
-    camera.distance /= view.zoom;
+    vis::fit(camera, cube, aspect * share.x / share.y);
+    camera.distance /= float(share.y) * view.zoom;
     camera.target = view.target;
     return camera;
 }

@@ -34,9 +34,10 @@ struct FaceHit {
 };
 std::optional<FaceHit> hitFace(const vis::Ray& ray, glm::dvec3 half, const vis::Camera& camera);
 
-/// The camera of a picture of the cube: it looks as `camera` does, from as far away as shows all of the cube, at the
-/// view's magnification and place. `half`: half edges of the cube.
-vis::Camera cubeCamera(const ShadowCubeView& view, vis::Camera camera, glm::dvec3 half, double aspect);
+/// The camera of a picture of the cube: it looks as `camera` does, from as far away as shows all of the cube within a
+/// share of the picture's width and height, at the view's magnification and place. `half`: half edges of the cube.
+vis::Camera cubeCamera(const ShadowCubeView& view, vis::Camera camera, glm::dvec3 half, double aspect,
+                       glm::dvec2 share = glm::dvec2(1));
 
 /// The scene whose parallel picture, as wide and high as the data along the face's axes, is the face's; colours by the
 /// parameter's transfer function or the wall's own. Means, maxima, absorption and slices are of all samples; the shadow
