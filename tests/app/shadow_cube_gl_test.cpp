@@ -114,15 +114,15 @@ TEST_F(ShadowCube, FacesReadWhatTheyShow) {
             }
             EXPECT_NEAR(read(WallKind::Maximum), most, 1e-5);
         }
-    session.transfer["v"].opacity = {{0, 0.3f}, {1, 0.3f}};
+    session.transfer["v"].opacity = {{0, 0.003f}, {1, 0.003f}};
     const vis::WorldFrame world = vis::worldFrame(info().bounds, glm::dvec3(1));
     const double absorbed =
         readWall(*source, session, 0, {.kind = WallKind::XRay}, kCubeFaces[0], {4, 4, 4}, 0).value_or(-1);
-    EXPECT_NEAR(absorbed, vis::correctedOpacity(double(0.3f), 2 * world.halfSize.x, 1), 1e-9);
-    session.transfer["thick"].opacity = {{0, 0.8f}, {1, 0.8f}};
+    EXPECT_NEAR(absorbed, vis::correctedOpacity(double(0.003f), 2 * world.halfSize.x, 1), 1e-9);
+    session.transfer["thick"].opacity = {{0, 0.008f}, {1, 0.008f}};
     const Wall own{.kind = WallKind::XRay, .transfer = "thick"};
     EXPECT_NEAR(readWall(*source, session, 0, own, kCubeFaces[0], {4, 4, 4}, 0).value_or(-1),
-                vis::correctedOpacity(double(0.8f), 2 * world.halfSize.x, 1), 1e-9);
+                vis::correctedOpacity(double(0.008f), 2 * world.halfSize.x, 1), 1e-9);
 }
 
 TEST_F(ShadowCube, BrushSelectsThePrismBehindTheFace) {
