@@ -6,6 +6,7 @@
 #include "app/data/packing_errors.h"
 #include "app/edits/layout_brushes.h"
 #include "app/edits/other_data.h"
+#include "app/session/own_functions.h"
 #include "app/session/shown_scene.h"
 #include "volume/base/error.h"
 #include "volume/system/own_path.h"
@@ -106,7 +107,9 @@ Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& in
         !layout.session.selection.brushes.empty())
         messages.emplace_back("the layout's brushes were made for other data and are left out: brush in a plot");
     Session session = sessionFromJson(result, {});
-    std::erase_if(session.transfer, [&](const auto& entry) { return !info.findChannel(entry.first); });
+    std::erase_if(session.transfer, [&](const auto& entry) {
+        return !info.findChannel(entry.first) && !ownFunction(session, entry.first);
+    });
     fitSession(session, info, messages);
     if (!own || data.settings != layout.session.data.settings)
         suitOtherData(session, info, layout.session.data, messages);

@@ -297,6 +297,20 @@ TEST_F(LayoutTest, WhatALayoutLosesIsTold) {
     EXPECT_THAT(messages, testing::Contains(testing::HasSubstr("colours of " + name)));
 }
 
+TEST_F(LayoutTest, FunctionsOfALayerOrFaceAloneAreTaken) {
+    SessionDocument layout = loadSession(findLayout("shadowcube"));
+    vis::TransferFunction far;
+    far.colormap = "gray";
+    layout.session.transfer["far"] = layout.session.transfer["nobody's"] = far;
+    std::get<ShadowCubeView>(layout.session.views.at("shadowCube")).back.transfer = "far";
+    layout.raw = toJson(layout.session);
+    const Opened opened = open(rawRequest(raw("a.raw")));
+    std::vector<std::string> messages;
+    const Session applied = applyLayout(layout, opened.source->info(), opened.document.session.data, messages);
+    EXPECT_TRUE(applied.transfer.contains("far") && applied.transfer.at("far") == far);
+    EXPECT_FALSE(applied.transfer.contains("nobody's"));
+}
+
 TEST_F(LayoutTest, DemonstrationsAreFew) {
     const std::vector<std::string> names = layoutNames();
     EXPECT_EQ(std::ranges::count_if(names, isDemonstration), 5);
