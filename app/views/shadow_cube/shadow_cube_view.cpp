@@ -254,6 +254,36 @@ void drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& ca
     }
 }
 
+/// Draws the object in the cube, turned with it or by itself.
+void drawObject(ViewContext& context, const std::string& pane, const CubeFrame& frame, ShadowCubeCache& cache,
+                bool moving) {
+    const Session& session = context.session;
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    vis::Scene scene = sceneWithLimits(context);
+    vis::Camera seen = frame.camera;
+    seen.orientation = session.camera.orientation;
+    scene.camera = seen;
+    scene.showGround = false;
+    scene.paper.reset();
+    if (!cache.target) cache.target = context.renderer.makeTarget();
+    vis::FrameRequest request;
+    request.size = {frame.size.x, frame.size.y};
+    request.moving = moving;
+    request.wait = context.headless;
+    scene.geometry = cache.surfaces.get(context, pane, moving);
+    for (vis::GeometryLayer& flow : cache.flows.get(context, pane)) scene.geometry.push_back(std::move(flow));
+    const vis::FrameStatus status = context.renderer.render(*cache.target, scene, request);
+    context.follow(status);
+    addPicture(draw, status.texture, frame.min, frame.max());
+    const SpaceFrame object = spaceFrame(frame.min, frame.max(), seen, frame.info.bounds, session.stretch);
+    if (context.decoration.outlines) drawSpaceBrushes(draw, object, session.selection);
+    const PlotColors colors = plotColors();
+    if (const auto at = object.pixel(session.cursor); at && context.decoration.cursor) {
+        draw.AddCircle(*at, em() * 0.35f, colors.backdrop, 20, 3);
+        draw.AddCircle(*at, em() * 0.35f, colors.cursor, 20, 1.5f);
+    }
+}
+
 /// Writes what the visible faces show, and keeps where. `taken`: where titles do not go.
 void drawTitles(const CubeFrame& frame, const std::vector<ShownFace>& faces, FaceMenu& menu, Rectangles taken) {
     for (const ShownFace& shown : faces) {
@@ -333,29 +363,7 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     const std::vector<LabelledEdge> axes = numbered ? cubeEdges(frame, taken) : std::vector<LabelledEdge>();
     drawWalls(context, frame, cache, view, faces, axes, moving);
 
-    vis::Scene scene = sceneWithLimits(context);
-    vis::Camera seen = frame.camera;
-    seen.orientation = session.camera.orientation;
-    scene.camera = seen;
-    scene.showGround = false;
-    scene.paper.reset();
-    if (!cache.target) cache.target = context.renderer.makeTarget();
-    vis::FrameRequest request;
-    request.size = {frame.size.x, frame.size.y};
-    request.moving = moving;
-    request.wait = context.headless;
-    scene.geometry = cache.surfaces.get(context, pane, moving);
-    for (vis::GeometryLayer& flow : cache.flows.get(context, pane)) scene.geometry.push_back(std::move(flow));
-    const vis::FrameStatus status = context.renderer.render(*cache.target, scene, request);
-    context.follow(status);
-    addPicture(draw, status.texture, frame.min, frame.max());
-    const SpaceFrame object = spaceFrame(frame.min, frame.max(), seen, info.bounds, session.stretch);
-    if (context.decoration.outlines) drawSpaceBrushes(draw, object, session.selection);
-    const PlotColors colors = plotColors();
-    if (const auto at = object.pixel(session.cursor); at && context.decoration.cursor) {
-        draw.AddCircle(*at, em() * 0.35f, colors.backdrop, 20, 3);
-        draw.AddCircle(*at, em() * 0.35f, colors.cursor, 20, 1.5f);
-    }
+    drawObject(context, pane, frame, cache, moving);
     if (explained) drawLegends(draw, legends, room, cache.legend);
     drawCubeAxes(draw, frame, axes, axisLabels(session, info), taken);
     cache.menu.titles = {};
