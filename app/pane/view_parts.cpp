@@ -192,6 +192,32 @@ LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, in
     return entry;
 }
 
+void measureShare(LegendEntry& entry) {
+    entry.unit = "%";
+    entry.range = entry.data = {0, 100};
+    entry.names.clear();
+}
+
+namespace {
+
+/// The legend of a volume layer with the colours of its own parameter.
+LegendEntry legendOfVolume(const vis::VolumeLayer& volume, LegendEntry entry) {
+    if (volume.style == vis::RayStyle::XRay) {
+        entry.title = "absorption by " + entry.title;
+        measureShare(entry);
+    } else if (volume.quantity == vis::Quantity::Gradient) {
+        const double top = double(entry.function.gradientTop) * (entry.range.hi - entry.range.lo);
+        entry.title = "change of " + entry.title + " over a cell";
+        entry.range = entry.data = {0, top};
+        entry.names.clear();
+    } else {
+        entry.regions = volume.style == vis::RayStyle::Composite && entry.function.kind == vis::TransferKind::Regions;
+    }
+    return entry;
+}
+
+} // namespace
+
 std::optional<FigureLegends> figureLegends(const ViewContext& context) {
     return context.figure ? std::optional(context.session.appearance.legends) : std::nullopt;
 }
@@ -221,11 +247,12 @@ std::vector<LegendEntry> sceneLegends(const Session& session, const volume::Data
             entry.title = "opacity by " + entry.title;
             entry.names.clear();
             if (seen.insert(entry.title + " " + layer.transfer).second) entries.push_back(entry);
-        } else if (seen.insert(name).second) {
-            const auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique);
-            entry.regions = volume && volume->style == vis::RayStyle::Composite &&
-                            entry.function.kind == vis::TransferKind::Regions;
-            entries.push_back(entry);
+        } else {
+            const std::string function = layer.transfer.empty() ? name : layer.transfer;
+            if (const auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique))
+                entry = legendOfVolume(*volume, std::move(entry));
+            const bool ofValues = entry.title == info.channel(*channel).name;
+            if (seen.insert(ofValues ? function : entry.title + " " + function).second) entries.push_back(entry);
         }
         // A surface's own function is that of its colours.
         const std::string function = iso && !layer.transfer.empty() ? layer.transfer : colorBy;

@@ -67,7 +67,12 @@ LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, in
 /// The form that legends in corners have in a figure; nothing in the window, where they suit the pane.
 std::optional<FigureLegends> figureLegends(const ViewContext& context);
 
-/// Legends of the visible layers, each channel once; of a layer that is coloured by another parameter both. Layers
+/// A bar whose colours are those of a share that is absorbed, 0 to 100 %, and not of a value.
+void measureShare(LegendEntry& entry);
+
+/// Legends of the visible layers, each channel once for each function that it is drawn with, and for shares that are
+/// absorbed and gradients (of which the bar shows the change over a cell, up to the function's gradientTop) apart; of a
+/// layer that is coloured by another parameter both. Layers
 /// drawn in charcoal or chalk, whose colours the picture does not show, have legends only with `drawings`.
 std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info, bool drawings = false);
 

@@ -64,6 +64,30 @@ TEST(LegendTest, IsOfTheFunctionsInUse) {
     EXPECT_EQ(legends[1].title, "T");
 }
 
+/// The colour of an X-ray is that of the share that is absorbed, and a gradient's that of a change: not of a value.
+TEST(LegendTest, ShowsWhatItsColoursMean) {
+    Session session;
+    session.transfer["T"].gradientTop = 0.25f;
+    session.transfer["T"].range = Range{2, 6};
+    session.transfer["own"].colormap = "magma";
+    vis::VolumeLayer plain{.channel = "T"}, xray = plain, steep = plain;
+    xray.style = vis::RayStyle::XRay;
+    steep.quantity = vis::Quantity::Gradient;
+    session.layers = {
+        {"", true, plain}, {"", true, xray}, {"", true, steep}, {"", true, plain}, {"", true, plain, "", "own"}};
+    EXPECT_EQ(
+        rows(session),
+        (Rows{titleWithUnit("T", "K") + ", colours", titleWithUnit("absorption by T", "%") + ", colours",
+              titleWithUnit("change of T over a cell", "K") + ", colours", titleWithUnit("T", "K") + ", colours"}))
+        << "once for each function";
+    const auto legends = sceneLegends(session, gasInfo());
+    EXPECT_EQ(legends.at(0).range, (Range{2, 6}));
+    EXPECT_EQ(legends.at(1).range, (Range{0, 100}));
+    EXPECT_EQ(legends.at(1).data, (Range{0, 100}));
+    EXPECT_EQ(legends.at(2).range, (Range{0, 1})) << "a quarter of the range over a cell";
+    EXPECT_EQ(legends.at(3).function, session.transfer["own"]);
+}
+
 TEST(LegendTest, OfAVolumeByRegionsShowsTheirColours) {
     Session session;
     session.transfer["T"].kind = vis::TransferKind::Regions;

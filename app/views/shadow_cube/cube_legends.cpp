@@ -73,11 +73,7 @@ std::vector<LegendEntry> faceLegends(const Session& session, const volume::Datas
         const auto count = std::ranges::count(bars, bar.channel, &FaceBar::channel);
         const bool share = bar.wall->kind == WallKind::XRay;
         if (count > 1 || share || !bar.wall->transfer.empty()) entry.title = bar.titles;
-        if (share) { // the colour is that of the share that is absorbed, not of a value
-            entry.unit = "%";
-            entry.range = entry.data = {0, 100};
-            entry.names.clear();
-        }
+        if (share) measureShare(entry);
         legends.push_back(std::move(entry));
     }
     return legends;
