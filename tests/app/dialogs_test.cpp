@@ -127,16 +127,14 @@ TEST_F(Dialogs, AQuestionForAFileHasItsTitle) {
     ImGui::GetIO().DisplaySize = {900, 700};
     FileQuestions others(jobs);
     others.startIn(folder.string());
+    others.askData("Compare with", [](const std::vector<std::string>&, const volume::ImportOptions&) {});
+    frames(4, [&] { others.draw(); });
+    for (const char* word : {"Compare with", "Units", "Names", "Lengths in"}) EXPECT_THAT(drawnWords(), Contains(word));
     others.askOpen("Open a colour map", [](const std::vector<std::string>&) {});
     frames(4, [&] { others.draw(); });
     EXPECT_THAT(drawnWords(), Contains("Open a colour map"));
     for (const char* field : {"Units", "Names", "Lengths in"})
         EXPECT_THAT(drawnWords(), Not(Contains(field))) << "nothing can be stated of it";
-    FileQuestions data(jobs);
-    data.startIn(folder.string());
-    data.askData("Compare with", [](const std::vector<std::string>&, const volume::ImportOptions&) {});
-    frames(4, [&] { data.draw(); });
-    for (const char* word : {"Compare with", "Units", "Names", "Lengths in"}) EXPECT_THAT(drawnWords(), Contains(word));
 }
 
 TEST_F(Dialogs, APreviewListsParametersOrSaysWhatIsWrongWhere) {

@@ -135,6 +135,7 @@ TEST(Curves, IntegralsAreInAUnitThatIsTheirs) {
     dataset.info.lengthUnit.clear();
     const Curves unstated = computeCurves(*makeMemorySource(dataset, {.lattice = LatticeKind::CC}), query);
     EXPECT_EQ(unstated.y[0].unit, "mol length3/m3") << "no unit of length is made up";
+    dataset.info.lengthUnit = "mm";
     // A degree of interest of one half everywhere is half of it.
     CurvesQuery half = query;
     half.doi = [](std::span<const float>, glm::dvec3) { return 0.5; };
