@@ -76,7 +76,8 @@ std::string parameterReference() {
         "# Settings\n\n"
         "Every setting of a session, written from the descriptions in the source. The key is the member's name in the\n"
         "session file and after `--set`; nested members are joined by a dot here and by a slash there\n"
-        "(`tessera render overview --set /render/step=0.25 -o out.png`).\n\n";
+        "(`tessera render overview --set /render/step=0.25 -o out.png`).\n"
+        "The units `length` and `time` are those that the data state.\n\n";
     out += markdownSection<Session>("Session", "The whole session; the sections below list its parts.");
     out += markdownSection<DataFile>("data.files", "A file of the data set.");
     out +=

@@ -6,6 +6,7 @@
 #include "codec/pack/pack.h"
 #include "codec/remote/remote_options.h"
 #include "vis/scene/scene.h"
+#include "volume/base/data_units.h"
 #include "volume/derived/derived.h"
 #include "volume/field/dataset.h"
 #include "volume/import/import.h"
@@ -177,8 +178,9 @@ struct Session {
         visit(self.schema, FieldInfo{.key = "schema", .unit = "", .doc = "Version of this format", .hidden = true});
         visit(self.title, FieldInfo{.key = "title", .unit = "", .doc = "What this session shows"});
         visit(self.data, FieldInfo{.key = "data", .unit = "", .doc = "The data set"});
-        visit(self.time, FieldInfo{.key = "time", .unit = "s", .doc = "Time shown in every view"});
-        visit(self.cursor, FieldInfo{.key = "cursor", .unit = "m", .doc = "Position of the linked cross-hair"});
+        visit(self.time, FieldInfo{.key = "time", .unit = kUnitOfTimes, .doc = "Time shown in every view"});
+        visit(self.cursor,
+              FieldInfo{.key = "cursor", .unit = kUnitOfLengths, .doc = "Position of the linked cross-hair"});
         visit(self.stretch, FieldInfo{.key = "stretch",
                                       .unit = "",
                                       .doc = "Factor by which each axis is stretched; 1 = true proportions",

@@ -3,6 +3,7 @@
 #include "app/session/contour_settings.h"
 #include "app/session/section_settings.h"
 #include "app/session/view_kind.h"
+#include "volume/base/data_units.h"
 #include "volume/base/describe.h"
 #include "volume/field/space_axis.h"
 
@@ -124,8 +125,9 @@ struct ProfileView {
                                    .doc = "Values along the line, at the cross-hair over time, along the line at every "
                                           "time as colours, or averages over planes",
                                    .names = kProfileOverNames});
-        visit(self.points,
-              FieldInfo{.key = "points", .unit = "m", .doc = "Corners of the line; empty: along the longest axis"});
+        visit(self.points, FieldInfo{.key = "points",
+                                     .unit = kUnitOfLengths,
+                                     .doc = "Corners of the line; empty: along the longest axis"});
         visit(self.samples,
               FieldInfo{
                   .key = "samples", .unit = "", .doc = "Number of points along the line", .range = Range{16, 4096}});

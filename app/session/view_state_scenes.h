@@ -4,6 +4,7 @@
 #include "app/session/view_kind.h"
 #include "vis/scene/camera.h"
 #include "vis/scene/layers.h"
+#include "volume/base/data_units.h"
 #include "volume/base/describe.h"
 
 #include <array>
@@ -62,8 +63,9 @@ struct VolumeView {
         visit(self.layers, FieldInfo{.key = "layers",
                                      .unit = "",
                                      .doc = "Layers of this view alone; none: those that all volume views share"});
-        visit(self.time,
-              FieldInfo{.key = "time", .unit = "s", .doc = "Time of this view alone; none: that of the session"});
+        visit(self.time, FieldInfo{.key = "time",
+                                   .unit = kUnitOfTimes,
+                                   .doc = "Time of this view alone; none: that of the session"});
         visit(self.multiple, FieldInfo{.key = "multiple",
                                        .unit = "",
                                        .doc = "One of small multiples, which give way to the next ones",

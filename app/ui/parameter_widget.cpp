@@ -3,6 +3,7 @@
 #include "app/described/key_words.h"
 #include "app/history/edit_titles.h"
 #include "app/history/parameter_path.h"
+#include "volume/base/data_units.h"
 
 #include <algorithm>
 #include <array>
@@ -64,7 +65,8 @@ void MemberToWidget::drawNumbers(const WidgetContext& context, Value value, Fiel
     } else if (value.type->numbers == 3 && value.type->single && info.key.ends_with("olor")) {
         changed |= drawColor(context, info, &static_cast<glm::vec3*>(value.at)->x);
     } else {
-        const LengthUnit length = info.unit == "m" ? dataLength(context) : LengthUnit{std::string(info.unit), 1};
+        const LengthUnit length =
+            info.unit == kUnitOfLengths ? dataLength(context) : LengthUnit{std::string(info.unit), 1};
         info.unit = length.name;
         changed |= drawNumberFields(context, info, {}, length.perUnit, value);
     }
@@ -73,6 +75,7 @@ void MemberToWidget::drawNumbers(const WidgetContext& context, Value value, Fiel
 void MemberToWidget::draw(const WidgetContext& context, Value value, const FieldInfo& field) const {
     FieldInfo info = field;
     if (!info.range && info.unit.empty() && scale) info.unit = unit;
+    if (info.unit == kUnitOfTimes) info.unit = context.info ? std::string_view(context.info->timeUnit) : "";
     switch (value.kind()) {
     case ValueKind::Flag: {
         bool on = value.number() != 0;

@@ -119,7 +119,7 @@ bool drawBool(const WidgetContext& context, const FieldInfo& info, bool& value) 
 }
 
 LengthUnit dataLength(const WidgetContext& context) {
-    if (!context.info) return {"m", 1};
+    if (!context.info) return {"", 1};
     const glm::dvec3 size = context.info->bounds.size();
     return suitableLength(context.info->lengthUnit, std::max({size.x, size.y, size.z}));
 }

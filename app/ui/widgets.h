@@ -37,7 +37,7 @@ struct WidgetContext {
 /// A label in the left column with the help as a tooltip; the next item fills the rest of the line.
 void drawLabel(const WidgetContext& context, std::string_view label, std::string_view help);
 
-/// The unit for a setting of unit "m", a place in the data or a length there: one in which the data are of handy size.
+/// The unit for a setting in kUnitOfLengths: one in which the data are of handy size; none where they state none.
 LengthUnit dataLength(const WidgetContext& context);
 
 /// The label of a setting: keyWords with a capital, "contextOpacity" -> "Context opacity".

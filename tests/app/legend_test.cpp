@@ -68,6 +68,7 @@ TEST(LegendTest, IsOfTheFunctionsInUse) {
 TEST(LegendTest, ShowsWhatItsColoursMean) {
     Session session;
     session.transfer["T"].gradientTop = 0.25f;
+    session.transfer["T"].autoRange = false;
     session.transfer["T"].range = Range{2, 6};
     session.transfer["own"].colormap = "magma";
     vis::VolumeLayer plain{.channel = "T"}, xray = plain, steep = plain;

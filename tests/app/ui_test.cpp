@@ -219,6 +219,38 @@ TEST_F(UiTest, ATypedNumberIsFinite) {
     }
 }
 
+/// Places and times have the unit that the data state, or none.
+TEST_F(UiTest, PlacesAndTimesHaveTheUnitsOfTheData) {
+    volume::DatasetInfo info;
+    info.bounds = {glm::dvec3(0), glm::dvec3(4)};
+    const auto texts = [&](const char* length, const char* time) {
+        info.lengthUnit = length;
+        info.timeUnit = time;
+        Session session;
+        session.layers = {{"one", true, vis::VolumeLayer{}}};
+        session.layers[0].timeShift = 1.5;
+        session.lenses = {vis::Lens{.name = "lens", .center = {1, 2, 3}}};
+        const auto body = [&] {
+            ImGui::SetNextWindowPos({0, 0});
+            ImGui::SetNextWindowSize({700, 200});
+            ImGui::Begin("test");
+            drawParameter(session, "/layers/0/timeShift", {.info = &info});
+            drawParameter(session, "/lenses/0/center", {.info = &info});
+            ImGui::End();
+        };
+        for (int i = 0; i < 3; ++i) frame(body);
+        std::string all;
+        for (const DrawnText& text : drawnTexts()) all += text.text + "\n";
+        return all;
+    };
+    const std::string stated = texts("cm", "h"), none = texts("", "");
+    EXPECT_NE(stated.find("1.50 h"), std::string::npos) << stated;
+    EXPECT_NE(stated.find("cm"), std::string::npos) << stated;
+    EXPECT_EQ(none.find("cm"), std::string::npos) << none;
+    for (const char* invented : {" m", " s", "[m]", "length", "time]"})
+        EXPECT_EQ(none.find(invented), std::string::npos) << invented << " in " << none;
+}
+
 TEST_F(UiTest, ADoubleClickTypesANumber) {
     const FieldInfo limited{.key = "gain", .unit = "", .doc = "", .range = Range{0, 1}};
     const FieldInfo free{.key = "place", .unit = "m", .doc = ""};

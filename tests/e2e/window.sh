@@ -72,7 +72,7 @@ if command -v python3 >/dev/null; then
     mark
     drop "$work/plain.raw"
     await 30 fresh || fail "a raw file dropped draws nothing"
-    xdotool mousemove 595 641 click 1
+    xdotool mousemove 595 611 click 1
     sleep 0.5
     xdotool type --delay 30 "dims=5x6x7,type=u8"
     sleep 1.5

@@ -3,6 +3,7 @@
 #include "vis/scene/brush_effect.h"
 #include "vis/scene/flow_layer.h"
 #include "vis/scene/look.h"
+#include "volume/base/data_units.h"
 #include "volume/base/describe.h"
 
 #include <glm/vec3.hpp>
@@ -218,7 +219,8 @@ struct Layer {
                         .doc = "Name of the transfer function of this layer alone; empty: that of its parameter",
                         .group = kOwn});
         visit(self.timeShift,
-              FieldInfo{.key = "timeShift", .unit = "s", .doc = "Time offset from the time shown", .group = kOwn});
+              FieldInfo{
+                  .key = "timeShift", .unit = kUnitOfTimes, .doc = "Time offset from the time shown", .group = kOwn});
         visit(self.brushes,
               FieldInfo{.key = "brushes",
                         .unit = "",

@@ -2,6 +2,7 @@
 
 #include "vis/scene/camera.h"
 #include "vis/scene/lens_shape.h"
+#include "volume/base/data_units.h"
 
 #include <algorithm>
 #include <glm/mat3x3.hpp>
@@ -53,8 +54,10 @@ struct Lens {
                             "none (replace); only what is inside is drawn (only); opacity is raised (enhance) or "
                             "lowered (suppress); the picture is magnified (magnify); brushes act inside only (focus)",
                         .names = kLensEffectNames});
-        visit(self.center,
-              FieldInfo{.key = "center", .unit = "m", .doc = "Centre of the lens", .applies = !self.followsCursor});
+        visit(self.center, FieldInfo{.key = "center",
+                                     .unit = kUnitOfLengths,
+                                     .doc = "Centre of the lens",
+                                     .applies = !self.followsCursor});
         visit(self.followsCursor,
               FieldInfo{.key = "followsCursor", .unit = "", .doc = "Follow the linked cross-hair", .group = kPlace});
         visit(self.followsPointer,

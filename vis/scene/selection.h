@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vis/scene/lens.h"
+#include "volume/base/data_units.h"
 #include "volume/base/describe.h"
 
 #include <functional>
@@ -91,8 +92,8 @@ struct SphereRegion {
     double soft = 0;
     bool operator==(const SphereRegion&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.center, FieldInfo{.key = "center", .unit = "m", .doc = "Centre of the ball"});
-        visit(self.radius, FieldInfo{.key = "radius", .unit = "m", .doc = "Radii along x, y, z"});
+        visit(self.center, FieldInfo{.key = "center", .unit = kUnitOfLengths, .doc = "Centre of the ball"});
+        visit(self.radius, FieldInfo{.key = "radius", .unit = kUnitOfLengths, .doc = "Radii along x, y, z"});
         visit(self.soft, kSoftShare);
     }
 };
@@ -103,8 +104,9 @@ struct BoxRegion {
     double soft = 0;
     bool operator==(const BoxRegion&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.center, FieldInfo{.key = "center", .unit = "m", .doc = "Centre of the box"});
-        visit(self.radius, FieldInfo{.key = "radius", .unit = "m", .doc = "Half edge lengths along x, y, z"});
+        visit(self.center, FieldInfo{.key = "center", .unit = kUnitOfLengths, .doc = "Centre of the box"});
+        visit(self.radius,
+              FieldInfo{.key = "radius", .unit = kUnitOfLengths, .doc = "Half edge lengths along x, y, z"});
         visit(self.soft, kSoftShare);
     }
 };
