@@ -243,12 +243,8 @@ TEST_F(UiTest, PlacesAndTimesHaveTheUnitsOfTheData) {
         for (const DrawnText& text : drawnTexts()) all += text.text + "\n";
         return all;
     };
-    const std::string stated = texts("cm", "h"), none = texts("", "");
-    EXPECT_NE(stated.find("1.50 h"), std::string::npos) << stated;
-    EXPECT_NE(stated.find("cm"), std::string::npos) << stated;
-    EXPECT_EQ(none.find("cm"), std::string::npos) << none;
-    for (const char* invented : {" m", " s", "[m]", "length", "time]"})
-        EXPECT_EQ(none.find(invented), std::string::npos) << invented << " in " << none;
+    EXPECT_EQ(texts("cm", "h"), "test\nTime shift\n1.5 h\nCenter\n1 cm\n2 cm\n3 cm\n");
+    EXPECT_EQ(texts("", ""), "test\nTime shift\n1.5\nCenter\n1\n2\n3\n");
 }
 
 TEST_F(UiTest, ADoubleClickTypesANumber) {
