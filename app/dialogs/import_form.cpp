@@ -193,7 +193,7 @@ void ImportForm::draw() {
     field("Absent", 31, 4, -FLT_MIN, "O2=region:0,3  T=nan", absent_);
     field("Units", 0, 7, em * 22, "O2=mol/m3  T=K (remembered)", units_);
     field("Names", 31, 4, -FLT_MIN, "O2.air=O2  wO2=O2", names_);
-    field("Lengths in", 0, 7, em * 22, "mm, where the file states no unit of length", lengths_);
+    field("Lengths in", 0, 7, em * 22, "mm, where the file states none (remembered)", lengths_);
     ImGui::Spacing();
     if (changed) readFields();
 }

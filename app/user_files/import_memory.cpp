@@ -114,6 +114,8 @@ ImportMemory loadImportMemory(const std::string& path) {
     if (document.is_discarded() || !document.is_object()) throw Error("is not a JSON object", path);
     if (const auto units = document.find("units"); units != document.end())
         memory.units = readTexts(*units, path, "/units");
+    if (const auto lengths = document.find("lengths"); lengths != document.end())
+        memory.lengths = readTexts(*lengths, path, "/lengths");
     if (const auto rename = document.find("rename"); rename != document.end()) {
         if (!rename->is_object()) throw Error("must be an object", path, "/rename");
         for (const auto& [data, names] : rename->items())
@@ -135,6 +137,7 @@ void saveImportMemory(const ImportMemory& memory, const std::string& path) {
     out["parts"] = memory.parts;
     out["labels"] = memory.labels;
     out["rename"] = memory.rename;
+    out["lengths"] = memory.lengths;
     AtomicFile file(path);
     file.write(out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
     file.commit();
@@ -143,6 +146,9 @@ void saveImportMemory(const ImportMemory& memory, const std::string& path) {
 volume::ImportOptions withMemory(volume::ImportOptions options, const ImportMemory& memory,
                                  const volume::DatasetInfo& info) {
     options.units.insert(memory.units.begin(), memory.units.end());
+    const auto length = memory.lengths.find(info.name);
+    if (options.lengthUnit.empty() && info.lengthUnit.empty() && length != memory.lengths.end())
+        options.lengthUnit = length->second;
     std::set<std::string> names;
     for (const volume::Parameter& parameter : info.parameters) names.insert(parameter.name);
     if (const auto known = memory.rename.find(info.name); known != memory.rename.end())
@@ -175,7 +181,7 @@ volume::ImportOptions recallOptions(const std::vector<std::string>& paths, const
 
 void rememberStated(const volume::ImportOptions& stated, const std::string& dataName, const std::string& path) {
     const bool isEmpty = stated.units.empty() && stated.absent.empty() && stated.parts.empty() &&
-                         stated.labels.empty() && stated.rename.empty();
+                         stated.labels.empty() && stated.rename.empty() && stated.lengthUnit.empty();
     if (path.empty() || isEmpty) return;
     try {
         ImportMemory memory = loadImportMemory(path);
@@ -206,6 +212,7 @@ void rememberLabels(const std::vector<std::string>& now, const std::vector<std::
 bool remember(ImportMemory& memory, const volume::ImportOptions& stated, const std::string& dataName) {
     const ImportMemory before = memory;
     for (const auto& [name, unit] : stated.units) memory.units[name] = unit;
+    if (!dataName.empty() && !stated.lengthUnit.empty()) memory.lengths[dataName] = stated.lengthUnit;
     if (!dataName.empty() && !stated.absent.empty())
         rememberRules(memory.absent[dataName], stated.absent, parameterOfAbsent);
     if (!dataName.empty() && !stated.parts.empty())

@@ -17,6 +17,7 @@ struct ImportMemory {
     std::map<std::string, std::vector<std::string>> parts;  ///< rules of ImportOptions::parts, the same way
     std::map<std::string, std::vector<std::string>> labels; ///< of ImportOptions::labels
     std::map<std::string, std::map<std::string, std::string>> rename;
+    std::map<std::string, std::string> lengths; ///< ImportOptions::lengthUnit by data name, for files that state none
     bool operator==(const ImportMemory&) const = default;
 };
 

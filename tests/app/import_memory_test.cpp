@@ -75,7 +75,7 @@ TEST_F(ImportMemoryFile, WhatIsStatedOnceIsKnownTheNextTime) {
 /// Everything that options change in the file written below.
 std::string effectOf(const std::string& path, const volume::ImportOptions& options) {
     const volume::Dataset data = volume::openFiles({path}, options);
-    std::string out;
+    std::string out = "lengths in " + data.info.lengthUnit + "\n";
     for (std::size_t p = 0; p < data.info.parameters.size(); ++p) {
         const volume::Parameter& parameter = data.info.parameters[p];
         out += parameter.name + " [" + parameter.unit + "]";
@@ -100,7 +100,7 @@ struct Statements {
     volume::ImportOptions once, later;
 };
 std::vector<Statements> everyKindOfStatement() {
-    std::vector<Statements> all(6);
+    std::vector<Statements> all(7);
     all[0].kind = "units", all[0].once.units = {{"T", "K"}}, all[0].later.units = {{"T", "degC"}};
     all[1].kind = "absent", all[1].once.absent = {"T=region:1"}, all[1].later.absent = {"T=3"};
     all[2].kind = "parts", all[2].once.parts = {"T=region:1|2"}, all[2].later.parts = {"T=region:1,2|3"};
@@ -109,6 +109,7 @@ std::vector<Statements> everyKindOfStatement() {
     all[5].kind = "of a renamed parameter";
     all[5].once.rename = {{"oxy", "O2"}}, all[5].once.units = {{"O2", "mol/m3"}}, all[5].once.absent = {"O2=4"};
     all[5].later.rename = {{"oxy", "oxygen"}}, all[5].later.absent = {"oxygen=5"};
+    all[6].kind = "lengths", all[6].once.lengthUnit = "cm", all[6].later.lengthUnit = "um";
     return all;
 }
 
@@ -151,6 +152,7 @@ TEST_F(ImportMemoryFile, EveryKindIsRecalledForTheFileAndOverriddenByWhatIsState
         more.units = {{"region", "1"}};
         volume::ImportOptions both = statements.later;
         both.units.insert(more.units.begin(), more.units.end());
+        both.lengthUnit = "mm";
         EXPECT_EQ(effectOf(file, recallOptions({file}, more)), effectOf(file, both));
         EXPECT_EQ(recallOptions({file}, more).lengthUnit, "mm");
     }
