@@ -208,7 +208,8 @@ LegendEntry legendOfVolume(const vis::VolumeLayer& volume, LegendEntry entry) {
     } else if (volume.quantity == vis::Quantity::Gradient) {
         const double top = double(entry.function.gradientTop) * (entry.range.hi - entry.range.lo);
         entry.title = "change of " + entry.title + " over a cell";
-        entry.range = entry.data = {0, top};
+        entry.range = {0, top};
+        entry.data = {0, entry.data.hi - entry.data.lo}; // what changes more has the last colour: an arrow head
         entry.names.clear();
     } else {
         entry.regions = volume.style == vis::RayStyle::Composite && entry.function.kind == vis::TransferKind::Regions;
@@ -242,7 +243,9 @@ std::vector<LegendEntry> sceneLegends(const Session& session, const volume::Data
             entry.value = iso->value;
             entries.push_back(entry);
         } else if (color) {
-            entry = legendOf(session, info, *channel, layer.transfer);
+            const auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique);
+            if (volume && volume->style != vis::RayStyle::XRay) entry = legendOfVolume(*volume, std::move(entry));
+            entry.regions = false;
             entry.opacity = true;
             entry.title = "opacity by " + entry.title;
             entry.names.clear();

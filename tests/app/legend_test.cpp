@@ -86,7 +86,11 @@ TEST(LegendTest, ShowsWhatItsColoursMean) {
     EXPECT_EQ(legends.at(1).range, (Range{0, 100}));
     EXPECT_EQ(legends.at(1).data, (Range{0, 100}));
     EXPECT_EQ(legends.at(2).range, (Range{0, 1})) << "a quarter of the range over a cell";
+    EXPECT_EQ(legends.at(2).data, (Range{0, 8})) << "more is possible";
     EXPECT_EQ(legends.at(3).function, session.transfer["own"]);
+    steep.colorBy = "O2";
+    session.layers = {{"", true, steep}};
+    EXPECT_EQ(rows(session).at(0), titleWithUnit("opacity by change of T over a cell", "K") + ", opacity");
 }
 
 TEST(LegendTest, OfAVolumeByRegionsShowsTheirColours) {
