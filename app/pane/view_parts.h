@@ -72,8 +72,8 @@ void measureShare(LegendEntry& entry);
 
 /// Legends of the visible layers, each channel once for each function that it is drawn with, and for shares that are
 /// absorbed and gradients (of which the bar shows the change over a cell, up to the function's gradientTop) apart; of a
-/// layer that is coloured by another parameter both. Layers
-/// drawn in charcoal or chalk, whose colours the picture does not show, have legends only with `drawings`.
+/// layer that is coloured by another parameter both. Layers drawn in charcoal or chalk, whose colours the picture does
+/// not show, have legends only with `drawings`.
 std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info, bool drawings = false);
 
 /// The scene of the session, with its share of the limits of memory.
