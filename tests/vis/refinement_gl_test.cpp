@@ -1,6 +1,6 @@
 #include "tests/vis/renderer_scenes.h"
 #include "vis/gl/driver.h"
-#include "vis/passes/view_target.h"
+#include "vis/view/view_target.h"
 
 #include <algorithm>
 #include <map>

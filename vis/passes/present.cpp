@@ -1,4 +1,4 @@
-#include "vis/passes/render_stages.h"
+#include "vis/passes/present.h"
 
 #include "vis/demand/box_lines.h"
 #include "vis/optics/context_blur.h"
@@ -34,11 +34,9 @@ ProgramRecipe resolveRecipe(const Scene& scene, bool lines, bool whole) {
              {"GROUND", flag(scene.showGround)}}};
 }
 
-} // namespace
-
 /// Sets all uniforms and textures of the presenting program, except its viewport.
-void RenderStages::setPresented(const Program& resolve, const ViewTarget& target, const Scene& scene,
-                                const BoxLines& lines, const RayBuffer& from) {
+void setPresented(RendererState& shared, const Program& resolve, const ViewTarget& target, const Scene& scene,
+                  const BoxLines& lines, const RayBuffer& from) {
     const std::optional<Paper> paper = paperOf(scene);
     const glm::vec2 used(from.used), whole(from.size), first(from.first);
     resolve.set("source", 0);
@@ -49,7 +47,7 @@ void RenderStages::setPresented(const Program& resolve, const ViewTarget& target
     if (isRough(paper)) {
         resolve.set("paper", glm::vec2(paper->tooth, kGrainTexels / double(paper->grain)));
         resolve.set("grainTile", RayUnits::kPaper);
-        glBindTextureUnit(GLuint(RayUnits::kPaper), tools.grain.get());
+        glBindTextureUnit(GLuint(RayUnits::kPaper), shared.tools.grain.get());
     }
     resolve.set("boxColor", glm::vec3(linearFromSrgb(glm::dvec3(scene.boxColor))));
     resolve.set("lineWidth", float(kBoxLineWidth));
@@ -65,66 +63,70 @@ void RenderStages::setPresented(const Program& resolve, const ViewTarget& target
     glBindTextureUnit(0, from.color.name());
 }
 
-BoxLines RenderStages::box(const ViewTarget& target, const Scene& scene) const {
-    if (!scene.showBox || !source) return {};
-    return boxLines(scene.camera, worldFrame(source->info().bounds, scene.stretch).halfSize, target.buffers.size);
+BoxLines boxOf(const RendererState& shared, const ViewTarget& target, const Scene& scene) {
+    if (!scene.showBox || !shared.source) return {};
+    return boxLines(scene.camera, worldFrame(shared.source->info().bounds, scene.stretch).halfSize,
+                    target.buffers.size);
 }
 
-void RenderStages::present(ViewTarget& target, const Scene& scene, const RayBuffer& from, const Tile& tile) {
-    const BoxLines lines = box(target, scene);
+} // namespace
+
+void postpone(RendererState& shared, ViewTarget& target, const Scene& scene) {
+    if (!target.state.presented()) showBlank(shared, target, scene);
+    target.state.setDone(PictureState::Done::Nothing);
+}
+
+void present(RendererState& shared, ViewTarget& target, const Scene& scene, const RayBuffer& from, const Tile& tile) {
+    const BoxLines lines = boxOf(shared, target, scene);
     const bool whole = from.first == glm::ivec2(0) && from.used == target.buffers.size;
-    const Program* resolve = tools.programs.find(resolveRecipe(scene, !lines.edges.empty(), whole));
+    const Program* resolve = shared.tools.programs.find(resolveRecipe(scene, !lines.edges.empty(), whole));
     if (!resolve) throw Error("the shader that presents pictures does not compile");
-    setPresented(*resolve, target, scene, lines, from);
+    setPresented(shared, *resolve, target, scene, lines, from);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.buffers.outputFramebuffer.name());
     glViewport(0, 0, target.buffers.size.x, target.buffers.size.y);
     glEnable(GL_SCISSOR_TEST);
     glScissor(tile.begin.x, tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
     glUseProgram(resolve->name());
-    glBindVertexArray(tools.vertices.name());
+    glBindVertexArray(shared.tools.vertices.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     target.state.setPresented(true);
 }
 
-/// Presents a tile of the first pass from what the processor has drawn of it: software GL takes several times as long.
-void RenderStages::presentPackets(ViewTarget& target, const Scene& scene, const Tile& tile) {
+void presentPackets(RendererState& shared, ViewTarget& target, const Scene& scene, const Tile& tile) {
     const std::vector<std::uint8_t> pixels =
-        presented(target.packets.picture, {tile.begin, tile.end}, scene, box(target, scene));
+        presented(target.packets.picture, {tile.begin, tile.end}, scene, boxOf(shared, target, scene));
     const glm::ivec2 extent = tile.end - tile.begin;
     glTextureSubImage2D(target.buffers.output.name(), 0, tile.begin.x, tile.begin.y, extent.x, extent.y, GL_RGBA,
                         GL_UNSIGNED_BYTE, pixels.data());
     target.state.setPresented(true);
 }
 
-/// Whether the programs that present the scene, whole and enlarged, are ready; starts their compilation otherwise.
-bool RenderStages::presentable(const ViewTarget& target, const Scene& scene) {
-    const BoxLines lines = box(target, scene);
+bool presentable(RendererState& shared, const ViewTarget& target, const Scene& scene) {
+    const BoxLines lines = boxOf(shared, target, scene);
     bool ready = true;
     for (const bool whole : {true, false}) {
         const ProgramRecipe recipe = resolveRecipe(scene, !lines.edges.empty(), whole);
-        const ProgramAnswer answer = tools.programs.request(recipe, 0);
+        const ProgramAnswer answer = shared.tools.programs.request(recipe, 0);
         if (answer.stage == ProgramStage::Linked) {
-            setPresented(*answer.program, target, scene, lines, target.buffers.full);
-            tools.programs.warmUp(recipe, target.buffers.outputFramebuffer);
+            setPresented(shared, *answer.program, target, scene, lines, target.buffers.full);
+            shared.tools.programs.warmUp(recipe, target.buffers.outputFramebuffer);
         }
-        // present() handles both
+        // present(shared, ) handles both
         ready = (answer.stage == ProgramStage::Ready || answer.stage == ProgramStage::Failed) && ready;
     }
     return ready;
 }
 
-/// Shows the background, and the box once that can be drawn, until the first picture is ready.
-void RenderStages::blank(ViewTarget& target, const Scene& scene) {
-    if (presentable(target, scene)) return nothing(target, scene);
+void showBlank(RendererState& shared, ViewTarget& target, const Scene& scene) {
+    if (presentable(shared, target, scene)) return showNothing(shared, target, scene);
     const glm::vec4 ground(groundColor(scene), scene.showGround ? 1 : 0);
     glDisable(GL_SCISSOR_TEST);
     glClearNamedFramebufferfv(target.buffers.outputFramebuffer.name(), GL_COLOR, 0, &ground.x);
 }
 
-/// Shows only the background: nothing is loaded, or the program does not compile.
-void RenderStages::nothing(ViewTarget& target, const Scene& scene) {
+void showNothing(RendererState& shared, ViewTarget& target, const Scene& scene) {
     target.buffers.full.clear();
-    present(target, scene, target.buffers.full, target.buffers.everything());
+    present(shared, target, scene, target.buffers.full, target.buffers.everything());
     target.state.setDone(PictureState::Done::Converged);
 }
 

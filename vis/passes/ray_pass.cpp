@@ -1,4 +1,4 @@
-#include "vis/passes/render_stages.h"
+#include "vis/passes/ray_pass.h"
 
 #include "vis/demand/lens_pixels.h"
 #include "vis/optics/jitter.h"
@@ -12,47 +12,24 @@
 
 namespace tessera::vis {
 
-/// The program variant for a bound plan.
-ProgramRecipe RenderStages::variant(const ViewTarget& target, const Scene& scene, const RayPlan& plan) const {
-    const TablesContent& tables = target.tables.content();
-    ProgramRecipe made = rayRecipe(plan, scene, source->grid(), tables.skip && !lensesBend(scene));
-    addDriver(made, tools.driver);
-    if (options.countSamples) made.defines.emplace_back("COUNT_SAMPLES", "1");
-    if (tables.adaptive && made.slots["skip"] == "slots/skip_distance.glsl") made.defines.emplace_back("ADAPTIVE", "1");
-    if (findsHidden(scene)) made.defines.emplace_back("REACH", "1");
-    return made;
-}
+namespace {
 
-/// Rasterises the geometry for a tile of the picture of a buffer, unless the target already has it. The
-/// reduced picture has the two nearest surfaces only.
-void RenderStages::geometry(ViewTarget& target, const RenderCall& call, const RayBuffer& rays, const Tile& tile,
-                            int pass) {
-    const int peels = peelsOf(call.scene);
-    if (peels == 0) return;
-    const glm::ivec2 whole = target.buffers.size, size = rays.used;
-    GeometryBuffer& buffer = target.geometry.buffer();
-    if (!target.geometry.shows(size, tile, pass)) {
-        buffer.resize(whole, peels);
-        tools.geometryPass.draw(buffer,
-                                {.scene = call.scene,
-                                 .info = call.info(),
-                                 .lenses = call.plan.lenses,
-                                 .size = size,
-                                 .first = rays.first,
-                                 .tile = tile,
-                                 .pictureSize = whole,
-                                 .most = &rays == &target.buffers.reduced ? std::min(peels, 2) : peels,
-                                 .lightUnit = rayUnits(call.plan).light,
-                                 .jitter = pixelJitter(pass)},
-                                tools.grain);
-        target.geometry.setShown(size, tile, pass);
-    }
-    glBindTextureUnit(GLuint(RayUnits::kGeometry), buffer.color.name());
-    glBindTextureUnit(GLuint(RayUnits::kGeometry) + 1, buffer.distance.name());
+/// Reads rasterised surfaces back, `extent` texels from `first` on.
+void readGeometry(const GeometryBuffer& buffer, glm::ivec2 first, glm::ivec2 extent, packet::PacketGeometry& out) {
+    out.peels = buffer.peels;
+    const std::size_t texels = std::size_t(extent.x) * std::size_t(extent.y) * std::size_t(out.peels);
+    out.distance.resize(texels * 2);
+    out.color.resize(texels * 4);
+    const auto read = [&](const Texture& texture, GLenum parts, std::vector<float>& to) {
+        glGetTextureSubImage(texture.name(), 0, first.x, first.y, 0, extent.x, extent.y, out.peels, parts, GL_FLOAT,
+                             GLsizei(to.size() * sizeof(float)), to.data());
+    };
+    read(buffer.distance, GL_RG, out.distance);
+    read(buffer.color, GL_RGBA, out.color);
 }
 
 /// Blends the proxy surfaces front to back into the cleared part of the buffer inside the scissor rectangle.
-void RenderStages::proxies(const Program& program, const RenderCall& call, const RayBuffer& buffer, double stepFactor) {
+void proxies(const Program& program, const RenderCall& call, const RayBuffer& buffer, double stepFactor) {
     const ProxySurfaces surfaces = proxySurfaces(call.scene, call.grid().lattice, call.frame(), stepFactor);
     program.set("proxyShells", surfaces.shells ? 1 : 0);
     program.set("proxyNormal", glm::vec3(surfaces.normal));
@@ -69,8 +46,64 @@ void RenderStages::proxies(const Program& program, const RenderCall& call, const
     glDisable(GL_BLEND);
 }
 
-/// Draws a tile with the rays of one pass.
-void RenderStages::rays(const RayPrograms& programs, const RenderCall& call, RayBuffer& buffer, const RayTile& what) {
+/// Draws a tile with the rays of one pass; replaces all but termination depths, which rays of the processor have not.
+void castPackets(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer, const RayTile& what) {
+    PacketView& packets = *programs.packets;
+    const Tile& tile = what.tile;
+    const glm::ivec2 at = buffer.first + tile.begin, extent = tile.end - tile.begin;
+    packet::PacketPicture& picture = packets.picture;
+    picture.begin(what.size, {tile.begin, tile.end}, what.pass == 0);
+    packets.geometry.peels = 0;
+    if (programs.geometry) readGeometry(*programs.geometry, at, extent, packets.geometry);
+    packets.renderer().draw(call.scene, what.pass, 1, what.stepFactor, picture, packets.geometry);
+    const auto store = [&](const Texture& texture, GLenum parts, const std::vector<float>& values) {
+        glTextureSubImage2D(texture.name(), 0, at.x, at.y, extent.x, extent.y, parts, GL_FLOAT, values.data());
+    };
+    store(buffer.color, GL_RGBA, picture.rgba);
+    if (!picture.pick.empty()) store(buffer.pick, GL_RED, picture.pick);
+}
+
+} // namespace
+
+ProgramRecipe rayVariant(const RendererState& shared, const ViewTarget& target, const Scene& scene,
+                         const RayPlan& plan) {
+    const TablesContent& tables = target.tables.content();
+    ProgramRecipe made = rayRecipe(plan, scene, shared.source->grid(), tables.skip && !lensesBend(scene));
+    addDriver(made, shared.tools.driver);
+    if (shared.options.countSamples) made.defines.emplace_back("COUNT_SAMPLES", "1");
+    if (tables.adaptive && made.slots["skip"] == "slots/skip_distance.glsl") made.defines.emplace_back("ADAPTIVE", "1");
+    if (findsHidden(shared, scene)) made.defines.emplace_back("REACH", "1");
+    return made;
+}
+
+void rasteriseGeometry(RendererState& shared, ViewTarget& target, const RenderCall& call, const RayBuffer& rays,
+                       const Tile& tile, int pass) {
+    const int peels = peelsOf(call.scene);
+    if (peels == 0) return;
+    const glm::ivec2 whole = target.buffers.size, size = rays.used;
+    GeometryBuffer& buffer = target.geometry.buffer();
+    if (!target.geometry.shows(size, tile, pass)) {
+        buffer.resize(whole, peels);
+        shared.tools.geometryPass.draw(buffer,
+                                       {.scene = call.scene,
+                                        .info = call.info(),
+                                        .lenses = call.plan.lenses,
+                                        .size = size,
+                                        .first = rays.first,
+                                        .tile = tile,
+                                        .pictureSize = whole,
+                                        .most = &rays == &target.buffers.reduced ? std::min(peels, 2) : peels,
+                                        .lightUnit = rayUnits(call.plan).light,
+                                        .jitter = pixelJitter(pass)},
+                                       shared.tools.grain);
+        target.geometry.setShown(size, tile, pass);
+    }
+    glBindTextureUnit(GLuint(RayUnits::kGeometry), buffer.color.name());
+    glBindTextureUnit(GLuint(RayUnits::kGeometry) + 1, buffer.distance.name());
+}
+
+void castRays(RendererState& shared, const RayPrograms& programs, const RenderCall& call, RayBuffer& buffer,
+              const RayTile& what) {
     const Scene& scene = call.scene;
     const glm::ivec2 size = what.size;
     const Tile& tile = what.tile;
@@ -112,7 +145,7 @@ void RenderStages::rays(const RayPrograms& programs, const RenderCall& call, Ray
     if (seen.empty()) return;
     within(seen.begin, seen.end);
     const std::vector<Tile> whole{seen};
-    glBindVertexArray(tools.vertices.name());
+    glBindVertexArray(shared.tools.vertices.name());
     const auto prepare = [&](const Program& program) {
         program.set("ndcScale", 2.0f / glm::vec2(size));
         program.set("ndcOffset",
@@ -139,18 +172,15 @@ void RenderStages::rays(const RayPrograms& programs, const RenderCall& call, Ray
     draw(remainder(whole.front(), *lensed));
 }
 
-/// Draws pass n > 0 of a supersampled frame into a second buffer and blends it into the first with weight 1 / (n + 1).
-/// (Blending in the ray-casting program itself would make software GL compile it again. Picking keeps the pixel
-/// centre's result.)
-void RenderStages::accumulate(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
-                              const RayTile& what) {
+void accumulate(RendererState& shared, ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
+                const RayTile& what) {
     const Tile& tile = what.tile;
     RayBuffer& beside = target.buffers.reduced;
-    const Program* average = tools.programs.find({"screen.vert.glsl", "accumulate.frag.glsl", {}, {}});
+    const Program* average = shared.tools.programs.find({"screen.vert.glsl", "accumulate.frag.glsl", {}, {}});
     if (!average) throw Error("the shader that averages passes does not compile");
     target.state.dropReduced();
     beside.first = {0, 0};
-    rays(programs, call, beside, what);
+    castRays(shared, programs, call, beside, what);
     average->set("source", 0);
     average->set("sourceTermination", 1);
     glBindTextureUnit(0, beside.color.name());
@@ -158,7 +188,7 @@ void RenderStages::accumulate(ViewTarget& target, const RenderCall& call, const 
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.buffers.full.framebuffer.name());
     glScissor(tile.begin.x, tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
     glUseProgram(average->name());
-    glBindVertexArray(tools.vertices.name()); // no ray was drawn for a tile outside the box
+    glBindVertexArray(shared.tools.vertices.name()); // no ray was drawn for a tile outside the box
     glEnablei(GL_BLEND, 0);
     glBlendColor(0, 0, 0, 1 / float(what.pass + 1));
     glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);

@@ -2,7 +2,9 @@
 
 #include "vis/demand/changed_pixels.h"
 #include "vis/image/turned_rows.h"
-#include "vis/passes/render_stages.h"
+#include "vis/passes/draw_scene.h"
+#include "vis/passes/packet_frame.h"
+#include "vis/passes/present.h"
 #include "vis/processor/processor_renderer.h"
 
 #include <algorithm>
@@ -54,14 +56,14 @@ RendererOptions quickestOptions(RendererOptions options) {
 
 Renderer::Renderer(const RendererOptions& options) {
     if (options.openGl)
-        stages_ = std::make_unique<RenderStages>(options, options.driver ? *options.driver : currentDriver());
+        state_ = std::make_unique<RendererState>(options, options.driver ? *options.driver : currentDriver());
     else
         processor_ = std::make_unique<ProcessorRenderer>(options);
 }
 Renderer::~Renderer() = default;
 
 std::unique_ptr<Renderer> Renderer::another() const {
-    return std::make_unique<Renderer>(processor_ ? processor_->options() : stages_->options);
+    return std::make_unique<Renderer>(processor_ ? processor_->options() : state_->options);
 }
 
 TexturesIn Renderer::textures() const {
@@ -70,19 +72,19 @@ TexturesIn Renderer::textures() const {
 
 void Renderer::setSource(std::shared_ptr<const volume::BrickSource> source, SameSamples same) {
     if (processor_) return processor_->setSource(std::move(source));
-    if (source == stages_->source) return;
-    stages_->formerSource = same.channels > 0 && same.times > 0 ? stages_->source.get() : nullptr;
-    stages_->source = source;
-    stages_->setVolumes();
-    stages_->residency.setSource(std::move(source), same);
+    if (source == state_->source) return;
+    state_->formerSource = same.channels > 0 && same.times > 0 ? state_->source.get() : nullptr;
+    state_->source = source;
+    makePacketVolumes(*state_);
+    state_->residency.setSource(std::move(source), same);
 }
 
 const volume::BrickSource* Renderer::source() const {
-    return processor_ ? processor_->source() : stages_->source.get();
+    return processor_ ? processor_->source() : state_->source.get();
 }
 
 ViewTargetPtr Renderer::makeTarget() {
-    return ViewTargetPtr(new ViewTarget(processor_ ? Driver{} : stages_->tools.driver));
+    return ViewTargetPtr(new ViewTarget(processor_ ? Driver{} : state_->tools.driver));
 }
 
 namespace {
@@ -128,22 +130,22 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     }
     const SavedState saved;
     status.complete = true;
-    const bool fits = stages_->resize(target, request);
+    const bool fits = resizeTarget(*state_, target, request);
     status.texture = target.buffers.output.name();
     if (!fits) return status;
     if (!liesAtCursor(scene)) target.shown.scene.cursor = scene.cursor;
-    if (target.shown.source != stages_->source.get()) target.hidden.forgetData();
-    if (stages_->source) {
-        stages_->beginFrame(target, scene, request);
-        const int most = mostFields(stages_->tools.driver.fragmentSamplers, scene, stages_->residency.bricked());
-        RayPlan plan = planRays(scene, stages_->source->info(), most);
-        const RenderCall call{scene, request, *stages_->source, plan};
-        if (!stages_->chooseEngine(target, call, status) || !stages_->drawByPackets(target, call, start, status))
-            stages_->drawAll(target, call, start, status);
+    if (target.shown.source != state_->source.get()) target.hidden.forgetData();
+    if (state_->source) {
+        beginFrame(*state_, target, scene, request);
+        const int most = mostFields(state_->tools.driver.fragmentSamplers, scene, state_->residency.bricked());
+        RayPlan plan = planRays(scene, state_->source->info(), most);
+        const RenderCall call{scene, request, *state_->source, plan};
+        if (!chooseEngine(*state_, target, call, status) || !drawByPackets(*state_, target, call, start, status))
+            drawAll(*state_, target, call, start, status);
     } else {
-        stages_->show(target, scene, 0);
+        showScene(*state_, target, scene, 0);
         target.shown.compiling = false;
-        if (!target.state.full()) stages_->nothing(target, scene);
+        if (!target.state.full()) showNothing(*state_, target, scene);
     }
     status.complete = status.complete && target.state.converged();
     status.current = status.complete || target.state.changed().empty();
@@ -153,7 +155,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     if (target.meanwhile) status.engine = byProcessor(target.packets.full.instructions());
     if (request.wait) target.pace().collect(true);
     status.milliseconds = target.pace().pass();
-    if (hasVolumes(scene)) stages_->engine = status.engine;
+    if (hasVolumes(scene)) state_->engine = status.engine;
     return status;
 }
 
@@ -165,7 +167,7 @@ std::optional<Pick> Renderer::pick(ViewTarget& target, glm::ivec2 pixel) {
     const PictureBuffers& buffers = target.buffers;
     const PictureState& state = target.state;
     const glm::ivec2 place(pixel.x, buffers.size.y - 1 - pixel.y);
-    if (!target.shown.started || !stages_->source || !buffers.everything().holds(place)) return std::nullopt;
+    if (!target.shown.started || !state_->source || !buffers.everything().holds(place)) return std::nullopt;
     const bool full = state.full() || (state.presented() && !state.stale().holds(place));
     const bool half = state.half() && state.half()->holds(place);
     if (!full && !half && !(state.reduced() && state.reduced()->holds(place))) return std::nullopt;
@@ -180,7 +182,7 @@ std::optional<Pick> Renderer::pick(ViewTarget& target, glm::ivec2 pixel) {
                          &distance);
     if (std::abs(distance) > 1e8f) return std::nullopt;
     const Ray ray = cameraRay(target.shown.scene.camera, size.x / size.y, at / size * 2.0 - 1.0);
-    const WorldFrame frame = worldFrame(stages_->source->info().bounds, target.shown.scene.stretch);
+    const WorldFrame frame = worldFrame(state_->source->info().bounds, target.shown.scene.stretch);
     return Pick{frame.toPhysical(ray.origin + ray.direction * double(distance))};
 }
 
@@ -209,19 +211,19 @@ std::vector<std::uint8_t> Renderer::readPixels(ViewTarget& target, glm::ivec2& s
 }
 
 const EngineUse& Renderer::engine() const {
-    return processor_ ? alone_ : stages_->engine;
+    return processor_ ? alone_ : state_->engine;
 }
 
 ResidencyInfo Renderer::residency() const {
-    return processor_ ? ResidencyInfo{} : stages_->residency.info();
+    return processor_ ? ResidencyInfo{} : state_->residency.info();
 }
 
 std::vector<std::string> Renderer::takeMessages() {
     if (processor_) return processor_->takeMessages();
-    std::vector<std::string> all = stages_->tools.programs.takeMessages();
-    for (std::string& message : stages_->residency.takeMessages()) all.push_back(std::move(message));
-    for (std::string& message : std::exchange(stages_->tools.messages, {})) all.push_back(std::move(message));
-    for (std::string& message : stages_->tools.brushes.takeMessages()) all.push_back(std::move(message));
+    std::vector<std::string> all = state_->tools.programs.takeMessages();
+    for (std::string& message : state_->residency.takeMessages()) all.push_back(std::move(message));
+    for (std::string& message : std::exchange(state_->tools.messages, {})) all.push_back(std::move(message));
+    for (std::string& message : state_->tools.brushes.takeMessages()) all.push_back(std::move(message));
     return all;
 }
 

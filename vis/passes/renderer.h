@@ -1,8 +1,8 @@
 #pragma once
 
 #include "vis/bricks/residency_options.h"
-#include "vis/passes/frame_request.h"
 #include "vis/scene/scene.h"
+#include "vis/view/frame_request.h"
 #include "volume/bricks/brick_source.h"
 
 #include <chrono>
@@ -33,7 +33,7 @@ struct ViewTargetDeleter {
 };
 using ViewTargetPtr = std::unique_ptr<ViewTarget, ViewTargetDeleter>;
 
-struct RenderStages;
+struct RendererState;
 class ProcessorRenderer;
 
 class Renderer {
@@ -72,7 +72,7 @@ public:
     std::vector<std::string> takeMessages();
 
 private:
-    std::unique_ptr<RenderStages> stages_;         ///< null: without OpenGL
+    std::unique_ptr<RendererState> state_;         ///< null: without OpenGL
     std::unique_ptr<ProcessorRenderer> processor_; ///< instead of these
     EngineUse alone_;                              ///< of its last picture
 };

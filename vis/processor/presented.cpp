@@ -1,8 +1,8 @@
 #include "vis/processor/presented.h"
 
-#include "vis/optics/context_blur.h"
 #include "vis/optics/grain.h"
 #include "vis/processor/present_rows.h"
+#include "vis/raycast/brush_uniforms.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>

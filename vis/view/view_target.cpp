@@ -1,4 +1,4 @@
-#include "vis/passes/view_target.h"
+#include "vis/view/view_target.h"
 
 #include <utility>
 

@@ -2,8 +2,8 @@
 
 #include "vis/demand/hidden_bricks.h"
 #include "vis/demand/termination_reader.h"
-#include "vis/passes/picture.h"
-#include "vis/passes/render_tools.h"
+#include "vis/view/picture.h"
+#include "vis/view/render_tools.h"
 
 namespace tessera::vis {
 

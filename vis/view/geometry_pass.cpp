@@ -1,4 +1,4 @@
-#include "vis/passes/geometry_pass.h"
+#include "vis/view/geometry_pass.h"
 
 #include "vis/optics/ray_setup.h"
 #include "vis/raycast/clip_uniforms.h"

@@ -1,4 +1,4 @@
-#include "vis/passes/pace.h"
+#include "vis/view/pace.h"
 
 #include <algorithm>
 #include <iterator>

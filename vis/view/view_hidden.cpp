@@ -1,4 +1,4 @@
-#include "vis/passes/view_hidden.h"
+#include "vis/view/view_hidden.h"
 
 #include "volume/base/error.h"
 

@@ -1,4 +1,4 @@
-#include "vis/passes/view_demand.h"
+#include "vis/view/view_demand.h"
 
 #include "volume/field/time_pair.h"
 

@@ -2,8 +2,8 @@
 
 #include "vis/gl/driver.h"
 #include "vis/gl/program_cache.h"
-#include "vis/passes/frame_request.h"
-#include "vis/passes/geometry_pass.h"
+#include "vis/view/frame_request.h"
+#include "vis/view/geometry_pass.h"
 #include "vis/raycast/brush_uniforms.h"
 #include "vis/raycast/clock.h"
 #include "vis/raycast/look_uniforms.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vis/packed/packed_light.h"
-#include "vis/passes/render_tools.h"
+#include "vis/view/render_tools.h"
 #include "vis/raycast/light_baker.h"
 #include "vis/raycast/light_uniforms.h"
 

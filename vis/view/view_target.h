@@ -2,12 +2,12 @@
 
 #include "vis/demand/picture_contrast.h"
 #include "vis/packet/packet_renderer.h"
-#include "vis/passes/pace.h"
-#include "vis/passes/picture.h"
-#include "vis/passes/view_demand.h"
-#include "vis/passes/view_hidden.h"
-#include "vis/passes/view_light.h"
-#include "vis/passes/view_tables.h"
+#include "vis/view/pace.h"
+#include "vis/view/picture.h"
+#include "vis/view/view_demand.h"
+#include "vis/view/view_hidden.h"
+#include "vis/view/view_light.h"
+#include "vis/view/view_tables.h"
 #include "vis/processor/processor_picture.h"
 
 namespace tessera::vis {

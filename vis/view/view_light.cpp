@@ -1,4 +1,4 @@
-#include "vis/passes/view_light.h"
+#include "vis/view/view_light.h"
 
 #include "vis/raycast/ray_uniforms.h"
 

@@ -1,4 +1,4 @@
-#include "vis/passes/view_tables.h"
+#include "vis/view/view_tables.h"
 
 #include "vis/raycast/block_steps.h"
 #include "vis/raycast/lens_uniforms.h"

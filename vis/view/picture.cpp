@@ -1,4 +1,4 @@
-#include "vis/passes/picture.h"
+#include "vis/view/picture.h"
 
 namespace tessera::vis {
 

@@ -2,7 +2,7 @@
 
 #include "vis/bricks/channel_load.h"
 #include "vis/demand/covered_pixels.h"
-#include "vis/passes/render_tools.h"
+#include "vis/view/render_tools.h"
 #include "vis/raycast/ray_uniforms.h"
 #include "volume/base/cached.h"
 

@@ -3,7 +3,7 @@
 #include "vis/bricks/residency.h"
 #include "vis/demand/choose_bricks.h"
 #include "vis/demand/hidden_bricks.h"
-#include "vis/passes/render_tools.h"
+#include "vis/view/render_tools.h"
 #include "volume/base/cached.h"
 
 namespace tessera::vis {
