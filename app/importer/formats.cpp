@@ -1,8 +1,8 @@
 #include "app/importer/formats.h"
 
+#include "app/importer/readers/check_file.h"
 #include "app/importer/readers/foam_units.h"
 #include "app/importer/readers/read_files.h"
-#include "app/importer/readers/whole_file.h"
 #include "volume/base/unit_conversion.h"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 
 #include "app/importer/even_grid.h"
 #include "app/importer/formats.h"
+#include "app/importer/readers/check_file.h"
 #include "app/importer/readers/vtk_messages.h"
-#include "app/importer/readers/whole_file.h"
 #include "volume/import/files/formats.h"
 
 #include <algorithm>

@@ -25,11 +25,11 @@ struct TabEvent {
 
 class Drawing {
 public:
-    Drawing(DockTree& tree_, DockHand& hand_, const DockPanes& panes_, float scale_)
+    Drawing(DockTree& tree_, DockController& hand_, const DockPanes& panes_, float scale_)
         : tree(tree_), hand(hand_), panes(panes_), scale(scale_), strip(std::round(ImGui::GetFontSize() * 1.75f)) {}
 
     DockTree& tree;
-    DockHand& hand;
+    DockController& hand;
     const DockPanes& panes;
     float scale, strip;
     TabEvent event;
@@ -132,7 +132,7 @@ public:
 
 /// Applies a tab's request, after everything is drawn.
 void apply(DockTree& tree, const TabEvent& event, const DockLayout& layout, const DockRect& whole,
-           const DockPanes& panes, DockHand& hand) {
+           const DockPanes& panes, DockController& hand) {
     switch (event.kind) {
     case TabEvent::None:
         break;
@@ -169,7 +169,7 @@ void apply(DockTree& tree, const TabEvent& event, const DockLayout& layout, cons
     }
 }
 
-void drawSplitters(DockLayout& layout, DockTree& tree, DockHand& hand, const DockRect& whole) {
+void drawSplitters(DockLayout& layout, DockTree& tree, DockController& hand, const DockRect& whole) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     bool moved = false;
     for (const DockSplitter& splitter : layout.splitters) {
@@ -268,7 +268,7 @@ void beginDockWindow(const DockRect& whole) {
 
 /// Moves the tab that the mouse drags, if any, and shows where it would go; nullopt: nowhere.
 std::optional<DockDrop> dragTab(Drawing& drawing, const DockLayout& layout, const DockRect& whole) {
-    DockHand& hand = drawing.hand;
+    DockController& hand = drawing.hand;
     const float scale = drawing.scale;
     if (hand.dragged.empty()) return std::nullopt;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -293,7 +293,7 @@ std::optional<DockDrop> dragTab(Drawing& drawing, const DockLayout& layout, cons
 
 } // namespace
 
-void drawDock(DockTree& tree, DockHand& hand, const DockPanes& panes, ImVec2 origin, ImVec2 size, float scale,
+void drawDock(DockTree& tree, DockController& hand, const DockPanes& panes, ImVec2 origin, ImVec2 size, float scale,
               bool bare) {
     const DockRect whole{origin, {origin.x + size.x, origin.y + size.y}};
     Drawing drawing(tree, hand, panes, scale);

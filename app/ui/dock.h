@@ -22,7 +22,7 @@ struct DockPanes {
 };
 
 /// State of a drag in the dock. Not part of the session.
-struct DockHand {
+struct DockController {
     std::string dragged; ///< pane whose tab is held, "" = none
     bool moving = false; ///< the tab has been pulled far enough to count as dragged
     ImVec2 grabbed{0, 0};
@@ -32,7 +32,7 @@ struct DockHand {
 };
 
 /// Draws the tree into the rectangle; edits the tree. `bare` shows the maximised pane alone, without its strip.
-void drawDock(DockTree& tree, DockHand& hand, const DockPanes& panes, ImVec2 origin, ImVec2 size, float scale,
+void drawDock(DockTree& tree, DockController& hand, const DockPanes& panes, ImVec2 origin, ImVec2 size, float scale,
               bool bare = false);
 
 } // namespace tessera::app

@@ -30,12 +30,12 @@ struct HeldField {
 };
 
 /// One field; there is one mouse.
-struct Hand {
+struct NumberUnderMouse {
     ClickedField clicked;
     HeldField held;
 };
-Hand& hand() {
-    static Hand one;
+NumberUnderMouse& numberUnderMouse() {
+    static NumberUnderMouse one;
     return one;
 }
 
@@ -61,7 +61,7 @@ void drawText(const std::string& format, double value) {
 
 bool numberField(const char* id, double& value, const NumberStyle& style) {
     ImGuiIO& io = ImGui::GetIO();
-    auto& [clicked, held] = hand();
+    auto& [clicked, held] = numberUnderMouse();
     const ImGuiID self = ImGui::GetID(id);
     const double before = value;
     const float width = ImGui::CalcItemWidth();

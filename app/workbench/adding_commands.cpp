@@ -3,7 +3,7 @@
 #include "app/pane/view_parts.h"
 #include "app/session/shown_scene.h"
 #include "app/tools/brush_list.h"
-#include "app/tools/camera_hand.h"
+#include "app/tools/camera_controller.h"
 #include "app/tools/lens_list.h"
 #include "app/tools/oblique_tilt.h"
 #include "app/views/data/layer_list.h"

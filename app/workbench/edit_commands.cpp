@@ -3,7 +3,7 @@
 #include "app/session/shown_scene.h"
 #include "app/ui/keys.h"
 #include "app/views/data/derived_list.h"
-#include "app/workbench/whole_box.h"
+#include "app/workbench/fit_box.h"
 #include "app/workbench/workbench.h"
 #include "app/workbench/workbench_commands.h"
 #include "volume/base/error.h"

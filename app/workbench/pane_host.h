@@ -69,7 +69,7 @@ private:
 
     Caches caches_;
     std::map<std::string, ViewExport> exports_; ///< by pane, headless
-    DockHand hand_;
+    DockController hand_;
     std::string focused_, hovered_;
     std::string lastSpace_;              ///< the view of the scene used last
     std::set<std::string> drawn_, last_; ///< panes of the frame being drawn, and of the last

@@ -3,7 +3,7 @@
 #include "app/edits/scene_task.h"
 #include "app/pane/view_parts.h"
 #include "app/session/shown_scene.h"
-#include "app/tools/camera_hand.h"
+#include "app/tools/camera_controller.h"
 #include "app/workbench/workbench.h"
 #include "app/workbench/workbench_commands.h"
 

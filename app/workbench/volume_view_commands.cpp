@@ -4,7 +4,7 @@
 #include "app/session/shown_scene.h"
 #include "app/ui/dock_layout.h"
 #include "app/ui/time_text.h"
-#include "app/workbench/whole_box.h"
+#include "app/workbench/fit_box.h"
 #include "app/workbench/workbench.h"
 #include "app/workbench/workbench_commands.h"
 

@@ -1,7 +1,7 @@
 #include "app/workbench/workbench.h"
 
+#include "app/workbench/fit_box.h"
 #include "app/workbench/status_bar.h"
-#include "app/workbench/whole_box.h"
 #include "app/workbench/workbench_commands.h"
 #include "codec/remote/address.h"
 #include "volume/base/background.h"

@@ -1,6 +1,6 @@
 #include "app/drawing/drawing.h"
 #include "app/user_files/import_memory.h"
-#include "app/workbench/whole_box.h"
+#include "app/workbench/fit_box.h"
 #include "app/workbench/workbench.h"
 #include "codec/remote/address.h"
 #include "volume/base/error.h"

@@ -49,7 +49,7 @@ const std::set<std::string> kElsewhere = {
     "One view per parameter", // Multiples.ShowEachParameterAndUndoRestoresTheDock
     "One view per time",      // Multiples.ShowTimesWithOneLegend
     "Play",                   // tests/app/views_playback_test.cpp, and below for its state
-    "Look from the front",    // WorkbenchMenus.CameraCommandsActOnAVolume, tests/app/camera_hand_gl_test.cpp
+    "Look from the front",    // WorkbenchMenus.CameraCommandsActOnAVolume, tests/app/camera_controller_gl_test.cpp
     "Look from the right",
     "Look from the top",
     "Look isometric",

@@ -40,7 +40,7 @@ protected:
         step(2);
     }
     DockTree tree;
-    DockHand hand;
+    DockController hand;
     DockPanes panes;
     std::set<std::string> drawn;
 };

@@ -1,6 +1,6 @@
 #include "app/pane/axes3d.h"
 #include "app/pane/oblique_plane.h"
-#include "app/tools/camera_hand.h"
+#include "app/tools/camera_controller.h"
 #include "app/views/slices/flat_slice.h"
 #include "tests/app/hands_fixture.h"
 #include "vis/optics/surface_light.h"

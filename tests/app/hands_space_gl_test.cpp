@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-/// The mouse in views of space: volume, shadow cube, comparisons. The camera's own hand: camera_hand_gl_test.cpp.
+/// The mouse in views of space: volume, shadow cube, comparisons. The camera's own hand: camera_controller_gl_test.cpp.
 namespace tessera::app {
 namespace {
 

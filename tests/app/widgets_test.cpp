@@ -162,7 +162,7 @@ TEST_F(Widgets, AFloatingPaneStaysWhereItIsPut) {
     DockTree tree;
     repair(tree, {"a", "b"});
     floatPane(tree, "b", {"b", 0.25f, 0.25f, 0.5f, 0.5f});
-    DockHand hand;
+    DockController hand;
     DockPanes panes;
     ImVec2 at, size, padding;
     panes.title = [](const std::string& pane) { return "pane " + pane; };
@@ -205,7 +205,7 @@ TEST_F(Widgets, AFloatingPaneStaysWhereItIsPut) {
 TEST_F(Widgets, PanesAreClosedMaximisedFloatedAndDockedByTheirTitles) {
     DockTree tree;
     repair(tree, {"a", "b", "c"});
-    DockHand hand;
+    DockController hand;
     DockPanes panes;
     std::vector<std::string> closed;
     panes.title = [](const std::string& pane) { return "pane " + pane; };

@@ -1,5 +1,5 @@
 #include "app/data/apply_layout.h"
-#include "app/workbench/whole_box.h"
+#include "app/workbench/fit_box.h"
 #include "app/workbench/workbench_commands.h"
 #include "tests/app/drawn_text.h"
 #include "workbench_fixture.h"

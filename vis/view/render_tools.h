@@ -2,12 +2,12 @@
 
 #include "vis/gl/driver.h"
 #include "vis/gl/program_cache.h"
-#include "vis/view/frame_request.h"
-#include "vis/view/geometry_pass.h"
 #include "vis/raycast/brush_uniforms.h"
 #include "vis/raycast/clock.h"
 #include "vis/raycast/look_uniforms.h"
 #include "vis/raycast/ray_plan.h"
+#include "vis/view/frame_request.h"
+#include "vis/view/geometry_pass.h"
 
 /// Parameters of the stages of a picture.
 namespace tessera::vis {

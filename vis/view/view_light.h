@@ -1,9 +1,9 @@
 #pragma once
 
 #include "vis/packed/packed_light.h"
-#include "vis/view/render_tools.h"
 #include "vis/raycast/light_baker.h"
 #include "vis/raycast/light_uniforms.h"
+#include "vis/view/render_tools.h"
 
 namespace tessera::vis {
 

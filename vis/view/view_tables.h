@@ -2,8 +2,8 @@
 
 #include "vis/bricks/channel_load.h"
 #include "vis/demand/covered_pixels.h"
-#include "vis/view/render_tools.h"
 #include "vis/raycast/ray_uniforms.h"
+#include "vis/view/render_tools.h"
 #include "volume/base/cached.h"
 
 namespace tessera::vis {

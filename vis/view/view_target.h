@@ -2,13 +2,13 @@
 
 #include "vis/demand/picture_contrast.h"
 #include "vis/packet/packet_renderer.h"
+#include "vis/processor/processor_picture.h"
 #include "vis/view/pace.h"
 #include "vis/view/picture.h"
 #include "vis/view/view_demand.h"
 #include "vis/view/view_hidden.h"
 #include "vis/view/view_light.h"
 #include "vis/view/view_tables.h"
-#include "vis/processor/processor_picture.h"
 
 namespace tessera::vis {
 

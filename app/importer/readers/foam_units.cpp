@@ -1,6 +1,6 @@
 #include "app/importer/readers/foam_units.h"
 
-#include "app/importer/readers/whole_file.h"
+#include "app/importer/readers/check_file.h"
 
 #include <algorithm>
 #include <array>

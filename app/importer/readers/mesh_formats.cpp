@@ -1,6 +1,6 @@
 // Mesh formats read by VTK, with their solution files.
+#include "app/importer/readers/check_file.h"
 #include "app/importer/readers/read_files.h"
-#include "app/importer/readers/whole_file.h"
 #include "volume/base/unit_conversion.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // DICOM: uncompressed images; the files of a series are slices, ordered by position.
+#include "app/importer/readers/check_file.h"
 #include "app/importer/readers/read_files.h"
-#include "app/importer/readers/whole_file.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // NRRD by VTK's reader, except for samples stored as text: VTK does not read those in the same file as the header, and
 // leaves the memory uninitialised.
+#include "app/importer/readers/check_file.h"
 #include "app/importer/readers/read_files.h"
 #include "app/importer/readers/vtk_messages.h"
-#include "app/importer/readers/whole_file.h"
 #include "volume/import/files/nrrd.h"
 
 #include <cctype>

@@ -1,7 +1,7 @@
 // NumPy: .npy, and .npz, a zip file of them.
 #include "app/importer/readers/array_file.h"
+#include "app/importer/readers/check_file.h"
 #include "app/importer/readers/read_files.h"
-#include "app/importer/readers/whole_file.h"
 
 #include <algorithm>
 #include <cstdint>

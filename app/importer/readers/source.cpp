@@ -1,6 +1,6 @@
 #include "app/importer/readers/source.h"
 
-#include "app/importer/readers/whole_file.h"
+#include "app/importer/readers/check_file.h"
 #include "volume/base/trimmed.h"
 #include "volume/base/unit_conversion.h"
 

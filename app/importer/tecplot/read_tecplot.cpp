@@ -1,7 +1,7 @@
 // Tecplot ASCII: zones of points in order, structured or of finite elements, values of points or cells. Not read by
 // VTK, whose reader fills truncated files with 0 and ignores times.
+#include "app/importer/readers/check_file.h"
 #include "app/importer/readers/read_files.h"
-#include "app/importer/readers/whole_file.h"
 #include "app/importer/tecplot/tecplot_zones.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Binary Tecplot (.plt): a header with the names of variables and zones, then the numbers of each zone. Follows
 // Tecplot's Data Format Guide, "Binary Data File Format"; differences between versions follow the comments of the TecIO
 // library. Opening walks through the layout of the whole file, so that a truncated one is refused at once.
-#include "app/importer/readers/whole_file.h"
+#include "app/importer/readers/check_file.h"
 #include "app/importer/tecplot/tecplot_bytes.h"
 #include "app/importer/tecplot/tecplot_zones.h"
 #include "volume/base/trimmed.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/importer/readers/whole_file.h"
+#include "app/importer/readers/check_file.h"
 
 #include <algorithm>
 #include <bit>

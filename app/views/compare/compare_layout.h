@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/pane/legend.h"
-#include "app/tools/camera_hand.h"
+#include "app/tools/camera_controller.h"
 #include "app/views/compare/compare_pictures.h"
 
 /// Where the pictures of a comparison and their legends are; no legend covers a picture.

@@ -5,15 +5,15 @@
 #include "app/pane/figure.h"
 #include "app/pane/view_parts.h"
 #include "app/tools/brush_list.h"
-#include "app/tools/camera_hand.h"
+#include "app/tools/camera_controller.h"
 #include "app/ui/keys.h"
 #include "app/ui/ticks.h"
+#include "app/views/compare/compare_areas.h"
 #include "app/views/compare/compare_layout.h"
 #include "app/views/compare/compare_menu.h"
 #include "app/views/compare/compare_offers.h"
 #include "app/views/compare/compare_panes.h"
 #include "app/views/compare/compare_questions.h"
-#include "app/views/compare/compare_room.h"
 #include "app/views/compare/compare_table.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ namespace {
 struct CompareCache : ViewCache {
     int renderers() const override { return pictures.renderers(); }
     ComparePictures pictures;
-    std::vector<CameraHand> hands;
+    std::vector<CameraController> hands;
     CompareMenuState menu;
     std::vector<CompareRow> rows;
     QuestionClock questions;
@@ -72,7 +72,7 @@ bool picture(const Frame& frame, std::size_t index, const PictureBox& box, bool 
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                                ImGuiButtonFlags_MouseButtonRight);
     const vis::WorldFrame world = vis::worldFrame(frame.context.source->info().bounds, frame.context.session.stretch);
-    CameraHand& hand = cache.hands[index];
+    CameraController& hand = cache.hands[index];
     hand.blocked = blocked;
     vis::ViewTarget* target = nullptr;
     const auto& cells = cache.pictures.cells();
@@ -349,8 +349,8 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
 
     const ImVec2 room = ImGui::GetContentRegionAvail(), at = ImGui::GetCursorScreenPos();
     const bool bare = context.decoration == Decoration::preset("none");
-    const CompareRooms rooms = compareRooms(view, count, room, context.figure, bare);
-    const ImVec2 area = rooms.pictures;
+    const CompareAreas areas = compareAreas(view, count, room, context.figure, bare);
+    const ImVec2 area = areas.pictures;
     if (area.x < 24 || area.y < 24) return;
     const CompareMode mode = modeOf(view);
     const bool grid = mode == CompareMode::Grid || mode == CompareMode::Difference;
@@ -370,12 +370,12 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
     // What was found while drawing, such as the range of other data, is in the next frame's legends.
     if (context.decoration.legend && legendsOf(frame, shown) != legends) context.busy = true;
     cache.rows = cache.pictures.rows(context, frame.reference);
-    if (rooms.table > 0) {
+    if (areas.table > 0) {
         ImGui::SetCursorScreenPos({at.x, at.y + area.y});
         drawCompareTable(view, cache.rows, context.figure);
     }
     if (context.figure) return;
-    ImGui::SetCursorScreenPos({at.x, at.y + area.y + rooms.table});
+    ImGui::SetCursorScreenPos({at.x, at.y + area.y + areas.table});
     std::vector<std::string> names;
     for (std::size_t i = 0; i < count; ++i) names.push_back(nameOf(frame, i));
     drawQuestions(context, view, cache.questions, names);

@@ -33,12 +33,12 @@ struct ObliqueCache : ViewCache {
 };
 
 /// Where picture and numbers lie; numbers without extent where there is no room.
-struct ObliqueRooms {
+struct ObliqueLayout {
     ImVec2 picture, pictureEnd, numbers, numbersEnd;
 };
 
 /// Numbers beside the picture or below it, whichever leaves the larger picture. `aspect`: width of the plane by height.
-ObliqueRooms roomsOf(ImVec2 min, ImVec2 room, double aspect, bool numbers) {
+ObliqueLayout layoutOf(ImVec2 min, ImVec2 room, double aspect, bool numbers) {
     const ImVec2 max{min.x + room.x, min.y + room.y};
     const bool aside = room.x >= em() * 16, tall = room.y >= em() * 14 && room.x >= em() * 10;
     if (!numbers || !(aside || tall)) return {min, max, max, max};
@@ -92,10 +92,10 @@ void drawTools(ViewContext& context, ToolRow& tools, ObliqueView& view, const Fl
 }
 
 /// The largest picture with the proportions of the plane in the stretched box; nothing where there is no room.
-std::optional<PlotFrame> placePicture(const ObliqueRooms& rooms, const FlatSlice& flat, bool axes) {
+std::optional<PlotFrame> placePicture(const ObliqueLayout& layout, const FlatSlice& flat, bool axes) {
     const glm::dvec2 unit = flat.perUnit();
     const Range x{flat.x.lo * unit.x, flat.x.hi * unit.x}, y{flat.y.lo * unit.y, flat.y.hi * unit.y};
-    ImVec2 lo{rooms.picture.x, rooms.picture.y + em() * (axes ? kTitleAbove : 1.35f)}, hi = rooms.pictureEnd;
+    ImVec2 lo{layout.picture.x, layout.picture.y + em() * (axes ? kTitleAbove : 1.35f)}, hi = layout.pictureEnd;
     if (axes) {
         lo.x += axisRoom(AxisSide::Left, y, false);
         hi = {hi.x - em() * 0.8f, hi.y - axisRoom(AxisSide::Bottom, x, false)};
@@ -175,7 +175,7 @@ void drawPicture(ViewContext& context, vis::ViewTargetPtr& target, const Oblique
 
 /// Where the plane lies above the picture, its axes, the edge of the data, contour lines with values, the outlines of
 /// lenses and brushes, and the cross-hair.
-void drawOver(ViewContext& context, ObliqueCache& cache, const std::string& pane, const ObliqueRooms& rooms,
+void drawOver(ViewContext& context, ObliqueCache& cache, const std::string& pane, const ObliqueLayout& layout,
               const ObliqueView& view, const DrawnContours& lines, const FlatSlice& flat, const PlotFrame& plot,
               bool axes) {
     const Decoration& shown = context.decoration;
@@ -184,19 +184,19 @@ void drawOver(ViewContext& context, ObliqueCache& cache, const std::string& pane
     const glm::dvec2 unit = flat.perUnit();
     if (shown.title) {
         const std::string whole = placeText(flat, context.source->info());
-        const float room = rooms.pictureEnd.x - rooms.picture.x - em() * 4;
+        const float room = layout.pictureEnd.x - layout.picture.x - em() * 4;
         const std::string text = firstThatFits({whole, whole.substr(whole.find(" at ") + 4)}, room);
         const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-        const float least = rooms.picture.x + em() * 4; // the title of the vertical axis stands before it
-        const ImVec2 at{std::round(std::max(plot.max.x - size.x, least)), rooms.picture.y};
+        const float least = layout.picture.x + em() * 4; // the title of the vertical axis stands before it
+        const ImVec2 at{std::round(std::max(plot.max.x - size.x, least)), layout.picture.y};
         draw.AddText(at, colors.text, text.c_str());
         tellWhole(at, {at.x + size.x, at.y + size.y}, whole, text);
     }
     if (shown.axes && axes) {
-        drawAxis(draw, plot, AxisSide::Bottom, flat.nameX, flat.unitX.name, rooms.picture.x,
-                 std::min(rooms.pictureEnd.x, plot.max.x + em() * 4), {.inlineTitle = true});
-        drawAxis(draw, plot, AxisSide::Left, flat.nameY, flat.unitY.name, rooms.picture.y, rooms.pictureEnd.y,
-                 {.inlineTitle = true, .room = plot.min.x - rooms.picture.x});
+        drawAxis(draw, plot, AxisSide::Bottom, flat.nameX, flat.unitX.name, layout.picture.x,
+                 std::min(layout.pictureEnd.x, plot.max.x + em() * 4), {.inlineTitle = true});
+        drawAxis(draw, plot, AxisSide::Left, flat.nameY, flat.unitY.name, layout.picture.y, layout.pictureEnd.y,
+                 {.inlineTitle = true, .room = plot.min.x - layout.picture.x});
     }
     draw.PushClipRect(plot.min, plot.max, true);
     const auto pixel = [&](glm::dvec3 place) {
@@ -271,18 +271,18 @@ void drawObliqueView(ViewContext& context, const std::string& pane, ObliqueView&
     const DrawnContours lines = drawnContours(context.session, info, view.lines, *channel);
     const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 6)};
     const double aspect = (flat.x.hi - flat.x.lo) * flat.axes.scale.x / ((flat.y.hi - flat.y.lo) * flat.axes.scale.y);
-    ObliqueRooms rooms = roomsOf(ImGui::GetCursorScreenPos(), room, aspect, true);
+    ObliqueLayout layout = layoutOf(ImGui::GetCursorScreenPos(), room, aspect, true);
     const bool axes = context.figure || (room.x > em() * 12 && room.y > em() * 9);
-    if (const auto plot = placePicture(rooms, flat, axes)) {
+    if (const auto plot = placePicture(layout, flat, axes)) {
         useMouse(context, cache, view, flat, *plot);
         drawPicture(context, cache.target, view, flat, info.channel(*channel).name, *plot);
-        drawOver(context, cache, pane, rooms, view, lines, flat, *plot, axes);
-        if (rooms.numbers.y < plot->max.y) rooms.numbers.x = std::min(rooms.numbers.x, plot->max.x + em() * 4);
+        drawOver(context, cache, pane, layout, view, lines, flat, *plot, axes);
+        if (layout.numbers.y < plot->max.y) layout.numbers.x = std::min(layout.numbers.x, plot->max.x + em() * 4);
     }
-    if (rooms.numbersEnd.x - rooms.numbers.x < em() || rooms.numbersEnd.y - rooms.numbers.y < em()) return;
-    ImGui::SetCursorScreenPos(rooms.numbers);
-    ImGui::BeginChild("readout", {rooms.numbersEnd.x - rooms.numbers.x, rooms.numbersEnd.y - rooms.numbers.y}, false,
-                      context.figure ? ImGuiWindowFlags_NoScrollbar : ImGuiWindowFlags_None);
+    if (layout.numbersEnd.x - layout.numbers.x < em() || layout.numbersEnd.y - layout.numbers.y < em()) return;
+    ImGui::SetCursorScreenPos(layout.numbers);
+    ImGui::BeginChild("readout", {layout.numbersEnd.x - layout.numbers.x, layout.numbersEnd.y - layout.numbers.y},
+                      false, context.figure ? ImGuiWindowFlags_NoScrollbar : ImGuiWindowFlags_None);
     drawNumbersOf(context, view, readout, lines, flat, *channel);
     ImGui::EndChild();
 }

@@ -43,19 +43,19 @@ struct PlaneFrame {
     glm::ivec2 pixels{0};
 };
 
-PlaneFrame planeFrame(const Session& session, const volume::DatasetInfo& info, int index, const SliceRooms& rooms) {
-    const auto& [min, max] = rooms.planes[static_cast<std::size_t>(index)];
-    const SliceAxes& axes = rooms.turned[static_cast<std::size_t>(index)];
+PlaneFrame planeFrame(const Session& session, const volume::DatasetInfo& info, int index, const SliceLayout& layout) {
+    const auto& [min, max] = layout.planes[static_cast<std::size_t>(index)];
+    const SliceAxes& axes = layout.turned[static_cast<std::size_t>(index)];
     const AxisLabels labels = axisLabels(session, info);
     PlaneFrame frame;
     frame.axes = axes;
     frame.right = labels[std::size_t(axes.right)], frame.up = labels[std::size_t(axes.up)];
     frame.normal = labels[std::size_t(axes.normal)];
     frame.min = min, frame.max = max;
-    frame.numbered = rooms.axes;
-    frame.beside = rooms.beside[static_cast<std::size_t>(index)];
-    frame.shared = rooms.shared[static_cast<std::size_t>(index)];
-    frame.least = leastPicture(rooms, em());
+    frame.numbered = layout.axes;
+    frame.beside = layout.beside[static_cast<std::size_t>(index)];
+    frame.shared = layout.shared[static_cast<std::size_t>(index)];
+    frame.least = leastPicture(layout, em());
     frame.perUnit = {frame.right.unit.perUnit, frame.up.unit.perUnit};
     const auto range = [&](int axis, const LengthUnit& unit) {
         return Range{info.bounds.lo[axis] * unit.perUnit, info.bounds.hi[axis] * unit.perUnit};
@@ -63,12 +63,12 @@ PlaneFrame planeFrame(const Session& session, const volume::DatasetInfo& info, i
     frame.rangeX = range(axes.right, frame.right.unit), frame.rangeY = range(axes.up, frame.up.unit);
     // Slices below each other begin at the same pixel, whatever their numbers. Where their place stands at the right,
     // the title of the vertical axis stands upright at the left: nothing is above them.
-    for (const SliceAxes& each : rooms.turned) {
+    for (const SliceAxes& each : layout.turned) {
         const AxisLabel& label = labels[std::size_t(each.up)];
         frame.left = std::max(frame.left, axisRoom(AxisSide::Left, range(each.up, label.unit), frame.beside));
     }
     const float bottom = axisRoom(AxisSide::Bottom, frame.rangeX, false);
-    const SliceMargins around = sliceMargins(rooms, index, frame.left / em(), bottom / em());
+    const SliceMargins around = sliceMargins(layout, index, frame.left / em(), bottom / em());
     frame.lo = {min.x + around.left * em(), min.y + around.top * em()};
     frame.hi = {max.x - around.right * em(), max.y - around.bottom * em()};
     return frame;
@@ -244,14 +244,15 @@ void drawOverPlane(ViewContext& context, SlicePlanes& planes, const std::string&
 } // namespace
 
 void drawSlicePlane(ViewContext& context, SlicePlanes& planes, const std::string& pane, const SlicesView& view,
-                    const std::string& channel, const DrawnContours& lines, int index, const SliceRooms& rooms) {
+                    const std::string& channel, const DrawnContours& lines, int index, const SliceLayout& layout) {
     const volume::DatasetInfo& info = context.source->info();
     const vis::WorldFrame world = vis::worldFrame(info.bounds, context.session.stretch);
-    PlaneFrame frame = planeFrame(context.session, info, index, rooms);
+    PlaneFrame frame = planeFrame(context.session, info, index, layout);
     double scale = planeScale(frame, world);
     for (int other = 0; other < 3; ++other) // those that share an axis have one scale
-        if (rooms.order == SliceOrder::Rows && rooms.turned[static_cast<std::size_t>(other)].right == frame.axes.right)
-            if (const double its = planeScale(planeFrame(context.session, info, other, rooms), world); its > 0)
+        if (layout.order == SliceOrder::Rows &&
+            layout.turned[static_cast<std::size_t>(other)].right == frame.axes.right)
+            if (const double its = planeScale(planeFrame(context.session, info, other, layout), world); its > 0)
                 scale = std::min(scale, its);
     const bool placed = placePlane(frame, world, scale);
     if (context.decoration.title && (placed || !frame.beside)) drawPlaneTitle(frame, context.session, info);

@@ -5,7 +5,7 @@
 #include "app/tools/space_handles.h"
 #include "app/views/slices/contour_data.h"
 #include "app/views/slices/contour_lines.h"
-#include "app/views/slices/slice_rooms.h"
+#include "app/views/slices/slice_layout.h"
 
 #include <array>
 #include <string>
@@ -25,6 +25,6 @@ struct SlicePlanes {
 /// Draws plane `index` of kSlicePlanes in its room of the pane, and lets the mouse move cross-hair, lenses and handles
 /// in it.
 void drawSlicePlane(ViewContext& context, SlicePlanes& planes, const std::string& pane, const SlicesView& view,
-                    const std::string& channel, const DrawnContours& lines, int index, const SliceRooms& rooms);
+                    const std::string& channel, const DrawnContours& lines, int index, const SliceLayout& layout);
 
 } // namespace tessera::app

@@ -3,8 +3,8 @@
 #include "app/queries/readout.h"
 #include "app/ui/widgets.h"
 #include "app/views/slices/slice_figure.h"
+#include "app/views/slices/slice_layout.h"
 #include "app/views/slices/slice_plane.h"
-#include "app/views/slices/slice_rooms.h"
 
 #include <algorithm>
 #include <cmath>
@@ -75,9 +75,9 @@ void drawSliceLegend(const ViewContext& context, const SlicesView& view, const R
 
 /// Legend and read-out in the room that the three slices leave, or the read-out in one of its own.
 void drawNumbers(ViewContext& context, const SlicesView& view, const Readout& values, int channel,
-                 const DrawnContours& lines, const SliceRooms& rooms) {
+                 const DrawnContours& lines, const SliceLayout& layout) {
     const bool readout = view.showReadout && context.decoration.cursor;
-    const auto within = [&](const char* id, const SliceRoom& room, const auto& body) {
+    const auto within = [&](const char* id, const SliceArea& room, const auto& body) {
         const ImVec2 size = room.size();
         if (size.x < em() || size.y < em()) return;
         ImGui::SetCursorScreenPos(room.min);
@@ -86,8 +86,8 @@ void drawNumbers(ViewContext& context, const SlicesView& view, const Readout& va
         ImGui::EndChild();
     };
     const auto legend = [&] { drawSliceLegend(context, view, values, channel, lines); };
-    const bool apart = rooms.values.size().x > 0;
-    within("legend", rooms.numbers, [&](float room) {
+    const bool apart = layout.values.size().x > 0;
+    within("legend", layout.numbers, [&](float room) {
         if (!readout || apart) return legend();
         const std::string note = contourNote(context.source->info(), view.lines, lines);
         const float left = room - legendBarHeight() - em() * 0.3f - ImGui::GetStyle().ItemSpacing.y -
@@ -101,11 +101,11 @@ void drawNumbers(ViewContext& context, const SlicesView& view, const Readout& va
         const bool any = left >= ImGui::GetTextLineHeight();
         if (any) drawRunningReadout(context, values, left);
         if (!context.figure) legend();
-        const ImVec2 max = rooms.numbers.max;
-        if (!any) tellWhole(rooms.numbers.min, max, readoutText(context, values), "");
+        const ImVec2 max = layout.numbers.max;
+        if (!any) tellWhole(layout.numbers.min, max, readoutText(context, values), "");
     });
     if (readout && apart)
-        within("values", rooms.values, [&](float room) { drawRunningReadout(context, values, room); });
+        within("values", layout.values, [&](float room) { drawRunningReadout(context, values, room); });
 }
 
 } // namespace
@@ -132,11 +132,11 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     drawStretch(context);
 
     const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 6)};
-    const SliceRooms rooms =
-        sliceRooms(ImGui::GetCursorScreenPos(), room, vis::worldFrame(info.bounds, context.session.stretch).halfSize,
-                   em(), context.figure);
-    for (int i = 0; i < 3; ++i) drawSlicePlane(context, cache.planes, pane, view, name, lines, i, rooms);
-    drawNumbers(context, view, readout, *channel, lines, rooms);
+    const SliceLayout layout =
+        sliceLayout(ImGui::GetCursorScreenPos(), room, vis::worldFrame(info.bounds, context.session.stretch).halfSize,
+                    em(), context.figure);
+    for (int i = 0; i < 3; ++i) drawSlicePlane(context, cache.planes, pane, view, name, lines, i, layout);
+    drawNumbers(context, view, readout, *channel, lines, layout);
 }
 
 } // namespace tessera::app

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/pane/view_context.h"
-#include "app/tools/camera_hand.h"
+#include "app/tools/camera_controller.h"
 
 #include <optional>
 

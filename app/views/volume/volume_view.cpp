@@ -6,7 +6,7 @@
 #include "app/queries/scene_query.h"
 #include "app/session/shown_scene.h"
 #include "app/tools/brush_list.h"
-#include "app/tools/camera_hand.h"
+#include "app/tools/camera_controller.h"
 #include "app/tools/lens_edit.h"
 #include "app/tools/lens_list.h"
 #include "app/tools/lens_outline.h"
@@ -28,7 +28,7 @@ namespace {
 struct VolumeCache : ViewCache {
     vis::ViewTargetPtr target;
     AsyncScene scene;
-    CameraHand hand;
+    CameraController hand;
     LensDrag lens;
     HandleDrag handles;
     // Where they stay while something moves.

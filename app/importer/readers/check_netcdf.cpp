@@ -1,5 +1,5 @@
 // NetCDF's classic library silently reads zeros beyond the end of a file, so truncated ones are found here.
-#include "app/importer/readers/whole_file.h"
+#include "app/importer/readers/check_file.h"
 
 #include <algorithm>
 #include <cstdint>

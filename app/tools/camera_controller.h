@@ -11,7 +11,7 @@ namespace tessera::app {
 enum class CameraDrag { None, Orbit, Pan, Zoom, Roll };
 
 /// Mouse state of a picture between frames.
-struct CameraHand {
+struct CameraController {
     CameraDrag drag = CameraDrag::None;
     ImVec2 last{0, 0};    ///< mouse of the former frame
     bool blocked = false; ///< another object under the mouse takes it: no drag begins
@@ -38,7 +38,7 @@ void focusOn(vis::Camera& camera, glm::dvec3 place);
 
 /// Turns mouse and keys over the picture into camera, cursor and menu; the picture's InvisibleButton is the last item.
 /// `target`: what was drawn there last, for picking; may be null. Returns true while something moves.
-bool handleMouse(ViewContext& context, CameraHand& hand, vis::ViewTarget* target, const PictureBox& picture,
+bool handleMouse(ViewContext& context, CameraController& hand, vis::ViewTarget* target, const PictureBox& picture,
                  const vis::WorldFrame& world, const char* menu);
 
 } // namespace tessera::app

@@ -1,4 +1,4 @@
-#include "app/views/slices/slice_rooms.h"
+#include "app/views/slices/slice_layout.h"
 
 #include "app/pane/plot.h"
 
@@ -45,7 +45,7 @@ float split(double first, double second, float room, float around, double least)
     return std::round(around + plots * static_cast<float>(std::clamp(share, least, 1 - least)));
 }
 
-SliceRooms quarters(ImVec2 min, ImVec2 room, glm::dvec3 half, float em) {
+SliceLayout quarters(ImVec2 min, ImVec2 room, glm::dvec3 half, float em) {
     const ImVec2 max{min.x + room.x, min.y + room.y};
     const float columns = split(half.x, half.z, room.x, em * 3.2f, 0.3);
     // The head lines of both columns need some room.
@@ -59,8 +59,8 @@ SliceRooms quarters(ImVec2 min, ImVec2 room, glm::dvec3 half, float em) {
 }
 
 /// Beside each other, as wide as they are high together; in a wide pane with the numbers at the end.
-SliceRooms inRow(ImVec2 min, ImVec2 room, glm::dvec3 half, float em) {
-    SliceRooms out{.order = SliceOrder::Row, .planes = {}, .numbers = {}};
+SliceLayout inRow(ImVec2 min, ImVec2 room, glm::dvec3 half, float em) {
+    SliceLayout out{.order = SliceOrder::Row, .planes = {}, .numbers = {}};
     const ImVec2 max{min.x + room.x, min.y + room.y};
     const float gap = em * 0.6f;
     const float numbers = room.x < kNumbers * em ? 0 : std::clamp(room.x * 0.25f, em * 8, em * 14);
@@ -80,8 +80,8 @@ SliceRooms inRow(ImVec2 min, ImVec2 room, glm::dvec3 half, float em) {
     return out;
 }
 
-SliceRooms inColumn(ImVec2 min, ImVec2 room, float em) {
-    SliceRooms out{.order = SliceOrder::Column, .planes = {}, .numbers = {}};
+SliceLayout inColumn(ImVec2 min, ImVec2 room, float em) {
+    SliceLayout out{.order = SliceOrder::Column, .planes = {}, .numbers = {}};
     const float gap = em * 0.4f, height = std::floor((room.y - 2 * gap) / 3);
     for (std::size_t i = 0; i < 3; ++i) {
         const float y = min.y + (height + gap) * static_cast<float>(i);
@@ -90,7 +90,7 @@ SliceRooms inColumn(ImVec2 min, ImVec2 room, float em) {
     return out;
 }
 
-/// Heights of the rooms of two slices below each other that share an axis, with `around` pixels above each picture and
+/// Heights of the layout of two slices below each other that share an axis, with `around` pixels above each picture and
 /// those of the axis below the last. `heights`: those of their pictures where they take the whole width; less where
 /// these have no room.
 std::array<float, 2> rowHeights(std::array<double, 2> heights, float around, float axis, float room) {
@@ -105,11 +105,11 @@ std::array<float, 2> rowHeights(std::array<double, 2> heights, float around, flo
 /// The slices along the longest edge, which all have to the right, below each other, beside the one across it with the
 /// numbers below. What the slices leave of their column is the room of values. Nothing where there is no room for two
 /// columns.
-std::optional<SliceRooms> inRows(ImVec2 min, ImVec2 room, glm::dvec3 half, float em, bool beside, bool axes) {
+std::optional<SliceLayout> inRows(ImVec2 min, ImVec2 room, glm::dvec3 half, float em, bool beside, bool axes) {
     const int longest = longestEdge(half);
     const float gap = em * 0.5f, column = std::clamp(room.x * 0.3f, em * 8, em * 16);
     if (room.x < column + em * 12 || room.y < em * 7) return std::nullopt;
-    SliceRooms out{.order = SliceOrder::Rows, .planes = {}, .numbers = {}, .values = {}, .axes = axes};
+    SliceLayout out{.order = SliceOrder::Rows, .planes = {}, .numbers = {}, .values = {}, .axes = axes};
     const ImVec2 max{min.x + room.x, min.y + room.y};
     const double scale = (room.x - column - gap - (beside ? kPlaceBeside : 0) * em) / half[longest];
     std::array<double, 2> heights{};
@@ -139,10 +139,10 @@ std::optional<SliceRooms> inRows(ImVec2 min, ImVec2 room, glm::dvec3 half, float
 }
 
 /// The same upright: beside each other, above the slice across and the numbers.
-std::optional<SliceRooms> inColumns(ImVec2 min, ImVec2 room, int longest, float em) {
+std::optional<SliceLayout> inColumns(ImVec2 min, ImVec2 room, int longest, float em) {
     const float gap = em * 0.5f, low = std::clamp(room.y * 0.28f, em * 7, em * 14), width = (room.x - gap) / 2;
     if (room.y < low + em * 12 || room.x < em * 12) return std::nullopt;
-    SliceRooms out{.order = SliceOrder::Columns, .planes = {}, .numbers = {}};
+    SliceLayout out{.order = SliceOrder::Columns, .planes = {}, .numbers = {}};
     const ImVec2 max{min.x + room.x, min.y + room.y};
     const float middle = max.y - low;
     float x = min.x;
@@ -161,19 +161,19 @@ std::optional<SliceRooms> inColumns(ImVec2 min, ImVec2 room, int longest, float 
 }
 
 /// Pixels of the pictures of all slices.
-double area(const SliceRooms& rooms, glm::dvec3 half, float em) {
+double area(const SliceLayout& layout, glm::dvec3 half, float em) {
     double sum = 0;
     for (int i = 0; i < 3; ++i) {
         const std::size_t at = std::size_t(i);
-        const ImVec2 size = rooms.planes[at].size();
-        const double wide = half[rooms.turned[at].right], high = half[rooms.turned[at].up];
+        const ImVec2 size = layout.planes[at].size();
+        const double wide = half[layout.turned[at].right], high = half[layout.turned[at].up];
         if (!(wide > 0) || !(high > 0)) continue;
-        const float axis = kAxesRoom.x + (rooms.beside[at] ? kTitleAside : 0);
-        const SliceMargins around = sliceMargins(rooms, i, axis, kAxesRoom.y);
-        const float apart = rooms.axes ? 0 : kApart; // pictures without axes between them
+        const float axis = kAxesRoom.x + (layout.beside[at] ? kTitleAside : 0);
+        const SliceMargins around = sliceMargins(layout, i, axis, kAxesRoom.y);
+        const float apart = layout.axes ? 0 : kApart; // pictures without axes between them
         const ImVec2 left{size.x - (around.left + around.right + apart) * em,
                           size.y - (around.top + around.bottom + apart / 4) * em};
-        if (std::min(left.x, left.y) < leastPicture(rooms, em)) continue;
+        if (std::min(left.x, left.y) < leastPicture(layout, em)) continue;
         const double scale = std::min(left.x / wide, left.y / high);
         sum += scale * scale * wide * high;
     }
@@ -182,8 +182,8 @@ double area(const SliceRooms& rooms, glm::dvec3 half, float em) {
 
 /// The other arrangements of the box in a pane: along its longest edge where that is much longer than the others, and
 /// in a pane that is not `roomy` a row or a column.
-std::vector<SliceRooms> others(ImVec2 min, ImVec2 room, glm::dvec3 half, float em, bool roomy) {
-    std::vector<SliceRooms> out;
+std::vector<SliceLayout> others(ImVec2 min, ImVec2 room, glm::dvec3 half, float em, bool roomy) {
+    std::vector<SliceLayout> out;
     if (!roomy) {
         out.push_back(inRow(min, room, half, em));
         out.push_back(inColumn(min, room, em));
@@ -200,27 +200,27 @@ std::vector<SliceRooms> others(ImVec2 min, ImVec2 room, glm::dvec3 half, float e
 
 } // namespace
 
-float leastPicture(const SliceRooms& rooms, float em) {
-    return rooms.order == SliceOrder::Rows ? 1 : em * 2;
+float leastPicture(const SliceLayout& layout, float em) {
+    return layout.order == SliceOrder::Rows ? 1 : em * 2;
 }
 
-SliceMargins sliceMargins(const SliceRooms& rooms, int index, float leftAxis, float bottomAxis) {
-    const bool beside = rooms.beside[std::size_t(index)], shared = rooms.shared[std::size_t(index)];
-    SliceMargins out{0, topOf(beside, rooms.axes), beside ? kPlaceBeside : 0, 0};
-    if (!rooms.axes) return out;
+SliceMargins sliceMargins(const SliceLayout& layout, int index, float leftAxis, float bottomAxis) {
+    const bool beside = layout.beside[std::size_t(index)], shared = layout.shared[std::size_t(index)];
+    SliceMargins out{0, topOf(beside, layout.axes), beside ? kPlaceBeside : 0, 0};
+    if (!layout.axes) return out;
     return {leftAxis, out.top, std::max(out.right, 0.8f), shared ? 0 : bottomAxis};
 }
 
-SliceRooms sliceRooms(ImVec2 min, ImVec2 room, glm::dvec3 half, float em, bool whole) {
-    SliceRooms best = quarters(min, room, half, em);
+SliceLayout sliceLayout(ImVec2 min, ImVec2 room, glm::dvec3 half, float em, bool whole) {
+    SliceLayout best = quarters(min, room, half, em);
     if (whole) return best;
     const bool roomy = room.x >= kRoomy.x * em && room.y >= kRoomy.y * em;
-    const auto bare = [&](SliceRooms rooms) {
-        rooms.axes = roomy;
-        return area(rooms, half, em);
+    const auto bare = [&](SliceLayout layout) {
+        layout.axes = roomy;
+        return area(layout, half, em);
     };
     double most = bare(best), least = most * kMuchLarger;
-    for (const SliceRooms& other : others(min, room, half, em, roomy)) {
+    for (const SliceLayout& other : others(min, room, half, em, roomy)) {
         const double own = bare(other);
         if (own < least) continue;
         best = other;

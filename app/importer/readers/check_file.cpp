@@ -1,4 +1,4 @@
-#include "app/importer/readers/whole_file.h"
+#include "app/importer/readers/check_file.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,4 +1,4 @@
-#include "app/tools/camera_hand.h"
+#include "app/tools/camera_controller.h"
 
 #include "app/ui/keys.h"
 
@@ -83,7 +83,7 @@ void focusOn(vis::Camera& camera, glm::dvec3 place) {
     camera.focus = glm::vec3(place);
 }
 
-bool handleMouse(ViewContext& context, CameraHand& hand, vis::ViewTarget* target, const PictureBox& picture,
+bool handleMouse(ViewContext& context, CameraController& hand, vis::ViewTarget* target, const PictureBox& picture,
                  const vis::WorldFrame& world, const char* menu) {
     const ImGuiIO& io = ImGui::GetIO();
     vis::Camera& camera = context.session.camera;

@@ -1,5 +1,5 @@
 // Checks for truncated image files: the size must be at least what the header states.
-#include "app/importer/readers/whole_file.h"
+#include "app/importer/readers/check_file.h"
 
 #include <algorithm>
 #include <bit>

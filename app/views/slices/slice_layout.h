@@ -12,15 +12,15 @@ namespace tessera::app {
 enum class SliceOrder { Quarters, Row, Column, Rows, Columns };
 
 /// A part of the pane, pixels; without extent where nothing is shown.
-struct SliceRoom {
+struct SliceArea {
     ImVec2 min{0, 0}, max{0, 0};
     ImVec2 size() const { return {max.x - min.x, max.y - min.y}; }
 };
 
-struct SliceRooms {
+struct SliceLayout {
     SliceOrder order = SliceOrder::Quarters;
-    std::array<SliceRoom, 3> planes; ///< by index of kSlicePlanes
-    SliceRoom numbers, values = {};  ///< values have a room apart from the legend where they have an extent
+    std::array<SliceArea, 3> planes; ///< by index of kSlicePlanes
+    SliceArea numbers, values = {};  ///< values have a room apart from the legend where they have an extent
     bool axes = true;                ///< numbers along the slices
     std::array<SliceAxes, 3> turned{kSlicePlanes[0], kSlicePlanes[1], kSlicePlanes[2]}; ///< to the right and up
     std::array<bool, 3> beside{}; ///< the place of the slice stands at the right of it, not above
@@ -31,15 +31,15 @@ struct SliceRooms {
 /// box with one long edge has the slices along it below each other in rows, or upright in columns, and in a small pane
 /// slices lie in a row or a column, where they are much larger so; without axes where these would take most of the
 /// room. `em`: height of the font. `whole`: always quarters with axes, as in figures.
-SliceRooms sliceRooms(ImVec2 min, ImVec2 room, glm::dvec3 half, float em, bool whole = false);
+SliceLayout sliceLayout(ImVec2 min, ImVec2 room, glm::dvec3 half, float em, bool whole = false);
 
 /// The least side of the room for a picture, pixels: slices along a long edge have no more than their pictures need.
-float leastPicture(const SliceRooms& rooms, float em);
+float leastPicture(const SliceLayout& layout, float em);
 
 /// What the place of a slice and its axes take around its picture, in em, where the axes alone take this much.
 struct SliceMargins {
     float left, top, right, bottom;
 };
-SliceMargins sliceMargins(const SliceRooms& rooms, int index, float leftAxis, float bottomAxis);
+SliceMargins sliceMargins(const SliceLayout& layout, int index, float leftAxis, float bottomAxis);
 
 } // namespace tessera::app

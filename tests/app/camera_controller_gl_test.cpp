@@ -1,4 +1,4 @@
-#include "app/tools/camera_hand.h"
+#include "app/tools/camera_controller.h"
 #include "tests/app/fed_imgui.h"
 #include "tests/app/formula_cell.h"
 #include "vis/gl/headless.h"
@@ -14,9 +14,9 @@ namespace tessera::app {
 namespace {
 
 /// A picture of 400 x 300 pixels of the formula cell, seen aslant.
-class CameraHandGl : public FedImGui {
+class CameraControllerGl : public FedImGui {
 protected:
-    CameraHandGl() : FedImGui({600, 500}) {}
+    CameraControllerGl() : FedImGui({600, 500}) {}
     void SetUp() override {
         source = volume::makeMemorySource(formula::makeCell(), {.lattice = volume::LatticeKind::BCC});
         renderer.setSource(source);
@@ -120,7 +120,7 @@ protected:
     Session session;
     vis::WorldFrame world;
     vis::ViewTargetPtr target;
-    CameraHand hand;
+    CameraController hand;
     PictureBox box{{50, 40}, {400, 300}};
     int picked = 0;
     bool moving = false, menuOpen = false, type = false;
@@ -134,7 +134,7 @@ void expectAt(ImVec2 is, ImVec2 wanted, double within = 0.05) {
 
 constexpr vis::Projection kProjections[] = {vis::Projection::Perspective, vis::Projection::Orthographic};
 
-TEST_F(CameraHandGl, TheNearSideOfTheObjectGoesWithTheMouse) {
+TEST_F(CameraControllerGl, TheNearSideOfTheObjectGoesWithTheMouse) {
     const vis::Camera before = camera();
     for (const vis::Projection projection : kProjections)
         for (const auto& [right, up] : {std::pair(60.0f, 0.0f), {-60, 0}, {0, 45}, {0, -45}}) {
@@ -156,7 +156,7 @@ TEST_F(CameraHandGl, TheNearSideOfTheObjectGoesWithTheMouse) {
 }
 
 // While it moves the picture is drawn coarsely.
-TEST_F(CameraHandGl, ADragIsToldWhileItMoves) {
+TEST_F(CameraControllerGl, ADragIsToldWhileItMoves) {
     for (const int which : {ImGuiMouseButton_Left, ImGuiMouseButton_Middle, ImGuiMouseButton_Right}) {
         park();
         EXPECT_FALSE(moving);
@@ -172,13 +172,13 @@ TEST_F(CameraHandGl, ADragIsToldWhileItMoves) {
     }
 }
 
-TEST_F(CameraHandGl, ADragAtTheEdgeTurnsAboutTheViewersAxis) {
+TEST_F(CameraControllerGl, ADragAtTheEdgeTurnsAboutTheViewersAxis) {
     const glm::dvec3 edge = under(fromMiddle(195, 0));
     drag(fromMiddle(195, -40), fromMiddle(195, 40));
     EXPECT_LT(pixel(edge).y, middle().y - 20) << "the right side goes up with the mouse";
 }
 
-TEST_F(CameraHandGl, PannedPointsStayUnderTheMouse) {
+TEST_F(CameraControllerGl, PannedPointsStayUnderTheMouse) {
     const vis::Camera before = camera();
     for (const vis::Projection projection : kProjections)
         for (const int which : {ImGuiMouseButton_Left, ImGuiMouseButton_Middle}) {
@@ -195,7 +195,7 @@ TEST_F(CameraHandGl, PannedPointsStayUnderTheMouse) {
         }
 }
 
-TEST_F(CameraHandGl, ARightDragUpMagnifies) {
+TEST_F(CameraControllerGl, ARightDragUpMagnifies) {
     const vis::Camera before = camera();
     const ImVec2 place = fromMiddle(80, 20);
     const glm::dvec3 seen = under(place);
@@ -209,7 +209,7 @@ TEST_F(CameraHandGl, ARightDragUpMagnifies) {
     EXPECT_NEAR(camera().distance, double(before.distance), 1e-4) << "down as much as up";
 }
 
-TEST_F(CameraHandGl, TheWheelMagnifiesWhatIsInTheMiddleOrWithCtrlUnderTheMouse) {
+TEST_F(CameraControllerGl, TheWheelMagnifiesWhatIsInTheMiddleOrWithCtrlUnderTheMouse) {
     const vis::Camera before = camera();
     const ImVec2 place = fromMiddle(120, -70);
     for (const vis::Projection projection : kProjections) {
@@ -239,7 +239,7 @@ TEST_F(CameraHandGl, TheWheelMagnifiesWhatIsInTheMiddleOrWithCtrlUnderTheMouse) 
     EXPECT_EQ(camera(), before) << "beside the picture";
 }
 
-TEST_F(CameraHandGl, CtrlRollsThePictureWithTheMouse) {
+TEST_F(CameraControllerGl, CtrlRollsThePictureWithTheMouse) {
     const vis::Camera before = camera();
     const auto around = [&](double degrees) { // whole pixels, as ImGui has the mouse
         const double angle = degrees * std::numbers::pi / 180;
@@ -266,7 +266,7 @@ struct Standard {
     int right, up;
 };
 
-TEST_F(CameraHandGl, DigitsLookAlongTheAxes) {
+TEST_F(CameraControllerGl, DigitsLookAlongTheAxes) {
     static constexpr Standard kStandards[] = {{'1', false, 1, 2}, {'1', true, -1, 2},  {'3', false, -3, 2},
                                               {'3', true, 3, 2},  {'7', false, 1, -3}, {'7', true, 1, 3}};
     const vis::Camera before = camera();
@@ -309,7 +309,7 @@ TEST_F(CameraHandGl, DigitsLookAlongTheAxes) {
         }
 }
 
-TEST_F(CameraHandGl, NineFiveAndRAreTheSlantedViewTheProjectionAndTheFirstView) {
+TEST_F(CameraControllerGl, NineFiveAndRAreTheSlantedViewTheProjectionAndTheFirstView) {
     const vis::Camera before = camera();
     moveTo(middle());
     camera().projection = vis::Projection::Orthographic;
@@ -339,7 +339,7 @@ TEST_F(CameraHandGl, NineFiveAndRAreTheSlantedViewTheProjectionAndTheFirstView) 
     EXPECT_EQ(camera(), reset) << "with other modifiers they are other keys";
 }
 
-TEST_F(CameraHandGl, KeysAreNoneWhileSomethingIsTyped) {
+TEST_F(CameraControllerGl, KeysAreNoneWhileSomethingIsTyped) {
     moveTo(middle());
     type = true;
     frame();
@@ -349,7 +349,7 @@ TEST_F(CameraHandGl, KeysAreNoneWhileSomethingIsTyped) {
     EXPECT_EQ(camera(), before);
 }
 
-TEST_F(CameraHandGl, ARightClickOpensTheMenuAndADragDoesNot) {
+TEST_F(CameraControllerGl, ARightClickOpensTheMenuAndADragDoesNot) {
     const vis::Camera before = camera();
     drag(middle(), fromMiddle(0, 40), ImGuiMouseButton_Right);
     EXPECT_FALSE(menuOpen);
@@ -373,7 +373,7 @@ TEST_F(CameraHandGl, ARightClickOpensTheMenuAndADragDoesNot) {
     EXPECT_EQ(camera(), before);
 }
 
-TEST_F(CameraHandGl, WhatIsBlockedOrBesideThePictureBeginsNoDrag) {
+TEST_F(CameraControllerGl, WhatIsBlockedOrBesideThePictureBeginsNoDrag) {
     const vis::Camera before = camera();
     hand.blocked = true;
     for (const int which : {ImGuiMouseButton_Left, ImGuiMouseButton_Middle, ImGuiMouseButton_Right}) {
@@ -400,7 +400,7 @@ TEST_F(CameraHandGl, WhatIsBlockedOrBesideThePictureBeginsNoDrag) {
     expectAt(pixel(held), fromMiddle(250, 170));
 }
 
-TEST_F(CameraHandGl, AMiddleClickCentresWhatIsThereAndADoubleClickPutsTheCursorThere) {
+TEST_F(CameraControllerGl, AMiddleClickCentresWhatIsThereAndADoubleClickPutsTheCursorThere) {
     drawScene();
     const vis::Camera before = camera();
     const ImVec2 place = fromMiddle(-31, 17);

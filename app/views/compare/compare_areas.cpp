@@ -1,4 +1,4 @@
-#include "app/views/compare/compare_room.h"
+#include "app/views/compare/compare_areas.h"
 
 #include "app/pane/tool_row.h"
 #include "app/pane/view_parts.h"
@@ -39,12 +39,12 @@ CompareLegends likelyLegends(const CompareView& view, const Session& session, co
 
 } // namespace
 
-CompareRooms compareRooms(const CompareView& view, std::size_t variants, ImVec2 room, bool figure, bool bare) {
-    CompareRooms rooms;
-    if (view.showTable && !bare) rooms.table = std::min(compareTableHeight(variants), room.y * (figure ? 0.65f : 0.5f));
-    if (!figure) rooms.questions = std::min(questionsHeight(view), room.y * 0.3f);
-    rooms.pictures = {std::floor(room.x), std::floor(room.y - rooms.table - rooms.questions)};
-    return rooms;
+CompareAreas compareAreas(const CompareView& view, std::size_t variants, ImVec2 room, bool figure, bool bare) {
+    CompareAreas areas;
+    if (view.showTable && !bare) areas.table = std::min(compareTableHeight(variants), room.y * (figure ? 0.65f : 0.5f));
+    if (!figure) areas.questions = std::min(questionsHeight(view), room.y * 0.3f);
+    areas.pictures = {std::floor(room.x), std::floor(room.y - areas.table - areas.questions)};
+    return areas;
 }
 
 double comparedAspect(const CompareView& view, const Session& session, const volume::DatasetInfo& info, ImVec2 pane) {
@@ -60,7 +60,7 @@ double comparedAspect(const CompareView& view, const Session& session, const vol
         const CompareLegends legends = likelyLegends(view, session, info, variants, differ);
         for (int rows = 1; rows <= most; ++rows) {
             const ImVec2 below{room.x, room.y - row * static_cast<float>(rows)};
-            const ImVec2 area = compareRooms(view, variants.size(), below, false, false).pictures;
+            const ImVec2 area = compareAreas(view, variants.size(), below, false, false).pictures;
             const int count = grid ? static_cast<int>(variants.size()) : 1;
             const ImVec2 size = compareLayout(legends, count, {0, 0}, area).pictures[0].size;
             least = std::min(least, double(size.x) / std::max(1.0, double(size.y)));

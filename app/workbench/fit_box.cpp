@@ -1,8 +1,8 @@
-#include "app/workbench/whole_box.h"
+#include "app/workbench/fit_box.h"
 
 #include "app/session/shown_scene.h"
 #include "app/ui/dock_layout.h"
-#include "app/views/compare/compare_room.h"
+#include "app/views/compare/compare_areas.h"
 
 #include <algorithm>
 #include <cmath>
