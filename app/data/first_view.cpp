@@ -183,8 +183,7 @@ bool isQuick(const Session& session, const volume::BrickSource& source) {
 
 void aimLayer(Session& session, const volume::BrickSource& source, vis::Layer& layer) {
     const volume::DatasetInfo& info = source.info();
-    const std::string& name =
-        std::visit([](const auto& own) -> const std::string& { return own.channel; }, layer.technique);
+    const std::string& name = vis::shownChannel(layer.technique);
     const auto channel = info.findChannel(name);
     if (!channel) return;
     const bool quick = isQuick(session, source);
@@ -216,7 +215,7 @@ void aimFirstView(Session& session, const volume::BrickSource& source, double as
         session.camera.orientation = vis::firstOrientation(world);
     vis::fit(session.camera, world, aspect);
     if (session.layers.empty()) return;
-    const std::string name = std::visit([](const auto& own) { return own.channel; }, session.layers.front().technique);
+    const std::string name = vis::shownChannel(session.layers.front().technique);
     const auto channel = info.findChannel(name);
     if (!channel) return;
     const int time = info.nearestTime(session.time);

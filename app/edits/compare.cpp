@@ -28,7 +28,7 @@ Session withOptionalData(Session session) {
 /// the first data, they have it too, as it is now.
 void followSharedFunctions(Session& session) {
     for (const vis::Layer& layer : session.layers) {
-        const std::string channel = std::visit([](const auto& own) { return own.channel; }, layer.technique);
+        const std::string channel = vis::shownChannel(layer.technique);
         std::string plain = channel; // "T" of "T (other)", "|U|" of "|U (other)|"
         const auto suffix = plain.find(volume::kOtherSuffix);
         if (suffix != std::string::npos) plain.erase(suffix, volume::kOtherSuffix.size());

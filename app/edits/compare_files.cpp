@@ -24,10 +24,6 @@ bool canBeSubtracted(const volume::DatasetInfo& info, int channel) {
     return !parameter.categorical && volume::otherConversion(info, channel).has_value();
 }
 
-std::string channelOf(const vis::Technique& technique) {
-    return std::visit([](const auto& own) { return own.channel; }, technique);
-}
-
 /// The name of a parameter or channel in the other data; "" if they do not have it.
 std::string nameInOther(const volume::DatasetInfo& info, const std::string& name) {
     if (const auto channel = info.findChannel(name))
@@ -90,7 +86,7 @@ CompareVariant otherVariant(const Session& session, const volume::DatasetInfo& i
             },
             layer.technique);
         // The function of the first file serves for both: what is edited of it is of both.
-        const std::string channel = channelOf(layer.technique), other = nameInOther(info, channel);
+        const std::string channel = vis::shownChannel(layer.technique), other = nameInOther(info, channel);
         if (other.empty() || !layer.transfer.empty() || std::holds_alternative<vis::IsoLayer>(layer.technique))
             continue;
         if (info.channel(*info.findChannel(channel)).unit == info.channel(*info.findChannel(other)).unit)
@@ -103,7 +99,7 @@ CompareVariant otherVariant(const Session& session, const volume::DatasetInfo& i
 
 std::string comparedChannel(const Session& session, const volume::DatasetInfo& info) {
     for (const vis::Layer& layer : session.layers)
-        if (const auto channel = info.findChannel(channelOf(layer.technique)))
+        if (const auto channel = info.findChannel(vis::shownChannel(layer.technique)))
             if (canBeSubtracted(info, *channel)) return info.channel(*channel).name;
     const std::vector<volume::Channel> channels = info.channels();
     for (int i = 0; i < static_cast<int>(channels.size()); ++i)
@@ -194,7 +190,7 @@ std::string equalText(const Session& session, const volume::DatasetInfo& info) {
     std::string all;
     for (const vis::Layer& layer : session.layers) {
         if (!layer.visible) continue;
-        const std::string text = equalText(session.data, info, channelOf(layer.technique));
+        const std::string text = equalText(session.data, info, vis::shownChannel(layer.technique));
         if (text.empty()) return {};
         if (all.empty()) all = text;
     }

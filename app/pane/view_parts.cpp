@@ -157,8 +157,7 @@ std::string layerTitle(const vis::Layer& layer, const volume::DatasetInfo& info)
 std::optional<int> resolveChannel(const volume::DatasetInfo& info, const Session& session, const std::string& wanted) {
     if (const auto found = info.findChannel(wanted); found && !wanted.empty()) return found;
     for (const vis::Layer& layer : session.layers) {
-        const std::string& name =
-            std::visit([](const auto& technique) -> const std::string& { return technique.channel; }, layer.technique);
+        const std::string& name = vis::shownChannel(layer.technique);
         if (const auto found = info.findChannel(name)) return found;
     }
     const std::vector<int> compared = comparedChannels(info);
@@ -228,8 +227,7 @@ std::vector<LegendEntry> sceneLegends(const Session& session, const volume::Data
     std::set<std::string> seen;
     for (const vis::Layer& layer : session.layers) {
         if (!layer.visible || (!drawings && isDrawing(layer.technique))) continue;
-        const std::string& name =
-            std::visit([](const auto& technique) -> const std::string& { return technique.channel; }, layer.technique);
+        const std::string& name = vis::shownChannel(layer.technique);
         const auto channel = info.findChannel(name);
         if (!channel) continue;
         LegendEntry entry = legendOf(session, info, *channel, layer.transfer);

@@ -30,7 +30,7 @@ std::optional<OwnFunction> ownFunction(const Session& session, const std::string
 const std::string& channelOfFunction(const vis::Technique& technique) {
     const auto* surface = std::get_if<vis::IsoLayer>(&technique);
     if (surface && !surface->colorBy.empty()) return surface->colorBy;
-    return std::visit([](const auto& own) -> const std::string& { return own.channel; }, technique);
+    return vis::shownChannel(technique);
 }
 
 void setOwnFunction(Session& session, std::string& transfer, const std::string& channel, bool own,

@@ -216,7 +216,7 @@ void addLens(Session& session, const volume::DatasetInfo& info, vis::LensEffect 
 void addLensWith(Session& session, const volume::DatasetInfo& info, vis::Technique technique) {
     const vis::Lens lens = newLens(session, info, vis::LensEffect::Replace);
     vis::Layer layer;
-    layer.name = std::visit([](const auto& own) { return own.channel; }, technique) + " in " + lens.name;
+    layer.name = vis::shownChannel(technique) + " in " + lens.name;
     layer.technique = std::move(technique);
     layer.lens = lens.name;
     session.lenses.push_back(lens);

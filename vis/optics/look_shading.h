@@ -93,24 +93,35 @@ template <class N> glm::vec<3, N> lookAlbedo(const Look& look, const glm::vec<3,
     return blended(albedo, blended(white, albedo, N(look.charcoal->localTone)), share);
 }
 
+/// A coordinate along a surface: its change across the picture, |e - (v_e / n.v) n| per world unit, and whether the
+/// surface crosses the planes of this coordinate: 0 where it is nearly parallel to them (within 6 degrees), 1 from 20
+/// on.
+template <class N> struct AcrossPictureOf { N change, crosses; };
+template <class N>
+AcrossPictureOf<N> acrossPicture(const glm::vec<3, N>& normal, const glm::vec<3, N>& toViewer, int axis) {
+    const N facing = inner(normal, toViewer);
+    const N along = choose(facing < N(0), smaller(facing, N(-0.02)), larger(facing, N(0.02)));
+    glm::vec<3, N> change = normal * (-toViewer[axis] / along);
+    change[axis] += N(1);
+    const N slope = squareRoot(larger(N(0), N(1) - normal[axis] * normal[axis]));
+    return {lengthOf(change), smoothStep(N(0.1), N(0.35), slope)};
+}
+
 /// Coverage of a pixel, 0..1, by the intersection lines of a surface with planes at multiples of `spacing` along x, y
 /// and z; lines are `width` pixels wide. The distance of a coordinate to a multiple is divided by its change across the
-/// picture, |e - (v_e / n.v) n| per world unit. Lines closer than 4 pixels turn into their mean; where the surface is
-/// nearly parallel to the planes (within 6 to 20 degrees) they fade out. `pixel`: world edge of a pixel.
+/// picture. Lines closer than 4 pixels turn into their mean; where the surface does not cross the planes they fade out.
+/// `pixel`: world edge of a pixel.
 template <class N>
 N wireCoverage(const glm::vec<3, N>& world, const glm::vec<3, N>& normal, const glm::vec<3, N>& toViewer,
                double spacing, double width, N pixel) {
-    N along = inner(normal, toViewer), covered(0);
-    along = choose(along < N(0), smaller(along, N(-0.02)), larger(along, N(0.02)));
+    N covered(0);
     for (int axis = 0; axis < 3; ++axis) {
-        glm::vec<3, N> change = normal * (-toViewer[axis] / along);
-        change[axis] += N(1);
-        const N gap = N(spacing) / larger(lengthOf(change) * pixel, N(1e-6));
+        const AcrossPictureOf<N> own = acrossPicture(normal, toViewer, axis);
+        const N gap = N(spacing) / larger(own.change * pixel, N(1e-6));
         const N x = world[axis] / N(spacing), away = magnitude(x - roundDown(x + N(0.5))) * gap;
         const N line = blended(clamped(N(0.5 * width + 0.5) - away, N(0), N(1)), smaller(N(width) / gap, N(1)),
                                clamped(N(2) - N(0.5) * gap, N(0), N(1)));
-        const N slope = squareRoot(larger(N(0), N(1) - normal[axis] * normal[axis]));
-        covered = larger(covered, line * smoothStep(N(0.1), N(0.35), slope));
+        covered = larger(covered, line * own.crosses);
     }
     return covered;
 }
@@ -123,20 +134,15 @@ template <class N> N outline(N facing, N curvature, N thickness) {
 }
 
 /// Distance in pixels from a place of a surface to where a face of the box cuts it off, at most kNoCut: that of each
-/// coordinate to the face, divided by its change across the picture as in wireCoverage(). Surfaces nearly parallel to a
-/// face (within 6 to 20 degrees) are not cut by it.
+/// coordinate to the face, divided by its change across the picture. Faces that the surface does not cross cut nothing.
 template <class N>
 N cutDistance(const glm::vec<3, N>& world, const glm::vec<3, N>& normal, const glm::vec<3, N>& toViewer,
               const glm::dvec3& halfSize, N pixel) {
-    N along = inner(normal, toViewer), nearest(kNoCut);
-    along = choose(along < N(0), smaller(along, N(-0.02)), larger(along, N(0.02)));
+    N nearest(kNoCut);
     for (int axis = 0; axis < 3; ++axis) {
-        glm::vec<3, N> change = normal * (-toViewer[axis] / along);
-        change[axis] += N(1);
+        const AcrossPictureOf<N> own = acrossPicture(normal, toViewer, axis);
         const N left = larger(N(halfSize[axis]) - magnitude(world[axis]), N(0));
-        const N slope = squareRoot(larger(N(0), N(1) - normal[axis] * normal[axis]));
-        const N parallel = N(kNoCut) * (N(1) - smoothStep(N(0.1), N(0.35), slope));
-        nearest = smaller(nearest, left / larger(lengthOf(change) * pixel, N(1e-6)) + parallel);
+        nearest = smaller(nearest, left / larger(own.change * pixel, N(1e-6)) + N(kNoCut) * (N(1) - own.crosses));
     }
     return nearest;
 }

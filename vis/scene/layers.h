@@ -167,6 +167,11 @@ using Technique = std::variant<VolumeLayer, IsoLayer, SliceLayer, FlowLayer>;
 /// Colour of a volume (sRGB) where its colouring parameter is absent.
 inline constexpr glm::vec3 kNoValueColor{0.5f};
 
+/// The parameter that a technique shows.
+inline const std::string& shownChannel(const Technique& technique) {
+    return std::visit([](const auto& own) -> const std::string& { return own.channel; }, technique);
+}
+
 /// The parameter that colours a technique instead of the one it shows; "": none.
 inline const std::string& colorByOf(const Technique& technique) {
     static const std::string kNone;

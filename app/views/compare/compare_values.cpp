@@ -14,7 +14,7 @@ constexpr const char* kChannel = "difference"; // of volume::differenceSource
 
 std::string firstChannel(const Session& session) {
     if (session.layers.empty()) return {};
-    return std::visit([](const auto& own) { return own.channel; }, session.layers.front().technique);
+    return vis::shownChannel(session.layers.front().technique);
 }
 
 /// The planes through the cross-hair with nothing else, as the session looks at them.

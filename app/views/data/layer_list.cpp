@@ -49,10 +49,6 @@ const char* kindName(const vis::Technique& technique) {
     return kNames[technique.index()];
 }
 
-std::string shownChannel(const vis::Technique& technique) {
-    return std::visit([](const auto& own) { return own.channel; }, technique);
-}
-
 void addLayer(Session& session, const volume::BrickSource& source, std::size_t kind) {
     vis::Layer layer = newLayer(session, source.info(), kind);
     aimLayer(session, source, layer);
@@ -102,7 +98,7 @@ void drawLayerList(ViewContext& context, const volume::DatasetInfo& info, int& s
         ImGui::SameLine(0, em() * 0.3f);
         ImGui::AlignTextToFramePadding();
         // A layer named after its parameter need not say it twice.
-        std::string channel = shownChannel(layer.technique);
+        std::string channel = vis::shownChannel(layer.technique);
         const std::string whole = layerTitle(layer, info);
         if (whole == channel || whole.starts_with(channel + " ") || layer.name.empty()) channel.clear();
         const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(channel.c_str()).x - em() * 1.5f;

@@ -9,8 +9,6 @@ namespace tessera::app {
 
 /// "Volume", "Iso-surface", ...
 const char* kindName(const vis::Technique& technique);
-/// The parameter that a technique shows.
-std::string shownChannel(const vis::Technique& technique);
 
 /// A row for each layer with an eye that hides it; rows are dragged to change the order.
 void drawLayerList(ViewContext& context, const volume::DatasetInfo& info, int& selected);

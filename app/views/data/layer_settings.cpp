@@ -37,7 +37,7 @@ void drawOwnFunction(const WidgetContext& widgets, Session& session, vis::Layer&
 } // namespace
 
 void drawLayerSettings(ViewContext& context, const WidgetContext& widgets, vis::Layer& layer, const std::string& path) {
-    const std::string before = shownChannel(layer.technique);
+    const std::string before = vis::shownChannel(layer.technique);
     const WidgetContext place = widgets.at(path);
     drawMembers(valueOf(layer), place, [&](Value member, const FieldInfo& field) {
         if (field.key == "name") {
@@ -54,7 +54,7 @@ void drawLayerSettings(ViewContext& context, const WidgetContext& widgets, vis::
         }
         return true;
     });
-    const std::string now = shownChannel(layer.technique);
+    const std::string now = vis::shownChannel(layer.technique);
     followChannel(layer.name, before, now);
     if (now != before) aimLayer(context.session, *context.source, layer);
 }

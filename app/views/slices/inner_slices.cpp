@@ -14,7 +14,7 @@ void addInnerSlices(vis::Scene& scene, const Session& session, const vis::SliceL
         for (const vis::Layer& layer : session.layers) {
             if (!layer.visible || layer.lens != lens.name) continue;
             vis::SliceLayer inner = like;
-            inner.channel = std::visit([](const auto& own) { return own.channel; }, layer.technique);
+            inner.channel = vis::shownChannel(layer.technique);
             scene.layers.push_back({layer.name, true, inner, layer.lens, layer.transfer, layer.timeShift});
         }
 }

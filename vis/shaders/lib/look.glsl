@@ -24,18 +24,26 @@ vec3 inkOn(vec3 ground, vec3 dark, vec3 light) {
     return mix(light, dark, smoothstep(0.03, 0.12, dot(ground, vec3(0.2126, 0.7152, 0.0722))));
 }
 
+// A coordinate along a surface: x = its change per world unit across the picture, y = whether the surface crosses the
+// planes of this coordinate.
+vec2 acrossPicture(vec3 normal, vec3 toViewer, int axis) {
+    float along = dot(normal, toViewer);
+    along = along < 0.0 ? min(along, -0.02) : max(along, 0.02);
+    vec3 change = -toViewer[axis] / along * normal;
+    change[axis] += 1.0;
+    return vec2(length(change), smoothstep(0.1, 0.35, sqrt(max(0.0, 1.0 - normal[axis] * normal[axis]))));
+}
+
 // Coverage of a pixel by the intersection lines of a surface with planes at multiples of `spacing` along x, y and z;
 // lines are `width` pixels wide.
 float wireCoverage(vec3 world, vec3 normal, vec3 toViewer, float spacing, float width, float pixel) {
-    float along = dot(normal, toViewer), covered = 0.0;
-    along = along < 0.0 ? min(along, -0.02) : max(along, 0.02);
+    float covered = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
-        vec3 change = -toViewer[axis] / along * normal; // of the coordinate, per world unit across the picture
-        change[axis] += 1.0;
-        float gap = spacing / max(length(change) * pixel, 1e-6); // pixels
+        vec2 own = acrossPicture(normal, toViewer, axis);
+        float gap = spacing / max(own.x * pixel, 1e-6); // pixels
         float x = world[axis] / spacing, away = abs(x - floor(x + 0.5)) * gap;
         float line = mix(clamp(0.5 * width + 0.5 - away, 0.0, 1.0), min(width / gap, 1.0), clamp(2.0 - 0.5 * gap, 0.0, 1.0));
-        covered = max(covered, line * smoothstep(0.1, 0.35, sqrt(max(0.0, 1.0 - normal[axis] * normal[axis]))));
+        covered = max(covered, line * own.y);
     }
     return covered;
 }
@@ -50,15 +58,11 @@ const float kNoCut = 1e4;
 
 // Distance in pixels from a place of a surface to where a face of the box cuts it off.
 float cutDistance(vec3 world, vec3 normal, vec3 toViewer, vec3 halfSize, float pixel) {
-    float along = dot(normal, toViewer), nearest = kNoCut;
-    along = along < 0.0 ? min(along, -0.02) : max(along, 0.02);
+    float nearest = kNoCut;
     for (int axis = 0; axis < 3; ++axis) {
-        vec3 change = -toViewer[axis] / along * normal;
-        change[axis] += 1.0;
+        vec2 own = acrossPicture(normal, toViewer, axis);
         float left = max(halfSize[axis] - abs(world[axis]), 0.0);
-        float slope = sqrt(max(0.0, 1.0 - normal[axis] * normal[axis]));
-        float parallel = kNoCut * (1.0 - smoothstep(0.1, 0.35, slope));
-        nearest = min(nearest, left / max(length(change) * pixel, 1e-6) + parallel);
+        nearest = min(nearest, left / max(own.x * pixel, 1e-6) + kNoCut * (1.0 - own.y));
     }
     return nearest;
 }
