@@ -75,6 +75,15 @@ TEST(TailOpacity, TheBulkStaysClear) {
     EXPECT_NEAR(at(curve, 0.75), 0.4, 0.01);
 }
 
+/// Somewhat more in the upper half than in the lower one, as temperatures of the air are, is no reason to show the
+/// cold.
+TEST(TailOpacity, OfValuesSpreadEvenlyTheHighestAreShown) {
+    const auto curve = tailOpacity(histogram([](int bin) { return bin < 50 ? 9 : 10; }), 0.2);
+    for (const double x : {0.0, 0.2, 0.5, 0.79}) EXPECT_EQ(at(curve, x), 0) << x;
+    EXPECT_GT(at(curve, 0.9), 0.3);
+    EXPECT_NEAR(at(curve, 1), 0.8, 1e-6);
+}
+
 TEST(TailOpacity, TwoTailsAlikeAreBothShown) {
     const auto count = histogram([](int bin) { return bin >= 45 && bin < 55 ? 1000 : 10; });
     const auto curve = tailOpacity(count, 0.06); // 3 % of 10900 values: 32 bins at either end

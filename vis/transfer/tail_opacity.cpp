@@ -10,6 +10,7 @@ namespace tessera::vis {
 namespace {
 
 constexpr float kTailOpacity = 0.8f;
+constexpr double kFlat = 0.35;     ///< fraction of the length of all values from which on their bulk is no bulk
 constexpr double kLeftOut = 0.002; ///< fraction of outliers at either end that is ignored for the length of a tail
 
 double sumOf(std::span<const std::uint64_t> count) {
@@ -53,13 +54,15 @@ std::vector<glm::vec2> tailOpacity(std::span<const std::uint64_t> count, double 
     const std::vector<glm::vec2> line{{0.0f, 0.0f}, {1.0f, kTailOpacity}};
     const double all = sumOf(count), bins = double(count.size());
     if (all == 0) return line;
-    const Bins bulk = bulkOf(count, all / 2);
+    Bins bulk = bulkOf(count, all / 2);
     const std::size_t first = binsHolding(count.begin(), count.end(), kLeftOut * all);
     const std::size_t last = count.size() - binsHolding(count.rbegin(), count.rend(), kLeftOut * all);
     const double below = bulk.begin > first ? double(bulk.begin - first) : 0;
     const double above = last > bulk.end ? double(last - bulk.end) : 0;
     if (below + above == 0) return line;
-    const bool low = below >= above / 2 && below > 0, high = above >= below / 2 && above > 0;
+    const bool flat = double(bulk.end - bulk.begin) > kFlat * double(last - first);
+    if (flat) bulk.end = binsHolding(count.begin(), count.end(), all / 2);
+    const bool low = below >= above / 2 && below > 0 && !flat, high = (above >= below / 2 && above > 0) || flat;
     const double each = share * all / (low && high ? 2 : 1);
     std::vector<glm::vec2> curve;
     if (low) {

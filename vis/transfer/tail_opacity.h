@@ -18,7 +18,8 @@ double seenShare(std::span<const std::uint64_t> count, std::uint64_t places, std
 
 /// The curve that shows the tails of a histogram: 0 in the bulk of the values (the shortest interval that holds half of
 /// them), rising from the quantile beyond which `share` of all values lie to 0.8 at the end of the range. A tail less
-/// than half as long as the other one stays transparent. Without tails, a straight line from 0 to 0.8.
+/// than half as long as the other one stays transparent. Of values spread nearly evenly, without a bulk, the lower half
+/// stays transparent, as dark colours are hard to see. Without tails, a straight line from 0 to 0.8.
 std::vector<glm::vec2> tailOpacity(std::span<const std::uint64_t> count, double share);
 
 /// Makes a curve of tailOpacity() steeper at its start, where it rises so slowly that less than `least` of the places
