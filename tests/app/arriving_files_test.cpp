@@ -45,8 +45,6 @@ struct Arriving : testing::Test {
         {ArrivalTimes::Duration(1), ArrivalTimes::Duration(10)}};
 };
 
-} // namespace
-
 TEST_F(Arriving, ComeInTheOrderOfTheirNumbersOnceTheyRest) {
     EXPECT_EQ(readyAfter(0), "");
     write("run_10.raw", "a");
@@ -166,3 +164,5 @@ TEST_F(Arriving, AFileThatIsTakenAwayIsForgotten) {
     EXPECT_EQ(readyAfter(0), "");
     EXPECT_EQ(readyAfter(1), "run_1.raw");
 }
+
+} // namespace

@@ -31,8 +31,6 @@ struct PackChild : testing::Test {
     volume::ImportOptions import;
 };
 
-} // namespace
-
 TEST_F(PackChild, MakesAnArchiveWithTheStatedOptions) {
     double last = 0;
     Progress progress;
@@ -64,3 +62,5 @@ TEST_F(PackChild, StopsWhenAsked) {
     progress.stop = stop.get_token();
     EXPECT_THROW(app::packInChild(kProgram, {at("ramp.raw")}, import, at("out.tsr"), progress), Cancelled);
 }
+
+} // namespace
