@@ -38,7 +38,7 @@ trap finish EXIT
 # mount_at ROOT FROM TO [OPTIONS]: a folder of this machine within a chroot.
 mount_at() {
     mkdir -p "$1$3"
-    ! mountpoint -q "$1$3" || return 0
+    ! mountpoint -q "$1$3" || umount -l "$1$3" # of a run that did not end
     mount --bind "$2" "$1$3"
     mounted+=("$1$3")
     [ $# -lt 4 ] || mount -o "remount,bind,$4" "$1$3"

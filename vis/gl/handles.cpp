@@ -69,6 +69,7 @@ void fill(GLuint texture) {
         const std::array texel{value, value, value, value};
         glClearTexImage(texture, 0, GL_RGBA, GL_FLOAT, texel.data());
     }
+    glFinish(); // zink of Mesa 25.0 may fill it after what is drawn or cleared later
 }
 
 /// A texture; `allocate` creates its storage.
@@ -145,7 +146,10 @@ Buffer makeBuffer(GLsizeiptr bytes, const void* content, GLbitfield flags, const
     Buffer buffer(name);
     glNamedBufferStorage(name, bytes, content, flags);
     glObjectLabel(GL_BUFFER, name, -1, label.c_str());
-    if (!content && fillsWithNan()) glClearNamedBufferData(name, GL_R32F, GL_RED, GL_FLOAT, &kNan);
+    if (!content && fillsWithNan()) {
+        glClearNamedBufferData(name, GL_R32F, GL_RED, GL_FLOAT, &kNan);
+        glFinish(); // as in fill()
+    }
     return buffer;
 }
 
