@@ -88,8 +88,8 @@ inside "$root" "apt-get update -q; apt-get install -q -y --no-install-recommends
     /tessera/setup.sh $([ "$preset" = clang ] && echo --clang || echo --tests)"
 begin "build"
 variables+=(TESSERA_WERROR=ON)
-inside "$root" "cd /tessera; cmake --preset $preset -DBUILD_TESTING=ON -DTESSERA_WERROR=ON
-    cmake --build --preset $preset $([ "$what" != package ] || echo --target programs)"
+inside "$root" "cd /tessera; cmake --preset $preset -DBUILD_TESTING=$([ "$what" = package ] && echo OFF || echo ON) -DTESSERA_WERROR=ON
+    cmake --build --preset $preset"
 case $what in
 test)
     begin "tests"
