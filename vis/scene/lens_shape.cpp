@@ -10,7 +10,7 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr int kParts = 64;    ///< segments of a circle
+constexpr int kSegments = 64; ///< segments of a circle
 constexpr int kEdgeParts = 8; ///< segments of an edge, so that its farther half can be faint
 
 using Line = std::function<void(glm::dvec3 from, glm::dvec3 to, float strength)>;
@@ -18,10 +18,10 @@ using Line = std::function<void(glm::dvec3 from, glm::dvec3 to, float strength)>
 /// A circle around `middle` through middle + a and middle + b.
 void circle(const Line& line, glm::dvec3 middle, glm::dvec3 a, glm::dvec3 b, float strength) {
     const auto at = [&](int i) {
-        const double angle = 2 * glm::pi<double>() * i / kParts;
+        const double angle = 2 * glm::pi<double>() * i / kSegments;
         return middle + std::cos(angle) * a + std::sin(angle) * b;
     };
-    for (int i = 0; i < kParts; ++i) line(at(i), at(i + 1), strength);
+    for (int i = 0; i < kSegments; ++i) line(at(i), at(i + 1), strength);
 }
 
 void edge(const Line& line, glm::dvec3 a, glm::dvec3 b) {
