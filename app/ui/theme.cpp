@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kTextSize = 15; // from the highest ascender to the lowest descender
 
-Palette current;
+Palette currentPalette;
 
 ImVec4 rgb(unsigned hex, float alpha = 1) {
     return {float(hex >> 16 & 255) / 255, float(hex >> 8 & 255) / 255, float(hex & 255) / 255, alpha};
@@ -191,11 +191,11 @@ void applyTheme(Theme theme, float scale) {
     ImGuiStyle style = styleSizes(shades.dark, scale);
     setColors(style.Colors, shades);
     ImGui::GetStyle() = style;
-    current = paletteOf(shades);
+    currentPalette = paletteOf(shades);
 }
 
 const Palette& palette() {
-    return current;
+    return currentPalette;
 }
 
 } // namespace tessera::app
