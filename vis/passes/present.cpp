@@ -111,7 +111,7 @@ bool presentable(RendererState& shared, const ViewTarget& target, const Scene& s
             setPresented(shared, *answer.program, target, scene, lines, target.buffers.full);
             shared.tools.programs.warmUp(recipe, target.buffers.outputFramebuffer);
         }
-        // present(shared, ) handles both
+        // present() handles both
         ready = (answer.stage == ProgramStage::Ready || answer.stage == ProgramStage::Failed) && ready;
     }
     return ready;

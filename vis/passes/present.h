@@ -5,6 +5,7 @@
 /// Shows what was drawn: from buffers of rays, or of the processor, to the picture of a view.
 namespace tessera::vis {
 
+/// Shows a tile of a picture, whose rays lie in `from`, over the ground, with the box.
 void present(RendererState& shared, ViewTarget& target, const Scene& scene, const RayBuffer& from, const Tile& tile);
 
 /// Presents a tile of the first pass from what the processor has drawn of it: software GL takes several times as long.

@@ -28,8 +28,7 @@ struct RendererState {
 /// than those they pass; with depth of field, those of a pixel pass different ones.
 bool findsHidden(const RendererState& shared, const Scene& scene);
 
-/// Makes the scene that of the target and marks outdated pixels.
-/// `resident`: changes with the samples that are drawn.
+/// Makes the scene that of the target and marks outdated pixels. `resident`: changes with the samples that are drawn.
 void showScene(RendererState& shared, ViewTarget& target, const Scene& scene, std::uint64_t resident);
 
 } // namespace tessera::vis

@@ -10,7 +10,7 @@ namespace tessera::vis {
 namespace {
 
 constexpr float kTailOpacity = 0.8f;
-constexpr double kFlat = 0.35;     ///< fraction of the length of all values from which on their bulk is no bulk
+constexpr double kFlat = 0.35;     ///< of the length of all values: half of them over more than this are no bulk
 constexpr double kLeftOut = 0.002; ///< fraction of outliers at either end that is ignored for the length of a tail
 
 double sumOf(std::span<const std::uint64_t> count) {

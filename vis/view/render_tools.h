@@ -9,7 +9,7 @@
 #include "vis/view/frame_request.h"
 #include "vis/view/geometry_pass.h"
 
-/// Parameters of the stages of a picture.
+/// What the passes of a picture are given.
 namespace tessera::vis {
 
 /// Input of one call of Renderer::render(). ViewDemand::bind() binds `plan` to resident data.

@@ -62,7 +62,7 @@ struct PacketView {
     void release() { full.release(), coarse.release(); }
 };
 
-/// The picture of one view: its buffers, and the stages that produce it, each of which owns its state.
+/// The picture of one view: its buffers, and what it is made of, parts that each own their state.
 class ViewTarget {
 public:
     explicit ViewTarget(const Driver& driver) : glPace(driver.timerQueries) {}
