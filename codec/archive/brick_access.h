@@ -2,7 +2,8 @@
 
 #include "codec/brick/brick_codec.h"
 #include "codec/container/index.h"
-#include "volume/bricks/brick_source.h"
+#include "volume/bricks/brick_grid.h"
+#include "volume/field/dataset.h"
 
 #include <algorithm>
 #include <cstring>

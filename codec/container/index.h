@@ -5,7 +5,8 @@
 #include "codec/container/container.h"
 #include "codec/wavelet/lifting.h"
 #include "codec/wavelet/subbands.h"
-#include "volume/bricks/brick_source.h"
+#include "volume/bricks/brick_grid.h"
+#include "volume/bricks/brick_stats.h"
 
 #include <vector>
 

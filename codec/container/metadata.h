@@ -3,7 +3,8 @@
 #include "codec/bytes/entropy.h"
 #include "codec/container/pack_options.h"
 #include "codec/container/resample_error.h"
-#include "volume/bricks/brick_source.h"
+#include "volume/bricks/brick_grid.h"
+#include "volume/field/dataset.h"
 
 #include <optional>
 #include <string>

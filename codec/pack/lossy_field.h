@@ -3,7 +3,8 @@
 #include "codec/brick/numbers.h"
 #include "codec/wavelet/lifting.h"
 #include "codec/wavelet/threshold.h"
-#include "volume/bricks/brick_source.h"
+#include "volume/bricks/brick_grid.h"
+#include "volume/field/dataset.h"
 #include "volume/field/field.h"
 
 #include <cstdint>

@@ -3,7 +3,7 @@
 #include "vis/raycast/ray_tables.h"
 #include "vis/raycast/tile.h"
 #include "vis/scene/camera.h"
-#include "volume/bricks/brick_source.h"
+#include "volume/bricks/brick_grid.h"
 
 #include <span>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vis/scene/camera.h"
-#include "volume/bricks/brick_source.h"
+#include "volume/bricks/brick_grid.h"
 
 /// Occlusion culling of bricks, by feedback from rendering.
 ///

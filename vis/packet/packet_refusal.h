@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vis/scene/scene.h"
-#include "volume/bricks/brick_source.h"
+#include "volume/field/dataset.h"
 
 #include <string>
 

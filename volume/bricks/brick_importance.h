@@ -1,7 +1,9 @@
 #pragma once
 
 #include "volume/base/describe.h"
-#include "volume/bricks/brick_source.h"
+#include "volume/bricks/brick_grid.h"
+#include "volume/bricks/brick_stats.h"
+#include "volume/field/dataset.h"
 #include "volume/field/field.h"
 #include "volume/field/slices.h"
 

@@ -1,108 +1,10 @@
 #include "volume/bricks/brick_source.h"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
 #include <limits>
 
 namespace tessera::volume {
-
-namespace {
-
-int ceilShift(int n, int level) {
-    return (n + (1 << level) - 1) >> level;
-}
-
-/// Storage size at a level of `fine` storage samples that start on an even slice.
-glm::ivec3 atLevel(LatticeKind kind, glm::ivec3 fine, int level) {
-    glm::ivec3 size(ceilShift(fine.x, level), ceilShift(fine.y, level), ceilShift(fine.z, level));
-    if (kind == LatticeKind::BCC) size.z = ceilShift((fine.z + 1) / 2, level) + ceilShift(fine.z / 2, level);
-    return size;
-}
-
-} // namespace
-
-glm::ivec3 BrickGrid::count() const {
-    return (lattice.texels() + brickSize - 1) / brickSize;
-}
-
-glm::ivec3 BrickGrid::begin(glm::ivec3 brick) const {
-    return brick * brickSize * glm::ivec3(1, 1, lattice.kind == LatticeKind::BCC ? 2 : 1);
-}
-
-std::size_t BrickGrid::brickCount() const {
-    const glm::ivec3 bricks = count();
-    return std::size_t(bricks.x) * std::size_t(bricks.y) * std::size_t(bricks.z);
-}
-
-std::size_t BrickGrid::numberOf(glm::ivec3 brick) const {
-    const glm::ivec3 bricks = count();
-    return (std::size_t(brick.z) * std::size_t(bricks.y) + std::size_t(brick.y)) * std::size_t(bricks.x) +
-           std::size_t(brick.x);
-}
-
-glm::ivec3 BrickGrid::indexOf(std::size_t number) const {
-    const glm::ivec3 bricks = count();
-    const std::size_t nx = std::size_t(bricks.x), ny = std::size_t(bricks.y);
-    return {int(number % nx), int(number / nx % ny), int(number / (nx * ny))};
-}
-
-glm::ivec3 BrickGrid::end(glm::ivec3 brick) const {
-    return glm::min(begin(brick + 1), lattice.size);
-}
-
-glm::ivec3 BrickGrid::brickSamples(glm::ivec3 brick, int level) const {
-    return atLevel(lattice.kind, end(brick) - begin(brick), level);
-}
-
-glm::ivec3 BrickGrid::levelSamples(int level) const {
-    return atLevel(lattice.kind, lattice.size, level);
-}
-
-int BrickGrid::levelWithin(double samples) const {
-    int level = 0;
-    for (; level + 1 < levels; ++level) {
-        const glm::dvec3 size(levelSamples(level));
-        if (size.x * size.y * size.z <= samples) break;
-    }
-    return level;
-}
-
-glm::ivec3 BrickGrid::levelBegin(glm::ivec3 brick, int level) const {
-    const glm::ivec3 fine = begin(brick);
-    return {fine.x >> level, fine.y >> level, fine.z >> level};
-}
-
-double BrickGrid::levelPhase(int level) const {
-    return phase * ((1 << level) - 1);
-}
-
-BrickChange accumulated(const BrickChange& first, const BrickChange& second) {
-    return {roundedUp(double(first.max) + double(second.max)), roundedUp(double(first.rms) + double(second.rms))};
-}
-
-float roundedUp(double value) {
-    const auto rounded = static_cast<float>(value);
-    return double(rounded) < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity()) : rounded;
-}
-
-BrickChange magnitudeChange(std::span<const BrickChange> components) {
-    double max = 0, rms = 0;
-    for (const BrickChange& component : components) {
-        max += double(component.max) * double(component.max);
-        rms += double(component.rms) * double(component.rms);
-    }
-    // A magnitude is rounded to float separately, but only if a component changes.
-    constexpr double kRounding = 1 + 1e-6;
-    return {roundedUp(std::sqrt(max) * kRounding), roundedUp(std::sqrt(rms) * kRounding)};
-}
-
-BrickImportance magnitudeImportance(std::span<const BrickImportance> components) {
-    BrickImportance most;
-    for (const BrickImportance& component : components)
-        most = {std::max(most.importance, component.importance), std::max(most.detail, component.detail)};
-    return most;
-}
 
 std::optional<BrickDistribution> BrickSource::distribution(const BrickKey&) const {
     return std::nullopt;
@@ -115,6 +17,19 @@ std::optional<BrickImportance> BrickSource::importance(const BrickKey&) const {
 std::optional<BrickChange> BrickSource::change(const BrickKey& key, int toTime) const {
     if (key.time == toTime) return BrickChange{};
     return std::nullopt;
+}
+
+BrickStats statsOfSamples(const BrickSamples& samples) {
+    BrickStats stats{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), 0};
+    std::size_t present = 0;
+    for (std::size_t i = 0; i < samples.values.size(); ++i) {
+        if (!samples.isPresent(i)) continue;
+        ++present;
+        stats.min = std::min(stats.min, samples.values[i]);
+        stats.max = std::max(stats.max, samples.values[i]);
+    }
+    if (!samples.values.empty()) stats.presentFraction = float(double(present) / double(samples.values.size()));
+    return stats;
 }
 
 BrickSamples gather(const BrickGrid& grid, const BrickKey& key, int halo,

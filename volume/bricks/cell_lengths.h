@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/bricks/brick_source.h"
+#include "volume/bricks/brick_grid.h"
 
 #include <algorithm>
 #include <vector>

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "volume/bricks/brick_source.h"
+#include "volume/bricks/brick_grid.h"
 #include "volume/bricks/cell_lengths.h"
+#include "volume/field/dataset.h"
 
 #include <array>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "volume/derived/derived.h"
 
 #include "volume/base/error.h"
-#include "volume/bricks/sample_stats.h"
+#include "volume/bricks/brick_source.h"
 #include "volume/derived/derived_bricks.h"
 #include "volume/derived/derived_names.h"
 #include "volume/sources/memory_source.h"

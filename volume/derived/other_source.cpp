@@ -2,8 +2,8 @@
 
 #include "volume/base/error.h"
 #include "volume/bricks/brick_cache.h"
+#include "volume/bricks/brick_source.h"
 #include "volume/bricks/sample_position.h"
-#include "volume/bricks/sample_stats.h"
 #include "volume/reconstruct/probe.h"
 
 #include <algorithm>
