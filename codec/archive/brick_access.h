@@ -6,7 +6,9 @@
 #include "volume/field/dataset.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
+#include <glm/vec3.hpp>
 
 /// Helpers shared by the writer and the reader of an archive.
 namespace tessera::codec {

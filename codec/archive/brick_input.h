@@ -6,6 +6,11 @@
 #include "volume/field/dataset.h"
 #include "volume/field/field.h"
 
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
 /// The samples of a brick as input of the encoder, and as they will be decoded.
 namespace tessera::codec {
 

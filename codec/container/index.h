@@ -8,6 +8,8 @@
 #include "volume/bricks/brick_grid.h"
 #include "volume/bricks/brick_stats.h"
 
+#include <cstdint>
+#include <string>
 #include <vector>
 
 /// Index of an archive: positions and coding parameters of bricks. (FORMAT.md "Index".)

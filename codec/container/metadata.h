@@ -6,7 +6,9 @@
 #include "volume/bricks/brick_grid.h"
 #include "volume/field/dataset.h"
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 

@@ -5,6 +5,7 @@
 #include "vis/scene/camera.h"
 #include "volume/bricks/brick_grid.h"
 
+#include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 

@@ -3,6 +3,9 @@
 #include "vis/scene/camera.h"
 #include "volume/bricks/brick_grid.h"
 
+#include <cstdint>
+#include <vector>
+
 /// Occlusion culling of bricks, by feedback from rendering.
 ///
 /// The ray caster writes the termination depth of every pixel's ray, and the maximum over each tile of pixels is

@@ -7,6 +7,7 @@
 #include "volume/field/field.h"
 #include "volume/field/slices.h"
 
+#include <glm/vec3.hpp>
 #include <vector>
 
 /// Importance of bricks and their change over time: they decide which bricks are loaded first, at which level, and

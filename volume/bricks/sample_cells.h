@@ -5,6 +5,7 @@
 #include "volume/field/dataset.h"
 
 #include <array>
+#include <glm/vec3.hpp>
 #include <vector>
 
 namespace tessera::volume {

@@ -2,6 +2,8 @@
 
 #include "volume/bricks/brick_grid.h"
 
+#include <glm/vec3.hpp>
+
 namespace tessera::volume {
 
 /// Physical position of a storage index of a level: on BCC odd z is the moved sublattice.
