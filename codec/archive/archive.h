@@ -86,6 +86,8 @@ private:
     friend std::vector<struct MergedBytes> bytesOfMerged(const Archive&, std::span<const volume::MergedBrick>,
                                                          const Progress&);
     friend struct ArchiveState stateOf(const Archive&, bool);
+    friend std::array<std::uint64_t, 2> maskHashOf(const Archive&, const struct FrameRecord&);
+    friend std::uint64_t appendFrames(const Archive&, const Archive&, const Metadata&, std::span<const std::size_t>);
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

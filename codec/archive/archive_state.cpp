@@ -28,6 +28,12 @@ volume::Mask flagsOfLayer(const auto& impl, const FrameRecord& frame, int layer)
 
 } // namespace
 
+MaskHash::Value maskHashOf(const Archive& archive, const FrameRecord& frame) {
+    MaskHash hash;
+    for (int layer = 0; layer < archive.grid().count().z; ++layer) hash.add(flagsOfLayer(*archive.impl_, frame, layer));
+    return hash.value();
+}
+
 ArchiveState stateOf(const Archive& archive, bool withFrames) {
     const Archive::Impl& impl = *archive.impl_;
     ArchiveState state{impl.header.header,
@@ -50,9 +56,7 @@ ArchiveState stateOf(const Archive& archive, bool withFrames) {
         const FrameRecord& last = impl.index.frames[(state.times - 1) * impl.components + c];
         const auto sameMask = [&](const auto& entry) { return entry.first == last.mask; };
         if (last.mask < 0 || std::any_of(state.lastMasks.begin(), state.lastMasks.end(), sameMask)) continue;
-        MaskHash hash;
-        for (int layer = 0; layer < impl.metadata.grid.count().z; ++layer) hash.add(flagsOfLayer(impl, last, layer));
-        state.lastMasks.emplace_back(last.mask, hash.value());
+        state.lastMasks.emplace_back(last.mask, maskHashOf(archive, last));
     }
     const std::size_t step = impl.metadata.alternating ? 2 : 1;
     for (std::size_t t = state.times - std::min(state.times, step); withFrames && t < state.times; ++t)

@@ -37,6 +37,9 @@ struct ArchiveState {
     std::vector<std::pair<std::size_t, SeenFrame>> lastFrames; ///< per component, on D4* two of each
 };
 
+/// Hash of the mask of a frame of an archive. Throws Error when it is damaged.
+MaskHash::Value maskHashOf(const Archive& archive, const FrameRecord& frame);
+
 /// `withFrames`: also read the last frames. Throws Error when a model, a mask or a brick of a last frame is damaged.
 ArchiveState stateOf(const Archive& archive, bool withFrames);
 

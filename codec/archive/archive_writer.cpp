@@ -5,10 +5,10 @@
 #include "codec/archive/brick_input.h"
 #include "codec/archive/coded_bricks.h"
 #include "codec/archive/coded_mask.h"
+#include "codec/archive/commits.h"
 #include "codec/archive/frame_coding.h"
 #include "codec/archive/frame_model.h"
 #include "codec/archive/frame_steps.h"
-#include "codec/bytes/lzma.h"
 #include "codec/container/growing_file.h"
 #include "codec/container/mask_hash.h"
 #include "volume/base/parallel.h"
@@ -24,11 +24,9 @@ namespace tessera::codec {
 struct ArchiveWriter::Impl {
     GrowingFile file;
     Metadata metadata;
-    Header header;                                ///< of the last commit
-    Bytes block;                                  ///< the metadata of the last commit
-    std::size_t times = 0, models = 0, masks = 0; ///< written so far; times: committed
-    std::uint64_t pageBytes = 0;                  ///< of all pages so far, decompressed
-    IndexPage page;                               ///< additions since the last commit
+    Commits commits;
+    std::size_t models = 0, masks = 0; ///< written so far
+    IndexPage page;                    ///< additions since the last commit
     std::map<MaskHash::Value, int> maskByHash;
     std::map<std::size_t, KnownModel> lastModel; ///< per component
     bool keepsFrames = true;
@@ -39,7 +37,7 @@ struct ArchiveWriter::Impl {
     int step() const { return metadata.alternating ? 2 : 1; } ///< time steps between frames on the same grid
 
     explicit Impl(const std::string& path) : file(path) {}
-    Impl(const std::string& path, const Header& last) : file(path, last), header(last) {}
+    Impl(const std::string& path, Commits so) : file(path, so.header), commits(std::move(so)) {}
 
     /// Whether coarse coefficients of a component mix samples that a reader must not mix. A volume of one brick is read
     /// as a whole quickly.
@@ -55,7 +53,6 @@ struct ArchiveWriter::Impl {
     /// Codes every brick; true if no token was coded.
     bool codeBricks(FrameCoding& coding, const FrameSamples& samples, int effort, CodedBricks& coded,
                     const Progress& progress);
-    void commit(const Metadata& now, std::size_t wholeTimes, bool always);
 };
 
 bool ArchiveWriter::Impl::mixesParts(std::size_t component) const {
@@ -109,9 +106,9 @@ int ArchiveWriter::Impl::maskFor(const FrameSamples& samples, int zstdLevel) {
 void ArchiveWriter::Impl::writeModel(const Model& chosen, bool idle, std::size_t component, FrameRecord& frame) {
     const Model model = idle ? makeModel(Histogram(metadata.grid.levels, {}), 1) : chosen;
     const bool isStepped = frame.numbers.kind == NumberKind::Stepped;
-    const Bytes bytes = isStepped                                   ? serialise(frame.steps)
-                        : idle && (header.features & kCompact) != 0 ? Bytes()
-                                                                    : serialise(model);
+    const Bytes bytes = isStepped                                           ? serialise(frame.steps)
+                        : idle && (commits.header.features & kCompact) != 0 ? Bytes()
+                                                                            : serialise(model);
     frame.model = static_cast<std::int32_t>(models++);
     page.models.push_back({file.position(), bytes.size(), checksum(bytes)});
     file.append(bytes);
@@ -134,7 +131,7 @@ std::vector<std::uint8_t> ArchiveWriter::Impl::repeated(const SeenFrame* before,
     constexpr int kFurthest = 65535;
     const double maxError = boundOf(frame, options);
     std::vector<std::uint8_t> flags(metadata.grid.brickCount(), 0);
-    if (!before || (header.features & kBrickNotes) == 0) return flags;
+    if (!before || (commits.header.features & kBrickNotes) == 0) return flags;
     parallelRanges(flags.size(), [&](std::size_t begin, std::size_t end) {
         BrickInput was, is, coded;
         for (std::size_t b = begin; b < end; ++b) {
@@ -159,20 +156,17 @@ ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata, 
     impl_->metadata = metadata;
     impl_->keepsFrames = keepsFrames;
     // A volume of one brick is read as quickly as its statistics would be, and they would be a large part of its size.
-    if (metadata.grid.count() == glm::ivec3(1)) impl_->header.features &= ~kBrickStatistics;
+    if (metadata.grid.count() == glm::ivec3(1)) impl_->commits.header.features &= ~kBrickStatistics;
 }
 
 ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, bool keepsFrames) {
     const bool laterTimes = metadata.info.times.size() > archive.info().times.size();
     ArchiveState state = stateOf(archive, keepsFrames && laterTimes);
-    impl_ = std::make_unique<Impl>(archive.path(), state.header);
+    impl_ = std::make_unique<Impl>(archive.path(), commitsOf(archive, state));
     impl_->metadata = metadata;
     impl_->keepsFrames = keepsFrames;
-    impl_->block = serialise(archive.metadata(), state.header.features);
-    impl_->times = state.times;
     impl_->models = state.models;
     impl_->masks = state.masks;
-    impl_->pageBytes = state.pageBytes;
     for (const auto& [number, hash] : state.lastMasks) impl_->maskByHash.emplace(hash, number);
     for (std::size_t c = 0; c < state.lastModels.size(); ++c)
         impl_->lastModel.emplace(c, std::move(state.lastModels[c]));
@@ -200,13 +194,13 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     frame.codeBits = codeBitsOf(samples, frame.numbers);
     if (mixesParts(component)) {
         frame.subsampled = true;
-        header.features |= kSubsamples;
+        commits.header.features |= kSubsamples;
     }
     coding.maxError = boundOf(frame, options);
     coding.before = frameBefore(frame, samples);
     coding.repeated = repeated(coding.before, samples, frame, options);
     coding.importance = importanceOfBricks(grid, samples, options.range, options.categorical, options.importance);
-    const bool byBand = (header.features & kBandContexts) != 0;
+    const bool byBand = (commits.header.features & kBandContexts) != 0;
     coding.model = chooseModel(grid, samples, last, byBand, frame, options, coding.taken);
     if (auto steps = chooseSteps(grid, samples, frame, coding.model, options, last, time / step(), coding.taken)) {
         useSteps(*steps, frame);
@@ -214,12 +208,12 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
         coding.taken.bricks.resize(grid.brickCount());
         for (auto& [number, brick] : steps->bricks) coding.taken.bricks[number] = std::move(brick);
         frame.model = last && last->kind == NumberKind::Stepped && last->steps == frame.steps ? last->number : -1;
-        header.features |= kSteppedBricks;
+        commits.header.features |= kSteppedBricks;
     } else if (!coding.taken.serves(frame, coding.model)) {
         coding.taken.bricks.clear();
     }
     coding.step = step();
-    coding.statistics = (header.features & kBrickStatistics) != 0;
+    coding.statistics = (commits.header.features & kBrickStatistics) != 0;
     // The last frame only needs its change, not to be kept.
     const bool isLast = std::size_t(time + step()) >= metadata.info.times.size();
     coding.keeps = keepsFrames && (coding.before || !isLast);
@@ -247,7 +241,7 @@ bool ArchiveWriter::Impl::codeBricks(FrameCoding& coding, const FrameSamples& sa
             const std::size_t count = std::min(perBatch, endBrick - first);
             std::vector<std::vector<Bytes>> batch(count);
             parallelRanges(count, [&](std::size_t begin, std::size_t end) {
-                Compressor compressor(effort, (header.features & kCompact) != 0);
+                Compressor compressor(effort, (commits.header.features & kCompact) != 0);
                 BrickInput input;
                 SplitMemory memory;
                 for (std::size_t b = first + begin; b < first + end; ++b)
@@ -301,45 +295,18 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
     impl_->page.frames.push_back(std::move(frame));
 }
 
-void ArchiveWriter::Impl::commit(const Metadata& now, std::size_t wholeTimes, bool always) {
-    constexpr std::size_t kWorthwhile = 64, kPage = 256; // multiples of the bytes that a commit costs, including a page
-    Bytes text = serialise(now, header.features);
-    const std::uint64_t last = std::max(header.fileSize, kFirstChunk);
-    if (!always && file.position() - last < kWorthwhile * (text.size() + kPage)) return;
-    if (page.frames.empty() && text == block) return;
-    const std::vector<double>& all = now.info.times;
-    page.times.assign(all.begin() + std::ptrdiff_t(times), all.begin() + std::ptrdiff_t(wholeTimes));
-    page.previousPage = header.index;
-    page.previousMetadata = {};
-    if (text != block) {
-        page.previousMetadata = header.metadata;
-        header.metadata = {file.position(), text.size(), checksum(text)};
-        file.append(text);
-        block = std::move(text);
-    }
-    Bytes index = serialise(page, header.features);
-    pageBytes += index.size();
-    if ((header.features & kCompact) != 0) index = encodeBlock(index, pageBytes > mostPageBytes(file.position()));
-    header.index = {file.position(), index.size(), checksum(index)};
-    file.append(index);
-    header.fileSize = file.position();
-    file.commit(header);
-    times = wholeTimes;
-    page = {};
-}
-
 Archive::Repeats ArchiveWriter::repeats() const {
     return impl_->repeats;
 }
 
 void ArchiveWriter::commit(const Metadata& metadata, std::size_t times) {
-    impl_->commit(metadata, times, false);
+    impl_->commits.commit(impl_->file, impl_->page, metadata, times, false);
 }
 
 std::uint64_t ArchiveWriter::finish(const Metadata& metadata) {
-    impl_->commit(metadata, metadata.info.times.size(), true);
+    impl_->commits.commit(impl_->file, impl_->page, metadata, metadata.info.times.size(), true);
     impl_->file.finish();
-    return impl_->header.fileSize;
+    return impl_->commits.header.fileSize;
 }
 
 } // namespace tessera::codec

@@ -28,4 +28,16 @@ bool PackOptions::presetHasLattice(std::string_view name) {
     return name == "lossless" || name == "thesis";
 }
 
+bool hasThreshold(const PackOptions& options) {
+    return options.threshold.kind != ThresholdChoice::None && options.threshold.value > 0;
+}
+
+bool isExact(const PackOptions& options) {
+    return options.maxError == 0 && options.absError == 0 && options.psnr == 0 && !hasThreshold(options);
+}
+
+bool isRelative(const PackOptions& options) {
+    return options.maxError > 0 || options.psnr > 0 || hasThreshold(options) || options.discard > 0;
+}
+
 } // namespace tessera::codec

@@ -124,18 +124,26 @@ struct PackOptions {
                                         .unit = "",
                                         .doc = "Effort of zstd, which codes masks and repetitive bricks",
                                         .range = Range{1, 19}});
-        visit(self.memoryMb,
-              FieldInfo{
-                  .key = "memory",
-                  .unit = "MB",
-                  .doc =
-                      "Limit of memory for packing; 0 = a quarter of the machine's. With little memory, data are not "
-                      "compared with the previous time, not read ahead, and read in slabs if one time does not fit",
-                  .range = Range{0, 1e9}});
+        visit(
+            self.memoryMb,
+            FieldInfo{
+                .key = "memory",
+                .unit = "MB",
+                .doc =
+                    "Limit of memory for packing; 0 = a quarter of the machine's, shared by the processes that mpirun "
+                    "or srun start on it. With little memory, data are not "
+                    "compared with the previous time, not read ahead, and read in slabs if one time does not fit",
+                .range = Range{0, 1e9}});
         visit(self.importance, FieldInfo{.key = "importance",
                                          .unit = "",
                                          .doc = "How the importance of a brick is computed from its samples"});
     }
 };
+
+bool hasThreshold(const PackOptions& options);
+/// Whether the options keep all samples exactly, except in omitted bricks.
+bool isExact(const PackOptions& options);
+/// Whether bounds are relative to the range over all times, which must be known before the first one is coded.
+bool isRelative(const PackOptions& options);
 
 } // namespace tessera::codec

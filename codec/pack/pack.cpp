@@ -27,12 +27,6 @@ using volume::Field;
 using volume::LatticeKind;
 using volume::ScalarType;
 
-/// Whether the error bound is relative to the range over all times, which requires a pass of its own; a single time is
-/// read only once.
-bool isRelative(const PackOptions& options) {
-    return options.maxError > 0 || options.psnr > 0 || hasThreshold(options) || options.discard > 0;
-}
-
 void check(const volume::DatasetInfo& source, const PackOptions& options) {
     if (source.parameters.empty() || source.times.empty()) throw Error("there is nothing to pack");
     if (!(options.maxError >= 0 && options.maxError < 1)) throw Error("the error bound must be from 0 to below 1");
@@ -138,6 +132,10 @@ public:
     }
 
     PackSummary run(const Progress& progress);
+    /// The unknown ranges of the source, from a pass over it.
+    std::vector<std::vector<Range>> ranges(const Progress& progress) {
+        return rangesOfAll(dataset_, reading_, summary_, progress);
+    }
     /// Estimates the sizes of the archive at several bounds; sets the ranges of the source.
     std::vector<SizeAtBound> estimate(const Progress& progress);
 
@@ -335,6 +333,11 @@ PackSummary pack(volume::Dataset& source, const PackOptions& options, const std:
         return packing(plain, path).estimate(part);
     };
     return packToSize(options, sizeControlFor(source.info), path, bytesAt, trial, progress);
+}
+
+std::vector<std::vector<Range>> unknownRanges(volume::Dataset& source, const PackOptions& options,
+                                              const std::string& path, const Progress& progress) {
+    return Packing(source, 0, {}, options, path, nullptr).ranges(progress);
 }
 
 PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb, const Progress& progress,

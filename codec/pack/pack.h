@@ -38,6 +38,11 @@ struct PackedBefore {
 PackSummary pack(volume::Dataset& source, const PackOptions& options, const std::string& path,
                  const Progress& progress = {}, const PackedBefore& before = {}, int slabLayers = 0);
 
+/// The unknown ranges of a data set that is going to be packed, by parameter, then component, from a pass over it
+/// within the memory of the options; those without a sample are empty (lo > hi). Throws as pack().
+std::vector<std::vector<Range>> unknownRanges(volume::Dataset& source, const PackOptions& options,
+                                              const std::string& path, const Progress& progress = {});
+
 /// Appends to an archive with its own options: later times of the same parameters (with d4 preceded by the last times
 /// again, volume::continueD4), or further parameters at the same times. In addition the source may have labels that
 /// equal those of the archive sample by sample. If it throws, complete appended times are kept; parameters are appended

@@ -50,14 +50,6 @@ int brickSizeFor(const volume::Lattice& lattice, const volume::DatasetInfo& sour
 
 } // namespace
 
-bool hasThreshold(const PackOptions& options) {
-    return options.threshold.kind != ThresholdChoice::None && options.threshold.value > 0;
-}
-
-bool isExact(const PackOptions& options) {
-    return options.maxError == 0 && options.absError == 0 && options.psnr == 0 && !hasThreshold(options);
-}
-
 volume::BrickGrid gridFor(const volume::Lattice& lattice, const volume::DatasetInfo& source, const PackOptions& options,
                           const Archive* grown) {
     const int brickSize = brickSizeFor(lattice, source, options, grown);

@@ -6,10 +6,6 @@
 /// The bricks that samples are packed in.
 namespace tessera::codec {
 
-bool hasThreshold(const PackOptions& options);
-/// Whether the options keep all samples exactly, except in omitted bricks.
-bool isExact(const PackOptions& options);
-
 /// The bricks of samples on `lattice` that come from a data set: as the options say, or of an automatic size (as
 /// PackOptions::brickSize says). Archives that grow (`grown`) keep theirs. Throws Error if the options ask for what
 /// cannot be.

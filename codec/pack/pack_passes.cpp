@@ -32,20 +32,24 @@ void settleRanges(volume::DatasetInfo& info, const std::vector<std::vector<Range
     }
 }
 
-void gatherAllRanges(volume::Dataset& dataset, const FrameQueueOptions& reading, PackSummary& summary,
-                     const Progress& progress) {
-    volume::DatasetInfo& info = dataset.info;
-    const auto isKnown = [](const volume::Parameter& parameter) { return !parameter.ranges.empty(); };
-    if (std::all_of(info.parameters.begin(), info.parameters.end(), isKnown)) return;
+std::vector<std::vector<Range>> rangesOfAll(volume::Dataset& dataset, const FrameQueueOptions& reading,
+                                            PackSummary& summary, const Progress& progress) {
     FrameQueueOptions plain = reading;
     plain.toBcc = false;
     plain.rangesOnly = true;
-    std::vector<std::vector<Range>> ranges(info.parameters.size());
+    std::vector<std::vector<Range>> ranges(dataset.info.parameters.size());
     forSteps(dataset, plain, "ranges", progress, [&](const QueuedFrames& fed) {
         summary.loadSeconds += fed.loadSeconds;
         widenRanges(ranges[std::size_t(fed.parameter)], fed.ranges);
     });
-    settleRanges(info, ranges);
+    return ranges;
+}
+
+void gatherAllRanges(volume::Dataset& dataset, const FrameQueueOptions& reading, PackSummary& summary,
+                     const Progress& progress) {
+    const auto isKnown = [](const volume::Parameter& parameter) { return !parameter.ranges.empty(); };
+    if (std::ranges::all_of(dataset.info.parameters, isKnown)) return;
+    settleRanges(dataset.info, rangesOfAll(dataset, reading, summary, progress));
 }
 
 std::vector<std::uint8_t> bricksToDiscard(volume::Dataset& dataset, const FrameQueueOptions& reading,

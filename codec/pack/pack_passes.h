@@ -10,7 +10,11 @@ namespace tessera::codec {
 /// Sets unknown ranges of parameters to those gathered.
 void settleRanges(volume::DatasetInfo& info, const std::vector<std::vector<Range>>& gathered);
 
-/// Computes the unknown ranges of all parameters by reading everything once.
+/// The unknown ranges of the parameters, by reading everything once: those without a sample are empty (lo > hi).
+std::vector<std::vector<Range>> rangesOfAll(volume::Dataset& dataset, const FrameQueueOptions& reading,
+                                            PackSummary& summary, const Progress& progress);
+
+/// Sets the unknown ranges of all parameters to these.
 void gatherAllRanges(volume::Dataset& dataset, const FrameQueueOptions& reading, PackSummary& summary,
                      const Progress& progress);
 

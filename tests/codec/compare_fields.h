@@ -40,4 +40,25 @@ inline double largestError(const Archive& archive, const volume::Dataset& made, 
     return largest;
 }
 
+/// The same samples in every brick at every level, and the same said of them.
+inline void expectSameArchives(const Archive& a, const Archive& b) {
+    volume::DatasetInfo info = a.info();
+    EXPECT_EQ(info, b.info());
+    ASSERT_EQ(a.grid(), b.grid());
+    const glm::ivec3 count = a.grid().count();
+    for (int channel = 0; channel < int(info.channels().size()); ++channel)
+        for (int time = 0; time < int(info.times.size()); ++time)
+            for (int level = 0; level < a.grid().levels; ++level)
+                for (int n = 0; n < count.x * count.y * count.z; ++n) {
+                    const volume::BrickKey key{
+                        channel, time, level, {n % count.x, n / count.x % count.y, n / (count.x * count.y)}};
+                    const volume::BrickSamples left = a.read(key), right = b.read(key);
+                    ASSERT_EQ(left.present, right.present);
+                    for (std::size_t i = 0; i < left.values.size(); ++i)
+                        if (left.isPresent(i)) {
+                            ASSERT_EQ(left.values[i], right.values[i]);
+                        }
+                }
+}
+
 } // namespace tessera::codec::testing

@@ -291,6 +291,15 @@ check "unpack that" 0 "$tessera" unpack again.tsr -o again-back.raw
 [ "$(stat -c %s again-back.raw)" = $((4 * 1320 * 4)) ] || fail "it has not grown by two times of the same grid"
 check "append an archive" 0 "$tessera" pack late.json -o late.tsr
 check "to one on BCC" 0 "$tessera" pack late.tsr --append -o early.tsr
+check "append one packed with loss" 0 "$tessera" pack early.json -o lossy.tsr --abs-error 0.01
+check "later times of it" 0 "$tessera" pack late.json -o late.tsr --abs-error 0.01
+error() { "$tessera" info "$1" --json | python3 -c 'import json,sys; print(json.load(sys.stdin)["maxError"])'; }
+before="$(error lossy.tsr) $(error late.tsr)"
+check "to another" 0 "$tessera" pack late.tsr --append -o lossy.tsr
+say "now .* of it from" out.txt
+python3 -c 'import sys; after, *before = map(float, sys.argv[1:]); sys.exit(not 0 < after <= max(before))' \
+    $(error lossy.tsr) $before || fail "nothing was coded again, but errors are added"
+check "verify what was joined" 0 "$tessera" verify lossy.tsr
 check "pack D4*" 0 "$tessera" pack all.json -o d4.tsr --lattice d4
 check "convert D4*" 0 "$tessera" convert d4.tsr -o again.tsr
 check "info of that" 0 "$tessera" info again.tsr --json

@@ -1,6 +1,7 @@
 #include "volume/import/growing_series.h"
 
 #include "volume/base/error.h"
+#include "volume/field/quantities.h"
 #include "volume/import/absent.h"
 #include "volume/import/opened_series.h"
 #include "volume/import/parts_rules.h"
@@ -33,21 +34,6 @@ void stateParts(const DatasetInfo& info, std::vector<std::string>& rules) {
     if (std::ranges::none_of(info.parameters, &Parameter::categorical)) return;
     for (const Parameter& parameter : info.parameters)
         if (!parameter.categorical && !isRuled(parameter.name)) rules.push_back(partsRule(parameter));
-}
-
-Dataset withTimes(Dataset data, const std::vector<int>& times) {
-    const auto keep = [&](const std::vector<double>& values) {
-        std::vector<double> kept;
-        for (const int time : times) kept.push_back(values[std::size_t(time)]);
-        return kept;
-    };
-    data.info.times = keep(data.info.times);
-    for (Quantity& quantity : data.info.quantities) quantity.values = keep(quantity.values);
-    data.read =
-        data.read.through([times](const FrameReader& read, int parameter, int component, int time, SliceRange slices) {
-            return read(parameter, component, times[std::size_t(time)], slices);
-        });
-    return data;
 }
 
 } // namespace
