@@ -7,6 +7,8 @@
 #include "app/growing/frame_stream.h"
 #include "app/user_files/import_memory.h"
 #include "codec/container/exactness.h"
+#include "codec/pack/join.h"
+#include "codec/pack/pack_blocks.h"
 #include "codec/pack/unpack.h"
 #include "codec/remote/address.h"
 #include "volume/base/byte_text.h"
@@ -38,6 +40,7 @@ struct PackRequest {
     std::optional<double> untilIdle;
     double timeStep = 1;
     bool timesGiven = false;
+    std::optional<std::size_t> blockTimes;
 };
 
 /// One JSON object per line on stdout, for a window that runs this command.
@@ -172,26 +175,38 @@ void runGrowing(const PackRequest& request) {
     packStream({archive, request.append, request.timeStep, request.timesGiven});
 }
 
-void run(PackRequest request) {
-    if (!request.follows) checkOutput(request);
-    if (request.options.memoryMb > 0) keepNoFreedFrames();
-    if (request.follows || isStream(request)) return runGrowing(request);
-    if (request.timesGiven || request.timeStep != 1)
-        throw Error("is for frames on standard input (IN is -); state the times of files by --times", {},
-                    request.timesGiven ? "--times-given" : "--time-step");
-    if (request.keepsLattice) request.options.lattice = storedLattice(request.inputs[0]);
-    const Progress terminal = terminalProgress("pack");
-    const Progress progress = request.progressJson ? jsonProgress(terminal) : terminal;
-    auto [data, before] = open(request, progress.part(0, 0.02));
-    const Progress rest = progress.part(0.02, 1);
-    const codec::PackSummary summary = request.append
-                                           ? codec::append(data, request.output, request.options.memoryMb, rest, before)
-                                           : codec::pack(data, request.options, request.output, rest, before);
+void sayNotes(const codec::PackSummary& summary) {
+    for (const std::string& note : summary.notes) std::fprintf(stderr, "tessera: %s\n", note.c_str());
+}
+
+/// Packs in blocks of times, which processes share.
+void runBlocks(const PackRequest& request, const Launched& started, const PackInput& input, const Progress& progress) {
+    const codec::BlockSummary summary = codec::packInBlocks(
+        input.data, request.options, request.output, {request.blockTimes.value_or(0), started}, progress, input.before);
+    if (request.json || request.progressJson) {
+        nlohmann::json report = reportOf(summary.own, request.output);
+        report.update({{"blocks", summary.blocks}, {"ownBlocks", summary.packed}, {"rank", started.rank}});
+        std::printf("%s\n", report.dump(request.progressJson ? -1 : 1).c_str());
+        return;
+    }
+    sayNotes(summary.own);
+    std::string text = std::to_string(summary.packed) + " of " + std::to_string(summary.blocks) + " blocks packed";
+    if (started.count > 1)
+        text += " by process " + std::to_string(started.rank + 1) + " of " + std::to_string(started.count);
+    text += ", " + textOfBytes(double(summary.own.sourceBytes));
+    if (summary.last)
+        text += "; " + request.output + ": " + textOfBytes(double(summary.own.archiveBytes)) + ", " +
+                exactnessOf(request.output);
+    std::printf("%s\n", text.c_str());
+}
+
+/// Prints what was packed.
+void say(const PackRequest& request, const codec::PackSummary& summary) {
     if (request.json || request.progressJson) {
         std::printf("%s\n", reportOf(summary, request.output).dump(request.progressJson ? -1 : 1).c_str());
         return;
     }
-    for (const std::string& note : summary.notes) std::fprintf(stderr, "tessera: %s\n", note.c_str());
+    sayNotes(summary);
     if (summary.discardedBricks > 0)
         std::printf("%llu of %llu bricks are less important than the limit and are left out\n",
                     static_cast<unsigned long long>(summary.discardedBricks),
@@ -212,6 +227,34 @@ void run(PackRequest request) {
                 100.0 * double(summary.storedSamples) / double(summary.sourceSamples), summary.seconds,
                 textOfBytes(source / summary.seconds).c_str());
     std::printf("%s\n", exactnessOf(request.output).c_str());
+}
+
+/// Whether an archive is appended to one that was packed alike: then nothing is coded again.
+bool joins(const PackRequest& request) {
+    return request.append && request.inputs.size() == 1 && codec::namesArchive(request.inputs[0]) &&
+           !codec::isRemote(request.inputs[0]) && codec::canJoin(request.output, request.inputs[0]);
+}
+
+void run(PackRequest request) {
+    const Launched started = launched();
+    if ((started.count > 1 || request.blockTimes) && (request.append || request.follows || isStream(request)))
+        throw Error("several processes, or blocks of times, pack a whole series only, without --append and --follow");
+    if (!request.follows) checkOutput(request);
+    if (request.options.memoryMb > 0) keepNoFreedFrames();
+    if (request.follows || isStream(request)) return runGrowing(request);
+    if (request.timesGiven || request.timeStep != 1)
+        throw Error("is for frames on standard input (IN is -); state the times of files by --times", {},
+                    request.timesGiven ? "--times-given" : "--time-step");
+    if (request.keepsLattice) request.options.lattice = storedLattice(request.inputs[0]);
+    const Progress terminal = terminalProgress("pack");
+    const Progress progress = request.progressJson ? jsonProgress(terminal) : terminal;
+    if (joins(request)) return say(request, codec::join(request.output, request.inputs[0]));
+    PackInput input = open(request, progress.part(0, 0.02));
+    const Progress rest = progress.part(0.02, 1);
+    if (request.blockTimes || started.count > 1) return runBlocks(request, started, input, rest);
+    auto& [data, before] = input;
+    say(request, request.append ? codec::append(data, request.output, request.options.memoryMb, rest, before)
+                                : codec::pack(data, request.options, request.output, rest, before));
 }
 
 void addFollowOptions(CLI::App& command, PackRequest& request) {
@@ -240,6 +283,16 @@ void addFollowOptions(CLI::App& command, PackRequest& request) {
     seconds("--settle", request.arrival.settle, "A file is read once it has not changed for so many seconds");
     seconds("--retry", request.arrival.retry,
             "A file that cannot be read is tried again for so many seconds before later ones go ahead");
+}
+
+void addBlocksOption(CLI::App& command, PackRequest& request) {
+    command
+        .add_option("--block-times", request.blockTimes,
+                    "Pack in blocks of so many times, which several processes share that are started alike (mpirun, "
+                    "srun, or by hand on machines that see the same folder), and which are joined to one archive. "
+                    "Processes of mpirun or srun do so by themselves: 16 times, or fewer so that each has a block")
+        ->check(CLI::PositiveNumber)
+        ->group("Several processes");
 }
 
 void addStreamOptions(CLI::App& command, PackRequest& request) {
@@ -278,6 +331,7 @@ void addPackCommand(CLI::App& app) {
     command->add_flag("--progress-json", request->progressJson, "Print progress and summary as JSON lines");
     addFollowOptions(*command, *request);
     addStreamOptions(*command, *request);
+    addBlocksOption(*command, *request);
     addDescribed(*command, request->options);
     addImportOptions(*command, request->import);
     command->callback([request] { run(*request); });
@@ -293,6 +347,7 @@ void addConvertCommand(CLI::App& app) {
     command->add_option("-o,--output", request->output, "Archive to write (.tsr)")->required();
     command->add_flag("--json", request->json, "Print the summary as JSON");
     command->add_flag("--progress-json", request->progressJson, "Print progress and summary as JSON lines");
+    addBlocksOption(*command, *request);
     addDescribed(*command, request->options);
     command->callback([request, command] {
         if (!codec::namesArchive(request->inputs[0])) throw Error("not an archive (.tsr)", request->inputs[0]);

@@ -6,6 +6,7 @@
 #include "volume/base/parallel.h"
 #include "volume/resample/series.h"
 #include "volume/system/confine.h"
+#include "volume/system/launched.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +18,10 @@ namespace {
 constexpr double kMega = 1e6;
 constexpr double kOwn = 64 * kMega; ///< the program itself, its threads and tables
 
+/// Shared by the processes that a launcher started on this machine.
 double quarterOfRam() {
     const std::uint64_t all = volume::machineMemory();
-    return all > 0 ? double(all) / 4 : 1e9;
+    return all > 0 ? double(all) / 4 / launched().onThisMachine : 1e9;
 }
 
 bool isSpline(const volume::ResampleOptions& options) {

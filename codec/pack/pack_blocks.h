@@ -1,0 +1,39 @@
+#pragma once
+
+#include "codec/container/pack_options.h"
+#include "codec/pack/pack.h"
+#include "volume/system/launched.h"
+
+#include <cstddef>
+#include <string>
+
+namespace tessera::codec {
+
+/// How a series is packed in blocks.
+struct BlockOptions {
+    std::size_t times = 0; ///< of a block; 0: blockTimes()
+    Launched launched;
+};
+
+/// Times of a block for so many processes: 16, or fewer so that each process has a block.
+std::size_t blockTimes(std::size_t times, const Launched& launched);
+
+struct BlockSummary {
+    PackSummary own; ///< of the blocks that this process packed; archiveBytes: of the whole
+    std::size_t blocks = 0, packed = 0;
+    bool last = false; ///< this process gave the archive its name
+};
+
+/// Packs a series as pack() does, but in blocks of successive times, each an archive of its own in the folder
+/// PATH.blocks, which are joined (codec/pack/join.h) in their order as soon as they are complete. Other processes that
+/// pack the same data into the same path at the same time share the blocks (codec/pack/shared_job.h); it returns when
+/// all are joined and the archive has its name. What was complete when all processes ended is continued by the next
+/// run. The bytes of the archive depend on the length of the blocks, and not on the number of processes: nothing is
+/// coded relative to times of another block. Bounds relative to ranges refer to those of all times, which are found in
+/// a pass before.
+///
+/// Throws as pack(), and Error for options that depend on all times at once: D4*, a size, omitted bricks.
+BlockSummary packInBlocks(const volume::Dataset& source, const PackOptions& options, const std::string& path,
+                          const BlockOptions& blocks, const Progress& progress = {}, const PackedBefore& before = {});
+
+} // namespace tessera::codec

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "volume/base/progress.h"
+#include "volume/system/launched.h"
+#include "volume/system/locked_file.h"
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace tessera::codec {
+
+/// Work on one output that processes share, on one machine or several that see the same files: they agree by locks on
+/// files in the folder OUTPUT.blocks, which exists while the work is not complete. The folder of processes that ended
+/// before is continued. Processes started by a launcher (mpirun, srun) belong together, so that one that starts late
+/// does not begin again; others may come and go at any time.
+class SharedJob {
+public:
+    /// Enters the folder, and makes it if there is none. `about` describes the work, the same in all processes. Throws
+    /// Error when the folder belongs to other work, MachineError when it cannot be made or locked, Cancelled.
+    SharedJob(const std::string& output, const std::string& about, const Launched& launched, const Progress& progress);
+    /// Leaves the folder; the last process of complete work removes it.
+    ~SharedJob();
+    SharedJob(const SharedJob&) = delete;
+    SharedJob& operator=(const SharedJob&) = delete;
+
+    /// Does pieces 0 .. count - 1 of the work that is called `name`: first those that nobody does, then it waits for
+    /// the others, and does those whose process ended before they were done. Returns how many it did; all are done
+    /// then. `isDone(piece)` must see what any process has done; `work(piece)` must leave nothing half done.
+    std::size_t share(const std::string& name, std::size_t count, const std::function<bool(std::size_t)>& isDone,
+                      const std::function<void(std::size_t)>& work, const Progress& progress) const;
+
+    /// The path of a file of the folder.
+    std::string file(const std::string& name) const { return folder_ + "/" + name; }
+    /// A lock between the processes, which is waited for. Throws Cancelled.
+    LockedFile lock(const std::string& name, const Progress& progress) const;
+    /// States that the work is complete, whatever the other processes do.
+    void setComplete() const;
+    bool complete() const;
+
+private:
+    std::string folder_;
+    Launched launched_;
+    std::optional<LockedFile> inside_; ///< shared by all processes in the folder
+};
+
+} // namespace tessera::codec

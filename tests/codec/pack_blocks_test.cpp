@@ -1,0 +1,249 @@
+#include "codec/pack/pack_blocks.h"
+
+#include "codec/archive/archive.h"
+#include "codec/pack/shared_job.h"
+#include "tests/codec/compare_fields.h"
+#include "tests/codec/make_dataset.h"
+
+#include <csignal>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+namespace tessera::codec {
+namespace {
+
+using namespace testing;
+using volume::ScalarType;
+namespace fs = std::filesystem;
+
+volume::Dataset series(int times = 7) {
+    return makeDataset({17, 12, 19},
+                       {{"O2", ScalarType::F32, 1, Texture::Smooth, true, false},
+                        {"U", ScalarType::F32, 2, Texture::Noise, false, false},
+                        {"n", ScalarType::U16, 1, Texture::Smooth, false, false}},
+                       times);
+}
+
+PackOptions small(double maxError = 0, StoredLattice lattice = StoredLattice::CC) {
+    PackOptions options;
+    options.lattice = lattice;
+    options.brickSize = 8;
+    options.maxError = maxError;
+    return options;
+}
+
+/// A process that runs `work`; its exit status is 0 if that returns true.
+template <class Work> pid_t started(Work&& work) {
+    const pid_t child = ::fork();
+    if (child != 0) return child;
+    bool good = false;
+    try {
+        good = work();
+    } catch (...) {
+    }
+    ::_exit(good ? 0 : 1);
+}
+
+int statusOf(pid_t child) {
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+/// Packs by several processes; returns how many of them failed.
+int packBy(int processes, const volume::Dataset& made, const PackOptions& options, const std::string& path,
+           std::size_t times, const std::string& job = "1") {
+    std::vector<pid_t> children;
+    for (int rank = 0; rank < processes; ++rank)
+        children.push_back(started([&] {
+            const BlockSummary summary = packInBlocks(made, options, path, {times, {rank, processes, processes, job}});
+            return summary.blocks == (made.info.times.size() + times - 1) / times && fs::exists(path);
+        }));
+    int failed = 0;
+    for (const pid_t child : children) failed += statusOf(child) != 0 ? 1 : 0;
+    return failed;
+}
+
+TEST(PackBlocks, OneProcessPacksEveryBlock) {
+    const TemporaryFolder folder;
+    volume::Dataset made = series();
+    const BlockSummary summary = packInBlocks(made, small(), folder / "blocks.tsr", {3, {}});
+    EXPECT_EQ(summary.blocks, 3u);
+    EXPECT_EQ(summary.packed, 3u);
+    EXPECT_TRUE(summary.last);
+    const PackSummary once = pack(made, small(), folder / "once.tsr");
+    EXPECT_EQ(summary.own.sourceBytes, once.sourceBytes);
+    EXPECT_EQ(summary.own.storedSamples, once.storedSamples);
+    EXPECT_EQ(summary.own.archiveBytes, fs::file_size(folder / "blocks.tsr"));
+    const Archive blocks(folder / "blocks.tsr");
+    expectSameArchives(Archive(folder / "once.tsr"), blocks);
+    EXPECT_EQ(verifyArchive(blocks).damaged, 0u);
+    EXPECT_EQ(folder.files(), 2u) << "the folder of the blocks has gone";
+}
+
+TEST(PackBlocks, TheBytesDoNotDependOnTheNumberOfProcesses) {
+    const TemporaryFolder folder;
+    const volume::Dataset made = series();
+    for (const PackOptions& options : {small(), small(1e-3), small(0, StoredLattice::BCC)}) {
+        ASSERT_EQ(packBy(1, made, options, folder / "one.tsr", 2), 0);
+        const std::vector<char> one = readFile(folder / "one.tsr");
+        for (const int processes : {2, 3, 6}) {
+            ASSERT_EQ(packBy(processes, made, options, folder / "more.tsr", 2), 0);
+            EXPECT_EQ(readFile(folder / "more.tsr"), one) << processes << " processes";
+        }
+        EXPECT_EQ(folder.files(), 2u);
+    }
+}
+
+TEST(PackBlocks, BoundsAreRelativeToTheRangesOfAllTimes) {
+    const TemporaryFolder folder;
+    volume::Dataset made = makeDataset({16, 16, 16}, {{"T", ScalarType::F32, 1, Texture::Smooth, false, false}}, 4);
+    made.read = [read = made.read](int p, int c, int t) {
+        volume::Field field = read(p, c, t);
+        for (float& value : field.as<float>()) value *= t == 3 ? 100.0f : 1.0f;
+        if (t < 2) field.mask = std::make_shared<const volume::Mask>(field.count(), std::uint8_t(0)); // no value at all
+        return field;
+    };
+    ASSERT_EQ(packBy(2, made, small(1e-3), folder / "blocks.tsr", 1), 0);
+    pack(made, small(1e-3), folder / "once.tsr");
+    const Archive blocks(folder / "blocks.tsr"), once(folder / "once.tsr");
+    EXPECT_EQ(blocks.info().parameters[0].ranges, once.info().parameters[0].ranges);
+    EXPECT_GT(blocks.info().parameters[0].ranges[0].lo, 100) << "0 is no value of the data";
+    for (int t = 0; t < 4; ++t) expectSame(readField(blocks, 0, 0, t), readField(once, 0, 0, t), false);
+}
+
+TEST(PackBlocks, WhatAKilledProcessLeftIsGoneOnWith) {
+    const TemporaryFolder folder;
+    const volume::Dataset made = series();
+    ASSERT_EQ(packBy(1, made, small(), folder / "whole.tsr", 2), 0);
+    volume::Dataset deadly = made;
+    deadly.read = [read = made.read](int p, int c, int t) {
+        if (t == 4) ::raise(SIGKILL); // while the third block is read
+        return read(p, c, t);
+    };
+    const pid_t child = started([&] { return packInBlocks(deadly, small(), folder / "run.tsr", {2, {}}).last; });
+    ASSERT_EQ(statusOf(child), -SIGKILL);
+    EXPECT_FALSE(fs::exists(folder / "run.tsr"));
+    {
+        const Archive far(folder / "run.tsr.blocks/joined.tsr"); // what is complete can be read
+        EXPECT_EQ(far.info().times, (std::vector<double>{0, 0.5, 1, 1.5}));
+        EXPECT_EQ(verifyArchive(far).damaged, 0u);
+    }
+    int least = 99; // the first time that is read again
+    volume::Dataset watched = made;
+    watched.read = [read = made.read, &least](int p, int c, int t) {
+        least = std::min(least, t);
+        return read(p, c, t);
+    };
+    const BlockSummary summary = packInBlocks(watched, small(), folder / "run.tsr", {2, {}});
+    EXPECT_EQ(least, 4);
+    EXPECT_EQ(summary.packed, 2u);
+    EXPECT_EQ(readFile(folder / "run.tsr"), readFile(folder / "whole.tsr"));
+    EXPECT_EQ(folder.files(), 2u);
+}
+
+TEST(PackBlocks, OthersDoTheBlockOfAKilledProcess) {
+    const TemporaryFolder folder;
+    const volume::Dataset made = series();
+    ASSERT_EQ(packBy(1, made, small(), folder / "whole.tsr", 2), 0);
+    volume::Dataset slow = made;
+    slow.read = [read = made.read](int p, int c, int t) {
+        if (t == 0) ::pause(); // until it is killed
+        return read(p, c, t);
+    };
+    const pid_t first = started([&] { return packInBlocks(slow, small(), folder / "run.tsr", {2, {}}).last; });
+    while (!fs::exists(folder / "run.tsr.blocks/block-0.lock")) std::this_thread::yield();
+    const pid_t second = started([&] { return packInBlocks(made, small(), folder / "run.tsr", {2, {}}).packed == 4; });
+    while (!fs::exists(folder / "run.tsr.blocks/3.tsr")) std::this_thread::yield();
+    EXPECT_FALSE(fs::exists(folder / "run.tsr.blocks/joined.tsr")) << "the first block is missing";
+    ASSERT_EQ(::kill(first, SIGKILL), 0);
+    EXPECT_EQ(statusOf(first), -SIGKILL);
+    EXPECT_EQ(statusOf(second), 0) << "it did all four blocks";
+    EXPECT_EQ(readFile(folder / "run.tsr"), readFile(folder / "whole.tsr"));
+    EXPECT_EQ(folder.files(), 2u);
+}
+
+TEST(PackBlocks, AProcessThatStartsLateDoesNotBeginAgain) {
+    const TemporaryFolder folder;
+    const volume::Dataset made = series();
+    const auto launchedAs = [](int rank) { return BlockOptions{2, {rank, 2, 1, "7"}}; };
+    EXPECT_EQ(packInBlocks(made, small(), folder / "run.tsr", launchedAs(0)).packed, 4u);
+    const std::vector<char> before = readFile(folder / "run.tsr");
+    EXPECT_TRUE(fs::exists(folder / "run.tsr.blocks")) << "the other process has not come yet";
+    volume::Dataset unread = made;
+    unread.read = [](int, int, int) -> volume::Field { throw Error("nothing is to be read"); };
+    const BlockSummary late = packInBlocks(unread, small(), folder / "run.tsr", launchedAs(1));
+    EXPECT_EQ(late.packed, 0u);
+    EXPECT_FALSE(late.last);
+    EXPECT_EQ(late.own.archiveBytes, before.size());
+    EXPECT_EQ(folder.files(), 1u);
+}
+
+TEST(PackBlocks, TheFolderOfCompleteWorkDoesNotHideNewData) {
+    const TemporaryFolder folder;
+    const volume::Dataset made = series();
+    EXPECT_EQ(packInBlocks(made, small(), folder / "run.tsr", {2, {0, 2, 1, "7"}}).packed, 4u); // the other never comes
+    ASSERT_TRUE(fs::exists(folder / "run.tsr.blocks"));
+    volume::Dataset other = made;
+    other.read = [read = made.read](int p, int c, int t) { return read(p, c, 6 - t); };
+    EXPECT_EQ(packInBlocks(other, small(), folder / "run.tsr", {2, {}}).packed, 4u);
+    expectSame(readField(Archive(folder / "run.tsr"), 2, 0, 0), made.read(2, 0, 6), true);
+    EXPECT_EQ(folder.files(), 1u);
+}
+
+TEST(PackBlocks, AnExistingArchiveStaysUntilTheNewOneIsComplete) {
+    const TemporaryFolder folder;
+    const volume::Dataset made = series();
+    writeFile(folder / "run.tsr", {'o', 'l', 'd'});
+    volume::Dataset bad = made;
+    bad.read = [read = made.read](int p, int c, int t) {
+        if (t == 5) throw Error("cannot be read");
+        return read(p, c, t);
+    };
+    EXPECT_THROW(packInBlocks(bad, small(), folder / "run.tsr", {2, {}}), Error);
+    EXPECT_EQ(readFile(folder / "run.tsr"), (std::vector<char>{'o', 'l', 'd'}));
+    packInBlocks(made, small(), folder / "run.tsr", {2, {}});
+    EXPECT_EQ(Archive(folder / "run.tsr").info().times.size(), 7u);
+}
+
+TEST(PackBlocks, OtherWorkInTheFolderIsRefused) {
+    const TemporaryFolder folder;
+    const volume::Dataset made = series();
+    volume::Dataset bad = made;
+    bad.read = [](int, int, int) -> volume::Field { throw Error("cannot be read"); };
+    EXPECT_THROW(packInBlocks(bad, small(), folder / "run.tsr", {2, {}}), Error);
+    for (const auto& [options, times] : {std::pair(small(1e-3), 2), {small(), 3}}) {
+        try {
+            packInBlocks(made, options, folder / "run.tsr", {std::size_t(times), {}});
+            ADD_FAILURE() << "it was mixed with other work";
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find("run.tsr.blocks: belongs to other data or options"),
+                      std::string::npos)
+                << error.what();
+        }
+    }
+    EXPECT_FALSE(fs::exists(folder / "run.tsr"));
+}
+
+TEST(PackBlocks, WhatDependsOnAllTimesIsRefused) {
+    const TemporaryFolder folder;
+    PackOptions d4 = small(), sized = small(), discards = small();
+    d4.lattice = StoredLattice::D4;
+    sized.sizeMb = 1;
+    discards.discard = 0.1;
+    for (const PackOptions& options : {d4, sized, discards})
+        EXPECT_THROW(packInBlocks(series(), options, folder / "run.tsr", {2, {}}), Error);
+    EXPECT_EQ(folder.files(), 0u);
+}
+
+TEST(PackBlocks, EachProcessHasABlock) {
+    EXPECT_EQ(blockTimes(1000, {0, 4, 1, ""}), 16u);
+    EXPECT_EQ(blockTimes(10, {0, 4, 1, ""}), 3u);
+    EXPECT_EQ(blockTimes(3, {0, 8, 1, ""}), 1u);
+}
+
+} // namespace
+} // namespace tessera::codec

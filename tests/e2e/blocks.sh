@@ -1,0 +1,87 @@
+#!/bin/bash
+# Processes that pack one series together, as mpirun and srun start them: arguments TESSERA SOURCE_DIR. KILLS: how many
+# are killed.
+tessera=$1
+source "$2/tests/e2e/common.bash"
+kills=${KILLS:-6}
+
+python3 - <<'EOF2'
+import array, json, math
+times, nx, ny, nz = 12, 40, 36, 44
+with open("run.raw", "wb") as file:
+    for t in range(times):
+        for p in range(2):
+            array.array("f", [300 + 40 * math.sin(x * .2 + t * .3) * math.cos(y * .15 + p) + z * .7
+                              for z in range(nz) for y in range(ny) for x in range(nx)]).tofile(file)
+json.dump({"dims": [nx, ny, nz], "dtype": "float32", "times": [t * .5 for t in range(times)],
+           "components": [{"name": "T", "unit": "K"}, {"name": "p", "unit": "Pa"}]}, open("run.json", "w"))
+EOF2
+options=(--max-error 0.0001 --block-times 2)
+
+check "one process" 0 "$tessera" pack run.json -o one.tsr "${options[@]}"
+say "6 of 6 blocks packed, .*; one.tsr: .*error within 0.0001 of range" out.txt
+check "verify" 0 "$tessera" verify one.tsr
+check "without blocks" 0 "$tessera" pack run.json -o whole.tsr --max-error 0.0001
+check "unpack it" 0 "$tessera" unpack whole.tsr -o whole.raw
+check "unpack the blocks" 0 "$tessera" unpack one.tsr -o blocks.raw
+cmp whole.raw blocks.raw || fail "blocks hold other samples"
+
+rank() { # rank JOB RANK COUNT ARGUMENTS...: the program as Open MPI starts it
+    local job=$1 rank=$2 count=$3
+    shift 3
+    OMPI_COMM_WORLD_RANK=$rank OMPI_COMM_WORLD_SIZE=$count OMPI_COMM_WORLD_LOCAL_SIZE=$count PMIX_NAMESPACE=$job "$tessera" "$@"
+}
+for i in 0 1 2; do
+    rank first $i 3 pack run.json -o three.tsr "${options[@]}" >rank$i.txt 2>&1 &
+done
+wait
+cat rank?.txt
+[ "$(sed -n 's/^\([0-9]*\) of 6 blocks packed by process [1-3] of 3.*/\1/p' rank?.txt | paste -sd+ | bc)" = 6 ] ||
+    fail "the blocks are not shared"
+[ "$(grep -c 'three.tsr: ' rank?.txt | grep -c ':1')" = 1 ] || fail "not one process has named the archive"
+cmp one.tsr three.tsr || fail "three processes make another archive than one"
+
+if command -v mpirun >/dev/null; then
+    mpi=(env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe)
+    check "mpirun" 0 "${mpi[@]}" -n 2 "$tessera" pack run.json -o mpi.tsr "${options[@]}"
+    cmp one.tsr mpi.tsr || fail "mpirun makes another archive"
+    check "mpirun chooses blocks" 0 "${mpi[@]}" -n 3 "$tessera" pack run.json -o mpi.tsr --json
+    say '"blocks": 3' out.txt
+    check "verify that" 0 "$tessera" verify mpi.tsr
+    check "a bad file ends all" 2 "${mpi[@]}" -n 2 "$tessera" pack nothing.json -o bad.tsr
+else
+    echo "mpirun is not installed: its variables were set by hand only"
+fi
+
+# One of two processes is killed at a random moment; the other ends the work, or a second run does.
+for run in $(seq "$kills"); do
+    rm -rf killed.tsr killed.tsr.blocks
+    rank "$run" 0 2 pack run.json -o killed.tsr "${options[@]}" >/dev/null 2>&1 &
+    first=$!
+    rank "$run" 1 2 pack run.json -o killed.tsr "${options[@]}" >/dev/null 2>&1 &
+    second=$!
+    sleep "0.$(printf %02d $((RANDOM % 60)))"
+    [ $((run % 2)) = 0 ] && pid=$first || pid=$second
+    kill -KILL $pid 2>/dev/null
+    [ $((run % 3)) = 0 ] && kill -KILL $first $second 2>/dev/null
+    [ -e killed.tsr.blocks ] || kill -KILL $first $second 2>/dev/null # nobody is left who makes the folder
+    wait
+    [ ! -e killed.tsr ] || cmp one.tsr killed.tsr || fail "a kill left another archive"
+    [ ! -e killed.tsr.blocks/joined.tsr ] || "$tessera" verify killed.tsr.blocks/joined.tsr >/dev/null ||
+        fail "a kill left damaged blocks"
+    check "a second run" 0 "$tessera" pack run.json -o killed.tsr "${options[@]}"
+    cmp one.tsr killed.tsr || fail "another archive after a kill"
+done
+
+mkdir other.tsr.blocks
+echo '{}' >other.tsr.blocks/job.json
+check "a folder of other work" 2 "$tessera" pack run.json -o other.tsr "${options[@]}"
+say "other.tsr.blocks: belongs to other data or options" err.txt
+check "D4*" 2 "$tessera" pack run.json -o x.tsr --lattice d4 --block-times 2
+say "depend on all times" err.txt
+check "a size" 2 "$tessera" pack run.json -o x.tsr --target-size 1 --block-times 2
+check "no times" 1 "$tessera" pack run.json -o x.tsr --block-times 0
+check "append by two" 2 rank job 0 2 pack run.json --append -o one.tsr
+say "pack a whole series only" err.txt
+ls x.* 2>/dev/null && fail "something was left behind"
+finish
