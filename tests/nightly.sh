@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What takes too long for every commit, one step after another; what failed is said at the end.
 #   tests/nightly.sh                  all of it
-#   tests/nightly.sh clang asan       some steps of: clang tidy asan fuzz second-driver optimised load
+#   tests/nightly.sh clang asan       some steps of: clang tidy asan fuzz gallery second-driver optimised load
 # FUZZ_SECONDS: how long each fuzz target searches (600). LOAD_RUNS, LOAD_TESTS: how many times tests run beside busy cores (50), and
 # arguments of ctest that choose them (all).
 set -uo pipefail
@@ -44,6 +44,12 @@ fuzz() {
     return "$good"
 }
 
+# Every picture of the gallery, of which the suite draws some.
+gallery() {
+    ./setup.sh --tests && cmake --preset release -DBUILD_TESTING=ON -DTESSERA_WERROR=ON && cmake --build --preset release --target tessera &&
+        GALLERY_EVERY=1 bash tests/e2e/gallery.sh "$PWD/build/release/tessera" "$PWD"
+}
+
 # The tests that draw, by Mesa's GL on Vulkan in software.
 second_driver() {
     ls /usr/share/vulkan/icd.d/lvp_icd* > /dev/null 2>&1 || { echo "mesa-vulkan-drivers is not installed"; return 1; }
@@ -74,10 +80,10 @@ load() {
     return "$good"
 }
 
-[ $# -gt 0 ] || set -- clang tidy asan fuzz second-driver optimised load
+[ $# -gt 0 ] || set -- clang tidy asan fuzz gallery second-driver optimised load
 for name in "$@"; do
     case $name in
-    clang | tidy | asan | fuzz | optimised | load) step "$name" "$name" ;;
+    clang | tidy | asan | fuzz | gallery | optimised | load) step "$name" "$name" ;;
     second-driver) step "$name" second_driver ;;
     *) echo "nightly: there is no step \"$name\"" >&2; exit 2 ;;
     esac

@@ -130,7 +130,7 @@ TEST_F(WholeFile, VtkXml) {
 TEST_F(WholeFile, Raw) {
     write("a.json", "{\"dims\": [5, 4, 6], \"dtype\": \"float32\"}\n");
     const std::string path = write("a.raw", bytesOf(numbers<float>(1)));
-    EXPECT_EQ(expectCutsAreTold(path, path), 31); // every one
+    EXPECT_EQ(expectCutsAreTold(path, path), 15); // every one
     expectCutsAreTold(path, (folder_ / "a.json").string(), {}, 10);
 }
 

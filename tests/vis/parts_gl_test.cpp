@@ -122,8 +122,11 @@ TEST_P(PartsPictures, AgreeWithTheReferenceAndSixteenBitsAreClose) {
         scene.transfer["gas"] = scene.transfer["heat"] = fog();
         mode.apply(scene);
         const Linear wanted = drawn.truth(scene);
-        drawn.check(mode.name, scene, wanted, mode.rmse);
-        if ((i % 2 == 0) == (GetParam() == LatticeKind::BCC)) continue; // rounded on one lattice each
+        // Most of the time goes to shaders: each mode is drawn of floats on one lattice, and rounded on the other.
+        if ((i % 2 == 0) == (GetParam() == LatticeKind::BCC)) {
+            drawn.check(mode.name, scene, wanted, mode.rmse);
+            continue;
+        }
         const reference::Difference rounding = reference::compare(rounded.draw(scene), wanted, kOutlier);
         EXPECT_GE(rounding.psnr, mode.psnr16) << mode.name << ": " << words(rounding);
     }
