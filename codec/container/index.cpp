@@ -19,16 +19,18 @@ std::uint16_t to16(double part) {
     return static_cast<std::uint16_t>(std::lround(std::clamp(part, 0.0, 1.0) * kMost16));
 }
 
-/// RMS / maximum, rounded up to 16 bits.
-std::uint16_t shareOf(const volume::BrickChange& change) {
-    if (!(change.max > 0)) return 0;
-    if (!std::isfinite(change.max)) return std::uint16_t(kMost16);
-    return static_cast<std::uint16_t>(std::min(std::ceil(double(change.rms) / double(change.max) * kMost16), kMost16));
-}
-
 volume::BrickChange changeOf(float max, std::uint16_t share) {
     if (!(max > 0) || !std::isfinite(max)) return {max, max};
     return {max, volume::roundedUp(double(max) * share / kMost16)};
+}
+
+/// RMS / maximum, rounded up to 16 bits; of what changeOf() gives the same again.
+std::uint16_t shareOf(const volume::BrickChange& change) {
+    if (!(change.max > 0)) return 0;
+    if (!std::isfinite(change.max)) return std::uint16_t(kMost16);
+    auto share = static_cast<std::uint16_t>(std::min(double(change.rms) / double(change.max), 1.0) * kMost16);
+    while (double(share) < kMost16 && changeOf(change.max, share).rms < change.rms) ++share;
+    return share;
 }
 
 void require(bool condition, const char* what, const std::string& file) {
@@ -192,6 +194,7 @@ std::vector<IndexPage> readPages(const FileBytes& bytes, const Header& header, c
         if (before == Block{}) break;
         require(before.offset >= kFirstChunk && before.offset < at.offset && before.length <= at.offset - before.offset,
                 "a page of the index lies outside the file", file);
+        bytes.goesOn(before.offset + before.length, before.checksum);
         at = before;
     }
     std::reverse(pages.begin(), pages.end());

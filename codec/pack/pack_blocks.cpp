@@ -195,9 +195,11 @@ std::size_t Blocks::pack(PackSummary& sum, const PackedBefore& before, const Pro
     const auto isDone = [&](std::size_t number) { return isPacked(number); };
     const auto work = [&](std::size_t number) {
         volume::Dataset own = block(number);
-        add(sum,
-            codec::pack(own, options_, fileOf(number),
-                        progress.part(double(number) / double(count()), double(number + 1) / double(count())), before));
+        const std::string growing = job_.file(std::to_string(number) + ".packing"); // readable from its first time on
+        const Progress part = progress.part(double(number) / double(count()), double(number + 1) / double(count()));
+        add(sum, codec::pack(own, options_, growing, part, before));
+        fs::rename(growing, fileOf(number));
+        syncFolderOf(fileOf(number));
         if (const auto lock = LockedFile::tryLock(job_.file("join.lock"), LockedFile::Kind::Exclusive))
             joinComplete(progress);
     };

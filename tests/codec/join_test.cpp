@@ -38,10 +38,11 @@ TEST(Join, EveryKindOfSampleIsAsPacked) {
     for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC}) {
         const std::string path = packed(made, {0, 1}, bricksOf8(lattice), folder / "run.tsr");
         const std::vector<char> first = readFile(path);
+        const int commits = Archive(path).commits();
         join(path, packed(made, {2, 3, 4}, bricksOf8(lattice), folder / "more.tsr"));
         const std::string once = packed(made, {0, 1, 2, 3, 4}, bricksOf8(lattice), folder / "once.tsr");
         const Archive joined(path), whole(once);
-        expectSameArchives(whole, joined);
+        expectSameArchives(whole, joined, 1); // coarse levels depend on the filter, which each chooses
         EXPECT_EQ(joined.metadata().resampled.size(), whole.metadata().resampled.size());
         for (std::size_t p = 0; p < joined.metadata().resampled.size(); ++p) {
             ASSERT_EQ(joined.metadata().resampled[p].has_value(), whole.metadata().resampled[p].has_value());
@@ -50,7 +51,7 @@ TEST(Join, EveryKindOfSampleIsAsPacked) {
             EXPECT_NEAR(joined.metadata().resampled[p]->meanSquare, whole.metadata().resampled[p]->meanSquare,
                         1e-9 * whole.metadata().resampled[p]->meanSquare);
         }
-        EXPECT_EQ(joined.commits(), 2);
+        EXPECT_EQ(joined.commits(), commits + 1);
         EXPECT_EQ(joined.maskCount(), whole.maskCount()) << "the same masks are stored once";
         const VerifyReport report = verifyArchive(joined);
         EXPECT_EQ(report.damaged, 0u) << report.damage.front();

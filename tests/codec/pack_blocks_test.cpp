@@ -79,7 +79,7 @@ TEST(PackBlocks, OneProcessPacksEveryBlock) {
     EXPECT_EQ(summary.own.storedSamples, once.storedSamples);
     EXPECT_EQ(summary.own.archiveBytes, fs::file_size(folder / "blocks.tsr"));
     const Archive blocks(folder / "blocks.tsr");
-    expectSameArchives(Archive(folder / "once.tsr"), blocks);
+    expectSameArchives(Archive(folder / "once.tsr"), blocks, 1); // coarse ones depend on the filter of each block
     EXPECT_EQ(verifyArchive(blocks).damaged, 0u);
     EXPECT_EQ(folder.files(), 2u) << "the folder of the blocks has gone";
 }
@@ -112,7 +112,10 @@ TEST(PackBlocks, BoundsAreRelativeToTheRangesOfAllTimes) {
     const Archive blocks(folder / "blocks.tsr"), once(folder / "once.tsr");
     EXPECT_EQ(blocks.info().parameters[0].ranges, once.info().parameters[0].ranges);
     EXPECT_GT(blocks.info().parameters[0].ranges[0].lo, 100) << "0 is no value of the data";
-    for (int t = 0; t < 4; ++t) expectSame(readField(blocks, 0, 0, t), readField(once, 0, 0, t), false);
+    const Range range = once.info().parameters[0].ranges[0];
+    const double bound = 1e-3 * (range.hi - range.lo);
+    EXPECT_GT(largestError(blocks, made, 0), 0.5 * bound);
+    EXPECT_LE(largestError(blocks, made, 0), bound);
 }
 
 TEST(PackBlocks, WhatAKilledProcessLeftIsGoneOnWith) {

@@ -24,7 +24,14 @@ check "verify" 0 "$tessera" verify one.tsr
 check "without blocks" 0 "$tessera" pack run.json -o whole.tsr --max-error 0.0001
 check "unpack it" 0 "$tessera" unpack whole.tsr -o whole.raw
 check "unpack the blocks" 0 "$tessera" unpack one.tsr -o blocks.raw
-cmp whole.raw blocks.raw || fail "blocks hold other samples"
+python3 - <<'EOF2' || fail "blocks hold other samples than the bound allows"
+import array, sys
+a, b = (array.array("f", open(name, "rb").read()) for name in ("whole.raw", "blocks.raw"))
+sys.exit(len(a) != len(b) or not max(abs(x - y) for x, y in zip(a, b)) <= 2e-4 * 111)
+EOF2
+check "without a bound" 0 "$tessera" pack run.json -o exact.tsr --lattice cc --block-times 5
+check "unpack that" 0 "$tessera" unpack exact.tsr -o exact.raw
+cmp run.raw exact.raw || fail "it is not lossless"
 
 rank() { # rank JOB RANK COUNT ARGUMENTS...: the program as Open MPI starts it
     local job=$1 rank=$2 count=$3
