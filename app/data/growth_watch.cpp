@@ -1,5 +1,7 @@
 #include "app/data/growth_watch.h"
 
+#include "codec/remote/address.h"
+#include "codec/remote/remote_file.h"
 #include "volume/base/error.h"
 
 #include <array>
@@ -13,8 +15,14 @@
 namespace tessera::app {
 
 GrowthWatch::GrowthWatch(std::string path, std::function<void()> wake, std::chrono::milliseconds interval)
-    : path_(std::move(path)), wake_(std::move(wake)),
-      thread_([this, interval, seen = state()](const std::stop_token& stop) { watch(stop, interval, seen); }) {}
+    : path_(std::move(path)), wake_(std::move(wake)) {
+    if (codec::isRemote(path_))
+        thread_ = std::jthread([this, interval](const std::stop_token& stop) { watchRemote(stop, interval); });
+    else
+        thread_ = std::jthread([this, interval, seen = state()](const std::stop_token& stop) {
+            watch(stop, interval, seen, [this] { return state(); });
+        });
+}
 
 /// The valid header; none if the file is gone or not an archive. A commit writes two copies of the header one after the
 /// other; both count as one change.
@@ -34,12 +42,22 @@ GrowthWatch::State GrowthWatch::state() const {
     }
 }
 
-void GrowthWatch::watch(const std::stop_token& stop, std::chrono::milliseconds interval, State seen) {
+void GrowthWatch::watchRemote(const std::stop_token& stop, std::chrono::milliseconds interval) {
+    try {
+        codec::RemoteHeaders headers(path_, stop);
+        const State seen = headers.read();
+        watch(stop, interval, seen, [&] { return headers.read(); });
+    } catch (const Cancelled&) { // stopped during a request
+    }
+}
+
+void GrowthWatch::watch(const std::stop_token& stop, std::chrono::milliseconds interval, State seen,
+                        const std::function<State()>& read) {
     std::mutex mutex;
     std::condition_variable_any ended;
     std::unique_lock lock(mutex);
     while (!ended.wait_for(lock, stop, interval, [&] { return stop.stop_requested(); })) {
-        const State now = state();
+        const State now = read();
         if (!now || now == seen) continue; // no complete commit, or the file is gone: what is open stays valid
         seen = now;
         changed_ = true;

@@ -11,11 +11,12 @@
 
 namespace tessera::app {
 
-/// Watches whether an archive is appended to or replaced. A separate thread reads its header, as every reader does;
-/// this is cheap, and reports only complete commits.
+/// Watches whether an archive, on this machine or another one, is appended to or replaced. A separate thread reads its
+/// header, as every reader does; this is cheap, and reports only complete commits.
 class GrowthWatch {
 public:
-    /// `wake` is called from the thread after each change; a change before construction counts.
+    /// `wake` is called from the thread after each change; a change before construction counts. `path` may be an
+    /// address.
     GrowthWatch(std::string path, std::function<void()> wake,
                 std::chrono::milliseconds interval = std::chrono::seconds(1));
 
@@ -26,7 +27,9 @@ public:
 private:
     using State = std::optional<codec::Header>;
     State state() const;
-    void watch(const std::stop_token& stop, std::chrono::milliseconds interval, State seen);
+    void watch(const std::stop_token& stop, std::chrono::milliseconds interval, State seen,
+               const std::function<State()>& read);
+    void watchRemote(const std::stop_token& stop, std::chrono::milliseconds interval);
 
     std::string path_;
     std::function<void()> wake_;

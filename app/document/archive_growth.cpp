@@ -59,9 +59,9 @@ DataRef otherData(const DataRef& data) {
     return other;
 }
 
-/// Path of the archive on this machine that holds the data; "" if there is none.
+/// Path or address of the archive that holds the data; "" if there is none.
 std::string archivePath(const DataRef& data) {
-    return isArchive(data) && !codec::isRemote(data.files[0].absolutePath) ? data.files[0].absolutePath : "";
+    return isArchive(data) ? data.files[0].absolutePath : "";
 }
 
 /// The data shown, with archives read again and without derived parameters. Other files are not read again. Throws
@@ -106,7 +106,8 @@ bool ArchiveGrowth::changed(const DataRef* data, const std::function<void()>& wa
         if (paths[i].empty())
             watches_[i].reset();
         else if (!watches_[i] || watches_[i]->path() != paths[i])
-            watches_[i] = std::make_unique<GrowthWatch>(paths[i], wake, interval_);
+            watches_[i] =
+                std::make_unique<GrowthWatch>(paths[i], wake, (codec::isRemote(paths[i]) ? 10 : 1) * interval_);
         if (watches_[i] && watches_[i]->changed()) any = true;
     }
     return any;

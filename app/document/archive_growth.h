@@ -18,6 +18,7 @@ namespace tessera::app {
 /// Watches the archives that a session names.
 class ArchiveGrowth {
 public:
+    /// Those on other machines are asked ten times less often.
     explicit ArchiveGrowth(std::chrono::milliseconds interval) : interval_(interval) {}
 
     /// Returns true once after each change of an archive of these data; null: nothing to watch. `wake` is called from

@@ -57,6 +57,21 @@ void BlockCache::clear() {
     fs::remove_all(files_, ignored);
 }
 
+void BlockCache::takeOver(const std::string& name) {
+    const std::string from = folder_ + "/" + name;
+    std::error_code problem;
+    if (from == files_ || !fs::is_directory(from, problem)) return;
+    ::mkdir(files_.c_str(), 0700);
+    std::vector<std::string> blocks;
+    for (fs::directory_iterator at(from, problem), end; !problem && at != end; at.increment(problem))
+        if (const std::string block = at->path().filename().string(); block.find('.') == std::string::npos)
+            blocks.push_back(block); // no part that is being written
+    for (const std::string& block : blocks)
+        if (const std::string own = files_ + "/" + block, old = from + "/" + block; ::access(own.c_str(), F_OK) != 0)
+            (void)::rename(old.c_str(), own.c_str());
+    ::rmdir(from.c_str()); // succeeds only when it is empty
+}
+
 bool BlockCache::has(std::uint64_t block, std::size_t bytes) const {
     struct stat state {};
     return ::stat(pathOf(block).c_str(), &state) == 0 && state.st_size == static_cast<off_t>(bytes);

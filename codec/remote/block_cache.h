@@ -30,6 +30,8 @@ public:
     /// Removes all blocks of this file.
     void clear();
     void write(std::uint64_t block, std::span<const std::byte> bytes);
+    /// Moves blocks of another file here, where there are none yet. They are missing there afterwards.
+    void takeOver(const std::string& name);
 
 private:
     std::string pathOf(std::uint64_t block) const;

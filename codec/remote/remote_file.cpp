@@ -14,6 +14,27 @@ namespace {
 constexpr std::uint64_t kGap = 1;   ///< blocks between two wanted ones that are fetched along
 constexpr std::uint64_t kMost = 16; ///< blocks of a request: several connections share a long range
 
+std::string nameOf(std::uint64_t checksum, std::uint64_t bytes) {
+    char name[40];
+    std::snprintf(name, sizeof name, "%016llx-%llx", static_cast<unsigned long long>(checksum),
+                  static_cast<unsigned long long>(bytes));
+    return name;
+}
+
+std::optional<Header> headerIn(std::span<const std::byte> head, std::uint64_t size) {
+    try {
+        return parseHeaders(head, size, {}).header;
+    } catch (const Error&) {
+        return std::nullopt; // of what is no archive, or one that is being written
+    }
+}
+
+/// The name of a state of an archive in the cache: that of its last page, which ends with the archive.
+std::string cacheName(std::span<const std::byte> head, std::uint64_t size) {
+    const std::optional<Header> header = headerIn(head, size);
+    return header ? nameOf(header->index.checksum, header->fileSize) : nameOf(checksum(head), size);
+}
+
 FetchQueue::Connect connectTo(const Address& address) {
     return [address] { return address.scheme == Address::Scheme::Sftp ? connectSsh(address) : connectWeb(address); };
 }
@@ -28,10 +49,12 @@ RemoteFile::RemoteFile(const std::string& address, const RemoteOptions& options)
     size_ = reply.fileBytes;
     state_ = reply.state;
     head_ = std::move(reply.bytes);
-    char name[40];
-    std::snprintf(name, sizeof name, "%016llx-%llx", static_cast<unsigned long long>(checksum(head_)),
-                  static_cast<unsigned long long>(size_));
-    cache_ = std::make_unique<BlockCache>(remoteCacheFolder(), name, std::uint64_t(options.cache) << 20);
+    cache_ =
+        std::make_unique<BlockCache>(remoteCacheFolder(), cacheName(head_, size_), std::uint64_t(options.cache) << 20);
+}
+
+void RemoteFile::goesOn(std::uint64_t end, std::uint64_t checksum) const {
+    cache_->takeOver(nameOf(checksum, end));
 }
 
 std::size_t RemoteFile::blockBytes(std::uint64_t block) const {
@@ -142,6 +165,19 @@ std::optional<FilePart> RemoteFile::freshPart(FileRange range) const {
         copyBlock(range, block, bytes, out);
     });
     return FilePart(std::move(out));
+}
+
+RemoteHeaders::RemoteHeaders(const std::string& address, const std::stop_token& ending)
+    : address_(address), queue_(connectTo(parseAddress(address)), 1, {}, ending) {}
+
+std::optional<Header> RemoteHeaders::read() {
+    try {
+        const FileRange headers{0, kFirstChunk};
+        const Reply reply = std::move(queue_.fetch({&headers, 1}).front());
+        return headerIn(reply.bytes, reply.fileBytes);
+    } catch (const Error&) {
+        return std::nullopt;
+    }
 }
 
 void forgetRemote(const std::string& path, const RemoteOptions& options) {

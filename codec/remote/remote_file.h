@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/container/container.h"
 #include "codec/remote/block_cache.h"
 #include "codec/remote/fetch_queue.h"
 #include "codec/remote/remote_options.h"
@@ -8,7 +9,9 @@
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
+#include <optional>
 #include <set>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -16,8 +19,9 @@ namespace tessera::codec {
 
 /// An archive on another machine. It is read in blocks, neighbouring ones by one request, and blocks are kept on disk.
 ///
-/// On opening, only the headers are read. They name the checksums of everything else, so they stand for the contents in
-/// the cache, wherever the archive lies: an archive that has been replaced is another one.
+/// On opening, only the headers are read. They name the last page of the index, whose checksum stands for the contents
+/// in the cache, wherever the archive lies: an archive that has been replaced is another one. That of one that has
+/// grown takes over what was kept of it before.
 class RemoteFile final : public FileBytes {
 public:
     static constexpr std::uint64_t kBlockBytes = 1 << 16;
@@ -29,6 +33,7 @@ public:
     FilePart part(FileRange range) const override;
     std::optional<FilePart> freshPart(FileRange range) const override;
     void readAhead(std::span<const FileRange> ranges) const override;
+    void goesOn(std::uint64_t end, std::uint64_t checksum) const override;
     bool hasChanged() const override { return changed_; }
     /// Removes what the cache holds of it.
     void forget() { cache_->clear(); }
@@ -57,6 +62,19 @@ private:
     mutable std::condition_variable released_;
     mutable std::set<std::uint64_t> underway_; ///< blocks that a thread fetches
     mutable FetchQueue queue_;                 ///< last: its threads end first
+};
+
+/// The headers of an archive on another machine, asked for again and again over one connection.
+class RemoteHeaders {
+public:
+    /// Requests end when `ending` stops.
+    RemoteHeaders(const std::string& address, const std::stop_token& ending);
+    /// The valid header; none if the file cannot be read now or is no archive. Throws Cancelled.
+    std::optional<Header> read();
+
+private:
+    std::string address_;
+    FetchQueue queue_;
 };
 
 /// Removes what the cache holds of an archive on another machine, so that all of it is read from there again; does

@@ -157,6 +157,22 @@ TEST_F(BlockCacheTest, StaysBelowItsLimitWhileTwoWrite) {
     EXPECT_FALSE(holds(one, 0, 1));
 }
 
+TEST_F(BlockCacheTest, AGrownFileTakesOverWhatWasKeptOfIt) {
+    BlockCache before(folder, "before", 1 << 20), after(folder, "after", 1 << 20);
+    before.write(0, block(1));
+    before.write(3, block(2));
+    after.write(3, block(9)); // read anew: it is longer now
+    after.takeOver("before");
+    EXPECT_TRUE(holds(after, 0, 1));
+    EXPECT_TRUE(holds(after, 3, 9));
+    EXPECT_FALSE(before.has(0, block(1).size()));
+    before.write(0, block(5)); // one that still shows the former state goes on
+    EXPECT_TRUE(holds(before, 0, 5));
+    after.takeOver("never there");
+    after.takeOver("after");
+    EXPECT_TRUE(holds(after, 0, 1));
+}
+
 TEST_F(BlockCacheTest, ASmallerLimitHoldsAtOnce) {
     BlockCache(folder, "a", 1 << 20).write(0, block(1));
     const BlockCache smaller(folder, "b", 500);

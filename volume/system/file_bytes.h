@@ -48,6 +48,9 @@ public:
     virtual std::optional<FilePart> freshPart(FileRange) const { return std::nullopt; }
     /// Reads ranges ahead, together, for calls of part() that follow. Throws ReadError.
     virtual void readAhead(std::span<const FileRange>) const {}
+    /// States that the file goes on from an earlier state of `end` bytes that is known by `checksum`: what is kept of
+    /// that serves for this one, too.
+    virtual void goesOn(std::uint64_t, std::uint64_t) const {}
     /// True if the file is known to have been replaced or appended to since it was opened, without asking again.
     virtual bool hasChanged() const { return false; }
 };
