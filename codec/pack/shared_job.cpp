@@ -28,6 +28,11 @@ bool isThere(const std::string& path) {
     return fs::exists(path, ignored);
 }
 
+/// Says that a process of a launcher's job has done its part.
+std::string leftFile(const Launched& launched, int rank) {
+    return "left-" + launched.job + "-" + std::to_string(rank);
+}
+
 void pause(const Progress& progress) {
     if (progress.stop.stop_requested()) throw Cancelled();
     std::this_thread::sleep_for(kPause);
@@ -51,6 +56,10 @@ SharedJob::SharedJob(const std::string& output, const std::string& about, const 
         const auto alone = LockedFile::tryLock(file(kLock), LockedFile::Kind::Exclusive);
         if (alone && alone->hasName()) fs::remove_all(folder_, problem);
     }
+    // A launcher may give the runs of a job the same name: who has left a former one has not left this one.
+    std::error_code ignored;
+    for (int rank = 0; launched.rank == 0 && rank < launched.count; ++rank)
+        fs::remove(file(leftFile(launched, rank)), ignored);
     const LockedFile alone = lock("about.lock", progress);
     if (!isThere(file(kAbout))) writeAtomically(file(kAbout), about);
     if (contentOf(file(kAbout)) != about)
@@ -59,8 +68,7 @@ SharedJob::SharedJob(const std::string& output, const std::string& about, const 
 
 SharedJob::~SharedJob() {
     std::error_code ignored;
-    const std::string left = "left-" + launched_.job + "-";
-    std::ofstream(file(left + std::to_string(launched_.rank))).flush();
+    std::ofstream(file(leftFile(launched_, launched_.rank))).flush();
     const bool isComplete = complete();
     inside_.reset();
     if (!isComplete) return;
@@ -68,7 +76,7 @@ SharedJob::~SharedJob() {
         const auto alone = LockedFile::tryLock(file(kLock), LockedFile::Kind::Exclusive);
         if (!alone || !alone->hasName()) return;
         for (int rank = 0; rank < launched_.count; ++rank)
-            if (!isThere(file(left + std::to_string(rank)))) return; // it has not come yet
+            if (!isThere(file(leftFile(launched_, rank)))) return; // it has not come yet
         fs::remove_all(folder_, ignored);
     } catch (const Error&) { // the folder stays
     }

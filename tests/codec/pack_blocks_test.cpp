@@ -185,6 +185,19 @@ TEST(PackBlocks, AProcessThatStartsLateDoesNotBeginAgain) {
     EXPECT_EQ(folder.files(), 1u);
 }
 
+TEST(PackBlocks, WhoHasLeftAFormerRunHasNotLeftThisOne) {
+    const TemporaryFolder folder;
+    const volume::Dataset made = series();
+    const auto launchedAs = [](int rank) { return BlockOptions{2, {rank, 2, 1, "7"}}; };
+    volume::Dataset bad = made;
+    bad.read = [](int, int, int) -> volume::Field { throw Error("cannot be read"); };
+    for (const int rank : {0, 1}) EXPECT_THROW(packInBlocks(bad, small(), folder / "run.tsr", launchedAs(rank)), Error);
+    EXPECT_EQ(packInBlocks(made, small(), folder / "run.tsr", launchedAs(0)).packed, 4u);
+    ASSERT_TRUE(fs::exists(folder / "run.tsr.blocks")) << "the other would wait for the folder for ever";
+    EXPECT_EQ(packInBlocks(made, small(), folder / "run.tsr", launchedAs(1)).packed, 0u);
+    EXPECT_EQ(folder.files(), 1u);
+}
+
 TEST(PackBlocks, TheFolderOfCompleteWorkDoesNotHideNewData) {
     const TemporaryFolder folder;
     const volume::Dataset made = series();
