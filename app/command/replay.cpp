@@ -3,6 +3,7 @@
 #include "app/command/video.h"
 #include "app/history/animated_session.h"
 #include "volume/base/error.h"
+#include "volume/system/launched.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -76,7 +77,10 @@ Reel animationReel(const Opened& opened, double wantedRate) {
 void run(const ReplayOptions& options) {
     const Progress progress = terminalProgress("replay");
     pictureRequest(options.picture, Session{});
+    const Launched started = launched(); // its processes share the pictures
     if (!options.video.empty()) {
+        if (started.count > 1)
+            throw Error("is written by one process; several can draw the pictures, without a video", {}, "--video");
         requireFfmpeg();
         const auto folder = std::filesystem::absolute(options.video).parent_path();
         if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
@@ -90,7 +94,7 @@ void run(const ReplayOptions& options) {
     const Reel reel = animation ? animationReel(opened, options.framesPerSecond) : stepsReel(opened);
     const std::filesystem::path folder(options.output);
     PictureMaker maker;
-    for (std::size_t i = 0; i < reel.count; ++i) {
+    for (auto i = std::size_t(started.rank); i < reel.count; i += std::size_t(started.count)) {
         progress.part(0.1, options.video.empty() ? 1 : 0.9)
             .advance(double(i) / double(reel.count), std::to_string(i + 1));
         SessionDocument document = opened.document;
@@ -114,7 +118,8 @@ void run(const ReplayOptions& options) {
 void addReplayCommand(CLI::App& app) {
     auto options = std::make_shared<ReplayOptions>();
     CLI::App* command =
-        app.add_subcommand("replay", "Draw each step of the history of a session, or its animation, to numbered PNGs");
+        app.add_subcommand("replay", "Draw each step of the history of a session, or its animation, to numbered PNGs; "
+                                     "processes of mpirun or srun share them");
     addPictureOptions(*command, options->picture);
     command->add_flag("--animation", options->animation,
                       "Draw the keyframe animation instead of the history; without keyframes, every stored time");

@@ -1,4 +1,4 @@
-#include "codec/pack/join.h"
+#include "codec/blocks/join.h"
 
 #include "codec/archive/archive.h"
 #include "codec/container/container.h"

@@ -1,7 +1,7 @@
-#include "codec/pack/pack_blocks.h"
+#include "codec/blocks/pack_blocks.h"
 
 #include "codec/archive/archive.h"
-#include "codec/pack/shared_job.h"
+#include "codec/blocks/shared_job.h"
 #include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"
 

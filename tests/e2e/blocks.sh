@@ -1,6 +1,7 @@
 #!/bin/bash
 # Processes that pack one series together, as mpirun and srun start them: arguments TESSERA SOURCE_DIR. KILLS: how many
 # are killed.
+# shellcheck disable=SC2046
 tessera=$1
 source "$2/tests/e2e/common.bash"
 kills=${KILLS:-6}
@@ -33,13 +34,11 @@ check "without a bound" 0 "$tessera" pack run.json -o exact.tsr --lattice cc --b
 check "unpack that" 0 "$tessera" unpack exact.tsr -o exact.raw
 cmp run.raw exact.raw || fail "it is not lossless"
 
-rank() { # rank JOB RANK COUNT ARGUMENTS...: the program as Open MPI starts it
-    local job=$1 rank=$2 count=$3
-    shift 3
-    OMPI_COMM_WORLD_RANK=$rank OMPI_COMM_WORLD_SIZE=$count OMPI_COMM_WORLD_LOCAL_SIZE=$count PMIX_NAMESPACE=$job "$tessera" "$@"
+as() { # as JOB RANK COUNT: what Open MPI says to a process in its environment
+    echo "OMPI_COMM_WORLD_RANK=$2 OMPI_COMM_WORLD_SIZE=$3 OMPI_COMM_WORLD_LOCAL_SIZE=$3 PMIX_NAMESPACE=$1"
 }
 for i in 0 1 2; do
-    rank first $i 3 pack run.json -o three.tsr "${options[@]}" >rank$i.txt 2>&1 &
+    env $(as first $i 3) "$tessera" pack run.json -o three.tsr "${options[@]}" >rank$i.txt 2>&1 &
 done
 wait
 cat rank?.txt
@@ -48,6 +47,16 @@ cat rank?.txt
 [ "$(grep -c 'three.tsr: ' rank?.txt | grep -c ':1')" = 1 ] || fail "not one process has named the archive"
 cmp one.tsr three.tsr || fail "three processes make another archive than one"
 
+check "draw all times" 0 "$tessera" replay one.tsr --animation --view volume --size 96x72 -o drawn
+for i in 0 1; do
+    check "draw half of them" 0 env $(as drawing $i 2) "$tessera" replay one.tsr --animation --view volume --size 96x72 -o half$i
+    [ "$(find half$i -name '*.png' | wc -l)" = 6 ] || fail "process $i has not drawn six of twelve pictures"
+done
+for i in 00 01 05 10 11; do
+    cmp drawn/frame-00$i.png half$((10#$i % 2))/frame-00$i.png || fail "frame $i differs"
+done
+check "a video by two" 2 env $(as drawing 0 2) "$tessera" replay one.tsr --animation --view volume --video x.mp4 -o x.video
+
 if command -v mpirun >/dev/null; then
     mpi=(env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe)
     check "mpirun" 0 "${mpi[@]}" -n 2 "$tessera" pack run.json -o mpi.tsr "${options[@]}"
@@ -55,7 +64,8 @@ if command -v mpirun >/dev/null; then
     check "mpirun chooses blocks" 0 "${mpi[@]}" -n 3 "$tessera" pack run.json -o mpi.tsr --json
     say '"blocks": 3' out.txt
     check "verify that" 0 "$tessera" verify mpi.tsr
-    check "a bad file ends all" 2 "${mpi[@]}" -n 2 "$tessera" pack nothing.json -o bad.tsr
+    "${mpi[@]}" -n 2 "$tessera" pack nothing.json -o bad.tsr >out.txt 2>err.txt && fail "a bad file is no failure"
+    say "nothing.json: no such file" err.txt
 else
     echo "mpirun is not installed: its variables were set by hand only"
 fi
@@ -63,9 +73,9 @@ fi
 # One of two processes is killed at a random moment; the other ends the work, or a second run does.
 for run in $(seq "$kills"); do
     rm -rf killed.tsr killed.tsr.blocks
-    rank "$run" 0 2 pack run.json -o killed.tsr "${options[@]}" >/dev/null 2>&1 &
+    env $(as "$run" 0 2) "$tessera" pack run.json -o killed.tsr "${options[@]}" >/dev/null 2>&1 &
     first=$!
-    rank "$run" 1 2 pack run.json -o killed.tsr "${options[@]}" >/dev/null 2>&1 &
+    env $(as "$run" 1 2) "$tessera" pack run.json -o killed.tsr "${options[@]}" >/dev/null 2>&1 &
     second=$!
     sleep "0.$(printf %02d $((RANDOM % 60)))"
     [ $((run % 2)) = 0 ] && pid=$first || pid=$second
@@ -88,7 +98,7 @@ check "D4*" 2 "$tessera" pack run.json -o x.tsr --lattice d4 --block-times 2
 say "depend on all times" err.txt
 check "a size" 2 "$tessera" pack run.json -o x.tsr --target-size 1 --block-times 2
 check "no times" 1 "$tessera" pack run.json -o x.tsr --block-times 0
-check "append by two" 2 rank job 0 2 pack run.json --append -o one.tsr
+check "append by two" 2 env $(as job 0 2) "$tessera" pack run.json --append -o one.tsr
 say "pack a whole series only" err.txt
 ls x.* 2>/dev/null && fail "something was left behind"
 finish

@@ -1,10 +1,10 @@
 #!/bin/bash
 # The gallery's script makes every picture that the page shows, small and of a coarse cell: arguments TESSERA SOURCE_DIR.
-# GALLERY_EVERY: of how many pictures in the order of the script one is drawn (3; 1: all); the others are only named.
+# GALLERY_EVERY: of how many pictures in the order of the script one is drawn (4; 1: all); the others are only named.
 set -u
 tessera=$1
 source=$2
-every=${GALLERY_EVERY:-3}
+every=${GALLERY_EVERY:-4}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export TMPDIR=$work XDG_CONFIG_HOME=$work/config XDG_STATE_HOME=$work/state

@@ -3,7 +3,7 @@
 # KILLS: how many for each of them (8). Arguments TESSERA SOURCE_DIR.
 tessera=$1
 source "$2/tests/e2e/common.bash"
-kills=${KILLS:-8}
+kills=${KILLS:-6}
 
 "$tessera" generate fuel-cell -o all.raw --size 17x21x48 --times 5 > /dev/null || die "generate"
 cp all.raw later.raw

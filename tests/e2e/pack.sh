@@ -199,8 +199,8 @@ import array, json, os, random
 n = 96
 frame = [random.random() for _ in range(n * n * n)]
 with open("noise.raw", "wb") as file:
-    for t in range(3): array.array("f", frame[t:] + frame[:t]).tofile(file)
-json.dump({"dims": [n, n, n], "dtype": "float32", "times": [0, 1, 2], "components": [{"name": "x"}]},
+    for t in range(2): array.array("f", frame[t:] + frame[:t]).tofile(file)
+json.dump({"dims": [n, n, n], "dtype": "float32", "times": [0, 1], "components": [{"name": "x"}]},
           open("noise.json", "w"))
 dims = [64, 64, 1000]
 with open("tall.raw", "wb") as file: file.write(os.urandom(2 * 2 * dims[0] * dims[1] * dims[2]))
@@ -208,7 +208,7 @@ json.dump({"dims": dims, "dtype": "uint16", "times": [0, 1], "components": [{"na
 EOF
 for what in "noise --lattice cc" "noise --lattice bcc" "noise --lattice bcc --resample.filter bspline5" \
     "noise --lattice d4" "noise --lattice d4 --resample.filter sinc" "noise --lattice cc --max-error 0.001" \
-    "noise --lattice bcc --resample.sharpen 1" "noise --lattice bcc --target-size 4.4" \
+    "noise --lattice bcc --resample.sharpen 1" "noise --lattice bcc --target-size 2.9" \
     "tall --lattice cc" "tall --lattice bcc --resample.filter bspline5" "tall --lattice d4" \
     "tall --lattice d4 --resample.filter bspline5" "tall --lattice cc --target-size 4" \
     "tall --lattice d4 --target-size 4"; do

@@ -1,4 +1,4 @@
-#include "codec/pack/join.h"
+#include "codec/blocks/join.h"
 
 #include "codec/archive/append_frames.h"
 #include "codec/archive/archive.h"

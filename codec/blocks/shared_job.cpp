@@ -1,4 +1,4 @@
-#include "codec/pack/shared_job.h"
+#include "codec/blocks/shared_job.h"
 
 #include "volume/base/error.h"
 #include "volume/system/atomic_file.h"

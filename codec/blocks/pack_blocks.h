@@ -25,12 +25,12 @@ struct BlockSummary {
 };
 
 /// Packs a series as pack() does, but in blocks of successive times, each an archive of its own in the folder
-/// PATH.blocks, which are joined (codec/pack/join.h) in their order as soon as they are complete. Other processes that
-/// pack the same data into the same path at the same time share the blocks (codec/pack/shared_job.h); it returns when
-/// all are joined and the archive has its name. What was complete when all processes ended is continued by the next
-/// run. The bytes of the archive depend on the length of the blocks, and not on the number of processes: nothing is
-/// coded relative to times of another block. Bounds relative to ranges refer to those of all times, which are found in
-/// a pass before.
+/// PATH.blocks, which are joined (codec/blocks/join.h) in their order as soon as they are complete. Other processes
+/// that pack the same data into the same path at the same time share the blocks (codec/blocks/shared_job.h); it returns
+/// when all are joined and the archive has its name. What was complete when all processes ended is continued by the
+/// next run. The bytes of the archive depend on the length of the blocks, and not on the number of processes: nothing
+/// is coded relative to times of another block. Bounds relative to ranges refer to those of all times, which are found
+/// in a pass before.
 ///
 /// Throws as pack(), and Error for options that depend on all times at once: D4*, a size, omitted bricks.
 BlockSummary packInBlocks(const volume::Dataset& source, const PackOptions& options, const std::string& path,
