@@ -15,11 +15,11 @@ namespace tessera::app {
 namespace {
 
 /// The samples of a grown archive that are unchanged: all of them, except where D4* frames are shown as BCC: the last
-/// times change, since they are interpolated with the frames after them.
+/// times change, since they are interpolated with the three frames after them.
 vis::SameSamples sameSamples(const volume::BrickSource& was, const volume::BrickSource& is) {
     const std::vector<volume::Channel> before = was.info().channels(), now = is.info().channels();
     if (now.size() < before.size() || !std::equal(before.begin(), before.end(), now.begin())) return {};
-    constexpr int kMadeOfOthers = 2;
+    constexpr int kMadeOfOthers = 4;
     const int times = int(was.info().times.size());
     const bool stored = dynamic_cast<const codec::Archive*>(&is) != nullptr;
     return {int(before.size()), stored ? times : std::max(times - kMadeOfOthers, 0)};

@@ -232,7 +232,8 @@ std::uint64_t Archive::brickBytes(const volume::BrickKey& key) const {
 
 std::shared_ptr<const volume::BrickSource> openArchive(const std::string& path, const RemoteOptions& remote) {
     auto archive = std::make_shared<const Archive>(path, remote);
-    if (archive->metadata().alternating) return volume::makeAlternatingSource(std::move(archive));
+    if (archive->metadata().alternating)
+        return volume::makeAlternatingSource(std::move(archive), volume::TimeFilter::Cubic);
     return archive;
 }
 

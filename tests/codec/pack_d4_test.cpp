@@ -105,7 +105,7 @@ TEST_F(PackD4, OpensAsBccFieldsOfBothParities) {
     const volume::BrickGrid& grid = source->grid();
     const volume::Series series = storedSeries(archive_, 0, 0);
     for (const int time : {0, 1, 6, 11}) {
-        const Field whole = volume::atTime(series, time, volume::TimeFilter::Linear);
+        const Field whole = volume::atTime(series, time, volume::TimeFilter::Cubic);
         ASSERT_EQ(whole.lattice, grid.lattice);
         const glm::ivec3 brick(1, 0, 1);
         const volume::BrickSamples samples = source->read({0, time, 0, brick});

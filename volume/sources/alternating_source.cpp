@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace tessera::volume {
@@ -112,22 +113,29 @@ public:
         return frames_->importance(key);
     }
 
-    /// The change between two frames of a parity is at most the sum of the changes of the frames between them.
+    /// The change between two frames of a parity is at most the sum of the changes of the frames between them; what two
+    /// blends of them differ by is at most that, times the sums of the weights where some are negative.
     std::optional<BrickChange> change(const BrickKey& key, int toTime) const override {
         (void)channelOf(key);
         if (toTime == key.time) return BrickChange{};
-        if (options_.filter != ResampleFilter::Linear) return std::nullopt;
+        const bool linear = options_.filter == ResampleFilter::Linear;
+        const int reach = linear ? 1 : 3; // of a blend, in times to either side
         const int times = int(info_.times.size()), lo = std::min(key.time, toTime), hi = std::max(key.time, toTime);
         BrickChange most;
         for (int parity = 0; parity < 2; ++parity) {
             const int last = times - 1 - (times - 1 + parity) % 2; // of the parity
-            const int first = std::max(lo - (lo + parity) % 2, parity), end = std::min(hi + (hi + parity) % 2, last);
+            const int first = std::max(lo - (lo + parity) % 2 * reach, parity),
+                      end = std::min(hi + (hi + parity) % 2 * reach, last);
             BrickChange sum;
             BrickKey step = key;
             for (step.time = std::min(first, last); step.time < end; step.time += 2) {
                 const std::optional<BrickChange> own = frames_->change(step, step.time + 2);
                 if (!own) return std::nullopt;
                 sum = accumulated(sum, *own);
+            }
+            if (!linear) {
+                const double factor = weightsOf(key, lo, parity) + weightsOf(key, hi, parity);
+                sum = {roundedUp(factor * double(sum.max)), roundedUp(factor * double(sum.rms))};
             }
             most = {std::max(most.max, sum.max), std::max(most.rms, sum.rms)};
         }
@@ -174,6 +182,14 @@ private:
             if (weight != 0) times.push_back({2 * at + parity, weight, linear});
         }
         return times;
+    }
+
+    /// Sum of the absolute weights of the frames blended at a time.
+    double weightsOf(BrickKey key, int time, int parity) const {
+        key.time = time;
+        double sum = 0;
+        for (const WeightedTime& each : timesOf(key, parity)) sum += std::abs(each.weight);
+        return sum;
     }
 
     BrickStats rangeOf(BrickKey key, const std::vector<WeightedTime>& times) const {
