@@ -27,6 +27,25 @@ std::optional<OwnFunction> ownFunction(const Session& session, const std::string
     return found == all.end() ? std::nullopt : std::optional(*found);
 }
 
+namespace {
+
+/// Views of the transfer function that show `former` show `now`.
+void showInstead(Session& session, const std::string& former, const std::string& now) {
+    for (auto& [pane, view] : session.views)
+        if (auto* const shown = std::get_if<TransferView>(&view); shown && shown->channel == former)
+            shown->channel = now;
+}
+
+} // namespace
+
+void removeUnused(Session& session, const std::vector<OwnFunction>& before, const volume::DatasetInfo& info) {
+    for (const auto& [name, channel] : before) {
+        if (ownFunction(session, name) || info.findChannel(name)) continue;
+        session.transfer.erase(name);
+        showInstead(session, name, channel);
+    }
+}
+
 const std::string& channelOfFunction(const vis::Technique& technique) {
     const auto* surface = std::get_if<vis::IsoLayer>(&technique);
     if (surface && !surface->colorBy.empty()) return surface->colorBy;

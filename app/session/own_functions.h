@@ -19,6 +19,10 @@ std::vector<OwnFunction> ownFunctions(const Session& session);
 /// The one of a name; nothing if there is none.
 std::optional<OwnFunction> ownFunction(const Session& session, const std::string& name);
 
+/// Takes away those of `before`, from ownFunctions(), that nothing has any more: its layer or view has gone. Views of
+/// the transfer function that show one show that of its parameter. A function that is a parameter's stays.
+void removeUnused(Session& session, const std::vector<OwnFunction>& before, const volume::DatasetInfo& info);
+
 /// The parameter whose values a layer's own function maps: of a surface, the one that colours it.
 const std::string& channelOfFunction(const vis::Technique& technique);
 

@@ -1,6 +1,7 @@
 #include "app/workbench/pane_host.h"
 
 #include "app/pane/pane_title.h"
+#include "app/session/own_functions.h"
 #include "app/session/shown_scene.h"
 
 #include <algorithm>
@@ -92,8 +93,10 @@ void PaneHost::draw(const ViewContext& frame, const Area& area) {
         return found == session.views.end() || traitsOf(found->second).padded;
     };
     panes.close = [&](const std::string& pane) {
+        const std::vector<OwnFunction> before = ownFunctions(session);
         removePane(session.dock, pane);
         session.views.erase(pane);
+        if (frame.source) removeUnused(session, before, frame.source->info());
     };
     panes.hidden = [&](const std::string& pane) {
         const auto found = session.views.find(pane);

@@ -3,6 +3,7 @@
 #include "app/data/first_view.h"
 #include "app/edits/add_layer.h"
 #include "app/pane/view_parts.h"
+#include "app/session/own_functions.h"
 #include "app/views/timeline/keyframes.h"
 
 #include <algorithm>
@@ -143,7 +144,9 @@ void drawLayerButtons(ViewContext& context, const volume::DatasetInfo& info, int
     }
     ImGui::SameLine(0, em() * 0.2f);
     if (iconButton(context, "remove", icons::kTrash, "Remove the layer", any)) {
+        const std::vector<OwnFunction> before = ownFunctions(context.session);
         layers.erase(layers.begin() + selected);
+        removeUnused(context.session, before, context.source->info());
         selected = std::min(selected, static_cast<int>(layers.size()) - 1);
     }
     ImGui::SameLine(0, em() * 0.8f);
