@@ -82,6 +82,9 @@ int parseAndRun(CLI::App& app, int argc, const char* const* argv, const std::fun
     } catch (const std::bad_alloc&) {
         std::fprintf(stderr, "%s: not enough memory\n", name);
         return 3;
+    } catch (const std::exception& error) { // a fault of the program
+        std::fprintf(stderr, "%s: internal error: %s\n", name, error.what());
+        return 3;
     }
 }
 

@@ -12,6 +12,7 @@
 #include "codec/pack/unpack.h"
 #include "codec/remote/address.h"
 #include "volume/base/byte_text.h"
+#include "volume/import/files/series.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -75,6 +76,7 @@ codec::StoredLattice latticeOf(const PackRequest& request) {
 struct PackInput {
     volume::Dataset data;
     codec::PackedBefore before;
+    volume::ImportOptions import = {}; ///< stated, and remembered
 };
 
 PackInput open(const PackRequest& request, const Progress& progress) {
@@ -92,7 +94,7 @@ PackInput open(const PackRequest& request, const Progress& progress) {
     sayRemembered(request.import, options);
     volume::Dataset data = volume::openFiles(request.inputs, options, progress, false);
     rememberStated(request.import, data.info.name);
-    return {std::move(data), {}};
+    return {std::move(data), {}, options};
 }
 
 void checkOutput(const PackRequest& request) {
@@ -179,10 +181,28 @@ void sayNotes(const codec::PackSummary& summary) {
     for (const std::string& note : summary.notes) std::fprintf(stderr, "tessera: %s\n", note.c_str());
 }
 
+/// The files with those beside raw samples, size and time of change of each, and how they are read.
+std::string inputsOf(const PackRequest& request, const volume::ImportOptions& import) {
+    std::string text;
+    for (const std::string& argument : importArguments(import)) text += argument + "\n";
+    if (namesModel(request.inputs[0]) || codec::isRemote(request.inputs[0])) return text;
+    for (const volume::SeriesFile& file : volume::expandPaths(request.inputs))
+        for (const char* const ending : {"", ".json", ".raw"}) {
+            std::filesystem::path path = file.path;
+            if (*ending != 0 && path.extension() != ending) path.replace_extension(ending);
+            std::error_code missing;
+            const auto bytes = std::filesystem::file_size(path, missing);
+            const auto changed = std::filesystem::last_write_time(path, missing).time_since_epoch().count();
+            if (!missing) text += path.string() + " " + std::to_string(bytes) + " " + std::to_string(changed) + "\n";
+        }
+    return text;
+}
+
 /// Packs in blocks of times, which processes share.
 void runBlocks(const PackRequest& request, const Launched& started, const PackInput& input, const Progress& progress) {
     const codec::BlockSummary summary = codec::packInBlocks(
-        input.data, request.options, request.output, {request.blockTimes.value_or(0), started}, progress, input.before);
+        input.data, request.options, request.output,
+        {request.blockTimes.value_or(0), started, inputsOf(request, input.import)}, progress, input.before);
     if (request.json || request.progressJson) {
         nlohmann::json report = reportOf(summary.own, request.output);
         report.update({{"blocks", summary.blocks}, {"ownBlocks", summary.packed}, {"rank", started.rank}});
@@ -236,9 +256,9 @@ bool joins(const PackRequest& request) {
 }
 
 void run(PackRequest request) {
-    const Launched started = launched();
-    if ((started.count > 1 || request.blockTimes) && (request.append || request.follows || isStream(request)))
-        throw Error("several processes, or blocks of times, pack a whole series only, without --append and --follow");
+    const bool whole = !request.append && !request.follows && !isStream(request);
+    if (request.blockTimes.value_or(0) > 0 && !whole)
+        throw Error("blocks of times are those of a whole series, without --append and --follow", {}, "--block-times");
     if (!request.follows) checkOutput(request);
     if (request.options.memoryMb > 0) keepNoFreedFrames();
     if (request.follows || isStream(request)) return runGrowing(request);
@@ -251,10 +271,11 @@ void run(PackRequest request) {
     if (joins(request)) return say(request, codec::join(request.output, request.inputs[0]));
     PackInput input = open(request, progress.part(0, 0.02));
     const Progress rest = progress.part(0.02, 1);
-    if (request.blockTimes || started.count > 1) return runBlocks(request, started, input, rest);
-    auto& [data, before] = input;
-    say(request, request.append ? codec::append(data, request.output, request.options.memoryMb, rest, before)
-                                : codec::pack(data, request.options, request.output, rest, before));
+    if (const Launched started = launched(); whole && request.blockTimes.value_or(started.count > 1 ? 1 : 0) > 0)
+        return runBlocks(request, started, input, rest);
+    say(request, request.append
+                     ? codec::append(input.data, request.output, request.options.memoryMb, rest, input.before)
+                     : codec::pack(input.data, request.options, request.output, rest, input.before));
 }
 
 void addFollowOptions(CLI::App& command, PackRequest& request) {
@@ -290,8 +311,9 @@ void addBlocksOption(CLI::App& command, PackRequest& request) {
         .add_option("--block-times", request.blockTimes,
                     "Pack in blocks of so many times, which several processes share that are started alike (mpirun, "
                     "srun, or by hand on machines that see the same folder), and which are joined to one archive. "
-                    "Processes of mpirun or srun do so by themselves: 16 times, or fewer so that each has a block")
-        ->check(CLI::PositiveNumber)
+                    "Processes of mpirun or srun do so by themselves, in blocks of 16 times, or fewer so that each has "
+                    "one; 0: each packs alone")
+        ->check(CLI::NonNegativeNumber)
         ->group("Several processes");
 }
 

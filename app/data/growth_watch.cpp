@@ -16,6 +16,7 @@ namespace tessera::app {
 
 GrowthWatch::GrowthWatch(std::string path, std::function<void()> wake, std::chrono::milliseconds interval)
     : path_(std::move(path)), wake_(std::move(wake)) {
+    changed_ = !codec::isRemote(path_);
     if (codec::isRemote(path_))
         thread_ = std::jthread([this, interval](const std::stop_token& stop) { watchRemote(stop, interval); });
     else
@@ -44,9 +45,8 @@ GrowthWatch::State GrowthWatch::state() const {
 
 void GrowthWatch::watchRemote(const std::stop_token& stop, std::chrono::milliseconds interval) {
     try {
-        codec::RemoteHeaders headers(path_, stop);
-        const State seen = headers.read();
-        watch(stop, interval, seen, [&] { return headers.read(); });
+        codec::RemoteHeaders headers(path_);
+        watch(stop, interval, {}, [&] { return headers.read(stop); });
     } catch (const Cancelled&) { // stopped during a request
     }
 }
@@ -57,6 +57,7 @@ void GrowthWatch::watch(const std::stop_token& stop, std::chrono::milliseconds i
     std::condition_variable_any ended;
     std::unique_lock lock(mutex);
     while (!ended.wait_for(lock, stop, interval, [&] { return stop.stop_requested(); })) {
+        if (again_.exchange(false)) seen.reset();
         const State now = read();
         if (!now || now == seen) continue; // no complete commit, or the file is gone: what is open stays valid
         seen = now;

@@ -15,14 +15,16 @@ namespace tessera::app {
 /// header, as every reader does; this is cheap, and reports only complete commits.
 class GrowthWatch {
 public:
-    /// `wake` is called from the thread after each change; a change before construction counts. `path` may be an
-    /// address.
+    /// `wake` is called from the thread after each change; a change before construction counts (of an archive on
+    /// another machine once its header has been read). `path` may be an address.
     GrowthWatch(std::string path, std::function<void()> wake,
                 std::chrono::milliseconds interval = std::chrono::seconds(1));
 
     const std::string& path() const { return path_; }
     /// True once after each change.
     bool changed() { return changed_.exchange(false); }
+    /// Tells of the last change once more, at the next look: it could not be read.
+    void tellAgain() { again_ = true; }
 
 private:
     using State = std::optional<codec::Header>;
@@ -33,7 +35,7 @@ private:
 
     std::string path_;
     std::function<void()> wake_;
-    std::atomic<bool> changed_ = true;
+    std::atomic<bool> changed_ = true, again_ = false;
     std::jthread thread_; ///< last: it ends before what it refers to
 };
 

@@ -118,12 +118,7 @@ std::optional<Grown> readGrown(const DataRef& data, const Sources& shown,
     const auto before = volume::underived(shown.pictures);
     const Both was(before);
     if (data.other.has_value() != (was.other != nullptr)) return {}; // the second data set is being changed
-    Sources now;
-    try {
-        now = readAgain(data, shown);
-    } catch (const Error&) {
-        return {}; // being replaced: the data shown stay valid
-    }
+    const Sources now = readAgain(data, shown);
     const Both is(now.pictures);
     if (!goesOn(*was.own, *is.own) || (was.other && !goesOn(*was.other, *is.other))) return {};
     Grown grown;

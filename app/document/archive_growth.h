@@ -24,6 +24,11 @@ public:
     /// Returns true once after each change of an archive of these data; null: nothing to watch. `wake` is called from
     /// another thread after a change.
     bool changed(const DataRef* data, const std::function<void()>& wake);
+    /// The last change could not be read: it is reported again after a while.
+    void tellAgain() {
+        for (const auto& watch : watches_)
+            if (watch) watch->tellAgain();
+    }
     /// Reports a change at the next call.
     void lookAgain() { watches_ = {}; }
 
@@ -40,8 +45,8 @@ struct Grown {
     std::vector<std::string> problems; ///< parameters that cannot be derived
 };
 
-/// Reads the archives again. Returns nothing if they have not grown, are being replaced, or no longer contain the data
-/// shown. Throws Cancelled.
+/// Reads the archives again. Returns nothing if they have not grown, or no longer contain the data shown. Throws Error
+/// when one cannot be read, as while it is replaced or the network fails; Cancelled.
 std::optional<Grown> readGrown(const DataRef& data, const Sources& shown,
                                const std::vector<volume::DerivedParameter>& derived, const Progress& progress);
 

@@ -8,6 +8,7 @@
 #include "app/views/data/derived_list.h"
 #include "volume/base/background.h"
 #include "volume/base/byte_text.h"
+#include "volume/base/error.h"
 #include "volume/derived/derived.h"
 #include "volume/derived/other_source.h"
 #include "volume/import/over_time.h"
@@ -252,7 +253,12 @@ void DataFollower::followGrowth() {
     jobs_.start(
         "growth", "Reading the new times",
         [this, data, from = document_.sources(), derived = derived_.shown](const Progress& progress) -> Jobs::Finish {
-            const auto grown = std::make_shared<std::optional<Grown>>(readGrown(data, from, derived, progress));
+            const auto grown = std::make_shared<std::optional<Grown>>();
+            try {
+                *grown = readGrown(data, from, derived, progress);
+            } catch (const Error&) { // the data shown stay valid
+                return [this] { growth_.tellAgain(); };
+            }
             if (!*grown) return {};
             return [this, grown, from] {
                 // The data have changed meanwhile: look again.

@@ -10,23 +10,31 @@ namespace tessera::codec {
 
 namespace {
 
-/// Appends a range of bytes of another file, piece by piece; returns where they are now.
-std::uint64_t copyBytes(const FileBytes& from, std::uint64_t offset, std::uint64_t length, GrowingFile& to) {
-    constexpr std::uint64_t kPiece = std::uint64_t(16) << 20;
+/// Appends a block of another archive; returns where it is now. Throws Error when it is damaged.
+std::uint64_t copyBlock(const Archive& archive, const FileBytes& from, const Block& block, GrowingFile& to) {
     const std::uint64_t begin = to.position();
-    for (std::uint64_t done = 0; done < length; done += kPiece)
-        to.append(from.part({offset + done, std::min(kPiece, length - done)}).bytes());
+    if (block.length > 0) to.append(checkedPart(from, block, archive.path(), "a block").bytes());
     return begin;
+}
+
+/// The same for segments; sets their places.
+void copySegment(const Archive& archive, const FileBytes& from, Segment& segment, GrowingFile& to) {
+    segment.offset = copyBlock(archive, from, {segment.offset, segment.length, segment.checksum}, to);
 }
 
 } // namespace
 
+bool codedAlike(const Archive& archive, const Archive& more) {
+    constexpr std::uint32_t kSetWhenUsed = kSteppedBricks | kSubsamples;
+    const std::uint32_t own = archive.impl_->header.header.features, others = more.impl_->header.header.features;
+    return ((own ^ others) & ~kSetWhenUsed) == 0;
+}
+
 std::uint64_t appendFrames(const Archive& archive, const Archive& more, const Metadata& now,
                            std::span<const std::size_t> componentOf) {
-    constexpr std::uint32_t kSetWhenUsed = kSteppedBricks | kSubsamples;
     const Archive::Impl& from = *more.impl_;
     const ArchiveState state = stateOf(archive, false);
-    if (((state.header.features ^ from.header.header.features) & ~kSetWhenUsed) != 0)
+    if (!codedAlike(archive, more))
         throw Error("it was packed by another version of the program than " + archive.path(), more.path());
     Commits commits = commitsOf(archive, state);
     commits.header.features |= from.header.header.features;
@@ -34,7 +42,7 @@ std::uint64_t appendFrames(const Archive& archive, const Archive& more, const Me
     IndexPage page;
 
     for (const Block& model : from.index.models)
-        page.models.push_back({copyBytes(*from.bytes, model.offset, model.length, file), model.length, model.checksum});
+        page.models.push_back({copyBlock(more, *from.bytes, model, file), model.length, model.checksum});
 
     std::map<MaskHash::Value, std::int32_t> maskByHash;
     for (const auto& [number, hash] : state.lastMasks) maskByHash.emplace(hash, number);
@@ -46,15 +54,13 @@ std::uint64_t appendFrames(const Archive& archive, const Archive& more, const Me
             maskOf[std::size_t(frame.mask)] = known->second;
             if (isNew) {
                 MaskRecord mask = from.index.masks[std::size_t(frame.mask)];
-                const std::uint64_t before = mask.offset;
-                mask.offset = copyBytes(*from.bytes, before, mask.length, file);
-                for (MaskBrick& brick : mask.bricks) brick.segment.offset += mask.offset - before;
+                mask.offset = file.position();
+                for (MaskBrick& brick : mask.bricks) copySegment(more, *from.bytes, brick.segment, file);
                 page.masks.push_back(std::move(mask));
             }
         }
-        const std::uint64_t before = frame.offset;
-        frame.offset = copyBytes(*from.bytes, before, frame.length, file);
-        for (Segment& segment : frame.segments) segment.offset += frame.offset - before;
+        frame.offset = file.position();
+        for (Segment& segment : frame.segments) copySegment(more, *from.bytes, segment, file);
         frame.time += static_cast<std::uint32_t>(state.times);
         frame.component = static_cast<std::uint32_t>(componentOf[frame.component]);
         if (frame.mask >= 0) frame.mask = maskOf[std::size_t(frame.mask)];

@@ -87,6 +87,7 @@ private:
                                                          const Progress&);
     friend struct ArchiveState stateOf(const Archive&, bool);
     friend std::array<std::uint64_t, 2> maskHashOf(const Archive&, const struct FrameRecord&);
+    friend bool codedAlike(const Archive&, const Archive&);
     friend std::uint64_t appendFrames(const Archive&, const Archive&, const Metadata&, std::span<const std::size_t>);
     struct Impl;
     std::unique_ptr<Impl> impl_;

@@ -5,6 +5,7 @@
 #include "codec/archive/brick_access.h"
 #include "codec/pack/continuation.h"
 
+#include <algorithm>
 #include <chrono>
 #include <vector>
 
@@ -19,12 +20,45 @@ PackOptions codingOf(const Archive& archive) {
     return options;
 }
 
+/// The channel of a parameter's first component.
+int channelOf(const volume::DatasetInfo& info, int parameter) {
+    const std::vector<volume::Channel> channels = info.channels();
+    const auto found = std::ranges::find(channels, parameter, &volume::Channel::parameter);
+    return int(found - channels.begin());
+}
+
+/// Whether a parameter has no sample at any time.
+bool holdsNothing(const Archive& archive, int parameter) {
+    const int channel = channelOf(archive.info(), parameter);
+    for (int time = 0; time < int(archive.info().times.size()); ++time)
+        for (std::size_t brick = 0; brick < archive.grid().brickCount(); ++brick)
+            if (archive.stats({channel, time, 0, archive.grid().indexOf(brick)}).presentFraction > 0) return false;
+    return true;
+}
+
+/// The range of a parameter without samples is stated as 0 to 0, which says nothing of another archive's.
+void forgetEmpty(const Archive& archive, volume::DatasetInfo& info) {
+    const auto isZero = [](const Range& range) { return range.lo == 0 && range.hi == 0; };
+    for (std::size_t p = 0; p < archive.info().parameters.size(); ++p)
+        for (volume::Parameter& parameter : info.parameters)
+            if (parameter.name == archive.info().parameters[p].name && std::ranges::all_of(parameter.ranges, isZero) &&
+                holdsNothing(archive, int(p)))
+                parameter.ranges.clear();
+}
+
 } // namespace
 
 bool canJoin(const std::string& path, const std::string& more) {
     const Archive archive(path), added(more);
+    const auto named = [](const Archive& of) {
+        std::vector<std::string> names;
+        for (const volume::Parameter& parameter : of.info().parameters) names.push_back(parameter.name);
+        std::ranges::sort(names);
+        return names;
+    };
     return !archive.metadata().alternating && !added.metadata().alternating && codingOf(archive) == codingOf(added) &&
-           bringsTimes(archive, added.info());
+           codedAlike(archive, added) && archive.grid().brickSize == added.grid().brickSize &&
+           archive.grid().levels == added.grid().levels && named(archive) == named(added);
 }
 
 PackSummary join(const std::string& path, const std::string& more) {
@@ -36,7 +70,13 @@ PackSummary join(const std::string& path, const std::string& more) {
     if (!bringsTimes(archive, added.info())) throw Error("it has no parameter of " + path, more);
     Metadata now = added.metadata();
     const Continuation place = continuationOf(archive, now);
-    place.widen(added.info(), now.info);
+    forgetEmpty(archive, now.info);
+    volume::DatasetInfo info = added.info();
+    forgetEmpty(added, info);
+    place.widen(info, now.info);
+    for (volume::Parameter& parameter : now.info.parameters) // absent in both
+        if (parameter.ranges.empty())
+            parameter.ranges = archive.info().parameters[std::size_t(&parameter - now.info.parameters.data())].ranges;
     place.noteResampled(added.metadata().resampled, {}, now);
     PackSummary summary;
     const std::uint64_t samples = added.info().lattice.count() * added.info().times.size();

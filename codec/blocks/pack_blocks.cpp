@@ -7,10 +7,12 @@
 #include "codec/pack/pack_grid.h"
 #include "codec/pack/pack_passes.h"
 #include "volume/field/quantities.h"
+#include "volume/resample/resample.h"
 #include "volume/system/atomic_file.h"
 #include "volume/system/sync.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -35,7 +37,8 @@ void check(const PackOptions& options) {
 }
 
 /// What all processes must agree on.
-std::string aboutJob(const volume::DatasetInfo& info, PackOptions options, std::size_t blockTimes) {
+std::string aboutJob(const volume::DatasetInfo& info, PackOptions options, std::size_t blockTimes,
+                     const std::string& inputs) {
     options.memoryMb = 0;
     nlohmann::json parameters = nlohmann::json::array();
     for (const volume::Parameter& parameter : info.parameters)
@@ -44,10 +47,14 @@ std::string aboutJob(const volume::DatasetInfo& info, PackOptions options, std::
                               {"components", parameter.components},
                               {"type", volume::name(parameter.type)}});
     const glm::ivec3 size = info.lattice.size;
-    return nlohmann::json{{"name", info.name},          {"parameters", parameters},
-                          {"times", info.times},        {"size", {size.x, size.y, size.z}},
-                          {"options", toJson(options)}, {"blockTimes", blockTimes}}
-        .dump();
+    return nlohmann::json{{"name", info.name},
+                          {"parameters", parameters},
+                          {"times", info.times},
+                          {"size", {size.x, size.y, size.z}},
+                          {"options", toJson(options)},
+                          {"blockTimes", blockTimes},
+                          {"inputs", inputs}}
+        .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 /// Ranges as text that keeps every bit, also of empty ones.
@@ -70,7 +77,7 @@ Ranges readRanges(const std::string& path, std::size_t parameters) {
     Ranges ranges(parameters);
     for (std::vector<Range>& each : ranges) {
         std::size_t count = 0;
-        in >> count;
+        if (!(in >> count)) throw Error("is damaged: remove it", path);
         for (std::string lo, hi; each.size() < count && in >> lo >> hi;)
             each.push_back({std::strtod(lo.c_str(), nullptr), std::strtod(hi.c_str(), nullptr)});
         if (each.size() != count) throw Error("is damaged: remove it", path);
@@ -88,7 +95,6 @@ void add(PackSummary& sum, const PackSummary& more) {
     sum.repeatedBytes += more.repeatedBytes;
     sum.bricks = more.bricks;
     sum.weakenedBricks += more.weakenedBricks;
-    sum.maxError = std::max(sum.maxError, more.maxError);
     sum.loadSeconds += more.loadSeconds;
     sum.resampleSeconds += more.resampleSeconds;
     sum.codeSeconds += more.codeSeconds;
@@ -101,10 +107,15 @@ void add(PackSummary& sum, const PackSummary& more) {
 /// The blocks of a series, some of them joined already.
 class Blocks {
 public:
-    Blocks(const volume::Dataset& source, const PackOptions& options, const std::string& path, std::size_t times,
-           const Launched& launched, const Progress& progress)
-        : source_(source), options_(options), path_(path), times_(times),
-          job_(path, aboutJob(source.info, options, times), launched, progress) {}
+    Blocks(const volume::Dataset& source, const PackOptions& options, const std::string& path,
+           const BlockOptions& blocks, const Progress& progress)
+        : source_(source), options_(options), path_(path), times_(blocks.times),
+          job_(path, aboutJob(source.info, options, blocks.times, blocks.inputs), blocks.launched, progress) {
+        // An automatic size of bricks depends on the number of times; a last block of one time has the same.
+        const volume::Lattice& lattice = source.info.lattice;
+        const bool toBcc = options.lattice == StoredLattice::BCC && lattice.kind == volume::LatticeKind::CC;
+        options_.brickSize = gridFor(toBcc ? volume::bccFor(lattice) : lattice, source.info, options).brickSize;
+    }
 
     std::size_t count() const { return (source_.info.times.size() + times_ - 1) / times_; }
 
@@ -120,8 +131,9 @@ private:
     std::string fileOf(std::size_t number) const { return job_.file(std::to_string(number) + ".tsr"); }
     std::string rangesOf(std::size_t number) const { return job_.file("ranges-" + std::to_string(number)); }
     std::string joined() const { return job_.file("joined.tsr"); }
-    bool isPacked(std::size_t number);
+    bool isPacked(std::size_t number, const Progress& progress);
     void countJoined();
+    double share(std::size_t number) const { return double(number) / double(count()); }
     void joinComplete(const Progress& progress);
 
     volume::Dataset source_;
@@ -129,7 +141,8 @@ private:
     std::string path_;
     std::size_t times_;
     SharedJob job_;
-    std::size_t joinedBlocks_ = 0; ///< at least so many
+    std::size_t joinedBlocks_ = 0;   ///< at least so many
+    std::uintmax_t joinedBytes_ = 0; ///< of the file when they were counted
 };
 
 volume::Dataset Blocks::block(std::size_t number) const {
@@ -147,8 +160,7 @@ void Blocks::gatherRanges(const Progress& progress) {
     const auto work = [&](std::size_t number) {
         volume::Dataset own = block(number);
         const Ranges found =
-            unknownRanges(own, options_, rangesOf(number),
-                          progress.part(double(number) / double(count()), double(number + 1) / double(count())));
+            unknownRanges(own, options_, rangesOf(number), progress.part(share(number), share(number + 1)));
         writeAtomically(rangesOf(number), textOf(found));
     };
     job_.share("ranges", count(), isDone, work, progress);
@@ -162,15 +174,20 @@ void Blocks::gatherRanges(const Progress& progress) {
 
 /// Finds out how many blocks have been joined.
 void Blocks::countJoined() {
-    joinedBlocks_ = count();
-    if (job_.complete()) return;
-    joinedBlocks_ = 0;
-    if (fs::exists(joined())) joinedBlocks_ = (Archive(joined()).info().times.size() + times_ - 1) / times_;
+    std::error_code missing;
+    const std::uintmax_t bytes = fs::file_size(joined(), missing);
+    if (job_.complete())
+        joinedBlocks_ = count();
+    else if (missing)
+        joinedBlocks_ = 0;
+    else if (bytes != joinedBytes_)
+        joinedBlocks_ = (Archive(joined()).info().times.size() + times_ - 1) / times_;
+    joinedBytes_ = missing ? 0 : bytes;
 }
 
-bool Blocks::isPacked(std::size_t number) {
+bool Blocks::isPacked(std::size_t number, const Progress& progress) {
     if (number < joinedBlocks_ || fs::exists(fileOf(number))) return true;
-    const LockedFile lock = job_.lock("join.lock", {});
+    const LockedFile lock = job_.lock("join.lock", progress, share(number));
     countJoined();
     return number < joinedBlocks_ || fs::exists(fileOf(number));
 }
@@ -180,23 +197,28 @@ void Blocks::joinComplete(const Progress& progress) {
     countJoined();
     for (std::size_t number = 0; number < joinedBlocks_; ++number) fs::remove(fileOf(number)); // after a crash
     for (; joinedBlocks_ < count() && fs::exists(fileOf(joinedBlocks_)); ++joinedBlocks_) {
-        if (progress.stop.stop_requested()) throw Cancelled();
+        progress.advance(share(joinedBlocks_), "joining");
         const std::string next = fileOf(joinedBlocks_);
-        if (joinedBlocks_ == 0) {
-            fs::rename(next, joined());
-        } else {
+        std::error_code problem;
+        if (joinedBlocks_ > 0)
             join(joined(), next);
+        else
+            fs::create_hard_link(next, joined(),
+                                 problem); // never in place of blocks that this machine does not see yet
+        if (problem == std::errc::file_exists) throw MachineError("is there already", joined());
+        if (problem)
+            fs::rename(next, joined()); // a file system without links
+        else
             fs::remove(next);
-        }
     }
 }
 
 std::size_t Blocks::pack(PackSummary& sum, const PackedBefore& before, const Progress& progress) {
-    const auto isDone = [&](std::size_t number) { return isPacked(number); };
+    const auto isDone = [&](std::size_t number) { return isPacked(number, progress); };
     const auto work = [&](std::size_t number) {
         volume::Dataset own = block(number);
         const std::string growing = job_.file(std::to_string(number) + ".packing"); // readable from its first time on
-        const Progress part = progress.part(double(number) / double(count()), double(number + 1) / double(count()));
+        const Progress part = progress.part(share(number), share(number + 1));
         add(sum, codec::pack(own, options_, growing, part, before));
         fs::rename(growing, fileOf(number));
         syncFolderOf(fileOf(number));
@@ -207,12 +229,15 @@ std::size_t Blocks::pack(PackSummary& sum, const PackedBefore& before, const Pro
 }
 
 bool Blocks::finish(const Progress& progress) {
-    const LockedFile lock = job_.lock("join.lock", progress);
+    const LockedFile lock = job_.lock("join.lock", progress, 1);
     joinComplete(progress);
-    if (!job_.complete()) job_.setComplete();
-    if (!fs::exists(joined())) return false;
+    if (job_.complete()) return false;
+    if (joinedBlocks_ < count())
+        throw MachineError(
+            "block " + std::to_string(joinedBlocks_ + 1) + " of " + std::to_string(count()) + " is missing", joined());
     fs::rename(joined(), path_);
     syncFolderOf(path_);
+    job_.setComplete();
     return true;
 }
 
@@ -227,15 +252,21 @@ std::size_t blockTimes(std::size_t times, const Launched& launched) {
 BlockSummary packInBlocks(const volume::Dataset& source, const PackOptions& options, const std::string& path,
                           const BlockOptions& blocks, const Progress& progress, const PackedBefore& before) {
     check(options);
-    const std::size_t times = blocks.times > 0 ? blocks.times : blockTimes(source.info.times.size(), blocks.launched);
+    if (fs::is_directory(path)) throw Error("is a folder", path);
+    BlockOptions settled = blocks;
+    if (settled.times == 0) settled.times = blockTimes(source.info.times.size(), blocks.launched);
     BlockSummary summary;
-    Blocks all(source, options, path, times, blocks.launched, progress);
+    const auto started = std::chrono::steady_clock::now();
+    Blocks all(source, options, path, settled, progress);
     summary.blocks = all.count();
     const double begin = isRelative(options) ? 0.3 : 0;
     if (isRelative(options)) all.gatherRanges(progress.part(0, begin));
     summary.packed = all.pack(summary.own, before, progress.part(begin, 1));
     summary.last = all.finish(progress);
-    summary.own.archiveBytes = fs::file_size(path);
+    const Archive archive(path);
+    summary.own.archiveBytes = archive.fileBytes();
+    summary.own.maxError = archive.metadata().maxError;
+    summary.own.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     progress.advance(1);
     return summary;
 }

@@ -13,13 +13,15 @@ namespace tessera::codec {
 struct BlockOptions {
     std::size_t times = 0; ///< of a block; 0: blockTimes()
     Launched launched;
+    std::string inputs =
+        {}; ///< what else all processes, and a run that goes on, must have alike: files, how they are read
 };
 
 /// Times of a block for so many processes: 16, or fewer so that each process has a block.
 std::size_t blockTimes(std::size_t times, const Launched& launched);
 
 struct BlockSummary {
-    PackSummary own; ///< of the blocks that this process packed; archiveBytes: of the whole
+    PackSummary own; ///< of the blocks that this process packed; archiveBytes and maxError: of the whole
     std::size_t blocks = 0, packed = 0;
     bool last = false; ///< this process gave the archive its name
 };

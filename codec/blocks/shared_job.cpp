@@ -4,10 +4,12 @@
 #include "volume/system/atomic_file.h"
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <thread>
+#include <unistd.h>
 
 namespace tessera::codec {
 
@@ -15,8 +17,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr auto kPause = std::chrono::milliseconds(50);
+constexpr auto kPause = std::chrono::milliseconds(100);
+constexpr auto kLongest = std::chrono::minutes(10); ///< from the first to the last process that is ready
 constexpr const char *kLock = "job.lock", *kAbout = "job.json", *kComplete = "complete";
+constexpr std::string_view kRanks = "ranks-",
+                           kLeft = "left-"; ///< of jobs of launchers: their processes; those that left
 
 std::string contentOf(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
@@ -28,14 +33,16 @@ bool isThere(const std::string& path) {
     return fs::exists(path, ignored);
 }
 
-/// Says that a process of a launcher's job has done its part.
-std::string leftFile(const Launched& launched, int rank) {
-    return "left-" + launched.job + "-" + std::to_string(rank);
+std::string leftFile(const std::string& job, int rank) {
+    return std::string(kLeft) + job + "-" + std::to_string(rank);
 }
 
-void pause(const Progress& progress) {
-    if (progress.stop.stop_requested()) throw Cancelled();
-    std::this_thread::sleep_for(kPause);
+std::vector<std::string> namesIn(const std::string& folder, std::string_view begin) {
+    std::vector<std::string> names;
+    std::error_code problem;
+    for (fs::directory_iterator at(folder, problem), end; !problem && at != end; at.increment(problem))
+        if (const std::string name = at->path().filename().string(); name.starts_with(begin)) names.push_back(name);
+    return names;
 }
 
 } // namespace
@@ -43,43 +50,75 @@ void pause(const Progress& progress) {
 SharedJob::SharedJob(const std::string& output, const std::string& about, const Launched& launched,
                      const Progress& progress)
     : folder_(output + ".blocks"), launched_(launched) {
-    for (;; pause(progress)) {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::string own = file(leftFile(launched.job, launched.rank));
+    for (;;) {
         std::error_code problem;
         if (launched.rank == 0) fs::create_directory(folder_, problem);
         if (problem) throw MachineError("cannot be made: " + problem.message(), folder_);
-        if (!isThere(folder_)) continue; // the first process of the job makes it
+        // Whether this process belongs to the work that has been completed here, and has not been in it yet.
+        const auto isOwn = [&] {
+            return launched.count > 1 && contentOf(file(kComplete)) == launched.job && !isThere(own);
+        };
+        if (auto alone = LockedFile::tryLock(file(kLock), LockedFile::Kind::Exclusive); alone && alone->hasName()) {
+            if (complete() && !isOwn()) {
+                remove(std::move(*alone));
+                continue;
+            }
+            if (!complete()) // what processes left that have ended without completing it
+                for (const std::string_view begins : {kRanks, kLeft})
+                    for (const std::string& name : namesIn(folder_, begins)) fs::remove(file(name), problem);
+        }
         inside_ = LockedFile::tryLock(file(kLock), LockedFile::Kind::Shared);
-        if (!inside_ || !inside_->hasName()) continue; // somebody is removing it
-        if (!complete() || (launched.count > 1 && contentOf(file(kComplete)) == launched.job)) break;
-        // It is left of work that was completed before: this is the next.
-        inside_.reset();
-        const auto alone = LockedFile::tryLock(file(kLock), LockedFile::Kind::Exclusive);
-        if (alone && alone->hasName()) fs::remove_all(folder_, problem);
+        if (inside_ && inside_->hasName() && (!complete() || isOwn())) break;
+        inside_.reset(); // somebody is removing it
+        if (!isThere(folder_) && std::chrono::steady_clock::now() - begin > kLongest)
+            throw MachineError("the first process of the job has not made it", folder_);
+        progress.advance(0, "waiting for the first process");
+        std::this_thread::sleep_for(kPause);
     }
-    // A launcher may give the runs of a job the same name: who has left a former one has not left this one.
-    std::error_code ignored;
-    for (int rank = 0; launched.rank == 0 && rank < launched.count; ++rank)
-        fs::remove(file(leftFile(launched, rank)), ignored);
-    const LockedFile alone = lock("about.lock", progress);
+    const LockedFile alone = lock("about.lock", progress, 0);
+    if (launched.count > 1) writeAtomically(file(std::string(kRanks) + launched.job), std::to_string(launched.count));
     if (!isThere(file(kAbout))) writeAtomically(file(kAbout), about);
     if (contentOf(file(kAbout)) != about)
         throw Error("belongs to other data or options; finish that work, or remove the folder", folder_);
 }
 
 SharedJob::~SharedJob() {
-    std::error_code ignored;
-    std::ofstream(file(leftFile(launched_, launched_.rank))).flush();
+    std::ofstream(file(leftFile(launched_.job, launched_.rank))).flush();
     const bool isComplete = complete();
     inside_.reset();
     if (!isComplete) return;
     try {
-        const auto alone = LockedFile::tryLock(file(kLock), LockedFile::Kind::Exclusive);
+        auto alone = LockedFile::tryLock(file(kLock), LockedFile::Kind::Exclusive);
         if (!alone || !alone->hasName()) return;
-        for (int rank = 0; rank < launched_.count; ++rank)
-            if (!isThere(file(leftFile(launched_, rank)))) return; // it has not come yet
-        fs::remove_all(folder_, ignored);
+        for (const std::string& ranks : namesIn(folder_, kRanks)) {
+            const std::string job = ranks.substr(kRanks.size());
+            const int count = std::atoi(contentOf(file(ranks)).c_str());
+            for (int rank = 0; rank < count; ++rank)
+                if (!isThere(file(leftFile(job, rank)))) return; // it has not come yet
+        }
+        remove(std::move(*alone));
     } catch (const Error&) { // the folder stays
     }
+}
+
+/// Removes the folder, in which nobody else is. It gets another name first: so nobody enters meanwhile, and network
+/// file systems do not keep the locked file in it.
+void SharedJob::remove(LockedFile alone) const {
+    const std::string removed = folder_ + ".removed-" + std::to_string(::getpid());
+    std::error_code problem;
+    fs::rename(folder_, removed, problem);
+    if (problem) return;
+    { const LockedFile ends = std::move(alone); }
+    fs::remove_all(removed, problem);
+}
+
+/// Between two looks at what others are doing.
+void SharedJob::pause(const Progress& progress, double fraction) const {
+    if (!isThere(folder_)) throw MachineError("was removed meanwhile", folder_);
+    progress.advance(fraction, "waiting for other processes");
+    std::this_thread::sleep_for(kPause);
 }
 
 std::size_t SharedJob::share(const std::string& name, std::size_t count, const std::function<bool(std::size_t)>& isDone,
@@ -87,7 +126,7 @@ std::size_t SharedJob::share(const std::string& name, std::size_t count, const s
     std::size_t own = 0;
     for (const bool waits : {false, true})
         for (std::size_t piece = 0; piece < count; ++piece)
-            for (; !isDone(piece); pause(progress)) {
+            for (;; pause(progress, double(piece) / double(count))) {
                 const auto lock = LockedFile::tryLock(file(name + "-" + std::to_string(piece) + ".lock"),
                                                       LockedFile::Kind::Exclusive);
                 if (lock && !isDone(piece)) {
@@ -95,13 +134,12 @@ std::size_t SharedJob::share(const std::string& name, std::size_t count, const s
                     ++own;
                 }
                 if (lock || !waits) break;
-                progress.advance(double(piece) / double(count), "waiting for other processes");
             }
     return own;
 }
 
-LockedFile SharedJob::lock(const std::string& name, const Progress& progress) const {
-    for (;; pause(progress))
+LockedFile SharedJob::lock(const std::string& name, const Progress& progress, double fraction) const {
+    for (;; pause(progress, fraction))
         if (auto lock = LockedFile::tryLock(file(name), LockedFile::Kind::Exclusive)) return std::move(*lock);
 }
 

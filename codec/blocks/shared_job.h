@@ -27,19 +27,24 @@ public:
 
     /// Does pieces 0 .. count - 1 of the work that is called `name`: first those that nobody does, then it waits for
     /// the others, and does those whose process ended before they were done. Returns how many it did; all are done
-    /// then. `isDone(piece)` must see what any process has done; `work(piece)` must leave nothing half done.
+    /// then. `isDone(piece)`, which is asked of a piece that nobody does, must see what any process has done;
+    /// `work(piece)` must leave nothing half done. Throws Cancelled, MachineError when the folder is removed.
     std::size_t share(const std::string& name, std::size_t count, const std::function<bool(std::size_t)>& isDone,
                       const std::function<void(std::size_t)>& work, const Progress& progress) const;
 
     /// The path of a file of the folder.
     std::string file(const std::string& name) const { return folder_ + "/" + name; }
-    /// A lock between the processes, which is waited for. Throws Cancelled.
-    LockedFile lock(const std::string& name, const Progress& progress) const;
+    /// A lock between the processes, which is waited for; `fraction` of the progress is reported meanwhile. Throws
+    /// Cancelled, MachineError when the folder is removed.
+    LockedFile lock(const std::string& name, const Progress& progress, double fraction) const;
     /// States that the work is complete, whatever the other processes do.
     void setComplete() const;
     bool complete() const;
 
 private:
+    void remove(LockedFile alone) const;
+    void pause(const Progress& progress, double fraction) const;
+
     std::string folder_;
     Launched launched_;
     std::optional<LockedFile> inside_; ///< shared by all processes in the folder

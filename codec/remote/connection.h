@@ -30,6 +30,8 @@ public:
     virtual ~Connection() = default;
     /// Throws PassingError or Error; Cancelled when a stop is requested meanwhile.
     virtual Reply read(FileRange range, const std::stop_token& stop) = 0;
+    /// The next read is of the file that has the name by then, as long as it is by then.
+    virtual void lookAgain() {}
 };
 
 /// By libcurl: http and https. Passwords come from ~/.netrc, proxies from the environment, as with curl.

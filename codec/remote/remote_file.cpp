@@ -167,15 +167,14 @@ std::optional<FilePart> RemoteFile::freshPart(FileRange range) const {
     return FilePart(std::move(out));
 }
 
-RemoteHeaders::RemoteHeaders(const std::string& address, const std::stop_token& ending)
-    : address_(address), queue_(connectTo(parseAddress(address)), 1, {}, ending) {}
-
-std::optional<Header> RemoteHeaders::read() {
+std::optional<Header> RemoteHeaders::read(const std::stop_token& stop) {
     try {
-        const FileRange headers{0, kFirstChunk};
-        const Reply reply = std::move(queue_.fetch({&headers, 1}).front());
+        if (!connection_) connection_ = connectTo(parseAddress(address_))();
+        connection_->lookAgain();
+        const Reply reply = connection_->read({0, kFirstChunk}, stop);
         return headerIn(reply.bytes, reply.fileBytes);
     } catch (const Error&) {
+        connection_.reset();
         return std::nullopt;
     }
 }

@@ -13,6 +13,7 @@
 #include <set>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tessera::codec {
@@ -67,14 +68,14 @@ private:
 /// The headers of an archive on another machine, asked for again and again over one connection.
 class RemoteHeaders {
 public:
-    /// Requests end when `ending` stops.
-    RemoteHeaders(const std::string& address, const std::stop_token& ending);
-    /// The valid header; none if the file cannot be read now or is no archive. Throws Cancelled.
-    std::optional<Header> read();
+    explicit RemoteHeaders(std::string address) : address_(std::move(address)) {}
+    /// The valid header; none if the file cannot be read now or is no archive. Throws Cancelled when a stop is
+    /// requested meanwhile.
+    std::optional<Header> read(const std::stop_token& stop);
 
 private:
     std::string address_;
-    FetchQueue queue_;
+    std::unique_ptr<Connection> connection_;
 };
 
 /// Removes what the cache holds of an archive on another machine, so that all of it is read from there again; does

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 /// The protocol of sftp, version 3, as far as reading needs it (draft-ietf-secsh-filexfer-02).
 namespace tessera::codec {
@@ -16,6 +17,7 @@ enum Kind : std::uint8_t {
     Init = 1,
     Version = 2,
     Open = 3,
+    Close = 4,
     Read = 5,
     Fstat = 8,
     Status = 101,
@@ -102,6 +104,7 @@ public:
 
     Reply read(FileRange range, const std::stop_token& stop) override {
         stop_ = &stop;
+        if (stale_) close();
         if (handle_.empty()) open();
         Reply reply{{}, fileBytes_, state_};
         reply.bytes.resize(range.offset < fileBytes_ ? std::min(range.length, fileBytes_ - range.offset) : 0);
@@ -133,11 +136,25 @@ public:
         return reply;
     }
 
+    void lookAgain() override { stale_ = true; }
+
 private:
-    void open() {
+    void greet() {
         send(Message(Init).number(kVersion));
         if (Answer3 answer = receive(); answer.byte() != Version)
             throw Error("the server breaks the protocol of sftp", address_.text);
+        greeted_ = true;
+    }
+
+    void close() {
+        stale_ = false;
+        if (handle_.empty()) return;
+        send(Message(Close).number(0).text(std::exchange(handle_, {})));
+        (void)expect(Status);
+    }
+
+    void open() {
+        if (!greeted_) greet();
         const std::string path = address_.path.starts_with("/~/") ? address_.path.substr(3) : address_.path;
         send(Message(Open).number(0).text(path).number(kReadFlag).number(0));
         Answer3 opened = expect(Handle);
@@ -219,6 +236,7 @@ private:
     volume::ChildProcess ssh_;
     const std::stop_token* stop_ = nullptr;
     std::string handle_, state_;
+    bool greeted_ = false, stale_ = false;
     std::uint64_t fileBytes_ = 0;
 };
 

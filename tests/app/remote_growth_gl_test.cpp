@@ -97,42 +97,72 @@ volume::Dataset noise(const std::vector<int>& times) {
     return volume::withTimes(whole, times);
 }
 
+struct Shown {
+    vis::HeadlessContext gl;
+    Gui gui;
+    Workbench workbench{{.renderer = nullptr,
+                         .render = {},
+                         .headless = false,
+                         .onlyPane = {},
+                         .stateFolder = {},
+                         .growthInterval = 1ms}};
+
+    explicit Shown(const std::string& address) {
+        OpenRequest request;
+        request.paths = {address};
+        workbench.install(open(request));
+        draw();
+    }
+    void draw() { (void)drawUntilDone(workbench, {600, 400}, 1); }
+    void drawTimes(std::size_t count) {
+        for (std::size_t time = 0; time < count; ++time) {
+            workbench.session().time = workbench.source()->info().times[time];
+            draw();
+        }
+    }
+    bool gets(std::size_t times) {
+        return comesIn10s([&] {
+            draw();
+            return workbench.source()->info().times.size() == times;
+        });
+    }
+};
+
 TEST_F(RemoteGrowthGl, NewTimesComeAndNothingIsReadTwice) {
     const std::string path = folder / "run.tsr";
     volume::Dataset early = noise({0, 1, 2, 3, 4, 5, 6}), late = noise({7});
     codec::pack(early, {}, path);
     const double whole = double(fs::file_size(path));
-    OpenRequest request;
-    request.paths = {address + "/run.tsr"};
-    Opened opened = open(request);
-    opened.document.session.time = opened.source->info().times[3];
-    const vis::HeadlessContext gl;
-    const Gui gui;
-    Workbench workbench({.renderer = nullptr,
-                         .render = {},
-                         .headless = false,
-                         .onlyPane = {},
-                         .stateFolder = {},
-                         .growthInterval = 1ms});
-    workbench.install(std::move(opened));
-    (void)drawUntilDone(workbench, {600, 400}, 1);
-    for (int time = 0; time < 7; ++time) { // all of it is here then
-        workbench.session().time = workbench.source()->info().times[std::size_t(time)];
-        (void)drawUntilDone(workbench, {600, 400}, 1);
-    }
+    Shown shown(address + "/run.tsr");
+    shown.drawTimes(7); // all of it is here then
     ASSERT_GT(told(), 0.8 * whole);
-
     codec::append(late, path);
-    ASSERT_TRUE(comesIn10s([&] {
-        (void)drawUntilDone(workbench, {600, 400}, 1);
-        return workbench.source()->info().times.size() == 8;
-    }));
-    for (int time = 0; time < 8; ++time) {
-        workbench.session().time = workbench.source()->info().times[std::size_t(time)];
-        (void)drawUntilDone(workbench, {600, 400}, 1);
-    }
+    ASSERT_TRUE(shown.gets(8));
+    shown.drawTimes(8);
     const double more = double(fs::file_size(path)) - whole;
     EXPECT_LT(told(), more + 0.25 * whole) << "what was there before is read again";
+}
+
+/// A program that stands for ssh comes first in PATH.
+TEST_F(RemoteGrowthGl, NewTimesComeBySftpAndAfterAReplacement) {
+    const std::string path = folder / "run.tsr", next = folder / "next.tsr";
+    volume::Dataset early = noise({0, 1}), middle = noise({2}), all = noise({0, 1, 2, 3});
+    codec::pack(early, {}, path);
+    fs::create_directory(folder / "bin");
+    const std::string ssh = folder / "bin/ssh", script = std::string(TESSERA_SOURCE_DIR) + "/tests/e2e/fake_ssh.py";
+    std::ofstream(ssh) << "#!/bin/sh\nFAKE_SSH_LOG=/dev/null exec python3 '" << script << "' \"$@\"\n";
+    fs::permissions(ssh, fs::perms::owner_all);
+    const std::string before = std::getenv("PATH");
+    ::setenv("PATH", (folder / "bin").string().append(":").append(before).c_str(), 1);
+    {
+        Shown shown("sftp://me@cluster" + path);
+        codec::append(middle, path);
+        EXPECT_TRUE(shown.gets(3));
+        codec::pack(all, {}, next);
+        fs::rename(next, path); // another file, which goes on from the times of the first
+        EXPECT_TRUE(shown.gets(4));
+    }
+    ::setenv("PATH", before.c_str(), 1);
 }
 
 } // namespace

@@ -119,6 +119,36 @@ TEST(Join, BoundsHoldForTheRangeOfBoth) {
     EXPECT_EQ(joined.info().quantities[0].values, (std::vector<double>{1, 2, 3, 4}));
 }
 
+TEST(Join, IsOnlyOfferedForWhatItCanJoin) {
+    const TemporaryFolder folder;
+    const std::vector<MadeParameter> both{{"T", ScalarType::U8, 1, Texture::Smooth, false, false},
+                                          {"region", ScalarType::U8, 1, Texture::Noise, false, true}};
+    const volume::Dataset made = makeDataset({80, 20, 20}, both, 4),
+                          label = makeDataset({80, 20, 20}, {both[1], {"p", ScalarType::U8}}, 4);
+    PackOptions plain;
+    plain.lattice = StoredLattice::CC;
+    const std::string one = packed(made, {0}, plain, folder / "one.tsr"), // one large brick
+        more = packed(made, {1, 2}, plain, folder / "more.tsr");
+    const std::string run = packed(made, {0, 1}, bricksOf8(), folder / "run.tsr");
+    EXPECT_TRUE(canJoin(run, packed(made, {2}, bricksOf8(), folder / "next.tsr")));
+    EXPECT_FALSE(canJoin(one, more)) << "bricks of another size";
+    EXPECT_FALSE(canJoin(run, packed(label, {2}, bricksOf8(), folder / "label.tsr"))) << "another parameter";
+    EXPECT_FALSE(canJoin(run, packed(made, {2}, bricksOf8(StoredLattice::CC, 0.1), folder / "lossy.tsr")));
+}
+
+TEST(Join, DamageIsNotCopied) {
+    const TemporaryFolder folder;
+    const volume::Dataset made = makeDataset({17, 12, 19}, {{"T", ScalarType::F32, 1, Texture::Noise, true, false}}, 4);
+    const std::string path = packed(made, {0, 1}, bricksOf8(), folder / "run.tsr");
+    const std::string more = packed(made, {2, 3}, bricksOf8(), folder / "more.tsr");
+    const std::vector<char> before = readFile(path);
+    std::vector<char> bytes = readFile(more);
+    bytes[bytes.size() / 2] = char(bytes[bytes.size() / 2] ^ 1);
+    writeFile(more, bytes);
+    EXPECT_THROW(join(path, more), Error);
+    EXPECT_EQ(readFile(path), before);
+}
+
 TEST(Join, RefusesWhatDoesNotFollowAndChangesNothing) {
     const TemporaryFolder folder;
     const volume::Dataset made =

@@ -210,6 +210,44 @@ TEST(PackBlocks, TheFolderOfCompleteWorkDoesNotHideNewData) {
     EXPECT_EQ(folder.files(), 1u);
 }
 
+TEST(PackBlocks, AnotherRunOfALauncherWithoutNamesBeginsAnew) {
+    const TemporaryFolder folder;
+    const volume::Dataset made = series();
+    const BlockOptions first{2, {0, 2, 1, "-"}};
+    EXPECT_EQ(packInBlocks(made, small(), folder / "run.tsr", first).packed, 4u); // the other never comes
+    EXPECT_EQ(packInBlocks(made, small(), folder / "run.tsr", first).packed, 4u);
+}
+
+TEST(PackBlocks, BricksOfAnAutomaticSizeAreAlike) { // of small integers at one time they are larger than at several
+    const TemporaryFolder folder;
+    const volume::Dataset made =
+        makeDataset({80, 70, 60}, {{"n", ScalarType::U8, 1, Texture::Smooth, false, false}}, 3);
+    PackOptions options;
+    options.lattice = StoredLattice::CC;
+    packInBlocks(made, options, folder / "run.tsr", {2, {}});
+    const Archive archive(folder / "run.tsr");
+    EXPECT_EQ(archive.info().times.size(), 3u);
+    EXPECT_EQ(archive.grid().brickSize, 64);
+    for (int t = 0; t < 3; ++t) expectSame(readField(archive, 0, 0, t), made.read(0, 0, t), true);
+}
+
+TEST(PackBlocks, ABlockWithoutSamplesBringsNoRange) {
+    const TemporaryFolder folder;
+    for (const int absent : {0, 1, 2}) {
+        volume::Dataset made = makeDataset({16, 16, 16}, {{"T", ScalarType::F32, 2, Texture::Smooth, false, false}}, 3);
+        made.read = [read = made.read, absent](int p, int c, int t) {
+            volume::Field field = read(p, c, t);
+            if (t == absent) field.mask = std::make_shared<const volume::Mask>(field.count(), std::uint8_t(0));
+            return field;
+        };
+        packInBlocks(made, small(), folder / "blocks.tsr", {1, {}});
+        pack(made, small(), folder / "once.tsr");
+        const Archive blocks(folder / "blocks.tsr"), once(folder / "once.tsr");
+        EXPECT_EQ(blocks.info().parameters[0].ranges, once.info().parameters[0].ranges) << "absent at time " << absent;
+        EXPECT_GT(once.info().parameters[0].ranges[0].lo, 100);
+    }
+}
+
 TEST(PackBlocks, AnExistingArchiveStaysUntilTheNewOneIsComplete) {
     const TemporaryFolder folder;
     const volume::Dataset made = series();
@@ -241,6 +279,32 @@ TEST(PackBlocks, OtherWorkInTheFolderIsRefused) {
                 << error.what();
         }
     }
+    EXPECT_THROW(packInBlocks(made, small(), folder / "run.tsr", {2, {}, "--absent T=0"}), Error) << "read otherwise";
+    EXPECT_FALSE(fs::exists(folder / "run.tsr"));
+    fs::create_directory(folder / "folder.tsr");
+    EXPECT_THROW(packInBlocks(made, small(), folder / "folder.tsr", {2, {}}), Error);
+    EXPECT_FALSE(fs::exists(folder / "folder.tsr.blocks"));
+}
+
+TEST(PackBlocks, AVanishedBlockIsNoArchive) {
+    const TemporaryFolder folder;
+    volume::Dataset made = series();
+    made.read = [read = made.read, &folder](int p, int c, int t) {
+        if (t == 6) fs::remove(folder / "run.tsr.blocks/joined.tsr"); // while the last block is packed
+        return read(p, c, t);
+    };
+    EXPECT_THROW(packInBlocks(made, small(), folder / "run.tsr", {2, {}}), MachineError);
+    EXPECT_FALSE(fs::exists(folder / "run.tsr"));
+}
+
+TEST(PackBlocks, ARemovedFolderIsSaidToBe) {
+    const TemporaryFolder folder;
+    volume::Dataset made = series();
+    made.read = [read = made.read, &folder](int p, int c, int t) {
+        if (t == 2 && p == 2) fs::remove_all(folder / "run.tsr.blocks");
+        return read(p, c, t);
+    };
+    EXPECT_THROW(packInBlocks(made, small(), folder / "run.tsr", {2, {}}), std::exception);
     EXPECT_FALSE(fs::exists(folder / "run.tsr"));
 }
 

@@ -97,8 +97,16 @@ say "other.tsr.blocks: belongs to other data or options" err.txt
 check "D4*" 2 "$tessera" pack run.json -o x.tsr --lattice d4 --block-times 2
 say "depend on all times" err.txt
 check "a size" 2 "$tessera" pack run.json -o x.tsr --target-size 1 --block-times 2
-check "no times" 1 "$tessera" pack run.json -o x.tsr --block-times 0
-check "append by two" 2 env $(as job 0 2) "$tessera" pack run.json --append -o one.tsr
-say "pack a whole series only" err.txt
+check "a negative number" 1 "$tessera" pack run.json -o x.tsr --block-times -1
+check "append in blocks" 2 "$tessera" pack run.json --append -o one.tsr --block-times 2
+say "of a whole series" err.txt
+check "alone beside others" 0 env $(as job 1 2) "$tessera" pack run.json -o alone.tsr --max-error 0.0001 --block-times 0
+cmp whole.tsr alone.tsr || fail "packing alone beside others gives another archive"
+# Files that have changed, or are read otherwise, are other work.
+env $(as changed 0 2) "$tessera" pack run.json -o changed.tsr "${options[@]}" >/dev/null
+rm changed.tsr.blocks/complete
+touch run.raw # beside run.json
+check "changed files" 2 "$tessera" pack run.json -o changed.tsr "${options[@]}"
+rm -r changed.tsr.blocks
 ls x.* 2>/dev/null && fail "something was left behind"
 finish

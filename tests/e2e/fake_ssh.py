@@ -34,6 +34,10 @@ while len(head := sys.stdin.buffer.read(4)) == 4:
             answer(102, number + struct.pack(">I", len(handle)) + handle)
         except FileNotFoundError:
             answer(101, number + struct.pack(">I", 2) + struct.pack(">I", 0) * 2)
+    elif kind == 4:
+        handle, _ = text(message, 5)
+        files[handle].close()  # its name stays taken
+        answer(101, number + struct.pack(">I", 0) * 3)
     elif kind == 8:
         handle, _ = text(message, 5)
         about = os.fstat(files[handle].fileno())

@@ -56,6 +56,10 @@ TEST(Launched, EachLauncherSaysRankAndNumber) {
         EXPECT_EQ(launched(), (Launched{0, 3, 3, "-"}));
     }
     {
+        const Variables both({{"PMI_RANK", "1"}, {"PMI_SIZE", "4"}, {"SLURM_STEP_TASKS_PER_NODE", "2(x2)"}});
+        EXPECT_EQ(launched(), (Launched{1, 4, 2, "-"}));
+    }
+    {
         const Variables slurm({{"SLURM_PROCID", "5"},
                                {"SLURM_STEP_NUM_TASKS", "6"},
                                {"SLURM_STEP_TASKS_PER_NODE", "3(x2)"},

@@ -44,7 +44,9 @@ Launched launched() {
         std::string job(textOf(names.job));
         job.append("-").append(textOf("SLURM_JOB_ID"));
         std::erase_if(job, [](char c) { return c == '/' || c == '.'; });
-        return {*rank, *count, std::clamp(numberOf(names.onThisMachine).value_or(1), 1, *count), job};
+        std::optional<int> beside = numberOf(names.onThisMachine);
+        if (!beside) beside = numberOf("SLURM_STEP_TASKS_PER_NODE"); // srun --mpi=pmi2
+        return {*rank, *count, std::clamp(beside.value_or(1), 1, *count), job};
     }
     return {};
 }
