@@ -62,7 +62,7 @@ SharedJob::SharedJob(const std::string& output, const std::string& about, const 
         };
         if (auto alone = LockedFile::tryLock(file(kLock), LockedFile::Kind::Exclusive); alone && alone->hasName()) {
             if (complete() && !isOwn()) {
-                remove(std::move(*alone));
+                if (!remove(std::move(*alone))) throw MachineError("is complete, and cannot be removed", folder_);
                 continue;
             }
             if (!complete()) // what processes left that have ended without completing it
@@ -103,15 +103,16 @@ SharedJob::~SharedJob() {
     }
 }
 
-/// Removes the folder, in which nobody else is. It gets another name first: so nobody enters meanwhile, and network
-/// file systems do not keep the locked file in it.
-void SharedJob::remove(LockedFile alone) const {
+/// Removes the folder, in which nobody else is; false if it cannot be. It gets another name first: so nobody enters
+/// meanwhile, and network file systems do not keep the locked file in it.
+bool SharedJob::remove(LockedFile alone) const {
     const std::string removed = folder_ + ".removed-" + std::to_string(::getpid());
     std::error_code problem;
     fs::rename(folder_, removed, problem);
-    if (problem) return;
+    if (problem) return false;
     { const LockedFile ends = std::move(alone); }
     fs::remove_all(removed, problem);
+    return true;
 }
 
 /// Between two looks at what others are doing.

@@ -42,7 +42,7 @@ public:
     bool complete() const;
 
 private:
-    void remove(LockedFile alone) const;
+    bool remove(LockedFile alone) const;
     void pause(const Progress& progress, double fraction) const;
 
     std::string folder_;
