@@ -41,6 +41,7 @@ protected:
         folder = fs::temp_directory_path() / ("remote_growth_" + std::to_string(::getpid()));
         fs::create_directories(folder / "cache");
         if (const char* const before = std::getenv("XDG_CACHE_HOME")) cacheBefore = before;
+        ::setenv("MESA_SHADER_CACHE_DIR", fs::temp_directory_path().c_str(), 0); // else Mesa's cache would go, too
         ::setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
         std::string script = std::string(TESSERA_SOURCE_DIR) + "/tests/e2e/remote_server.py", port = folder / "port";
         std::string python = "python3", served = folder;
