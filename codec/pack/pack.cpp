@@ -347,7 +347,7 @@ PackSummary append(volume::Dataset& source, const std::string& path, double memo
     options.memoryMb = memoryMb;
     std::optional<volume::Dataset> further = withoutKnownLabels(source, grown);
     if (!further) return Packing(source, slabLayers, before, options, path, &grown).run(progress);
-    const PackSummary summary = Packing(*further, slabLayers, before, options, path, &grown).run(progress);
+    PackSummary summary = Packing(*further, slabLayers, before, options, path, &grown).run(progress);
     for (volume::Parameter& parameter : source.info.parameters)
         for (const volume::Parameter& made : further->info.parameters)
             if (made.name == parameter.name) parameter.ranges = made.ranges;

@@ -67,7 +67,8 @@ void BlockCache::takeOver(const std::string& name) {
         if (const std::string block = at->path().filename().string(); block.find('.') == std::string::npos)
             blocks.push_back(block); // no part that is being written
     for (const std::string& block : blocks)
-        if (const std::string own = files_ + "/" + block, old = from + "/" + block; ::access(own.c_str(), F_OK) != 0)
+        if (const fs::path own = fs::path(files_) / block, old = fs::path(from) / block;
+            ::access(own.c_str(), F_OK) != 0)
             (void)::rename(old.c_str(), own.c_str());
     ::rmdir(from.c_str()); // succeeds only when it is empty
 }

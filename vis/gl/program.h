@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 /// Programs composed of the files in vis/shaders.
@@ -36,8 +37,16 @@ struct ProgramRecipe {
 /// (Not a constant array: Mesa turns arrays into uniforms before unrolling.)
 template <class Each, class Member> std::string choice(const std::vector<Each>& all, Member member) {
     std::string chain = "0";
-    for (std::size_t i = all.size(); i-- > 0;)
-        chain = "((i)==" + std::to_string(i) + "?" + std::to_string(int(member(all[i]))) + ":" + chain + ")";
+    for (std::size_t i = all.size(); i-- > 0;) {
+        std::string outer = "((i)==";
+        outer += std::to_string(i);
+        outer += '?';
+        outer += std::to_string(int(member(all[i])));
+        outer += ':';
+        outer += chain;
+        outer += ')';
+        chain = std::move(outer);
+    }
     return chain;
 }
 

@@ -82,7 +82,7 @@ private:
         if (std::holds_alternative<TimeRecipe>(derived_.recipe)) return {{info_.times.front(), info_.times.back()}};
         const BrickGrid& bricks = grid();
         const int level = bricks.levelWithin(kRangeSamples / double(info_.times.size()));
-        const std::vector<Range> coarse = scanLevel(channels, level, level > 0 ? progress.part(0, 0.3) : progress);
+        std::vector<Range> coarse = scanLevel(channels, level, level > 0 ? progress.part(0, 0.3) : progress);
         // Where nothing seems to differ, that is said: all samples are asked.
         const bool isDifference = std::holds_alternative<DifferenceRecipe>(derived_.recipe);
         if (level > 0 && isDifference && std::ranges::all_of(coarse, isZero) && zeroIsOfAllSamples(info_))

@@ -62,7 +62,7 @@ BrickSamples absentBrick(const BrickGrid& grid, const BrickKey& key) {
 
 } // namespace
 
-SampledOnto::SampledOnto(std::shared_ptr<const BrickSource> source, const BrickSource& onto)
+SampledOnto::SampledOnto(const std::shared_ptr<const BrickSource>& source, const BrickSource& onto)
     : source_(std::make_shared<const BrickCache>(source, kOtherBudget)), grid_(onto.grid()),
       scale_(lengthScale(onto.info(), source->info())), sameGrid_(sameSamples(source->grid(), grid_, scale_)) {}
 

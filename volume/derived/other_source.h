@@ -22,7 +22,7 @@ class SampledOnto {
 public:
     /// Samples onto the grid of `onto`. Lengths of a source that states no unit of them are taken in that of the other.
     /// Throws Error when the units of length cannot be converted.
-    SampledOnto(std::shared_ptr<const BrickSource> source, const BrickSource& onto);
+    SampledOnto(const std::shared_ptr<const BrickSource>& source, const BrickSource& onto);
     bool sameGrid() const { return sameGrid_; }
     /// key.channel and key.time refer to `at`, which is the source or sourceAt(it); the rest of the key refers to the
     /// grid.
