@@ -8,8 +8,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 #include <thread>
 #include <unistd.h>
+#include <vector>
 
 namespace tessera::codec {
 
