@@ -10,12 +10,13 @@ namespace tessera::codec {
 /// frames are copied. Both must have been packed with the same options, on the same grid, with the same parameters, and
 /// the times of `more` must lie after those of the archive. If a parameter's range becomes wider, the archive's bound
 /// relative to it is the larger of the two. Archives on D4* cannot be joined, since the frames at their ends depend on
-/// times beyond. If it throws, the archive is unchanged: Error when the two do not
-/// match or one is damaged, MachineError when the file cannot be written.
+/// times beyond. If it throws, the archive is unchanged: Error when the two do not match or one is damaged,
+/// MachineError when the file cannot be written.
 PackSummary join(const std::string& path, const std::string& more);
 
-/// Whether join() is the way to append an archive: both were packed with the same options, not on D4*, and `more` has
-/// times of the archive's parameters. Throws Error when one of them cannot be opened.
+/// Whether join() is the way to append an archive: both were packed with the same options into bricks of the same size,
+/// not on D4*, and have the same parameters; whether the times follow is said by join(). Throws Error when one of them
+/// cannot be opened.
 bool canJoin(const std::string& path, const std::string& more);
 
 } // namespace tessera::codec

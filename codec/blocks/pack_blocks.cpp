@@ -205,8 +205,7 @@ void Blocks::joinComplete(const Progress& progress) {
         if (joinedBlocks_ > 0)
             join(joined(), next);
         else
-            fs::create_hard_link(next, joined(),
-                                 problem); // never in place of blocks that this machine does not see yet
+            fs::create_hard_link(next, joined(), problem); // in place of no blocks that are not seen here yet
         if (problem == std::errc::file_exists) throw MachineError("is there already", joined());
         if (problem)
             fs::rename(next, joined()); // a file system without links

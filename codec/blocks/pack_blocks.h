@@ -13,8 +13,8 @@ namespace tessera::codec {
 struct BlockOptions {
     std::size_t times = 0; ///< of a block; 0: blockTimes()
     Launched launched;
-    std::string inputs =
-        {}; ///< what else all processes, and a run that goes on, must have alike: files, how they are read
+    /// What else all processes, and a run that goes on, must have alike: the files and how they are read.
+    std::string inputs = {};
 };
 
 /// Times of a block for so many processes: 16, or fewer so that each process has a block.

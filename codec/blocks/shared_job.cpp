@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 constexpr auto kPause = std::chrono::milliseconds(100);
 constexpr auto kLongest = std::chrono::minutes(10); ///< from the first to the last process that is ready
 constexpr const char *kLock = "job.lock", *kAbout = "job.json", *kComplete = "complete";
-constexpr std::string_view kRanks = "ranks-",
-                           kLeft = "left-"; ///< of jobs of launchers: their processes; those that left
+/// Files of jobs of launchers: how many processes they have, and which of them have left.
+constexpr std::string_view kRanks = "ranks-", kLeft = "left-";
 
 std::string contentOf(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
