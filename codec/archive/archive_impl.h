@@ -2,6 +2,7 @@
 
 #include "codec/archive/archive.h"
 #include "codec/archive/brick_access.h"
+#include "codec/brick/predicted_brick.h"
 #include "codec/container/index.h"
 #include "codec/remote/remote_file.h"
 
@@ -34,6 +35,7 @@ struct Archive::Impl {
     /// Decoded bricks in the pool, whose memory is reused.
     mutable std::vector<std::unique_ptr<DecodedBrick>> idle;
     mutable std::mutex idleMutex;
+    mutable KeptNumbers kept; ///< of archives with predicted frames
 
     Impl(const std::string& name, const RemoteOptions& options)
         : path(name), remote(options), bytes(openBytes(name, options)) {
@@ -83,8 +85,15 @@ struct Archive::Impl {
     StepChoice steps(const FrameRecord& frame) const;
     std::shared_ptr<const BandDecoder> decoder(const FrameRecord& frame) const;
     void fetchBrick(const FrameRecord& frame, std::size_t brick, int segments) const;
+    /// How many bricks a brick is predicted from, one from the other; 0: it is coded by itself. `frame` holds it.
+    std::uint8_t depthOf(const FrameRecord& frame, std::size_t brick) const;
+    /// The frame before on the same grid, which a predicted one follows; null: there is none.
+    const FrameRecord* before(const FrameRecord& frame) const;
     void decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
                 std::span<const std::uint8_t> present, DecodedBrick& out) const;
+    /// The same; the codes of a predicted brick are the differences.
+    void decodeOwn(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
+                   std::span<const std::uint8_t> present, DecodedBrick& out) const;
     /// Converts a brick decoded at full resolution to stored numbers; undefined for absent samples.
     Bytes numbersOf(const FrameRecord& frame, volume::ScalarType type, const DecodedBrick& decoded) const;
     volume::BrickSamples readComponent(int parameter, int component, const volume::BrickKey& key) const;

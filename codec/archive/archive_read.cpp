@@ -116,31 +116,87 @@ void Archive::Impl::fetchBrick(const FrameRecord& frame, std::size_t brick, int 
     constexpr std::uint64_t kWhole = std::uint64_t(1) << 20;
     std::vector<FileRange> ranges;
     const auto add = [&](const auto& part) { ranges.push_back({part.offset, part.length}); };
-    add(index.models[std::size_t(frame.model)]);
     if (frame.mask >= 0) {
         const MaskRecord& mask = index.masks[std::size_t(frame.mask)];
         mask.length <= kWhole ? add(mask) : add(mask.bricks[brick].segment);
     }
-    for (int s = 0; s < segments; ++s) {
-        const auto first = frame.segments.begin() + std::ptrdiff_t(std::size_t(s) * bricks);
-        const Segment& last = first[std::ptrdiff_t(bricks) - 1];
-        const std::uint64_t level = last.offset + last.length - first->offset;
-        if (level <= kWhole)
-            ranges.push_back({first->offset, level});
-        else
-            add(first[std::ptrdiff_t(brick)]);
+    const FrameRecord* needed = &frame;
+    for (int n = 0; needed && n <= kMostPredicted; ++n) {
+        const FrameRecord& held = holding(*needed, brick);
+        add(index.models[std::size_t(held.model)]);
+        for (int s = 0; s < segments; ++s) {
+            const auto first = held.segments.begin() + std::ptrdiff_t(std::size_t(s) * bricks);
+            const Segment& last = first[std::ptrdiff_t(bricks) - 1];
+            const std::uint64_t level = last.offset + last.length - first->offset;
+            if (level <= kWhole)
+                ranges.push_back({first->offset, level});
+            else
+                add(first[std::ptrdiff_t(brick)]);
+        }
+        needed = held.predicted ? before(held) : nullptr;
     }
     bytes->readAhead(ranges);
 }
 
+const FrameRecord* Archive::Impl::before(const FrameRecord& frame) const {
+    const std::size_t step = metadata.alternating ? 2 : 1, time = frame.time;
+    return time < step ? nullptr : &index.frames[(time - step) * components + frame.component];
+}
+
+std::uint8_t Archive::Impl::depthOf(const FrameRecord& frame, std::size_t brick) const {
+    if (!frame.predicted) return 0;
+    const FilePart part = segment(frame.segments[brick]);
+    const auto stored = part.bytes();
+    const std::uint64_t offset = frame.segments[brick].offset;
+    if (stored.empty()) damaged(path, offset, "a predicted brick has no bytes");
+    const auto depth = static_cast<std::uint8_t>(stored[0]);
+    if (depth > kMostPredicted) damaged(path, offset, "a brick is predicted from too many others");
+    return depth;
+}
+
+/// Decodes the bricks that a predicted one follows, from the last that is not predicted, or is kept, to its own.
 void Archive::Impl::decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
                            std::span<const std::uint8_t> present, DecodedBrick& out) const {
+    const auto keyOf = [&](const FrameRecord& one) {
+        return KeptNumbers::Key{std::size_t(one.time) * components + one.component, brick, level};
+    };
+    std::vector<const FrameRecord*> chain{&frame}; // latest first
+    KeptNumbers::Numbers numbers;                  // of the one that the last of the chain is predicted from
+    for (int depth = depthOf(frame, brick); depth > 0;) {
+        const FrameRecord& after = *chain.back();
+        const std::uint64_t offset = after.segments[brick].offset;
+        const FrameRecord* const last = before(after);
+        if (!last || last->mask != after.mask) damaged(path, offset, "a brick is predicted from one of another shape");
+        const FrameRecord& held = holding(*last, brick);
+        if (held.valueOffset != after.valueOffset || held.valueScale != after.valueScale)
+            damaged(path, offset, "a brick is predicted from one with another scale");
+        numbers = kept.find(keyOf(held));
+        if (numbers) break;
+        const int next = depthOf(held, brick);
+        if (next >= depth) damaged(path, offset, "a brick is predicted from too many others");
+        chain.push_back(&held);
+        depth = next;
+    }
+    for (std::size_t i = chain.size(); i-- > 0;) {
+        const FrameRecord& one = *chain[i];
+        decodeOwn(one, i == 0 ? format : brickFormat(format, one), brick, level, present, out);
+        if (numbers) addPrediction(predictionFrom(one.numbers, *numbers), out);
+        if ((header.header.features & kPredictedFrames) == 0) return;
+        if (format.type != volume::ScalarType::F32) return;
+        numbers = std::make_shared<const Bytes>(numbersOf(one, format.type, out));
+        kept.keep(keyOf(one), numbers);
+    }
+}
+
+void Archive::Impl::decodeOwn(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
+                              std::span<const std::uint8_t> present, DecodedBrick& out) const {
     std::vector<FilePart> parts; // which the segments are views of
     std::vector<std::span<const std::byte>> segments;
     for (int s = 0; s < format.levels - level; ++s) {
         parts.push_back(segment(frame.segments[std::size_t(s) * bricks + brick]));
         segments.push_back(parts.back().bytes());
     }
+    if (frame.predicted && !segments[0].empty()) segments[0] = segments[0].subspan(1); // its depth
     BrickFormat whole = format;
     if (format.isStepped()) whole.steps = steps(frame);
     const DecodeStatus status = decodeBrick(whole, segments, level, present, *decoder(frame), out);
@@ -202,6 +258,7 @@ volume::BrickSamples Archive::Impl::readSubsamples(int number, int component, co
     const Segment& first = record.segments[brick];
     const FilePart part = segment(first);
     std::span<const std::byte> in = part.bytes();
+    if (record.predicted && !in.empty()) in = in.subspan(1); // its depth
     std::vector<std::uint32_t> numbers;
     if (const DecodeStatus status = takeSubsamples(format, fine, in, numbers); status != DecodeStatus::Ok)
         damaged(path, first.offset, reason(status));

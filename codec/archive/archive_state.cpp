@@ -64,8 +64,12 @@ ArchiveState stateOf(const Archive& archive, bool withFrames) {
             for (int component = 0; component < impl.metadata.info.parameters[p].components; ++component, ++c) {
                 const FrameRecord& last = impl.index.frames[t * impl.components + c];
                 SeenFrame seen{
-                    int(t), last.keepsAbsent, readField(archive, int(p), component, int(t)), last.bricks, {}};
-                for (std::size_t b = 0; b < impl.bricks; ++b) seen.bytes.push_back(impl.bytesOf(last, b));
+                    int(t), last.keepsAbsent, last.mask, readField(archive, int(p), component, int(t)), last.bricks, {},
+                    {}};
+                for (std::size_t b = 0; b < impl.bricks; ++b) {
+                    seen.bytes.push_back(impl.bytesOf(last, b));
+                    seen.depth.push_back(impl.depthOf(impl.holding(last, b), b));
+                }
                 state.lastFrames.emplace_back(c, std::move(seen));
             }
     return state;

@@ -33,12 +33,27 @@ struct Verifier {
         }
     }
 
+    /// False also for a brick whose own bytes are damaged.
+    bool isPredicted(const FrameRecord& record, std::size_t brick) const {
+        try {
+            return impl.depthOf(record, brick) > 0;
+        } catch (const ReadError&) {
+            throw;
+        } catch (const Error&) {
+            return false;
+        }
+    }
+
     /// Whether data that a brick depends on besides its own bytes were found damaged.
     bool lacks(std::size_t number, std::size_t brick) const {
         const FrameRecord& record = impl.index.frames[number];
         const std::size_t repeats = std::size_t(record.bricks[brick].notes.repeats);
         if (repeats > 0) return badBricks[(number - repeats * impl.components) * impl.bricks + brick] != 0;
         if (record.mask >= 0 && badMasks[std::size_t(record.mask) * impl.bricks + brick] != 0) return true;
+        if (const FrameRecord* const before = record.predicted ? impl.before(record) : nullptr) {
+            const auto from = std::size_t(before - impl.index.frames.data());
+            if (badBricks[from * impl.bricks + brick] != 0 && isPredicted(record, brick)) return true;
+        }
         return badModels[std::size_t(record.model)] != 0;
     }
 

@@ -202,25 +202,28 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     coding.importance = importanceOfBricks(grid, samples, options.range, options.categorical, options.importance);
     const bool byBand = (commits.header.features & kBandContexts) != 0;
     coding.model = chooseModel(grid, samples, last, byBand, frame, options, coding.taken);
-    if (auto steps = chooseSteps(grid, samples, frame, coding.model, options, last, time / step(), coding.taken)) {
+    const TimeBefore earlier{last, coding.before, time / step()};
+    if (auto steps = chooseSteps(grid, samples, frame, coding.model, options, earlier, coding.taken)) {
         useSteps(*steps, frame);
         coding.taken.bricks.clear();
         coding.taken.bricks.resize(grid.brickCount());
         for (auto& [number, brick] : steps->bricks) coding.taken.bricks[number] = std::move(brick);
         frame.model = last && last->kind == NumberKind::Stepped && last->steps == frame.steps ? last->number : -1;
-        commits.header.features |= kSteppedBricks;
+        commits.header.features |= kSteppedBricks | (frame.predicted ? kPredictedFrames : 0);
     } else if (!coding.taken.serves(frame, coding.model)) {
         coding.taken.bricks.clear();
     }
     coding.step = step();
+    coding.mostPredicted = options.mostPredicted;
     coding.statistics = (commits.header.features & kBrickStatistics) != 0;
     // The last frame only needs its change, not to be kept.
     const bool isLast = std::size_t(time + step()) >= metadata.info.times.size();
     coding.keeps = keepsFrames && (coding.before || !isLast);
-    coding.seen = {time, frame.keepsAbsent, coding.keeps ? *samples.whole() : volume::Field(), {}, {}};
+    coding.seen = {time, frame.keepsAbsent, frame.mask, coding.keeps ? *samples.whole() : volume::Field(), {}, {}, {}};
     const std::size_t bricks = grid.brickCount();
     coding.taken.bricks.resize(bricks);
     coding.seen.bytes.resize(bricks);
+    coding.seen.depth.resize(bricks);
     coding.whole.resize(bricks);
     frame.bricks.resize(bricks);
     frame.segments.resize(bricks * std::size_t(grid.levels));

@@ -26,6 +26,11 @@ inline BrickFormat brickFormat(const volume::BrickGrid& grid, glm::ivec3 brick, 
             frame.numbers,     frame.keepsAbsent,           frame.codeBits, frame.bodyCentred, frame.steps,
             frame.subsampled};
 }
+/// The format of the same brick in another frame of its component.
+inline BrickFormat brickFormat(const BrickFormat& brick, const FrameRecord& frame) {
+    return {brick.kind,        brick.size,     brick.levels,      frame.wavelet, brick.type,      frame.numbers,
+            frame.keepsAbsent, frame.codeBits, frame.bodyCentred, frame.steps,   frame.subsampled};
+}
 
 /// Number of components of all parameters before one: the index of its first frame within a time.
 inline std::size_t firstComponent(const volume::DatasetInfo& info, int parameter) {

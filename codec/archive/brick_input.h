@@ -41,9 +41,11 @@ FrameBrick statisticsOf(const volume::Field& field, const BrickInput& decoded, b
 struct SeenFrame {
     int time = -1;
     bool keepsAbsent = false;
+    std::int32_t mask = -1;
     volume::Field field;
     std::vector<FrameBrick> bricks;
     std::vector<std::uint64_t> bytes; ///< per brick; for a repeat those of the brick it repeats
+    std::vector<std::uint8_t> depth;  ///< the same: how many bricks it is predicted from, one from the other
 };
 
 /// Whether `decoded`, a brick of an earlier frame, can replace `input`: the same samples are present, and all are

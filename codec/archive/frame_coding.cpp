@@ -1,9 +1,17 @@
 #include "codec/archive/frame_coding.h"
 
+#include "codec/brick/predicted_brick.h"
 #include "codec/brick/subsamples.h"
 #include "codec/brick/whole_brick.h"
 
 namespace tessera::codec {
+
+std::vector<std::uint32_t> FrameCoding::prediction(std::size_t b) const {
+    if (!frame.predicted || before->depth[b] >= mostPredicted) return {};
+    BrickInput was;
+    was.take(grid, grid.indexOf(b), before->field, false);
+    return predictionFrom(frame.numbers, was.samples);
+}
 
 std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, const volume::BrickGrid& own,
                                      std::size_t ownNumber, const BandEncoder& encoder, Compressor& compressor,
@@ -18,16 +26,21 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
         about.histogram = {};
         segments.resize(std::size_t(grid.levels));
         seen.bytes[b] = before->bytes[b];
+        seen.depth[b] = before->depth[b];
         input.take(grid, brick, before->field, false);
     } else {
         const BrickFormat format = brickFormat(grid, brick, part.type, frame);
         input.take(own, own.indexOf(ownNumber), part, frame.mask >= 0);
+        const std::vector<std::uint32_t> from = prediction(b);
         if (!taken.bricks[b])
-            taken.bricks[b] = prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory);
+            taken.bricks[b] =
+                prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory, from);
         segments = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
         whole[b] = !segments[0].empty() && isWhole(segments[0][0]) ? 1 : 0;
         roundAsDecoded(format, maxError, taken.bricks[b]->decoded, input);
         if (format.subsampled) addSubsamples(format, input.samples, input.present, compressor, segments);
+        if (!from.empty()) seen.depth[b] = static_cast<std::uint8_t>(before->depth[b] + 1);
+        if (frame.predicted) segments[0].insert(segments[0].begin(), static_cast<std::byte>(seen.depth[b]));
         for (const Bytes& segment : segments) seen.bytes[b] += segment.size();
         about = statisticsOf(part, input, statistics);
     }

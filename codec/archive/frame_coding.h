@@ -25,9 +25,13 @@ struct FrameCoding {
     int step = 1;            ///< times since `before`
     bool statistics = false; ///< store statistics of bricks
     bool keeps = false;      ///< keep samples and sizes for later frames
+    int mostPredicted = 0;
     SeenFrame seen;
 
     explicit FrameCoding(const volume::BrickGrid& of) : grid(of) {}
+
+    /// What brick `brick` of the frame is predicted from, as codes; empty if it is coded by itself.
+    std::vector<std::uint32_t> prediction(std::size_t brick) const;
 
     /// Codes brick `brick` of `part` (a slab with grid `own`, where its index is `ownNumber`) into segments.
     std::vector<Bytes> code(std::size_t brick, const volume::Field& part, const volume::BrickGrid& own,

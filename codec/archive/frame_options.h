@@ -20,6 +20,7 @@ struct FrameOptions {
     /// A brick may repeat an earlier one only if its sum of squared differences does not exceed that of its own codes.
     bool keepsSquares = false;
     bool keepsAbsent = false; ///< also code the stored numbers of absent samples
+    int mostPredicted = 0;    ///< longest run of bricks that are predicted from the time before, at most kMostPredicted
     int zstdLevel = 3;
     Range range{1, 0}; ///< physical range of the component that importance refers to; lo > hi: that of the frame
     bool categorical = false;

@@ -1,10 +1,13 @@
 #include "codec/archive/frame_steps.h"
 
 #include "codec/archive/brick_access.h"
+#include "codec/brick/predicted_brick.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
@@ -17,6 +20,7 @@ namespace {
 
 constexpr std::size_t kMostBoxes = 2, kWholeBrick = 1 << 17; // samples of the largest brick tried as a whole
 constexpr int kBoxOfBrick = 64;                              // edge of the box tried of a larger brick
+constexpr int kMostBits = 29;                                // of codes
 constexpr double kUsualQuantum = 3;                          // in units of the error bound
 // Factors on the bytes beyond which trials end: with details split along all axes, and with them split along none.
 constexpr double kHopeless = 1.6, kHopelessUnsplit = 1.06;
@@ -26,11 +30,28 @@ std::uint32_t quantumOf(double bounds) {
     return static_cast<std::uint32_t>(std::lround(bounds * kSixteenths * (kReach + 0.5)));
 }
 
+/// Width in bits of the differences between the codes of a frame and those of the decoded frame before.
+int differenceBits(const volume::Field& now, const volume::Field& before, const NumberCoding& numbers) {
+    constexpr std::size_t kRow = 512;
+    std::array<std::uint32_t, kRow> codes, from;
+    std::uint32_t all = 0;
+    for (std::size_t first = 0; first < now.count(); first += kRow) {
+        const std::size_t count = std::min(kRow, now.count() - first);
+        codesOf(numbers, std::as_bytes(now.as<float>().subspan(first, count)), codes.data());
+        codesOf(numbers, std::as_bytes(before.as<float>().subspan(first, count)), from.data());
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto apart = now.present(first + i) ? static_cast<std::int32_t>(codes[i] - from[i]) : 0;
+            all |= static_cast<std::uint32_t>(apart ^ (apart >> 31));
+        }
+    }
+    return int(std::bit_width(all)) + 1;
+}
+
 /// Boxes of a frame, coded in different ways.
 class StepTrials {
 public:
     StepTrials(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
-               const FrameOptions& options)
+               const FrameOptions& options, const SeenFrame* before)
         : type_(samples.type()), maxError_(boundOf(frame, options)) {
         const std::size_t bricks = grid.brickCount(), count = std::min(bricks, kMostBoxes);
         for (std::size_t i = 0; i < count; ++i) {
@@ -50,12 +71,18 @@ public:
                 box.format.size = size;
             }
             box.input.take(grid, grid.begin(brick) + begin, box.format.size, samples, frame.mask >= 0);
+            if (before && before->depth[number] < options.mostPredicted)
+                box.before.take(grid, grid.begin(brick) + begin, box.format.size, before->field, false);
             share_ += double(countOf(box.format.size));
             boxes_.push_back(std::move(box));
         }
         share_ /= double(samples.count());
     }
 
+    /// Whether any brick may be predicted.
+    bool predicts() const {
+        return std::ranges::any_of(boxes_, [](const Box& box) { return !box.before.samples.empty(); });
+    }
     /// The part of the frame that is tried.
     double share() const { return share_; }
 
@@ -82,7 +109,9 @@ public:
             format.wavelet = how.wavelet;
             format.codeBits = how.codeBits;
             format.steps = how.steps;
-            box.latest = prepareBrick(format, box.input.samples, box.input.present, maxError_, {}, box.memory);
+            std::vector<std::uint32_t> from;
+            if (how.predicted) from = predictionFrom(how.numbers, box.before.samples);
+            box.latest = prepareBrick(format, box.input.samples, box.input.present, maxError_, {}, box.memory, from);
             return encodeBrick(format, box.latest, box.input.samples, box.input.present, compressor, idle);
         });
         if (bytes < least)
@@ -102,8 +131,8 @@ private:
     struct Box {
         BrickFormat format;
         std::size_t number = 0;
-        bool whole = true; ///< rather than a part of the brick
-        BrickInput input;
+        bool whole = true;        ///< rather than a part of the brick
+        BrickInput input, before; ///< before: empty if it is not to be predicted
         SplitMemory memory;
         PreparedBrick latest, best;
     };
@@ -141,6 +170,14 @@ public:
         change(how.steps);
         return attempt(how);
     }
+    /// Tries a factor on the usual quantum, and its square if it is better, else its inverse.
+    void attemptQuanta() {
+        constexpr double kApart = 1.4;
+        const auto scale = [&](double bounds) {
+            return attemptWith([&](StepChoice& steps) { steps.quantum = quantumOf(bounds); });
+        };
+        scale(kUsualQuantum * kApart) ? scale(kUsualQuantum * kApart * kApart) : scale(kUsualQuantum / kApart);
+    }
 
 private:
     StepTrials trials_;
@@ -154,50 +191,59 @@ struct StepsBefore {
     bool rounded = false;            ///< with rounded samples: trials end earlier
 };
 
-std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, const FrameSamples& samples,
-                                     const FrameRecord& frame, const Model& model, const FrameOptions& options,
-                                     const StepsBefore& before, const Taken& taken) {
-    constexpr int kMostBits = 29;
-    constexpr double kApart = 1.4; // factor between quanta
-    const std::optional<NumberCoding> numbers = steppedCoding(samples, boundOf(frame, options));
-    if (!numbers) return std::nullopt;
-    SteppedFrame how{*numbers, options.wavelet.value_or(Wavelet::W44), 0, before.steps.value_or(usualSteps()), {}};
-    how.codeBits = codeBitsOf(samples, how.numbers) + 1;
-    if (how.codeBits > kMostBits) return std::nullopt;
-    StepSearch search(StepTrials(grid, samples, frame, options));
-    const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
-    const double limit = search.trials().bytesOfSamples(model, taken.serves(frame, model) ? &taken : nullptr) +
-                         ofModel * search.trials().share();
-    const auto result = [&]() -> std::optional<SteppedFrame> {
-        if (search.least() >= limit) return std::nullopt;
-        SteppedFrame best = search.best();
-        best.bricks = search.trials().takeBest();
-        return best;
-    };
+/// Tries the best way so far, or `how`, with differences from the time before.
+void tryPrediction(StepSearch& search, const SteppedFrame& how, const FrameSamples& samples, const SeenFrame& before,
+                   bool allSteps) {
+    SteppedFrame differences = std::isfinite(search.least()) ? search.best() : how;
+    differences.predicted = true;
+    const int bits = differenceBits(*samples.whole(), before.field, differences.numbers) + 1;
+    differences.codeBits = std::max(differences.codeBits, bits);
+    if (differences.codeBits > kMostBits || !search.attempt(differences) || !allSteps) return;
+    search.attemptWith(
+        [](StepChoice& steps) { steps.split.axes = steps.split.axes == 0 ? usualSteps().split.axes : 0; });
+    search.attemptQuanta();
+}
+
+/// The same without; at the end as at the beginning nothing may be worth a trial.
+void tryOwn(StepSearch& search, const SteppedFrame& how, const StepsBefore& before, double limit) {
     SteppedFrame unsplit = how;
     unsplit.steps.split.axes = 0;
     if (before.rounded) {
         search.attempt(unsplit);
-        if (search.least() > kHopelessUnsplit * limit) return std::nullopt;
+        if (search.least() > kHopelessUnsplit * limit) return;
     }
     search.attempt(how);
-    if (before.steps || search.least() > kHopeless * limit) return result();
+    if (before.steps || search.least() > kHopeless * limit) return;
     if (!before.rounded && search.least() > limit) search.attempt(unsplit);
-    if (search.least() > kHopelessUnsplit * limit) return std::nullopt;
+    if (search.least() > kHopelessUnsplit * limit) return;
     for (int axis = 0; axis < 3; ++axis) search.attemptWith([&](StepChoice& steps) { steps.split.axes ^= 1 << axis; });
     for (const int length : {2, 10}) {
         if (search.best().steps.split.axes == 0) break; // nothing is split
         if (search.attemptWith([&](StepChoice& steps) { steps.split.least = length; })) break;
     }
-    const auto scale = [&](double bounds) {
-        return search.attemptWith([&](StepChoice& steps) { steps.quantum = quantumOf(bounds); });
-    };
-    if (scale(kUsualQuantum * kApart)) {
-        scale(kUsualQuantum * kApart * kApart);
-    } else {
-        scale(kUsualQuantum / kApart);
-    }
-    return result();
+    search.attemptQuanta();
+}
+
+std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, const FrameSamples& samples,
+                                     const FrameRecord& frame, const Model& model, const FrameOptions& options,
+                                     const StepsBefore& before, const SeenFrame* seen, const Taken& taken) {
+    const std::optional<NumberCoding> numbers = steppedCoding(samples, boundOf(frame, options));
+    if (!numbers) return std::nullopt;
+    SteppedFrame how{*numbers, options.wavelet.value_or(Wavelet::W44), false,
+                     0,        before.steps.value_or(usualSteps()),    {}};
+    how.codeBits = codeBitsOf(samples, how.numbers) + 1;
+    if (how.codeBits > kMostBits) return std::nullopt;
+    if (seen && seen->mask != frame.mask) seen = nullptr;
+    StepSearch search(StepTrials(grid, samples, frame, options, seen));
+    const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
+    const double limit = search.trials().bytesOfSamples(model, taken.serves(frame, model) ? &taken : nullptr) +
+                         ofModel * search.trials().share();
+    tryOwn(search, how, before, limit);
+    if (seen && search.trials().predicts()) tryPrediction(search, how, samples, *seen, !before.steps);
+    if (search.least() >= limit) return std::nullopt;
+    SteppedFrame best = search.best();
+    best.bricks = search.trials().takeBest();
+    return best;
 }
 
 } // namespace
@@ -208,21 +254,22 @@ StepChoice usualSteps() {
 
 std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, const FrameSamples& samples,
                                         const FrameRecord& frame, const Model& model, const FrameOptions& options,
-                                        const KnownModel* last, int number, const Taken& taken) {
+                                        const TimeBefore& before, const Taken& taken) {
     constexpr int kAgain = 16; // times between those at which all is tried
     if (frame.numbers.kind != NumberKind::Quantised || options.numbers || options.keepsSquares) return std::nullopt;
-    const auto attempt = [&](const StepsBefore& before) {
-        return trySteps(grid, samples, frame, model, options, before, taken);
+    const auto attempt = [&](const StepsBefore& steps) {
+        return trySteps(grid, samples, frame, model, options, steps, before.seen, taken);
     };
-    if (!last || number % kAgain == 0) return attempt({});
-    if (last->kind != NumberKind::Stepped) return attempt({.steps = {}, .rounded = true});
-    if (auto again = attempt({.steps = last->steps, .rounded = false})) return again;
+    if (!before.coding || before.number % kAgain == 0) return attempt({});
+    if (before.coding->kind != NumberKind::Stepped) return attempt({.steps = {}, .rounded = true});
+    if (auto again = attempt({.steps = before.coding->steps, .rounded = false})) return again;
     return attempt({});
 }
 
 void useSteps(const SteppedFrame& steps, FrameRecord& frame) {
     frame.numbers = steps.numbers;
     frame.wavelet = steps.wavelet;
+    frame.predicted = steps.predicted;
     frame.codeBits = steps.codeBits;
     frame.steps = steps.steps;
 }

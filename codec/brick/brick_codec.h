@@ -26,10 +26,11 @@ struct SplitMemory {
 };
 
 /// Transforms a brick. `samples` are numbers of format.type, x fastest; `present` has one flag per sample, or is empty:
-/// all present. Quantised numbers with an error above `maxError` are stored exactly in addition.
+/// all present. Quantised numbers with an error above `maxError` are stored exactly in addition. `prediction`: codes
+/// that those of a stepped brick are coded as differences from (codec/brick/predicted_brick.h), or empty.
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
                            std::span<const std::uint8_t> present, double maxError, Contexts contexts,
-                           SplitMemory& memory);
+                           SplitMemory& memory, std::span<const std::uint32_t> prediction = {});
 /// Adds the tokens of a brick to a histogram; long runs are subsampled (countTokens).
 void countBrick(const PreparedBrick& brick, Histogram& histogram, int every = 1);
 

@@ -188,7 +188,7 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
 
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
                            std::span<const std::uint8_t> present, double maxError, Contexts contexts,
-                           SplitMemory& memory) {
+                           SplitMemory& memory, std::span<const std::uint32_t> prediction) {
     assert(samples.size() == countOf(format.size) * volume::byteSize(format.type));
     assert(present.empty() || present.size() == countOf(format.size));
     PreparedBrick brick;
@@ -196,7 +196,11 @@ PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte>
     const bool plain = format.type != volume::ScalarType::F32 && present.empty();
     if (!plain) numbers = numbersOf(format, samples, present, maxError);
     if (format.isStepped()) {
+        for (std::size_t i = 0; i < prediction.size(); ++i) numbers.codes[i] -= prediction[i];
+        for (std::size_t i = 0; !prediction.empty() && i < present.size(); ++i)
+            if (present[i] == 0) numbers.codes[i] = 0;
         SteppedBrick stepped = encodeStepped(format, numbers.codes, present, memory.boxes32);
+        for (std::size_t i = 0; i < prediction.size(); ++i) stepped.codes[i] += prediction[i];
         addInexact(format, samples, present, maxError, stepped.codes, numbers);
         brick = {std::move(stepped.segments), std::move(stepped.codes), {}, {}, {}, {}};
     }

@@ -36,8 +36,10 @@ inline constexpr std::uint32_t kBrickStatistics = 8;
 inline constexpr std::uint32_t kSteppedBricks = 16;
 /// Feature: frames can be subsampled. Only set once one is.
 inline constexpr std::uint32_t kSubsamples = 32;
+/// Feature: frames can be predicted from the time before. Only set once one is.
+inline constexpr std::uint32_t kPredictedFrames = 64;
 inline constexpr std::uint32_t kUsualFeatures = kBrickNotes | kCompact | kBandContexts | kBrickStatistics,
-                               kKnownFeatures = kUsualFeatures | kSteppedBricks | kSubsamples;
+                               kKnownFeatures = kUsualFeatures | kSteppedBricks | kSubsamples | kPredictedFrames;
 
 /// xxh3, 64 bits, seed 0.
 std::uint64_t checksum(std::span<const std::byte> bytes);

@@ -47,6 +47,7 @@ struct PackOptions {
     int brickSize = 0;
     int levels = 0;
     int zstdLevel = 9;
+    int mostPredicted = 7;
     double memoryMb = 0;
     volume::ImportanceOptions importance;
 
@@ -124,6 +125,13 @@ struct PackOptions {
                                         .unit = "",
                                         .doc = "Effort of zstd, which codes masks and repetitive bricks",
                                         .range = Range{1, 19}});
+        visit(self.mostPredicted,
+              FieldInfo{.key = "mostPredicted",
+                        .unit = "times",
+                        .doc = "Floats with an error bound: longest run of times that are stored as differences from "
+                               "the time before, where that is shorter; to read one, those before it in the run are "
+                               "decoded, too. 0 = each time by itself",
+                        .range = Range{0, 15}});
         visit(
             self.memoryMb,
             FieldInfo{

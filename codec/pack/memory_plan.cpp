@@ -42,9 +42,10 @@ bool isBounded(const volume::Parameter& parameter, const PackOptions& options) {
 }
 
 /// Memory of the bricks being coded, in bytes: samples, flags, codes and coefficients on every thread. Where
-/// coefficients are quantised, what a reader will decode is computed beside them.
+/// coefficients are quantised, what a reader will decode is computed beside them, and the time before is predicted
+/// from.
 double bytesOfBricks(const volume::BrickGrid& grid, const volume::Parameter& parameter, const PackOptions& options) {
-    constexpr double kCodes = 12, kWithDecoded = 28;
+    constexpr double kCodes = 12, kWithDecoded = 36;
     const double codes = isBounded(parameter, options) ? kWithDecoded : kCodes;
     const std::size_t brick = brickBytes(grid, parameter.type),
                       atOnce = std::min({std::size_t(mostThreads()), batchOf(brick), grid.brickCount()});

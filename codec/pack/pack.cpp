@@ -199,6 +199,7 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
     FrameOptions frame;
     frame.wavelet = about.categorical ? Wavelet::N1 : waveletOf(options_.wavelet);
     frame.zstdLevel = options_.zstdLevel;
+    frame.mostPredicted = options_.mostPredicted;
     frame.keepsAbsent = exact && !resamples && options_.discard == 0;
     frame.categorical = about.categorical;
     frame.importance = options_.importance;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace tessera::codec::plain {
 
@@ -29,6 +30,16 @@ std::vector<bool> Decoder::fineFlags(const Frame& frame, int number, const Size&
     std::vector<bool> flags;
     for (std::size_t i = 0; i < count; ++i) flags.push_back((bits[i / 8] >> (i % 8) & 1) != 0);
     return flags;
+}
+
+int Decoder::depth(std::size_t frame, int number) const {
+    const std::size_t repeats = hasNotes_ ? frames_[frame].repeats[std::size_t(number)] * types_.size() : 0;
+    const Frame& held = frames_[frame - repeats];
+    return held.predicted ? checked(held.pieces[std::size_t(number)]).at(0) : 0;
+}
+
+std::size_t Decoder::place(std::size_t frame, int number) const {
+    return frames_[frame].pieces[std::size_t(number)].offset;
 }
 
 Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
@@ -78,11 +89,18 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
                          std::find(flags.begin(), flags.end(), false) == flags.end();
     bool whole = false;
     std::vector<std::uint32_t> subsamples;
+    std::optional<Brick> before; // 4.10
     std::vector<Octets> stepped; // 4.8: the segments
     std::vector<std::pair<std::size_t, std::int64_t>> corrections;
     for (int segment = 0; segment < levels_ - level; ++segment) {
         const Octets bytes = checked(frame.pieces[std::size_t(segment) * bricks + std::size_t(number)]);
         Reader in(bytes);
+        if (segment == 0 && frame.predicted && in.number(1) > 0) {
+            const std::size_t held = frameNumber - repeats,
+                              step = types_.size() * (metadata_["data"]["lattice"]["kind"] == "d4" ? 2 : 1);
+            need(held >= step && frames_[held - step].mask == frame.mask, "prediction");
+            before = brick(held - step, number, level);
+        }
         if (segment == 0 && frame.subsampled) {
             std::size_t count = 0;
             for (std::size_t s = 0; s < boxes.size(); ++s) {
@@ -232,6 +250,11 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
         for (const auto& [sample, times] : corrections)
             if (sample == at) code += std::uint32_t(33 * times);
         double stored = double(asSigned(code));
+        if (before) {
+            const double quotient = (double(std::bit_cast<float>(before->bits[at])) - frame.origin) / frame.step;
+            if (std::abs(quotient) <= 536870912.0) code += std::uint32_t(std::int32_t(std::nearbyint(quotient)));
+            stored = double(asSigned(code));
+        }
         std::uint32_t bits = code;
         if (type == "float32") {
             float value = 0;

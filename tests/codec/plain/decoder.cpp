@@ -76,7 +76,7 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         const std::uint64_t end = in.number(8);
         Piece found[2];
         for (Piece& part : found) part = readPiece(in);
-        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 || features > 63) return false;
+        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 || features > 127) return false;
         if (end > file_.size()) return false;
         if (end <= end_) return true; // the other copy is as good or better
         hasNotes_ = features % 2 == 1;
@@ -84,7 +84,8 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         knowsBands_ = features / 4 % 2 == 1;
         hasStatistics_ = features / 8 % 2 == 1;
         knowsSteps_ = features / 16 % 2 == 1;
-        knowsSubsamples_ = features / 32 == 1;
+        knowsSubsamples_ = features / 32 % 2 == 1;
+        knowsPredictions_ = features / 64 == 1;
         end_ = end;
         std::copy(found, found + 2, parts);
         return true;
@@ -202,9 +203,12 @@ void Decoder::readPage(const Octets& page, std::vector<double>& times,
         const auto kept = table.number(1);
         frame.keepsAbsent = kept % 2 == 1;
         frame.bodyCentred = kept / 2 % 2 == 1;
-        frame.subsampled = kept / 4 == 1;
+        frame.subsampled = kept / 4 % 2 == 1;
+        frame.predicted = kept / 8 == 1;
         need(hasNotes_ || !frame.bodyCentred, "frame");
-        need(kept < (knowsSubsamples_ && levels_ > 1 ? 8u : 4u), "frame");
+        need((knowsSubsamples_ && levels_ > 1) || !frame.subsampled, "frame");
+        need(!frame.predicted || (knowsPredictions_ && frame.numbers == 4 && time > 0), "frame");
+        need(kept < 16, "frame");
         (void)table.number(1); // width of the codes: what a fast reader wants to know
         need(frame.numbers < (knowsSteps_ ? 5 : 4) && frame.wavelet < 12, "frame");
         frame.mask = int(table.u32());

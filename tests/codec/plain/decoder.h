@@ -42,6 +42,10 @@ public:
     /// Frame = (time * components + component); brick numbers x fastest.
     Brick brick(std::size_t frame, int number, int level) const;
     Statistics statistics(std::size_t frame, int number) const;
+    /// 4.10: of the brick that is shown, which an earlier frame may hold.
+    int depth(std::size_t frame, int number) const;
+    /// Where the first segment of a brick lies in the file.
+    std::size_t place(std::size_t frame, int number) const;
 
     struct Model {
         std::uint32_t shift = 0;
@@ -62,7 +66,7 @@ private:
     struct Frame {
         int numbers = 0, wavelet = 0, mask = -1;
         std::size_t model = 0;
-        bool keepsAbsent = false, bodyCentred = false, subsampled = false;
+        bool keepsAbsent = false, bodyCentred = false, subsampled = false, predicted = false;
         double origin = 0, step = 1, valueOffset = 0, valueScale = 1;
         std::vector<std::size_t> repeats; ///< by brick: the frame so many times before holds it
         std::vector<Piece> pieces;        ///< [segment * bricks + brick]
@@ -88,7 +92,7 @@ private:
     int brickSize_ = 0, levels_ = 0;
     std::vector<std::string> types_; ///< of the component of each frame within a time
     bool hasNotes_ = false, compact_ = false, knowsBands_ = false, hasStatistics_ = false, knowsSteps_ = false,
-         knowsSubsamples_ = false;
+         knowsSubsamples_ = false, knowsPredictions_ = false;
     std::size_t end_ = 0; ///< of the archive in the file
     std::vector<Piece> models_;
     std::vector<Mask> masks_;
