@@ -1,3 +1,5 @@
+#include "volume/system/free_memory.h"
+
 #include <cstdlib>
 #include <filesystem>
 #include <gtest/gtest.h>
@@ -31,6 +33,7 @@ private:
 /// Ends with $TESSERA_SKIPPED where that is set, all passed, and some were skipped; else with 0 or 1 as GoogleTest
 /// does.
 int main(int argc, char** argv) {
+    tessera::volume::keepFreeMemory(); // as the program does
     testing::InitGoogleTest(&argc, argv);
     testing::AddGlobalTestEnvironment(new OwnHome);
     const int status = RUN_ALL_TESTS();

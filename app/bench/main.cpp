@@ -1,5 +1,6 @@
 #include "app/bench/bench.h"
 #include "app/command/command.h"
+#include "volume/system/free_memory.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -78,6 +79,7 @@ void measure(const Options& options) {
 
 int main(int argc, char** argv) {
     using namespace tessera::app;
+    tessera::volume::keepFreeMemory(); // as the program does
     CLI::App app{"Measure the tables of docs/benchmarks.md on this machine", "tessera bench"};
     Options options;
     std::vector<std::string> known;

@@ -1,4 +1,5 @@
 #include "codec/archive/archive.h"
+#include "codec/blocks/join.h"
 #include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain_labels.h"
@@ -190,6 +191,24 @@ TEST_F(Predicted, AppendedTimesHaveTheBytesOfASingleRun) {
     const plain::Decoder single(readFile(path)), appended(readFile(grown));
     for (std::size_t frame = 0; frame < 11; ++frame)
         for (int brick = 0; brick < 27; ++brick) ASSERT_EQ(single.depth(frame, brick), appended.depth(frame, brick));
+}
+
+TEST_F(Predicted, JoinedArchivesHaveTheSamplesOfBoth) {
+    SlowSeries early, late;
+    early.times = 4;
+    late.times = 6;
+    late.first = 4;
+    const std::string more = folder / "more.tsr";
+    (void)packedBytes(early, boundedOptions(), path);
+    (void)packedBytes(late, boundedOptions(), more);
+    const std::vector<Field> was = {readField(Archive(path), 0, 0, 3), readField(Archive(more), 0, 0, 0),
+                                    readField(Archive(more), 0, 0, 5)};
+    (void)join(path, more);
+    const Archive joined(path);
+    const std::vector<int> times = {3, 4, 9};
+    for (std::size_t i = 0; i < times.size(); ++i)
+        EXPECT_EQ(readField(joined, 0, 0, times[i]).samples, was[i].samples) << times[i];
+    EXPECT_EQ(verifyArchive(joined).damaged, 0u);
 }
 
 TEST_F(Predicted, OnD4ThePredictionComesFromTheSameGrid) {

@@ -11,6 +11,18 @@
 
 namespace tessera::volume {
 
+void keepFreeMemory([[maybe_unused]] std::size_t most, [[maybe_unused]] std::size_t largest) {
+#ifdef __GLIBC__
+    mallopt(M_MMAP_THRESHOLD, int(largest));
+    mallopt(M_TRIM_THRESHOLD, int(most));
+#endif
+}
+
+void keepFreeMemory() {
+    constexpr std::size_t kMebi = 1 << 20;
+    keepFreeMemory(256 * kMebi, 32 * kMebi);
+}
+
 void giveBackFreeMemory() {
 #ifdef __GLIBC__
     malloc_trim(0);

@@ -1,6 +1,16 @@
 #pragma once
 
+#include <cstddef>
+
 namespace tessera::volume {
+
+/// How much of what is freed the C library keeps for later allocations, in bytes: at most `most` together, and no block
+/// above `largest` (at most 32 MiB is possible). By default it keeps little, and every page that comes anew from the
+/// system costs a page fault: up to half the time of packing, a third of that of a picture. Does nothing where the C
+/// library cannot.
+void keepFreeMemory(std::size_t most, std::size_t largest);
+/// The same with what suits a program that works on large data and may use the machine's memory.
+void keepFreeMemory();
 
 /// Gives pages of the heap that hold nothing back to the system, on all threads' behalf; takes some 10 ms a GB. What
 /// threads allocate and free for a moment, such as the compilers of drivers, is else kept by the C library for ever.
