@@ -44,7 +44,7 @@ CompareVariant parseVariant(const std::string& text) {
 /// The pane to draw: a comparison that `wanted` names, else the first one, made to show the view `wanted`. Opens one if
 /// there is none.
 std::string comparePane(Session& session, const std::string& wanted) {
-    const std::string named = wanted.empty() ? std::string() : paneOf(session, wanted);
+    std::string named = wanted.empty() ? std::string() : paneOf(session, wanted);
     if (!wanted.empty() && named.empty()) throw Error("no view of that name", {}, wanted);
     const auto isComparison = [&](const std::string& pane) {
         return std::holds_alternative<CompareView>(session.views.at(pane));

@@ -49,7 +49,7 @@ std::string errorText(const NumberOrigin& origin, const volume::DatasetInfo& inf
 
 std::string readFromText(const NumberOrigin& origin, const volume::DatasetInfo& info,
                          const std::vector<volume::Channel>& channels) {
-    const std::string computed = origin.mesh ? "resampled" : "as computed";
+    std::string computed = origin.mesh ? "resampled" : "as computed";
     if (!origin.stored) return computed;
     const std::string error = origin.exact ? std::string() : errorText(origin, info, channels);
     const bool onGrid = origin.lattice == "CC";

@@ -12,7 +12,7 @@ std::string shownChannel(const Session& session, const volume::DatasetInfo& info
         if (!layer.visible || layer.name == kHullLayer || !layer.lens.empty()) continue;
         const auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique);
         const auto* iso = std::get_if<vis::IsoLayer>(&layer.technique);
-        const std::string name = volume ? volume->channel : iso ? iso->channel : std::string();
+        std::string name = volume ? volume->channel : iso ? iso->channel : std::string();
         if (!name.empty() && info.findChannel(name)) return name;
     }
     const auto channels = info.channels();

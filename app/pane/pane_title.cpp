@@ -36,7 +36,8 @@ std::string ownText(const Session& session, const std::string& pane, const volum
 } // namespace
 
 std::string shownTitle(const Session& session, const std::string& pane, const volume::DatasetInfo& info) {
-    const std::string own = ownText(session, pane, info), usual = paneTitle(session, pane);
+    const std::string own = ownText(session, pane, info);
+    std::string usual = paneTitle(session, pane);
     if (own.empty()) return usual;
     const bool twice = std::ranges::any_of(session.views, [&](const auto& each) {
         return each.first != pane && ownText(session, each.first, info) == own;

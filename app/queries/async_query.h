@@ -168,7 +168,7 @@ private:
             });
             kept.push_front({key, std::make_shared<const Answer>(std::move(made))});
             std::size_t size = 0, count = 0;
-            const AnswerPointer newest = kept.front().answer;
+            AnswerPointer newest = kept.front().answer;
             std::erase_if(kept, [&](const Kept& old) {
                 if (limits.sizeOf) size += limits.sizeOf(old.answer->result);
                 return count++ >= std::min<std::size_t>(2, limits.answers) &&

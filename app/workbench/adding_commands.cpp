@@ -23,7 +23,7 @@ namespace {
 /// The first parameter that no layer draws; "" if all are drawn.
 std::string otherParameter(const Session& session, const volume::DatasetInfo& info) {
     for (const int channel : comparedChannels(info)) {
-        const std::string name = info.channel(channel).name;
+        std::string name = info.channel(channel).name;
         const auto draws = [&](const vis::Layer& layer) {
             return std::visit([&](const auto& own) { return own.channel == name; }, layer.technique);
         };

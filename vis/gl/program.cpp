@@ -68,7 +68,7 @@ struct Composer {
     std::string target(const std::string& line, const std::string& place) const {
         const std::size_t open = line.find_first_of("\"<"), close = line.find_last_of("\">");
         if (open == std::string::npos || close <= open) throw Error("malformed #include", place);
-        const std::string name = line.substr(open + 1, close - open - 1);
+        std::string name = line.substr(open + 1, close - open - 1);
         if (line[open] == '"') return name;
         if (name.rfind("slot:", 0) != 0) throw Error("#include <" + name + "> is not a slot", place);
         const auto found = recipe.slots.find(name.substr(5));

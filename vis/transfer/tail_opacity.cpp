@@ -51,7 +51,7 @@ double seenShare(std::span<const std::uint64_t> count, std::uint64_t places, std
 }
 
 std::vector<glm::vec2> tailOpacity(std::span<const std::uint64_t> count, double share) {
-    const std::vector<glm::vec2> line{{0.0f, 0.0f}, {1.0f, kTailOpacity}};
+    std::vector<glm::vec2> line{{0.0f, 0.0f}, {1.0f, kTailOpacity}};
     const double all = sumOf(count), bins = double(count.size());
     if (all == 0) return line;
     Bins bulk = bulkOf(count, all / 2);

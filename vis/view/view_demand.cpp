@@ -266,7 +266,7 @@ bool ViewDemand::choose(const Residency& residency, const RenderCall& call, cons
 /// Requests the channels at the scene's time.
 PlanFrames ViewDemand::wantFrames(Residency& residency, const RenderCall& call, const HiddenInView* hidden) {
     const bool waits = call.request.wait;
-    const PlanFrames wanted = framesAt(call, call.scene.time);
+    PlanFrames wanted = framesAt(call, call.scene.time);
     setFrames(call.plan, wanted);
     const glm::ivec3 texels = call.grid().lattice.texels();
     const bool large = std::size_t(texels.x) * std::size_t(texels.y) * std::size_t(texels.z) > kSmallTexels;
@@ -285,7 +285,7 @@ PlanFrames ViewDemand::showFrames(Residency& residency, const RenderCall& call, 
                                   double& time) const {
     time = call.scene.time;
     if (allHere(residency, wanted) || !time_) return wanted;
-    const PlanFrames former = framesAt(call, *time_);
+    PlanFrames former = framesAt(call, *time_);
     if (!allHere(residency, former)) return wanted;
     time = *time_;
     setFrames(call.plan, former);

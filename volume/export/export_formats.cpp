@@ -130,7 +130,7 @@ Dataset withValues(Dataset dataset, const std::vector<int>& parameters, const st
         if (const auto type = typeOfValues(dataset, p, times)) types[p] = *type;
     for (const auto& [p, type] : types) dataset.info.parameters[std::size_t(p)].type = type;
     dataset.read = [read = std::move(dataset.read), types](int parameter, int component, int time) {
-        const Field field = read(parameter, component, time);
+        Field field = read(parameter, component, time);
         const auto type = types.find(parameter);
         if (type == types.end()) return field;
         return type->second == ScalarType::F32 ? asFloat(field) : asWhole(field, type->second);

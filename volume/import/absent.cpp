@@ -44,7 +44,7 @@ public:
         auto& known = masks_[hash];
         std::erase_if(known, [](const auto& held) { return held.expired(); });
         for (const auto& held : known)
-            if (const auto same = held.lock(); same && *same == mask) return same;
+            if (auto same = held.lock(); same && *same == mask) return same;
         auto made = std::make_shared<const Mask>(std::move(mask));
         known.push_back(made);
         return made;

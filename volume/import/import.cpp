@@ -171,7 +171,7 @@ std::optional<FileBlock> openNrrd(const std::string& path) {
 /// Name of the only block of a file: the part a .pvd states, else the file's name without number.
 std::string blockName(const SeriesFile& entry) {
     if (!entry.part.empty()) return entry.part;
-    const std::string stem = std::filesystem::path(entry.path).stem().string();
+    std::string stem = std::filesystem::path(entry.path).stem().string();
     // "air_260" is air, but "H2" is H2.
     const std::string pattern = std::filesystem::path(numberedName(entry.path).pattern).stem().string();
     const std::size_t number = pattern.find_last_of('#');

@@ -166,7 +166,7 @@ private:
 
     FramePtr loadFrame(const FrameKey& key) const {
         if (loads_) {
-            const FramePtr frame = loads_->frames_.get(key);
+            FramePtr frame = loads_->frames_.get(key);
             if (frame->lattice.kind == grid_.lattice.kind) return frame;
             const Parameter& about = parameter(key.parameter);
             Field field = *frame;

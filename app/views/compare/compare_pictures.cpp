@@ -53,7 +53,7 @@ bool sameScene(const Session& a, const Session& b) {
 std::shared_ptr<CompareData> ComparePictures::dataFor(ViewContext& context, const std::string& pane,
                                                       const DataRef& data) {
     const auto known = std::ranges::find_if(data_, [&](const auto& one) { return one->data == data; });
-    const auto found = known != data_.end() ? *known : data_.emplace_back(std::make_shared<CompareData>());
+    auto found = known != data_.end() ? *known : data_.emplace_back(std::make_shared<CompareData>());
     found->data = data;
     if (found->source || !found->failure.empty()) return found;
     const auto opened = found->opening.get(
