@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <nlohmann/json.hpp>
 
 namespace tessera::app {
@@ -77,7 +78,7 @@ void measure(const Options& options) {
 } // namespace
 } // namespace tessera::app
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     using namespace tessera::app;
     tessera::volume::keepFreeMemory(); // as the program does
     CLI::App app{"Measure the tables of docs/benchmarks.md on this machine", "tessera bench"};
@@ -90,4 +91,7 @@ int main(int argc, char** argv) {
     app.add_flag("--json", options.json, "Print JSON with stable keys");
     app.callback([&] { measure(options); });
     return parseAndRun(app, argc, argv);
+} catch (const std::exception& error) { // of the lines before parseAndRun(), which reports what it runs
+    std::fprintf(stderr, "tessera bench: internal error: %s\n", error.what());
+    return 3;
 }

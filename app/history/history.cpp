@@ -120,7 +120,7 @@ bool History::observe(const Session& session, bool editing, double seconds, doub
         --position_;
         forward = Json::diff(before, now);
     }
-    steps_.resize(position_);
+    steps_.erase(steps_.begin() + static_cast<std::ptrdiff_t>(position_), steps_.end()); // what was undone
     if (!forward.empty()) {
         steps_.push_back({name.empty() ? editTitle(forward, base_, session) : name, forward, Json::diff(now, before)});
         ++position_;

@@ -176,9 +176,10 @@ VectorPage drawingOf(const std::vector<FigurePanel>& panels, int columns) {
     VectorPage out;
     out.size = {across * kWidth, std::max(1, rows) * kHeight};
     out.marks.push_back({shapes::Rect{.box = {{0, 0}, out.size}, .color = kWhite}});
-    for (std::size_t i = 0; i < panels.size(); ++i)
-        Panel(panels[i], static_cast<int>(i) % across * kWidth, static_cast<int>(i) / across * kHeight, out.marks)
-            .draw();
+    for (std::size_t i = 0; i < panels.size(); ++i) {
+        const int column = static_cast<int>(i) % across, row = static_cast<int>(i) / across;
+        Panel(panels[i], column * kWidth, row * kHeight, out.marks).draw();
+    }
     return out;
 }
 

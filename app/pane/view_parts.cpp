@@ -145,7 +145,7 @@ void chooseChannels(ToolRow& tools, const volume::DatasetInfo& info, std::vector
 }
 
 std::string layerTitle(const vis::Layer& layer, const volume::DatasetInfo& info) {
-    const std::string name = layerName(layer);
+    std::string name = layerName(layer);
     const auto* surface = std::get_if<vis::IsoLayer>(&layer.technique);
     const auto channel = surface && layer.name.empty() ? info.findChannel(surface->channel) : std::nullopt;
     if (!channel) return name;
@@ -276,7 +276,7 @@ vis::Scene sceneWithLimits(const ViewContext& context) {
 }
 
 ImTextureID textureId(vis::TextureName name) {
-    return (ImTextureID)name;
+    return (ImTextureID)name; // NOLINT(performance-no-int-to-ptr): ImGui only hands it back
 }
 
 void addPicture(ImDrawList& draw, vis::TextureName texture, ImVec2 min, ImVec2 max) {

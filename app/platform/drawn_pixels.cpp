@@ -171,6 +171,7 @@ void drawTriangle(const PixelTriangle& triangle, const vis::MemoryTexture& textu
 } // namespace
 
 void drawPixels(const ImDrawList& list, const ImDrawCmd& command, glm::ivec2 lo, vis::Image& image) {
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): a name of a picture in memory is its address
     const auto* texture = reinterpret_cast<const vis::MemoryTexture*>(std::uintptr_t(command.GetTexID()));
     if (!texture || texture->rgba.empty()) return;
     const PixelArea clip = clipOf(command);

@@ -132,7 +132,7 @@ std::string vectorSuffix(const std::string& path) {
 void writePicture(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
                   const PictureRequest& request, const std::string& path, const Inspect& inspect) {
     if (const std::string suffix = vectorSuffix(path); !suffix.empty()) {
-        VectorPage page = pageOfRequest(document, sources, std::move(renderer), request, inspect);
+        VectorPage page = pageOfRequest(document, sources, renderer, request, inspect);
         page.session = printSession(document, path);
         AtomicFile file(path);
         file.write(fileOf(page, suffix));

@@ -139,8 +139,8 @@ void insertPane(DockTree& tree, const std::string& pane, int node, DockSide side
     split.id = next + 1;
     split.kind = side == DockSide::Left || side == DockSide::Right ? DockKind::Row : DockKind::Column;
     const bool first = side == DockSide::Left || side == DockSide::Top;
-    split.children.push_back(first ? std::move(stack) : std::move(*target));
-    split.children.push_back(first ? std::move(*target) : std::move(stack));
+    split.children.push_back(std::move(*target));
+    split.children.insert(first ? split.children.begin() : split.children.end(), std::move(stack));
     *target = std::move(split);
 }
 

@@ -261,7 +261,7 @@ void setUpKeys(ImGuiIO& io) {
     io.KeyMap[ImGuiKey_Enter] = key::kEnter;
     io.KeyMap[ImGuiKey_Escape] = key::kEscape;
     io.KeyMap[ImGuiKey_KeyPadEnter] = key::kKeypadEnter;
-    for (const auto& [imgui, letter] : {std::pair{ImGuiKey_A, 'A'},
+    for (const auto& [imgui, letter] : {std::pair<ImGuiKey_, int>{ImGuiKey_A, 'A'},
                                         {ImGuiKey_C, 'C'},
                                         {ImGuiKey_V, 'V'},
                                         {ImGuiKey_X, 'X'},

@@ -202,13 +202,14 @@ template <class Word> std::vector<Band<Word>> bandsOf(std::span<LevelBox<Word>> 
     return bands;
 }
 
+// Word is a type, around which no parentheses may stand.
 #define TESSERA_LEVELS(Word)                                                                                           \
     template void splitBrick(const BrickFormat&, std::span<const std::uint32_t>, std::span<const std::uint8_t>, int,   \
                              BrickLevels<Word>&);                                                                      \
     template void splitIntegers(const BrickFormat&, std::span<const std::byte>, int, BrickLevels<Word>&);              \
     template void joinLevel(const BrickFormat&, const LevelBox<Word>&, LevelBox<Word>&, LevelBox<Word>&);              \
     template void placeFlags(const BrickFormat&, std::span<const std::uint8_t>, int, int, bool, LevelBox<Word>&);      \
-    template std::vector<Band<Word>> bandsOf(std::span<LevelBox<Word>>, bool);
+    template std::vector<Band<Word>> bandsOf(std::span<LevelBox<Word>>, bool); // NOLINT(bugprone-macro-parentheses)
 TESSERA_LEVELS(std::int16_t)
 TESSERA_LEVELS(std::int32_t)
 #undef TESSERA_LEVELS

@@ -295,15 +295,16 @@ void toValues(const NumberCoding& coding, double offset, double scale, std::span
     });
 }
 
-#define TESSERA_SAMPLES(T)                                                                                             \
-    template void toSamples(const NumberCoding&, std::span<const std::int16_t>, T*);                                   \
-    template void toSamples(const NumberCoding&, std::span<const std::int32_t>, T*);
-TESSERA_SAMPLES(std::uint8_t)
-TESSERA_SAMPLES(std::int16_t)
-TESSERA_SAMPLES(std::uint16_t)
-TESSERA_SAMPLES(std::int32_t)
-TESSERA_SAMPLES(float)
-#undef TESSERA_SAMPLES
+template void toSamples(const NumberCoding&, std::span<const std::int16_t>, std::uint8_t*);
+template void toSamples(const NumberCoding&, std::span<const std::int16_t>, std::int16_t*);
+template void toSamples(const NumberCoding&, std::span<const std::int16_t>, std::uint16_t*);
+template void toSamples(const NumberCoding&, std::span<const std::int16_t>, std::int32_t*);
+template void toSamples(const NumberCoding&, std::span<const std::int16_t>, float*);
+template void toSamples(const NumberCoding&, std::span<const std::int32_t>, std::uint8_t*);
+template void toSamples(const NumberCoding&, std::span<const std::int32_t>, std::int16_t*);
+template void toSamples(const NumberCoding&, std::span<const std::int32_t>, std::uint16_t*);
+template void toSamples(const NumberCoding&, std::span<const std::int32_t>, std::int32_t*);
+template void toSamples(const NumberCoding&, std::span<const std::int32_t>, float*);
 template void toValues(const NumberCoding&, double, double, std::span<const std::int16_t>, float*);
 template void toValues(const NumberCoding&, double, double, std::span<const std::int32_t>, float*);
 

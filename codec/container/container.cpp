@@ -95,7 +95,7 @@ HeaderState parseHeaders(std::span<const std::byte> bytes, std::uint64_t fileByt
             second = parseHeader(bytes.subspan(kHeaderBytes), kHeaderBytes, fileBytes, file);
         } catch (const Error&) { // use the first copy
         }
-    if (!first && !second) throw *problem;
+    if (!first && !second) throw Error(*problem);
     const bool damaged = !first || !second;
     if (!first || (second && second->fileSize > first->fileSize)) first = second;
     return {*first, damaged};

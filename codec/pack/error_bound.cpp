@@ -45,7 +45,8 @@ std::int64_t largestStep(volume::ScalarType type, NumberCounts& counts, double w
 FrameBound integerBoundForPsnr(const FrameSamples& samples, std::optional<NumberCounts>& counts, double wanted) {
     if (!counts) counts.emplace(samples);
     const std::int64_t step = largestStep(samples.type(), *counts, wanted);
-    return {double(step / 2), step};
+    const std::int64_t farthest = step / 2; // of an integer from the nearest multiple
+    return {double(farthest), step};
 }
 
 /// The largest error bound for floats with an RMS error of at most `wanted`, by trial on the frame: if many samples are

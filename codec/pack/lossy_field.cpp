@@ -159,8 +159,9 @@ int stepWithin(volume::ScalarType type, double maxError) {
 }
 
 bool stepFits(volume::ScalarType type, std::int64_t step, double lo, double hi) {
-    const auto rounded = [step](double number) {
-        return double(step) * std::floor((std::abs(number) + double(step / 2)) / double(step));
+    const std::int64_t half = step / 2; // what countedIn() adds before it divides
+    const auto rounded = [step, half](double number) {
+        return double(step) * std::floor((std::abs(number) + double(half)) / double(step));
     };
     return volume::dispatch(type, [&]<class T>(T) {
         const double least = lo < 0 ? -rounded(lo) : lo, most = hi > 0 ? rounded(hi) : hi;

@@ -58,7 +58,7 @@ struct Sweep {
                         return grid.index(at);
                     };
                     const auto upstream = [&](auto of, auto outside, int a, int b) {
-                        auto sum = outside - outside;
+                        decltype(outside) sum(0);
                         for (int q = 0; q < 2; ++q)
                             for (int p = 0; p < 2; ++p) {
                                 using Scalar = std::decay_t<decltype(outside.x)>;

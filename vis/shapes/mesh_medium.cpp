@@ -79,8 +79,9 @@ Medium<Number> meshMedium(const LightGrid& grid, const MeshCasters& casters, std
             for (int j = 0; j < n; ++j)
                 for (int i = 0; i < 2 * (n - j) - 1; ++i) {
                     // Row j has n - j upright triangles and n - j - 1 inverted ones between them.
+                    const int column = i / 2; // of an upright one and the inverted one after it
                     const double third = i % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
-                    const glm::dvec3 world = p[0] + along * ((i / 2 + third) / n) + across * ((j + third) / n);
+                    const glm::dvec3 world = p[0] + along * ((column + third) / n) + across * ((j + third) / n);
                     if (!kept(casters.clips, world)) continue;
                     const double opacity = caster.opacity * lensAction(casters.lenses, caster.lens, world).opacity;
                     const double amount =

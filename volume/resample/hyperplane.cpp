@@ -28,7 +28,7 @@ Box4 boxOf(const Lattice4& lattice) {
 double frameWeight(const Lattice4& lattice, int frame, double time) {
     const int parities = lattice.kind == LatticeKind4::D4 && lattice.size.w > 1 ? 2 : 1, parity = frame % parities;
     const int count = parities == 1 ? lattice.size.w : lattice.framesOf(parity);
-    const double own = frame / parities;
+    const int own = frame / parities; // among the frames of its parity
     const double cells = (time - lattice.time(parity)) / lattice.spacing.w;
     const double at = std::clamp(cells, 0.0, double(count - 1));
     return std::max(1 - std::abs(at - own), 0.0) / parities;

@@ -12,8 +12,9 @@ template <bool Bcc> float readBrick(const VolumeView& volume, int rounds, long& 
     const Reader<Bcc, false> read{volume, false};
     float x[kLanes], y[kLanes];
     for (int i = 0; i < kLanes; ++i) {
-        x[i] = float(kMargin + 1 + i % kColumns) + 0.3f;
-        y[i] = float(kMargin + 1 + i / kColumns) + 0.6f;
+        const int column = i % kColumns, row = i / kColumns;
+        x[i] = float(kMargin + 1 + column) + 0.3f;
+        y[i] = float(kMargin + 1 + row) + 0.6f;
     }
     const Fixed first = fixedOf({Floats::load(x), Floats::load(y), Floats(kMargin + 0.2f)});
     const Fixed way = fixedOf({Floats(0.31f), Floats(0.22f), Floats(0.93f)});

@@ -75,8 +75,9 @@ CompareLayout compareLayout(CompareLegends legends, int count, ImVec2 at, ImVec2
     const float width = cell.x / static_cast<float>(beside);
     const float own = same ? 0 : stripHeight(layout.legends, width - em(), mostBelow(cell.y));
     for (int i = 0; i < count; ++i) {
-        const ImVec2 min{at.x + static_cast<float>(i % shape.columns) * (cell.x + gap),
-                         at.y + static_cast<float>(i / shape.columns) * (cell.y + gap)};
+        const int column = i % shape.columns, row = i / shape.columns;
+        const ImVec2 min{at.x + static_cast<float>(column) * (cell.x + gap),
+                         at.y + static_cast<float>(row) * (cell.y + gap)};
         layout.pictures.push_back({min, {cell.x, cell.y - own}});
         for (std::size_t k = 0; own > 0 && k < beside; ++k)
             layout.places.push_back(

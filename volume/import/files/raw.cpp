@@ -32,7 +32,7 @@ template <class To, class From> void convert(std::span<const char> bytes, std::s
         char one[sizeof(From)];
         std::memcpy(one, bytes.data() + i * sizeof(From), sizeof(From));
         if (swap) std::reverse(one, one + sizeof(From));
-        out[i] = static_cast<To>(std::bit_cast<From>(one));
+        out[i] = static_cast<To>(std::bit_cast<From>(one)); // NOLINT(bugprone-signed-char-misuse): int8 is a number
     }
 }
 
