@@ -1,5 +1,5 @@
 #include "codec/archive/archive_impl.h"
-#include "codec/archive/coded_mask.h"
+#include "codec/brick/coded_mask.h"
 #include "codec/brick/subsamples.h"
 #include "volume/base/parallel.h"
 #include "volume/bricks/parts_bricks.h"

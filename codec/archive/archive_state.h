@@ -6,6 +6,7 @@
 #include "codec/container/index.h"
 #include "codec/container/mask_hash.h"
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -21,12 +22,20 @@ struct KnownModel {
     NumberKind kind{};
     int codeBits = 0;
     bool bodyCentred = false;
-    StepChoice steps; ///< for Stepped, whose model is idle
+    StepChoice steps;   ///< for Stepped, whose model is idle
+    double quantum = 0; ///< quantumOf the component's latest frame
 
     bool resembles(const FrameRecord& frame) const {
         return kind == frame.numbers.kind && codeBits - frame.codeBits <= 1 && frame.codeBits - codeBits <= 1;
     }
 };
+
+/// The quantum of a frame of kind Stepped in the unit of the parameter; 0: another kind.
+inline double quantumOf(const FrameRecord& frame, const StepChoice& steps) {
+    constexpr double kSixteenths = 16;
+    if (frame.numbers.kind != NumberKind::Stepped) return 0;
+    return steps.quantum / kSixteenths * frame.numbers.step * std::abs(frame.valueScale);
+}
 
 struct ArchiveState {
     Header header;

@@ -4,11 +4,12 @@
 #include "codec/archive/brick_access.h"
 #include "codec/archive/brick_input.h"
 #include "codec/archive/coded_bricks.h"
-#include "codec/archive/coded_mask.h"
 #include "codec/archive/commits.h"
 #include "codec/archive/frame_coding.h"
 #include "codec/archive/frame_model.h"
 #include "codec/archive/frame_steps.h"
+#include "codec/brick/coded_mask.h"
+#include "codec/brick/quantum_search.h"
 #include "codec/container/growing_file.h"
 #include "codec/container/mask_hash.h"
 #include "volume/base/parallel.h"
@@ -46,10 +47,16 @@ struct ArchiveWriter::Impl {
     /// Or the steps of a frame. `idle`: the frame codes no token with the model.
     void writeModel(const Model& model, bool idle, std::size_t component, FrameRecord& frame);
     const SeenFrame* frameBefore(const FrameRecord& frame, const FrameSamples& samples) const;
+    /// `steps`: of the frame, or null.
     std::vector<std::uint8_t> repeated(const SeenFrame* before, const FrameSamples& samples, const FrameRecord& frame,
-                                       const FrameOptions& options) const;
+                                       const FrameOptions& options, const SteppedFrame* steps) const;
     /// Determines all coding parameters of a frame.
     FrameCoding prepare(int time, std::size_t component, const FrameSamples& samples, const FrameOptions& options);
+    /// Index of the steps of a frame; -1: they are not written yet.
+    std::int32_t modelOfSteps(const FrameRecord& frame) const;
+    /// Codes a frame, as often as it takes to meet a bound of its mean error; true if no token was coded.
+    bool codeFrame(FrameCoding& coding, const FrameSamples& samples, const FrameOptions& options, CodedBricks& coded,
+                   const Progress& progress);
     /// Codes every brick; true if no token was coded.
     bool codeBricks(FrameCoding& coding, const FrameSamples& samples, int effort, CodedBricks& coded,
                     const Progress& progress);
@@ -112,8 +119,8 @@ void ArchiveWriter::Impl::writeModel(const Model& chosen, bool idle, std::size_t
     frame.model = static_cast<std::int32_t>(models++);
     page.models.push_back({file.position(), bytes.size(), checksum(bytes)});
     file.append(bytes);
-    lastModel[component] = {frame.model,       model,      frame.wavelet, frame.numbers.kind, frame.codeBits,
-                            frame.bodyCentred, frame.steps};
+    lastModel[component] = {frame.model, model, frame.wavelet, frame.numbers.kind, frame.codeBits, frame.bodyCentred,
+                            frame.steps, 0};
 }
 
 /// The previous frame of the component on the same grid, if it is in memory and has the same scale and offset.
@@ -127,13 +134,19 @@ const SeenFrame* ArchiveWriter::Impl::frameBefore(const FrameRecord& frame, cons
 
 /// Flags of the bricks that can be stored as repeats.
 std::vector<std::uint8_t> ArchiveWriter::Impl::repeated(const SeenFrame* before, const FrameSamples& samples,
-                                                        const FrameRecord& frame, const FrameOptions& options) const {
+                                                        const FrameRecord& frame, const FrameOptions& options,
+                                                        const SteppedFrame* steps) const {
     constexpr int kFurthest = 65535;
-    const double maxError = boundOf(frame, options);
+    // The quantum of the time before may have been larger, and the bound only serves the mean.
+    constexpr double kLarger = 1.5, kWorse = 1.25;
+    const double ofCodes = steps ? steps->maxError : boundOf(frame, options);
+    const double maxError = steps ? std::min(options.mostError, kLarger * ofCodes) : ofCodes;
     std::vector<std::uint8_t> flags(metadata.grid.brickCount(), 0);
     if (!before || (commits.header.features & kBrickNotes) == 0) return flags;
     parallelRanges(flags.size(), [&](std::size_t begin, std::size_t end) {
         BrickInput was, is, coded;
+        PreparedBrick prepared;
+        SplitMemory memory;
         for (std::size_t b = begin; b < end; ++b) {
             if (before->bricks[b].notes.repeats + step() > kFurthest) continue;
             const glm::ivec3 brick = metadata.grid.indexOf(b);
@@ -142,13 +155,23 @@ std::vector<std::uint8_t> ArchiveWriter::Impl::repeated(const SeenFrame* before,
             const bool absentToo = frame.keepsAbsent && !is.present.empty();
             if (absentToo && !before->keepsAbsent) continue;
             flags[b] = mayStandFor(samples.type(), was, is, maxError, absentToo) ? 1 : 0;
-            if (flags[b] == 0 || !options.keepsSquares) continue;
+            if (flags[b] == 0 || !(options.rms > 0)) continue;
             coded = is;
-            roundAsDecoded(brickFormat(metadata.grid, brick, samples.type(), frame), maxError, {}, coded);
-            flags[b] = squaredError(samples.type(), was, is) <= squaredError(samples.type(), coded, is) ? 1 : 0;
+            const BrickFormat format = brickFormat(metadata.grid, brick, samples.type(), frame);
+            if (steps) prepared = prepareBrick(format, is.samples, is.present, ofCodes, {}, memory);
+            roundAsDecoded(format, ofCodes, prepared.decoded, coded);
+            const double squares = errorsOf(samples.type(), coded, is).squares;
+            flags[b] = errorsOf(samples.type(), was, is).squares <= (steps ? kWorse : 1) * squares ? 1 : 0;
         }
     });
     return flags;
+}
+
+std::int32_t ArchiveWriter::Impl::modelOfSteps(const FrameRecord& frame) const {
+    const auto last = lastModel.find(frame.component);
+    const bool same =
+        last != lastModel.end() && last->second.kind == NumberKind::Stepped && last->second.steps == frame.steps;
+    return same ? last->second.number : -1;
 }
 
 ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata, bool keepsFrames)
@@ -198,18 +221,23 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     }
     coding.maxError = boundOf(frame, options);
     coding.before = frameBefore(frame, samples);
-    coding.repeated = repeated(coding.before, samples, frame, options);
+    coding.repeated = repeated(coding.before, samples, frame, options, nullptr);
     coding.importance = importanceOfBricks(grid, samples, options.range, options.categorical, options.importance);
     const bool byBand = (commits.header.features & kBandContexts) != 0;
     coding.model = chooseModel(grid, samples, last, byBand, frame, options, coding.taken);
     const TimeBefore earlier{last, coding.before, time / step()};
     if (auto steps = chooseSteps(grid, samples, frame, coding.model, options, earlier, coding.taken)) {
+        coding.rounded = frame;
         useSteps(*steps, frame);
+        coding.maxError = steps->maxError;
+        coding.repeatedRounded = coding.repeated;
+        if (steps->mean) coding.repeated = repeated(coding.before, samples, frame, options, &*steps);
         coding.taken.bricks.clear();
         coding.taken.bricks.resize(grid.brickCount());
         for (auto& [number, brick] : steps->bricks) coding.taken.bricks[number] = std::move(brick);
-        frame.model = last && last->kind == NumberKind::Stepped && last->steps == frame.steps ? last->number : -1;
-        commits.header.features |= kSteppedBricks | (frame.predicted ? kPredictedFrames : 0);
+        frame.model = modelOfSteps(frame);
+        coding.steps = std::move(*steps);
+        coding.errors.resize(grid.brickCount());
     } else if (!coding.taken.serves(frame, coding.model)) {
         coding.taken.bricks.clear();
     }
@@ -261,8 +289,52 @@ bool ArchiveWriter::Impl::codeBricks(FrameCoding& coding, const FrameSamples& sa
     return allWhole;
 }
 
-void ArchiveWriter::addFrame(int parameter, int component, int time, const FrameSamples& samples,
-                             const FrameOptions& options, const Progress& progress) {
+bool ArchiveWriter::Impl::codeFrame(FrameCoding& coding, const FrameSamples& samples, const FrameOptions& options,
+                                    CodedBricks& coded, const Progress& progress) {
+    constexpr int kTrials = 8;
+    const int effort = effortFor(samples, options.zstdLevel);
+    if (!coding.measures()) return codeBricks(coding, samples, effort, coded, progress);
+    double done = 0;
+    const auto code = [&] {
+        const double half = (1 + done) / 2; // of what is left, since nobody knows how often it takes
+        coded.clear();
+        const bool allWhole = codeBricks(coding, samples, effort, coded, progress.part(done, half));
+        done = half;
+        return allWhole;
+    };
+    const MeanBound& mean = *coding.steps->mean;
+    const auto isRepeat = [](std::uint8_t flag) { return flag != 0; };
+    bool allWhole = false;
+    const auto meets = [&](double first) {
+        QuantumSearch search(mean.allowed, kTrials, mean.largestQuantum(), mean.power);
+        for (std::optional<double> next = first; next;) {
+            if (!coding.restart(*next)) return false;
+            allWhole = code();
+            const auto [own, ofRepeats] = coding.squares();
+            if (std::ranges::all_of(coding.repeated, isRepeat)) return ofRepeats <= mean.allowed;
+            next = search.next(mean.quantum, own, ofRepeats);
+        }
+        if (search.best() == mean.quantum) return true;
+        if (search.best() == 0 || !coding.restart(search.best())) return false;
+        allWhole = code();
+        return true;
+    };
+    bool met = meets(mean.quantum);
+    if (!met && std::ranges::any_of(coding.repeated, isRepeat)) {
+        // Repeated bricks may leave too little of the error to the others.
+        std::ranges::fill(coding.repeated, std::uint8_t(0));
+        met = meets(mean.quantum);
+    }
+    if (!met) {
+        coding.restartRounded(boundOf(coding.rounded, options));
+        return code();
+    }
+    coding.frame.model = modelOfSteps(coding.frame);
+    return allWhole;
+}
+
+std::optional<double> ArchiveWriter::addFrame(int parameter, int component, int time, const FrameSamples& samples,
+                                              const FrameOptions& options, const Progress& progress) {
     const volume::BrickGrid& grid = impl_->metadata.grid;
     const volume::DatasetInfo& info = impl_->metadata.info;
     const std::size_t ofTime = firstComponent(info, parameter) + std::size_t(component);
@@ -274,10 +346,13 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
     FrameRecord& frame = coding.frame;
     const std::size_t bricks = grid.brickCount(), levels = std::size_t(grid.levels);
     CodedBricks coded(bricks, levels, samples.store() ? &samples.store()->folder : nullptr);
-    const bool allWhole = impl_->codeBricks(coding, samples, effortFor(samples, options.zstdLevel), coded, progress);
+    const bool allWhole = impl_->codeFrame(coding, samples, options, coded, progress);
+    if (coding.steps) impl_->commits.header.features |= kSteppedBricks;
+    if (frame.predicted) impl_->commits.header.features |= kPredictedFrames;
     // Without bands the frame needs no tables.
     const bool idle = allWhole || frame.numbers.kind == NumberKind::Stepped;
     if (frame.model < 0) impl_->writeModel(coding.model, idle, ofTime, frame);
+    impl_->lastModel[ofTime].quantum = quantumOf(frame, frame.steps);
     GrowingFile& file = impl_->file;
     frame.offset = file.position();
     for (std::size_t s = 0; s < levels; ++s)
@@ -296,6 +371,10 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
         impl_->lastFrames[{ofTime, time % impl_->step()}] = std::move(coding.seen);
     }
     impl_->page.frames.push_back(std::move(frame));
+    if (!coding.measures()) return std::nullopt;
+    double largest = 0;
+    for (const SampleErrors& errors : coding.errors) largest = std::max(largest, errors.largest);
+    return largest;
 }
 
 Archive::Repeats ArchiveWriter::repeats() const {

@@ -38,9 +38,10 @@ public:
 
     /// Codes and writes one component of a parameter at a time index; each once, in any order. The samples must be on
     /// the lattice of the metadata and have the type of the parameter; frames in scratch files require keepsFrames =
-    /// false. Bricks are coded on all cores; the bytes do not depend on their number.
-    void addFrame(int parameter, int component, int time, const FrameSamples& samples, const FrameOptions& options,
-                  const Progress& progress = {});
+    /// false. Bricks are coded on all cores; the bytes do not depend on their number. Returns the largest error of the
+    /// frame in stored units if only its mean was bounded and it was measured.
+    std::optional<double> addFrame(int parameter, int component, int time, const FrameSamples& samples,
+                                   const FrameOptions& options, const Progress& progress = {});
 
     /// Makes the first `times` times of the metadata readable; all their frames must have been added. A commit rewrites
     /// the metadata (with the ranges known so far), so it is delayed until the additions are 64 times as large.

@@ -108,16 +108,18 @@ bool mayStandFor(volume::ScalarType type, const BrickInput& decoded, const Brick
     });
 }
 
-double squaredError(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input) {
-    double sum = 0;
+SampleErrors errorsOf(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input) {
+    SampleErrors errors;
     volume::dispatch(type, [&]<class T>(T) {
         for (std::size_t i = 0; i < input.samples.size() / sizeof(T); ++i) {
             if (!volume::isPresent(input.present, i)) continue;
             const double apart = double(sampleAt<T>(decoded.samples, i)) - double(sampleAt<T>(input.samples, i));
-            if (std::isfinite(apart)) sum += apart * apart;
+            if (!std::isfinite(apart)) continue;
+            errors.squares += apart * apart;
+            errors.largest = std::max(errors.largest, std::abs(apart));
         }
     });
-    return sum;
+    return errors;
 }
 
 } // namespace tessera::codec

@@ -52,7 +52,12 @@ struct SeenFrame {
 /// bitwise equal or, for floats, differ by at most `maxError`. `absentToo`: absent samples must be equal as well.
 bool mayStandFor(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input, double maxError,
                  bool absentToo);
-/// Sum of squared differences of present samples in stored units, without samples that are not finite.
-double squaredError(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input);
+/// Differences of samples, in stored units.
+struct SampleErrors {
+    double squares = 0; ///< sum
+    double largest = 0;
+};
+/// Of present samples, without those that are not finite.
+SampleErrors errorsOf(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input);
 
 } // namespace tessera::codec

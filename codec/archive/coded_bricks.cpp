@@ -13,6 +13,11 @@ CodedBricks::CodedBricks(std::size_t bricks, std::size_t segments, const std::st
     }
 }
 
+void CodedBricks::clear() {
+    end_ = 0; // the scratch file is overwritten
+    for (std::vector<Bytes>& segments : bytes_) segments.clear();
+}
+
 void CodedBricks::put(std::size_t brick, std::vector<Bytes> segments) {
     if (!file_) {
         bytes_[brick] = std::move(segments);

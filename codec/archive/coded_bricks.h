@@ -22,6 +22,8 @@ public:
     /// `folder`: directory for a scratch file; null: segments are kept in memory.
     CodedBricks(std::size_t bricks, std::size_t segments, const std::string* folder);
 
+    /// Forgets all of them, since the bricks are coded again.
+    void clear();
     /// Stores the segments of a brick. Not thread-safe.
     void put(std::size_t brick, std::vector<Bytes> segments);
     /// Returns a segment; call once for each.

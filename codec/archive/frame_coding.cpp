@@ -44,6 +44,11 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
         for (const Bytes& segment : segments) seen.bytes[b] += segment.size();
         about = statisticsOf(part, input, statistics);
     }
+    if (measures()) {
+        BrickInput wanted;
+        wanted.take(own, own.indexOf(ownNumber), part, frame.mask >= 0);
+        errors[b] = errorsOf(part.type, input, wanted);
+    }
     taken.bricks[b].reset();
     about.notes.importance = importance[b];
     if (keeps) {
@@ -51,6 +56,32 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
         if (before) about.notes.change = volume::changeOfBrick(grid, brick, before->field, seen.field);
     }
     return segments;
+}
+
+std::pair<double, double> FrameCoding::squares() const {
+    double own = 0, ofRepeats = 0; // brick by brick, so that slabs give the same sums
+    for (std::size_t b = 0; b < errors.size(); ++b) (repeated[b] != 0 ? ofRepeats : own) += errors[b].squares;
+    return {own, ofRepeats};
+}
+
+bool FrameCoding::restart(double quantum) {
+    if (!setQuantum(quantum, *steps)) return false;
+    useSteps(*steps, frame);
+    maxError = steps->maxError;
+    seen.bytes.assign(seen.bytes.size(), 0);
+    return true;
+}
+
+void FrameCoding::restartRounded(double bound) {
+    steps.reset();
+    repeated = repeatedRounded;
+    frame.numbers = rounded.numbers;
+    frame.wavelet = rounded.wavelet;
+    frame.codeBits = rounded.codeBits;
+    frame.steps = rounded.steps;
+    frame.model = rounded.model;
+    maxError = bound;
+    seen.bytes.assign(seen.bytes.size(), 0);
 }
 
 } // namespace tessera::codec

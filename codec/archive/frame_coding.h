@@ -7,6 +7,8 @@
 #include "codec/archive/frame_model.h"
 #include "codec/archive/frame_steps.h"
 
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace tessera::codec {
@@ -22,9 +24,13 @@ struct FrameCoding {
     std::vector<volume::BrickImportance> importance;
     Taken taken;
     Model model;
-    int step = 1;            ///< times since `before`
-    bool statistics = false; ///< store statistics of bricks
-    bool keeps = false;      ///< keep samples and sizes for later frames
+    std::optional<SteppedFrame> steps;         ///< if coefficients are quantised
+    FrameRecord rounded;                       ///< the frame as it would be with rounded samples
+    std::vector<std::uint8_t> repeatedRounded; ///< and its repeated bricks
+    std::vector<SampleErrors> errors; ///< by brick, if the mean error is bounded and coefficients are quantised
+    int step = 1;                     ///< times since `before`
+    bool statistics = false;          ///< store statistics of bricks
+    bool keeps = false;               ///< keep samples and sizes for later frames
     int mostPredicted = 0;
     SeenFrame seen;
 
@@ -32,6 +38,13 @@ struct FrameCoding {
 
     /// What brick `brick` of the frame is predicted from, as codes; empty if it is coded by itself.
     std::vector<std::uint32_t> prediction(std::size_t brick) const;
+    bool measures() const { return steps && steps->mean; }
+    /// Sums of squared errors of the bricks coded and of those repeated.
+    std::pair<double, double> squares() const;
+    /// Prepares for coding all bricks again, with another quantum. False: there is no such coding.
+    bool restart(double quantum);
+    /// The same, with rounded samples.
+    void restartRounded(double maxError);
 
     /// Codes brick `brick` of `part` (a slab with grid `own`, where its index is `ownNumber`) into segments.
     std::vector<Bytes> code(std::size_t brick, const volume::Field& part, const volume::BrickGrid& own,

@@ -5,6 +5,7 @@
 #include "volume/base/describe.h"
 #include "volume/bricks/brick_importance.h"
 
+#include <limits>
 #include <optional>
 
 namespace tessera::codec {
@@ -17,10 +18,13 @@ struct FrameOptions {
     double maxError = 0;                           ///< absolute, in stored units; 0: lossless
     double spent =
         0; ///< part of maxError used by previous processing of the samples; the rest is for codes and repeats
-    /// A brick may repeat an earlier one only if its sum of squared differences does not exceed that of its own codes.
-    bool keepsSquares = false;
-    bool keepsAbsent = false; ///< also code the stored numbers of absent samples
-    int mostPredicted = 0;    ///< longest run of bricks that are predicted from the time before, at most kMostPredicted
+    /// Largest root of the mean square of errors, in stored units; 0: no such bound. maxError is then that of rounding
+    /// samples. A brick may repeat an earlier one only if its sum of squared differences does not exceed that of its
+    /// own codes (but by little where coefficients are quantised: there the sum of the frame is measured).
+    double rms = 0;
+    double mostError = std::numeric_limits<double>::infinity(); ///< with `rms`: a bound that holds for all samples, too
+    bool keepsAbsent = false;                                   ///< also code the stored numbers of absent samples
+    int mostPredicted = 0; ///< longest run of bricks that are predicted from the time before, at most kMostPredicted
     int zstdLevel = 3;
     Range range{1, 0}; ///< physical range of the component that importance refers to; lo > hi: that of the frame
     bool categorical = false;

@@ -1,34 +1,19 @@
 #include "codec/archive/frame_steps.h"
 
-#include "codec/archive/brick_access.h"
-#include "codec/brick/predicted_brick.h"
-#include "volume/base/parallel.h"
+#include "codec/archive/step_trials.h"
 
-#include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cmath>
-#include <glm/common.hpp>
-#include <limits>
-#include <utility>
-#include <vector>
 
 namespace tessera::codec {
 
 namespace {
 
-constexpr std::size_t kMostBoxes = 2, kWholeBrick = 1 << 17; // samples of the largest brick tried as a whole
-constexpr int kBoxOfBrick = 64;                              // edge of the box tried of a larger brick
-constexpr int kMostBits = 29;                                // of codes
-constexpr double kUsualQuantum = 3;                          // in units of the error bound
 // Factors on the bytes beyond which trials end: with details split along all axes, and with them split along none.
 constexpr double kHopeless = 1.6, kHopelessUnsplit = 1.06;
-
-std::uint32_t quantumOf(double bounds) {
-    constexpr double kSixteenths = 16;
-    return static_cast<std::uint32_t>(std::lround(bounds * kSixteenths * (kReach + 0.5)));
-}
+constexpr int kMostBits = 29;        // of codes
+constexpr double kMeanQuantum = 1.2; // as kUsualQuantum, under a bound of the mean error: few samples are beyond it
 
 /// Width in bits of the differences between the codes of a frame and those of the decoded frame before.
 int differenceBits(const volume::Field& now, const volume::Field& before, const NumberCoding& numbers) {
@@ -47,148 +32,11 @@ int differenceBits(const volume::Field& now, const volume::Field& before, const 
     return int(std::bit_width(all)) + 1;
 }
 
-/// Boxes of a frame, coded in different ways.
-class StepTrials {
-public:
-    StepTrials(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
-               const FrameOptions& options, const SeenFrame* before)
-        : type_(samples.type()), maxError_(boundOf(frame, options)) {
-        const std::size_t bricks = grid.brickCount(), count = std::min(bricks, kMostBoxes);
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t number = (2 * i + 1) * bricks / (2 * count);
-            const glm::ivec3 brick = grid.indexOf(number);
-            Box box;
-            box.format = brickFormat(grid, brick, type_, frame);
-            box.number = number;
-            glm::ivec3 begin(0);
-            if (countOf(box.format.size) > kWholeBrick) {
-                const int step = box.format.sublattices();
-                const glm::ivec3 most(kBoxOfBrick, kBoxOfBrick, kBoxOfBrick * step),
-                    size = glm::min(box.format.size, most);
-                begin = (box.format.size - size) / 2;
-                begin.z -= begin.z % step; // start on an even slice
-                box.whole = size == box.format.size;
-                box.format.size = size;
-            }
-            box.input.take(grid, grid.begin(brick) + begin, box.format.size, samples, frame.mask >= 0);
-            if (before && before->depth[number] < options.mostPredicted)
-                box.before.take(grid, grid.begin(brick) + begin, box.format.size, before->field, false);
-            share_ += double(countOf(box.format.size));
-            boxes_.push_back(std::move(box));
-        }
-        share_ /= double(samples.count());
-    }
-
-    /// Whether any brick may be predicted.
-    bool predicts() const {
-        return std::ranges::any_of(boxes_, [](const Box& box) { return !box.before.samples.empty(); });
-    }
-    /// The part of the frame that is tried.
-    double share() const { return share_; }
-
-    /// Bytes with rounded samples; whole bricks are found in `taken` where it serves.
-    double bytesOfSamples(const Model& model, const Taken* taken) {
-        const BandEncoder encoder(model);
-        return sum([&](Box& box) {
-            Compressor compressor(3);
-            const BrickInput& input = box.input;
-            if (taken && box.whole && taken->bricks[box.number])
-                return encodeBrick(box.format, *taken->bricks[box.number], input.samples, input.present, compressor,
-                                   encoder);
-            return encodeBrick(box.format, input.samples, input.present, maxError_, compressor, encoder);
-        });
-    }
-
-    /// Bytes with rounded coefficients. Whole bricks are kept if that is less than `least`.
-    double bytesOf(const SteppedFrame& how, double least) {
-        static const BandEncoder idle(makeModel(Histogram(1, {}), 1)); // codes nothing
-        const double bytes = sum([&](Box& box) {
-            Compressor compressor(3);
-            BrickFormat format = box.format;
-            format.numbers = how.numbers;
-            format.wavelet = how.wavelet;
-            format.codeBits = how.codeBits;
-            format.steps = how.steps;
-            std::vector<std::uint32_t> from;
-            if (how.predicted) from = predictionFrom(how.numbers, box.before.samples);
-            box.latest = prepareBrick(format, box.input.samples, box.input.present, maxError_, {}, box.memory, from);
-            return encodeBrick(format, box.latest, box.input.samples, box.input.present, compressor, idle);
-        });
-        if (bytes < least)
-            for (Box& box : boxes_) std::swap(box.best, box.latest);
-        return bytes;
-    }
-
-    /// The whole bricks as coded in the best of the trials.
-    std::vector<std::pair<std::size_t, PreparedBrick>> takeBest() {
-        std::vector<std::pair<std::size_t, PreparedBrick>> bricks;
-        for (Box& box : boxes_)
-            if (box.whole) bricks.emplace_back(box.number, std::move(box.best));
-        return bricks;
-    }
-
-private:
-    struct Box {
-        BrickFormat format;
-        std::size_t number = 0;
-        bool whole = true;        ///< rather than a part of the brick
-        BrickInput input, before; ///< before: empty if it is not to be predicted
-        SplitMemory memory;
-        PreparedBrick latest, best;
-    };
-    template <class Encode> double sum(const Encode& encode) {
-        std::atomic<std::uint64_t> bytes = 0;
-        parallelFor(boxes_.size(), [&](std::size_t i) {
-            for (const Bytes& segment : encode(boxes_[i])) bytes += segment.size();
-        });
-        return double(bytes.load());
-    }
-
-    volume::ScalarType type_;
-    double maxError_, share_ = 0;
-    std::vector<Box> boxes_;
-};
-
-/// The best of the steps tried so far.
-class StepSearch {
-public:
-    explicit StepSearch(StepTrials trials) : trials_(std::move(trials)) {}
-    StepTrials& trials() { return trials_; }
-    const SteppedFrame& best() const { return best_; }
-    double least() const { return least_; } ///< bytes of the best
-    /// True if the steps are better than all before.
-    bool attempt(const SteppedFrame& how) {
-        const double bytes = trials_.bytesOf(how, least_);
-        if (bytes >= least_) return false;
-        least_ = bytes;
-        best_ = how;
-        return true;
-    }
-    /// Tries the best so far with a change.
-    template <class Change> bool attemptWith(const Change& change) {
-        SteppedFrame how = best_;
-        change(how.steps);
-        return attempt(how);
-    }
-    /// Tries a factor on the usual quantum, and its square if it is better, else its inverse.
-    void attemptQuanta() {
-        constexpr double kApart = 1.4;
-        const auto scale = [&](double bounds) {
-            return attemptWith([&](StepChoice& steps) { steps.quantum = quantumOf(bounds); });
-        };
-        scale(kUsualQuantum * kApart) ? scale(kUsualQuantum * kApart * kApart) : scale(kUsualQuantum / kApart);
-    }
-
-private:
-    StepTrials trials_;
-    SteppedFrame best_;
-    double least_ = std::numeric_limits<double>::infinity();
-};
-
 /// How the time before was coded; nothing is set at the first time and when all is to be tried again.
 struct StepsBefore {
     std::optional<StepChoice> steps; ///< with these, which are the only ones to be tried
     bool rounded = false;            ///< with rounded samples: trials end earlier
+    double quantum = 0;              ///< in stored units
 };
 
 /// Tries the best way so far, or `how`, with differences from the time before.
@@ -201,7 +49,7 @@ void tryPrediction(StepSearch& search, const SteppedFrame& how, const FrameSampl
     if (differences.codeBits > kMostBits || !search.attempt(differences) || !allSteps) return;
     search.attemptWith(
         [](StepChoice& steps) { steps.split.axes = steps.split.axes == 0 ? usualSteps().split.axes : 0; });
-    search.attemptQuanta();
+    search.improveQuantum();
 }
 
 /// The same without; at the end as at the beginning nothing may be worth a trial.
@@ -216,12 +64,8 @@ void tryOwn(StepSearch& search, const SteppedFrame& how, const StepsBefore& befo
     if (before.steps || search.least() > kHopeless * limit) return;
     if (!before.rounded && search.least() > limit) search.attempt(unsplit);
     if (search.least() > kHopelessUnsplit * limit) return;
-    for (int axis = 0; axis < 3; ++axis) search.attemptWith([&](StepChoice& steps) { steps.split.axes ^= 1 << axis; });
-    for (const int length : {2, 10}) {
-        if (search.best().steps.split.axes == 0) break; // nothing is split
-        if (search.attemptWith([&](StepChoice& steps) { steps.split.least = length; })) break;
-    }
-    search.attemptQuanta();
+    search.improveSplit(1);
+    search.improveQuantum();
 }
 
 std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, const FrameSamples& samples,
@@ -229,20 +73,75 @@ std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, const FrameS
                                      const StepsBefore& before, const SeenFrame* seen, const Taken& taken) {
     const std::optional<NumberCoding> numbers = steppedCoding(samples, boundOf(frame, options));
     if (!numbers) return std::nullopt;
-    SteppedFrame how{*numbers, options.wavelet.value_or(Wavelet::W44), false,
-                     0,        before.steps.value_or(usualSteps()),    {}};
+    SteppedFrame how;
+    how.numbers = *numbers;
+    how.wavelet = options.wavelet.value_or(Wavelet::W44);
+    how.steps = before.steps.value_or(usualSteps());
+    how.maxError = boundOf(frame, options);
     how.codeBits = codeBitsOf(samples, how.numbers) + 1;
     if (how.codeBits > kMostBits) return std::nullopt;
     if (seen && seen->mask != frame.mask) seen = nullptr;
     StepSearch search(StepTrials(grid, samples, frame, options, seen));
     const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
-    const double limit = search.trials().bytesOfSamples(model, taken.serves(frame, model) ? &taken : nullptr) +
+    const double limit = search.trials().ofSamples(model, taken.serves(frame, model) ? &taken : nullptr).bytes +
                          ofModel * search.trials().share();
     tryOwn(search, how, before, limit);
     if (seen && search.trials().predicts()) tryPrediction(search, how, samples, *seen, !before.steps);
     if (search.least() >= limit) return std::nullopt;
     SteppedFrame best = search.best();
     best.bricks = search.trials().takeBest();
+    return best;
+}
+
+/// Steps for a bound of the mean error.
+std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, const FrameSamples& samples,
+                                         const FrameRecord& frame, const Model& model, const FrameOptions& options,
+                                         const StepsBefore& before, const Taken& taken) {
+    constexpr double kApart = 1.4;          // factor between quanta in units of the bound
+    constexpr int kRounds = 2;              // of axes: with one, a small gain early can keep it from a large one
+    constexpr double kFirstQuantum = 4;     // in units of the mean error
+    constexpr double kLeastShare = 1. / 16; // of the allowed squares, below which boxes are background
+    SteppedFrame how;
+    how.wavelet = options.wavelet.value_or(Wavelet::W44);
+    how.steps = before.steps.value_or(usualSteps());
+    const double quantum = before.steps ? before.quantum : kFirstQuantum * options.rms;
+    const RoundingErrors all = roundingErrors(samples, frame.numbers);
+    how.mean = {floatRangeOf(samples), options.rms * options.rms * all.count, options.mostError,
+                before.steps ? boundsOf(before.steps->quantum) : kMeanQuantum, quantum};
+    if (!setQuantum(quantum, how)) return std::nullopt;
+
+    StepSearch search(StepTrials(grid, samples, frame, options, nullptr));
+    StepTrials& trials = search.trials();
+    const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
+    const TrialOfSteps rounded = trials.ofSamples(model, taken.serves(frame, model) ? &taken : nullptr);
+    const double limit = rounded.bytes + ofModel * trials.share(), mean = how.mean->allowed * trials.share();
+    // Errors are not the same everywhere: the boxes get the part of them that they have by rounding samples.
+    const double part = all.squares > 0 ? how.mean->allowed / all.squares * rounded.squares : 0;
+    const double squares = part > kLeastShare * mean ? part : mean;
+    if (before.steps) {
+        search.compareAt(squares);
+        search.attempt(how);
+    } else {
+        if (before.rounded) how.steps.split.axes = 0;
+        if (!search.findQuantum(how, squares)) return std::nullopt;
+        if (search.least() > (before.rounded ? kHopelessUnsplit : kHopeless) * limit) return std::nullopt;
+        if (before.rounded) search.attemptWith([](StepChoice& steps) { steps.split = usualSteps().split; });
+        search.improveSplit(kRounds);
+        const auto scale = [&](double fineness) {
+            SteppedFrame other = search.best();
+            other.mean->fineness = fineness;
+            return setQuantum(other.mean->quantum, other) && search.attempt(other);
+        };
+        const double fineness = how.mean->fineness;
+        if (!scale(fineness * kApart)) {
+            scale(fineness / kApart);
+        } else {
+            scale(fineness * kApart * kApart);
+        }
+    }
+    if (search.least() >= limit) return std::nullopt;
+    SteppedFrame best = search.best();
+    best.bricks = trials.takeBest();
     return best;
 }
 
@@ -256,14 +155,37 @@ std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, const Fra
                                         const FrameRecord& frame, const Model& model, const FrameOptions& options,
                                         const TimeBefore& before, const Taken& taken) {
     constexpr int kAgain = 16; // times between those at which all is tried
-    if (frame.numbers.kind != NumberKind::Quantised || options.numbers || options.keepsSquares) return std::nullopt;
+    const bool mean = options.rms > 0;
+    // Samples may be exact under a bound of their mean error, if rounding them does not pay.
+    if ((frame.numbers.kind != NumberKind::Quantised && !mean) || options.numbers) return std::nullopt;
+    const KnownModel* const last = before.coding;
     const auto attempt = [&](const StepsBefore& steps) {
-        return trySteps(grid, samples, frame, model, options, steps, before.seen, taken);
+        return mean ? tryMeanSteps(grid, samples, frame, model, options, steps, taken)
+                    : trySteps(grid, samples, frame, model, options, steps, before.seen, taken);
     };
-    if (!before.coding || before.number % kAgain == 0) return attempt({});
-    if (before.coding->kind != NumberKind::Stepped) return attempt({.steps = {}, .rounded = true});
-    if (auto again = attempt({.steps = before.coding->steps, .rounded = false})) return again;
+    if (!last || before.number % kAgain == 0) return attempt({});
+    if (last->kind != NumberKind::Stepped) return attempt({.steps = {}, .rounded = true});
+    const double quantum = last->quantum / std::abs(samples.scale());
+    if (!mean || quantum > 0)
+        if (auto again = attempt({.steps = last->steps, .rounded = false, .quantum = quantum})) return again;
     return attempt({});
+}
+
+double MeanBound::largestQuantum() const {
+    constexpr double kMost = kUsualQuantum; // a coarser one only makes more corrections
+    return kMost * mostError;
+}
+
+bool setQuantum(double quantum, SteppedFrame& steps) {
+    MeanBound& mean = *steps.mean;
+    mean.quantum = std::min(quantum, mean.largestQuantum());
+    steps.maxError = std::min(mean.quantum / mean.fineness, mean.mostError);
+    const std::optional<NumberCoding> numbers = steppedCoding(mean.range, steps.maxError);
+    if (!numbers) return false;
+    steps.numbers = *numbers;
+    steps.codeBits = codeBitsOf(mean.range, *numbers) + 1;
+    steps.steps.quantum = quantumOf(mean.quantum / steps.maxError);
+    return steps.codeBits <= kMostBits;
 }
 
 void useSteps(const SteppedFrame& steps, FrameRecord& frame) {

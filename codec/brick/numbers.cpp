@@ -71,36 +71,6 @@ NumberCoding chooseLossless(const FrameSamples& samples) {
     return best.value_or(NumberCoding{NumberKind::Float, 0, 1});
 }
 
-/// Of the finite present samples; lo > hi if there are none.
-struct FloatRange {
-    float lo = std::numeric_limits<float>::infinity(), hi = -std::numeric_limits<float>::infinity(),
-          least = std::numeric_limits<float>::infinity(); ///< smallest magnitude
-};
-
-FloatRange rangeOf(const FrameSamples& frame) {
-    constexpr std::size_t kLanes = 16; // so that the loop is vectorised
-    std::array<float, kLanes> lo, hi, least;
-    lo.fill(FloatRange().lo), hi.fill(FloatRange().hi), least.fill(FloatRange().least);
-    const auto add = [&](std::size_t lane, float sample) {
-        const float size = std::abs(sample);
-        const bool finite = size <= std::numeric_limits<float>::max();
-        lo[lane] = finite && sample < lo[lane] ? sample : lo[lane];
-        hi[lane] = finite && sample > hi[lane] ? sample : hi[lane];
-        least[lane] = finite && size < least[lane] ? size : least[lane];
-    };
-    frame.forSlabs([&](const volume::Field& part, Slab) {
-        const auto samples = part.as<float>();
-        std::size_t i = 0;
-        if (!part.mask)
-            for (; i + kLanes <= samples.size(); i += kLanes)
-                for (std::size_t lane = 0; lane < kLanes; ++lane) add(lane, samples[i + lane]);
-        for (; i < samples.size(); ++i)
-            if (part.present(i)) add(0, samples[i]);
-        return true;
-    });
-    return {*std::ranges::min_element(lo), *std::ranges::max_element(hi), *std::ranges::min_element(least)};
-}
-
 std::optional<NumberCoding> chooseQuantised(const FloatRange& range, double maxError) {
     const double lo = range.lo, hi = range.hi;
     if (!(lo <= hi)) return std::nullopt;
@@ -131,10 +101,34 @@ double multipleWithin(double spacing, double maxError, double safeError) {
 
 } // namespace
 
+FloatRange floatRangeOf(const FrameSamples& frame) {
+    constexpr std::size_t kLanes = 16; // so that the loop is vectorised
+    std::array<float, kLanes> lo, hi, least;
+    lo.fill(FloatRange().lo), hi.fill(FloatRange().hi), least.fill(FloatRange().least);
+    const auto add = [&](std::size_t lane, float sample) {
+        const float size = std::abs(sample);
+        const bool finite = size <= std::numeric_limits<float>::max();
+        lo[lane] = finite && sample < lo[lane] ? sample : lo[lane];
+        hi[lane] = finite && sample > hi[lane] ? sample : hi[lane];
+        least[lane] = finite && size < least[lane] ? size : least[lane];
+    };
+    frame.forSlabs([&](const volume::Field& part, Slab) {
+        const auto samples = part.as<float>();
+        std::size_t i = 0;
+        if (!part.mask)
+            for (; i + kLanes <= samples.size(); i += kLanes)
+                for (std::size_t lane = 0; lane < kLanes; ++lane) add(lane, samples[i + lane]);
+        for (; i < samples.size(); ++i)
+            if (part.present(i)) add(0, samples[i]);
+        return true;
+    });
+    return {*std::ranges::min_element(lo), *std::ranges::max_element(hi), *std::ranges::min_element(least)};
+}
+
 NumberCoding chooseCoding(const FrameSamples& samples, double maxError) {
     if (samples.type() != volume::ScalarType::F32) return {};
     if (maxError > 0)
-        if (const auto quantised = chooseQuantised(rangeOf(samples), maxError)) {
+        if (const auto quantised = chooseQuantised(floatRangeOf(samples), maxError)) {
             // Numbers that lie on a grid already need no more codes than the grid has points.
             const double step = multipleWithin(spacingOf(samples, maxError), maxError, quantised->step / 2);
             return step > quantised->step ? NumberCoding{NumberKind::Quantised, 0, step} : *quantised;
@@ -143,7 +137,7 @@ NumberCoding chooseCoding(const FrameSamples& samples, double maxError) {
 }
 
 std::optional<NumberCoding> steppedCoding(const FrameSamples& samples, double maxError) {
-    const FloatRange range = rangeOf(samples);
+    const FloatRange range = floatRangeOf(samples);
     const std::optional<NumberCoding> quantised = chooseQuantised(range, maxError);
     if (!quantised) return std::nullopt;
     double step = quantised->step;
@@ -154,6 +148,35 @@ std::optional<NumberCoding> steppedCoding(const FrameSamples& samples, double ma
     if (spacing > 0 && spacing <= apart) step = std::max(step, multipleWithin(spacing, maxError, quantised->step / 2));
     return NumberCoding{NumberKind::Stepped, quantised->origin, step / (2 * kReach + 1)};
 }
+
+std::optional<NumberCoding> steppedCoding(const FloatRange& range, double maxError) {
+    const std::optional<NumberCoding> quantised = chooseQuantised(range, maxError);
+    if (!quantised) return std::nullopt;
+    return NumberCoding{NumberKind::Stepped, quantised->origin, quantised->step / (2 * kReach + 1)};
+}
+
+int codeBitsOf(const FloatRange& range, const NumberCoding& coding) {
+    std::uint32_t all = 0;
+    for (const float end : {range.lo, range.hi}) {
+        const std::uint32_t code = codeOf(coding, end);
+        all |= code ^ static_cast<std::uint32_t>(static_cast<std::int32_t>(code) >> 31);
+    }
+    return std::max(1, int(std::bit_width(all)) + 1);
+}
+
+RoundingErrors roundingErrors(const FrameSamples& samples, const NumberCoding& coding) {
+    RoundingErrors sum;
+    all(samples, 1, [&](float sample) {
+        if (!std::isfinite(sample)) return true;
+        ++sum.count;
+        if (coding.kind != NumberKind::Quantised) return true;
+        const double apart = double(sampleOf<float>(coding, codeOf(coding, sample))) - double(sample);
+        sum.squares += apart * apart;
+        return true;
+    });
+    return sum;
+}
+
 double boundOf(const NumberCoding& stepped) {
     return stepped.step * (2 * kReach + 1) / 2;
 }

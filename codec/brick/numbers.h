@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -35,9 +36,26 @@ struct NumberCoding {
 /// float.
 NumberCoding chooseCoding(const FrameSamples& samples, double maxError);
 
+/// Of the finite present samples of a frame of floats; lo > hi if there are none.
+struct FloatRange {
+    float lo = std::numeric_limits<float>::infinity(), hi = -std::numeric_limits<float>::infinity(),
+          least = std::numeric_limits<float>::infinity(); ///< smallest magnitude
+};
+FloatRange floatRangeOf(const FrameSamples& samples);
+
 /// The coding by quantised coefficients with an error bound above 0; none if the bound is below the resolution of
 /// floats.
 std::optional<NumberCoding> steppedCoding(const FrameSamples& samples, double maxError);
+/// The same for samples of a range, whatever numbers they are.
+std::optional<NumberCoding> steppedCoding(const FloatRange& range, double maxError);
+/// Width of |code| over samples of a range, in bits.
+int codeBitsOf(const FloatRange& range, const NumberCoding& coding);
+/// The samples of a frame of floats that are present and finite, and the errors of rounding them.
+struct RoundingErrors {
+    double count = 0, squares = 0; ///< squares: sum; 0 if the coding is not Quantised
+};
+RoundingErrors roundingErrors(const FrameSamples& samples, const NumberCoding& coding);
+
 /// The bound that such a coding is for.
 double boundOf(const NumberCoding& stepped);
 /// Largest error of a sample's code with that coding: 2 kReach + 1 codes make a step of the Quantised one.

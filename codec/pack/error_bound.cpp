@@ -151,10 +151,13 @@ FrameBound boundFor(const PackOptions& options, const volume::Parameter& paramet
     if (options.absError > 0) error = std::min(error, options.absError / scale);
     const FrameBound stated{error, stepWithin(samples.type(), error)};
     if (!(options.psnr > 0)) return std::isfinite(error) ? stated : FrameBound();
-    const FrameBound bound = boundForPsnr(samples, counts, extent / scale, options.psnr);
-    const bool stricter =
-        samples.type() == volume::ScalarType::F32 ? stated.error < bound.error : stated.step < bound.step;
-    return std::isfinite(error) && stricter ? stated : bound;
+    FrameBound bound = boundForPsnr(samples, counts, extent / scale, options.psnr);
+    const bool isFloat = samples.type() == volume::ScalarType::F32;
+    const bool stricter = isFloat ? stated.error < bound.error : stated.step < bound.step;
+    const double rms = extent / scale * std::pow(10.0, -options.psnr / 20);
+    if (std::isfinite(error) && stricter) bound = stated;
+    if (isFloat && error > rms) bound.rms = rms, bound.mostError = error; // a smaller error keeps the mean by itself
+    return bound;
 }
 
 } // namespace tessera::codec

@@ -5,6 +5,7 @@
 #include "volume/field/dataset.h"
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -17,6 +18,8 @@ namespace tessera::codec {
 struct FrameBound {
     double error = 0;      ///< largest absolute error of a sample in stored numbers; 0: exact
     std::int64_t step = 1; ///< for integers: they become multiples of it
+    double rms = 0;        ///< for floats: largest root of the mean square error that is allowed; 0: no such bound
+    double mostError = std::numeric_limits<double>::infinity(); ///< with `rms`: the bound stated for all samples
 };
 
 /// The strictest of the requested bounds. A PSNR is converted by trial on the frame to the coarsest rounding that

@@ -37,7 +37,7 @@ double workingBytes(const volume::ResampleOptions& options) {
 
 /// Whether the coefficients of a parameter may be quantised, for which bricks need more memory.
 bool isBounded(const volume::Parameter& parameter, const PackOptions& options) {
-    const bool bounded = options.maxError > 0 || options.absError > 0 || options.sizeMb > 0;
+    const bool bounded = options.maxError > 0 || options.absError > 0 || options.psnr > 0 || options.sizeMb > 0;
     return parameter.type == volume::ScalarType::F32 && bounded;
 }
 

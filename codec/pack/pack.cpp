@@ -214,7 +214,8 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
     leaveOut(samples, metadata_.grid, discarded_);
     const FrameBound bound = exact ? FrameBound() : boundFor(options_, whole, samples);
     frame.maxError = bound.error;
-    frame.keepsSquares = options_.psnr > 0;
+    frame.rms = bound.rms;
+    frame.mostError = bound.mostError;
     double error = frame.maxError * std::abs(samples.scale());
     if (hasThreshold(options_) && !about.categorical) {
         const double scale = std::abs(samples.scale());
@@ -230,9 +231,11 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
         samples.change([&](Field& part, Slab) { part = countedIn(std::move(part), bound.step); });
         frame.maxError = 0;
     }
-    errors_[p] = std::max(errors_[p], error);
     Stopwatch code(summary_.codeSeconds);
-    writer.addFrame(place_.parameterOf[p], component, int(place_.firstTime + time), samples, frame, progress);
+    const std::optional<double> measured =
+        writer.addFrame(place_.parameterOf[p], component, int(place_.firstTime + time), samples, frame, progress);
+    if (measured) error = *measured * std::abs(samples.scale());
+    errors_[p] = std::max(errors_[p], error);
 }
 
 void Packing::addStep(ArchiveWriter& writer, QueuedFrames fed, const Progress& progress) {

@@ -38,7 +38,7 @@ int brickSizeFor(const volume::Lattice& lattice, const volume::DatasetInfo& sour
     const glm::ivec3 texels = lattice.texels();
     if (std::max({texels.x, texels.y, texels.z}) <= kUsual) return kUsual;
     const auto isFloat = [](const volume::Parameter& parameter) { return parameter.type == ScalarType::F32; };
-    const bool bounded = (options.maxError > 0 || options.absError > 0 || options.sizeMb > 0) &&
+    const bool bounded = (options.maxError > 0 || options.absError > 0 || options.psnr > 0 || options.sizeMb > 0) &&
                          !hasThreshold(options) && options.discard == 0;
     if (bounded && lattice.count() <= kReadWhole && std::ranges::any_of(source.parameters, isFloat)) return kLargest;
     const glm::ivec3 size = lattice.size;

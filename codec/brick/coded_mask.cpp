@@ -1,4 +1,4 @@
-#include "codec/archive/coded_mask.h"
+#include "codec/brick/coded_mask.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,0 +1,118 @@
+#pragma once
+
+#include "codec/archive/brick_input.h"
+#include "codec/archive/frame_steps.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+/// Trials of quantised coefficients on some bricks of a frame.
+namespace tessera::codec {
+
+inline constexpr double kUsualQuantum = 3; ///< in units of the error bound
+
+/// A quantum in units of the error bound, as it is stored.
+std::uint32_t quantumOf(double bounds);
+/// The inverse.
+double boundsOf(std::uint32_t quantum);
+
+/// What came of a trial.
+struct TrialOfSteps {
+    double bytes = 0, squares = 0; ///< squares: of errors, if they are measured
+};
+
+/// Boxes of a frame, coded in different ways.
+class StepTrials {
+public:
+    /// `before`: the frame before, or null if nothing is to be predicted from it.
+    StepTrials(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
+               const FrameOptions& options, const SeenFrame* before);
+
+    /// The part of the frame that is tried.
+    double share() const { return share_; }
+    /// Whether any brick may be predicted.
+    bool predicts() const;
+    /// With rounded samples; whole bricks are found in `taken` where it serves.
+    TrialOfSteps ofSamples(const Model& model, const Taken* taken);
+    /// With rounded coefficients.
+    TrialOfSteps of(const SteppedFrame& how);
+    /// The latest trial is the best one so far.
+    void keepLatest();
+    /// The whole bricks as coded in the best of the trials.
+    std::vector<std::pair<std::size_t, PreparedBrick>> takeBest();
+
+private:
+    struct Box {
+        BrickFormat format;
+        std::size_t number = 0;
+        bool whole = true;        ///< rather than a part of the brick
+        BrickInput input, before; ///< before: empty if it is not to be predicted
+        SplitMemory memory;
+        PreparedBrick latest, best;
+        double squares = 0; ///< of the latest trial
+    };
+    template <class Encode> TrialOfSteps sum(const Encode& encode);
+    void measure(Box& box, const BrickFormat& format, double maxError, std::span<const std::uint32_t> codes) const;
+
+    volume::ScalarType type_;
+    double maxError_, share_ = 0;
+    bool measures_;
+    int effort_; ///< of rounded samples
+    std::vector<Box> boxes_;
+};
+
+/// The best of the steps tried so far.
+class StepSearch {
+public:
+    explicit StepSearch(StepTrials trials) : trials_(std::move(trials)) {}
+    StepTrials& trials() { return trials_; }
+    const SteppedFrame& best() const { return best_; }
+    double least() const { return least_; } ///< bytes of the best
+    /// True if the steps are better than all before.
+    bool attempt(const SteppedFrame& how) {
+        const double bytes = bytesAtMean(trials_.of(how));
+        if (bytes >= least_) return false;
+        take(how, bytes);
+        return true;
+    }
+    /// Finds the quantum with which the boxes have this sum of squared errors. False: there is none.
+    bool findQuantum(SteppedFrame how, double squares);
+    /// Trials are compared as if all had this sum.
+    void compareAt(double squares) { squares_ = squares; }
+    /// Tries the best so far with a change.
+    template <class Change> bool attemptWith(const Change& change) {
+        SteppedFrame how = best_;
+        change(how.steps);
+        return attempt(how);
+    }
+
+    /// Tries to split along other axes, `rounds` times each unless nothing changes, and shorter or longer lines.
+    void improveSplit(int rounds);
+    /// Tries a factor on the usual quantum, and its square if that is better, else its inverse.
+    void improveQuantum();
+
+private:
+    void take(const SteppedFrame& how, double bytes) {
+        least_ = bytes;
+        best_ = how;
+        trials_.keepLatest();
+    }
+    /// The bytes that a trial would take with the sum of squares at which all are compared.
+    double bytesAtMean(const TrialOfSteps& trial) const {
+        constexpr double kFurthest = 16;
+        if (squares_ == 0) return trial.bytes;
+        return trial.bytes * std::pow(std::clamp(trial.squares / squares_, 1 / kFurthest, kFurthest), power_);
+    }
+
+    StepTrials trials_;
+    SteppedFrame best_;
+    double least_ = std::numeric_limits<double>::infinity();
+    double squares_ = 0;  ///< 0: errors are not compared
+    double power_ = 0.25; ///< bytes grow with this power of 1 / squares
+};
+
+} // namespace tessera::codec
