@@ -39,7 +39,7 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
         whole[b] = !segments[0].empty() && isWhole(segments[0][0]) ? 1 : 0;
         roundAsDecoded(format, maxError, taken.bricks[b]->decoded, input);
         if (format.subsampled) addSubsamples(format, input.samples, input.present, compressor, segments);
-        if (!from.empty()) seen.depth[b] = static_cast<std::uint8_t>(before->depth[b] + 1);
+        seen.depth[b] = static_cast<std::uint8_t>(from.empty() ? 0 : before->depth[b] + 1);
         if (frame.predicted) segments[0].insert(segments[0].begin(), static_cast<std::byte>(seen.depth[b]));
         for (const Bytes& segment : segments) seen.bytes[b] += segment.size();
         about = statisticsOf(part, input, statistics);

@@ -43,7 +43,7 @@ bool isBounded(const volume::Parameter& parameter, const PackOptions& options) {
 
 /// Memory of the bricks being coded, in bytes: samples, flags, codes and coefficients on every thread. Where
 /// coefficients are quantised, what a reader will decode is computed beside them, and the time before is predicted
-/// from.
+/// from, or what is decoded compared.
 double bytesOfBricks(const volume::BrickGrid& grid, const volume::Parameter& parameter, const PackOptions& options) {
     constexpr double kCodes = 12, kWithDecoded = 36;
     const double codes = isBounded(parameter, options) ? kWithDecoded : kCodes;
