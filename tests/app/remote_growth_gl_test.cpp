@@ -20,8 +20,6 @@
 #include <thread>
 #include <unistd.h>
 
-extern char** environ;
-
 namespace tessera::app {
 namespace {
 
