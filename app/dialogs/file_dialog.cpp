@@ -157,7 +157,7 @@ void FileDialog::answerWith(std::optional<Answer>& answer) {
 
 void FileDialog::drawList(std::optional<Answer>& answer, float height) {
     constexpr ImGuiTableFlags flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH;
-    if (!ImGui::BeginTable("##files", 3, flags, {0, height})) return;
+    if (!beginScrolledTable("##files", 3, flags, {0, height})) return;
     const float em = ImGui::GetFontSize();
     ImGui::TableSetupScrollFreeze(0, 1);
     ImGui::TableSetupColumn("Name", ImGuiTableColumnFlags_WidthStretch);

@@ -1,6 +1,7 @@
 #include "app/ui/commands.h"
 
 #include "app/ui/theme.h"
+#include "app/ui/widgets.h"
 
 #include <algorithm>
 #include <cctype>
@@ -235,7 +236,7 @@ std::vector<KeyHelp> keyHelp(const std::vector<Command>& commands, const std::st
 void drawKeyHelp(const std::vector<KeyHelp>& rows) {
     const float height = std::min(ImGui::GetTextLineHeightWithSpacing() * float(rows.size() + 1),
                                   ImGui::GetMainViewport()->Size.y * 0.6f);
-    if (!ImGui::BeginTable(
+    if (!beginScrolledTable(
             "##keys", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollY, {0, height}))
         return;
     ImGui::TableSetupColumn("keys");

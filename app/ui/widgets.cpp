@@ -10,6 +10,7 @@
 #include <cctype>
 #include <cmath>
 #include <imgui.h>
+#include <imgui_internal.h> // CalcItemSize, ItemSize
 #include <imgui_stdlib.h>
 
 namespace tessera::app {
@@ -339,6 +340,23 @@ std::string wrappedAtSpaces(const std::string& text, float width) {
         }
     }
     return out;
+}
+
+// ImGui has two opinions on whether such a table is seen. The table itself is where its place overlaps what its window
+// shows. The window made inside for its rows is where both have pixels in common, once its place is cut to whole
+// pixels. If the first says yes and the second no, ImGui fails an assertion: where only a fraction of a pixel is left
+// of a table that is scrolled away, or where the window shows no line at all, as one dragged out below does.
+bool beginScrolledTable(const char* id, int columns, ImGuiTableFlags flags, ImVec2 size) {
+    const ImGuiWindow* const window = ImGui::GetCurrentWindow();
+    const ImVec2 room = ImGui::GetContentRegionAvail(), at = window->DC.CursorPos;
+    const ImVec2 own = ImGui::CalcItemSize(size, std::max(room.x, 1.0f), std::max(room.y, 1.0f));
+    const float top = std::floor(at.y), bottom = top + std::floor(own.y);
+    const bool seen = std::max(top, window->ClipRect.Min.y) < std::min(bottom, window->ClipRect.Max.y);
+    if (!seen && !GImGui->LogEnabled) { // what is logged as text is all of it
+        ImGui::ItemSize(own);
+        return false;
+    }
+    return ImGui::BeginTable(id, columns, flags, size);
 }
 
 } // namespace tessera::app

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <imgui.h>
 #include <optional>
 #include <span>
 #include <string>
@@ -70,5 +71,8 @@ bool drawListButton(const char* label);
 /// The text with line ends for a width in pixels, at spaces alone: ImGui would also break "a..b" between the dots. A
 /// word wider than a line stays whole, as do the groups of digits of a number.
 std::string wrappedAtSpaces(const std::string& text, float width);
+/// ImGui::BeginTable for tables with ImGuiTableFlags_ScrollX or ScrollY, which begin with this alone. ImGui::EndTable()
+/// follows where it is true; where nothing of the table is seen it takes its place and is false.
+bool beginScrolledTable(const char* id, int columns, ImGuiTableFlags flags, ImVec2 size);
 
 } // namespace tessera::app

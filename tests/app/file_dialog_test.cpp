@@ -83,6 +83,22 @@ TEST_F(FileDialogTest, DraggedOutOfTheWindowItComesBack) {
     }
 }
 
+// Its window shows no line then, in the midst of a list that is scrolled.
+TEST_F(FileDialogTest, ScrolledAndDraggedOutBelowItComesBack) {
+    ImGui::GetIO().DisplaySize = {588, 150};
+    show(FileMode::Open);
+    ImGuiWindow* const window = ImGui::GetCurrentContext()->NavWindow->RootWindow;
+    ImGui::SetScrollY(window, 40);
+    frames(2);
+    ASSERT_GT(window->Scroll.y, 20) << "the window is too high for this test";
+    ImGui::GetIO().DisplaySize = {1012, 385};
+    for (int y = 200; y < 420; ++y) {
+        ImGui::SetWindowPos(window->Name, {40, float(y)});
+        frames(1);
+        EXPECT_LE(window->Pos.y + window->Size.y, 385);
+    }
+}
+
 TEST_F(FileDialogTest, EnterOpensWhatAClickChoseInTheList) {
     std::ofstream(folder / "there.txt") << "x";
     show(FileMode::Open);

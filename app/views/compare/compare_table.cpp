@@ -3,6 +3,7 @@
 #include "app/pane/plot.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
 #include "app/views/compare/compare_panes.h"
 #include "volume/base/byte_text.h"
 
@@ -97,7 +98,7 @@ bool beginCompareTable(const CompareTable& table, std::size_t rows) {
     // ImGui stores the widths per table, so each layout has an id of its own.
     const std::string id = std::string(table.scrolls ? "compare scrolled" : "compare") +
                            (table.changes ? "" : " short") + std::to_string(table.columns.size());
-    if (!ImGui::BeginTable(id.c_str(), static_cast<int>(table.widths.size()), flags, {0, height})) return false;
+    if (!beginScrolledTable(id.c_str(), static_cast<int>(table.widths.size()), flags, {0, height})) return false;
     ImGui::TableSetupScrollFreeze(1, 1);
     const std::size_t stretched = table.changes ? 1 : 0;
     for (std::size_t i = 0; i < table.widths.size(); ++i)

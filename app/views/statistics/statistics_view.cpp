@@ -98,7 +98,7 @@ bool beginTable(const char* id, const std::vector<std::string>& heads,
         (room ? ImGuiTableFlags_SizingStretchProp : ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX);
     // ImGui stores the widths per table, so each layout has an id of its own.
     const std::string name = id + std::string(room ? "" : " scrolled");
-    if (!ImGui::BeginTable(name.c_str(), static_cast<int>(heads.size()), flags, size)) return false;
+    if (!beginScrolledTable(name.c_str(), static_cast<int>(heads.size()), flags, size)) return false;
     ImGui::TableSetupScrollFreeze(frozen, 1);
     for (std::size_t c = 0; c < heads.size(); ++c)
         ImGui::TableSetupColumn(heads[c].c_str(), room ? ImGuiTableColumnFlags_None : ImGuiTableColumnFlags_WidthFixed,
