@@ -157,8 +157,11 @@ std::uint8_t Archive::Impl::depthOf(const FrameRecord& frame, std::size_t brick)
 /// Decodes the bricks that a predicted one follows, from the last that is not predicted, or is kept, to its own.
 void Archive::Impl::decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
                            std::span<const std::uint8_t> present, DecodedBrick& out) const {
-    const auto keyOf = [&](const FrameRecord& one) {
-        return KeptNumbers::Key{std::size_t(one.time) * components + one.component, brick, level};
+    const auto numberOf = [&](const FrameRecord& one) { return std::size_t(one.time) * components + one.component; };
+    const auto keyOf = [&](const FrameRecord& one) { return KeptNumbers::Key{numberOf(one), brick, level}; };
+    const auto continues = [&](const FrameRecord& one) {
+        const std::size_t next = numberOf(one) + (metadata.alternating ? 2 : 1) * components;
+        return next < index.frames.size() && index.frames[next].predicted;
     };
     std::vector<const FrameRecord*> chain{&frame}; // latest first
     KeptNumbers::Numbers numbers;                  // of the one that the last of the chain is predicted from
@@ -181,8 +184,7 @@ void Archive::Impl::decode(const FrameRecord& frame, const BrickFormat& format, 
         const FrameRecord& one = *chain[i];
         decodeOwn(one, i == 0 ? format : brickFormat(format, one), brick, level, present, out);
         if (numbers) addPrediction(predictionFrom(one.numbers, *numbers), out);
-        if ((header.header.features & kPredictedFrames) == 0) return;
-        if (format.type != volume::ScalarType::F32) return;
+        if (i == 0 && !continues(frame)) return;
         numbers = std::make_shared<const Bytes>(numbersOf(one, format.type, out));
         kept.keep(keyOf(one), numbers);
     }

@@ -3,6 +3,7 @@
 #include "codec/brick/decoded_brick.h"
 #include "codec/bytes/bytes.h"
 
+#include <compare>
 #include <cstddef>
 #include <list>
 #include <map>

@@ -2,6 +2,7 @@
 #include "codec/brick/brick_codec.h"
 #include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
+#include "tests/codec/plain/decoder.h"
 #include "tests/fuzz/fuzz_model.h"
 #include "tests/volume/regions.h"
 
@@ -24,6 +25,20 @@ volume::Dataset corpusDataset() {
                         {"region", ScalarType::U8, 1, Texture::Noise, true, true},
                         {"U", ScalarType::F32, 2, Texture::Nasty, false, false}},
                        1);
+}
+
+/// Rough samples, all of which change a little from time to time.
+volume::Dataset slowDataset() {
+    volume::Dataset made = makeDataset({9, 8, 10}, {{"T", ScalarType::F32, 1, Texture::Smooth, false, false}}, 4);
+    const volume::Lattice lattice = made.info.lattice;
+    made.info.parameters[0].ranges = {{0, 10}};
+    made.read = [lattice](int, int, int time) {
+        volume::Field field = volume::makeField(lattice, ScalarType::F32);
+        std::mt19937 random(1);
+        for (float& sample : field.as<float>()) sample = float(random() % 1000) / 100 + 0.05f * float(time);
+        return field;
+    };
+    return made;
 }
 
 // Archives of every set of features stay readable: these files were written once.
@@ -57,6 +72,19 @@ TEST(Corpus, AStoredArchiveOfPartsIsShownFromSamplesOfLevelZero) {
     EXPECT_EQ(archive.read({0, 0, last, {0, 0, 0}}).values[0], archive.read({0, 0, 0, {0, 0, 0}}).values[0]);
 }
 
+TEST(Corpus, AStoredArchiveOfPredictedFramesHasItsSamplesAtEveryTime) {
+    const std::string path = corpus() + "fuzz_archive/predicted-3.tsr";
+    const plain::Decoder decoder(readFile(path));
+    EXPECT_EQ(decoder.depth(3, 0), 3);
+    const Archive archive(path);
+    EXPECT_EQ(verifyArchive(archive).damaged, 0u);
+    const volume::Dataset made = slowDataset();
+    for (int time = 3; time >= 0; --time) {
+        const volume::Field is = readField(archive, 0, 0, time), was = made.read(0, 0, time);
+        for (std::size_t i = 0; i < was.count(); ++i) ASSERT_NEAR(is.as<float>()[i], was.as<float>()[i], 0.01001);
+    }
+}
+
 /// Not a check: writes the seeds of fuzz_brick and fuzz_archive when the format changes
 /// (--gtest_also_run_disabled_tests).
 TEST(Corpus, DISABLED_WriteSeeds) {
@@ -76,6 +104,12 @@ TEST(Corpus, DISABLED_WriteSeeds) {
     PackOptions ofParts;
     ofParts.brickSize = 8;
     pack(parts, ofParts, corpus() + "fuzz_archive/parts-3-subsamples.tsr");
+    volume::Dataset slow = slowDataset();
+    PackOptions within;
+    within.lattice = StoredLattice::CC;
+    within.maxError = 1e-3;
+    within.brickSize = 8;
+    pack(slow, within, corpus() + "fuzz_archive/predicted-3.tsr");
     const std::string grown = corpus() + "fuzz_archive/grown-3-statistics.tsr";
     for (int step = 0; step < 3; ++step) {
         const char* const name = step == 1 ? "p" : "T";

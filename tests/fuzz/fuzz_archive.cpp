@@ -37,6 +37,7 @@ void readAll(const std::string& path) {
         (void)codec::verifyArchive(archive);
         const glm::ivec3 last = archive.grid().count() - 1;
         for (int level = 0; level < archive.grid().levels; ++level) try {
+                (void)archive.read({0, int(archive.info().times.size()) - 1, level, last});
                 (void)archive.read({0, 0, level, last});
                 (void)archive.stats({0, 0, level, last});
                 (void)archive.distribution({0, 0, level, last});
