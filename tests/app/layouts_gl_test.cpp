@@ -60,7 +60,7 @@ const std::vector<Shipped>& shipped() {
          true},
         {"compression_error",
          "data histogram history layers log scatterMatrix slices timeline transfer volume",
-         "T error [K] -0.355 .. 0.355",
+         "T error [K] -0.359 .. 0.359",
          {{"volume", Cold, 0.0539},
           {"volume", Warm, 0.01},
           {"slices", Warm, 0.0156},
