@@ -12,7 +12,6 @@ namespace {
 
 // Factors on the bytes beyond which trials end: with details split along all axes, and with them split along none.
 constexpr double kHopeless = 1.6, kHopelessUnsplit = 1.06;
-constexpr int kMostBits = 29;        // of codes
 constexpr double kMeanQuantum = 1.2; // as kUsualQuantum, under a bound of the mean error: few samples are beyond it
 
 /// Width in bits of the differences between the codes of a frame and those of the decoded frame before.
@@ -147,10 +146,6 @@ std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, const Fr
 
 } // namespace
 
-StepChoice usualSteps() {
-    return {{7, 4}, quantumOf(kUsualQuantum)};
-}
-
 std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, const FrameSamples& samples,
                                         const FrameRecord& frame, const Model& model, const FrameOptions& options,
                                         const TimeBefore& before, const Taken& taken) {
@@ -169,31 +164,6 @@ std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, const Fra
     if (!mean || quantum > 0)
         if (auto again = attempt({.steps = last->steps, .rounded = false, .quantum = quantum})) return again;
     return attempt({});
-}
-
-double MeanBound::largestQuantum() const {
-    constexpr double kMost = kUsualQuantum; // a coarser one only makes more corrections
-    return kMost * mostError;
-}
-
-bool setQuantum(double quantum, SteppedFrame& steps) {
-    MeanBound& mean = *steps.mean;
-    mean.quantum = std::min(quantum, mean.largestQuantum());
-    steps.maxError = std::min(mean.quantum / mean.fineness, mean.mostError);
-    const std::optional<NumberCoding> numbers = steppedCoding(mean.range, steps.maxError);
-    if (!numbers) return false;
-    steps.numbers = *numbers;
-    steps.codeBits = codeBitsOf(mean.range, *numbers) + 1;
-    steps.steps.quantum = quantumOf(mean.quantum / steps.maxError);
-    return steps.codeBits <= kMostBits;
-}
-
-void useSteps(const SteppedFrame& steps, FrameRecord& frame) {
-    frame.numbers = steps.numbers;
-    frame.wavelet = steps.wavelet;
-    frame.predicted = steps.predicted;
-    frame.codeBits = steps.codeBits;
-    frame.steps = steps.steps;
 }
 
 } // namespace tessera::codec

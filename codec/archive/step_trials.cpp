@@ -44,6 +44,35 @@ double boundsOf(std::uint32_t quantum) {
     return quantum / kQuantumUnit;
 }
 
+StepChoice usualSteps() {
+    return {{7, 4}, quantumOf(kUsualQuantum)};
+}
+
+double MeanBound::largestQuantum() const {
+    constexpr double kMost = kUsualQuantum; // a coarser one only makes more corrections
+    return kMost * mostError;
+}
+
+bool setQuantum(double quantum, SteppedFrame& steps) {
+    MeanBound& mean = *steps.mean;
+    mean.quantum = std::min(quantum, mean.largestQuantum());
+    steps.maxError = std::min(mean.quantum / mean.fineness, mean.mostError);
+    const std::optional<NumberCoding> numbers = steppedCoding(mean.range, steps.maxError);
+    if (!numbers) return false;
+    steps.numbers = *numbers;
+    steps.codeBits = codeBitsOf(mean.range, *numbers) + 1;
+    steps.steps.quantum = quantumOf(mean.quantum / steps.maxError);
+    return steps.codeBits <= kMostBits;
+}
+
+void useSteps(const SteppedFrame& steps, FrameRecord& frame) {
+    frame.numbers = steps.numbers;
+    frame.wavelet = steps.wavelet;
+    frame.predicted = steps.predicted;
+    frame.codeBits = steps.codeBits;
+    frame.steps = steps.steps;
+}
+
 StepTrials::StepTrials(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
                        const FrameOptions& options, const SeenFrame* before)
     : type_(samples.type()), maxError_(boundOf(frame, options)), measures_(options.rms > 0),
