@@ -124,6 +124,7 @@ TEST(BrickCodec, DecodesWhatItEncodes) {
                             continue;
                         }
                     }
+                    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): every bit counts
                     ASSERT_EQ(std::memcmp(&value, &original, sizeof(T)), 0) << "trial " << trial << " sample " << i;
                 }
             });

@@ -115,7 +115,8 @@ private:
 } // namespace
 } // namespace tessera::codec
 
-// The linker puts these in place of the system's (--wrap).
+// The linker puts these in place of the system's (--wrap), which gives them their names.
+// NOLINTBEGIN(bugprone-reserved-identifier)
 extern "C" {
 int __real_fsync(int descriptor);
 int __real_ftruncate(int descriptor, off_t size);
@@ -146,6 +147,7 @@ int __wrap_rename(const char* from, const char* to) {
     return __real_rename(from, to);
 }
 }
+// NOLINTEND(bugprone-reserved-identifier)
 
 namespace tessera::codec {
 namespace {
