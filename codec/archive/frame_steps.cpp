@@ -92,12 +92,43 @@ std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, const FrameS
     return best;
 }
 
+/// Tries steps for a bound of the mean error. False: none can meet it.
+bool tryOwnMean(StepSearch& search, SteppedFrame how, const StepsBefore& before, double limit, double squares) {
+    constexpr double kApart = 1.4; // factor between quanta in units of the bound
+    constexpr int kRounds = 2;     // of axes: with one, a small gain early can keep it from a large one
+    if (before.steps) {
+        search.compareAt(squares);
+        search.attempt(how);
+        return true;
+    }
+    if (before.rounded) how.steps.split.axes = 0;
+    if (!search.findQuantum(how, squares)) return false;
+    if (search.least() > (before.rounded ? kHopelessUnsplit : kHopeless) * limit) return true;
+    if (before.rounded) search.attemptWith([](StepChoice& steps) { steps.split = usualSteps().split; });
+    search.improveSplit(kRounds);
+    const auto scale = [&](double fineness) {
+        SteppedFrame other = search.best();
+        other.mean->fineness = fineness;
+        return setQuantum(other.mean->quantum, other) && search.attempt(other);
+    };
+    const double fineness = how.mean->fineness;
+    scale(fineness * kApart) ? scale(fineness * kApart * kApart) : scale(fineness / kApart);
+    return true;
+}
+
+/// Tries the best way so far with differences from the time before.
+void tryMeanPrediction(StepSearch& search, const SeenFrame& before) {
+    SteppedFrame differences = search.best();
+    const FloatRange own = differences.mean->range, was = floatRangeOf(before.field);
+    differences.predicted = true;
+    differences.mean->apart = double(std::max(own.hi, was.hi)) - double(std::min(own.lo, was.lo));
+    if (setQuantum(differences.mean->quantum, differences)) search.attempt(differences);
+}
+
 /// Steps for a bound of the mean error.
 std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, const FrameSamples& samples,
                                          const FrameRecord& frame, const Model& model, const FrameOptions& options,
-                                         const StepsBefore& before, const Taken& taken) {
-    constexpr double kApart = 1.4;          // factor between quanta in units of the bound
-    constexpr int kRounds = 2;              // of axes: with one, a small gain early can keep it from a large one
+                                         const StepsBefore& before, const SeenFrame* seen, const Taken& taken) {
     constexpr double kFirstQuantum = 4;     // in units of the mean error
     constexpr double kLeastShare = 1. / 16; // of the allowed squares, below which boxes are background
     SteppedFrame how;
@@ -107,9 +138,10 @@ std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, const Fr
     const RoundingErrors all = roundingErrors(samples, frame.numbers);
     how.mean = {floatRangeOf(samples), options.rms * options.rms * all.count, options.mostError,
                 before.steps ? boundsOf(before.steps->quantum) : kMeanQuantum, quantum};
+    if (seen && seen->mask != frame.mask) seen = nullptr;
     if (!setQuantum(quantum, how)) return std::nullopt;
 
-    StepSearch search(StepTrials(grid, samples, frame, options, nullptr));
+    StepSearch search(StepTrials(grid, samples, frame, options, seen));
     StepTrials& trials = search.trials();
     const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
     const TrialOfSteps rounded = trials.ofSamples(model, taken.serves(frame, model) ? &taken : nullptr);
@@ -117,27 +149,8 @@ std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, const Fr
     // Errors are not the same everywhere: the boxes get the part of them that they have by rounding samples.
     const double part = all.squares > 0 ? how.mean->allowed / all.squares * rounded.squares : 0;
     const double squares = part > kLeastShare * mean ? part : mean;
-    if (before.steps) {
-        search.compareAt(squares);
-        search.attempt(how);
-    } else {
-        if (before.rounded) how.steps.split.axes = 0;
-        if (!search.findQuantum(how, squares)) return std::nullopt;
-        if (search.least() > (before.rounded ? kHopelessUnsplit : kHopeless) * limit) return std::nullopt;
-        if (before.rounded) search.attemptWith([](StepChoice& steps) { steps.split = usualSteps().split; });
-        search.improveSplit(kRounds);
-        const auto scale = [&](double fineness) {
-            SteppedFrame other = search.best();
-            other.mean->fineness = fineness;
-            return setQuantum(other.mean->quantum, other) && search.attempt(other);
-        };
-        const double fineness = how.mean->fineness;
-        if (!scale(fineness * kApart)) {
-            scale(fineness / kApart);
-        } else {
-            scale(fineness * kApart * kApart);
-        }
-    }
+    if (!tryOwnMean(search, how, before, limit, squares)) return std::nullopt;
+    if (seen && trials.predicts()) tryMeanPrediction(search, *seen);
     if (search.least() >= limit) return std::nullopt;
     SteppedFrame best = search.best();
     best.bricks = trials.takeBest();
@@ -155,7 +168,7 @@ std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, const Fra
     if ((frame.numbers.kind != NumberKind::Quantised && !mean) || options.numbers) return std::nullopt;
     const KnownModel* const last = before.coding;
     const auto attempt = [&](const StepsBefore& steps) {
-        return mean ? tryMeanSteps(grid, samples, frame, model, options, steps, taken)
+        return mean ? tryMeanSteps(grid, samples, frame, model, options, steps, before.seen, taken)
                     : trySteps(grid, samples, frame, model, options, steps, before.seen, taken);
     };
     if (!last || before.number % kAgain == 0) return attempt({});

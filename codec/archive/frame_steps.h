@@ -17,9 +17,8 @@ struct TimeBefore {
 /// Quantised coefficients for a frame that would otherwise be coded as in `frame`, with quantised samples and `model`;
 /// none if that would be as short, or the frame has no error bound. For a mean error (options.rms) the quantum is one
 /// with which the boxes tried have the same error as with rounded samples; the frame as a whole may need another one.
-/// At every sixteenth time all steps are tried, at others first those of the time before. With a bound of the largest
-/// error, what is best then is also tried with differences from the time before. `taken`: bricks transformed for the
-/// model.
+/// At every sixteenth time all steps are tried, at others first those of the time before. What is best then is also
+/// tried with differences from the time before. `taken`: bricks transformed for the model.
 std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, const FrameSamples& samples,
                                         const FrameRecord& frame, const Model& model, const FrameOptions& options,
                                         const TimeBefore& before, const Taken& taken);

@@ -61,6 +61,8 @@ bool setQuantum(double quantum, SteppedFrame& steps) {
     if (!numbers) return false;
     steps.numbers = *numbers;
     steps.codeBits = codeBitsOf(mean.range, *numbers) + 1;
+    if (steps.predicted)
+        steps.codeBits = std::max(steps.codeBits, int(std::ceil(std::log2(mean.apart / numbers->step + 2))) + 2);
     steps.steps.quantum = quantumOf(mean.quantum / steps.maxError);
     return steps.codeBits <= kMostBits;
 }

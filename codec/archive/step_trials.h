@@ -24,6 +24,8 @@ struct MeanBound {
     double quantum = 0;                        ///< of coefficients whose waveforms have length 1, in stored units
     double power = QuantumSearch::kUsualPower; ///< with which squared errors grow with it
 
+    double apart = 0; ///< no sample is further from the one it is predicted from, if it is
+
     double largestQuantum() const;
 };
 

@@ -211,6 +211,28 @@ TEST_F(Predicted, JoinedArchivesHaveTheSamplesOfBoth) {
     EXPECT_EQ(verifyArchive(joined).damaged, 0u);
 }
 
+TEST_F(Predicted, TimesUnderABoundOfTheMeanErrorArePredictedToo) {
+    constexpr double kDecibels = 60;
+    SlowSeries series;
+    PackOptions options = boundedOptions();
+    options.maxError = 0;
+    options.psnr = kDecibels;
+    const std::uint64_t predicted = packedBytes(series, options, path);
+    EXPECT_GT(plain::Decoder(readFile(path)).depth(3, 4), 0);
+    const Archive archive(path);
+    for (int time = 0; time < series.times; ++time) {
+        const Field is = readField(archive, 0, 0, time), was = series.field(is.lattice, time);
+        double squares = 0;
+        for (std::size_t i = 0; i < is.count(); ++i)
+            squares += std::pow(double(is.as<float>()[i]) - double(was.as<float>()[i]), 2);
+        const double reached = 20 * std::log10(20 / std::sqrt(squares / double(is.count())));
+        EXPECT_GE(reached, kDecibels) << time;
+        EXPECT_LT(reached, kDecibels + 1) << time;
+    }
+    options.mostPredicted = 0;
+    EXPECT_LT(1.5 * double(predicted), double(packedBytes(series, options, path)));
+}
+
 TEST_F(Predicted, OnD4ThePredictionComesFromTheSameGrid) {
     SlowSeries series;
     series.times = 8;
