@@ -1,6 +1,7 @@
 // Tables and Tecplot: places, names, units, times, and files that end early.
 #include "tests/import/foreign_files.h"
 
+#include <glm/geometric.hpp>
 #include <random>
 
 namespace tessera::volume {
