@@ -1,5 +1,6 @@
 #include "app/pane/task_tabs.h"
 
+#include "app/pane/plot.h"
 #include "app/ui/theme.h"
 
 #include <algorithm>
