@@ -2,6 +2,7 @@
 
 #include "vis/passes/gl_frame.h"
 #include "vis/passes/present.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <utility>

@@ -7,6 +7,7 @@
 #include "app/views/data/layer_list.h"
 #include "app/views/data/new_entry.h"
 #include "app/views/data/task_settings.h"
+#include "app/views/timeline/keyframes.h"
 
 #include <algorithm>
 #include <array>
