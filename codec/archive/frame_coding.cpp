@@ -75,11 +75,11 @@ bool FrameCoding::restart(double quantum) {
 void FrameCoding::restartRounded(double bound) {
     steps.reset();
     repeated = repeatedRounded;
-    frame.numbers = rounded.numbers;
-    frame.wavelet = rounded.wavelet;
-    frame.codeBits = rounded.codeBits;
-    frame.steps = rounded.steps;
-    frame.model = rounded.model;
+    std::vector<FrameBrick> bricks = std::move(frame.bricks);
+    std::vector<Segment> segments = std::move(frame.segments);
+    frame = rounded;
+    frame.bricks = std::move(bricks);
+    frame.segments = std::move(segments);
     maxError = bound;
     seen.bytes.assign(seen.bytes.size(), 0);
 }

@@ -1,4 +1,5 @@
 #include "codec/archive/archive.h"
+#include "codec/archive/frame_coding.h"
 #include "codec/blocks/join.h"
 #include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
@@ -231,6 +232,30 @@ TEST_F(Predicted, TimesUnderABoundOfTheMeanErrorArePredictedToo) {
     }
     options.mostPredicted = 0;
     EXPECT_LT(1.5 * double(predicted), double(packedBytes(series, options, path)));
+}
+
+// Where no quantum meets a mean error, samples are rounded, which are not predicted: readers refuse such frames.
+TEST(FrameCoding, BeginsAgainWithRoundedSamplesAsIfNothingElseHadBeenTried) {
+    const volume::BrickGrid grid{{LatticeKind::CC, {8, 8, 8}, {1, 1, 1}, {0, 0, 0}}, 8, 1, 0};
+    FrameCoding coding(grid);
+    coding.frame.numbers = coding.rounded.numbers = {NumberKind::Quantised, 1, 0.5};
+    coding.rounded.codeBits = 9;
+    coding.repeatedRounded = {1};
+    coding.steps.emplace();
+    coding.steps->numbers = {NumberKind::Stepped, 1, 0.01};
+    coding.steps->predicted = true;
+    coding.steps->codeBits = 17;
+    useSteps(*coding.steps, coding.frame);
+    coding.frame.bricks.resize(1);
+    coding.frame.segments.resize(1);
+    coding.restartRounded(0.25);
+    EXPECT_FALSE(coding.frame.predicted);
+    EXPECT_EQ(coding.frame.numbers, coding.rounded.numbers);
+    EXPECT_EQ(coding.frame.codeBits, 9);
+    EXPECT_EQ(coding.frame.bricks.size(), 1u);
+    EXPECT_EQ(coding.frame.segments.size(), 1u);
+    EXPECT_EQ(coding.repeated, std::vector<std::uint8_t>{1});
+    EXPECT_FALSE(coding.steps);
 }
 
 TEST_F(Predicted, OnD4ThePredictionComesFromTheSameGrid) {
