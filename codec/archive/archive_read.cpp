@@ -92,6 +92,8 @@ Model Archive::Impl::model(const FrameRecord& frame) const {
         damaged(path, record.offset, std::string("a model cannot be read: ") + reason(status));
     if (parsed.contexts.byBand && (header.header.features & kBandContexts) == 0)
         damaged(path, record.offset, "a model has contexts that the archive does not declare");
+    if (!parsed.fitted.empty() && (header.header.features & kFittedModels) == 0)
+        damaged(path, record.offset, "a model has predictions that the archive does not declare");
     return parsed;
 }
 

@@ -116,6 +116,7 @@ void ArchiveWriter::Impl::writeModel(const Model& chosen, bool idle, std::size_t
     const Bytes bytes = isStepped                                           ? serialise(frame.steps)
                         : idle && (commits.header.features & kCompact) != 0 ? Bytes()
                                                                             : serialise(model);
+    if (!isStepped && !model.fitted.empty()) commits.header.features |= kFittedModels;
     frame.model = static_cast<std::int32_t>(models++);
     page.models.push_back({file.position(), bytes.size(), checksum(bytes)});
     file.append(bytes);

@@ -33,8 +33,8 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
         input.take(own, own.indexOf(ownNumber), part, frame.mask >= 0);
         const std::vector<std::uint32_t> from = prediction(b);
         if (!taken.bricks[b])
-            taken.bricks[b] =
-                prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory, from);
+            taken.bricks[b] = prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory, from,
+                                           format.isStepped() ? nullptr : &model.fitted);
         segments = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
         whole[b] = !segments[0].empty() && isWhole(segments[0][0]) ? 1 : 0;
         roundAsDecoded(format, maxError, taken.bricks[b]->decoded, input);

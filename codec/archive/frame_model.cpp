@@ -21,7 +21,8 @@ constexpr int kMostTables = 24;
 
 /// Histogram of the tokens of some bricks, spread over the frame; the bricks are kept in `taken` if it is not null.
 Histogram sampleTokens(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
-                       std::size_t most, Contexts contexts, double maxError = 0, Taken* taken = nullptr) {
+                       std::size_t most, Contexts contexts, double maxError = 0, Taken* taken = nullptr,
+                       const FittedWeights* fitted = nullptr) {
     const std::size_t bricks = grid.brickCount(), count = std::min(bricks, most);
     // Large frames are subsampled. The step is coprime to the number of chunks per row, to cover all positions of a
     // row.
@@ -30,7 +31,7 @@ Histogram sampleTokens(const volume::BrickGrid& grid, const FrameSamples& sample
     Histogram sum(grid.levels, contexts);
     std::mutex mutex;
     if (taken) {
-        *taken = {frame.wavelet, frame.bodyCentred, contexts, maxError, {}};
+        *taken = {frame.wavelet, frame.bodyCentred, contexts, maxError, {}, fitted ? *fitted : FittedWeights()};
         taken->bricks.resize(bricks);
     }
     parallelRanges(count, [&](std::size_t begin, std::size_t end) {
@@ -42,7 +43,7 @@ Histogram sampleTokens(const volume::BrickGrid& grid, const FrameSamples& sample
             const glm::ivec3 brick = grid.indexOf(number);
             input.take(grid, brick, samples, frame.mask >= 0);
             PreparedBrick prepared = prepareBrick(brickFormat(grid, brick, samples.type(), frame), input.samples,
-                                                  input.present, maxError, contexts, memory);
+                                                  input.present, maxError, contexts, memory, {}, fitted);
             countBrick(prepared, part, every);
             if (taken) taken->bricks[number] = std::move(prepared);
         }
@@ -94,6 +95,28 @@ int shiftFor(const Histogram& histogram) {
     return count == 0 ? 0 : std::max(0, int(std::lround(octaves / count - kWanted)));
 }
 
+/// Weights fitted to about `most` samples of a frame.
+FittedWeights fittedTo(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame, int shift,
+                       std::size_t most) {
+    const std::size_t bricks = grid.brickCount(), count = std::min(bricks, kModelBricks);
+    const int every = int(std::max<std::size_t>(1, samples.count() / bricks * count / most));
+    WeightFit sum;
+    std::mutex mutex;
+    parallelRanges(count, [&](std::size_t begin, std::size_t end) {
+        BrickInput input;
+        SplitMemory memory;
+        WeightFit part;
+        for (std::size_t i = begin; i < end; ++i) {
+            const glm::ivec3 brick = grid.indexOf(i * bricks / count);
+            input.take(grid, brick, samples, false);
+            addToFit(brickFormat(grid, brick, samples.type(), frame), input.samples, shift, every, memory, part);
+        }
+        const std::lock_guard lock(mutex); // the order does not matter, since all sums are exact
+        sum.add(part);
+    });
+    return sum.solved();
+}
+
 /// Bitwise coded floats do not profit from contexts by band: their low bits are noise in all bands.
 bool prefersByBand(const FrameRecord& frame) {
     return frame.numbers.kind != NumberKind::Float;
@@ -136,6 +159,34 @@ bool prefersBodyCentred(const volume::BrickGrid& grid, const FrameSamples& sampl
         return least;
     };
     return bits(true) < bits(false);
+}
+
+/// Replaces a model by one with fitted predictions if that is shorter, and sets wavelet and bodyCentred of the frame:
+/// coarse samples are then every second one, as with (2,0).
+void tryFitted(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameOptions& options,
+               FrameRecord& frame, Model& model, Taken* taken) {
+    constexpr std::size_t kSome = 1 << 19, kMany = 3 << 19; // samples to fit weights to
+    FrameRecord predicted = frame;
+    predicted.wavelet = Wavelet::N2;
+    predicted.bodyCentred = grid.lattice.kind == volume::LatticeKind::BCC;
+    const bool possible = frame.mask < 0 && frame.codeBits <= kBitsOfFit && grid.levels > 1 &&
+                          canBeFitted(brickFormat(grid, glm::ivec3(0), samples.type(), predicted), false);
+    if (!possible) return;
+    const Contexts contexts = model.contexts;
+    const double usual = bitsWith(model, sampleTokens(grid, samples, frame, kModelBricks, contexts));
+    const FittedWeights weights =
+        fittedTo(grid, samples, predicted, contexts.shift, options.effort < kLongestEffort ? kSome : kMany);
+    Taken own;
+    const Histogram tokens = sampleTokens(grid, samples, predicted, kModelBricks, contexts, boundOf(frame, options),
+                                          taken ? &own : nullptr, &weights);
+    Model fitted = makeModel(tokens, kMostTables);
+    fitted.fitted = weights;
+    const auto bytesOf = [](const Model& of) { return 8.0 * double(serialise(of).size()); };
+    if (bitsWith(fitted, tokens) + bytesOf(fitted) >= usual + bytesOf(model)) return;
+    frame.wavelet = predicted.wavelet;
+    frame.bodyCentred = predicted.bodyCentred;
+    model = std::move(fitted);
+    if (taken) *taken = std::move(own);
 }
 
 } // namespace
@@ -210,8 +261,10 @@ Model chooseModel(const volume::BrickGrid& grid, const FrameSamples& samples, co
         const Model& model = last->model;
         frame.wavelet = options.wavelet.value_or(last->wavelet);
         frame.bodyCentred = options.bodyCentred.value_or(last->bodyCentred);
-        const Histogram histogram = sampleTokens(grid, samples, frame, kModelBricks, model.contexts, maxError, kept);
+        const Histogram histogram =
+            sampleTokens(grid, samples, frame, kModelBricks, model.contexts, maxError, kept, &model.fitted);
         fresh = makeModel(histogram, kMostTables);
+        fresh->fitted = model.fitted;
         const double before = bitsWith(model, histogram), now = bitsWith(*fresh, histogram);
         if (before <= now + 8.0 * double(serialise(*fresh).size())) {
             frame.model = last->number;
@@ -220,11 +273,18 @@ Model chooseModel(const volume::BrickGrid& grid, const FrameSamples& samples, co
         if (before > kStillAlike * now) fresh.reset();
     }
     if (!fresh) {
-        frame.bodyCentred = options.bodyCentred ? *options.bodyCentred : prefersBodyCentred(grid, samples, frame);
-        if (!options.wavelet) frame.wavelet = waveletFor(grid, samples, frame);
+        const bool quick = options.effort <= kQuickEffort;
+        frame.bodyCentred =
+            options.bodyCentred ? *options.bodyCentred
+            : !quick            ? prefersBodyCentred(grid, samples, frame)
+                     : grid.lattice.kind == volume::LatticeKind::BCC && frame.numbers.kind != NumberKind::Float;
+        if (!options.wavelet) frame.wavelet = quick ? Wavelet::W22 : waveletFor(grid, samples, frame);
         const int shift = frame.codeBits > 16 ? shiftFor(sampleMiddles(grid, samples, frame, kTrialBricks)) : 0;
         const Contexts contexts{shift, byBand};
-        fresh = makeModel(sampleTokens(grid, samples, frame, kModelBricks, contexts, maxError, kept), kMostTables);
+        const std::size_t of = options.effort <= kQuickEffort ? kTrialBricks : kModelBricks;
+        fresh = makeModel(sampleTokens(grid, samples, frame, of, contexts, maxError, kept), kMostTables);
+        if (options.effort >= kFittedEffort && !options.wavelet && !options.bodyCentred)
+            tryFitted(grid, samples, options, frame, *fresh, kept);
     }
     return *fresh;
 }

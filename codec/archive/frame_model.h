@@ -18,9 +18,11 @@ struct Taken {
     Contexts contexts;
     double maxError = 0;
     std::vector<std::optional<PreparedBrick>> bricks; ///< by brick index
+    FittedWeights fitted{};
 
     bool serves(const FrameRecord& frame, const Model& model) const {
-        return wavelet == frame.wavelet && bodyCentred == frame.bodyCentred && contexts == model.contexts;
+        return wavelet == frame.wavelet && bodyCentred == frame.bodyCentred && contexts == model.contexts &&
+               fitted == model.fitted;
     }
 };
 

@@ -10,6 +10,14 @@
 
 namespace tessera::codec {
 
+/// Up to this effort nothing is tried: a wavelet that is not given is (2,2), and tables are made from few bricks.
+inline constexpr int kQuickEffort = 3;
+/// From this effort on, integers are also predicted by fitted weights (codec/fitted), if neither a wavelet nor the
+/// transform of BCC is given.
+inline constexpr int kFittedEffort = 7;
+/// With this effort integers get larger bricks, too, and weights are fitted to more samples.
+inline constexpr int kLongestEffort = 9;
+
 /// Coding options of one frame.
 struct FrameOptions {
     std::optional<Wavelet> wavelet = Wavelet::W22; ///< none: selected by trial
@@ -25,6 +33,7 @@ struct FrameOptions {
     double mostError = std::numeric_limits<double>::infinity(); ///< with `rms`: a bound that holds for all samples, too
     bool keepsAbsent = false;                                   ///< also code the stored numbers of absent samples
     int mostPredicted = 0; ///< longest run of bricks that are predicted from the time before, at most kMostPredicted
+    int effort = 5;        ///< 1 to 9: PackOptions::effort
     int zstdLevel = 3;
     Range range{1, 0}; ///< physical range of the component that importance refers to; lo > hi: that of the frame
     bool categorical = false;

@@ -25,7 +25,7 @@ std::int32_t signedOf(std::uint32_t size, std::uint32_t negative) {
 
 template <class Coder>
 TESSERA_INLINE std::int32_t AdaptiveBands::codeOne(Coder& coder, std::int32_t value, int group, std::uint32_t near) {
-    const auto of = static_cast<std::size_t>(group), about = static_cast<std::size_t>(classOf(near));
+    const auto of = static_cast<std::size_t>(group), about = static_cast<std::size_t>(halfOctaves(near));
     const std::uint32_t negative = value < 0 ? 1 : 0;
     const std::uint32_t size =
         negative != 0 ? 0u - static_cast<std::uint32_t>(value) : static_cast<std::uint32_t>(value);

@@ -16,6 +16,25 @@ template <class Word> struct Band {
     glm::ivec3 size{0};
     std::ptrdiff_t rowPitch = 0, slicePitch = 0; ///< in words
     int kind = 0; ///< 0 for an undivided box, else the bits of the axes along which it is the high half
+    int turn = 0; ///< bands with the same turn are coded row by row in turns, after those of lower turns; those
+                  ///< that are predicted have turns of their own
+};
+
+/// What is known of a row of a band that is predicted from others, until the next call of its predictor.
+template <class Word> struct PredictedRow {
+    /// Is added to the magnitudes of neighbours for the contexts of the row, at most 16383; room for two whole chunks
+    /// follows. Null: nothing.
+    const std::uint16_t* activity = nullptr;
+    const Word* values = nullptr; ///< in reading: is added to what is decoded; null: nothing
+};
+
+template <class Word> class RowPredictor {
+public:
+    virtual ~RowPredictor() = default;
+    /// Called before row y of slice z of a band is coded or decoded.
+    virtual PredictedRow<Word> begin(std::size_t band, int z, int y) = 0;
+    /// Called when the row has been coded or decoded.
+    virtual void end(std::size_t band, int z, int y) = 0;
 };
 
 /// The tokens of bands in coding order with their contexts; input of both counting and coding.

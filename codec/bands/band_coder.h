@@ -36,10 +36,11 @@ class BandDecoder {
 public:
     explicit BandDecoder(Model model);
     const Model& model() const { return model_; }
-    /// Decodes the bands; `in` must end with them. Values that do not fit into a Word are truncated.
+    /// Decodes the bands; `in` must end with them. Values that do not fit into a Word are truncated. `predictor`: of
+    /// predicted bands, or null.
     template <class Word>
     DecodeStatus decode(std::span<const std::byte> in, std::span<const Band<Word>> bands, int level,
-                        Cpu cpu = bestCpu()) const;
+                        Cpu cpu = bestCpu(), RowPredictor<Word>* predictor = nullptr) const;
 
 private:
     Model model_;

@@ -1,6 +1,8 @@
 #include "codec/bands/band_coder.h"
 #include "codec/bands/band_rows512.h"
 
+#include <type_traits>
+
 namespace tessera::codec {
 
 namespace {
@@ -18,6 +20,12 @@ struct Stream {
     unsigned group = 0, groupMask = 0;
     Contexts contexts;
 };
+
+/// Modulo the word.
+template <class Word> constexpr Word sumOf(Word a, Word b) {
+    using Unsigned = std::make_unsigned_t<Word>;
+    return static_cast<Word>(static_cast<Unsigned>(static_cast<Unsigned>(a) + static_cast<Unsigned>(b)));
+}
 
 /// Reads `bits` raw bits; the caller has checked that they are available. The words follow the raw bits, so a load
 /// beyond the raw bits stays within the stream.
@@ -37,16 +45,16 @@ std::uint32_t takeRaw(Stream& in, int bits) {
 
 /// Decodes sixteen symbols, one per lane of `active`. False: the stream ends too early.
 template <class Word>
-bool decodeChunk(Stream& in, const Neighbours& near, int kind, int x0, std::uint32_t active, Word* values,
-                 std::uint16_t* sizes) {
+bool decodeChunk(Stream& in, const Neighbours& near, const PredictedRow<Word>& predicted, int kind, int x0,
+                 std::uint32_t active, Word* values, std::uint16_t* sizes) {
     std::uint32_t* states = in.states[in.group];
     in.group = (in.group + 1) & in.groupMask;
     for (int lane = 0; lane < kLanes; ++lane) {
         const int x = x0 + lane;
         if ((active >> lane & 1u) == 0) continue;
         const std::uint32_t state = states[lane];
-        const std::uint32_t entry =
-            in.table[in.tableOf[kind][classOf(near.sum(x, in.contexts.byBand))] | (state & kSlotMask)];
+        const std::uint32_t sum = near.sum(x, in.contexts.byBand) + (predicted.activity ? predicted.activity[x] : 0u);
+        const std::uint32_t entry = in.table[in.tableOf[kind][halfOctaves(sum)] | (state & kSlotMask)];
         std::uint32_t token = entry & 255u;
         std::uint32_t after = (entry >> 8 & 4095u) * (state >> kProbabilityBits) + (entry >> 20);
         if (after < kLowestState) {
@@ -61,7 +69,7 @@ bool decodeChunk(Stream& in, const Neighbours& near, int kind, int x0, std::uint
             token = symbolBase(token) | takeRaw(in, bits);
         }
         const auto value = static_cast<std::int32_t>(unzigzag(token));
-        values[x] = static_cast<Word>(value);
+        values[x] = predicted.values ? sumOf(static_cast<Word>(value), predicted.values[x]) : static_cast<Word>(value);
         sizes[x] = magnitudeOf(value, in.contexts.shift);
     }
     return true;
@@ -77,21 +85,23 @@ TESSERA_INLINE std::uint32_t activeLanes(const std::uint8_t* present, int x0, in
     return active;
 }
 
-template <class Word> bool decodeRows(Stream& in, std::span<const Band<Word>> bands) {
+template <class Word> bool decodeRows(Stream& in, std::span<const Band<Word>> bands, RowPredictor<Word>* predictor) {
     std::vector<Magnitudes> magnitudes = magnitudesFor(bands);
     return forBandRows(bands, [&](std::size_t b, int z, int y) {
         const Band<Word>& band = bands[b];
         const Neighbours near(magnitudes[b], z, y);
         const std::ptrdiff_t at = z * band.slicePitch + y * band.rowPitch;
         std::uint16_t* sizes = magnitudes[b].row(z, y);
+        const PredictedRow<Word> predicted = predictor ? predictor->begin(b, z, y) : PredictedRow<Word>();
         if (band.present) {
             std::fill_n(band.values + at, band.size.x, Word(0));
             std::fill_n(sizes, band.size.x, std::uint16_t(0));
         }
         for (int x0 = 0; x0 < band.size.x; x0 += kLanes) {
             const std::uint32_t active = activeLanes(band.present ? band.present + at : nullptr, x0, band.size.x);
-            if (!decodeChunk(in, near, band.kind, x0, active, band.values + at, sizes)) return false;
+            if (!decodeChunk(in, near, predicted, band.kind, x0, active, band.values + at, sizes)) return false;
         }
+        if (predictor) predictor->end(b, z, y);
         return true;
     });
 }
@@ -195,8 +205,8 @@ TESSERA_AVX512 bool decodeTokens512(Stream& in, Cursor512& cursor, Chunks512& ch
 
 /// Converts sixteen tokens to coefficients, reading their raw bits; false when the stream ends.
 template <class Word>
-TESSERA_AVX512 bool rawChunk512(Stream& in, const std::uint8_t* tokens, __mmask16 inside, Word* values,
-                                std::uint16_t* sizes) {
+TESSERA_AVX512 bool rawChunk512(Stream& in, const std::uint8_t* tokens, __mmask16 inside, const Word* predicted,
+                                Word* values, std::uint16_t* sizes) {
     const __m512i token = _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(tokens)));
     __m512i symbol = token;
     const __mmask16 some = _mm512_cmpge_epu32_mask(token, _mm512_set1_epi32(kDirect));
@@ -215,23 +225,27 @@ TESSERA_AVX512 bool rawChunk512(Stream& in, const std::uint8_t* tokens, __mmask1
         symbol = _mm512_load_si512(all);
     }
     const __m512i sign = _mm512_sub_epi32(_mm512_setzero_si512(), _mm512_and_si512(symbol, _mm512_set1_epi32(1)));
-    const __m512i value = _mm512_xor_si512(_mm512_srli_epi32(symbol, 1), sign);
+    __m512i value = _mm512_xor_si512(_mm512_srli_epi32(symbol, 1), sign);
     const __m512i size =
         _mm512_min_epu32(_mm512_srl_epi32(_mm512_abs_epi32(value), _mm_cvtsi32_si128(in.contexts.shift)),
                          _mm512_set1_epi32(static_cast<int>(kLargestMagnitude)));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(sizes), _mm512_cvtepi32_epi16(size));
-    if constexpr (sizeof(Word) == 2)
+    if constexpr (sizeof(Word) == 2) {
+        if (predicted)
+            value = _mm512_add_epi32(value, _mm512_cvtepi16_epi32(_mm256_maskz_loadu_epi16(inside, predicted)));
         _mm512_mask_cvtepi32_storeu_epi16(values, inside, value);
-    else
+    } else {
+        if (predicted) value = _mm512_add_epi32(value, _mm512_maskz_loadu_epi32(inside, predicted));
         _mm512_mask_storeu_epi32(values, inside, value);
+    }
     return true;
 }
 
 /// Converts a row of direct tokens to coefficients, 32 lanes at a time. Magnitudes of lanes beyond the row are 0 and
 /// overwrite the zero padding before the next row.
 template <class Word>
-TESSERA_AVX512 inline void directRow512(const std::uint8_t* tokens, int width, int shift, Word* values,
-                                        std::uint16_t* sizes) {
+TESSERA_AVX512 inline void directRow512(const std::uint8_t* tokens, int width, int shift, const Word* predicted,
+                                        Word* values, std::uint16_t* sizes) {
     for (int x = 0; x < width; x += 32) {
         const __mmask32 inside = width - x >= 32 ? ~__mmask32(0) : (__mmask32(1) << (width - x)) - 1;
         const __m512i symbol = _mm512_cvtepu8_epi16(_mm256_maskz_loadu_epi8(inside, tokens + x));
@@ -239,24 +253,35 @@ TESSERA_AVX512 inline void directRow512(const std::uint8_t* tokens, int width, i
         const __m512i value = _mm512_xor_si512(_mm512_srli_epi16(symbol, 1), sign);
         _mm512_storeu_si512(sizes + x, _mm512_srl_epi16(_mm512_abs_epi16(value), _mm_cvtsi32_si128(shift)));
         if constexpr (sizeof(Word) == 2) {
-            _mm512_mask_storeu_epi16(values + x, inside, value);
+            const __m512i from = predicted ? _mm512_maskz_loadu_epi16(inside, predicted + x) : _mm512_setzero_si512();
+            const __m512i sum = _mm512_add_epi16(value, from);
+            if (inside == ~__mmask32(0)) // masked stores would delay what reads the row next
+                _mm512_storeu_si512(values + x, sum);
+            else
+                _mm512_mask_storeu_epi16(values + x, inside, sum);
         } else {
-            _mm512_mask_storeu_epi32(values + x, static_cast<__mmask16>(inside),
-                                     _mm512_cvtepi16_epi32(_mm512_castsi512_si256(value)));
-            _mm512_mask_storeu_epi32(values + x + 16, static_cast<__mmask16>(inside >> 16),
-                                     _mm512_cvtepi16_epi32(_mm512_extracti64x4_epi64(value, 1)));
+            const auto low = static_cast<__mmask16>(inside), high = static_cast<__mmask16>(inside >> 16);
+            __m512i first = _mm512_cvtepi16_epi32(_mm512_castsi512_si256(value));
+            __m512i second = _mm512_cvtepi16_epi32(_mm512_extracti64x4_epi64(value, 1));
+            if (predicted) {
+                first = _mm512_add_epi32(first, _mm512_maskz_loadu_epi32(low, predicted + x));
+                second = _mm512_add_epi32(second, _mm512_maskz_loadu_epi32(high, predicted + x + 16));
+            }
+            _mm512_mask_storeu_epi32(values + x, low, first);
+            _mm512_mask_storeu_epi32(values + x + 16, high, second);
         }
     }
 }
 
 /// Appends the chunks of a row: the addresses of their contexts' tables and their active lanes.
 template <bool kByBand>
-TESSERA_AVX512 TESSERA_INLINE void appendRow512(const Stream& in, const Neighbours& near, int kind,
-                                                const std::uint8_t* present, int width, Chunks512& chunks) {
+TESSERA_AVX512 TESSERA_INLINE void appendRow512(const Stream& in, const Neighbours& near, const std::uint16_t* added,
+                                                int kind, const std::uint8_t* present, int width, Chunks512& chunks) {
     const __m512i low = _mm512_load_si512(in.tableOf[kind]), high = _mm512_load_si512(in.tableOf[kind] + 16);
     std::size_t count = chunks.count;
     for (int x = 0; x < width; x += 2 * kLanes) {
-        const __m512i sums = sums512<kByBand>(near, x, width);
+        __m512i sums = sums512<kByBand>(near, x, width);
+        if (added) sums = _mm512_add_epi16(sums, load512(added + x));
         const __m512i first = classes512(_mm512_castsi512_si256(sums));
         _mm512_store_si512(chunks.tables[count].lanes, _mm512_permutex2var_epi32(low, first, high));
         chunks.active[count++] = static_cast<__mmask16>(activeLanes(present, x, width));
@@ -268,52 +293,74 @@ TESSERA_AVX512 TESSERA_INLINE void appendRow512(const Stream& in, const Neighbou
     chunks.count = count;
 }
 
-/// Decodes in passes over the rows of all bands at one (y, z): contexts, then tokens, then coefficients, with raw bits
-/// last, so that the token loop has no other dependencies.
-template <class Word, bool kByBand> TESSERA_AVX512 bool decodeRows512(Stream& in, std::span<const Band<Word>> bands) {
+/// A row of a band.
+template <class Word> struct BandRow {
+    std::size_t band = 0;
+    int z = 0, y = 0;
+    PredictedRow<Word> predicted;
+};
+
+/// Decodes some rows in passes: contexts, then tokens, then coefficients, with raw bits last, so that the token loop
+/// has no other dependencies.
+template <class Word, bool kByBand>
+TESSERA_AVX512 bool decodeSome512(Stream& in, Cursor512& cursor, std::span<const Band<Word>> bands,
+                                  std::vector<Magnitudes>& magnitudes, std::span<const BandRow<Word>> rows,
+                                  Chunks512& chunks) {
+    chunks.count = 0;
+    for (const auto& [b, z, y, predicted] : rows) {
+        const Band<Word>& band = bands[b];
+        const std::uint8_t* present = band.present ? band.present + z * band.slicePitch + y * band.rowPitch : nullptr;
+        appendRow512<kByBand>(in, Neighbours(magnitudes[b], z, y), predicted.activity, kByBand ? band.kind : 0, present,
+                              band.size.x, chunks);
+    }
+    if (!decodeTokens512(in, cursor, chunks)) return false;
+    std::size_t first = 0, raw = 0;
+    for (const auto& [b, z, y, predicted] : rows) {
+        const Band<Word>& band = bands[b];
+        Word* values = band.values + z * band.slicePitch + y * band.rowPitch;
+        const std::uint8_t* tokens = chunks.tokens.data() + first * kLanes;
+        std::uint16_t* sizes = magnitudes[b].row(z, y);
+        directRow512<Word>(tokens, band.size.x, in.contexts.shift, predicted.values, values, sizes);
+        const std::size_t own = std::size_t((band.size.x + kLanes - 1) / kLanes);
+        for (; raw < chunks.rawCount && chunks.raw[raw] < first + own; ++raw) {
+            const std::size_t at = chunks.raw[raw] - first;
+            const auto x = static_cast<std::ptrdiff_t>(at * kLanes);
+            const auto inside =
+                static_cast<__mmask16>((1u << std::min(kLanes, band.size.x - static_cast<int>(x))) - 1u);
+            const Word* const from = predicted.values ? predicted.values + x : nullptr;
+            if (!rawChunk512<Word>(in, tokens + x, inside, from, values + x, sizes + x)) return false;
+        }
+        first += own;
+    }
+    return true;
+}
+
+/// Decodes the rows at one (z, y) of all bands with the same turn at a time.
+template <class Word, bool kByBand>
+bool decodeRows512(Stream& in, std::span<const Band<Word>> bands, RowPredictor<Word>* predictor) {
     std::vector<Magnitudes> magnitudes = magnitudesFor(bands);
     std::size_t most = 0;
-    glm::ivec3 largest(0);
-    for (const Band<Word>& band : bands) {
-        most += std::size_t((std::max(band.size.x, 0) + kLanes - 1) / kLanes);
-        if (band.size.x > 0) largest = glm::max(largest, band.size);
-    }
+    for (const Band<Word>& band : bands) most += std::size_t((std::max(band.size.x, 0) + kLanes - 1) / kLanes);
     Chunks512 chunks(most);
     Cursor512 cursor{in.next, 0};
-    for (int z = 0; z < largest.z; ++z)
-        for (int y = 0; y < largest.y; ++y) {
-            const auto isHere = [&](const Band<Word>& band) {
-                return band.size.x > 0 && y < band.size.y && z < band.size.z;
-            };
-            chunks.count = 0;
-            for (std::size_t b = 0; b < bands.size(); ++b) {
-                const Band<Word>& band = bands[b];
-                if (!isHere(band)) continue;
-                const std::uint8_t* present =
-                    band.present ? band.present + z * band.slicePitch + y * band.rowPitch : nullptr;
-                appendRow512<kByBand>(in, Neighbours(magnitudes[b], z, y), kByBand ? band.kind : 0, present,
-                                      band.size.x, chunks);
-            }
-            if (!decodeTokens512(in, cursor, chunks)) return false;
-            std::size_t first = 0, raw = 0;
-            for (std::size_t b = 0; b < bands.size(); ++b) {
-                const Band<Word>& band = bands[b];
-                if (!isHere(band)) continue;
-                Word* values = band.values + z * band.slicePitch + y * band.rowPitch;
-                const std::uint8_t* tokens = chunks.tokens.data() + first * kLanes;
-                std::uint16_t* sizes = magnitudes[b].row(z, y);
-                directRow512<Word>(tokens, band.size.x, in.contexts.shift, values, sizes);
-                const std::size_t own = std::size_t((band.size.x + kLanes - 1) / kLanes);
-                for (; raw < chunks.rawCount && chunks.raw[raw] < first + own; ++raw) {
-                    const std::size_t at = chunks.raw[raw] - first;
-                    const auto x = static_cast<std::ptrdiff_t>(at * kLanes);
-                    const auto inside =
-                        static_cast<__mmask16>((1u << std::min(kLanes, band.size.x - static_cast<int>(x))) - 1u);
-                    if (!rawChunk512<Word>(in, tokens + x, inside, values + x, sizes + x)) return false;
-                }
-                first += own;
-            }
-        }
+    std::vector<BandRow<Word>> rows;
+    const auto decode = [&] {
+        for (BandRow<Word>& row : rows)
+            if (predictor) row.predicted = predictor->begin(row.band, row.z, row.y);
+        if (!decodeSome512<Word, kByBand>(in, cursor, bands, magnitudes, rows, chunks)) return false;
+        for (const BandRow<Word>& row : rows)
+            if (predictor) predictor->end(row.band, row.z, row.y);
+        rows.clear();
+        return true;
+    };
+    const bool whole = forBandRows(bands, [&](std::size_t b, int z, int y) {
+        if (!rows.empty() && (rows[0].z != z || rows[0].y != y || bands[rows[0].band].turn != bands[b].turn) &&
+            !decode())
+            return false;
+        rows.push_back({b, z, y, {}});
+        return true;
+    });
+    if (!whole || !decode()) return false;
     in.next = cursor.next;
     return true;
 }
@@ -325,9 +372,10 @@ template <class Word, bool kByBand> TESSERA_AVX512 bool decodeRows512(Stream& in
 BandDecoder::BandDecoder(Model model) : model_(std::move(model)), table_(decodeTable(model_)) {}
 
 template <class Word>
-DecodeStatus BandDecoder::decode(std::span<const std::byte> in, std::span<const Band<Word>> bands, int level,
-                                 Cpu cpu) const {
+DecodeStatus BandDecoder::decode(std::span<const std::byte> in, std::span<const Band<Word>> bands, int level, Cpu cpu,
+                                 RowPredictor<Word>* predictor) const {
     if (in.empty()) {
+        if (predictor) return DecodeStatus::Truncated;
         for (const Band<Word>& band : bands)
             for (int z = 0; z < band.size.z; ++z)
                 for (int y = 0; y < band.size.y; ++y)
@@ -358,11 +406,11 @@ DecodeStatus BandDecoder::decode(std::span<const std::byte> in, std::span<const 
     stream.groupMask = static_cast<unsigned>(lanes.groups - 1);
     stream.contexts = model_.contexts;
 #if TESSERA_X86
-    const bool whole = cpu != Cpu::Avx512       ? decodeRows(stream, bands)
-                       : stream.contexts.byBand ? decodeRows512<Word, true>(stream, bands)
-                                                : decodeRows512<Word, false>(stream, bands);
+    const bool whole = cpu != Cpu::Avx512       ? decodeRows(stream, bands, predictor)
+                       : stream.contexts.byBand ? decodeRows512<Word, true>(stream, bands, predictor)
+                                                : decodeRows512<Word, false>(stream, bands, predictor);
 #else
-    const bool whole = decodeRows(stream, bands);
+    const bool whole = decodeRows(stream, bands, predictor);
     (void)cpu;
 #endif
     if (!whole) return DecodeStatus::Truncated;
@@ -374,9 +422,9 @@ DecodeStatus BandDecoder::decode(std::span<const std::byte> in, std::span<const 
     return DecodeStatus::Ok;
 }
 
-template DecodeStatus BandDecoder::decode(std::span<const std::byte>, std::span<const Band<std::int16_t>>, int,
-                                          Cpu) const;
-template DecodeStatus BandDecoder::decode(std::span<const std::byte>, std::span<const Band<std::int32_t>>, int,
-                                          Cpu) const;
+template DecodeStatus BandDecoder::decode(std::span<const std::byte>, std::span<const Band<std::int16_t>>, int, Cpu,
+                                          RowPredictor<std::int16_t>*) const;
+template DecodeStatus BandDecoder::decode(std::span<const std::byte>, std::span<const Band<std::int32_t>>, int, Cpu,
+                                          RowPredictor<std::int32_t>*) const;
 
 } // namespace tessera::codec

@@ -2,6 +2,7 @@
 
 #include "codec/bands/band.h"
 #include "codec/bands/rans_model.h"
+#include "codec/bytes/octaves.h"
 
 #include <algorithm>
 #include <bit>
@@ -50,11 +51,6 @@ struct Neighbours {
     }
 };
 
-/// Half octaves of sum + 1: the exponent and the next bit.
-TESSERA_INLINE std::uint32_t classOf(std::uint32_t sum) {
-    return (std::bit_cast<std::uint32_t>(static_cast<float>(static_cast<std::int32_t>(sum + 1))) >> 22) - 254u;
-}
-
 TESSERA_INLINE std::uint16_t magnitudeOf(std::int32_t value, int shift) {
     const std::uint32_t sign = static_cast<std::uint32_t>(value >> 31);
     const std::uint32_t size = ((static_cast<std::uint32_t>(value) ^ sign) - sign) >> shift;
@@ -79,16 +75,19 @@ struct Lanes {
     }
 };
 
-/// Calls `visit(band index, z, y)` for every row in coding order, alternating between the bands.
+/// Calls `visit(band index, z, y)` for every row in coding order, alternating between the bands of the same turn. Bands
+/// are sorted by their turns.
 template <class AnyBand, class Visit> TESSERA_INLINE bool forBandRows(std::span<const AnyBand> bands, Visit&& visit) {
-    glm::ivec3 most(0);
-    for (const AnyBand& band : bands)
-        if (band.size.x > 0) most = glm::max(most, band.size);
-    for (int z = 0; z < most.z; ++z)
-        for (int y = 0; y < most.y; ++y)
-            for (std::size_t b = 0; b < bands.size(); ++b)
-                if (bands[b].size.x > 0 && y < bands[b].size.y && z < bands[b].size.z)
-                    if (!visit(b, z, y)) return false;
+    for (std::size_t begin = 0, end = 0; begin < bands.size(); begin = end) {
+        glm::ivec3 most(0);
+        for (end = begin; end < bands.size() && bands[end].turn == bands[begin].turn; ++end)
+            if (bands[end].size.x > 0) most = glm::max(most, bands[end].size);
+        for (int z = 0; z < most.z; ++z)
+            for (int y = 0; y < most.y; ++y)
+                for (std::size_t b = begin; b < end; ++b)
+                    if (bands[b].size.x > 0 && y < bands[b].size.y && z < bands[b].size.z)
+                        if (!visit(b, z, y)) return false;
+    }
     return true;
 }
 

@@ -38,7 +38,7 @@ template <bool kByBand> TESSERA_AVX512 TESSERA_INLINE __m512i sums512(const Neig
     return kByBand ? _mm512_add_epi16(sum, both) : sum;
 }
 
-/// classOf of sixteen sums.
+/// Half octaves of sixteen sums.
 TESSERA_AVX512 TESSERA_INLINE __m512i classes512(__m256i sums) {
     const __m512i sum = _mm512_add_epi32(_mm512_cvtepu16_epi32(sums), _mm512_set1_epi32(1));
     return _mm512_sub_epi32(_mm512_srli_epi32(_mm512_castps_si512(_mm512_cvtepi32_ps(sum)), 22),

@@ -10,7 +10,7 @@ namespace {
 /// Writes the tokens of one row, sixteen per chunk, to `tokens` and advances it.
 template <class Word>
 void rowTokens(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours& near, Contexts contexts,
-               std::uint16_t* size, std::uint16_t*& tokens, TokenRun& run) {
+               const std::uint16_t* added, std::uint16_t* size, std::uint16_t*& tokens, TokenRun& run) {
     const Word* values = band.values + at;
     const std::uint32_t kind = contexts.byBand ? std::uint32_t(band.kind) << 13 : 0;
     for (int x0 = 0; x0 < band.size.x; x0 += kLanes)
@@ -23,7 +23,8 @@ void rowTokens(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours
             size[x] = magnitudeOf(values[x], contexts.shift);
             const std::uint32_t symbol = zigzag(static_cast<std::uint32_t>(std::int32_t(values[x])));
             const std::uint32_t token = tokenOf(symbol).token;
-            *tokens = static_cast<std::uint16_t>(kind | classOf(near.sum(x, contexts.byBand)) << 8 | token);
+            const std::uint32_t sum = near.sum(x, contexts.byBand) + (added ? added[x] : 0u);
+            *tokens = static_cast<std::uint16_t>(kind | halfOctaves(sum) << 8 | token);
             run.zero = run.zero && symbol == 0;
             if (token < kDirect) continue;
             run.large.push_back(symbol);
@@ -36,8 +37,8 @@ void rowTokens(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours
 /// The same, sixteen at a time. `count`: number of large symbols so far; the buffer has room for more.
 template <class Word, bool kByBand>
 TESSERA_AVX512 void rowTokens512(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours& near,
-                                 Contexts contexts, std::uint16_t* sizes, std::uint16_t*& tokens, TokenRun& run,
-                                 std::size_t& count) {
+                                 Contexts contexts, const std::uint16_t* added, std::uint16_t* sizes,
+                                 std::uint16_t*& tokens, TokenRun& run, std::size_t& count) {
     const Word* values = band.values + at;
     const __m512i kind = _mm512_set1_epi32(kByBand ? band.kind << 13 : 0);
     __m512i any = _mm512_setzero_si512(), sums = any; // for 32 positions
@@ -49,6 +50,7 @@ TESSERA_AVX512 void rowTokens512(const Band<const Word>& band, std::ptrdiff_t at
             active = _mm_test_epi8_mask(flags, flags);
         }
         if (x % (2 * kLanes) == 0) sums = sums512<kByBand>(near, x, band.size.x);
+        if (x % (2 * kLanes) == 0 && added) sums = _mm512_add_epi16(sums, load512(added + x));
         const __m512i context =
             classes512(x % (2 * kLanes) == 0 ? _mm512_castsi512_si256(sums) : _mm512_extracti64x4_epi64(sums, 1));
 
@@ -94,7 +96,8 @@ TESSERA_AVX512 void rowTokens512(const Band<const Word>& band, std::ptrdiff_t at
 
 } // namespace
 
-template <class Word> TokenRun tokensOf(std::span<const Band<const Word>> bands, Contexts contexts, Cpu cpu) {
+template <class Word>
+TokenRun tokensOf(std::span<const Band<const Word>> bands, Contexts contexts, Cpu cpu, RowPredictor<Word>* predictor) {
     const Lanes lanes(bands);
     TokenRun run;
     run.groups = lanes.groups;
@@ -108,14 +111,16 @@ template <class Word> TokenRun tokensOf(std::span<const Band<const Word>> bands,
         const Neighbours near(magnitudes[b], z, y);
         const std::ptrdiff_t at = z * band.slicePitch + y * band.rowPitch;
         std::uint16_t* sizes = magnitudes[b].row(z, y);
+        const std::uint16_t* added = predictor ? predictor->begin(b, z, y).activity : nullptr;
 #if TESSERA_X86
         if (cpu == Cpu::Avx512 && contexts.byBand)
-            rowTokens512<Word, true>(band, at, near, contexts, sizes, next, run, large);
+            rowTokens512<Word, true>(band, at, near, contexts, added, sizes, next, run, large);
         else if (cpu == Cpu::Avx512)
-            rowTokens512<Word, false>(band, at, near, contexts, sizes, next, run, large);
+            rowTokens512<Word, false>(band, at, near, contexts, added, sizes, next, run, large);
         else
 #endif
-            rowTokens<Word>(band, at, near, contexts, sizes, next, run);
+            rowTokens<Word>(band, at, near, contexts, added, sizes, next, run);
+        if (predictor) predictor->end(b, z, y);
         return true;
     });
     if (large > 0) {
@@ -141,7 +146,7 @@ void countTokens(const TokenRun& run, int level, Histogram& histogram, int every
         }
 }
 
-template TokenRun tokensOf(std::span<const Band<const std::int16_t>>, Contexts, Cpu);
-template TokenRun tokensOf(std::span<const Band<const std::int32_t>>, Contexts, Cpu);
+template TokenRun tokensOf(std::span<const Band<const std::int16_t>>, Contexts, Cpu, RowPredictor<std::int16_t>*);
+template TokenRun tokensOf(std::span<const Band<const std::int32_t>>, Contexts, Cpu, RowPredictor<std::int32_t>*);
 
 } // namespace tessera::codec

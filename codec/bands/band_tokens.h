@@ -8,9 +8,11 @@
 
 namespace tessera::codec {
 
-/// Tokens of the rows of all bands in coding order. The result does not depend on `cpu`.
+/// Tokens of the rows of all bands in coding order. `predictor`: of predicted bands, or null. The result does not
+/// depend on `cpu`.
 template <class Word>
-TokenRun tokensOf(std::span<const Band<const Word>> bands, Contexts contexts, Cpu cpu = bestCpu());
+TokenRun tokensOf(std::span<const Band<const Word>> bands, Contexts contexts, Cpu cpu = bestCpu(),
+                  RowPredictor<Word>* predictor = nullptr);
 
 /// Adds the tokens to a histogram with the same contexts at `level`. Long runs are subsampled: only every `every`-th
 /// chunk counts, with that weight.

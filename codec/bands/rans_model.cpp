@@ -14,7 +14,7 @@ namespace {
 using Counts = std::array<std::uint32_t, kTokens>;
 using KindTables = std::array<std::uint8_t, kClasses>;
 
-constexpr std::uint32_t kByBand = 128; // bit in the byte of the shift
+constexpr std::uint32_t kByBand = 128, kFitted = 64; // bits in the byte of the shift
 
 // Cost of a table in the file in bits: its entry in the map, plus a cost per used token.
 constexpr double kTableBits = 24, kTokenBits = 8;
@@ -215,7 +215,9 @@ double bitsWith(const Model& model, const Histogram& histogram) {
 
 Bytes serialise(const Model& model) {
     BitWriter out;
-    out.put(static_cast<std::uint32_t>(model.contexts.shift) | (model.contexts.byBand ? kByBand : 0), 8);
+    out.put(static_cast<std::uint32_t>(model.contexts.shift) | (model.contexts.byBand ? kByBand : 0) |
+                (model.fitted.empty() ? 0 : kFitted),
+            8);
     out.put(static_cast<std::uint32_t>(model.tables.size()), 8);
     std::uint32_t last = 0;
     KindTables before{};
@@ -242,6 +244,7 @@ Bytes serialise(const Model& model) {
             if (width > 1) out.put(frequency & ((1u << (width - 1)) - 1), width - 1);
         }
     }
+    if (!model.fitted.empty()) write(model.fitted, out);
     return out.bytes;
 }
 
@@ -255,7 +258,7 @@ DecodeStatus parseModel(std::span<const std::byte> bytes, int levels, Model& mod
     model.levels = levels;
     const std::uint32_t how = in.get(8), tables = in.get(8);
     if (in.failed) return DecodeStatus::Truncated;
-    model.contexts = {static_cast<int>(how & ~kByBand), (how & kByBand) != 0};
+    model.contexts = {static_cast<int>(how & ~(kByBand | kFitted)), (how & kByBand) != 0};
     if (tables == 0 || model.contexts.shift > 31) return DecodeStatus::BadLength;
     std::uint32_t last = 0;
     KindTables before{};
@@ -286,6 +289,10 @@ DecodeStatus parseModel(std::span<const std::byte> bytes, int levels, Model& mod
         if (in.failed) return DecodeStatus::Truncated;
         if (sum == 0) return DecodeStatus::BadData; // at least two tokens, since a frequency has only twelve bits
         table[kEscape] = static_cast<std::uint16_t>(kProbabilityOne - sum);
+    }
+    if ((how & kFitted) != 0) {
+        if (!read(in, model.fitted)) return in.failed ? DecodeStatus::Truncated : DecodeStatus::BadData;
+        if (model.fitted.empty()) return DecodeStatus::BadData;
     }
     return in.bytesRead() == bytes.size() ? DecodeStatus::Ok : DecodeStatus::Trailing;
 }

@@ -2,6 +2,7 @@
 
 #include "codec/bytes/decode_status.h"
 #include "codec/bytes/entropy.h"
+#include "codec/fitted/fitted_weights.h"
 
 #include <array>
 #include <bit>
@@ -77,6 +78,7 @@ struct Model {
     Contexts contexts;
     std::vector<std::uint8_t> tableOf; ///< [contexts.first(level, kind) + class]
     std::vector<Frequencies> tables;
+    FittedWeights fitted{}; ///< of samples that are coded as differences from predictions; empty: wavelets
     bool operator==(const Model&) const = default;
 };
 

@@ -94,6 +94,44 @@ DecodeStatus decodeLevels(const BrickFormat& format, std::span<const std::span<c
     return DecodeStatus::Ok;
 }
 
+/// Decodes a brick whose samples are predicted by fitted weights.
+template <class Word>
+DecodeStatus decodeFittedLevels(const BrickFormat& format, std::span<const std::span<const std::byte>> segments,
+                                int level, const BandDecoder& decoder, DecodedBrick& out) {
+    auto& [samples, details, spare] = out.boxes<Word>();
+    const int coarsest = format.levels - 1;
+    samples[0].reset(levelSize(format.sublatticeSize(0), coarsest), false);
+    for (int l = coarsest; l >= level; --l) {
+        std::span<const std::byte> in = segments[std::size_t(coarsest - l)];
+        if (l == 0)
+            if (const DecodeStatus status = decodeExtras(format, {}, in, out); status != DecodeStatus::Ok)
+                return status;
+        if (l == coarsest) {
+            const auto bands = bandsOf<Word>(std::span(samples).first(1), true);
+            if (const DecodeStatus status = decodeLevel<Word>(in, bands, l, decoder); status != DecodeStatus::Ok)
+                return status;
+            fromDifferences<Word>(bands);
+            continue;
+        }
+        spare[0].reset(levelSize(format.sublatticeSize(0), l), false);
+        spare[1].reset(l == 0 && format.sublattices() == 2 ? format.sublatticeSize(1) : glm::ivec3(0), false);
+        if (spare[0].size() == samples[0].size() && countOf(spare[1].size()) == 0) { // nothing new
+            if (!in.empty()) return DecodeStatus::Trailing;
+            continue;
+        }
+        if (in.empty()) return DecodeStatus::Truncated;
+        if (in[0] != kBands && in[0] != kNothing) return DecodeStatus::BadMode;
+        if (const DecodeStatus status =
+                decodeFitted<Word>(in.subspan(1), in[0] == kNothing, l, std::as_const(samples[0]).box(), spare[0].box(),
+                                   spare[1].box(), decoder, codeRange(format), out.fitted<Word>());
+            status != DecodeStatus::Ok)
+            return status;
+        std::swap(samples, spare);
+    }
+    if (level > 0 && format.sublattices() == 2) interpolateOddLevel<Word>(format, level, samples);
+    return DecodeStatus::Ok;
+}
+
 /// Decodes a brick stored as one stream; coarse levels are computed from all samples.
 template <class Word>
 DecodeStatus decodeWhole(const BrickFormat& format, std::span<const std::byte> in, int level,
@@ -149,6 +187,11 @@ DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<co
         if (const DecodeStatus status = decodeExtras(format, present, first, out); status != DecodeStatus::Ok)
             return status;
         out.exact.clear();
+    }
+    if ((first.empty() || !isWhole(first[0])) && !bands.model().fitted.empty()) {
+        if (!canBeFitted(format, !present.empty())) return DecodeStatus::BadMode;
+        return narrow ? decodeFittedLevels<std::int16_t>(format, segments, level, bands, out)
+                      : decodeFittedLevels<std::int32_t>(format, segments, level, bands, out);
     }
     if (first.empty() || !isWhole(first[0]))
         return narrow ? decodeLevels<std::int16_t>(format, segments, level, present, bands, out)

@@ -23,14 +23,21 @@ struct PreparedBrick {
 struct SplitMemory {
     std::vector<LevelBox<std::int16_t>> boxes16;
     std::vector<LevelBox<std::int32_t>> boxes32;
+    FittedMemory<std::int16_t> fitted16;
+    FittedMemory<std::int32_t> fitted32;
 };
 
 /// Transforms a brick. `samples` are numbers of format.type, x fastest; `present` has one flag per sample, or is empty:
 /// all present. Quantised numbers with an error above `maxError` are stored exactly in addition. `prediction`: codes
-/// that those of a stepped brick are coded as differences from (codec/brick/predicted_brick.h), or empty.
+/// that those of a stepped brick are coded as differences from (codec/brick/predicted_brick.h), or empty. `fitted`: the
+/// weights of the model, or null for none.
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
                            std::span<const std::uint8_t> present, double maxError, Contexts contexts,
-                           SplitMemory& memory, std::span<const std::uint32_t> prediction = {});
+                           SplitMemory& memory, std::span<const std::uint32_t> prediction = {},
+                           const FittedWeights* fitted = nullptr);
+/// Adds samples of a brick that can be fitted to a fit of its weights: every `every`-th row.
+void addToFit(const BrickFormat& format, std::span<const std::byte> samples, int shift, int every, SplitMemory& memory,
+              WeightFit& fit);
 /// Adds the tokens of a brick to a histogram; long runs are subsampled (countTokens).
 void countBrick(const PreparedBrick& brick, Histogram& histogram, int every = 1);
 

@@ -115,6 +115,37 @@ std::vector<TokenRun> levelTokens(const BrickFormat& format, Contexts contexts, 
     return runs;
 }
 
+/// The samples of a brick at a level; `boxes` are its sublattices.
+template <class Word>
+FittedLevel<Word> fittedLevel(const BrickFormat& format, int level, const BrickLevels<Word>& boxes) {
+    FittedLevel<Word> of{level, boxes[0].box(), {}};
+    if (level == 0 && format.sublattices() == 2) of.other = boxes[1].box();
+    return of;
+}
+
+/// The same for a brick whose samples are predicted.
+template <class Word>
+std::vector<TokenRun> fittedLevels(const BrickFormat& format, Contexts contexts, const FittedWeights& weights,
+                                   BrickLevels<Word>& boxes, FittedMemory<Word>& memory) {
+    std::vector<TokenRun> runs;
+    const int coarsest = format.levels - 1;
+    for (int level = 0; level < coarsest; ++level)
+        runs.push_back(
+            fittedTokens<Word>(fittedLevel(format, level, boxes), contexts, weights, codeRange(format), memory));
+    std::array<LevelBox<Word>, 1> last;
+    last[0].reset(levelSize(format.sublatticeSize(0), coarsest), false);
+    const glm::ivec3 size = last[0].size();
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y) {
+            const Word* const from = boxes[0].box().row(y << coarsest, z << coarsest);
+            for (int x = 0; x < size.x; ++x) last[0].box().row(y, z)[x] = from[x << coarsest];
+        }
+    const auto bands = bandsOf<Word>(last, true);
+    toDifferences<Word>(bands);
+    runs.push_back(tokensOf<Word>(constBands<Word>(bands), contexts));
+    return runs;
+}
+
 /// Whether most floats of a brick occur more than once, as in mirrored or repetitive fields. Tests the values in one of
 /// sixteen hash classes, since equal values share a class.
 bool valuesRecur(std::span<const std::byte> samples, std::span<const std::uint8_t> present) {
@@ -188,7 +219,8 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
 
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
                            std::span<const std::uint8_t> present, double maxError, Contexts contexts,
-                           SplitMemory& memory, std::span<const std::uint32_t> prediction) {
+                           SplitMemory& memory, std::span<const std::uint32_t> prediction,
+                           const FittedWeights* fitted) {
     assert(samples.size() == countOf(format.size) * volume::byteSize(format.type));
     assert(present.empty() || present.size() == countOf(format.size));
     PreparedBrick brick;
@@ -204,19 +236,38 @@ PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte>
         addInexact(format, samples, present, maxError, stepped.codes, numbers);
         brick = {std::move(stepped.segments), std::move(stepped.codes), {}, {}, {}, {}};
     }
-    const auto tokens = [&](auto& levels) {
-        using Word = std::remove_pointer_t<decltype(levels[0].box().values)>;
+    const bool predicts = fitted && !fitted->empty();
+    assert(!predicts || canBeFitted(format, !present.empty()));
+    const auto tokens = [&]<class Word>(BrickLevels<Word>& levels, FittedMemory<Word>& own) {
+        const int count = predicts ? 1 : format.levels; // not split, if predicted
         if (plain)
-            splitIntegers<Word>(format, samples, format.levels, levels);
+            splitIntegers<Word>(format, samples, count, levels);
         else
-            splitBrick<Word>(format, numbers.codes, present, format.levels, levels);
-        brick.levels = levelTokens<Word>(format, contexts, levels);
+            splitBrick<Word>(format, numbers.codes, present, count, levels);
+        brick.levels = predicts ? fittedLevels<Word>(format, contexts, *fitted, levels, own)
+                                : levelTokens<Word>(format, contexts, levels);
     };
-    if (!format.isStepped()) fitsInt16(format, !present.empty()) ? tokens(memory.boxes16) : tokens(memory.boxes32);
+    if (!format.isStepped())
+        fitsInt16(format, !present.empty()) ? tokens(memory.boxes16, memory.fitted16)
+                                            : tokens(memory.boxes32, memory.fitted32);
     brick.exactIndex = std::move(numbers.exactIndex);
     brick.exactBits = std::move(numbers.exactBits);
     brick.absentBits = std::move(numbers.absentBits);
     return brick;
+}
+
+void addToFit(const BrickFormat& format, std::span<const std::byte> samples, int shift, int every, SplitMemory& memory,
+              WeightFit& fit) {
+    assert(canBeFitted(format, false));
+    const auto add = [&]<class Word>(BrickLevels<Word>& boxes, FittedMemory<Word>& own) {
+        if (format.type == volume::ScalarType::F32)
+            splitBrick<Word>(format, numbersOf(format, samples, {}, 0).codes, {}, 1, boxes);
+        else
+            splitIntegers<Word>(format, samples, 1, boxes);
+        for (int level = 0; level + 1 < format.levels; ++level)
+            codec::addToFit<Word>(fittedLevel(format, level, boxes), shift, level == 0 ? every : 1, own, fit);
+    };
+    fitsInt16(format, false) ? add(memory.boxes16, memory.fitted16) : add(memory.boxes32, memory.fitted32);
 }
 
 void countBrick(const PreparedBrick& brick, Histogram& histogram, int every) {
@@ -252,7 +303,8 @@ std::vector<Bytes> encodeBrick(const BrickFormat& format, std::span<const std::b
                                std::span<const std::uint8_t> present, double maxError, Compressor& compressor,
                                const BandEncoder& bands) {
     SplitMemory memory;
-    const PreparedBrick brick = prepareBrick(format, samples, present, maxError, bands.model().contexts, memory);
+    const PreparedBrick brick =
+        prepareBrick(format, samples, present, maxError, bands.model().contexts, memory, {}, &bands.model().fitted);
     return encodeBrick(format, brick, samples, present, compressor, bands);
 }
 

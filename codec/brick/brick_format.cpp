@@ -2,6 +2,8 @@
 
 #include "codec/wavelet/lift_box.h"
 
+#include <algorithm>
+
 namespace tessera::codec {
 
 using volume::LatticeKind;
@@ -19,6 +21,18 @@ bool BrickFormat::predictsOdd(bool masked) const {
 
 bool BrickFormat::canHaveExact() const {
     return numbers.kind == NumberKind::Scaled || numbers.kind == NumberKind::Quantised || isStepped();
+}
+
+bool canBeFitted(const BrickFormat& format, bool masked) {
+    return !masked && format.levels > 1 && format.numbers.kind != NumberKind::Float && !format.isStepped() &&
+           (format.kind == LatticeKind::CC || format.bodyCentred);
+}
+
+CodeRange codeRange(const BrickFormat& format) {
+    constexpr int kWidest = 30;
+    const std::int32_t most = (1 << std::min(format.codeBits, kWidest)) - 1;
+    const bool isUnsigned = format.type == ScalarType::U8 || format.type == ScalarType::U16;
+    return {isUnsigned ? 0 : -most, most};
 }
 
 int codeBitsOf(ScalarType type) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/brick/numbers.h"
+#include "codec/fitted/predict_row.h"
 #include "codec/wavelet/lifting.h"
 #include "codec/wavelet/subbands.h"
 #include "volume/field/lattice.h"
@@ -40,6 +41,12 @@ struct BrickFormat {
     /// Whether coefficients are quantised.
     bool isStepped() const { return numbers.kind == NumberKind::Stepped; }
 };
+
+/// Whether the samples of a brick are coded as differences from fitted predictions if the model has such; `masked`: it
+/// has absent samples.
+bool canBeFitted(const BrickFormat& format, bool masked);
+/// The codes that the samples of a brick can have.
+CodeRange codeRange(const BrickFormat& format);
 
 /// Code width in bits of a type whose numbers are the codes.
 int codeBitsOf(volume::ScalarType type);

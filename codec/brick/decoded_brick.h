@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/bands/adaptive_bands.h"
+#include "codec/bands/fitted_bands.h"
 #include "codec/brick/brick_format.h"
 #include "codec/bytes/decode_status.h"
 #include "codec/wavelet/level_box.h"
@@ -31,7 +32,9 @@ struct DecodedBrick {
     std::vector<std::uint32_t> subsamples; ///< of subsampled bricks, see takeSubsamples
     std::vector<ExactSample> exact;        ///< full resolution only: samples that replace those of their codes
     std::vector<std::uint32_t> absent;     ///< full resolution only: bits of absent samples in storage order, if stored
-    std::vector<Correction> corrections;   ///< working memory
+    std::vector<Correction> corrections;   ///< working memory, as are the next two
+    FittedMemory<std::int16_t> fitted16;
+    FittedMemory<std::int32_t> fitted32;
 
     /// Resets to the shape of a level.
     void begin(const BrickFormat& format, int level);
@@ -40,6 +43,12 @@ struct DecodedBrick {
             return boxes16;
         else
             return boxes32;
+    }
+    template <class Word> FittedMemory<Word>& fitted() {
+        if constexpr (sizeof(Word) == 2)
+            return fitted16;
+        else
+            return fitted32;
     }
     /// Calls `visit(index of the first sample, codes)` for each row in storage order, with a span of 16- or 32-bit
     /// codes; undefined where absent.

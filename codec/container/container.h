@@ -38,8 +38,11 @@ inline constexpr std::uint32_t kSteppedBricks = 16;
 inline constexpr std::uint32_t kSubsamples = 32;
 /// Feature: frames can be predicted from the time before. Only set once one is.
 inline constexpr std::uint32_t kPredictedFrames = 64;
+/// Feature: models can have fitted predictions. Only set once one has.
+inline constexpr std::uint32_t kFittedModels = 128;
 inline constexpr std::uint32_t kUsualFeatures = kBrickNotes | kCompact | kBandContexts | kBrickStatistics,
-                               kKnownFeatures = kUsualFeatures | kSteppedBricks | kSubsamples | kPredictedFrames;
+                               kKnownFeatures =
+                                   kUsualFeatures | kSteppedBricks | kSubsamples | kPredictedFrames | kFittedModels;
 
 /// xxh3, 64 bits, seed 0.
 std::uint64_t checksum(std::span<const std::byte> bytes);

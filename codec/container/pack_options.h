@@ -46,6 +46,7 @@ struct PackOptions {
     BccTransform bccTransform = BccTransform::Auto;
     int brickSize = 0;
     int levels = 0;
+    int effort = 5;
     int zstdLevel = 9;
     int mostPredicted = 7;
     double memoryMb = 0;
@@ -121,6 +122,14 @@ struct PackOptions {
                                      .unit = "",
                                      .doc = "Number of levels of detail; 0 = until a brick is 4 samples wide",
                                      .range = Range{0, 8}});
+        visit(self.effort,
+              FieldInfo{.key = "effort",
+                        .unit = "",
+                        .doc = "Time spent on a shorter archive. Up to 3 no filter is tried. From 7 on samples are "
+                               "also predicted by weights fitted to them, by which scans gain most; such "
+                               "archives take several times as long to pack and to read. With 9 data of "
+                               "integers get bricks of 128, too",
+                        .range = Range{1, 9}});
         visit(self.zstdLevel, FieldInfo{.key = "zstdLevel",
                                         .unit = "",
                                         .doc = "Effort of zstd, which codes masks and repetitive bricks",

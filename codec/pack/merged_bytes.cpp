@@ -48,12 +48,15 @@ struct BoxesOfFrame {
             for (std::size_t b = first; b < last; ++b) {
                 if (wanted[b] == 0) continue;
                 const BrickFormat format = take(boxes[b], input);
-                countBrick(prepareBrick(format, input.samples, input.present, 0, known.contexts, memory), own);
+                countBrick(
+                    prepareBrick(format, input.samples, input.present, 0, known.contexts, memory, {}, &known.fitted),
+                    own);
             }
             const std::lock_guard lock(mutex);
             tokens.add(own);
         });
         Model fresh = makeModel(tokens, kMostTables);
+        fresh.fitted = known.fitted;
         const std::size_t own = serialise(fresh).size();
         if (bitsWith(fresh, tokens) + 8.0 * double(own) >= bitsWith(known, tokens)) return known;
         bytes += own;
@@ -96,8 +99,8 @@ std::vector<MergedBytes> bytesOfMerged(const Archive& archive, std::span<const v
                 if (wanted[b] == 0) continue;
                 const BrickFormat format = work.take(boxes[b], input);
                 const double maxError = format.isStepped() ? boundOf(format.numbers) : 0;
-                const PreparedBrick brick =
-                    prepareBrick(format, input.samples, input.present, maxError, encoder.model().contexts, memory);
+                const PreparedBrick brick = prepareBrick(format, input.samples, input.present, maxError,
+                                                         encoder.model().contexts, memory, {}, &encoder.model().fitted);
                 for (const Bytes& segment :
                      encodeBrick(format, brick, input.samples, input.present, compressor, encoder))
                     sums[b].together += segment.size();

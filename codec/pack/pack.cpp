@@ -198,6 +198,7 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
     const bool exact = isExact(options_), resamples = reading_.toBcc || metadata_.alternating;
     FrameOptions frame;
     frame.wavelet = about.categorical ? Wavelet::N1 : waveletOf(options_.wavelet);
+    frame.effort = options_.effort;
     frame.zstdLevel = options_.zstdLevel;
     frame.mostPredicted = options_.mostPredicted;
     frame.keepsAbsent = exact && !resamples && options_.discard == 0;

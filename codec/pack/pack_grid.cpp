@@ -1,5 +1,6 @@
 #include "codec/pack/pack_grid.h"
 
+#include "codec/archive/frame_options.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -21,11 +22,12 @@ int defaultLevels(const volume::Lattice& lattice, int brickSize) {
     return levels;
 }
 
-/// The automatic brick size. Two kinds of data get bricks that are larger than usual, if a usual one does not hold
+/// The automatic brick size. Three kinds of data get bricks that are larger than usual, if a usual one does not hold
 /// them:
 ///  - Floats within an error bound, since every face of a brick costs bytes: volumes so small that a view reads them
 ///  whole
 ///    anyway. Thresholds and omitted bricks depend on the importance of each brick, for which small ones are better.
+///  - Integers packed with the most effort, as fitted predictions need their neighbours as well.
 ///  - Repetition, which only integers that were not resampled have, is only found within a brick, so small data of that
 ///    kind get one large brick.
 /// Archives that grow keep their brick size.
@@ -41,10 +43,12 @@ int brickSizeFor(const volume::Lattice& lattice, const volume::DatasetInfo& sour
     const bool bounded = (options.maxError > 0 || options.absError > 0 || options.psnr > 0 || options.sizeMb > 0) &&
                          !hasThreshold(options) && options.discard == 0;
     if (bounded && lattice.count() <= kReadWhole && std::ranges::any_of(source.parameters, isFloat)) return kLargest;
+    const bool isInteger = std::ranges::none_of(source.parameters, isFloat);
+    if (options.effort >= kLongestEffort && isInteger && !hasThreshold(options) && options.discard == 0)
+        return kLargest;
     const glm::ivec3 size = lattice.size;
     const bool one = lattice.kind == LatticeKind::CC && lattice == source.lattice && source.times.size() == 1 &&
-                     lattice.count() <= kSmall && std::max({size.x, size.y, size.z}) <= kLargest &&
-                     std::ranges::none_of(source.parameters, isFloat);
+                     lattice.count() <= kSmall && std::max({size.x, size.y, size.z}) <= kLargest && isInteger;
     return one ? kLargest : kUsual;
 }
 

@@ -114,11 +114,12 @@ public:
         row(codec.name, coded.size(), encode, decode, codec.exact ? 0 : largestError(loaded_.bytes, out) / range);
     }
 
-    void archive(double maxError, double range) {
+    void archive(int effort, double maxError, double range) {
         const std::string path =
             (fs::temp_directory_path() / ("tessera-peers-" + std::to_string(::getpid()) + ".tsr")).string();
         codec::PackOptions options;
         options.lattice = codec::StoredLattice::CC;
+        options.effort = effort;
         options.maxError = maxError;
         codec::PackSummary summary;
         const double encode = best([&] {
@@ -140,8 +141,9 @@ public:
         std::remove(path.c_str());
         if (maxError == 0 && out != loaded_.bytes)
             std::fprintf(stderr, "%s: the archive does not give back its samples\n", name_.c_str());
-        row("tessera", summary.archiveBytes, encode, decode,
-            maxError == 0 ? 0 : largestError(loaded_.bytes, out) / range);
+        const std::string name =
+            effort == codec::PackOptions().effort ? "tessera" : "tessera --effort " + std::to_string(effort);
+        row(name, summary.archiveBytes, encode, decode, maxError == 0 ? 0 : largestError(loaded_.bytes, out) / range);
     }
 
 private:
@@ -156,7 +158,7 @@ void measure(const fs::path& sidecar) {
     Table lossless(loaded, name);
     const auto codecs = byteCodecs();
     lossless.peer(codecs[0], 1);
-    lossless.archive(0, 1);
+    for (const int effort : {5, 1, 7, 9}) lossless.archive(effort, 0, 1);
     for (std::size_t i = 1; i < codecs.size(); ++i) lossless.peer(codecs[i], 1);
     for (const PeerCodec& codec : arrayCodecs()) lossless.peer(codec, 1);
     const auto& parameters = loaded.dataset.info.parameters;
@@ -169,7 +171,7 @@ void measure(const fs::path& sidecar) {
         char text[32];
         std::snprintf(text, sizeof text, ", error <= %g", bound);
         Table bounded(loaded, name + text);
-        bounded.archive(bound, range);
+        bounded.archive(codec::PackOptions().effort, bound, range);
         for (const PeerCodec& codec : boundedCodecs(bound * range)) bounded.peer(codec, range);
     }
 }

@@ -1,4 +1,5 @@
 #include "codec/archive/archive.h"
+#include "codec/archive/archive_state.h"
 #include "codec/brick/brick_codec.h"
 #include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
@@ -6,6 +7,7 @@
 #include "tests/fuzz/fuzz_model.h"
 #include "tests/volume/regions.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 
 namespace tessera::codec {
@@ -36,6 +38,22 @@ volume::Dataset slowDataset() {
         volume::Field field = volume::makeField(lattice, ScalarType::F32);
         std::mt19937 random(1);
         for (float& sample : field.as<float>()) sample = float(random() % 1000) / 100 + 0.05f * float(time);
+        return field;
+    };
+    return made;
+}
+
+/// Waves of four samples, which fitted weights predict and wavelets do not.
+volume::Dataset wavesDataset() {
+    volume::Dataset made = makeDataset({33, 30, 26}, {{"a", ScalarType::U8, 1, Texture::Smooth, false, false}}, 1);
+    const volume::Lattice lattice = made.info.lattice;
+    made.read = [lattice](int, int, int) {
+        volume::Field field = volume::makeField(lattice, ScalarType::U8);
+        for (std::size_t i = 0; i < field.count(); ++i) {
+            const int x = int(i) % 33, y = int(i) / 33 % 30, z = int(i) / (33 * 30);
+            field.as<std::uint8_t>()[i] =
+                std::uint8_t(128 + int(60 * std::sin(1.7 * x + 0.3) * std::sin(1.5 * y + 1.1 * z)) + (x * y + z) % 3);
+        }
         return field;
     };
     return made;
@@ -85,6 +103,13 @@ TEST(Corpus, AStoredArchiveOfPredictedFramesHasItsSamplesAtEveryTime) {
     }
 }
 
+TEST(Corpus, AStoredArchiveOfFittedPredictionsHasItsSamples) {
+    const Archive archive(corpus() + "fuzz_archive/fitted-3.tsr");
+    EXPECT_EQ(verifyArchive(archive).damaged, 0u);
+    ASSERT_FALSE(stateOf(archive, false).lastModels[0].model.fitted.empty());
+    EXPECT_EQ(readField(archive, 0, 0, 0).samples, wavesDataset().read(0, 0, 0).samples);
+}
+
 /// Not a check: writes the seeds of fuzz_brick and fuzz_archive when the format changes
 /// (--gtest_also_run_disabled_tests).
 TEST(Corpus, DISABLED_WriteSeeds) {
@@ -110,6 +135,12 @@ TEST(Corpus, DISABLED_WriteSeeds) {
     within.maxError = 1e-3;
     within.brickSize = 8;
     pack(slow, within, corpus() + "fuzz_archive/predicted-3.tsr");
+    volume::Dataset waves = wavesDataset();
+    PackOptions fits;
+    fits.lattice = StoredLattice::CC;
+    fits.effort = 7;
+    fits.brickSize = 16;
+    pack(waves, fits, corpus() + "fuzz_archive/fitted-3.tsr");
     const std::string grown = corpus() + "fuzz_archive/grown-3-statistics.tsr";
     for (int step = 0; step < 3; ++step) {
         const char* const name = step == 1 ? "p" : "T";
@@ -161,6 +192,27 @@ TEST(Corpus, DISABLED_WriteSeeds) {
         encodeStream(symbols, thorough, body);
         ASSERT_EQ(body[1], std::byte{7});
         for (const std::byte byte : body) head.push_back(char(byte));
+        writeFile(corpus() + "fuzz_brick/" + std::to_string(number++), head);
+    }
+    for (int lattice = 0; lattice < 2; ++lattice) { // fitted predictions
+        std::vector<char> head{char(lattice), 16, 15, 19, 2, 5, char(ScalarType::U8), 16, 0, 0, 0, 1};
+        const BrickFormat format{lattice != 0 ? LatticeKind::BCC : LatticeKind::CC,
+                                 {17, 16, 20},
+                                 3,
+                                 Wavelet::W22,
+                                 ScalarType::U8,
+                                 {},
+                                 false,
+                                 codeBitsOf(ScalarType::U8),
+                                 true};
+        volume::Dataset made = makeDataset(format.size, {{"x", format.type, 1, Texture::Smooth, false, false}}, 1);
+        const std::vector<Bytes> segments = encodeBrick(format, made.read(0, 0, 0).samples, {}, 0, compressor,
+                                                        BandEncoder(fuzzFittedModel(format.levels)));
+        for (const Bytes& segment : segments) {
+            if (&segment != &segments.back()) // as the target reads them
+                for (const std::size_t byte : {segment.size() % 256, segment.size() / 256}) head.push_back(char(byte));
+            for (const std::byte byte : segment) head.push_back(char(byte));
+        }
         writeFile(corpus() + "fuzz_brick/" + std::to_string(number++), head);
     }
     for (int seed = 0; seed < 5; ++seed) {

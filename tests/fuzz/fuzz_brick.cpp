@@ -27,19 +27,31 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (data[9] % 2 != 0)
         for (std::size_t i = 0; i < count; ++i) present.push_back((data[10] >> (i * 7 % 8) & 1) != 0);
 
-    // Every segment gets a share of the rest, copied so that a read beyond its end is seen.
+    const bool fitted = data[7] / 16 == 1;
+    if (fitted) format.bodyCentred = true;
+    // Every segment gets a share of the rest, or as many bytes as two of it say, copied so that a read beyond its end
+    // is seen.
     const auto bytes = std::as_bytes(std::span(data + kHead, size - kHead));
     std::vector<codec::Bytes> segments;
+    std::size_t at = 0;
     for (std::size_t s = 0, levels = std::size_t(format.levels); s < levels; ++s) {
-        const std::size_t begin =
+        std::size_t begin =
             bytes.size() * s * (data[11] % 4 == 0 ? s : 1) / (levels * (data[11] % 4 == 0 ? levels : 1));
-        const std::size_t end = s + 1 == levels ? bytes.size()
-                                                : bytes.size() * (s + 1) * (data[11] % 4 == 0 ? s + 1 : 1) /
-                                                      (levels * (data[11] % 4 == 0 ? levels : 1));
+        std::size_t end = s + 1 == levels ? bytes.size()
+                                          : bytes.size() * (s + 1) * (data[11] % 4 == 0 ? s + 1 : 1) /
+                                                (levels * (data[11] % 4 == 0 ? levels : 1));
+        if (fitted) {
+            begin = std::min(bytes.size(), s + 1 == levels ? at : at + 2);
+            const std::size_t length = s + 1 < levels && begin == at + 2
+                                           ? std::size_t(bytes[at]) + 256 * std::size_t(bytes[at + 1])
+                                           : bytes.size();
+            at = end = std::min(bytes.size(), begin + length);
+        }
         segments.emplace_back(bytes.begin() + std::ptrdiff_t(begin), bytes.begin() + std::ptrdiff_t(end));
     }
     if (format.type != volume::ScalarType::F32) format.codeBits = codec::codeBitsOf(format.type);
-    const codec::BandDecoder decoder(codec::fuzzModel(format.levels, data[7] / 2 % 2 != 0));
+    const codec::BandDecoder decoder(fitted ? codec::fuzzFittedModel(format.levels)
+                                            : codec::fuzzModel(format.levels, data[7] / 2 % 2 != 0));
     for (int level = 0; level < format.levels; ++level) {
         const std::vector<std::span<const std::byte>> parts(segments.begin(), segments.end() - level);
         codec::DecodedBrick decoded;

@@ -15,4 +15,12 @@ inline Model fuzzModel(int levels, bool byBand = false) {
     return makeModel(histogram, 8);
 }
 
+/// The first with predictions that need no fit.
+inline Model fuzzFittedModel(int levels) {
+    Model model = fuzzModel(levels);
+    for (std::size_t i = 0; i < model.fitted.passes.size(); ++i)
+        model.fitted.passes[i] = plainWeights(static_cast<Pass>(i % kPasses));
+    return model;
+}
+
 } // namespace tessera::codec

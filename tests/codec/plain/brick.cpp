@@ -1,4 +1,5 @@
 #include "tests/codec/plain/bands.h"
+#include "tests/codec/plain/fitted.h"
 #include "tests/codec/plain/steps.h"
 
 #include <algorithm>
@@ -90,7 +91,10 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
     bool whole = false;
     std::vector<std::uint32_t> subsamples;
     std::optional<Brick> before; // 4.10
-    std::vector<Octets> stepped; // 4.8: the segments
+    std::vector<Octets> later;   // 4.8, 4.11: the segments
+    const std::optional<Model> model =
+        frame.numbers == 4 ? std::nullopt : std::optional(parseModel(models_[frame.model]));
+    const bool fitted = model && model->fitted && levels_ > 1;
     std::vector<std::pair<std::size_t, std::int64_t>> corrections;
     for (int segment = 0; segment < levels_ - level; ++segment) {
         const Octets bytes = checked(frame.pieces[std::size_t(segment) * bricks + std::size_t(number)]);
@@ -117,9 +121,9 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
             }
             subsamples = stream(in, count);
         }
-        if (frame.numbers == 4) {
+        if (frame.numbers == 4 || (fitted && segment > 0 && !whole)) {
             if (segment == levels_ - 1) extras(in);
-            stepped.push_back(in.take(std::size_t(in.end - in.at)));
+            later.push_back(in.take(std::size_t(in.end - in.at)));
             continue;
         }
         std::vector<Cell*> order;
@@ -178,8 +182,7 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
             });
         } else if (*in.at == 4) {
             (void)in.number(1);
-            decodeBands(in.take(std::size_t(in.end - in.at)), bands, std::size_t(levels_ - 1 - segment),
-                        parseModel(models_[frame.model]));
+            decodeBands(in.take(std::size_t(in.end - in.at)), bands, std::size_t(levels_ - 1 - segment), *model);
         } else if (order.empty()) {
             need(in.number(1) == 0, "mode");
         } else {
@@ -194,7 +197,13 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
 
     if (frame.numbers == 4)
         corrections = readStepped({levels_, level, frame.wavelet, centred, flags.size(), checked(models_[frame.model])},
-                                  stepped, boxes);
+                                  later, boxes);
+
+    if (fitted && !whole) {
+        const bool isUnsigned = type == "uint8" || type == "uint16";
+        const std::int64_t most = (std::int64_t(1) << std::min(frame.codeBits, 30)) - 1;
+        readFitted({levels_, level, isUnsigned ? 0 : -most, most, *model}, later, boxes);
+    }
 
     // 4.3
     const bool asFloat = frame.numbers == 2;
@@ -215,6 +224,7 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
         });
     };
     for (Box& box : boxes) {
+        if (fitted && !whole) break;
         if (whole) { // 4.4: the coarse samples are made again
             Size part = box.size;
             for (int step = 0; step < level; ++step, part = half(part))

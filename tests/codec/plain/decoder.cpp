@@ -29,7 +29,9 @@ Decoder::Model Decoder::parseModel(const Piece& piece) const {
         model.tables[0][0] = model.tables[0][140] = 2048;
         return model;
     }
-    model.shift = bits(7);
+    model.shift = bits(6);
+    model.fitted = bits(1) == 1;
+    need(!model.fitted || knowsFits_, "fitted predictions");
     model.byBand = bits(1) == 1;
     need(!model.byBand || knowsBands_, "contexts by band");
     const std::uint32_t tables = bits(8);
@@ -57,6 +59,19 @@ Decoder::Model Decoder::parseModel(const Piece& piece) const {
         table[140] = left;
         model.tables.push_back(table);
     }
+    if (model.fitted) { // 4.11
+        constexpr std::size_t kTaps[] = {26, 28, 34, 40};
+        for (std::size_t i = 0; i < 12; ++i) {
+            if (bits(1) == 0) continue;
+            std::vector<std::int32_t> weights(kTaps[i % 4] + 1);
+            weights[0] = weights[1] = 128;
+            for (int c = 0; c < 32; ++c) {
+                const int width = int(bits(5));
+                for (std::int32_t& weight : weights) weight += std::int32_t(unzigzag(bits(width)));
+                model.weights[i].push_back(weights);
+            }
+        }
+    }
     need((at + 7) / 8 == bytes.size(), "model");
     return model;
 }
@@ -76,7 +91,7 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         const std::uint64_t end = in.number(8);
         Piece found[2];
         for (Piece& part : found) part = readPiece(in);
-        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 || features > 127) return false;
+        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 || features > 255) return false;
         if (end > file_.size()) return false;
         if (end <= end_) return true; // the other copy is as good or better
         hasNotes_ = features % 2 == 1;
@@ -85,7 +100,8 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         hasStatistics_ = features / 8 % 2 == 1;
         knowsSteps_ = features / 16 % 2 == 1;
         knowsSubsamples_ = features / 32 % 2 == 1;
-        knowsPredictions_ = features / 64 == 1;
+        knowsPredictions_ = features / 64 % 2 == 1;
+        knowsFits_ = features / 128 == 1;
         end_ = end;
         std::copy(found, found + 2, parts);
         return true;
@@ -209,7 +225,7 @@ void Decoder::readPage(const Octets& page, std::vector<double>& times,
         need((knowsSubsamples_ && levels_ > 1) || !frame.subsampled, "frame");
         need(!frame.predicted || (knowsPredictions_ && frame.numbers == 4 && time > 0), "frame");
         need(kept < 16, "frame");
-        (void)table.number(1); // width of the codes: what a fast reader wants to know
+        frame.codeBits = int(table.number(1));
         need(frame.numbers < (knowsSteps_ ? 5 : 4) && frame.wavelet < 12, "frame");
         frame.mask = int(table.u32());
         frame.model = table.u32();

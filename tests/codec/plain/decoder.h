@@ -52,6 +52,9 @@ public:
         bool byBand = false;
         std::vector<std::vector<std::uint32_t>> tableOf; ///< [8 level + kind] of each class
         std::vector<std::vector<std::uint32_t>> tables;
+        /// 4.11: [4 depth + pass], for each class the weights of the taps, then what is added; empty: none.
+        std::array<std::vector<std::vector<std::int32_t>>, 12> weights;
+        bool fitted = false;
     };
 
 private:
@@ -64,7 +67,7 @@ private:
         std::vector<std::uint32_t> present;
     };
     struct Frame {
-        int numbers = 0, wavelet = 0, mask = -1;
+        int numbers = 0, wavelet = 0, mask = -1, codeBits = 32;
         std::size_t model = 0;
         bool keepsAbsent = false, bodyCentred = false, subsampled = false, predicted = false;
         double origin = 0, step = 1, valueOffset = 0, valueScale = 1;
@@ -92,7 +95,7 @@ private:
     int brickSize_ = 0, levels_ = 0;
     std::vector<std::string> types_; ///< of the component of each frame within a time
     bool hasNotes_ = false, compact_ = false, knowsBands_ = false, hasStatistics_ = false, knowsSteps_ = false,
-         knowsSubsamples_ = false, knowsPredictions_ = false;
+         knowsSubsamples_ = false, knowsPredictions_ = false, knowsFits_ = false;
     std::size_t end_ = 0; ///< of the archive in the file
     std::vector<Piece> models_;
     std::vector<Mask> masks_;
