@@ -265,12 +265,16 @@ TEST(Series, PrefilteredD4BeatsCcAtHalfTheSamples) {
         return std::exp(-glm::dot(apart, apart) / (2 * 0.14 * 0.14));
     };
     const double cell = 1.0 / 20;
-    const auto cc = latticeError4(blob, LatticeKind4::CC, cell, false, 20000),
-               plain = latticeError4(blob, LatticeKind4::D4, cell * kBccSpacing, false, 20000),
-               quasi = latticeError4(blob, LatticeKind4::D4, cell * kBccSpacing, true, 20000);
+    const auto errorOfD4 = [&](LatticeFilter4 filter) {
+        return latticeError4(blob, LatticeKind4::D4, cell * kBccSpacing, filter, 20000);
+    };
+    const auto cc = latticeError4(blob, LatticeKind4::CC, cell, LatticeFilter4::Linear, 20000),
+               plain = errorOfD4(LatticeFilter4::Linear), quasi = errorOfD4(LatticeFilter4::Quasi),
+               drawn = errorOfD4(LatticeFilter4::Drawn);
     EXPECT_NEAR(quasi.samples / cc.samples, 0.5, 1e-9);
     EXPECT_GT(plain.rms, cc.rms);
     EXPECT_LT(quasi.rms, 0.35 * cc.rms) << cc.rms << " " << plain.rms << " " << quasi.rms;
+    EXPECT_LT(drawn.rms, 1.1 * quasi.rms) << drawn.rms;
 }
 
 TEST(Hyperplane, SlicesLinearFunctionsInAnyDirection) {

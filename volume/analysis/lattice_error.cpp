@@ -125,7 +125,7 @@ double latticeGradientError(const std::function<double(glm::dvec3)>& signal,
 }
 
 LatticeError latticeError4(const std::function<double(glm::dvec4)>& signal, LatticeKind4 kind, double spacing,
-                           bool prefilter, std::size_t points, unsigned seed) {
+                           LatticeFilter4 filter, std::size_t points, unsigned seed) {
     Series series;
     series.lattice.kind = kind;
     series.lattice.spacing = glm::dvec4(spacing);
@@ -139,8 +139,9 @@ LatticeError latticeError4(const std::function<double(glm::dvec4)>& signal, Latt
         std::copy(values.begin(), values.end(), field.as<float>().begin());
         return std::make_shared<const Field>(std::move(field));
     };
-    if (prefilter) series = prefiltered(series);
-    series = remembering(series, 4);
+    if (filter == LatticeFilter4::Quasi) series = prefiltered(series);
+    const bool drawn = filter == LatticeFilter4::Drawn;
+    series = remembering(series, drawn ? 8 : 4);
 
     constexpr std::size_t kTimes =
         64; // number of distinct times: points share them, so that frames are blended once per time
@@ -152,12 +153,14 @@ LatticeError latticeError4(const std::function<double(glm::dvec4)>& signal, Latt
     LatticeError out;
     const std::size_t each = points / kTimes;
     for (const double time : times) {
-        const Field field = atTime(series, time, TimeFilter::Linear);
+        const Field field = atTime(series, time, drawn ? TimeFilter::Cubic : TimeFilter::Linear);
         const FieldSamples samples{field};
+        const LevelGeometry geometry{field.lattice.kind, 1, 0};
+        const Prefiltered<FieldSamples> prefilteredSamples(samples, geometry);
         for (std::size_t i = 0; i < each; ++i) {
             const glm::dvec3 p(uniform(), uniform(), uniform());
-            const LevelGeometry geometry{field.lattice.kind, 1, 0};
-            const Blend blend = linear(geometry, samples, field.lattice.toCells(p));
+            const glm::dvec3 cells = field.lattice.toCells(p);
+            const Blend blend = drawn ? linear(geometry, prefilteredSamples, cells) : linear(geometry, samples, cells);
             const double error = std::abs(blend.sum / blend.coverage - signal(glm::dvec4(p, time)));
             out.rms += error * error;
             out.max = std::max(out.max, error);

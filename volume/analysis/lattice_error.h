@@ -32,10 +32,14 @@ double latticeGradientError(const std::function<double(glm::dvec3)>& signal,
                             LatticeFilter filter, GradientSpan span, const Box& box, std::size_t points = 20000,
                             unsigned seed = 1);
 
-/// The error of latticeError() in space and time, for a signal on the unit cube of space and time: reconstructed
-/// linearly between frames and samples, on D4* as the mean of both grids (volume/resample/series.h), as they are or
-/// prefiltered. `spacing` is the cell edge of one grid along all four axes. Points lie a quarter inside the cube.
+/// Filters in space and time (volume/resample/series.h): linear between frames and samples, on D4* as the mean of both
+/// grids; the same of samples that are prefiltered in space and time; and as views draw an archive: cubic between
+/// frames, then prefiltered in space.
+enum class LatticeFilter4 { Linear, Quasi, Drawn };
+
+/// The error of latticeError() in space and time, for a signal on the unit cube of space and time. `spacing` is the
+/// cell edge of one grid along all four axes. Points lie a quarter inside the cube.
 LatticeError latticeError4(const std::function<double(glm::dvec4)>& signal, LatticeKind4 kind, double spacing,
-                           bool prefilter, std::size_t points = 60000, unsigned seed = 1);
+                           LatticeFilter4 filter, std::size_t points = 60000, unsigned seed = 1);
 
 } // namespace tessera::volume

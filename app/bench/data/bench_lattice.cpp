@@ -28,19 +28,21 @@ struct LatticeRow4 {
     const char* name;
     volume::LatticeKind4 kind;
     double spacing; ///< in cells of the CC grid
-    bool prefilter;
+    volume::LatticeFilter4 filter;
 };
 
 void addRows4(BenchTable& table) {
+    using volume::LatticeFilter4;
     using volume::LatticeKind4;
     const LatticeRow4 rows[] = {
-        {"CC x t quadrilinear", LatticeKind4::CC, 1, false},
-        {"D4* average", LatticeKind4::D4, volume::kBccSpacing, false},
-        {"D4* quasi", LatticeKind4::D4, volume::kBccSpacing, true},
+        {"CC x t quadrilinear", LatticeKind4::CC, 1, LatticeFilter4::Linear},
+        {"D4* average", LatticeKind4::D4, volume::kBccSpacing, LatticeFilter4::Linear},
+        {"D4* quasi", LatticeKind4::D4, volume::kBccSpacing, LatticeFilter4::Quasi},
+        {"D4* as drawn", LatticeKind4::D4, volume::kBccSpacing, LatticeFilter4::Drawn},
     };
     volume::LatticeError quadrilinear;
     for (const LatticeRow4& row : rows) {
-        const auto error = volume::latticeError4(movingBlob, row.kind, row.spacing / 20, row.prefilter);
+        const auto error = volume::latticeError4(movingBlob, row.kind, row.spacing / 20, row.filter);
         if (row.kind == LatticeKind4::CC) quadrilinear = error;
         table.rows.push_back({"moving blob", row.name, decimals(100 * error.samples / quadrilinear.samples, 1),
                               decimals(error.rms, 5), decimals(error.max, 4), decimals(error.rms / quadrilinear.rms, 2),
