@@ -11,6 +11,7 @@
 #include "volume/field/quantities.h"
 #include "volume/import/import.h"
 #include "volume/import/over_time.h"
+#include "volume/sources/alternating_source.h"
 #include "volume/sources/axis_source.h"
 #include "volume/sources/labelled_source.h"
 #include "volume/sources/memory_source.h"
@@ -118,10 +119,15 @@ volume::OtherAxis axisOf(const volume::DatasetInfo& given, const DataRef& data, 
 
 Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
     const std::string& path = data.files[0].absolutePath;
-    auto source = codec::openArchive(path, data.remote);
-    const auto* archive = dynamic_cast<const codec::Archive*>(source.get());
-    // D4* frames are shown on another lattice, so the file is asked how it was packed.
-    NumberOrigin origin = storedOrigin(archive ? archive->metadata() : codec::Archive(path, data.remote).metadata());
+    const auto archive = std::make_shared<const codec::Archive>(path, data.remote);
+    NumberOrigin origin = storedOrigin(archive->metadata());
+    std::shared_ptr<const volume::BrickSource> source = archive;
+    if (archive->metadata().alternating && data.grids != ShownGrids::Both) {
+        source = volume::makeOneGridSource(archive, data.grids == ShownGrids::First ? 0 : 1);
+        origin.lattice = "one grid of D4*";
+    } else if (archive->metadata().alternating) {
+        source = volume::makeAlternatingSource(archive, volume::TimeFilter::Cubic);
+    }
     volume::OtherAxis axis = axisOf(source->info(), data, messages);
     if (axis.info.times != source->info().times || axis.info.timeName != source->info().timeName ||
         axis.info.timeUnit != source->info().timeUnit || !data.import.overTime.empty() || !data.import.units.empty())

@@ -43,6 +43,10 @@ struct DataFile {
 enum class PictureLattice { Grid, BodyCentred };
 inline constexpr std::string_view kPictureLatticeNames[] = {"grid", "bodyCentred"};
 
+/// What is shown of an archive on D4*: both of its grids at every time, or the stored times of one grid.
+enum class ShownGrids { Both, First, Second };
+inline constexpr std::string_view kShownGridsNames[] = {"both", "first", "second"};
+
 /// A second data set, whose parameters are added to those of the first.
 struct OtherData {
     std::vector<DataFile> files;
@@ -67,6 +71,7 @@ struct DataRef {
     std::string model;                      ///< "fuel-cell", "marschner-lobb", ...: used when there are no files
     std::map<std::string, double> settings; ///< of the model: e.g. nx, ny, nz, times
     PictureLattice lattice = PictureLattice::BodyCentred;
+    ShownGrids grids = ShownGrids::Both;
     std::vector<volume::DerivedParameter> derived; ///< computed from the others
     volume::ImportOptions import;                  ///< options for what the files do not state themselves
     std::optional<codec::PackOptions> packed;      ///< unpacked data are shown as an archive packed so holds them
@@ -87,6 +92,14 @@ struct DataRef {
                         .doc = "Lattice that pictures of data files are drawn from: the grid of the file, or "
                                "body-centred with 70.7 % of the samples; numbers always come from the file",
                         .names = kPictureLatticeNames});
+        visit(self.grids,
+              FieldInfo{.key = "grids",
+                        .unit = "",
+                        .doc =
+                            "Of an archive on D4*, the lattice in space and time: both of its grids at every time, of "
+                            "which one is computed from the times before and after, or one grid alone at its own "
+                            "times, with the samples as stored",
+                        .names = kShownGridsNames});
         visit(self.derived,
               FieldInfo{.key = "derived", .unit = "", .doc = "Parameters computed from the others", .hidden = true});
         visit(self.import, FieldInfo{.key = "import", .unit = "", .doc = "What the user stated about the files"});

@@ -2,6 +2,7 @@
 #include "app/queries/focus_share.h"
 #include "app/queries/statistics_query.h"
 #include "app/views/curves/profile_data.h"
+#include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
 #include "volume/reconstruct/probe.h"
 #include "volume/synthetic/models.h"
@@ -324,6 +325,43 @@ TEST(Numbers, WithTimeAlongAnAxisAreTheSameOnEveryLattice) {
     for (int channel = 0; channel < int(grid.numbers->info().channels().size()); ++channel)
         EXPECT_EQ(grid.numbers->read({channel, 0, 0, {0, 0, 0}}).values,
                   bcc.numbers->read({channel, 0, 0, {0, 0, 0}}).values);
+}
+
+TEST(Numbers, OneGridOfAnArchiveInSpaceAndTimeIsReadAsStored) {
+    const std::string folder =
+        (std::filesystem::temp_directory_path() / "tessera_one_grid_").string() + std::to_string(::getpid());
+    std::filesystem::create_directories(folder);
+    const std::string path = folder + "/d4.tsr";
+    volume::Dataset cell = volume::makeModel("fuel-cell", {{"nx", 9}, {"ny", 11}, {"nz", 23}, {"times", 4}});
+    codec::pack(cell, packing(StoredLattice::D4), path);
+    const codec::Archive archive(path);
+    const std::size_t frames = archive.info().times.size();
+    ASSERT_GE(frames, 4u);
+    DataRef data = dataOf({path}, {});
+    const Sources both = opened(data);
+    EXPECT_EQ(both.numbers->info().lattice.kind, volume::LatticeKind::BCC);
+    EXPECT_EQ(both.numbers->info().times.size(), frames);
+    for (const ShownGrids grids : {ShownGrids::First, ShownGrids::Second}) {
+        data.grids = grids;
+        const int parity = grids == ShownGrids::First ? 0 : 1;
+        const Sources one = opened(data);
+        const volume::DatasetInfo& info = one.numbers->info();
+        EXPECT_EQ(one.origin.lattice, "one grid of D4*");
+        EXPECT_EQ(info.lattice.kind, volume::LatticeKind::CC);
+        EXPECT_EQ(one.numbers->grid().lattice, info.lattice);
+        EXPECT_EQ(info.lattice.origin, archive.info().lattice.origin + 0.5 * parity * info.lattice.spacing);
+        ASSERT_EQ(info.times.size(), (frames + 1 - std::size_t(parity)) / 2);
+        const int channel = info.findChannel("T").value();
+        for (std::size_t t = 0; t < info.times.size(); ++t) {
+            const int frame = 2 * int(t) + parity;
+            EXPECT_EQ(info.times[t], archive.info().times[std::size_t(frame)]);
+            for (const volume::Quantity& quantity : info.quantities)
+                EXPECT_EQ(quantity.values.size(), info.times.size());
+            EXPECT_EQ(one.numbers->read({channel, int(t), 0, {0, 0, 0}}).values,
+                      archive.read({channel, frame, 0, {0, 0, 0}}).values);
+        }
+    }
+    std::filesystem::remove_all(folder);
 }
 
 } // namespace

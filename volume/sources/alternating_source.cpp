@@ -4,6 +4,7 @@
 #include "volume/bricks/parts_bricks.h"
 #include "volume/reconstruct/reconstruct.h"
 #include "volume/resample/resample_taps.h"
+#include "volume/sources/axis_source.h"
 #include "volume/sources/memory_source.h"
 
 #include <algorithm>
@@ -252,6 +253,23 @@ private:
 
 std::shared_ptr<const BrickSource> makeAlternatingSource(std::shared_ptr<const BrickSource> frames, TimeFilter filter) {
     return std::make_shared<const AlternatingSource>(std::move(frames), filter);
+}
+
+std::shared_ptr<const BrickSource> makeOneGridSource(std::shared_ptr<const BrickSource> frames, int parity) {
+    OtherAxis axis{frames->info(), {}};
+    const DatasetInfo& all = frames->info();
+    if (all.lattice.kind != LatticeKind::CC || int(all.times.size()) <= parity)
+        throw Error("a grid of a D4* lattice needs a time of its own", all.name);
+    for (int t = parity; t < int(all.times.size()); t += 2) axis.order.push_back(t);
+    const auto own = [&](std::vector<double>& values) {
+        std::vector<double> kept;
+        for (const int t : axis.order) kept.push_back(values[std::size_t(t)]);
+        values = std::move(kept);
+    };
+    own(axis.info.times);
+    for (Quantity& quantity : axis.info.quantities) own(quantity.values);
+    if (parity == 1) axis.info.lattice.origin += 0.5 * axis.info.lattice.spacing;
+    return onAxis(std::move(frames), std::move(axis));
 }
 
 } // namespace tessera::volume

@@ -15,4 +15,7 @@ namespace tessera::volume {
 std::shared_ptr<const BrickSource> makeAlternatingSource(std::shared_ptr<const BrickSource> frames,
                                                          TimeFilter filter = TimeFilter::Linear);
 
+/// One of the two grids of such frames alone: those of one parity (0 even, 1 odd), as they are, where they lie.
+std::shared_ptr<const BrickSource> makeOneGridSource(std::shared_ptr<const BrickSource> frames, int parity);
+
 } // namespace tessera::volume

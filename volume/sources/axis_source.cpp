@@ -13,10 +13,12 @@ namespace {
 class OnAxis final : public BrickSource {
 public:
     OnAxis(std::shared_ptr<const BrickSource> source, OtherAxis axis)
-        : source_(std::move(source)), axis_(std::move(axis)) {}
+        : source_(std::move(source)), axis_(std::move(axis)), grid_(source_->grid()) {
+        grid_.lattice = axis_.info.lattice;
+    }
 
     const DatasetInfo& info() const override { return axis_.info; }
-    const BrickGrid& grid() const override { return source_->grid(); }
+    const BrickGrid& grid() const override { return grid_; }
     BrickStats stats(const BrickKey& key) const override { return source_->stats(before(key)); }
     std::optional<BrickDistribution> distribution(const BrickKey& key) const override {
         return source_->distribution(before(key));
@@ -37,6 +39,7 @@ private:
 
     std::shared_ptr<const BrickSource> source_;
     OtherAxis axis_;
+    BrickGrid grid_;
 };
 
 } // namespace
