@@ -61,6 +61,7 @@ Progress terminalProgress(const std::string& title) {
 int parseAndRun(CLI::App& app, int argc, const char* const* argv, const std::function<void()>& before) {
     const std::string named = app.get_name();
     const char* const name = named.c_str();
+    std::signal(SIGXFSZ, SIG_IGN); // a limit of file sizes is an error of the write, not the end of the program
     try {
         if (before) before();
         app.parse(argc, argv);

@@ -51,6 +51,52 @@ TESSERA_INLINE void predictBlock(const TapSet& set, const TapRows<Word>& taps, c
 
 #if TESSERA_X86
 
+/// The class of each of eight activities.
+TESSERA_AVX2 TESSERA_INLINE __m256i classesOf2(__m256i away) {
+    const __m256 above = _mm256_cvtepi32_ps(_mm256_add_epi32(away, _mm256_set1_epi32(1)));
+    const __m256i octaves = _mm256_sub_epi32(_mm256_srli_epi32(_mm256_castps_si256(above), 22), _mm256_set1_epi32(254));
+    return _mm256_min_epu32(octaves, _mm256_set1_epi32(kActivityClasses - 1));
+}
+
+TESSERA_AVX2 TESSERA_INLINE __m256i rowAt2(const std::int16_t* from) {
+    return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+}
+
+/// predictNarrow512 for sixteen words at a time, with weights from memory.
+TESSERA_AVX2 void predictNarrow2(const TapSet& set, const TapRows<std::int16_t>& taps, const std::int32_t* weights,
+                                 CodeRange range, int width, std::int16_t* predicted, std::uint16_t* activity) {
+    const __m256i zero = _mm256_setzero_si256();
+    for (int x = 0; x < width; x += 16) {
+        const auto* const* places = taps.places;
+        const std::ptrdiff_t at = taps.first + x;
+        const __m256i guess = _mm256_srai_epi16(_mm256_add_epi16(rowAt2(places[0] + at), rowAt2(places[1] + at)), 1);
+        __m256i away = zero;
+        for (int t = 0; t < set.near; ++t)
+            away = _mm256_add_epi16(away, _mm256_abs_epi16(_mm256_sub_epi16(rowAt2(places[t] + at), guess)));
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(activity + x), _mm256_srli_epi16(away, 1));
+        const __m256i lowKind = classesOf2(_mm256_unpacklo_epi16(away, zero));
+        const __m256i highKind = classesOf2(_mm256_unpackhi_epi16(away, zero));
+        const std::int32_t* own = weights + set.count / 2 * kActivityClasses;
+        const __m256i half = _mm256_set1_epi32(1 << (kWeightBits - 1));
+        __m256i low = _mm256_add_epi32(_mm256_i32gather_epi32(own, lowKind, 4), half);
+        __m256i high = _mm256_add_epi32(_mm256_i32gather_epi32(own, highKind, 4), half);
+        own = weights;
+        for (int t = 0; t < set.count; t += 2, own += kActivityClasses) {
+            const __m256i one = rowAt2(places[t] + at), other = rowAt2(places[t + 1] + at);
+            const __m256i lowPair = _mm256_i32gather_epi32(own, lowKind, 4);
+            const __m256i highPair = _mm256_i32gather_epi32(own, highKind, 4);
+            low = _mm256_add_epi32(low, _mm256_madd_epi16(lowPair, _mm256_unpacklo_epi16(one, other)));
+            high = _mm256_add_epi32(high, _mm256_madd_epi16(highPair, _mm256_unpackhi_epi16(one, other)));
+        }
+        const __m256i sum =
+            _mm256_packs_epi32(_mm256_srai_epi32(low, kWeightBits), _mm256_srai_epi32(high, kWeightBits));
+        const __m256i least = _mm256_set1_epi16(static_cast<std::int16_t>(range.least));
+        const __m256i most = _mm256_set1_epi16(static_cast<std::int16_t>(range.most));
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(predicted + x),
+                            _mm256_min_epi16(_mm256_max_epi16(sum, least), most));
+    }
+}
+
 /// The class of each of sixteen activities.
 TESSERA_AVX512 TESSERA_INLINE __m512i classesOf(__m512i away) {
     const __m512 above = _mm512_cvtepi32_ps(_mm512_add_epi32(away, _mm512_set1_epi32(1)));
@@ -173,6 +219,9 @@ void predictRow(Pass pass, const TapRows<Word>& taps, const PassWeights& weights
 #if TESSERA_X86
     if (cpu == Cpu::Avx512 && (sizeof(Word) > 2 || shift == 0))
         return predictRow512<Word>(pass, taps, weights.data(), range, shift, width, predicted, activity);
+    if constexpr (sizeof(Word) == 2)
+        if (cpu != Cpu::Portable && shift == 0)
+            return predictNarrow2(tapsOf(pass), taps, weights.data(), range, width, predicted, activity);
 #endif
     (void)cpu;
     for (int x = 0; x < width; x += kPredictedBlock)

@@ -366,4 +366,12 @@ for raw in "$data"/volumes/{nucleon,tooth,gfs,colpex}*.raw; do
     check "unpack $raw" 0 "$tessera" unpack real.tsr -o real.raw
     cmp "$raw" real.raw || fail "$raw differs"
 done
+# A limit of the size of files, or a quota, ends a write as a full disk does.
+for command in "pack ramp.json -o limited.tsr --lattice cc --wavelet 1,0 --brick-size 4" "unpack cc.tsr -o limited.raw" "unpack cc.tsr -o limited.vti -t 0.5"; do
+    # shellcheck disable=SC2086
+    check "$command, limited" 3 bash -c 'ulimit -f 1; exec "$@"' limited "$tessera" $command
+    say "limited" err.txt
+    say "File too large" err.txt
+    [ -z "$(ls -A | grep limited)" ] || fail "$command, limited: something is left: $(ls -A | grep limited)"
+done
 finish
