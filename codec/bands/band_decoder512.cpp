@@ -235,11 +235,9 @@ TESSERA_AVX512 bool decodeSome512(BandStream& in, Cursor512& cursor, std::span<c
     return true;
 }
 
-} // namespace
-
-// The rows at one (z, y) of all bands with the same turn at a time.
+/// Decodes the rows at one (z, y) of all bands with the same turn at a time.
 template <class Word, bool kByBand>
-bool decodeRows512(BandStream& in, std::span<const Band<Word>> bands, RowPredictor<Word>* predictor) {
+bool decodeTurns512(BandStream& in, std::span<const Band<Word>> bands, RowPredictor<Word>* predictor) {
     std::vector<Magnitudes> magnitudes = magnitudesFor(bands);
     std::size_t most = 0;
     for (const Band<Word>& band : bands) most += std::size_t((std::max(band.size.x, 0) + kLanes - 1) / kLanes);
@@ -265,6 +263,13 @@ bool decodeRows512(BandStream& in, std::span<const Band<Word>> bands, RowPredict
     if (!whole || !decode()) return false;
     in.next = cursor.next;
     return true;
+}
+
+} // namespace
+
+template <class Word, bool kByBand>
+bool decodeRows512(BandStream& in, std::span<const Band<Word>> bands, RowPredictor<Word>* predictor) {
+    return decodeTurns512<Word, kByBand>(in, bands, predictor);
 }
 
 template bool decodeRows512<std::int16_t, true>(BandStream&, std::span<const Band<std::int16_t>>,
