@@ -10,6 +10,7 @@ std::optional<PackOptions> PackOptions::preset(std::string_view name) {
         options.maxError = 1e-3;
     } else if (name == "small") {
         options.maxError = 1e-2;
+        options.effort = 9;
         options.zstdLevel = 19;
     } else if (name == "thesis") {
         options.lattice = StoredLattice::BCC;

@@ -166,6 +166,22 @@ TEST(Fitted, FloatsKeepTheirBound) {
     expectSameAsPlain(folder / "a.tsr");
 }
 
+TEST(Fitted, SlabsGiveTheArchiveThatAWholeFrameGives) {
+    const TemporaryFolder folder;
+    for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC}) {
+        volume::Dataset whole = scan({60, 50, 90}, ScalarType::U8), parts = whole;
+        const auto frame = std::make_shared<const volume::Field>(whole.read(0, 0, 0));
+        parts.read = [frame](int, int, int, volume::SliceRange slices) { return volume::slicesOf(*frame, slices); };
+        PackOptions options = thorough(lattice);
+        options.brickSize = 16;
+        pack(whole, options, folder / "whole.tsr");
+        EXPECT_TRUE(isFitted(Archive(folder / "whole.tsr")));
+        const PackSummary summary = pack(parts, options, folder / "parts.tsr", {}, {}, 2);
+        EXPECT_THAT(summary.notes, ::testing::Contains(::testing::HasSubstr("slabs")));
+        EXPECT_TRUE(readFile(folder / "whole.tsr") == readFile(folder / "parts.tsr"));
+    }
+}
+
 TEST(Fitted, TimesShareTheirWeights) {
     const TemporaryFolder folder;
     volume::Dataset made = scan({41, 38, 33}, ScalarType::U8, 3);
