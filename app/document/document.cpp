@@ -62,6 +62,7 @@ bool Document::moveTo(RemadeData& made) {
     data.derived = now.derived; // changed meanwhile: computed next
     data.lattice = now.lattice;
     data.axis = now.axis;
+    data.grids = now.grids;
     data.other = now.other;
     data.import.overTime = now.import.overTime;
     if (data.files == now.files) data.import.labels = now.import.labels;
@@ -69,6 +70,7 @@ bool Document::moveTo(RemadeData& made) {
     app::moveTo(session_, history_, &info(), made.sources.pictures->info(), data, made.messages);
     data.lattice = recorded.lattice;
     data.axis = recorded.axis;
+    data.grids = recorded.grids;
     data.other = recorded.other;
     data.import.overTime = recorded.import.overTime;
     if (data.files == recorded.files) data.import.labels = recorded.import.labels;

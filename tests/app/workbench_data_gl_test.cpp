@@ -1,7 +1,9 @@
 #include "app/edits/compare.h"
 #include "app/workbench/workbench_commands.h"
+#include "codec/pack/pack.h"
 #include "tests/app/workbench_fixture.h"
 #include "tests/resident_memory.h"
+#include "volume/synthetic/models.h"
 
 #include <chrono>
 #include <filesystem>
@@ -134,6 +136,41 @@ TEST_F(WorkbenchData, TheLatticeIsAStepOfTheHistory) {
     ASSERT_TRUE(run(kBodyCentred));
     settle();
     EXPECT_EQ(kind(), volume::LatticeKind::BCC);
+}
+
+TEST_F(WorkbenchData, OneGridOfAnArchiveInSpaceAndTimeIsAStepOfTheHistory) {
+    volume::Dataset cell = volume::makeModel("fuel-cell", {{"nx", 9}, {"ny", 11}, {"nz", 23}, {"times", 4}});
+    codec::PackOptions options;
+    options.lattice = codec::StoredLattice::D4;
+    codec::pack(cell, options, (folder / "d4.tsr").string());
+    OpenRequest request;
+    request.paths = {(folder / "d4.tsr").string()};
+    workbench.install(open(request));
+    settle();
+    const auto info = [&]() -> const volume::DatasetInfo& { return workbench.source()->info(); };
+    const std::vector<double> all = info().times;
+    ASSERT_EQ(info().lattice.kind, volume::LatticeKind::BCC);
+    ASSERT_TRUE(run("First grid of D4* alone, as stored"));
+    settle();
+    EXPECT_EQ(info().lattice.kind, volume::LatticeKind::CC);
+    EXPECT_EQ(info().times.size(), (all.size() + 1) / 2);
+    EXPECT_EQ(info().times[1], all[2]);
+    ASSERT_TRUE(run("Second grid of D4* alone, as stored"));
+    settle();
+    EXPECT_EQ(info().times[0], all[1]);
+    ASSERT_TRUE(run("Both grids of D4* at every time"));
+    settle();
+    EXPECT_EQ(info().times, all);
+    ASSERT_TRUE(run("First grid of D4* alone, as stored"));
+    settle();
+    ASSERT_EQ(info().lattice.kind, volume::LatticeKind::CC);
+    while (run("Undo")) settle();
+    EXPECT_EQ(workbench.session().data.grids, ShownGrids::Both);
+    EXPECT_EQ(info().times, all);
+    EXPECT_EQ(info().lattice.kind, volume::LatticeKind::BCC);
+    // There is nothing to choose elsewhere.
+    showRamp();
+    EXPECT_FALSE(run("First grid of D4* alone, as stored"));
 }
 
 struct WorkbenchMemory : DrawnWorkbench {
