@@ -222,7 +222,8 @@ std::vector<Command> timeAlongCommands(Workbench& workbench) {
                    info.bounds.size()[static_cast<int>(axis)] > 0;
         };
         commands.push_back({.menu = "Edit",
-                            .name = "Time along " + std::string(volume::kSpaceAxisNames[std::size_t(axis)]),
+                            .name = (axis == volume::SpaceAxis::X ? "-Time along " : "Time along ") +
+                                    std::string(volume::kSpaceAxisNames[std::size_t(axis)]),
                             .help = "Show the plane through the cross-hair at all times, with time along this axis, "
                                     "beside the data in space",
                             .words = "axis plane space-time kymograph hovmoller",
