@@ -257,7 +257,9 @@ Model chooseModel(const volume::BrickGrid& grid, const FrameSamples& samples, co
     byBand = byBand && prefersByBand(frame);
     Taken* const kept = samples.whole() ? &taken : nullptr;
     std::optional<Model> fresh;
-    if (last && last->resembles(frame) && last->model.contexts.byBand == byBand) {
+    const bool serves = last && last->resembles(frame) && last->model.contexts.byBand == byBand &&
+                        (last->model.fitted.empty() || frame.mask < 0); // absent samples cannot be predicted
+    if (serves) {
         const Model& model = last->model;
         frame.wavelet = options.wavelet.value_or(last->wavelet);
         frame.bodyCentred = options.bodyCentred.value_or(last->bodyCentred);

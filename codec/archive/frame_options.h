@@ -12,7 +12,7 @@ namespace tessera::codec {
 
 /// Up to this effort nothing is tried: a wavelet that is not given is (2,2), and tables are made from few bricks.
 inline constexpr int kQuickEffort = 3;
-/// From this effort on, integers are also predicted by fitted weights (codec/fitted), if neither a wavelet nor the
+/// From this effort on, samples are also predicted by fitted weights (codec/fitted), if neither a wavelet nor the
 /// transform of BCC is given.
 inline constexpr int kFittedEffort = 7;
 /// With this effort integers get larger bricks, too, and weights are fitted to more samples.

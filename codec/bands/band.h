@@ -28,6 +28,7 @@ template <class Word> struct PredictedRow {
     const Word* values = nullptr; ///< in reading: is added to what is decoded; null: nothing
 };
 
+/// Predicts the rows of bands.
 template <class Word> class RowPredictor {
 public:
     virtual ~RowPredictor() = default;

@@ -74,7 +74,6 @@ void addEstimates(const volume::BrickGrid& grid, const volume::Field& part, cons
                   std::vector<SizeAtBound>& curve) {
     const bool isFloat = part.type == volume::ScalarType::F32, bounded = !parameter.categorical;
     FrameOptions frame;
-    frame.effort = options.effort;
     frame.wavelet = parameter.categorical ? Wavelet::N1 : waveletOf(options.wavelet).value_or(Wavelet::W22);
     double bytes = 0;
     std::int64_t lastStep = 0;

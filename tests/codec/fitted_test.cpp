@@ -195,6 +195,31 @@ TEST(Fitted, TimesShareTheirWeights) {
     expectSameAsPlain(folder / "a.tsr");
 }
 
+TEST(Fitted, ATimeWithAbsentSamplesIsCodedAsUsual) {
+    const TemporaryFolder folder;
+    volume::Dataset made = scan({41, 38, 33}, ScalarType::U8, 3);
+    made.read = [read = made.read](int p, int c, int time) {
+        volume::Field field = read(p, c, time);
+        volume::Mask mask(field.count(), 1);
+        for (std::size_t i = 0; i < mask.size(); i += 11) mask[i] = 0;
+        if (time == 1) field.mask = std::make_shared<const volume::Mask>(std::move(mask));
+        return field;
+    };
+    pack(made, thorough(), folder / "a.tsr");
+    const Archive archive(folder / "a.tsr");
+    EXPECT_TRUE(isFitted(archive)) << "the last time";
+    EXPECT_EQ(verifyArchive(archive).damaged, 0u);
+    for (int t = 0; t < 3; ++t) {
+        const volume::Field was = made.read(0, 0, t), is = readField(archive, 0, 0, t);
+        for (std::size_t i = 0; i < was.count(); ++i) {
+            ASSERT_EQ(was.present(i), is.present(i));
+            if (was.present(i)) {
+                ASSERT_EQ(was.value(i), is.value(i)) << "time " << t;
+            }
+        }
+    }
+}
+
 TEST(Fitted, WhatCannotBePredictedIsCodedAsUsual) {
     const TemporaryFolder folder;
     const glm::ivec3 size{30, 29, 28};
