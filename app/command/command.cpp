@@ -115,4 +115,19 @@ int runCommandLine(int argc, const char* const* argv) {
     });
 }
 
+void addAloneOption(CLI::App& command, bool& alone) {
+    command.add_flag(
+        "--alone", alone,
+        "Do everything by this process; otherwise the processes that mpirun or srun started share the work");
+}
+
+std::optional<Launched> sharing(bool alone) {
+    return alone ? std::nullopt : std::optional(launched());
+}
+
+std::string byProcess(const std::optional<Launched>& started) {
+    if (!started || started->count == 1) return {};
+    return " by process " + std::to_string(started->rank + 1) + " of " + std::to_string(started->count);
+}
+
 } // namespace tessera::app

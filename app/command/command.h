@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volume/base/progress.h"
+#include "volume/system/launched.h"
 
 #include <chrono>
 #include <functional>
@@ -34,6 +35,14 @@ void addWorkbench(CLI::App& app);
 /// Throws Error for an argument that is not a file. Without a dot or slash it may be a mistyped command: the message
 /// then names the commands.
 void requireFile(const std::string& word);
+
+/// Adds --alone to a command whose work is shared by the processes of mpirun and srun; `alone` must outlive the
+/// parsing.
+void addAloneOption(CLI::App& command, bool& alone);
+/// How the processes that share the work were started; nothing with --alone.
+std::optional<Launched> sharing(bool alone);
+/// " by process 2 of 4", "" for a process that was started alone.
+std::string byProcess(const std::optional<Launched>& started);
 
 /// Calls `before`, parses the arguments of a program and runs its callbacks; returns the exit status. Prints the reason
 /// of a failure to stderr.

@@ -3,13 +3,18 @@
 #include "app/command/picture_options.h"
 #include "app/data/sources.h"
 #include "app/edits/compare_files.h"
+#include "app/pane/figure.h"
+#include "app/ui/ticks.h"
 #include "app/views/compare/compare_offers.h"
 #include "app/views/compare/compare_panes.h"
 #include "app/views/compare/compare_view.h"
+#include "codec/blocks/share_results.h"
 #include "volume/base/error.h"
+#include "volume/export/time_files.h"
 #include "volume/system/atomic_file.h"
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -80,17 +85,109 @@ void openBeside(Opened& opened, const std::string& path, const Progress& progres
     showOtherDifference(session, opened.source->info(), compared.channel);
 }
 
+struct CompareOptions {
+    PictureOptions picture;
+    std::string output, csv, with;
+    std::vector<std::string> variants;
+    int reference = -1;
+    std::optional<double> time;
+    bool allTimes = false, alone = false;
+};
+
+void check(const CompareOptions& options) {
+    pictureRequest(options.picture, Session{});
+    if (options.allTimes && options.time) throw Error("with --all-times there is no single time", {}, "--time");
+    for (const std::string& path : {options.output, options.csv}) {
+        if (path.empty()) continue;
+        const auto folder = std::filesystem::absolute(path).parent_path();
+        if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
+    }
+}
+
+/// Opens the data and sets the comparison as the options say; returns its pane.
+std::string prepare(const CompareOptions& options, Opened& opened, const Progress& progress) {
+    opened = openForPicture(options.picture, progress.part(0, options.with.empty() ? 1 : 0.6));
+    Session& session = opened.document.session;
+    if (!options.with.empty()) openBeside(opened, options.with, progress.part(0.6, 1));
+    const std::string pane = comparePane(session, options.picture.view);
+    auto& view = std::get<CompareView>(session.views[pane]);
+    if (!options.with.empty()) view.variants = fileVariants(session, opened.source->info());
+    if (!options.variants.empty()) {
+        view.variants.clear();
+        for (const std::string& text : options.variants) view.variants.push_back(parseVariant(text));
+    }
+    if (options.reference >= 0) view.reference = options.reference;
+    const std::vector<CompareVariant> variants = shownVariants(view, session, opened.source->info());
+    const auto count = static_cast<int>(variants.size());
+    if (view.reference >= count)
+        throw Error("there are " + std::to_string(count) + " variants, counted from 0", "--reference",
+                    std::to_string(view.reference));
+    for (const CompareVariant& variant : variants) variantSession(session, variant); // fail early
+    return pane;
+}
+
+/// Draws the figure of a document and returns the rows of its table.
+std::vector<CompareRow> draw(PictureMaker& maker, const CompareOptions& options, const Opened& opened,
+                             SessionDocument document, const std::string& pane, const std::string& path) {
+    document.history.reset(document.session);
+    PictureRequest request = pictureRequest(options.picture, document.session);
+    request.pane = pane;
+    request.panels.clear();
+    std::vector<CompareRow> rows;
+    maker.write(document, opened.sources(), request, path, [&](const Workbench& workbench) {
+        rows = drawnComparison(workbench.cache(pane));
+        for (const CompareRow& row : rows)
+            if (!row.failure.empty()) throw Error(row.failure, {}, row.name);
+    });
+    return rows;
+}
+
+void run(const CompareOptions& options) {
+    const Progress progress = terminalProgress("compare");
+    check(options);
+    Opened opened;
+    const std::string pane = prepare(options, opened, progress.part(0, 0.5));
+    const volume::DatasetInfo& info = opened.source->info();
+    const auto atTime = [&](double time) {
+        SessionDocument document = opened.document;
+        showTime(document.session, info, time, viewsOf(options.picture));
+        return document;
+    };
+    std::unique_ptr<PictureMaker> maker; // made by a process that has something to draw
+    const auto drawOne = [&](const SessionDocument& document, const std::string& path) {
+        if (!maker) maker = std::make_unique<PictureMaker>();
+        return draw(*maker, options, opened, document, pane, path);
+    };
+    if (!options.allTimes) {
+        const auto rows = drawOne(options.time ? atTime(*options.time) : opened.document, options.output);
+        if (!options.csv.empty()) writeAtomically(options.csv, compareCsv(rows));
+        return progress.advance(1);
+    }
+    const std::string timeTitle = titleWithUnit(info.timeName, info.timeUnit);
+    const auto figure = [&](std::size_t t, const Progress& part) {
+        part.advance(0, std::to_string(t + 1));
+        const double time = info.times[t];
+        return compareCsv(drawOne(atTime(time), volume::fileOfTime(options.output, t)), timeTitle, csvNumber(time),
+                          t == 0);
+    };
+    const auto finish = [&](const std::vector<std::string>& tables, const Progress&) {
+        std::string csv;
+        for (const std::string& table : tables) csv += table;
+        if (!options.csv.empty()) writeAtomically(options.csv, csv);
+    };
+    const std::optional<Launched> started = sharing(options.alone);
+    Json about = aboutPicture(options.picture, opened);
+    about["csv"] = options.csv;
+    const codec::SharedSummary done = codec::shareResults({options.output, about.dump(), started}, info.times.size(),
+                                                          figure, finish, progress.part(0.5, 1));
+    if (!byProcess(started).empty())
+        std::printf("%zu of %zu figures drawn%s\n", done.own, info.times.size(), byProcess(started).c_str());
+}
+
 } // namespace
 
 void addCompareCommand(CLI::App& app) {
-    struct Options {
-        PictureOptions picture;
-        std::string output, csv, with;
-        std::vector<std::string> variants;
-        int reference = -1;
-        std::optional<double> time;
-    };
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CompareOptions>();
     CLI::App* command = app.add_subcommand("compare", "Draw the 3D scene, or the view named by --view, with several "
                                                       "settings side by side, as one figure with a table");
     addPictureOptions(*command, options->picture);
@@ -107,6 +204,9 @@ void addCompareCommand(CLI::App& app) {
                      "interpolated onto the grid of the first where theirs is another")
         ->type_name("DATA");
     addTimeOption(*command, options->time);
+    command->add_flag("--all-times", options->allTimes,
+                      "A figure of every stored time, OUT_0000.png and so on; processes of mpirun or srun share them");
+    addAloneOption(*command, options->alone);
     command->add_option("--reference", options->reference, "Variant that the others are compared with, counted from 0")
         ->check(CLI::Range(0, 15));
     command
@@ -114,50 +214,7 @@ void addCompareCommand(CLI::App& app) {
                      "Picture to write: a PNG or a figure (.svg, .pdf), which contain the session")
         ->required();
     command->add_option("--csv", options->csv, "CSV file to write the table to");
-    command->callback([options] {
-        const Progress progress = terminalProgress("compare");
-        pictureRequest(options->picture, Session{});
-        for (const std::string& path : {options->output, options->csv}) {
-            if (path.empty()) continue;
-            const auto folder = std::filesystem::absolute(path).parent_path();
-            if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
-        }
-        Opened opened = openForPicture(options->picture, progress.part(0, options->with.empty() ? 0.5 : 0.3));
-        Session& session = opened.document.session;
-        if (!options->with.empty()) openBeside(opened, options->with, progress.part(0.3, 0.5));
-        if (options->time) showTime(session, opened.source->info(), *options->time, viewsOf(options->picture));
-        const std::string pane = comparePane(session, options->picture.view);
-        auto& view = std::get<CompareView>(session.views[pane]);
-        if (!options->with.empty()) view.variants = fileVariants(session, opened.source->info());
-        if (!options->variants.empty()) {
-            view.variants.clear();
-            for (const std::string& text : options->variants) view.variants.push_back(parseVariant(text));
-        }
-        if (options->reference >= 0) view.reference = options->reference;
-        const std::vector<CompareVariant> variants = shownVariants(view, session, opened.source->info());
-        const auto count = static_cast<int>(variants.size());
-        if (view.reference >= count)
-            throw Error("there are " + std::to_string(count) + " variants, counted from 0", "--reference",
-                        std::to_string(view.reference));
-        for (const CompareVariant& variant : variants) variantSession(session, variant); // fail early
-        opened.document.history.reset(session);
-        PictureRequest request = pictureRequest(options->picture, session);
-        request.pane = pane;
-        request.panels.clear();
-        PictureMaker maker;
-        std::vector<CompareRow> rows;
-        maker.write(opened.document, opened.sources(), request, options->output, [&](const Workbench& workbench) {
-            rows = drawnComparison(workbench.cache(pane));
-            for (const CompareRow& row : rows)
-                if (!row.failure.empty()) throw Error(row.failure, {}, row.name);
-        });
-        if (!options->csv.empty()) {
-            AtomicFile csv(options->csv);
-            csv.write(compareCsv(rows));
-            csv.commit();
-        }
-        progress.advance(1);
-    });
+    command->callback([options] { run(*options); });
 }
 
 } // namespace tessera::app

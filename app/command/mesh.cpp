@@ -2,15 +2,20 @@
 #include "app/data/import_options.h"
 #include "app/data/open.h"
 #include "app/described/describe_cli.h"
+#include "app/described/describe_json.h"
 #include "app/queries/surface_query.h"
+#include "codec/blocks/share_results.h"
 #include "volume/base/error.h"
+#include "volume/export/time_files.h"
 #include "volume/mesh/mesh_file.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <sstream>
 
 namespace tessera::app {
 
@@ -21,7 +26,7 @@ struct MeshOptions {
     std::string channel, colorBy;
     std::optional<double> iso, time;
     int level = 0;
-    bool bcc = false;
+    bool bcc = false, allTimes = false;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{.key = "channel",
                                       .unit = "",
@@ -29,6 +34,11 @@ struct MeshOptions {
         visit(self.iso, FieldInfo{.key = "iso", .unit = "", .doc = "Value on the surface, in the parameter's unit"});
         visit(self.time,
               FieldInfo{.key = "time", .unit = "", .doc = "Time, in the unit of the data (default: the first)"});
+        visit(self.allTimes,
+              FieldInfo{.key = "allTimes",
+                        .unit = "",
+                        .doc = "A file for every time, OUT_0000.vtp and so on, with .vtp also OUT.pvd; processes of "
+                               "mpirun or srun share the times"});
         visit(self.colorBy,
               FieldInfo{.key = "colorBy", .unit = "", .doc = "Parameter whose values are stored at the vertices"});
         visit(self.level,
@@ -43,26 +53,27 @@ struct MeshOptions {
 struct MeshRequest {
     std::vector<std::string> inputs;
     std::string output;
+    bool alone = false;
     MeshOptions mesh;
     volume::ImportOptions import;
 };
 
-std::shared_ptr<const volume::BrickSource> openInput(const MeshRequest& request, const Progress& progress) {
-    DataRef data = dataNamed(request.inputs, request.import, progress.part(0, 0.1));
+DataRef dataOf(const MeshRequest& request, const Progress& progress) {
+    DataRef data = dataNamed(request.inputs, request.import, progress);
     data.lattice = request.mesh.bcc ? PictureLattice::BodyCentred : PictureLattice::Grid;
-    std::vector<std::string> messages;
-    auto source = openSource(data, messages, progress.part(0.1, 1));
-    for (const std::string& message : messages) std::fprintf(stderr, "tessera: %s\n", message.c_str());
-    return source;
+    return data;
 }
 
-void run(MeshRequest request) {
-    const std::string& path = request.output;
-    if (std::ranges::none_of(volume::kMeshEndings, [&](auto ending) { return path.ends_with(ending); }))
-        throw Error("meshes are written as .ply, .stl, .obj or .vtp", path);
-    const Progress progress = terminalProgress("mesh");
-    const auto source = openInput(request, progress.part(0, 0.3));
-    const volume::DatasetInfo& info = source->info();
+void check(const MeshRequest& request) {
+    if (std::ranges::none_of(volume::kMeshEndings, [&](auto ending) { return request.output.ends_with(ending); }))
+        throw Error("meshes are written as .ply, .stl, .obj or .vtp", request.output);
+    if (request.mesh.allTimes && request.mesh.time)
+        throw Error("with --all-times there is no single time", {}, "--time");
+}
+
+/// Sets the parameter where none is named; throws Error for parameters and levels that are not there.
+void settle(MeshRequest& request, const volume::BrickSource& source) {
+    const volume::DatasetInfo& info = source.info();
     std::string known;
     for (const volume::Channel& channel : info.channels()) known += (known.empty() ? "" : ", ") + channel.name;
     if (request.mesh.channel.empty()) {
@@ -73,22 +84,73 @@ void run(MeshRequest request) {
     for (const std::string* name : {&request.mesh.channel, &request.mesh.colorBy})
         if (!(name == &request.mesh.colorBy && name->empty()) && !info.findChannel(*name))
             throw Error("there is no parameter \"" + *name + "\"; there are " + known, request.inputs[0]);
-    if (request.mesh.level >= source->grid().levels)
-        throw Error("there are " + std::to_string(source->grid().levels) + " levels", "--level",
+    if (request.mesh.level >= source.grid().levels)
+        throw Error("there are " + std::to_string(source.grid().levels) + " levels", "--level",
                     std::to_string(request.mesh.level));
-    const vis::IsoLayer layer{
-        .channel = request.mesh.channel, .value = *request.mesh.iso, .colorBy = request.mesh.colorBy};
-    const volume::TimePair time = volume::timesAround(info.times, request.mesh.time.value_or(info.times.front()));
-    const auto geometry = extractLayer(source, layer, time, request.mesh.level, progress.part(0.3, 0.8));
-    if (geometry->mesh.triangles.empty()) {
-        const Range range = info.channelRange(info.channel(*info.findChannel(layer.channel)));
-        throw Error("the surface is empty: values run from " + std::to_string(range.lo) + " to " +
-                        std::to_string(range.hi),
-                    "--iso", std::to_string(layer.value));
+}
+
+[[noreturn]] void throwEmpty(const MeshRequest& request, const volume::DatasetInfo& info) {
+    const Range range = info.channelRange(info.channel(*info.findChannel(request.mesh.channel)));
+    throw Error("the surface is empty: values run from " + std::to_string(range.lo) + " to " + std::to_string(range.hi),
+                "--iso", std::to_string(*request.mesh.iso));
+}
+
+std::string countsOf(std::size_t vertices, std::size_t triangles) {
+    return std::to_string(vertices) + " vertices, " + std::to_string(triangles) + " triangles";
+}
+
+void run(MeshRequest request) {
+    check(request);
+    const Progress progress = terminalProgress("mesh");
+    const DataRef data = dataOf(request, progress.part(0, 0.1));
+    std::vector<std::string> messages;
+    const auto source = openSource(data, messages, progress.part(0.1, 0.3));
+    for (const std::string& message : messages) std::fprintf(stderr, "tessera: %s\n", message.c_str());
+    settle(request, *source);
+    const volume::DatasetInfo& info = source->info();
+    const MeshOptions& mesh = request.mesh;
+    const vis::IsoLayer layer{.channel = mesh.channel, .value = *mesh.iso, .colorBy = mesh.colorBy};
+    const auto surfaceAt = [&](double time, const Progress& part) {
+        return extractLayer(source, layer, volume::timesAround(info.times, time), mesh.level, part);
+    };
+    const Progress rest = progress.part(0.3, 1);
+    if (!mesh.allTimes) {
+        const auto surface = surfaceAt(mesh.time.value_or(info.times.front()), rest.part(0, 0.7));
+        if (surface->mesh.triangles.empty()) throwEmpty(request, info);
+        volume::writeMesh(surface->mesh, request.output, mesh.colorBy, rest.part(0.7, 1));
+        std::printf("%s: %s\n", request.output.c_str(),
+                    countsOf(surface->mesh.positions.size(), surface->mesh.triangles.size()).c_str());
+        return;
     }
-    volume::writeMesh(geometry->mesh, path, request.mesh.colorBy, progress.part(0.8, 1));
-    std::printf("%s: %zu vertices, %zu triangles\n", path.c_str(), geometry->mesh.positions.size(),
-                geometry->mesh.triangles.size());
+    // The result of a time is the numbers of its vertices and triangles.
+    const auto write = [&](std::size_t t, const Progress& part) {
+        const auto surface = surfaceAt(info.times[t], part.part(0, 0.7));
+        volume::writeMesh(surface->mesh, volume::fileOfTime(request.output, t), mesh.colorBy, part.part(0.7, 1));
+        return std::to_string(surface->mesh.positions.size()) + " " + std::to_string(surface->mesh.triangles.size());
+    };
+    const auto finish = [&](const std::vector<std::string>& results, const Progress&) {
+        std::size_t all = 0, triangles = 0, vertices = 0;
+        std::vector<std::string> files, lines;
+        for (std::size_t t = 0; t < results.size(); ++t) {
+            std::istringstream(results[t]) >> vertices >> triangles;
+            all += triangles;
+            files.push_back(volume::fileOfTime(request.output, t));
+            lines.push_back(files.back() + ": " + countsOf(vertices, triangles));
+        }
+        if (all == 0) {
+            for (const std::string& file : files) std::filesystem::remove(file);
+            throwEmpty(request, info);
+        }
+        for (const std::string& line : lines) std::printf("%s\n", line.c_str());
+        if (request.output.ends_with(".vtp"))
+            std::printf("%s\n", volume::writeCollection(request.output, info.times, files).c_str());
+    };
+    const std::optional<Launched> started = sharing(request.alone);
+    const std::string about = Json{{"data", toJson(data)}, {"options", toJson(mesh)}}.dump();
+    const codec::SharedSummary done =
+        codec::shareResults({request.output, about, started}, info.times.size(), write, finish, rest);
+    if (!byProcess(started).empty())
+        std::printf("%zu of %zu surfaces%s\n", done.own, info.times.size(), byProcess(started).c_str());
 }
 
 } // namespace
@@ -103,6 +165,7 @@ void addMeshCommand(CLI::App& app) {
     addDescribed(*command, request->mesh);
     command->get_option("--iso")->required();
     addImportOptions(*command, request->import);
+    addAloneOption(*command, request->alone);
     command->callback([request] { run(*request); });
 }
 

@@ -228,4 +228,11 @@ PictureRequest pictureRequest(const PictureOptions& options, const Session& sess
     return request;
 }
 
+Json aboutPicture(const PictureOptions& options, const Opened& opened) {
+    return {{"session", printSession(opened.document, "session")},
+            {"view", options.view},
+            {"columns", options.columns},
+            {"form", toJson(formOf(options))}};
+}
+
 } // namespace tessera::app

@@ -50,6 +50,9 @@ std::vector<std::string> viewsOf(const PictureOptions& options);
 /// The pane with this key, or the first view of this kind; "" if there is none.
 std::string paneOf(const Session& session, const std::string& view);
 
+/// What is drawn, as SharedWork::about needs it: the session with its data, and the options of its pictures.
+Json aboutPicture(const PictureOptions& options, const Opened& opened);
+
 /// Pane and form. `view` may be the key of a pane or the kind of one. Throws Error.
 PictureRequest pictureRequest(const PictureOptions& options, const Session& session);
 

@@ -2,8 +2,8 @@
 #include "app/command/picture_options.h"
 #include "app/command/video.h"
 #include "app/history/animated_session.h"
+#include "codec/blocks/share_results.h"
 #include "volume/base/error.h"
-#include "volume/system/launched.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 struct ReplayOptions {
     PictureOptions picture;
     std::string output, video;
-    bool animation = false;
+    bool animation = false, alone = false;
     double framesPerSecond = 0;
 };
 
@@ -77,10 +77,7 @@ Reel animationReel(const Opened& opened, double wantedRate) {
 void run(const ReplayOptions& options) {
     const Progress progress = terminalProgress("replay");
     pictureRequest(options.picture, Session{});
-    const Launched started = launched(); // its processes share the pictures
     if (!options.video.empty()) {
-        if (started.count > 1)
-            throw Error("is written by one process; several can draw the pictures, without a video", {}, "--video");
         requireFfmpeg();
         const auto folder = std::filesystem::absolute(options.video).parent_path();
         if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
@@ -93,24 +90,32 @@ void run(const ReplayOptions& options) {
     const bool animation = options.animation || !options.video.empty();
     const Reel reel = animation ? animationReel(opened, options.framesPerSecond) : stepsReel(opened);
     const std::filesystem::path folder(options.output);
-    PictureMaker maker;
-    for (auto i = std::size_t(started.rank); i < reel.count; i += std::size_t(started.count)) {
-        progress.part(0.1, options.video.empty() ? 1 : 0.9)
-            .advance(double(i) / double(reel.count), std::to_string(i + 1));
+    std::unique_ptr<PictureMaker> maker; // made by a process that has something to draw
+    const auto draw = [&](std::size_t i, const Progress& part) -> std::string {
+        part.advance(0, std::to_string(i + 1));
         SessionDocument document = opened.document;
         document.session = reel.at(i);
         document.history.reset(document.session);
         const PictureRequest request = pictureRequest(options.picture, document.session);
         const auto isOpen = [&](const std::string& pane) { return document.session.views.contains(pane); };
-        if (!std::ranges::all_of(panesOf(request), isOpen)) continue; // not yet
+        if (!std::ranges::all_of(panesOf(request), isOpen)) return {}; // not yet
         char name[32];
         std::snprintf(name, sizeof name, reel.name.c_str(), i);
-        const std::string path = (folder / name).string();
-        maker.write(document, opened.sources(), request, path);
-    }
-    if (!options.video.empty())
-        writeVideo((folder / "frame-%04d.png").string(), reel.framesPerSecond, options.video, progress.part(0.9, 1));
-    progress.advance(1);
+        if (!maker) maker = std::make_unique<PictureMaker>();
+        maker->write(document, opened.sources(), request, (folder / name).string());
+        return name;
+    };
+    const auto finish = [&](const std::vector<std::string>&, const Progress& part) {
+        if (!options.video.empty())
+            writeVideo((folder / "frame-%04d.png").string(), reel.framesPerSecond, options.video, part);
+    };
+    Json about = aboutPicture(options.picture, opened);
+    about.update({{"animation", animation}, {"fps", options.framesPerSecond}, {"video", options.video}});
+    const std::optional<Launched> started = sharing(options.alone);
+    const codec::SharedSummary done =
+        codec::shareResults({options.output, about.dump(), started}, reel.count, draw, finish, progress.part(0.1, 1));
+    if (started && started->count > 1)
+        std::printf("%zu of %zu pictures drawn%s\n", done.own, reel.count, byProcess(started).c_str());
 }
 
 } // namespace
@@ -127,6 +132,7 @@ void addReplayCommand(CLI::App& app) {
         ->check(CLI::Range(0.1, 240.0));
     command->add_option("--video", options->video, "Also write the animation as a video (needs ffmpeg)")
         ->type_name("FILE.mp4");
+    addAloneOption(*command, options->alone);
     command->add_option("-o,--output,--out", options->output, "Folder for the pictures; created if it does not exist")
         ->required();
     command->callback([options] { run(*options); });

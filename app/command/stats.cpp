@@ -7,6 +7,7 @@
 #include "app/described/describe_cli.h"
 #include "app/ui/ticks.h"
 #include "app/user_files/import_memory.h"
+#include "codec/blocks/share_results.h"
 #include "volume/base/error.h"
 #include "volume/system/atomic_file.h"
 
@@ -18,14 +19,22 @@ namespace tessera::app {
 
 namespace {
 
-Sources openInput(const StatsRequest& request, const Progress& progress) {
-    DataRef data = dataNamed(request.inputs, request.import, progress.part(0, 0.2));
+bool isFigure(const std::string& path) {
+    return hasEnding(path, ".svg") || hasEnding(path, ".pdf");
+}
+
+DataRef dataOf(const StatsRequest& request, const Progress& progress) {
+    DataRef data = dataNamed(request.inputs, request.import, progress);
     data.lattice = PictureLattice::Grid; // nothing is drawn, so no resampling for pictures
     data.derived = request.derived;
     data.remote = request.remote;
+    return data;
+}
+
+Sources openInput(const DataRef& data, const Progress& progress) {
     std::vector<std::string> messages;
-    Sources sources = openSources(data, messages, progress.part(0.2, 1));
-    checkDerived(request.derived, volume::underived(sources.numbers)->info());
+    Sources sources = openSources(data, messages, progress);
+    checkDerived(data.derived, volume::underived(sources.numbers)->info());
     for (const std::string& message : messages) std::fprintf(stderr, "tessera: %s\n", message.c_str());
     return sources;
 }
@@ -37,10 +46,9 @@ std::string stateOf(const Question& question) {
            originText(question.origin, question.info(), question.channels);
 }
 
-void run(const StatsRequest& request) {
+void check(const StatsRequest& request) {
     const StatsOptions& options = request.options;
-    const bool sections = options.planesAcross(), pdf = hasEnding(request.output, ".pdf"),
-               figure = pdf || hasEnding(request.output, ".svg");
+    const bool sections = options.planesAcross(), figure = isFigure(request.output);
     if (!request.output.empty() && !figure && !hasEnding(request.output, ".csv") && !hasEnding(request.output, ".json"))
         throw Error("statistics are written as .csv, .svg, .pdf or .json", request.output);
     if (sections && !options.balance.empty())
@@ -49,19 +57,11 @@ void run(const StatsRequest& request) {
         throw Error("figures need --along, --line, --balance or --all-times", request.output);
     if (figure && sections && options.allTimes)
         throw Error("a figure shows one time: choose it with --time", request.output);
-    const Progress progress = terminalProgress("stats");
-    const Question question = questionOf(request, openInput(request, progress.part(0, 0.3)));
-    rememberStated(request.import, question.info().name);
-    Answer answer;
-    const double count = double(question.times.size());
-    for (std::size_t t = 0; t < question.times.size(); ++t) {
-        const double time = question.times[t];
-        const Progress part = progress.part(0.3 + 0.7 * double(t) / count, 0.3 + 0.7 * double(t + 1) / count);
-        if (question.several()) answer.text += "t = " + formatQuantity(time, question.info().timeUnit) + "\n";
-        addAnswer(answer, request, question, time, part);
-    }
-    if (figure && !sections) answer.panels = figureOf(request, question, {});
-    progress.advance(1);
+}
+
+/// Writes and prints the answer for all requested times.
+void give(const StatsRequest& request, const Question& question, Answer answer) {
+    if (isFigure(request.output) && !request.options.planesAcross()) answer.panels = figureOf(question, answer.json);
     const std::string state = stateOf(question);
     const std::string json = Json{{"kind", "statistics"},
                                   {"data", question.info().name},
@@ -78,12 +78,12 @@ void run(const StatsRequest& request) {
         const std::string line = originLine(question.origin, question.info(), question.channels);
         VectorPage drawing = drawingOf(answer.panels, 2);
         drawing.numbers = origin;
-        file.write(figure                              ? fileOf(drawing, pdf ? "pdf" : "svg")
+        file.write(isFigure(request.output) ? fileOf(drawing, hasEnding(request.output, ".pdf") ? "pdf" : "svg")
                    : hasEnding(request.output, ".csv") ? line + answer.csv
                                                        : json);
         file.commit();
     }
-    if (options.json) {
+    if (request.options.json) {
         std::fputs(json.c_str(), stdout);
     } else if (request.output.empty()) {
         std::printf("%s\n%s", state.c_str(), answer.text.c_str());
@@ -91,12 +91,39 @@ void run(const StatsRequest& request) {
     }
 }
 
+void run(const StatsRequest& request) {
+    check(request);
+    const Progress progress = terminalProgress("stats");
+    const DataRef data = dataOf(request, progress.part(0, 0.1));
+    const Question question = questionOf(request, openInput(data, progress.part(0.1, 0.3)));
+    rememberStated(request.import, question.info().name);
+    const Progress rest = progress.part(0.3, 1);
+    if (question.times.size() == 1)
+        return give(request, question, answerAt(request, question, question.times.front(), true, rest));
+    const auto compute = [&](std::size_t t, const Progress& part) {
+        return textOf(answerAt(request, question, question.times[t], t == 0, part));
+    };
+    const auto finish = [&](const std::vector<std::string>& texts, const Progress&) {
+        Answer answer;
+        for (const std::string& text : texts) addAnswer(answer, text);
+        give(request, question, std::move(answer));
+    };
+    // Numbers that are only printed are given by every process.
+    const std::optional<Launched> started = sharing(request.alone || request.output.empty());
+    const std::string about = Json{{"data", toJson(data)}, {"options", toJson(request.options)}}.dump();
+    const codec::SharedSummary done =
+        codec::shareResults({request.output, about, started}, question.times.size(), compute, finish, rest);
+    if (!byProcess(started).empty())
+        std::printf("%zu of %zu times computed%s\n", done.own, question.times.size(), byProcess(started).c_str());
+}
+
 } // namespace
 
 void addStatsCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "stats",
-        "Statistics of every region: mean, standard deviation, volume; averages along an axis or line; balances");
+        "Statistics of every region: mean, standard deviation, volume; averages along an axis or line; balances. With "
+        "--all-times and -o, processes of mpirun or srun share the times");
     const auto request = std::make_shared<StatsRequest>();
     command->add_option("IN", request->inputs, "Archive, data files that belong together, or a built-in model")
         ->required();
@@ -105,6 +132,7 @@ void addStatsCommand(CLI::App& app) {
     addDeriveOption(*command, request->derived);
     addImportOptions(*command, request->import);
     addRemoteOptions(*command, request->remote);
+    addAloneOption(*command, request->alone);
     command->callback([request] { run(*request); });
 }
 

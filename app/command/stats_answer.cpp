@@ -46,12 +46,13 @@ Json numberOrNull(double value) {
     return std::isfinite(value) ? Json(value) : Json();
 }
 
-void addSections(Answer& answer, const StatsRequest& request, const Question& question, double time,
-                 const Progress& progress) {
+Answer sectionsAt(const StatsRequest& request, const Question& question, double time, bool first,
+                  const Progress& progress) {
+    Answer answer;
     const volume::DatasetInfo& info = question.info();
     const SectionMeasure show = request.options.show;
     const SectionCurves curves = readSections(question.source, sectionCurvesQuery(request, question, time), progress);
-    answer.csv += sectionCsv(info, curves, answer.csv.empty());
+    answer.csv = sectionCsv(info, curves, first);
     answer.notes = sectionNotes(info, curves);
     answer.panels = sectionPanels(info, curves, show);
     const std::vector<CurveLook> looks = curveLooks(info, curves.query);
@@ -84,19 +85,16 @@ void addSections(Answer& answer, const StatsRequest& request, const Question& qu
                 rows[p].push_back(std::isfinite(value) ? numberText(value) : "-");
             }
         }
-    answer.text += alignedTable(heads, rows, 0);
+    answer.text = alignedTable(heads, rows, 0);
+    return answer;
 }
 
-BalanceTable balanceAt(const StatsRequest& request, const Question& question, double time, const Progress& progress) {
+Answer balanceAt(const StatsRequest& request, const Question& question, double time, bool first,
+                 const Progress& progress) {
+    Answer answer;
     const RegionBalanceQuery query{question.balance, request.options.velocity, question.label, question.at(time)};
-    return balanceTable(question.info(), readBalance(question.source, query, progress));
-}
-
-void addBalance(Answer& answer, const StatsRequest& request, const Question& question, double time,
-                const Progress& progress) {
-    const BalanceTable table = balanceAt(request, question, time, progress);
-    answer.csv +=
-        balanceCsv(table, question.timeTitle(), question.several() ? csvNumber(time) : "", answer.csv.empty());
+    const BalanceTable table = balanceTable(question.info(), readBalance(question.source, query, progress));
+    answer.csv = balanceCsv(table, question.timeTitle(), question.several() ? csvNumber(time) : "", first);
     answer.notes = table.notes;
     std::vector<std::vector<std::string>> rows;
     for (const BalanceRow& row : table.rows) {
@@ -115,14 +113,15 @@ void addBalance(Answer& answer, const StatsRequest& request, const Question& que
                                {"area", row.area},
                                {"inside", numberOrNull(row.inside)}});
     }
-    answer.text += table.parameter + "\n" + alignedTable(balanceHeads(table), rows, 2);
+    answer.text = table.parameter + "\n" + alignedTable(balanceHeads(table), rows, 2);
+    return answer;
 }
 
-void addRegions(Answer& answer, const Question& question, double time, const Progress& progress) {
+Answer regionsAt(const Question& question, double time, bool first, const Progress& progress) {
+    Answer answer;
     const std::vector<RegionRow> rows = regionRowsAt(question, time, progress);
     const std::string& unit = question.info().lengthUnit;
-    answer.csv +=
-        regionCsv(rows, unit, question.timeTitle(), question.several() ? csvNumber(time) : "", answer.csv.empty());
+    answer.csv = regionCsv(rows, unit, question.timeTitle(), question.several() ? csvNumber(time) : "", first);
     std::vector<std::vector<std::string>> cells;
     for (const RegionRow& row : rows) {
         cells.push_back(regionCells(row, unit));
@@ -139,88 +138,92 @@ void addRegions(Answer& answer, const Question& question, double time, const Pro
                                {"min", numberOrNull(row.summary.min)},
                                {"max", numberOrNull(row.summary.max)}});
     }
-    answer.text += alignedTable(regionHeads(), cells, 2);
+    answer.text = alignedTable(regionHeads(), cells, 2);
+    return answer;
 }
 
-/// Means over time, a panel for each parameter and a line for each region.
-std::vector<FigurePanel> meansOverTime(const Question& question, const Progress& progress) {
-    const volume::DatasetInfo& info = question.info();
-    std::map<std::string, FigurePanel> panels;
-    std::vector<std::string> order;
-    for (std::size_t t = 0; t < info.times.size(); ++t)
-        for (const RegionRow& row : regionRowsAt(
-                 question, info.times[t],
-                 progress.part(double(t) / double(info.times.size()), double(t + 1) / double(info.times.size())))) {
-            FigurePanel& panel = panels[row.parameter];
-            if (panel.y.title.empty()) {
-                order.push_back(row.parameter);
-                panel.x = {question.timeTitle(), {info.times.front(), info.times.back()}};
-                panel.y = {titleWithUnit("mean of " + row.parameter, row.unit), {HUGE_VAL, -HUGE_VAL}};
-            }
-            auto line = std::ranges::find_if(panel.series, [&](const auto& s) { return s.name == row.region; });
-            if (line == panel.series.end())
-                line = panel.series.insert(panel.series.end(), FigureSeries{row.region, {}, row.color});
-            line->points.push_back({info.times[t], row.summary.mean});
-            if (!std::isfinite(row.summary.mean)) continue;
-            panel.y.range = {std::min(panel.y.range.lo, row.summary.mean),
-                             std::max(panel.y.range.hi, row.summary.mean)};
-        }
-    std::vector<FigurePanel> out;
-    for (const std::string& name : order) {
-        panels[name].y.range = paddedRange(panels[name].y.range, 0.05);
-        out.push_back(panels[name]);
-    }
-    return out;
+/// Colour of a region as views draw it.
+glm::vec3 colorOf(const Question& question, const std::string& region) {
+    if (question.label < 0) return glm::vec3(0.5f);
+    const volume::Parameter& label = volume::parameterOf(question.info(), question.label);
+    const std::optional<int> value = volume::labelValue(label, region);
+    return value ? labelColor(label, *value) : glm::vec3(0.5f);
 }
 
-/// Outflow minus inflow through every surface of each region.
-std::vector<FigurePanel> balancePanels(const StatsRequest& request, const Question& question,
-                                       const Progress& progress) {
-    const std::vector<double>& times = question.times;
-    std::vector<FigurePanel> panels;
-    for (std::size_t t = 0; t < times.size(); ++t) {
-        const Progress part = progress.part(double(t) / double(times.size()), double(t + 1) / double(times.size()));
-        const BalanceTable table = balanceAt(request, question, times[t], part);
-        for (const BalanceRow& row : table.rows) {
-            auto panel = std::ranges::find(panels, row.region, &FigurePanel::title);
-            if (panel == panels.end())
-                panel = panels.insert(panels.end(),
-                                      FigurePanel{row.region,
-                                                  {question.timeTitle(), {times.front(), times.back()}},
-                                                  {titleWithUnit("out - in of " + table.parameter, table.unit), {0, 0}},
-                                                  {},
-                                                  {}});
-            auto line = std::ranges::find(panel->series, row.surface, &FigureSeries::name);
-            if (line == panel->series.end())
-                line = panel->series.insert(
-                    panel->series.end(), FigureSeries{row.surface, {}, labelColor({}, int(panel->series.size()) + 1)});
-            const bool bars = times.size() == 1;
-            line->bars = bars;
-            line->points.push_back({bars ? double(line - panel->series.begin()) + 1 : times[t], row.net});
-            panel->y.range = {std::min(panel->y.range.lo, row.net), std::max(panel->y.range.hi, row.net)};
-        }
-    }
-    for (FigurePanel& panel : panels) {
-        if (times.size() == 1) panel.x = {"surface", {0.5, double(panel.series.size()) + 0.5}};
-        panel.y.range = paddedRange(panel.y.range, 0.05);
-    }
-    return panels;
+double numberOf(const Json& number) {
+    return number.is_null() ? std::nan("") : number.get<double>();
+}
+
+/// The panel of that key; a new one begins with these axes.
+FigurePanel& panelOf(std::vector<std::pair<std::string, FigurePanel>>& panels, const std::string& key,
+                     const FigurePanel& begin) {
+    const auto at = std::ranges::find(panels, key, &std::pair<std::string, FigurePanel>::first);
+    return at != panels.end() ? at->second : panels.emplace_back(key, begin).second;
+}
+
+FigureSeries& lineOf(FigurePanel& panel, const std::string& name, const FigureSeries& begin) {
+    const auto at = std::ranges::find(panel.series, name, &FigureSeries::name);
+    return at != panel.series.end() ? *at : panel.series.emplace_back(begin);
+}
+
+void addPoint(FigurePanel& panel, FigureSeries& line, double x, double y) {
+    line.points.push_back({x, y});
+    if (std::isfinite(y)) panel.y.range = {std::min(panel.y.range.lo, y), std::max(panel.y.range.hi, y)};
 }
 
 } // namespace
 
-void addAnswer(Answer& answer, const StatsRequest& request, const Question& question, double time,
-               const Progress& progress) {
-    if (request.options.planesAcross())
-        addSections(answer, request, question, time, progress);
-    else if (question.balance >= 0)
-        addBalance(answer, request, question, time, progress);
-    else
-        addRegions(answer, question, time, progress);
+Answer answerAt(const StatsRequest& request, const Question& question, double time, bool first,
+                const Progress& progress) {
+    Answer answer = request.options.planesAcross() ? sectionsAt(request, question, time, first, progress)
+                    : question.balance >= 0        ? balanceAt(request, question, time, first, progress)
+                                                   : regionsAt(question, time, first, progress);
+    if (question.several()) answer.text = "t = " + formatQuantity(time, question.info().timeUnit) + "\n" + answer.text;
+    return answer;
 }
 
-std::vector<FigurePanel> figureOf(const StatsRequest& request, const Question& question, const Progress& progress) {
-    return question.balance >= 0 ? balancePanels(request, question, progress) : meansOverTime(question, progress);
+std::string textOf(const Answer& answer) {
+    return Json{{"text", answer.text}, {"csv", answer.csv}, {"rows", answer.json}, {"notes", answer.notes}}.dump();
+}
+
+void addAnswer(Answer& sum, const std::string& later) {
+    Json answer = Json::parse(later);
+    sum.text += answer["text"].get<std::string>();
+    sum.csv += answer["csv"].get<std::string>();
+    for (Json& row : answer["rows"]) sum.json.push_back(std::move(row));
+    sum.notes = answer["notes"].get<std::vector<std::string>>();
+}
+
+std::vector<FigurePanel> figureOf(const Question& question, const Json& rows) {
+    const std::vector<double>& times = question.times;
+    const bool balance = question.balance >= 0, bars = balance && times.size() == 1;
+    const FigureAxis overTime{question.timeTitle(), {times.front(), times.back()}};
+    std::vector<std::pair<std::string, FigurePanel>> panels;
+    for (const Json& row : rows) {
+        const std::string parameter = row["parameter"], unit = row["unit"], region = row["region"];
+        const double time = row["time"];
+        if (balance) {
+            const std::string surface = row["surface"];
+            FigurePanel& panel = panelOf(
+                panels, region, {region, overTime, {titleWithUnit("out - in of " + parameter, unit), {0, 0}}, {}, {}});
+            FigureSeries& line = lineOf(panel, surface, {surface, {}, labelColor({}, int(panel.series.size()) + 1)});
+            line.bars = bars;
+            addPoint(panel, line, bars ? double(&line - panel.series.data()) + 1 : time, numberOf(row["net"]));
+        } else {
+            FigurePanel& panel =
+                panelOf(panels, parameter,
+                        {{}, overTime, {titleWithUnit("mean of " + parameter, unit), {HUGE_VAL, -HUGE_VAL}}, {}, {}});
+            addPoint(panel, lineOf(panel, region, {region, {}, colorOf(question, region)}), time,
+                     numberOf(row["mean"]));
+        }
+    }
+    std::vector<FigurePanel> out;
+    for (auto& [key, panel] : panels) {
+        if (bars) panel.x = {"surface", {0.5, double(panel.series.size()) + 0.5}};
+        panel.y.range = paddedRange(panel.y.range, 0.05);
+        out.push_back(std::move(panel));
+    }
+    return out;
 }
 
 } // namespace tessera::app

@@ -19,13 +19,19 @@ struct Answer {
     std::vector<FigurePanel> panels;
 };
 
-/// Adds the requested numbers at one time: averages over planes, a balance, or statistics of regions.
-void addAnswer(Answer& answer, const StatsRequest& request, const Question& question, double time,
-               const Progress& progress);
+/// The requested numbers at one time: averages over planes, a balance, or statistics of regions. `first`: the CSV has
+/// its head. The panels are those of averages over planes.
+Answer answerAt(const StatsRequest& request, const Question& question, double time, bool first,
+                const Progress& progress);
 
-/// The figure of a request without planes. Means over all times: a panel for each parameter with a line for each
-/// region. Balances: a panel for each region with a line for each surface over the requested times, or a bar if that is
-/// one time.
-std::vector<FigurePanel> figureOf(const StatsRequest& request, const Question& question, const Progress& progress);
+/// The same as text without its panels, for another process.
+std::string textOf(const Answer& answer);
+/// Adds the answer of a later time, as textOf() gives it.
+void addAnswer(Answer& sum, const std::string& later);
+
+/// The figure of a request without planes, from the rows of all requested times. Means over times: a panel for each
+/// parameter with a line for each region. Balances: a panel for each region with a line for each surface over the
+/// times, or a bar if that is one time.
+std::vector<FigurePanel> figureOf(const Question& question, const Json& rows);
 
 } // namespace tessera::app

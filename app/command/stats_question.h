@@ -69,6 +69,7 @@ struct StatsOptions {
 struct StatsRequest {
     std::vector<std::string> inputs;
     std::string output;
+    bool alone = false;
     StatsOptions options;
     std::vector<volume::DerivedParameter> derived;
     volume::ImportOptions import;

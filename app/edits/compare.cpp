@@ -170,13 +170,17 @@ std::string questionsCsv(const std::vector<CompareQuestion>& questions) {
     return csv;
 }
 
-std::string compareCsv(const std::vector<CompareRow>& rows) {
+std::string compareCsv(const std::vector<CompareRow>& rows, const std::string& timeTitle, const std::string& time,
+                       bool head) {
     const auto number = [](double value) { return std::isfinite(value) ? toJson(value).dump() : std::string("inf"); };
-    std::string csv =
-        "variant,differs,reference,ms per picture,samples,texture bytes,stored bytes,maximum (of 255),RMSE (of "
-        "255),PSNR (dB),SSIM,samples that differ,largest error of a sample,RMSE of samples,failure\n";
+    std::string csv;
+    if (head)
+        csv += (time.empty() ? "" : csvField(timeTitle) + ",") +
+               "variant,differs,reference,ms per picture,samples,texture bytes,stored bytes,maximum (of 255),RMSE (of "
+               "255),PSNR (dB),SSIM,samples that differ,largest error of a sample,RMSE of samples,failure\n";
     for (const CompareRow& row : rows) {
-        csv += csvField(row.name) + "," + csvField(row.changes) + "," + (row.reference ? "yes" : "no");
+        csv += (time.empty() ? "" : time + ",") + csvField(row.name) + "," + csvField(row.changes) + "," +
+               (row.reference ? "yes" : "no");
         for (const double value : {row.milliseconds, row.samples, row.bytes, row.storedBytes})
             csv += "," + number(value);
         for (const double value : {row.maximum, row.rmse, row.psnr, row.ssim})

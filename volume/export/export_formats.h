@@ -55,6 +55,9 @@ void writeField(AtomicFile& file, const Field& field);
 /// Shortest text that reads back equal.
 std::string exactText(double value);
 
+/// A text as it stands in XML.
+std::string escaped(const std::string& text);
+
 /// One time as VTK image data.
 void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int time, const std::string& path,
               const Progress& progress);

@@ -1,5 +1,6 @@
 #include "volume/base/error.h"
 #include "volume/export/export_formats.h"
+#include "volume/export/time_files.h"
 #include "volume/field/labels.h"
 
 #include <algorithm>
@@ -12,29 +13,6 @@ namespace tessera::volume {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string escaped(const std::string& name) {
-    std::string out;
-    for (const char c : name) {
-        switch (c) {
-        case '&':
-            out += "&amp;";
-            break;
-        case '<':
-            out += "&lt;";
-            break;
-        case '>':
-            out += "&gt;";
-            break;
-        case '"':
-            out += "&quot;";
-            break;
-        default:
-            out += c;
-        }
-    }
-    return out;
-}
 
 /// A name in a list of names and units: separators as %20, %2C, %3B.
 std::string listed(const std::string& name) {
@@ -179,25 +157,17 @@ void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int ti
 std::vector<std::string> writeSeries(const Dataset& dataset, const std::vector<int>& parameters,
                                      const std::vector<int>& times, const fs::path& path, const Progress& progress) {
     std::vector<std::string> written;
-    fs::path base = path;
-    base.replace_extension();
-    std::string list = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
-                       "byte_order=\"LittleEndian\">\n<Collection>\n";
+    std::vector<double> at;
+    fs::path name = path;
+    name.replace_extension(".vti");
     for (std::size_t t = 0; t < times.size(); ++t) {
-        char number[32];
-        std::snprintf(number, sizeof number, "_%04zu.vti", t);
-        const fs::path frame = base.string() + number;
-        writeVti(dataset, parameters, times[t], frame.string(),
+        const std::string frame = fileOfTime(name.string(), t);
+        writeVti(dataset, parameters, times[t], frame,
                  progress.part(double(t) / double(times.size()), double(t + 1) / double(times.size())));
-        written.push_back(frame.string());
-        list += "<DataSet timestep=\"" + exactText(dataset.info.times[std::size_t(times[t])]) +
-                "\" group=\"\" part=\"0\" file=\"" + escaped(frame.filename().string()) + "\"/>\n";
+        written.push_back(frame);
+        at.push_back(dataset.info.times[std::size_t(times[t])]);
     }
-    list += "</Collection>\n</VTKFile>\n";
-    AtomicFile file(base.string() + ".pvd");
-    file.write(list);
-    file.commit();
-    written.push_back(file.path());
+    written.push_back(writeCollection(path.string(), at, written));
     return written;
 }
 
