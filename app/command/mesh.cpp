@@ -128,6 +128,7 @@ void run(MeshRequest request) {
         volume::writeMesh(surface->mesh, volume::fileOfTime(request.output, t), mesh.colorBy, part.part(0.7, 1));
         return std::to_string(surface->mesh.positions.size()) + " " + std::to_string(surface->mesh.triangles.size());
     };
+    bool empty = false;
     const auto finish = [&](const std::vector<std::string>& results, const Progress&) {
         std::size_t all = 0, triangles = 0, vertices = 0;
         std::vector<std::string> files, lines;
@@ -137,9 +138,10 @@ void run(MeshRequest request) {
             files.push_back(volume::fileOfTime(request.output, t));
             lines.push_back(files.back() + ": " + countsOf(vertices, triangles));
         }
-        if (all == 0) {
+        empty = all == 0;
+        if (empty) {
             for (const std::string& file : files) std::filesystem::remove(file);
-            throwEmpty(request, info);
+            return;
         }
         for (const std::string& line : lines) std::printf("%s\n", line.c_str());
         if (request.output.ends_with(".vtp"))
@@ -149,6 +151,7 @@ void run(MeshRequest request) {
     const std::string about = Json{{"data", toJson(data)}, {"options", toJson(mesh)}}.dump();
     const codec::SharedSummary done =
         codec::shareResults({request.output, about, started}, info.times.size(), write, finish, rest);
+    if (empty) throwEmpty(request, info);
     if (!byProcess(started).empty())
         std::printf("%zu of %zu surfaces%s\n", done.own, info.times.size(), byProcess(started).c_str());
 }

@@ -113,13 +113,18 @@ private:
         const glm::dvec2 dot = at(*shown.dot);
         if (dot.x >= x0_ && dot.x <= x1_ && dot.y >= y1_ && dot.y <= y0_) circle(*shown.dot, kDot, shown.color);
     }
+    /// From zero to their heights: side by side, or a single one between those of other series one unit away.
     void bars(const FigureSeries& series) {
-        if (series.points.size() < 2) return;
-        const double half = (px(series.points[1].x) - px(series.points[0].x)) / 2;
+        constexpr double kSingle = 0.4;
+        const bool several = series.points.size() > 1;
+        const double half = several ? (px(series.points[1].x) - px(series.points[0].x)) / 2 : kSingle * (px(1) - px(0));
+        const auto within = [&](double y) { return std::clamp(py(y), y1_, y0_); };
         for (const glm::dvec2& bar : series.points) {
-            if (!(bar.y > 0)) continue;
-            rect({px(bar.x) - half, std::max(py(bar.y), y1_)}, {px(bar.x) + half, y0_}, glm::vec4(series.color, 1));
+            if (!std::isfinite(bar.y) || within(bar.y) == within(0)) continue;
+            rect({px(bar.x) - half, within(std::max(bar.y, 0.0))}, {px(bar.x) + half, within(std::min(bar.y, 0.0))},
+                 glm::vec4(series.color, 1));
         }
+        if (panel_.y.range.lo < 0 && panel_.y.range.hi > 0) stroke({{x0_, py(0)}, {x1_, py(0)}}, kFrame, kThin);
     }
     void line(const FigureSeries& series) {
         std::vector<glm::dvec2> points;

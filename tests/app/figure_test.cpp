@@ -54,6 +54,35 @@ TEST(Figure, HoldsLinesBarsCellsAndTexts) {
     EXPECT_NE(pdf.find("/MediaBox [ 0 0 600 240 ]"), std::string::npos);
 }
 
+TEST(Figure, BarsStandOnZeroAlsoOneOfASeries) {
+    FigurePanel panel;
+    panel.x = {"surface", {0.5, 3.5}};
+    panel.y = {"out - in", {-2, 4}};
+    panel.series = {
+        {"up", {{1, 3}}, {1, 0, 0}, true}, {"down", {{2, -1}}, {0, 0, 1}, true}, {"none", {{3, 0}}, {0, 1, 0}, true}};
+    std::vector<shapes::Rect> bars; // the keys of the list of series are less wide
+    shapes::PageBox plot{};
+    for (const shapes::Mark& mark : drawingOf({panel}, 1).marks)
+        if (const auto* rect = std::get_if<shapes::Rect>(&mark.shape)) {
+            if (rect->line > 0) plot = rect->box;
+            if (rect->line == 0 && rect->box.hi.x - rect->box.lo.x > 20 &&
+                rect->color.x + rect->color.y + rect->color.z < 2)
+                bars.push_back(*rect);
+        }
+    ASSERT_EQ(bars.size(), 2u) << "nothing stands where the number is 0";
+    const double unit = (plot.hi.x - plot.lo.x) / 3, high = (plot.hi.y - plot.lo.y) / 6, zero = plot.lo.y + 4 * high;
+    EXPECT_EQ(bars[0].color, glm::vec4(1, 0, 0, 1));
+    EXPECT_NEAR(bars[0].box.lo.y, zero - 3 * high, 1e-6);
+    EXPECT_NEAR(bars[0].box.hi.y, zero, 1e-6);
+    EXPECT_NEAR(bars[1].box.lo.y, zero, 1e-6);
+    EXPECT_NEAR(bars[1].box.hi.y, zero + high, 1e-6);
+    for (int i : {0, 1}) {
+        EXPECT_NEAR((bars[std::size_t(i)].box.lo.x + bars[std::size_t(i)].box.hi.x) / 2, plot.lo.x + (i + 0.5) * unit,
+                    1e-6);
+        EXPECT_LT(bars[std::size_t(i)].box.hi.x - bars[std::size_t(i)].box.lo.x, unit);
+    }
+}
+
 TEST(Figure, TitlesAndTheListOfSeriesStandWhereTheyAreLookedFor) {
     FigurePanel panel;
     panel.title = "title";

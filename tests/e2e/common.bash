@@ -35,3 +35,6 @@ say() { # say TEXT FILE: the file must hold the text
         cat "$2"
     }
 }
+as() { # as JOB RANK COUNT: what Open MPI says to a process in its environment
+    echo "OMPI_COMM_WORLD_RANK=$2 OMPI_COMM_WORLD_SIZE=$3 OMPI_COMM_WORLD_LOCAL_SIZE=$3 PMIX_NAMESPACE=$1"
+}

@@ -21,6 +21,17 @@ say '"kind": "statistics"' line.json
 "$tessera" stats cell.raw --balance O2 > out.txt 2>err || die "a balance"
 say 'mol/s' out.txt
 say 'reacts' out.txt
+"$tessera" stats cell.raw --balance O2 -o balance.svg > /dev/null 2>err || die "a balance as a figure"
+python3 - <<'PY' || fail "the balance has no bars"
+import re
+bars = [float(w) for w in re.findall(r'<rect [^>]* width="([0-9.]+)" height="[0-9.]+" fill="#(?!ffffff)[0-9a-f]+"', open("balance.svg").read())]
+assert len([w for w in bars if 15 < w < 200]) >= 6, bars
+PY
+"$tessera" stats cell.raw --all-times --balance O2 -o balances.svg > /dev/null 2>err || die "balances over time"
+say 'total: reacts' balances.svg
+"$tessera" stats cell.raw --all-times --of O2 -o means.svg > /dev/null 2>err || die "means over time"
+say 'mean of O2' means.svg
+say 'cathode channel' means.svg
 
 # Names of regions, stated once, are known the next time, and go into archives.
 "$tessera" pack cell.raw -o named.tsr --lattice cc --lossless --label 'region:0=plate#112233' > /dev/null 2>err || die "pack with names"

@@ -1,0 +1,144 @@
+#include "codec/blocks/share_results.h"
+
+#include "tests/codec/make_dataset.h"
+#include "volume/base/error.h"
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace tessera::codec {
+namespace {
+
+using namespace testing;
+namespace fs = std::filesystem;
+
+/// A process of a job; the exit status is 0 if it returns.
+template <class Work> pid_t beginProcess(Work&& work) {
+    const pid_t child = ::fork();
+    if (child != 0) return child;
+    int status = 1;
+    try {
+        work();
+        status = 0;
+    } catch (...) {
+    }
+    ::_exit(status);
+}
+
+int endOf(pid_t child) {
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+/// Squares, each of which leaves a line in a file named by its number, so that it is seen how often it was computed.
+struct Squares {
+    const TemporaryFolder& folder;
+    std::size_t deadly = 99; ///< the process that computes this one dies
+    SharedSummary run(const std::optional<Launched>& launched, const std::string& about = "squares") const {
+        return shareResults(
+            {folder / "out", about, launched}, 9, [&](std::size_t i, const Progress&) { return square(i); },
+            [&](const std::vector<std::string>& results, const Progress&) { write(results); });
+    }
+    std::string square(std::size_t i) const {
+        if (i == deadly) ::raise(SIGKILL);
+        std::ofstream(folder / ("computed-" + std::to_string(i)), std::ios::app) << "x";
+        ::usleep(2000);
+        return std::to_string(i * i);
+    }
+    void write(const std::vector<std::string>& results) const {
+        std::ofstream out(folder / "out", std::ios::app);
+        for (const std::string& each : results) out << each << " ";
+    }
+    std::string written() const {
+        std::ifstream in(folder / "out");
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    std::string counts() const {
+        std::string text;
+        for (std::size_t i = 0; i < 9; ++i) {
+            std::error_code missing;
+            const auto size = fs::file_size(folder / ("computed-" + std::to_string(i)), missing);
+            text += missing ? "0" : std::to_string(size);
+        }
+        return text;
+    }
+};
+
+const std::string kSquares = "0 1 4 9 16 25 36 49 64 ";
+
+TEST(ShareResults, AProcessAloneMakesNoFolder) {
+    const TemporaryFolder folder;
+    const Squares squares{folder};
+    for (const std::optional<Launched>& launched : {std::optional<Launched>(), std::optional(Launched{})}) {
+        const SharedSummary summary = squares.run(launched);
+        EXPECT_EQ(summary.own, 9u);
+        EXPECT_TRUE(summary.last);
+        EXPECT_EQ(squares.written(), kSquares);
+        fs::remove(folder / "out");
+    }
+    EXPECT_EQ(folder.files(), 9u);
+}
+
+TEST(ShareResults, EveryPieceIsDoneOnceAndOneProcessFinishes) {
+    const TemporaryFolder folder;
+    const Squares squares{folder};
+    std::vector<pid_t> children;
+    for (int rank = 0; rank < 3; ++rank)
+        children.push_back(beginProcess([&] { squares.run(Launched{rank, 3, 3, "job"}); }));
+    for (const pid_t child : children) EXPECT_EQ(endOf(child), 0);
+    EXPECT_EQ(squares.written(), kSquares);
+    EXPECT_EQ(squares.counts(), "111111111");
+    EXPECT_FALSE(fs::exists(folder / "out.blocks"));
+}
+
+TEST(ShareResults, OneThatIsToldToDoesEverythingBesideOthers) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "out.blocks"); // of others
+    const Squares squares{folder};
+    EXPECT_EQ(squares.run(std::nullopt).own, 9u);
+    EXPECT_TRUE(fs::is_empty(folder / "out.blocks"));
+}
+
+TEST(ShareResults, TheOthersDoWhatAKilledProcessLeaves) {
+    const TemporaryFolder folder;
+    const Squares squares{folder}, deadly{folder, 1};
+    const pid_t first = beginProcess([&] { deadly.run(Launched{0, 2, 2, "job"}); });
+    ASSERT_EQ(endOf(first), -SIGKILL);
+    EXPECT_EQ(squares.counts(), "100000000");
+    const pid_t second = beginProcess([&] { squares.run(Launched{1, 2, 2, "job"}); });
+    EXPECT_EQ(endOf(second), 0);
+    EXPECT_EQ(squares.written(), kSquares);
+    EXPECT_EQ(squares.counts(), "111111111");
+}
+
+TEST(ShareResults, ASecondRunGoesOn) {
+    const TemporaryFolder folder;
+    const Squares squares{folder}, deadly{folder, 4};
+    ASSERT_EQ(endOf(beginProcess([&] { deadly.run(Launched{0, 2, 2, "job"}); })), -SIGKILL);
+    EXPECT_EQ(squares.counts(), "111100000");
+    EXPECT_THROW(squares.run(Launched{}, "other squares"), Error) << "the folder is of other work";
+    EXPECT_EQ(squares.run(Launched{}).own, 5u) << "also alone";
+    EXPECT_EQ(squares.counts(), "111111111");
+    EXPECT_EQ(squares.written(), kSquares);
+    EXPECT_FALSE(fs::exists(folder / "out.blocks"));
+}
+
+TEST(ShareResults, WhatFailsAtTheEndIsOnlyEndedAgain) {
+    const TemporaryFolder folder;
+    const Squares squares{folder};
+    const auto fails = [](const std::vector<std::string>&, const Progress&) { throw MachineError("the disk is full"); };
+    const auto square = [&](std::size_t i, const Progress&) { return squares.square(i); };
+    fs::create_directory(folder / "out.blocks");
+    EXPECT_THROW(shareResults({folder / "out", "squares", Launched{}}, 9, square, fails), MachineError);
+    EXPECT_EQ(squares.run(Launched{}).own, 0u);
+    EXPECT_EQ(squares.written(), kSquares);
+    EXPECT_EQ(squares.counts(), "111111111");
+}
+
+} // namespace
+} // namespace tessera::codec

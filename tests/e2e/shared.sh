@@ -1,0 +1,100 @@
+#!/bin/bash
+# Commands whose work processes of mpirun and srun share: arguments TESSERA SOURCE_DIR.
+# shellcheck disable=SC2046
+tessera=$1
+source "$2/tests/e2e/common.bash"
+"$tessera" generate fuel-cell -o cell.tsr --size 7x13x20 --times 9 >/dev/null 2>err || die "make data"
+
+together() { # together COUNT COMMAND...: by so many processes; what they say is in rank*.txt
+    local count=$1 job=$RANDOM rank children=()
+    shift
+    rm -f rank*.txt
+    for rank in $(seq 0 $((count - 1))); do
+        env $(as "$job" "$rank" "$count") "$tessera" "$@" >"rank$rank.txt" 2>&1 &
+        children+=($!)
+    done
+    for rank in "${children[@]}"; do wait "$rank" || fail "$*: a process fails: $(cat rank*.txt)"; done
+    [ -z "$(ls -d ./*.blocks 2>/dev/null)" ] || fail "$*: $(ls -d ./*.blocks) is left"
+}
+shares() { # shares TOTAL WHAT: each process has said how much it did, in all TOTAL
+    [ "$(awk "/^[0-9]+ of $1 $2 by process/ { sum += \$1 } END { print sum }" rank*.txt)" = "$1" ] ||
+        fail "not $1 $2 are shared: $(cat rank*.txt)"
+}
+
+for what in "--of O2,T" "--balance O2" "--along z --of T"; do
+    for ending in csv json svg; do
+        [ "$what $ending" = "--along z --of T svg" ] && continue # a figure shows one time
+        # shellcheck disable=SC2086
+        check "stats $what" 0 "$tessera" stats cell.tsr --all-times $what -o one.$ending
+        # shellcheck disable=SC2086
+        together 3 stats cell.tsr --all-times $what -o three.$ending
+        shares 9 "times computed"
+        cmp one.$ending three.$ending || fail "three processes give other statistics: $what, .$ending"
+    done
+done
+
+check "surfaces" 0 "$tessera" mesh cell.tsr --channel T --iso 353.4 --color-by O2 --all-times -o iso.vtp
+grep -q 'timestep="0.03" .*file="iso_0001.vtp"' iso.pvd || fail "iso.pvd: $(cat iso.pvd)"
+[ "$(grep -c '^iso_000[0-8].vtp: [0-9]* vertices' out.txt)" = 9 ] || fail "mesh says $(cat out.txt)"
+mkdir shared && together 2 mesh cell.tsr --channel T --iso 353.4 --color-by O2 --all-times -o shared/iso.vtp
+shares 9 surfaces
+for file in iso_000{0..8}.vtp iso.pvd; do cmp $file shared/$file || fail "$file differs"; done
+[ "$(ls shared | wc -l)" = 10 ] || fail "surfaces: $(ls shared)"
+check "the third of them" 0 "$tessera" mesh cell.tsr --channel T --iso 353.4 --color-by O2 --time 0.06 -o third.vtp
+cmp third.vtp iso_0002.vtp || fail "the surface of a time differs from that among all"
+check "surfaces that are not there" 2 "$tessera" mesh cell.tsr --channel T --iso 9000 --all-times -o none.ply
+[ -z "$(ls none* 2>/dev/null)" ] || fail "empty surfaces are left"
+check "a time and all times" 2 "$tessera" mesh cell.tsr --channel T --iso 353.4 --all-times --time 0 -o none.ply
+
+picture=(--size 160x120 --set /render/samples=1)
+variants=(--variant "as it is:" --variant "/render/filter=average")
+check "figures" 0 "$tessera" compare cell.tsr "${picture[@]}" "${variants[@]}" --all-times -o figure.png --csv table.csv
+[ "$(ls figure_000{0..8}.png | wc -l)" = 9 ] || fail "figures: $(ls figure*)"
+together 2 compare cell.tsr "${picture[@]}" "${variants[@]}" --all-times -o shared/figure.png --csv shared/table.csv
+shares 9 "figures drawn"
+check "the eighth of them" 0 "$tessera" compare cell.tsr "${picture[@]}" "${variants[@]}" --time 0.21 -o eighth.png --csv eighth.csv
+python3 - <<'EOF2' || fail "the tables differ"
+import csv
+def rows(name): # but for how long a picture took
+    return [{k: v for k, v in row.items() if k != "ms per picture"} for row in csv.DictReader(open(name))]
+alone, shared, eighth = rows("table.csv"), rows("shared/table.csv"), rows("eighth.csv")
+assert alone == shared and len(alone) == 18, alone
+assert len({row["RMSE (of 255)"] for row in alone}) > 2, alone
+assert sorted({float(row["time [s]"]) for row in alone}) == [0, .03, .06, .09, .12, .15, .18, .21, .24], alone
+assert [{k: v for k, v in row.items() if k != "time [s]"} for row in alone[14:16]] == eighth, eighth
+EOF2
+
+check "pictures" 0 "$tessera" replay cell.tsr --animation --view volume "${picture[@]}" -o drawn
+together 2 replay cell.tsr --animation --view volume "${picture[@]}" -o both/
+shares 9 "pictures drawn"
+for i in {0..8}; do cmp drawn/frame-000$i.png both/frame-000$i.png || fail "frame $i differs"; done
+# Where each process has work of its own.
+for rank in 0 1; do
+    check "alone beside others" 0 env $(as own $rank 2) "$tessera" replay cell.tsr --animation --view volume "${picture[@]}" \
+        --alone -o own$rank
+    [ "$(ls own$rank | wc -l)" = 9 ] || fail "process $rank alone draws $(ls own$rank)"
+done
+# One that dies leaves its work to the next run, which draws only what is missing.
+env $(as first 0 2) "$tessera" replay cell.tsr --animation --view volume "${picture[@]}" -o again >/dev/null 2>&1 &
+first=$!
+for _ in $(seq 600); do
+    [ -e again/frame-0001.png ] && break
+    sleep 0.05
+done
+kill -KILL $first
+wait $first 2>/dev/null
+touch -d '2001-01-01' again/frame-0000.png
+check "the next run" 0 "$tessera" replay cell.tsr --animation --view volume "${picture[@]}" -o again
+[ "$(date -r again/frame-0000.png +%Y)" = 2001 ] || fail "what was drawn is drawn again"
+for i in {0..8}; do cmp drawn/frame-000$i.png again/frame-000$i.png || fail "frame $i differs after a kill"; done
+[ -e again.blocks ] && fail "again.blocks is left"
+
+if command -v mpirun >/dev/null; then
+    mpi=(env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe)
+    check "mpirun" 0 "${mpi[@]}" -n 2 "$tessera" stats cell.tsr --all-times --of O2,T -o mpi.csv
+    check "the same alone" 0 "$tessera" stats cell.tsr --all-times --of O2,T -o one.csv
+    cmp one.csv mpi.csv || fail "mpirun gives other statistics"
+else
+    echo "mpirun is not installed: its variables were set by hand only"
+fi
+finish
