@@ -42,6 +42,7 @@ struct PackRequest {
     double timeStep = 1;
     bool timesGiven = false;
     std::optional<std::size_t> blockTimes;
+    bool blockParameters = false, alone = false;
 };
 
 /// One JSON object per line on stdout, for a window that runs this command.
@@ -200,9 +201,11 @@ std::string inputsOf(const PackRequest& request, const volume::ImportOptions& im
 
 /// Packs in blocks of times, which processes share.
 void runBlocks(const PackRequest& request, const Launched& started, const PackInput& input, const Progress& progress) {
-    const codec::BlockSummary summary = codec::packInBlocks(
-        input.data, request.options, request.output,
-        {request.blockTimes.value_or(0), started, inputsOf(request, input.import)}, progress, input.before);
+    const bool byParameter = request.blockParameters || std::size_t(started.count) > input.data.info.times.size();
+    const codec::BlockSummary summary =
+        codec::packInBlocks(input.data, request.options, request.output,
+                            {request.blockTimes.value_or(0), started, inputsOf(request, input.import), byParameter},
+                            progress, input.before);
     if (request.json || request.progressJson) {
         nlohmann::json report = reportOf(summary.own, request.output);
         report.update({{"blocks", summary.blocks}, {"ownBlocks", summary.packed}, {"rank", started.rank}});
@@ -210,9 +213,8 @@ void runBlocks(const PackRequest& request, const Launched& started, const PackIn
         return;
     }
     sayNotes(summary.own);
-    std::string text = std::to_string(summary.packed) + " of " + std::to_string(summary.blocks) + " blocks packed";
-    if (started.count > 1)
-        text += " by process " + std::to_string(started.rank + 1) + " of " + std::to_string(started.count);
+    std::string text = std::to_string(summary.packed) + " of " + std::to_string(summary.blocks) + " blocks packed" +
+                       byProcess(started);
     text += ", " + textOfBytes(double(summary.own.sourceBytes));
     if (summary.last)
         text += "; " + request.output + ": " + textOfBytes(double(summary.own.archiveBytes)) + ", " +
@@ -257,8 +259,9 @@ bool joins(const PackRequest& request) {
 
 void run(PackRequest request) {
     const bool whole = !request.append && !request.follows && !isStream(request);
-    if (request.blockTimes.value_or(0) > 0 && !whole)
-        throw Error("blocks of times are those of a whole series, without --append and --follow", {}, "--block-times");
+    if ((request.blockTimes || request.blockParameters) && !whole)
+        throw Error("blocks are those of a whole series, without --append and --follow", {},
+                    request.blockParameters ? "--block-parameters" : "--block-times");
     if (!request.follows) checkOutput(request);
     if (request.options.memoryMb > 0) keepNoFreedFrames();
     if (request.follows || isStream(request)) return runGrowing(request);
@@ -271,7 +274,8 @@ void run(PackRequest request) {
     if (joins(request)) return say(request, codec::join(request.output, request.inputs[0]));
     PackInput input = open(request, progress.part(0, 0.02));
     const Progress rest = progress.part(0.02, 1);
-    if (const Launched started = launched(); whole && request.blockTimes.value_or(started.count > 1 ? 1 : 0) > 0)
+    const Launched started = launched();
+    if (whole && !request.alone && (started.count > 1 || request.blockTimes || request.blockParameters))
         return runBlocks(request, started, input, rest);
     say(request, request.append
                      ? codec::append(input.data, request.output, request.options.memoryMb, rest, input.before)
@@ -312,9 +316,17 @@ void addBlocksOption(CLI::App& command, PackRequest& request) {
                     "Pack in blocks of so many times, which several processes share that are started alike (mpirun, "
                     "srun, or by hand on machines that see the same folder), and which are joined to one archive. "
                     "Processes of mpirun or srun do so by themselves, in blocks of 16 times, or fewer so that each has "
-                    "one; 0: each packs alone")
-        ->check(CLI::NonNegativeNumber)
+                    "one")
+        ->check(CLI::PositiveNumber)
         ->group("Several processes");
+    command
+        .add_flag("--block-parameters", request.blockParameters,
+                  "Pack each parameter of a block by itself, so that processes also share a time; so by itself where "
+                  "mpirun or srun starts more processes than there are times")
+        ->group("Several processes");
+    addAloneOption(command, request.alone);
+    for (const char* const shared : {"--block-times", "--block-parameters"})
+        command.get_option("--alone")->excludes(shared)->group("Several processes");
 }
 
 void addStreamOptions(CLI::App& command, PackRequest& request) {

@@ -34,6 +34,7 @@ std::uint64_t appendFrames(const Archive& archive, const Archive& more, const Me
                            std::span<const std::size_t> componentOf) {
     const Archive::Impl& from = *more.impl_;
     const ArchiveState state = stateOf(archive, false);
+    const bool bringsTimes = now.info.times.size() > state.times;
     if (!codedAlike(archive, more))
         throw Error("it was packed by another version of the program than " + archive.path(), more.path());
     Commits commits = commitsOf(archive, state);
@@ -61,7 +62,7 @@ std::uint64_t appendFrames(const Archive& archive, const Archive& more, const Me
         }
         frame.offset = file.position();
         for (Segment& segment : frame.segments) copySegment(more, *from.bytes, segment, file);
-        frame.time += static_cast<std::uint32_t>(state.times);
+        if (bringsTimes) frame.time += static_cast<std::uint32_t>(state.times);
         frame.component = static_cast<std::uint32_t>(componentOf[frame.component]);
         if (frame.mask >= 0) frame.mask = maskOf[std::size_t(frame.mask)];
         frame.model += static_cast<std::int32_t>(state.models);

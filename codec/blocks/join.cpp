@@ -67,16 +67,14 @@ PackSummary join(const std::string& path, const std::string& more) {
     if (archive.metadata().alternating || added.metadata().alternating)
         throw Error("archives on D4* cannot be joined", more);
     if (codingOf(archive) != codingOf(added)) throw Error("it was packed with other options than " + path, more);
-    if (!bringsTimes(archive, added.info())) throw Error("it has no parameter of " + path, more);
     Metadata now = added.metadata();
     const Continuation place = continuationOf(archive, now);
     forgetEmpty(archive, now.info);
     volume::DatasetInfo info = added.info();
     forgetEmpty(added, info);
     place.widen(info, now.info);
-    for (volume::Parameter& parameter : now.info.parameters) // absent in both
-        if (parameter.ranges.empty())
-            parameter.ranges = archive.info().parameters[std::size_t(&parameter - now.info.parameters.data())].ranges;
+    for (std::size_t p = 0; p < archive.info().parameters.size(); ++p) // absent in both
+        if (now.info.parameters[p].ranges.empty()) now.info.parameters[p].ranges = archive.info().parameters[p].ranges;
     place.noteResampled(added.metadata().resampled, {}, now);
     PackSummary summary;
     const std::uint64_t samples = added.info().lattice.count() * added.info().times.size();

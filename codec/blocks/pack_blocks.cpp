@@ -6,6 +6,7 @@
 #include "codec/pack/frame_queue.h"
 #include "codec/pack/pack_grid.h"
 #include "codec/pack/pack_passes.h"
+#include "volume/field/part_masks.h"
 #include "volume/field/quantities.h"
 #include "volume/resample/resample.h"
 #include "volume/system/atomic_file.h"
@@ -39,8 +40,7 @@ void check(const PackOptions& options) {
 }
 
 /// What all processes must agree on.
-std::string aboutJob(const volume::DatasetInfo& info, PackOptions options, std::size_t blockTimes,
-                     const std::string& inputs) {
+std::string aboutJob(const volume::DatasetInfo& info, PackOptions options, const BlockOptions& blocks) {
     options.memoryMb = 0;
     nlohmann::json parameters = nlohmann::json::array();
     for (const volume::Parameter& parameter : info.parameters)
@@ -54,8 +54,9 @@ std::string aboutJob(const volume::DatasetInfo& info, PackOptions options, std::
                           {"times", info.times},
                           {"size", {size.x, size.y, size.z}},
                           {"options", toJson(options)},
-                          {"blockTimes", blockTimes},
-                          {"inputs", inputs}}
+                          {"blockTimes", blocks.times},
+                          {"byParameter", blocks.byParameter},
+                          {"inputs", blocks.inputs}}
         .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -106,13 +107,14 @@ void add(PackSummary& sum, const PackSummary& more) {
         if (std::ranges::find(sum.notes, note) == sum.notes.end()) sum.notes.push_back(note);
 }
 
-/// The blocks of a series, some of them joined already.
+/// The blocks of a series, some of them joined already. A block is one piece, or one for each parameter.
 class Blocks {
 public:
     Blocks(const volume::Dataset& source, const PackOptions& options, const std::string& path,
            const BlockOptions& blocks, const Progress& progress)
         : source_(source), options_(options), path_(path), times_(blocks.times),
-          job_(path, aboutJob(source.info, options, blocks.times, blocks.inputs), blocks.launched, progress) {
+          pieces_(blocks.byParameter ? source.info.parameters.size() : 1),
+          job_(path, aboutJob(source.info, options, blocks), blocks.launched, progress) {
         // An automatic size of bricks depends on the number of times; a last block of one time has the same.
         const volume::Lattice& lattice = source.info.lattice;
         const bool toBcc = options.lattice == StoredLattice::BCC && lattice.kind == volume::LatticeKind::CC;
@@ -120,38 +122,45 @@ public:
     }
 
     std::size_t count() const { return (source_.info.times.size() + times_ - 1) / times_; }
+    std::size_t pieces() const { return count() * pieces_; }
 
     /// Finds the ranges of all times, if bounds are relative to them.
     void gatherRanges(const Progress& progress);
-    /// Packs blocks, and joins what is complete; returns how many this process packed.
+    /// Packs pieces, and joins what is complete; returns how many this process packed.
     std::size_t pack(PackSummary& sum, const PackedBefore& before, const Progress& progress);
     /// Joins the rest and gives the archive its name; false if another process did.
     bool finish(const Progress& progress);
 
 private:
-    volume::Dataset block(std::size_t number) const;
-    std::string fileOf(std::size_t number) const { return job_.file(std::to_string(number) + ".tsr"); }
-    std::string rangesOf(std::size_t number) const { return job_.file("ranges-" + std::to_string(number)); }
+    volume::Dataset piece(std::size_t number) const;
+    std::string fileOf(std::size_t block) const { return job_.file(std::to_string(block) + ".tsr"); }
+    std::string pieceOf(std::size_t number) const {
+        if (pieces_ == 1) return fileOf(number);
+        return job_.file(std::to_string(number / pieces_) + "-" + std::to_string(number % pieces_) + ".tsr");
+    }
+    std::string rangesOf(std::size_t piece) const { return job_.file("ranges-" + std::to_string(piece)); }
     std::string joined() const { return job_.file("joined.tsr"); }
-    bool isPacked(std::size_t number, const Progress& progress);
+    bool isPacked(std::size_t piece, const Progress& progress);
     void countJoined();
-    double share(std::size_t number) const { return double(number) / double(count()); }
+    double share(std::size_t piece) const { return double(piece) / double(pieces()); }
+    void mergeComplete(std::size_t block) const;
     void joinComplete(const Progress& progress);
 
     volume::Dataset source_;
     PackOptions options_;
     std::string path_;
-    std::size_t times_;
+    std::size_t times_, pieces_; ///< of a block
     SharedJob job_;
     std::size_t joinedBlocks_ = 0;   ///< at least so many
     std::uintmax_t joinedBytes_ = 0; ///< of the file when they were counted
 };
 
-volume::Dataset Blocks::block(std::size_t number) const {
-    const std::size_t first = number * times_, end = std::min(first + times_, source_.info.times.size());
+volume::Dataset Blocks::piece(std::size_t number) const {
+    const std::size_t first = number / pieces_ * times_, end = std::min(first + times_, source_.info.times.size());
     std::vector<int> times(end - first);
     std::iota(times.begin(), times.end(), int(first));
-    return volume::withTimes(source_, times);
+    volume::Dataset block = volume::withTimes(source_, times);
+    return pieces_ == 1 ? block : volume::withParameters(block, {int(number % pieces_)});
 }
 
 void Blocks::gatherRanges(const Progress& progress) {
@@ -160,16 +169,17 @@ void Blocks::gatherRanges(const Progress& progress) {
     if (std::ranges::all_of(parameters, known)) return;
     const auto isDone = [&](std::size_t number) { return fs::exists(rangesOf(number)); };
     const auto work = [&](std::size_t number) {
-        volume::Dataset own = block(number);
+        volume::Dataset own = piece(number);
         const Ranges found =
             unknownRanges(own, options_, rangesOf(number), progress.part(share(number), share(number + 1)));
         writeAtomically(rangesOf(number), textOf(found));
     };
-    job_.share("ranges", count(), isDone, work, progress);
+    job_.share("ranges", pieces(), isDone, work, progress);
     Ranges all(parameters.size());
-    for (std::size_t number = 0; number < count(); ++number) {
-        const Ranges more = readRanges(rangesOf(number), parameters.size());
-        for (std::size_t p = 0; p < more.size(); ++p) widenRanges(all[p], more[p]);
+    for (std::size_t number = 0; number < pieces(); ++number) {
+        const std::size_t first = number % pieces_, own = parameters.size() / pieces_;
+        const Ranges more = readRanges(rangesOf(number), own);
+        for (std::size_t p = 0; p < own; ++p) widenRanges(all[first + p], more[p]);
     }
     settleRanges(source_.info, all);
 }
@@ -187,19 +197,42 @@ void Blocks::countJoined() {
     joinedBytes_ = missing ? 0 : bytes;
 }
 
-bool Blocks::isPacked(std::size_t number, const Progress& progress) {
-    if (number < joinedBlocks_ || fs::exists(fileOf(number))) return true;
-    const LockedFile lock = job_.lock("join.lock", progress, share(number));
+bool Blocks::isPacked(std::size_t piece, const Progress& progress) {
+    const std::size_t block = piece / pieces_;
+    const auto isThere = [&] {
+        return block < joinedBlocks_ || fs::exists(pieceOf(piece)) || fs::exists(fileOf(block));
+    };
+    if (isThere()) return true;
+    const LockedFile lock = job_.lock("join.lock", progress, share(piece));
     countJoined();
-    return number < joinedBlocks_ || fs::exists(fileOf(number));
+    return isThere();
+}
+
+/// Makes a block of its pieces, if they are all there; the caller has the lock.
+void Blocks::mergeComplete(std::size_t block) const {
+    if (pieces_ == 1) return;
+    const std::size_t first = block * pieces_;
+    const auto isThere = [&](std::size_t piece) { return fs::exists(pieceOf(first + piece)); };
+    if (!fs::exists(fileOf(block))) {
+        for (std::size_t piece = 0; piece < pieces_; ++piece)
+            if (!isThere(piece)) return;
+        const std::string merged = job_.file(std::to_string(block) + ".merging");
+        fs::copy_file(pieceOf(first), merged, fs::copy_options::overwrite_existing);
+        for (std::size_t piece = 1; piece < pieces_; ++piece) join(merged, pieceOf(first + piece));
+        fs::rename(merged, fileOf(block));
+        syncFolderOf(fileOf(block));
+    }
+    for (std::size_t piece = 0; piece < pieces_; ++piece) fs::remove(pieceOf(first + piece));
 }
 
 /// Joins the complete blocks that follow those joined before; the caller has the lock.
 void Blocks::joinComplete(const Progress& progress) {
     countJoined();
-    for (std::size_t number = 0; number < joinedBlocks_; ++number) fs::remove(fileOf(number)); // after a crash
-    for (; joinedBlocks_ < count() && fs::exists(fileOf(joinedBlocks_)); ++joinedBlocks_) {
-        progress.advance(share(joinedBlocks_), "joining");
+    for (std::size_t block = 0; block < joinedBlocks_; ++block) fs::remove(fileOf(block)); // after a crash
+    for (; joinedBlocks_ < count(); ++joinedBlocks_) {
+        mergeComplete(joinedBlocks_);
+        if (!fs::exists(fileOf(joinedBlocks_))) break;
+        progress.advance(share(joinedBlocks_ * pieces_), "joining");
         const std::string next = fileOf(joinedBlocks_);
         std::error_code problem;
         if (joinedBlocks_ > 0)
@@ -217,16 +250,18 @@ void Blocks::joinComplete(const Progress& progress) {
 std::size_t Blocks::pack(PackSummary& sum, const PackedBefore& before, const Progress& progress) {
     const auto isDone = [&](std::size_t number) { return isPacked(number, progress); };
     const auto work = [&](std::size_t number) {
-        volume::Dataset own = block(number);
+        volume::Dataset own = piece(number);
         const std::string growing = job_.file(std::to_string(number) + ".packing"); // readable from its first time on
         const Progress part = progress.part(share(number), share(number + 1));
-        add(sum, codec::pack(own, options_, growing, part, before));
-        fs::rename(growing, fileOf(number));
-        syncFolderOf(fileOf(number));
+        PackedBefore ownBefore = before;
+        if (pieces_ > 1 && !before.resampled.empty()) ownBefore.resampled = {before.resampled[number % pieces_]};
+        add(sum, codec::pack(own, options_, growing, part, ownBefore));
+        fs::rename(growing, pieceOf(number));
+        syncFolderOf(pieceOf(number));
         if (const auto lock = LockedFile::tryLock(job_.file("join.lock"), LockedFile::Kind::Exclusive))
             joinComplete(progress);
     };
-    return job_.share("block", count(), isDone, work, progress);
+    return job_.share("block", pieces(), isDone, work, progress);
 }
 
 bool Blocks::finish(const Progress& progress) {
@@ -259,7 +294,7 @@ BlockSummary packInBlocks(const volume::Dataset& source, const PackOptions& opti
     BlockSummary summary;
     const auto started = std::chrono::steady_clock::now();
     Blocks all(source, options, path, settled, progress);
-    summary.blocks = all.count();
+    summary.blocks = all.pieces();
     const double begin = isRelative(options) ? 0.3 : 0;
     if (isRelative(options)) all.gatherRanges(progress.part(0, begin));
     summary.packed = all.pack(summary.own, before, progress.part(begin, 1));

@@ -133,14 +133,7 @@ std::optional<volume::Dataset> withoutKnownLabels(const volume::Dataset& source,
     const auto isLabel = [&](int p) { return source.info.parameters[std::size_t(p)].categorical; };
     if (known.empty() || further.empty() || !std::ranges::all_of(known, isLabel)) return std::nullopt;
     for (const int label : known) requireSameLabel(source, label, archive);
-    volume::Dataset out = volume::withParts(source);
-    out.info.parameters.clear();
-    for (const int p : further) out.info.parameters.push_back(source.info.parameters[std::size_t(p)]);
-    out.read = out.read.through(
-        [further](const volume::FrameReader& read, int parameter, int component, int time, volume::SliceRange slices) {
-            return read(further[std::size_t(parameter)], component, time, slices);
-        });
-    return out;
+    return volume::withParameters(source, further);
 }
 
 Continuation continuationOf(const Archive& archive, Metadata& metadata) {

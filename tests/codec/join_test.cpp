@@ -6,6 +6,7 @@
 #include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain/decoder.h"
+#include "volume/field/part_masks.h"
 #include "volume/field/quantities.h"
 
 #include <gtest/gtest.h>
@@ -119,6 +120,26 @@ TEST(Join, BoundsHoldForTheRangeOfBoth) {
     EXPECT_EQ(joined.info().quantities[0].values, (std::vector<double>{1, 2, 3, 4}));
 }
 
+TEST(Join, ParametersAreAddedAtTheSameTimes) {
+    const TemporaryFolder folder;
+    const std::vector<MadeParameter> all{{"T", ScalarType::F32, 1, Texture::Smooth, true, false},
+                                         {"U", ScalarType::F32, 2, Texture::Noise, true, false},
+                                         {"n", ScalarType::U8, 1, Texture::Smooth, false, false}};
+    const volume::Dataset made = makeDataset({17, 12, 19}, all, 3);
+    const std::vector<int> times{0, 1, 2};
+    const std::string whole = packed(made, times, bricksOf8(), folder / "whole.tsr");
+    const std::string path = packed(volume::withParameters(made, {0}), times, bricksOf8(), folder / "T.tsr");
+    join(path, packed(volume::withParameters(made, {1, 2}), times, bricksOf8(), folder / "others.tsr"));
+    expectSameArchives(Archive(whole), Archive(path));
+    EXPECT_EQ(verifyArchive(Archive(path)).damaged, 0u);
+    // Times are appended to what has been joined so.
+    volume::Dataset later = made;
+    for (double& time : later.info.times) time += 10;
+    join(path, packed(later, times, bricksOf8(), folder / "later.tsr"));
+    EXPECT_EQ(Archive(path).info().times.size(), 6u);
+    for (int p = 0; p < 3; ++p) expectSame(readField(Archive(path), p, 0, 4), made.read(p, 0, 1), true);
+}
+
 TEST(Join, IsOnlyOfferedForWhatItCanJoin) {
     const TemporaryFolder folder;
     const std::vector<MadeParameter> both{{"T", ScalarType::U8, 1, Texture::Smooth, false, false},
@@ -165,7 +186,7 @@ TEST(Join, RefusesWhatDoesNotFollowAndChangesNothing) {
     } cases[] = {{packed(made, {1, 2}, bricksOf8(), folder / "early.tsr"), "not after the last one"},
                  {packed(made, {2, 3}, bricksOf8(StoredLattice::CC, 0.1), folder / "lossy.tsr"), "other options"},
                  {packed(other, {2, 3}, bricksOf8(), folder / "grid.tsr"), "another grid"},
-                 {packed(named, {2, 3}, bricksOf8(), folder / "name.tsr"), "no parameter"},
+                 {packed(named, {2, 3}, bricksOf8(), folder / "name.tsr"), "only be added at all times"},
                  {packed(made, {2, 3}, bricksOf8(StoredLattice::D4), folder / "d4.tsr"), "D4*"}};
     for (const auto& [more, reason] : cases) {
         try {

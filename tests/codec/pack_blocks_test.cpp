@@ -4,11 +4,13 @@
 #include "codec/blocks/shared_job.h"
 #include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"
+#include "tests/volume/regions.h"
 
 #include <atomic>
 #include <csignal>
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <set>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -56,12 +58,14 @@ int statusOf(pid_t child) {
 
 /// Packs by several processes; returns how many of them failed.
 int packBy(int processes, const volume::Dataset& made, const PackOptions& options, const std::string& path,
-           std::size_t times, const std::string& job = "1") {
+           std::size_t times, bool byParameter = false) {
+    const std::size_t pieces = byParameter ? made.info.parameters.size() : 1;
     std::vector<pid_t> children;
     for (int rank = 0; rank < processes; ++rank)
         children.push_back(started([&] {
-            const BlockSummary summary = packInBlocks(made, options, path, {times, {rank, processes, processes, job}});
-            return summary.blocks == (made.info.times.size() + times - 1) / times && fs::exists(path);
+            const BlockOptions blocks{times, {rank, processes, processes, "1"}, {}, byParameter};
+            const BlockSummary summary = packInBlocks(made, options, path, blocks);
+            return summary.blocks == (made.info.times.size() + times - 1) / times * pieces && fs::exists(path);
         }));
     int failed = 0;
     for (const pid_t child : children) failed += statusOf(child) != 0 ? 1 : 0;
@@ -117,6 +121,63 @@ TEST(PackBlocks, BoundsAreRelativeToTheRangesOfAllTimes) {
     const double bound = 1e-3 * (range.hi - range.lo);
     EXPECT_GT(largestError(blocks, made, 0), 0.5 * bound);
     EXPECT_LE(largestError(blocks, made, 0), bound);
+}
+
+TEST(PackBlocks, ProcessesShareTheParametersOfATime) {
+    const TemporaryFolder folder;
+    volume::test::TwoRegions regions;
+    regions.place = 9;
+    const volume::Dataset several = series(5), single = series(1),
+                          parted = volume::test::twoRegions(volume::test::ccLattice({25, 22, 21}),
+                                                            volume::test::constantIn, regions, 3);
+    for (const volume::Dataset& made : {several, single, parted})
+        for (const PackOptions& options : {small(), small(1e-3), small(1e-3, StoredLattice::BCC)}) {
+            ASSERT_EQ(packBy(1, made, options, folder / "one.tsr", 2, true), 0);
+            const Archive one(folder / "one.tsr");
+            EXPECT_EQ(verifyArchive(one).damaged, 0u);
+            volume::Dataset source = made;
+            pack(source, options, folder / "once.tsr");
+            if (options.maxError == 0) { // floats within a bound may depend on what repeats
+                expectSameArchives(Archive(folder / "once.tsr"), one, 1);
+            } else {
+                EXPECT_EQ(one.info(), Archive(folder / "once.tsr").info());
+                EXPECT_LE(one.metadata().maxError, options.maxError);
+            }
+            for (const int processes : {2, 3}) {
+                ASSERT_EQ(packBy(processes, made, options, folder / "more.tsr", 2, true), 0);
+                EXPECT_EQ(readFile(folder / "more.tsr"), readFile(folder / "one.tsr")) << processes << " processes";
+            }
+            EXPECT_EQ(folder.files(), 3u);
+        }
+}
+
+TEST(PackBlocks, TheParametersOfAnInterruptedBlockAreNotPackedAgain) {
+    const TemporaryFolder folder;
+    const volume::Dataset made = series();
+    ASSERT_EQ(packBy(1, made, small(), folder / "whole.tsr", 2, true), 0);
+    volume::Dataset deadly = made;
+    deadly.read = [read = made.read](int p, int c, int t) {
+        if (t == 2 && p == 1) ::raise(SIGKILL); // while the second parameter of the second block is read
+        return read(p, c, t);
+    };
+    const BlockOptions blocks{2, {}, {}, true};
+    ASSERT_EQ(statusOf(started([&] { return packInBlocks(deadly, small(), folder / "run.tsr", blocks).last; })),
+              -SIGKILL);
+    EXPECT_TRUE(fs::exists(folder / "run.tsr.blocks/1-0.tsr"));
+    EXPECT_EQ(Archive(folder / "run.tsr.blocks/joined.tsr").info().times.size(), 2u);
+    // A crash while pieces are merged leaves them beside what was begun, or beside the block.
+    writeFile(folder / "run.tsr.blocks/1.merging", {'b', 'e', 'g', 'u', 'n'});
+    std::set<std::pair<int, int>> again;
+    volume::Dataset watched = made;
+    watched.read = [read = made.read, &again](int p, int c, int t) {
+        again.insert({p, t});
+        return read(p, c, t);
+    };
+    EXPECT_EQ(packInBlocks(watched, small(), folder / "run.tsr", blocks).packed, 8u);
+    EXPECT_FALSE(again.contains({0, 2}));
+    EXPECT_TRUE(again.contains({1, 2}));
+    EXPECT_EQ(readFile(folder / "run.tsr"), readFile(folder / "whole.tsr"));
+    EXPECT_EQ(folder.files(), 2u);
 }
 
 TEST(PackBlocks, WhatAKilledProcessLeftIsGoneOnWith) {

@@ -57,6 +57,28 @@ else
     echo "mpirun is not installed: its variables were set by hand only"
 fi
 
+# A single time is shared by its parameters.
+python3 - <<'EOF2'
+import json
+about = json.load(open("run.json"))
+about["times"] = [0]
+about["file"] = "run.raw"
+json.dump(about, open("single.json", "w"))
+open("single.raw", "wb").write(open("run.raw", "rb").read()[:2 * 40 * 36 * 44 * 4])
+EOF2
+check "by parameter" 0 "$tessera" pack single.json -o parameters.tsr --max-error 0.0001 --block-parameters
+say "2 of 2 blocks packed" out.txt
+check "a time alone" 0 "$tessera" pack single.json -o single.tsr --max-error 0.0001
+for i in 0 1; do
+    env $(as single $i 2) "$tessera" pack single.json -o both.tsr --max-error 0.0001 >rank$i.txt 2>&1 &
+done
+wait
+cmp parameters.tsr both.tsr || fail "two processes make another archive of a single time"
+"$tessera" unpack single.tsr -o single-a.raw >/dev/null && "$tessera" unpack both.tsr -o single-b.raw >/dev/null
+cmp single-a.raw single-b.raw || fail "parameters packed apart are other samples"
+options+=(--block-parameters)
+check "one process, by parameter" 0 "$tessera" pack run.json -o one.tsr "${options[@]}"
+
 # One of two processes is killed at a random moment; the other ends the work, or a second run does.
 for run in $(seq "$kills"); do
     rm -rf killed.tsr killed.tsr.blocks
@@ -87,7 +109,7 @@ check "a size" 2 "$tessera" pack run.json -o x.tsr --target-size 1 --block-times
 check "a negative number" 1 "$tessera" pack run.json -o x.tsr --block-times -1
 check "append in blocks" 2 "$tessera" pack run.json --append -o one.tsr --block-times 2
 say "of a whole series" err.txt
-check "alone beside others" 0 env $(as job 1 2) "$tessera" pack run.json -o alone.tsr --max-error 0.0001 --block-times 0
+check "alone beside others" 0 env $(as job 1 2) "$tessera" pack run.json -o alone.tsr --max-error 0.0001 --alone
 cmp whole.tsr alone.tsr || fail "packing alone beside others gives another archive"
 # Files that have changed, or are read otherwise, are other work.
 env $(as changed 0 2) "$tessera" pack run.json -o changed.tsr "${options[@]}" >/dev/null

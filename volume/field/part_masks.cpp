@@ -80,4 +80,15 @@ Dataset withParts(const Dataset& dataset) {
     return out;
 }
 
+Dataset withParameters(const Dataset& dataset, const std::vector<int>& parameters) {
+    Dataset out = withParts(dataset);
+    out.info.parameters.clear();
+    for (const int p : parameters) out.info.parameters.push_back(dataset.info.parameters[std::size_t(p)]);
+    out.read = out.read.through(
+        [parameters](const FrameReader& read, int parameter, int component, int time, SliceRange slices) {
+            return read(parameters[std::size_t(parameter)], component, time, slices);
+        });
+    return out;
+}
+
 } // namespace tessera::volume

@@ -3,6 +3,7 @@
 #include "volume/field/dataset.h"
 
 #include <cstdint>
+#include <vector>
 
 /// Masks with the part of each sample (volume/field/parts.h), for filters: 0 absent, else 1 + the part. Filters over
 /// several samples (volume/resample/resample.h, volume/resample/series.h) use only samples with the number of the
@@ -23,5 +24,9 @@ Field withoutParts(Field field);
 
 /// A data set whose masks contain the parts of samples. The label read last is cached.
 Dataset withParts(const Dataset& dataset);
+
+/// A data set with some of its parameters: indices in their order. Masks contain the parts of samples, also where the
+/// label that states them is not among those.
+Dataset withParameters(const Dataset& dataset, const std::vector<int>& parameters);
 
 } // namespace tessera::volume
