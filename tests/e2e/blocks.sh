@@ -62,7 +62,6 @@ python3 - <<'EOF2'
 import json
 about = json.load(open("run.json"))
 about["times"] = [0]
-about["file"] = "run.raw"
 json.dump(about, open("single.json", "w"))
 open("single.raw", "wb").write(open("run.raw", "rb").read()[:2 * 40 * 36 * 44 * 4])
 EOF2
