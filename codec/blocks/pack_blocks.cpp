@@ -10,6 +10,7 @@
 #include "volume/field/quantities.h"
 #include "volume/resample/resample.h"
 #include "volume/system/atomic_file.h"
+#include "volume/system/part_file.h"
 #include "volume/system/sync.h"
 
 #include <algorithm>
@@ -285,9 +286,10 @@ std::size_t blockTimes(std::size_t times, const Launched& launched) {
     return std::clamp((times + processes - 1) / processes, std::size_t(1), kUsual);
 }
 
-BlockSummary packInBlocks(const volume::Dataset& source, const PackOptions& options, const std::string& path,
+BlockSummary packInBlocks(const volume::Dataset& source, const PackOptions& options, const std::string& output,
                           const BlockOptions& blocks, const Progress& progress, const PackedBefore& before) {
     check(options);
+    const std::string path = replacedFile(output);
     if (fs::is_directory(path)) throw Error("is a folder", path);
     BlockOptions settled = blocks;
     if (settled.times == 0) settled.times = blockTimes(source.info.times.size(), blocks.launched);

@@ -15,9 +15,9 @@
 namespace tessera::codec {
 
 GrowingFile::GrowingFile(const std::string& path)
-    : path_(path), kind_(std::filesystem::exists(path) ? Kind::Replacing : Kind::Fresh) {
-    removeLeftParts(path);
-    const std::string temporary = partFileOf(path);
+    : path_(replacedFile(path)), kind_(std::filesystem::exists(path_) ? Kind::Replacing : Kind::Fresh) {
+    removeLeftParts(path_);
+    const std::string temporary = partFileOf(path_);
     file_ = std::fopen(temporary.c_str(), "wbe");
     if (!file_) fail();
     temporary_ = temporary;

@@ -14,6 +14,7 @@
 #include "volume/field/quantities.h"
 #include "volume/resample/resample.h"
 #include "volume/resample/series_dataset.h"
+#include "volume/system/part_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -323,8 +324,9 @@ PackSummary Packing::run(const Progress& progress) {
 
 } // namespace
 
-PackSummary pack(volume::Dataset& source, const PackOptions& options, const std::string& path, const Progress& progress,
-                 const PackedBefore& before, int slabLayers) {
+PackSummary pack(volume::Dataset& source, const PackOptions& options, const std::string& output,
+                 const Progress& progress, const PackedBefore& before, int slabLayers) {
+    const std::string path = replacedFile(output);
     const auto packing = [&](const PackOptions& with, const std::string& to) {
         return Packing(source, slabLayers, before, with, to, nullptr);
     };

@@ -374,4 +374,13 @@ for command in "pack ramp.json -o limited.tsr --lattice cc --wavelet 1,0 --brick
     say "File too large" err.txt
     [ -z "$(ls -A | grep limited)" ] || fail "$command, limited: something is left: $(ls -A | grep limited)"
 done
+# What a link leads to is replaced, not the link; what is no file stays as it is.
+ln -s linked.tsr latest.tsr
+check "pack to a link" 0 "$tessera" pack ramp.json -o latest.tsr --lattice cc
+[ -L latest.tsr ] && [ -f linked.tsr ] || fail "the link was replaced"
+check "verify what it leads to" 0 "$tessera" verify linked.tsr
+mkfifo pipe.tsr
+check "pack to a pipe" 3 "$tessera" pack ramp.json -o pipe.tsr --lattice cc
+say "pipe.tsr: is no file, but a device or a pipe" err.txt
+[ -p pipe.tsr ] || fail "the pipe was replaced"
 finish

@@ -1,5 +1,6 @@
 #include "volume/system/part_file.h"
 
+#include "volume/base/error.h"
 #include "volume/system/atomic_file.h"
 
 #include <fcntl.h>
@@ -8,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -90,6 +92,38 @@ TEST_F(PartFile, WhatIsCommittedIsWhole) {
     file.commit();
     std::ifstream in(target_);
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), "all of it");
+}
+
+TEST_F(PartFile, WhatALinkLeadsToIsReplaced) {
+    const std::string file = touch("run-5.tsr"), link = (folder_ / "latest.tsr").string(),
+                      dangling = (folder_ / "next.tsr").string();
+    fs::create_symlink("run-5.tsr", link);
+    fs::create_symlink("latest.tsr", folder_ / "link.tsr");
+    fs::create_symlink("run-6.tsr", dangling);
+    writeAtomically((folder_ / "link.tsr").string(), "the new one");
+    writeAtomically(dangling, "another one");
+    const auto textOf = [](const std::string& path) {
+        std::ifstream in(path);
+        return std::string(std::istreambuf_iterator<char>(in), {});
+    };
+    EXPECT_TRUE(fs::is_symlink(link));
+    EXPECT_TRUE(fs::is_symlink(dangling));
+    EXPECT_EQ(textOf(file), "the new one");
+    EXPECT_EQ(textOf((folder_ / "run-6.tsr").string()), "another one");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 5) << "nothing else";
+    EXPECT_EQ(replacedFile(file), file);
+    fs::create_symlink("circle", folder_ / "circle");
+    EXPECT_EQ(replacedFile((folder_ / "circle").string()), (folder_ / "circle").string()) << "it ends";
+}
+
+TEST_F(PartFile, WhatIsNoFileIsNotReplaced) {
+    const std::string pipe = (folder_ / "pipe").string();
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    fs::create_symlink("pipe", folder_ / "link");
+    EXPECT_THROW(writeAtomically(pipe, "text"), MachineError);
+    EXPECT_THROW(writeAtomically((folder_ / "link").string(), "text"), MachineError);
+    EXPECT_TRUE(fs::is_fifo(pipe));
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
 }
 
 } // namespace

@@ -12,9 +12,9 @@
 namespace tessera {
 
 AtomicFile::AtomicFile(const std::string& path)
-    : path_(path), temporary_(partFileOf(path)), out_(temporary_, std::ios::binary | std::ios::trunc) {
+    : path_(replacedFile(path)), temporary_(partFileOf(path_)), out_(temporary_, std::ios::binary | std::ios::trunc) {
     if (!out_) throw MachineError(std::string("cannot be written: ") + std::strerror(errno), path_);
-    removeLeftParts(path);
+    removeLeftParts(path_);
 }
 
 AtomicFile::~AtomicFile() {

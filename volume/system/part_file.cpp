@@ -1,5 +1,7 @@
 #include "volume/system/part_file.h"
 
+#include "volume/base/error.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
@@ -32,6 +34,21 @@ bool isLocked(const std::string& path) {
 }
 
 } // namespace
+
+std::string replacedFile(const std::string& path) {
+    std::error_code unknown;
+    const fs::file_type type = fs::status(path, unknown).type();
+    if (type == fs::file_type::none) return path; // whoever opens it says why
+    if (type != fs::file_type::regular && type != fs::file_type::directory && type != fs::file_type::not_found)
+        throw MachineError("is no file, but a device or a pipe", path);
+    fs::path file = path;
+    while (fs::is_symlink(file, unknown)) { // ends, as the status of links in a circle is an error
+        const fs::path target = fs::read_symlink(file, unknown);
+        if (unknown) break;
+        file = target.is_absolute() ? target : file.parent_path() / target;
+    }
+    return file.string();
+}
 
 std::string partFileOf(const std::string& path) {
     return path + std::string(kPartMark) + std::to_string(::getpid());

@@ -5,6 +5,10 @@
 
 namespace tessera {
 
+/// The file that a whole new one at `path` replaces: where that is a link, what it leads to, which need not exist yet.
+/// Throws MachineError for what is no file, such as a device or a pipe, which would be replaced by one.
+std::string replacedFile(const std::string& path);
+
 /// The name under which this process writes a file, or a folder of them, until it is complete: PATH.part-PID, beside
 /// it.
 std::string partFileOf(const std::string& path);
