@@ -11,7 +11,7 @@ namespace {
 using BlurLib = test::ShaderProbe;
 
 TEST_F(BlurLib, TapsAndSharesAreAlike) {
-    const auto got = evaluate("#include \"lib/context_blur.glsl\"\n",
+    const auto got = evaluate("#include \"lib/shading/context_blur.glsl\"\n",
                               "vec4(blurTap(i / 2), blurShare(abs(a[i].x), 4.0 * abs(a[i].y), 5.0), 0.0)");
     for (int i = 0; i < kCases; ++i) {
         const glm::dvec2 tap = blurTap(i / 2);

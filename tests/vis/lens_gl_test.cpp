@@ -33,7 +33,7 @@ TEST_F(LensLib, WeighsBendsAndActsAsItsTwinDoes) {
         const std::vector<PlacedLens> lenses = placeLenses(scene, frame);
         addLenses(recipe, lenses, scene);
         const auto got = [&](const std::string& expression) {
-            return evaluate("uniform vec3 halfSize;\n#include \"lib/lenses.glsl\"\n", expression, recipe,
+            return evaluate("uniform vec3 halfSize;\n#include \"lib/sampling/lenses.glsl\"\n", expression, recipe,
                             [&](const Program& program) {
                                 setLensUniforms(program, lenses);
                                 program.set("halfSize", glm::vec3(frame.halfSize));

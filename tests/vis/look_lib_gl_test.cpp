@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
-/// lib/look.glsl, lib/grain.glsl and lib/paper.glsl against their C++ twins.
+/// lib/shading/look.glsl, lib/shading/grain.glsl and lib/shading/paper.glsl against their C++ twins.
 namespace tessera {
 namespace {
 
@@ -17,7 +17,7 @@ class LookLib : public test::ShaderProbe {
 protected:
     /// The sample of case i: the same in both languages.
     static constexpr const char* kHead =
-        "#include \"lib/look.glsl\"\n"
+        "#include \"lib/shading/look.glsl\"\n"
         "LookSample at(vec4 a, vec4 b) { return LookSample(a.x, abs(a.y), abs(a.z), abs(a.w) * 1.2, 40.0 * abs(b.x), "
         "abs(b.y), 0.005, 1.0, 0.0, 10.0 * abs(b.x), vec3(0.0), vec3(0.0), vec3(0.0)); }\n";
     vis::LookSample sample(int i) const {
@@ -125,7 +125,7 @@ TEST_F(LookLib, InkAgrees) {
 
 /// Tone shading equals Gooch's ramp as a tint of the own colour.
 TEST_F(LookLib, ToneIsItsFormula) {
-    const auto got = evaluate("#include \"lib/look.glsl\"\n",
+    const auto got = evaluate("#include \"lib/shading/look.glsl\"\n",
                               "vec4(toned(abs(c[i].rgb), a[i].x, vec3(0.9, 0.6, 0.2), vec3(0.1, 0.2, 0.5), 0.4), 1.0)");
     for (int i = 0; i < kCases; ++i)
         for (int k = 0; k < 3; ++k) {
@@ -175,9 +175,10 @@ TEST_F(LookLib, GrainAgrees) {
         program.set("grainPlaneCount", 3);
         glBindTextureUnit(1, name);
     };
-    const std::string head = "#include \"lib/grain.glsl\"\n#include \"lib/paper.glsl\"\nuniform sampler2D tile;\n"
-                             "vec3 unit(vec4 v) { return normalize(v.xyz); }\n"
-                             "vec3 way(int i, vec4 n, vec4 c) { return strokeDirection(unit(n), c.yzw, 0.8, 0.3); }\n";
+    const std::string head =
+        "#include \"lib/shading/grain.glsl\"\n#include \"lib/shading/paper.glsl\"\nuniform sampler2D tile;\n"
+        "vec3 unit(vec4 v) { return normalize(v.xyz); }\n"
+        "vec3 way(int i, vec4 n, vec4 c) { return strokeDirection(unit(n), c.yzw, 0.8, 0.3); }\n";
     vis::ProgramRecipe reads;
     vis::addDriver(reads, vis::currentDriver());
     const auto got = evaluate(

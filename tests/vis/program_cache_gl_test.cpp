@@ -266,7 +266,7 @@ TEST_F(ProgramCacheTest, BrokenVariantKeepsTheFormerPicture) {
     glm::ivec2 size;
     const std::vector<std::uint8_t> former = renderer.readPixels(*target, size);
     std::filesystem::create_directories(scratch() / "shaders/lib");
-    std::ofstream(scratch() / "shaders/lib/doi.glsl") << "float broken() { return nothing; }\n";
+    std::ofstream(scratch() / "shaders/lib/layers/doi.glsl") << "float broken() { return nothing; }\n";
     setenv("TESSERA_SHADER_DIR", (scratch() / "shaders").c_str(), 1);
     vis::FrameRequest request;
     request.size = {32, 32};

@@ -22,7 +22,7 @@ using ShaderLib = test::ShaderProbe;
 
 TEST_F(ShaderLib, ColorsAreEncodedAlike) {
     const auto got =
-        evaluate("#include \"lib/color.glsl\"\n", "vec4(srgbFromLinear(abs(a[i].rgb)), luminance(b[i].rgb))");
+        evaluate("#include \"lib/layers/color.glsl\"\n", "vec4(srgbFromLinear(abs(a[i].rgb)), luminance(b[i].rgb))");
     for (int i = 0; i < kCases; ++i) {
         for (int k = 0; k < 3; ++k) EXPECT_NEAR(got[i][k], vis::srgbFromLinear(double(std::abs(a[i][k]))), 2e-6);
         EXPECT_NEAR(got[i].w, vis::luminance(glm::dvec3(b[i])), 1e-6);
@@ -30,7 +30,8 @@ TEST_F(ShaderLib, ColorsAreEncodedAlike) {
 }
 
 TEST_F(ShaderLib, OpacityIsCorrectedAlike) {
-    const auto got = evaluate("#include \"lib/ray.glsl\"\n", "vec4(correctedOpacity(abs(a[i].x), 2.0 * abs(b[i].x)))");
+    const auto got =
+        evaluate("#include \"lib/sampling/ray.glsl\"\n", "vec4(correctedOpacity(abs(a[i].x), 2.0 * abs(b[i].x)))");
     for (int i = 0; i < kCases; ++i)
         EXPECT_NEAR(got[i].x,
                     vis::correctedOpacity(std::abs(a[i].x), 2 * std::abs(double(b[i].x)) * vis::kReferenceLength, 1),
@@ -38,7 +39,7 @@ TEST_F(ShaderLib, OpacityIsCorrectedAlike) {
 }
 
 TEST_F(ShaderLib, RaysMeetTheBoxAlike) {
-    const auto got = evaluate("#include \"lib/ray.glsl\"\n",
+    const auto got = evaluate("#include \"lib/sampling/ray.glsl\"\n",
                               "vec4(clipToBox(a[i].xyz, normalize(b[i].xyz), abs(c[i].xyz) + 0.1), 0.0, 0.0)");
     int hits = 0;
     for (int i = 0; i < kCases; ++i) {
@@ -56,7 +57,7 @@ TEST_F(ShaderLib, RaysMeetTheBoxAlike) {
 
 TEST_F(ShaderLib, BodiesCutRaysAlike) {
     for (int kind = 0; kind < 4; ++kind) {
-        const auto got = evaluate("#include \"lib/clip.glsl\"\n",
+        const auto got = evaluate("#include \"lib/sampling/clip.glsl\"\n",
                                   "vec4(clipInside(" + std::to_string(kind) +
                                       ", a[i].xyz, normalize(b[i].xyz), abs(c[i].xyz) + 0.1, 2.0 * b[i].wxy, "
                                       "normalize(c[i].wzy)), 0.0, 0.0)");
@@ -83,7 +84,7 @@ TEST_F(ShaderLib, BodiesCutRaysAlike) {
 }
 
 TEST_F(ShaderLib, StartsAreShiftedAlikeAndSpread) {
-    const auto got = evaluate("#include \"lib/jitter.glsl\"\n",
+    const auto got = evaluate("#include \"lib/sampling/jitter.glsl\"\n",
                               "vec4(startJitter(uvec2(i % 8, i / 8), 0u), startJitter(uvec2(i * 977, 5), 3u), 0, 0)");
     double sum = 0, worst = 1;
     for (int i = 0; i < kCases; ++i) {
@@ -98,7 +99,7 @@ TEST_F(ShaderLib, StartsAreShiftedAlikeAndSpread) {
 }
 
 TEST_F(ShaderLib, ContoursAreDrawnAlike) {
-    const auto got = evaluate("#include \"lib/color.glsl\"\n#include \"lib/contours.glsl\"\n",
+    const auto got = evaluate("#include \"lib/layers/color.glsl\"\n#include \"lib/layers/contours.glsl\"\n",
                               "vec4(withContours(abs(a[i].rgb), 6.0 * b[i].x, 0.4 * c[i].x, 4.0), 1.0)");
     int drawn = 0;
     for (int i = 0; i < kCases; ++i) {
@@ -115,7 +116,7 @@ TEST_F(ShaderLib, TonesAreMappedAlike) {
     for (int curve = 0; curve < 3; ++curve) {
         const vis::Tone tone{vis::ToneCurve(curve), 1.5f, 3};
         const auto got =
-            evaluate("#include \"lib/tone.glsl\"\n",
+            evaluate("#include \"lib/shading/tone.glsl\"\n",
                      "vec4(toneMap(3.0 * abs(a[i].rgb), " + std::to_string(curve) + ", exp2(1.5), 3.0), 1.0)");
         for (int i = 0; i < kCases; ++i) {
             const glm::dvec3 expected = vis::toneMap(3.0 * glm::abs(glm::dvec3(a[i])), tone);
@@ -140,7 +141,7 @@ TEST_F(ShaderLib, SurfacesAreLitAlike) {
                                        : metalness > 0.0f ? "vec4(0.25, 0.4, 0.6, 0.04)"
                                                           : "vec4(0.25, 0.4, 0.0, 0.04)";
             const auto got =
-                evaluate("#include \"lib/lighting.glsl\"\n"
+                evaluate("#include \"lib/shading/lighting.glsl\"\n"
                          "vec3 lit(Facing at, vec3 albedo, vec3 toLight) { const vec4 surface = " +
                              values + "; vec3 d, s; " +
                              (phong ? "return phongLight(at, albedo, toLight, surface); }\n"
@@ -165,7 +166,7 @@ TEST_F(ShaderLib, EvenLightIsReflectedAlike) {
     vis::Lighting surface;
     surface.model = vis::LightModel::Physical;
     surface.metalness = 0.3f;
-    const auto got = evaluate("#include \"lib/lighting.glsl\"\n"
+    const auto got = evaluate("#include \"lib/shading/lighting.glsl\"\n"
                               "vec3 both(vec3 albedo, vec3 g, vec3 v) { vec3 d, s; physicalEvenLight(facing(g, v), "
                               "albedo, vec4(0.25, 0.4, 0.3, 0.04), d, s); return d + 2.0 * s; }\n",
                               "vec4(both(abs(a[i].rgb), b[i].xyz, normalize(c[i].xyz)), 0.0)");
@@ -178,7 +179,7 @@ TEST_F(ShaderLib, EvenLightIsReflectedAlike) {
 
 TEST_F(ShaderLib, DirectionsAreQuantizedAlike) {
     const auto got =
-        evaluate("#include \"lib/octahedral.glsl\"\n",
+        evaluate("#include \"lib/sampling/octahedral.glsl\"\n",
                  "vec4(quantizedDirection(a[i].xyz, 7), i == 0 ? length(quantizedDirection(vec3(0.0), 7)) : "
                  "0.0)");
     double worst = 0;
@@ -215,7 +216,7 @@ TEST_F(ShaderLib, TablesAreLookedUpAlike) {
         glBindTextureUnit(1, first.name());
         glBindTextureUnit(2, second.name());
     };
-    const std::string bindings = "#include \"lib/bindings.glsl\"\n#include \"lib/tables.glsl\"\n";
+    const std::string bindings = "#include \"lib/bindings/bindings.glsl\"\n#include \"lib/bindings/tables.glsl\"\n";
     const auto row = evaluate(bindings, "transfer(0, 1.5 * a[i].x)", recipe, prepare);
     const auto opaque = evaluate(bindings, "vec4(opaqueAt(0, a[i].x) ? 1.0 : 0.0)", recipe, prepare);
     const auto plane = evaluate(bindings, "planeAt(1, 1.5 * a[i].xy)", recipe, prepare);

@@ -18,7 +18,7 @@ struct Driver {
     /// disk cache (Mesa's software GL); see vis/gl/warm_up.h.
     bool compilesAtFirstDraw = false;
     /// Interpolated reads of textures have the precision of floats. GPUs place them between two texels in steps of
-    /// 1/256; the ray caster then interpolates by itself (vis/shaders/lib/filtered.glsl).
+    /// 1/256; the ray caster then interpolates by itself (vis/shaders/lib/sampling/filtered.glsl).
     bool exactFilter = false;
     /// Edge in pixels of the tiles that are distributed to CPU cores; 0: not applicable.
     int sharedTile = 0;

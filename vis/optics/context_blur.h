@@ -8,7 +8,7 @@
 /// Unselected samples are blurred as if out of focus (R. Kosara et al.: Semantic depth of field, 2001): each pixel of
 /// the finished picture is spread over a disc whose radius falls from that of the context to 0 as its degree of
 /// interest rises to 1; pixels in focus are unchanged. A pixel's degree of interest is the opacity-weighted mean of its
-/// samples; 0 if it shows nothing. Twin: vis/shaders/lib/context_blur.glsl.
+/// samples; 0 if it shows nothing. Twin: vis/shaders/lib/shading/context_blur.glsl.
 namespace tessera::vis {
 
 inline constexpr int kBlurTaps = 32;

@@ -8,7 +8,7 @@ namespace tessera::vis {
 /// A colour (linear light) of a slice with `count` contour lines, 1.4 pixels wide, dark on light colours and light on
 /// dark ones. `level` is the place in the transfer function, not clamped, times count + 1: lines lie at levels 1 to
 /// count. `width`: change of the level from one pixel to the next, the sum of that along both axes of the picture.
-/// Twin: vis/shaders/lib/contours.glsl.
+/// Twin: vis/shaders/lib/layers/contours.glsl.
 template <class N> glm::vec<3, N> withContours(const glm::vec<3, N>& color, N level, N width, int count) {
     const N grey = color.x * N(kLuminance.x) + color.y * N(kLuminance.y) + color.z * N(kLuminance.z);
     const N line = choose(grey > N(0.18), N(0), N(1)), some = choose(width > N(0), width, N(1));

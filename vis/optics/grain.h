@@ -12,7 +12,7 @@
 /// the world, blended by the surface normal: it varies along the surface, but not into it, where a ray through a
 /// translucent volume would average it out. Its scale is the power of two that matches the screen, cross-faded with the
 /// next one, so that sizes do not pop. Formulas are templates over the number (volume/base/numbers.h). Twin:
-/// vis/shaders/lib/grain.glsl.
+/// vis/shaders/lib/shading/grain.glsl.
 namespace tessera::vis {
 
 inline constexpr int kGrainEdge = 512;        ///< texels of the tile
@@ -173,7 +173,7 @@ glm::vec<3, N> strokeDirection(const glm::vec<3, N>& normal, const SurfaceBendOf
 
 /// Factor of the paper texture on linear light at a position in texels; h is the tooth, interpolated linearly:
 ///   1 + tooth (0.1 (h(at) - h(at + (-1.5, 1.5))) + 0.05 (h(at / 7.3) - 0.5))
-/// Twin: vis/shaders/lib/paper.glsl.
+/// Twin: vis/shaders/lib/shading/paper.glsl.
 double paperShade(const GrainTile& tile, glm::dvec2 at, double tooth);
 
 } // namespace tessera::vis

@@ -4,7 +4,7 @@
 #include <glm/vec2.hpp>
 
 /// Jitter of sample positions along rays and, for supersampled frames, of rays within pixels. Twin:
-/// vis/shaders/lib/jitter.glsl.
+/// vis/shaders/lib/sampling/jitter.glsl.
 namespace tessera::vis {
 
 /// Offset of the samples along a ray, in steps, -1/2..1/2: interleaved gradient noise (Jimenez, Next generation

@@ -3,7 +3,7 @@
 #include "vis/optics/look_shading.h"
 
 /// Inputs of a look at a place, templates over the number (volume/base/numbers.h); twin:
-/// vis/shaders/lib/look_sample.glsl.
+/// vis/shaders/lib/shading/look_sample.glsl.
 namespace tessera::vis {
 
 /// Where a look draws.

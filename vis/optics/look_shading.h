@@ -6,9 +6,9 @@
 #include "vis/scene/look.h"
 #include "vis/scene/scene.h"
 
-/// Shading formulas of looks, templates over the number (volume/base/numbers.h); twin: vis/shaders/lib/look.glsl.
-/// Colours are linear. Where the field is nearly constant a sample has no surface normal: `weight` fades out what needs
-/// one, as in shading.
+/// Shading formulas of looks, templates over the number (volume/base/numbers.h); twin:
+/// vis/shaders/lib/shading/look.glsl. Colours are linear. Where the field is nearly constant a sample has no surface
+/// normal: `weight` fades out what needs one, as in shading.
 namespace tessera::vis {
 
 inline constexpr double kNoCut = 1e4; ///< a distance in pixels from a cut that is none

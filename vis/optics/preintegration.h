@@ -86,7 +86,7 @@ glm::vec<4, N> preintegrated(const Functions& functions, const SegmentEnd<N, Fun
 glm::dvec4 preintegrated(const IntegralFunctions& functions, double front, double back);
 
 /// Colour and opacity of a segment whose two halves have their own, where the value jumps between two parts. Twin:
-/// lib/classify.glsl.
+/// lib/layers/classify.glsl.
 template <class N> glm::vec<4, N> inHalves(const glm::vec<4, N>& front, const glm::vec<4, N>& back) {
     const N whole = N(1) / larger(front.w + back.w, N(1e-12));
     const auto color = [&](N a, N b) { return (a * front.w + b * back.w) * whole; };

@@ -9,7 +9,7 @@
 #include <type_traits>
 
 /// Lighting of one sample by lights, cube maps and light volume. Templates over the number (volume/base/numbers.h).
-/// Twin: vis/shaders/lib/shade.glsl.
+/// Twin: vis/shaders/lib/shading/shade.glsl.
 namespace tessera::vis {
 
 /// The light of one picture.

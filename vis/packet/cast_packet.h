@@ -8,7 +8,7 @@
 /// Packets of rays: neighbouring pixels in the lanes. Only for cast_*.cpp.
 namespace tessera::vis::packet::TESSERA_LANES {
 
-inline constexpr float kNoPick = -2, kPickOpacity = 0.1f; // as in vis/shaders/lib/shown.glsl
+inline constexpr float kNoPick = -2, kPickOpacity = 0.1f; // as in vis/shaders/lib/layers/shown.glsl
 inline constexpr float kFar = 1e9f;                       ///< beyond all samples
 
 /// A contribution at or between samples.

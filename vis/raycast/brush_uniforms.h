@@ -3,7 +3,7 @@
 #include "vis/gl/handles.h"
 #include "vis/raycast/ray_plan.h"
 
-/// Uniforms and constants of lib/doi.glsl from the brush tests of a plan.
+/// Uniforms and constants of lib/layers/doi.glsl from the brush tests of a plan.
 namespace tessera::vis {
 
 /// Constants: which kinds of tests the program needs, and its capacity for tests.

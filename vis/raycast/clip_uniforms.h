@@ -3,7 +3,7 @@
 #include "vis/gl/program.h"
 #include "vis/scene/scene.h"
 
-/// Uniforms of the scene's clips (vis/shaders/lib/light_bindings.glsl).
+/// Uniforms of the scene's clips (vis/shaders/lib/bindings/light_bindings.glsl).
 namespace tessera::vis {
 
 void addClipping(ProgramRecipe& recipe, const Scene& scene);

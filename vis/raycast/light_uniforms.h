@@ -10,7 +10,7 @@
 #include <memory>
 #include <optional>
 
-/// Program constants and uniforms for lighting (vis/shaders/lib/light_bindings.glsl).
+/// Program constants and uniforms for lighting (vis/shaders/lib/bindings/light_bindings.glsl).
 namespace tessera::vis {
 
 void addLighting(ProgramRecipe& recipe, const Scene& scene);

@@ -3,7 +3,7 @@
 #include "vis/gl/handles.h"
 #include "vis/raycast/ray_plan.h"
 
-/// Uniforms of lib/draw_look.glsl from the looks of a plan's layers.
+/// Uniforms of lib/shading/draw_look.glsl from the looks of a plan's layers.
 namespace tessera::vis {
 
 /// Sets all uniforms; the grain texture is expected in `unit`. `looks`: per layer, null if it has none. `size`: full

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-/// Constants and slots of the program for a plan; vis/shaders/lib/bindings.glsl documents them.
+/// Constants and slots of the program for a plan; vis/shaders/lib/bindings/bindings.glsl documents them.
 namespace tessera::vis {
 
 namespace {

@@ -11,7 +11,7 @@ namespace tessera::vis {
 enum class BrushEffect { Fade, None, ContextOnly, FocusOnly };
 inline constexpr std::string_view kBrushEffectNames[] = {"fade", "none", "context", "focus"};
 
-/// Opacity factor of a layer at a degree of interest; twin: focusOpacity in vis/shaders/lib/doi.glsl.
+/// Opacity factor of a layer at a degree of interest; twin: focusOpacity in vis/shaders/lib/layers/doi.glsl.
 template <class N> N brushedOpacity(BrushEffect effect, N contextOpacity, N interest) {
     switch (effect) {
     case BrushEffect::None:
@@ -32,7 +32,7 @@ struct ContextLook {
 };
 
 /// A colour (linear light) at a degree of interest: `grey` is its luminance, `saturation` a further factor. Twin:
-/// focusColor in vis/shaders/lib/doi.glsl, without the colour of brushes.
+/// focusColor in vis/shaders/lib/layers/doi.glsl, without the colour of brushes.
 template <class N>
 glm::vec<3, N> focusedColor(BrushEffect effect, const ContextLook& context, const glm::vec<3, N>& color, N grey,
                             N interest, N saturation) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 /// Clip planes and bodies; only what lies on the kept side of all is drawn. All are convex, so the inside of each is
-/// one interval of a ray (twin: vis/shaders/lib/clip.glsl).
+/// one interval of a ray (twin: vis/shaders/lib/sampling/clip.glsl).
 namespace tessera::vis {
 
 enum class ClipKind { Plane, Box, Sphere, Cylinder };

@@ -12,7 +12,7 @@
 
 /// Magic lenses: regions of space with a different rendering (C. Tominski et al.: Interactive lenses for visualization,
 /// 2017). A lens acts on layers without a lens and on those of the lenses before it in the list; layers of a lens are
-/// drawn only inside it. Twins: vis/shaders/lib/lens.glsl, lenses.glsl.
+/// drawn only inside it. Twins: vis/shaders/lib/sampling/lens.glsl, lenses.glsl.
 namespace tessera::vis {
 
 /// Effect on the layers below: Replace hides them inside, in favour of the lens's own layers or of nothing; Only hides

@@ -2,7 +2,7 @@
 
 #include "vis/scene/lens.h"
 
-/// Magnifying lenses, for one position or a packet of them. Twin: lensBend in vis/shaders/lib/lenses.glsl.
+/// Magnifying lenses, for one position or a packet of them. Twin: lensBend in vis/shaders/lib/sampling/lenses.glsl.
 namespace tessera::vis {
 
 /// PlacedLens::bend.

@@ -13,7 +13,7 @@ namespace tessera::vis {
 enum class LensShape { Sphere, Box, Cylinder, Disc };
 inline constexpr std::string_view kLensShapeNames[] = {"sphere", "box", "cylinder", "disc"};
 
-/// Normalised radius: 0 at the centre, 1 on the outline; twin: lensRadius in vis/shaders/lib/lens.glsl.
+/// Normalised radius: 0 at the centre, 1 on the outline; twin: lensRadius in vis/shaders/lib/sampling/lens.glsl.
 template <class N> N lensRadius(LensShape shape, const glm::vec<3, N>& place) {
     const N across = squareRoot(place.x * place.x + place.y * place.y);
     switch (shape) {

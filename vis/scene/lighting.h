@@ -7,7 +7,7 @@
 #include <vector>
 
 /// Lighting of surfaces and samples: lights and reflection models; the formulas are in vis/optics/surface_light.h
-/// (double) and vis/shaders/lib/lighting.glsl (float).
+/// (double) and vis/shaders/lib/shading/lighting.glsl (float).
 ///
 /// All light is linear. A light of intensity 1 at normal incidence makes a white Lambertian surface 1. Colours of
 /// lights are sRGB and converted to linear light first.

@@ -5,7 +5,7 @@
 #include <glm/vec3.hpp>
 
 /// Tone mapping: from accumulated light, which may exceed 1, to the range of a display. Twin:
-/// vis/shaders/lib/tone.glsl.
+/// vis/shaders/lib/shading/tone.glsl.
 namespace tessera::vis {
 
 enum class ToneCurve { None, Reinhard, Filmic };

@@ -1,12 +1,12 @@
 // Meshes and lines (LINES), depth peeled: each layer keeps the nearest surface behind the previous layer.
-#include "lib/light_bindings.glsl"
-#include "lib/color.glsl"
-#include "lib/clipping.glsl"
-#include "lib/lenses.glsl"
+#include "lib/bindings/light_bindings.glsl"
+#include "lib/layers/color.glsl"
+#include "lib/sampling/clipping.glsl"
+#include "lib/sampling/lenses.glsl"
 #include <slot:shade>
-#include "lib/shade.glsl"
+#include "lib/shading/shade.glsl"
 #if LOOKS
-#include "lib/draw_look.glsl"
+#include "lib/shading/draw_look.glsl"
 uniform int cutByBox; // 1: an iso-surface, which ends where the box cuts it
 #endif
 

@@ -1,18 +1,18 @@
 // Extinction per world unit (a) and extinction times colour (rgb) of each light grid cell, by the formula in
 // vis/optics/light_volume.h. Pixel (x, y + gridSize.y * z) is cell (x, y, z).
-#include "lib/bindings.glsl"
-#include "lib/tables.glsl"
-#include "lib/color.glsl"
-#include "lib/ray.glsl"
-#include "lib/clipping.glsl"
+#include "lib/bindings/bindings.glsl"
+#include "lib/bindings/tables.glsl"
+#include "lib/layers/color.glsl"
+#include "lib/sampling/ray.glsl"
+#include "lib/sampling/clipping.glsl"
 #include <slot:fetch>
 #include <slot:reconstruct>
-#include "lib/gradient.glsl"
-#include "lib/doi.glsl"
+#include "lib/sampling/gradient.glsl"
+#include "lib/layers/doi.glsl"
 
 #if LAYERS > 0
-#include "lib/classify.glsl"
-#include "lib/color_by.glsl"
+#include "lib/layers/classify.glsl"
+#include "lib/layers/color_by.glsl"
 #endif
 
 layout(location = 0) out vec4 outMedium;

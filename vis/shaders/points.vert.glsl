@@ -1,5 +1,5 @@
 // Points in four dimensions as round splats.
-#include "lib/project4.glsl"
+#include "lib/sampling/project4.glsl"
 
 layout(location = 0) in vec4 position; // within a ball of radius 1
 layout(location = 1) in vec4 color;    // linear; a: opacity at the centre of the splat

@@ -1,5 +1,5 @@
 // Composites the sums of points.frag.glsl over a background.
-#include "lib/color.glsl"
+#include "lib/layers/color.glsl"
 
 uniform sampler2D sums;
 uniform sampler2D throughs;

@@ -1,17 +1,17 @@
 // Proxy geometry: one of a stack of planes or spheres, textured with composite layers and blended front to back by the
 // frame buffer. Defined in vis/shapes/proxy.h.
-#include "lib/bindings.glsl"
-#include "lib/tables.glsl"
-#include "lib/color.glsl"
-#include "lib/clipping.glsl"
-#include "lib/ray.glsl"
+#include "lib/bindings/bindings.glsl"
+#include "lib/bindings/tables.glsl"
+#include "lib/layers/color.glsl"
+#include "lib/sampling/clipping.glsl"
+#include "lib/sampling/ray.glsl"
 #include <slot:shade>
-#include "lib/shade.glsl"
+#include "lib/shading/shade.glsl"
 #include <slot:fetch>
 #include <slot:reconstruct>
-#include "lib/gradient.glsl"
-#include "lib/doi.glsl"
-#include "lib/color_by.glsl"
+#include "lib/sampling/gradient.glsl"
+#include "lib/layers/doi.glsl"
+#include "lib/layers/color_by.glsl"
 
 flat in int surface;
 

@@ -5,22 +5,22 @@
 // executes both sides of every branch, shades all lanes of a group at once. Only the sample number leaves the inner
 // loop; values are sampled again, since Mesa 22.3 miscompiles values that leave divergent nested loops. If shading is
 // cheap (FLAT), there is no inner loop.
-#include "lib/bindings.glsl"
-#include "lib/kept.glsl"
-#include "lib/tables.glsl"
-#include "lib/color.glsl"
-#include "lib/clipping.glsl"
-#include "lib/jitter.glsl"
-#include "lib/ray.glsl"
+#include "lib/bindings/bindings.glsl"
+#include "lib/bindings/kept.glsl"
+#include "lib/bindings/tables.glsl"
+#include "lib/layers/color.glsl"
+#include "lib/sampling/clipping.glsl"
+#include "lib/sampling/jitter.glsl"
+#include "lib/sampling/ray.glsl"
 #include <slot:shade>
-#include "lib/shade.glsl"
+#include "lib/shading/shade.glsl"
 #include <slot:fetch>
 #include <slot:reconstruct>
-#include "lib/gradient.glsl"
-#include "lib/doi.glsl"
+#include "lib/sampling/gradient.glsl"
+#include "lib/layers/doi.glsl"
 #include <slot:skip>
-#include "lib/samples.glsl"
-#include "lib/shown.glsl"
+#include "lib/sampling/samples.glsl"
+#include "lib/layers/shown.glsl"
 
 layout(location = 0) out vec4 outColor; // linear, premultiplied
 layout(location = 1) out vec2 outPick; // distance along the ray of the picked sample, < 0: none; degree of interest
@@ -41,7 +41,7 @@ layout(location = 2) out float outTermination; // termination depth along the ra
 
 const float kOpaque = 0.995, kFlatGradient = 0.005;
 
-#include "lib/events.glsl"
+#include "lib/layers/events.glsl"
 
 // Number of samples that the one taken at k represents (adaptive sampling), limited by the next event.
 int samplesFrom(int k) {
@@ -62,8 +62,8 @@ int samples = 0;
 #endif
 
 // State of each layer at the current sample.
-#include "lib/classify.glsl"
-#include "lib/color_by.glsl"
+#include "lib/layers/classify.glsl"
+#include "lib/layers/color_by.glsl"
 vec2 here[LAYERS];   // composite: value
 Noted before[LAYERS]; // iso: value at sample k - 1; slab: position at the front of sample k's segment
 #if HAS_SLABS
@@ -71,12 +71,12 @@ Noted front[LAYERS];  // slab: the same for a contributing sample; `before` is t
 #endif
 
 #if LOOKS
-#include "lib/draw_look.glsl"
-#include "lib/look_sample.glsl"
+#include "lib/shading/draw_look.glsl"
+#include "lib/shading/look_sample.glsl"
 #endif
-#include "lib/iso_surfaces.glsl"
-#include "lib/composite.glsl"
-#include "lib/projections.glsl"
+#include "lib/layers/iso_surfaces.glsl"
+#include "lib/layers/composite.glsl"
+#include "lib/layers/projections.glsl"
 
 // Advances to the next contributing samples and composites them, until the ray ends or is opaque (early ray
 // termination). Returns the sample at which it ends.

@@ -2,14 +2,14 @@
 // sRGB at the end. Features are compiled in, since software GL would execute all of them for every pixel: BLUR, LINES,
 // WHOLE (each pixel has one of its own in the source: reading one texel instead of mixing four saves software GL 5 ns a
 // pixel), TONE, PAPER, GROUND (0: output opacity and straight colour instead of blending with the ground), each 0 or 1.
-#include "lib/color.glsl"
+#include "lib/layers/color.glsl"
 
 uniform sampler2D source;      // linear, premultiplied
 uniform vec2 sourceScale;      // texture coordinate = sourceFirst + gl_FragCoord * sourceScale, at most sourceLimit
 uniform vec2 sourceFirst, sourceLimit;
 uniform vec3 background;       // linear
 #if PAPER
-#include "lib/paper.glsl"
+#include "lib/shading/paper.glsl"
 uniform sampler2D grainTile;
 uniform vec2 paper;            // depth of its grain, texels per pixel
 #endif
@@ -21,13 +21,13 @@ uniform int frontCount;
 uniform float lineWidth;       // pixels
 #endif
 #if TONE
-#include "lib/tone.glsl"
+#include "lib/shading/tone.glsl"
 uniform int toneCurve;
 uniform vec2 tone;             // gain, white
 #endif
 
 #if BLUR
-#include "lib/context_blur.glsl"
+#include "lib/shading/context_blur.glsl"
 uniform sampler2D seen;   // distance and degree of interest
 uniform float blurRadius; // pixels
 uniform int blurTaps;     // kBlurTaps; a uniform, so that the loop is not unrolled

@@ -3,7 +3,7 @@
 #include "volume/base/numbers.h"
 
 /// Chooses the part of a parameter (volume/field/parts.h) at a position between samples; twin of
-/// lib/between_times.glsl.
+/// lib/sampling/between_times.glsl.
 namespace tessera::volume {
 
 /// Margin by which the coverage of a part must exceed that of a lower one: positions half-way between samples of two

@@ -1,7 +1,7 @@
 // Slot fetch: bricks of any level in an atlas. A page table with one entry per full-resolution brick stores the atlas
 // position and the level of the resident brick: one fetch each, whatever the level. Both sublattices use the brick that
 // contains p; its halo holds the samples that either needs.
-#include "lib/filtered.glsl"
+#include "lib/sampling/filtered.glsl"
 uniform usampler3D pageTable[FIELDS];
 uniform sampler3D atlas[FIELDS];
 

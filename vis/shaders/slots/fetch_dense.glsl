@@ -1,5 +1,5 @@
 // Slot fetch: each channel is a single texture.
-#include "lib/filtered.glsl"
+#include "lib/sampling/filtered.glsl"
 
 // Filtered texel at p on the even sublattice (fetchOdd: odd). CC: value, coverage; BCC: see vis/bricks/texels.h.
 vec4 fetchEven(int field, vec3 p) {

@@ -1,6 +1,6 @@
 // Slot reconstruct: average of the trilinear interpolations on both sublattices (with prefiltered samples:
 // quasi-interpolation), or the nearest sample. Twin: linear() in volume/reconstruct/reconstruct.h.
-#include "lib/bcc_nearest.glsl"
+#include "lib/sampling/bcc_nearest.glsl"
 
 // (value, coverage) at p; absent if coverage < PRESENT_COVERAGE.
 vec2 reconstructFrame(int field, vec3 p) {
@@ -11,4 +11,4 @@ vec2 reconstructFrame(int field, vec3 p) {
     return vec2((even.r + odd.g) / max(coverage, 1e-6), 0.5 * coverage);
 }
 
-#include "lib/between_times.glsl"
+#include "lib/sampling/between_times.glsl"

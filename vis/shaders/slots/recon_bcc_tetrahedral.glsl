@@ -1,7 +1,7 @@
 // Slot reconstruct: linear box spline on BCC, from the four corners of the tetrahedron around p (Entezari, Dyer,
 // Moeller: Linear and cubic box splines for the BCC lattice, 2004). Twin: tetrahedral() in
 // volume/reconstruct/reconstruct.h.
-#include "lib/bcc_nearest.glsl"
+#include "lib/sampling/bcc_nearest.glsl"
 
 // (value, coverage) of a lattice point given in half cells: all coordinates even, or all odd.
 vec2 latticePoint(int field, ivec3 corner, vec3 p) {
@@ -39,4 +39,4 @@ vec2 reconstructFrame(int field, vec3 p) {
     return vec2(sum.x / max(sum.y, 1e-6), sum.y);
 }
 
-#include "lib/between_times.glsl"
+#include "lib/sampling/between_times.glsl"

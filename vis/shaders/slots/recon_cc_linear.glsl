@@ -11,4 +11,4 @@ vec2 reconstructFrame(int field, vec3 p) {
     return vec2(texel.r / max(texel.g, 1e-6), texel.g);
 }
 
-#include "lib/between_times.glsl"
+#include "lib/sampling/between_times.glsl"

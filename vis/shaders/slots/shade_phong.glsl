@@ -1,5 +1,5 @@
 // Slot shade: Phong reflection model.
-#include "lib/lighting.glsl"
+#include "lib/shading/lighting.glsl"
 
 vec3 surfaceLight(Facing at, vec3 albedo, vec3 even, vec3 toLight) {
     return phongLight(at, albedo, toLight, material);

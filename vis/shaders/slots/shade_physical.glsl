@@ -1,5 +1,5 @@
 // Slot shade: GGX specular over a Lambertian base.
-#include "lib/lighting.glsl"
+#include "lib/shading/lighting.glsl"
 
 vec3 surfaceLight(Facing at, vec3 albedo, vec3 even, vec3 toLight) {
     return physicalLight(at, albedo, even, toLight, material);

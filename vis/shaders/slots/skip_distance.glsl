@@ -1,7 +1,7 @@
 // Slot skip: empty-space skipping by the Chebyshev distance, in blocks, to the nearest block that can contribute. With
 // ADAPTIVE, values above 128 mark a contributing block and encode its step length (vis/optics/adaptive_step.h).
 #define SKIPPING 1
-#include "lib/block_walls.glsl"
+#include "lib/sampling/block_walls.glsl"
 uniform usampler3D blockDistance;
 
 // Number of samples from p on, including the one at p, that lie in empty blocks.

@@ -1,6 +1,6 @@
 // Effects of the scene's lenses at a world point; twins: lensAction, bend and confine in vis/scene/lens.h.
-#include "lib/lens.glsl"
-#include "lib/lens_bindings.glsl"
+#include "lib/sampling/lens.glsl"
+#include "lib/bindings/lens_bindings.glsl"
 
 #if LENSES > 0
 vec3 lensPlace(int i, vec3 world) {

@@ -1,5 +1,5 @@
 // Object-space paper grain, strokes and dots; formulas in the twin vis/optics/grain.h.
-#include "lib/filtered.glsl"
+#include "lib/sampling/filtered.glsl"
 
 const int kStrokeTurns = 8;
 const float kCrossingShift = 137.0;

@@ -1,4 +1,4 @@
-// Lookups in the tables of lib/bindings.glsl.
+// Lookups in the tables of lib/bindings/bindings.glsl.
 
 const int kTableSize = TABLE_SIZE;
 

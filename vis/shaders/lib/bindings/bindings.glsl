@@ -1,13 +1,13 @@
 // Uniforms and constants of the ray caster. The constants are generated #defines; the names of enumerators come from
 // vis/gl/shader_constants.h:
 //   FIELDS    number of bound fields (channels and their parts); FIELD_COVERAGE(i), FIELD_NEAREST(i): 0 or 1; LATER,
-//             PARTS, FIELD_PARTS(i), FIELD_MORE(i), PART_MARGIN: see lib/between_times.glsl
+//             PARTS, FIELD_PARTS(i), FIELD_MORE(i), PART_MARGIN: see lib/sampling/between_times.glsl
 //   LAYERS    number of ray layers; LAYER_STYLE(i) (STYLE_COMPOSITE, ...), LAYER_FIELD(i), LAYER_SHADED(i);
 //             LAYER_LOOKUP(i): classification of a composite layer (LOOKUP_CURVE, ...);
-//             LAYER_GRADIENT(i): 1 if it shows the gradient magnitude; LAYER_LOOK(i): see lib/draw_look.glsl;
+//             LAYER_GRADIENT(i): 1 if it shows the gradient magnitude; LAYER_LOOK(i): see lib/shading/draw_look.glsl;
 //             LAYER_INTERVAL(i): 1 if only values within layerOpaque[i] have opacity;
 //             LAYER_PLANE(i): page of planeTable for LOOKUP_PLANE and LOOKUP_SLAB;
-//             COLORED, LAYER_COLORED(i), LAYER_COLOR(i), LAYER_COLOR_ROW(i): see lib/color_by.glsl
+//             COLORED, LAYER_COLORED(i), LAYER_COLOR(i), LAYER_COLOR_ROW(i): see lib/layers/color_by.glsl
 //   ISOS      number of iso-surface layers; ISO_LAYER(n)
 //   SLICES    number of slice planes; SLICE_FIELD(i)
 //   GEOMETRY  number of layers of rasterised surfaces
@@ -23,7 +23,7 @@
 // loops, and then executes every style for every layer.
 // Positions `p` are cells of the even sublattice at level 0 (Lattice::toCells); values are in texel units.
 
-#include "lib/light_bindings.glsl"
+#include "lib/bindings/light_bindings.glsl"
 
 // Dense texture of a channel: texture coordinate = p * fieldScale + fieldOffset on the even sublattice, plus fieldOdd
 // on the odd one.

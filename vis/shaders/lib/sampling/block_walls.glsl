@@ -4,7 +4,7 @@ uniform vec3 blockScale, blockOffset; // block coordinate = p * scale + offset
 // Loop invariants of the ray, hoisted since software GL does not: samples per block and axis, and the position of a
 // block's exit wall.
 vec3 samplesPerBlock, farWall;
-vec3 blockPlace[2]; // copies of scale and offset, see lib/kept.glsl
+vec3 blockPlace[2]; // copies of scale and offset, see lib/bindings/kept.glsl
 
 void beginBlocks(vec3 cellsPerSample) {
     blockPlace[0] = blockScale;

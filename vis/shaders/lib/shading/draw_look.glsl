@@ -1,7 +1,7 @@
 // Applies the looks of layers. LAYER_LOOK(i): bits of LookFeature (vis/gl/shader_constants.h) of layer i; LOOKS: their
 // union over all layers.
-#include "lib/look.glsl"
-#include "lib/grain.glsl"
+#include "lib/shading/look.glsl"
+#include "lib/shading/grain.glsl"
 
 #define LOOK_OUTLINE (LOOK_CARTOON | LOOK_CHARCOAL)
 

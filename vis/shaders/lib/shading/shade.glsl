@@ -1,5 +1,5 @@
-// Lighting of a sample with the uniforms of lib/light_bindings.glsl. Formulas in the twin: vis/optics/shade.h.
-#include "lib/filtered.glsl"
+// Lighting of a sample with the uniforms of lib/bindings/light_bindings.glsl. Formulas in the twin: vis/optics/shade.h.
+#include "lib/sampling/filtered.glsl"
 
 #if LIGHT_VOLUME
 // Transmitted fractions of the lights at a world point, and scattered light.

@@ -1,5 +1,5 @@
 // The scene's lenses in world space (vis/raycast/lens_uniforms.h). Constants: LENSES: number of lenses; LENS_KIND(i):
-// see lib/lens.glsl; LENS_ACTS: 1 if a lens changes opacity or saturation or has its own layers; LENS_BENDS: 1 if a
+// see lib/sampling/lens.glsl; LENS_ACTS: 1 if a lens changes opacity or saturation or has its own layers; LENS_BENDS: 1 if a
 // lens magnifies, LENS_BENDING(i): whether lens i does; LENS_FOCUS: 1 if a lens confines the brushes.
 #if LENSES > 0
 uniform vec3 lensCenter[LENSES];

@@ -1,5 +1,5 @@
 // Intersections of the ray with slices and rasterised surfaces, sorted by distance.
-#include "lib/contours.glsl"
+#include "lib/layers/contours.glsl"
 
 #define EVENTS (SLICES + GEOMETRY)
 

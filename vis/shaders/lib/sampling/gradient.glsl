@@ -1,6 +1,6 @@
 // Samples and gradients of a channel, based on the slot reconstruct.
-#include "lib/octahedral.glsl"
-#include "lib/place.glsl"
+#include "lib/sampling/octahedral.glsl"
+#include "lib/sampling/place.glsl"
 
 const float kUnknown = -1e9; // replaces a value that is absent or unknown
 const float kSmoothDepth = 0.5;

@@ -1,6 +1,6 @@
 // Paper texture of the whole picture: grain lit from the upper left, and slightly uneven pulp. It covers objects too,
 // so that blank areas of an object match the paper beside it. Twin: vis/optics/grain.h.
-#include "lib/filtered.glsl"
+#include "lib/sampling/filtered.glsl"
 
 // Factor on linear light, 1 on average; `at` in texels of the tile, `tooth` (depth of the grain) 0..1.
 float paperShade(sampler2D tile, vec2 at, float tooth) {

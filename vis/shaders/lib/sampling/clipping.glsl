@@ -1,5 +1,5 @@
-// The scene's clips (lib/bindings.glsl) along a ray. The intervals of holes are in units of samples.
-#include "lib/clip.glsl"
+// The scene's clips (lib/bindings/bindings.glsl) along a ray. The intervals of holes are in units of samples.
+#include "lib/sampling/clip.glsl"
 
 // Restricts an interval to the clips that keep their inside.
 vec2 clipRay(vec2 inside, vec3 origin, vec3 direction) {

@@ -1,6 +1,6 @@
 // Conversion between world and cells, and through magnifying lenses. Included after the slot reconstruct: later reads
 // through reconstruct, readAt and readPart are redirected through the lenses.
-#include "lib/lenses.glsl"
+#include "lib/sampling/lenses.glsl"
 
 vec3 toCells(vec3 world) {
     return world * cellsPerWorld + cellsOffset;
