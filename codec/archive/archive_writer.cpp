@@ -58,7 +58,7 @@ struct ArchiveWriter::Impl {
     bool codeFrame(FrameCoding& coding, const FrameSamples& samples, const FrameOptions& options, CodedBricks& coded,
                    const Progress& progress);
     /// Codes every brick; true if no token was coded.
-    bool codeBricks(FrameCoding& coding, const FrameSamples& samples, int effort, CodedBricks& coded,
+    bool codeBricks(FrameCoding& coding, const FrameSamples& samples, int zstdLevel, CodedBricks& coded,
                     const Progress& progress);
 };
 
@@ -259,8 +259,8 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     return coding;
 }
 
-bool ArchiveWriter::Impl::codeBricks(FrameCoding& coding, const FrameSamples& samples, int effort, CodedBricks& coded,
-                                     const Progress& progress) {
+bool ArchiveWriter::Impl::codeBricks(FrameCoding& coding, const FrameSamples& samples, int zstdLevel,
+                                     CodedBricks& coded, const Progress& progress) {
     const volume::BrickGrid& grid = metadata.grid;
     const BandEncoder encoder(coding.model);
     bool allWhole = grid.levels > 1;
@@ -273,7 +273,7 @@ bool ArchiveWriter::Impl::codeBricks(FrameCoding& coding, const FrameSamples& sa
             const std::size_t count = std::min(perBatch, endBrick - first);
             std::vector<std::vector<Bytes>> batch(count);
             parallelRanges(count, [&](std::size_t begin, std::size_t end) {
-                Compressor compressor(effort, (commits.header.features & kCompact) != 0);
+                Compressor compressor(zstdLevel, (commits.header.features & kCompact) != 0);
                 BrickInput input;
                 SplitMemory memory;
                 for (std::size_t b = first + begin; b < first + end; ++b)
@@ -293,13 +293,13 @@ bool ArchiveWriter::Impl::codeBricks(FrameCoding& coding, const FrameSamples& sa
 bool ArchiveWriter::Impl::codeFrame(FrameCoding& coding, const FrameSamples& samples, const FrameOptions& options,
                                     CodedBricks& coded, const Progress& progress) {
     constexpr int kTrials = 8;
-    const int effort = effortFor(samples, options.zstdLevel);
-    if (!coding.measures()) return codeBricks(coding, samples, effort, coded, progress);
+    const int zstdLevel = zstdLevelFor(samples, options.zstdLevel);
+    if (!coding.measures()) return codeBricks(coding, samples, zstdLevel, coded, progress);
     double done = 0;
     const auto code = [&] {
         const double half = (1 + done) / 2; // of what is left, since nobody knows how often it takes
         coded.clear();
-        const bool allWhole = codeBricks(coding, samples, effort, coded, progress.part(done, half));
+        const bool allWhole = codeBricks(coding, samples, zstdLevel, coded, progress.part(done, half));
         done = half;
         return allWhole;
     };

@@ -227,9 +227,9 @@ NumberCoding chooseNumbers(const volume::BrickGrid& grid, const FrameSamples& sa
     return sampleMiddles(grid, samples, frame, kTrialBricks).bits() < asScaled ? bits : scaled;
 }
 
-int effortFor(const FrameSamples& samples, int zstdLevel) {
+int zstdLevelFor(const FrameSamples& samples, int zstdLevel) {
     constexpr std::size_t kSmallFrame = 1 << 19; // samples
-    return samples.count() <= kSmallFrame ? kMostEffort : zstdLevel;
+    return samples.count() <= kSmallFrame ? kMostZstdLevel : zstdLevel;
 }
 
 double boundOf(const FrameRecord& frame, const FrameOptions& options) {

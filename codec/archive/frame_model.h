@@ -35,7 +35,7 @@ NumberCoding chooseNumbers(const volume::BrickGrid& grid, const FrameSamples& sa
                            const FrameOptions& options);
 
 /// The zstd level for the bricks of a frame; higher for small frames, where it costs little time.
-int effortFor(const FrameSamples& samples, int zstdLevel);
+int zstdLevelFor(const FrameSamples& samples, int zstdLevel);
 
 /// The part of the error bound that remains for rounding samples to codes and for repeating bricks.
 double boundOf(const FrameRecord& frame, const FrameOptions& options);

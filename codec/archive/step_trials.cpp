@@ -12,7 +12,7 @@ namespace tessera::codec {
 namespace {
 
 constexpr std::size_t kMostBoxes = 2, kWholeBrick = 1 << 17; // samples of the largest brick tried as a whole
-constexpr int kUsualEffort = 3;
+constexpr int kUsualZstdLevel = 3;
 constexpr int kBoxOfBrick = 64;                      // edge of the box tried of a larger brick
 constexpr double kQuantumUnit = 16 * (kReach + 0.5); // of an error bound in the unit of quanta
 
@@ -78,7 +78,7 @@ void useSteps(const SteppedFrame& steps, FrameRecord& frame) {
 StepTrials::StepTrials(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
                        const FrameOptions& options, const SeenFrame* before)
     : type_(samples.type()), maxError_(boundOf(frame, options)), measures_(options.rms > 0),
-      effort_(measures_ ? effortFor(samples, options.zstdLevel) : kUsualEffort) {
+      zstdLevel_(measures_ ? zstdLevelFor(samples, options.zstdLevel) : kUsualZstdLevel) {
     for (const std::size_t number : bricksToTry(grid, measures_)) {
         const glm::ivec3 brick = grid.indexOf(number);
         Box box;
@@ -119,7 +119,7 @@ template <class Encode> TrialOfSteps StepTrials::sum(const Encode& encode) {
 TrialOfSteps StepTrials::ofSamples(const Model& model, const Taken* taken) {
     const BandEncoder encoder(model);
     return sum([&](Box& box) {
-        Compressor compressor(effort_, effort_ != kUsualEffort);
+        Compressor compressor(zstdLevel_, zstdLevel_ != kUsualZstdLevel);
         if (measures_) measure(box, box.format, maxError_, {});
         const BrickInput& input = box.input;
         if (taken && box.whole && taken->bricks[box.number])
@@ -132,7 +132,7 @@ TrialOfSteps StepTrials::ofSamples(const Model& model, const Taken* taken) {
 TrialOfSteps StepTrials::of(const SteppedFrame& how) {
     static const BandEncoder idle(makeModel(Histogram(1, {}), 1)); // codes nothing
     return sum([&](Box& box) {
-        Compressor compressor(kUsualEffort);
+        Compressor compressor(kUsualZstdLevel);
         BrickFormat format = box.format;
         format.numbers = how.numbers;
         format.wavelet = how.wavelet;

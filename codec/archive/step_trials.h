@@ -99,7 +99,7 @@ private:
     volume::ScalarType type_;
     double maxError_, share_ = 0;
     bool measures_;
-    int effort_; ///< of rounded samples
+    int zstdLevel_; ///< of rounded samples
     std::vector<Box> boxes_;
 };
 

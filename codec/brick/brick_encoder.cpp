@@ -23,7 +23,7 @@ constexpr double
         1.3; // factors on the size of bands below which a fast trial counts as promising; for some before LZMA
 constexpr double kWorthLevels = 0.9;
 constexpr double kSparse = 0.75; // bits per sample
-constexpr int kLeastEffort = -4, kSomeEffort = 3;
+constexpr int kLeastZstdLevel = -4, kSomeZstdLevel = 3;
 
 /// Codes of the samples, and what is stored in addition.
 struct Numbers {
@@ -173,12 +173,12 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
     // Levels of detail are worth more than a few bytes if they are large.
     const bool dense = 8.0 * double(bytes) > kTryWhole * double(count);
     if (dense && (format.type != volume::ScalarType::F32 || !valuesRecur(samples, present))) return;
-    const int effort = compressor.level();
+    const int usual = compressor.level();
     Bytes whole;
-    const auto tryEffort = [&](std::span<const std::uint32_t> codes, int level, double nearly) {
+    const auto tryLevel = [&](std::span<const std::uint32_t> codes, int level, double nearly) {
         compressor.setLevel(level);
         whole = encodeWhole(codes, compressor);
-        compressor.setLevel(effort);
+        compressor.setLevel(usual);
         return double(whole.size()) <= nearly * double(bytes) * double(codes.size()) / double(count);
     };
     const bool sparse = 8.0 * double(bytes) < kSparse * double(count);
@@ -190,9 +190,9 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
             const auto piece = samples.subspan((2 * i + 1) * (count - kPiece) / (2 * kPieces), kPiece);
             glance.insert(glance.end(), piece.begin(), piece.end());
         }
-        compressor.setLevel(kLeastEffort);
+        compressor.setLevel(kLeastZstdLevel);
         const Bytes seen = compressor.compress(glance);
-        compressor.setLevel(effort);
+        compressor.setLevel(usual);
         const double share = double(kGlance) / double(count);
         if (seen.empty() || double(seen.size()) > kGlanceAsShort * double(bytes) * share) return;
     }
@@ -205,11 +205,11 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
     }
     if (!sparse && isBounded(format.numbers) && codes.size() > 2 * kGlance) {
         const std::span<const std::uint32_t> middle = std::span(codes).subspan((codes.size() - kGlance) / 2, kGlance);
-        if (!tryEffort(middle, kLeastEffort, compressor.triesLzma() ? kGlanceBeforeLzma : kGlanceAsShort)) return;
+        if (!tryLevel(middle, kLeastZstdLevel, compressor.triesLzma() ? kGlanceBeforeLzma : kGlanceAsShort)) return;
     }
     // If a fast compression is about as short as bands, a thorough one is worth its time.
-    if (!tryEffort(codes, kSomeEffort, compressor.triesLzma() ? kPerhapsAsShort : kNearlyAsShort)) return;
-    (void)tryEffort(codes, effort, 1);
+    if (!tryLevel(codes, kSomeZstdLevel, compressor.triesLzma() ? kPerhapsAsShort : kNearlyAsShort)) return;
+    (void)tryLevel(codes, usual, 1);
     if (double(whole.size()) >= (dense ? kWorthLevels : 1.0) * double(bytes)) return;
     for (Bytes& segment : segments) segment.clear();
     segments[0] = std::move(whole);

@@ -62,7 +62,7 @@ int Compressor::level() const {
     return impl_->level;
 }
 bool Compressor::triesLzma() const {
-    return impl_->thorough && impl_->level >= kMostEffort;
+    return impl_->thorough && impl_->level >= kMostZstdLevel;
 }
 
 Bytes Compressor::compress(std::span<const std::byte> in) {

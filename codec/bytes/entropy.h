@@ -13,7 +13,7 @@
 namespace tessera::codec {
 
 /// The highest useful zstd level.
-inline constexpr int kMostEffort = 19;
+inline constexpr int kMostZstdLevel = 19;
 
 /// Working memory of the encoder; one per thread. Its state never affects the output.
 class Compressor {

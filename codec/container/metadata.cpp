@@ -272,7 +272,7 @@ Bytes serialise(const Metadata& metadata, std::uint32_t features) {
     const std::string text = toJson(metadata);
     const auto plain = std::as_bytes(std::span(text));
     if ((features & kCompact) != 0) return encodeBlock(plain);
-    const Bytes packed = Compressor(kMostEffort).compress(plain);
+    const Bytes packed = Compressor(kMostZstdLevel).compress(plain);
     Bytes out;
     appendU32(out, static_cast<std::uint32_t>(text.size()));
     if (packed.empty())

@@ -50,7 +50,7 @@ TEST(Lzma, StreamsTakeItWhereItIsShorterAndAllowed) {
     for (int i = 0; i < 2000; ++i)
         for (const char letter : std::to_string(i * i / 7) + ";") symbols.push_back(std::uint32_t(letter));
     Bytes plain, thorough, quick;
-    Compressor most(kMostEffort), lzma(kMostEffort, true), little(3, true);
+    Compressor most(kMostZstdLevel), lzma(kMostZstdLevel, true), little(3, true);
     encodeStream(symbols, most, plain);
     encodeStream(symbols, lzma, thorough);
     encodeStream(symbols, little, quick);
