@@ -28,10 +28,11 @@ const std::set<std::pair<std::string, std::string>> kStateOptions = {
     {"unpack", "--times"},                          // UnpackWritesTheTimesAskedFor
     {"generate", "--times"},                        // GenerateMakesAsManyTimes
     {"generate", "--set"},    {"render", "--time"}, // RenderFollowsItsOptions
-    {"render", "--layout"},   {"render", "--view"},  {"render", "--set"},
-    {"replay", "--layout"},                                                   // tests/e2e/render.sh
-    {"replay", "--view"},     {"replay", "--set"},   {"compare", "--layout"}, // tests/e2e/compare.sh
-    {"compare", "--time"},    {"compare", "--view"}, {"compare", "--set"},
+    {"render", "--layout"},   {"render", "--view"},       {"render", "--set"},
+    {"replay", "--layout"},                                                        // tests/e2e/render.sh
+    {"replay", "--view"},     {"replay", "--set"},        {"compare", "--layout"}, // tests/e2e/compare.sh
+    {"compare", "--time"},    {"compare", "--view"},      {"compare", "--set"},
+    {"mesh", "--all-times"},  {"compare", "--all-times"}, // tests/e2e/shared.sh
 };
 
 class Commands : public testing::Test {

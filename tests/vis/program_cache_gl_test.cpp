@@ -265,7 +265,7 @@ TEST_F(ProgramCacheTest, BrokenVariantKeepsTheFormerPicture) {
     test::renderAll(renderer, *target, scene, {32, 32});
     glm::ivec2 size;
     const std::vector<std::uint8_t> former = renderer.readPixels(*target, size);
-    std::filesystem::create_directories(scratch() / "shaders/lib");
+    std::filesystem::create_directories(scratch() / "shaders/lib/layers");
     std::ofstream(scratch() / "shaders/lib/layers/doi.glsl") << "float broken() { return nothing; }\n";
     setenv("TESSERA_SHADER_DIR", (scratch() / "shaders").c_str(), 1);
     vis::FrameRequest request;
