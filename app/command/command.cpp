@@ -6,8 +6,10 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <mutex>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <system_error>
 #include <unistd.h>
 
@@ -123,6 +125,15 @@ void addAloneOption(CLI::App& command, bool& alone) {
 
 std::optional<Launched> sharing(bool alone) {
     return alone ? std::nullopt : std::optional(launched());
+}
+
+std::string aboutText(const nlohmann::json& work) {
+    return work.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); // paths need not be UTF-8
+}
+
+void requireFolderOf(const std::string& file) {
+    const auto folder = std::filesystem::absolute(file).parent_path();
+    if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
 }
 
 std::string byProcess(const std::optional<Launched>& started) {

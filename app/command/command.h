@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -36,13 +37,18 @@ void addWorkbench(CLI::App& app);
 /// then names the commands.
 void requireFile(const std::string& word);
 
-/// Adds --alone to a command whose work is shared by the processes of mpirun and srun; `alone` must outlive the
+/// Adds --alone to a command whose work the processes of mpirun and srun can share; `alone` must outlive the
 /// parsing.
 void addAloneOption(CLI::App& command, bool& alone);
 /// How the processes that share the work were started; nothing with --alone.
 std::optional<Launched> sharing(bool alone);
 /// " by process 2 of 4", "" for a process that was started alone.
 std::string byProcess(const std::optional<Launched>& started);
+
+/// What all processes that share a work must have alike, for SharedWork::about.
+std::string aboutText(const nlohmann::json& work);
+/// Throws MachineError where the folder of a file to write does not exist.
+void requireFolderOf(const std::string& file);
 
 /// Calls `before`, parses the arguments of a program and runs its callbacks; returns the exit status. Prints the reason
 /// of a failure to stderr.

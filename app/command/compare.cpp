@@ -98,9 +98,7 @@ void check(const CompareOptions& options) {
     pictureRequest(options.picture, Session{});
     if (options.allTimes && options.time) throw Error("with --all-times there is no single time", {}, "--time");
     for (const std::string& path : {options.output, options.csv}) {
-        if (path.empty()) continue;
-        const auto folder = std::filesystem::absolute(path).parent_path();
-        if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
+        if (!path.empty()) requireFolderOf(path);
     }
 }
 
@@ -123,6 +121,7 @@ std::string prepare(const CompareOptions& options, Opened& opened, const Progres
         throw Error("there are " + std::to_string(count) + " variants, counted from 0", "--reference",
                     std::to_string(view.reference));
     for (const CompareVariant& variant : variants) variantSession(session, variant); // fail early
+    if (options.allTimes) view.variants = variants; // those that are offered depend on the time shown
     return pane;
 }
 
@@ -178,8 +177,11 @@ void run(const CompareOptions& options) {
     const std::optional<Launched> started = sharing(options.alone);
     Json about = aboutPicture(options.picture, opened);
     about["csv"] = options.csv;
-    const codec::SharedSummary done = codec::shareResults({options.output, about.dump(), started}, info.times.size(),
-                                                          figure, finish, progress.part(0.5, 1));
+    const auto isMade = [&](std::size_t t, const std::string&) {
+        return std::filesystem::exists(volume::fileOfTime(options.output, t));
+    };
+    const codec::SharedResults done = codec::shareResults({options.output, aboutText(about), started, isMade},
+                                                          info.times.size(), figure, finish, progress.part(0.5, 1));
     if (!byProcess(started).empty())
         std::printf("%zu of %zu figures drawn%s\n", done.own, info.times.size(), byProcess(started).c_str());
 }

@@ -14,8 +14,8 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
-#include <sstream>
 
 namespace tessera::app {
 
@@ -67,6 +67,7 @@ DataRef dataOf(const MeshRequest& request, const Progress& progress) {
 void check(const MeshRequest& request) {
     if (std::ranges::none_of(volume::kMeshEndings, [&](auto ending) { return request.output.ends_with(ending); }))
         throw Error("meshes are written as .ply, .stl, .obj or .vtp", request.output);
+    requireFolderOf(request.output);
     if (request.mesh.allTimes && request.mesh.time)
         throw Error("with --all-times there is no single time", {}, "--time");
 }
@@ -99,6 +100,45 @@ std::string countsOf(std::size_t vertices, std::size_t triangles) {
     return std::to_string(vertices) + " vertices, " + std::to_string(triangles) + " triangles";
 }
 
+using SurfaceAt = std::function<std::shared_ptr<const vis::Geometry>(double time, const Progress& progress)>;
+
+/// A file for every time, empty where there is no surface, unless there is none at any time.
+void writeAllTimes(const MeshRequest& request, const DataRef& data, const volume::DatasetInfo& info,
+                   const SurfaceAt& surfaceAt, const Progress& progress) {
+    std::vector<std::string> files;
+    for (std::size_t t = 0; t < info.times.size(); ++t) files.push_back(volume::fileOfTime(request.output, t));
+    const std::string none = countsOf(0, 0);
+    const auto compute = [&](std::size_t t, const Progress& part) {
+        const auto surface = surfaceAt(info.times[t], part.part(0, 0.7));
+        if (surface->mesh.triangles.empty()) return none;
+        volume::writeMesh(surface->mesh, files[t], request.mesh.colorBy, part.part(0.7, 1));
+        return countsOf(surface->mesh.positions.size(), surface->mesh.triangles.size());
+    };
+    const auto isMade = [&](std::size_t t, const std::string& counts) {
+        return counts == none || std::filesystem::exists(files[t]);
+    };
+    const auto isEmpty = [&](const std::vector<std::string>& counts) {
+        return std::ranges::all_of(counts, [&](const std::string& each) { return each == none; });
+    };
+    const bool collects = request.output.ends_with(".vtp");
+    const auto finish = [&](const std::vector<std::string>& counts, const Progress&) {
+        if (isEmpty(counts)) return;
+        for (std::size_t t = 0; t < counts.size(); ++t)
+            if (counts[t] == none) volume::writeMesh({}, files[t], request.mesh.colorBy);
+        if (collects) volume::writeCollection(request.output, info.times, files);
+    };
+    const std::optional<Launched> started = sharing(request.alone);
+    const std::string about = aboutText({{"data", toJson(data)}, {"options", toJson(request.mesh)}});
+    const codec::SharedResults done =
+        codec::shareResults({request.output, about, started, isMade}, files.size(), compute, finish, progress);
+    if (isEmpty(done.results)) throwEmpty(request, info);
+    for (std::size_t t = 0; done.last && t < files.size(); ++t)
+        std::printf("%s: %s\n", files[t].c_str(), done.results[t].c_str());
+    if (done.last && collects) std::printf("%s\n", volume::collectionOf(request.output).c_str());
+    if (!byProcess(started).empty())
+        std::printf("%zu of %zu surfaces%s\n", done.own, files.size(), byProcess(started).c_str());
+}
+
 void run(MeshRequest request) {
     check(request);
     const Progress progress = terminalProgress("mesh");
@@ -122,38 +162,7 @@ void run(MeshRequest request) {
                     countsOf(surface->mesh.positions.size(), surface->mesh.triangles.size()).c_str());
         return;
     }
-    // The result of a time is the numbers of its vertices and triangles.
-    const auto write = [&](std::size_t t, const Progress& part) {
-        const auto surface = surfaceAt(info.times[t], part.part(0, 0.7));
-        volume::writeMesh(surface->mesh, volume::fileOfTime(request.output, t), mesh.colorBy, part.part(0.7, 1));
-        return std::to_string(surface->mesh.positions.size()) + " " + std::to_string(surface->mesh.triangles.size());
-    };
-    bool empty = false;
-    const auto finish = [&](const std::vector<std::string>& results, const Progress&) {
-        std::size_t all = 0, triangles = 0, vertices = 0;
-        std::vector<std::string> files, lines;
-        for (std::size_t t = 0; t < results.size(); ++t) {
-            std::istringstream(results[t]) >> vertices >> triangles;
-            all += triangles;
-            files.push_back(volume::fileOfTime(request.output, t));
-            lines.push_back(files.back() + ": " + countsOf(vertices, triangles));
-        }
-        empty = all == 0;
-        if (empty) {
-            for (const std::string& file : files) std::filesystem::remove(file);
-            return;
-        }
-        for (const std::string& line : lines) std::printf("%s\n", line.c_str());
-        if (request.output.ends_with(".vtp"))
-            std::printf("%s\n", volume::writeCollection(request.output, info.times, files).c_str());
-    };
-    const std::optional<Launched> started = sharing(request.alone);
-    const std::string about = Json{{"data", toJson(data)}, {"options", toJson(mesh)}}.dump();
-    const codec::SharedSummary done =
-        codec::shareResults({request.output, about, started}, info.times.size(), write, finish, rest);
-    if (empty) throwEmpty(request, info);
-    if (!byProcess(started).empty())
-        std::printf("%zu of %zu surfaces%s\n", done.own, info.times.size(), byProcess(started).c_str());
+    writeAllTimes(request, data, info, surfaceAt, rest);
 }
 
 } // namespace

@@ -201,7 +201,9 @@ std::string inputsOf(const PackRequest& request, const volume::ImportOptions& im
 
 /// Packs in blocks of times, which processes share.
 void runBlocks(const PackRequest& request, const Launched& started, const PackInput& input, const Progress& progress) {
-    const bool byParameter = request.blockParameters || std::size_t(started.count) > input.data.info.times.size();
+    const volume::DatasetInfo& info = input.data.info;
+    const bool idle = !request.blockTimes && std::size_t(started.count) > info.times.size(); // else some would be
+    const bool byParameter = (request.blockParameters || idle) && info.parameters.size() > 1;
     const codec::BlockSummary summary =
         codec::packInBlocks(input.data, request.options, request.output,
                             {request.blockTimes.value_or(0), started, inputsOf(request, input.import), byParameter},
@@ -317,12 +319,12 @@ void addBlocksOption(CLI::App& command, PackRequest& request) {
                     "srun, or by hand on machines that see the same folder), and which are joined to one archive. "
                     "Processes of mpirun or srun do so by themselves, in blocks of 16 times, or fewer so that each has "
                     "one")
-        ->check(CLI::PositiveNumber)
+        ->check(CLI::Range(1, 1000000))
         ->group("Several processes");
     command
         .add_flag("--block-parameters", request.blockParameters,
                   "Pack each parameter of a block by itself, so that processes also share a time; so by itself where "
-                  "mpirun or srun starts more processes than there are times")
+                  "mpirun or srun starts more processes than there are times, unless --block-times is stated")
         ->group("Several processes");
     addAloneOption(command, request.alone);
     for (const char* const shared : {"--block-times", "--block-parameters"})

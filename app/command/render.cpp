@@ -44,8 +44,7 @@ void addRenderCommand(CLI::App& app) {
         const std::string ending = textEnding(options->output);
         if (ending == "csv" && viewsOf(options->picture).size() != 1)
             throw Error("a table is of one view: name it with --view", options->output);
-        const auto folder = std::filesystem::absolute(options->output).parent_path();
-        if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
+        requireFolderOf(options->output);
         Opened opened = openForPicture(options->picture, progress);
         Session& session = opened.document.session;
         if (options->time) showTime(session, opened.source->info(), *options->time, viewsOf(options->picture));

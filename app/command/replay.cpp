@@ -79,8 +79,7 @@ void run(const ReplayOptions& options) {
     pictureRequest(options.picture, Session{});
     if (!options.video.empty()) {
         requireFfmpeg();
-        const auto folder = std::filesystem::absolute(options.video).parent_path();
-        if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
+        requireFolderOf(options.video);
     }
     const Opened opened = openForPicture(options.picture, progress.part(0, 0.1));
     std::error_code problem;
@@ -98,7 +97,7 @@ void run(const ReplayOptions& options) {
         document.history.reset(document.session);
         const PictureRequest request = pictureRequest(options.picture, document.session);
         const auto isOpen = [&](const std::string& pane) { return document.session.views.contains(pane); };
-        if (!std::ranges::all_of(panesOf(request), isOpen)) return {}; // not yet
+        if (!std::ranges::all_of(panesOf(request), isOpen)) return {}; // not yet, so nothing is drawn
         char name[32];
         std::snprintf(name, sizeof name, reel.name.c_str(), i);
         if (!maker) maker = std::make_unique<PictureMaker>();
@@ -112,9 +111,12 @@ void run(const ReplayOptions& options) {
     Json about = aboutPicture(options.picture, opened);
     about.update({{"animation", animation}, {"fps", options.framesPerSecond}, {"video", options.video}});
     const std::optional<Launched> started = sharing(options.alone);
-    const codec::SharedSummary done =
-        codec::shareResults({options.output, about.dump(), started}, reel.count, draw, finish, progress.part(0.1, 1));
-    if (started && started->count > 1)
+    const auto isMade = [&](std::size_t, const std::string& name) {
+        return name.empty() || std::filesystem::exists(folder / name);
+    };
+    const codec::SharedResults done = codec::shareResults({options.output, aboutText(about), started, isMade},
+                                                          reel.count, draw, finish, progress.part(0.1, 1));
+    if (!byProcess(started).empty())
         std::printf("%zu of %zu pictures drawn%s\n", done.own, reel.count, byProcess(started).c_str());
 }
 

@@ -51,6 +51,7 @@ void check(const StatsRequest& request) {
     const bool sections = options.planesAcross(), figure = isFigure(request.output);
     if (!request.output.empty() && !figure && !hasEnding(request.output, ".csv") && !hasEnding(request.output, ".json"))
         throw Error("statistics are written as .csv, .svg, .pdf or .json", request.output);
+    if (!request.output.empty()) requireFolderOf(request.output);
     if (sections && !options.balance.empty())
         throw Error("balances are of whole regions: omit --along and --line", "--balance");
     if (figure && !sections && !options.allTimes && options.balance.empty())
@@ -59,34 +60,40 @@ void check(const StatsRequest& request) {
         throw Error("a figure shows one time: choose it with --time", request.output);
 }
 
-/// Writes and prints the answer for all requested times.
-void give(const StatsRequest& request, const Question& question, Answer answer) {
-    if (isFigure(request.output) && !request.options.planesAcross()) answer.panels = figureOf(question, answer.json);
-    const std::string state = stateOf(question);
-    const std::string json = Json{{"kind", "statistics"},
-                                  {"data", question.info().name},
-                                  {"samples", state},
-                                  {"lengthUnit", question.info().lengthUnit},
-                                  {"timeUnit", question.info().timeUnit},
-                                  {"notes", answer.notes},
-                                  {"rows", std::move(answer.json)}}
-                                 .dump(1) +
-                             "\n";
-    if (!request.output.empty()) {
-        AtomicFile file(request.output);
-        const std::string origin = originText(question.origin, question.info(), question.channels);
-        const std::string line = originLine(question.origin, question.info(), question.channels);
-        VectorPage drawing = drawingOf(answer.panels, 2);
+std::string jsonOf(const Question& question, const Answer& answer) {
+    return Json{{"kind", "statistics"},
+                {"data", question.info().name},
+                {"samples", stateOf(question)},
+                {"lengthUnit", question.info().lengthUnit},
+                {"timeUnit", question.info().timeUnit},
+                {"notes", answer.notes},
+                {"rows", answer.json}}
+               .dump(1) +
+           "\n";
+}
+
+/// Writes the answer for all requested times to the file asked for, if any.
+void write(const StatsRequest& request, const Question& question, const Answer& answer) {
+    const std::string& path = request.output;
+    if (path.empty()) return;
+    const std::string origin = originText(question.origin, question.info(), question.channels);
+    const std::string line = originLine(question.origin, question.info(), question.channels);
+    const auto figure = [&] {
+        VectorPage drawing =
+            drawingOf(request.options.planesAcross() ? answer.panels : figureOf(question, answer.json), 2);
         drawing.numbers = origin;
-        file.write(isFigure(request.output) ? fileOf(drawing, hasEnding(request.output, ".pdf") ? "pdf" : "svg")
-                   : hasEnding(request.output, ".csv") ? line + answer.csv
-                                                       : json);
-        file.commit();
-    }
+        return fileOf(drawing, hasEnding(path, ".pdf") ? "pdf" : "svg");
+    };
+    writeAtomically(path, isFigure(path)            ? figure()
+                          : hasEnding(path, ".csv") ? line + answer.csv
+                                                    : jsonOf(question, answer));
+}
+
+void print(const StatsRequest& request, const Question& question, const Answer& answer) {
     if (request.options.json) {
-        std::fputs(json.c_str(), stdout);
+        std::fputs(jsonOf(question, answer).c_str(), stdout);
     } else if (request.output.empty()) {
-        std::printf("%s\n%s", state.c_str(), answer.text.c_str());
+        std::printf("%s\n%s", stateOf(question).c_str(), answer.text.c_str());
         for (const std::string& note : answer.notes) std::printf("  %s\n", note.c_str());
     }
 }
@@ -98,22 +105,27 @@ void run(const StatsRequest& request) {
     const Question question = questionOf(request, openInput(data, progress.part(0.1, 0.3)));
     rememberStated(request.import, question.info().name);
     const Progress rest = progress.part(0.3, 1);
-    if (question.times.size() == 1)
-        return give(request, question, answerAt(request, question, question.times.front(), true, rest));
+    if (question.times.size() == 1) {
+        const Answer answer = answerAt(request, question, question.times.front(), true, rest);
+        write(request, question, answer);
+        progress.advance(1);
+        return print(request, question, answer);
+    }
     const auto compute = [&](std::size_t t, const Progress& part) {
         return textOf(answerAt(request, question, question.times[t], t == 0, part));
     };
+    Answer answer;
     const auto finish = [&](const std::vector<std::string>& texts, const Progress&) {
-        Answer answer;
         for (const std::string& text : texts) addAnswer(answer, text);
-        give(request, question, std::move(answer));
+        write(request, question, answer);
     };
     // Numbers that are only printed are given by every process.
     const std::optional<Launched> started = sharing(request.alone || request.output.empty());
-    const std::string about = Json{{"data", toJson(data)}, {"options", toJson(request.options)}}.dump();
-    const codec::SharedSummary done =
+    const std::string about = aboutText({{"data", toJson(data)}, {"options", toJson(request.options)}});
+    const codec::SharedResults done =
         codec::shareResults({request.output, about, started}, question.times.size(), compute, finish, rest);
-    if (!byProcess(started).empty())
+    if (done.last) print(request, question, answer);
+    if (!request.options.json && !byProcess(started).empty())
         std::printf("%zu of %zu times computed%s\n", done.own, question.times.size(), byProcess(started).c_str());
 }
 

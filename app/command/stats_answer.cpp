@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace tessera::app {
 
@@ -183,7 +182,8 @@ Answer answerAt(const StatsRequest& request, const Question& question, double ti
 }
 
 std::string textOf(const Answer& answer) {
-    return Json{{"text", answer.text}, {"csv", answer.csv}, {"rows", answer.json}, {"notes", answer.notes}}.dump();
+    const Json json{{"text", answer.text}, {"csv", answer.csv}, {"rows", answer.json}, {"notes", answer.notes}};
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 void addAnswer(Answer& sum, const std::string& later) {

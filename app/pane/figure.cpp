@@ -42,6 +42,8 @@ public:
                                           .middle = true}});
         for (const FigureOutline& each : panel_.outlines) outline(each);
         for (const FigureSeries& series : panel_.series) series.bars ? bars(series) : line(series);
+        if (std::ranges::any_of(panel_.series, &FigureSeries::bars) && panel_.y.range.lo < 0 && panel_.y.range.hi > 0)
+            stroke({{x0_, py(0)}, {x1_, py(0)}}, kFrame, kThin);
         for (const glm::dvec2& mark : panel_.marks) circle(mark, 4.5, {0, 0, 0, 1}, kLine);
         legend();
     }
@@ -124,7 +126,6 @@ private:
             rect({px(bar.x) - half, within(std::max(bar.y, 0.0))}, {px(bar.x) + half, within(std::min(bar.y, 0.0))},
                  glm::vec4(series.color, 1));
         }
-        if (panel_.y.range.lo < 0 && panel_.y.range.hi > 0) stroke({{x0_, py(0)}, {x1_, py(0)}}, kFrame, kThin);
     }
     void line(const FigureSeries& series) {
         std::vector<glm::dvec2> points;

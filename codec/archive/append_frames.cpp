@@ -4,6 +4,7 @@
 #include "codec/archive/commits.h"
 
 #include <map>
+#include <utility>
 #include <vector>
 
 namespace tessera::codec {
@@ -47,6 +48,10 @@ std::uint64_t appendFrames(const Archive& archive, const Archive& more, const Me
 
     std::map<MaskHash::Value, std::int32_t> maskByHash;
     for (const auto& [number, hash] : state.lastMasks) maskByHash.emplace(hash, number);
+    std::vector<std::uint8_t> seen(archive.impl_->index.masks.size());
+    for (const FrameRecord& frame : archive.impl_->index.frames) // parameters have the masks of all times
+        if (!bringsTimes && frame.mask >= 0 && !std::exchange(seen[std::size_t(frame.mask)], std::uint8_t(1)))
+            maskByHash.emplace(maskHashOf(archive, frame), frame.mask);
     std::vector<std::int32_t> maskOf(from.index.masks.size(), -1);
     for (FrameRecord frame : from.index.frames) {
         if (frame.mask >= 0 && maskOf[std::size_t(frame.mask)] < 0) {

@@ -3,6 +3,7 @@
 #include "volume/base/error.h"
 #include "volume/system/atomic_file.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -75,7 +76,10 @@ SharedJob::SharedJob(const std::string& output, const std::string& about, const 
         if (inside_ && inside_->hasName() && (!complete() || isOwn())) break;
         inside_.reset(); // somebody is removing it
         if (!isThere(folder_) && std::chrono::steady_clock::now() - begin > kLongest)
-            throw MachineError("the first process of the job has not made it", folder_);
+            throw MachineError(
+                "the first process of the job has not made it; where each process has work of its own, say "
+                "--alone",
+                folder_);
         progress.advance(0, "waiting for the first process");
         std::this_thread::sleep_for(kPause);
     }
@@ -88,12 +92,11 @@ SharedJob::SharedJob(const std::string& output, const std::string& about, const 
 
 SharedJob::~SharedJob() {
     std::ofstream(file(leftFile(launched_.job, launched_.rank))).flush();
-    const bool isComplete = complete();
     inside_.reset();
-    if (!isComplete) return;
+    if (!complete() && holdsWork()) return;
     try {
         auto alone = LockedFile::tryLock(file(kLock), LockedFile::Kind::Exclusive);
-        if (!alone || !alone->hasName()) return;
+        if (!alone || !alone->hasName() || (!complete() && holdsWork())) return;
         for (const std::string& ranks : namesIn(folder_, kRanks)) {
             const std::string job = ranks.substr(kRanks.size());
             const int count = std::atoi(contentOf(file(ranks)).c_str());
@@ -103,6 +106,13 @@ SharedJob::~SharedJob() {
         remove(std::move(*alone));
     } catch (const Error&) { // the folder stays
     }
+}
+
+/// Whether there is something that the next run can go on from.
+bool SharedJob::holdsWork() const {
+    return std::ranges::any_of(namesIn(folder_, {}), [](const std::string& name) {
+        return !name.ends_with(".lock") && name != kAbout && !name.starts_with(kRanks) && !name.starts_with(kLeft);
+    });
 }
 
 /// Removes the folder, in which nobody else is; false if it cannot be. It gets another name first: so nobody enters

@@ -20,7 +20,7 @@ public:
     /// Enters the folder, and makes it if there is none. `about` describes the work, the same in all processes. Throws
     /// Error when the folder belongs to other work, MachineError when it cannot be made or locked, Cancelled.
     SharedJob(const std::string& output, const std::string& about, const Launched& launched, const Progress& progress);
-    /// Leaves the folder; the last process of complete work removes it.
+    /// Leaves the folder; the last process removes it, if the work is complete or nothing has been done.
     ~SharedJob();
     SharedJob(const SharedJob&) = delete;
     SharedJob& operator=(const SharedJob&) = delete;
@@ -43,6 +43,7 @@ public:
 
 private:
     bool remove(LockedFile alone) const;
+    bool holdsWork() const;
     void pause(const Progress& progress, double fraction) const;
 
     std::string folder_;

@@ -9,12 +9,15 @@
 #include "volume/field/part_masks.h"
 #include "volume/field/quantities.h"
 
+#include <filesystem>
 #include <gtest/gtest.h>
+#include <random>
 
 namespace tessera::codec {
 namespace {
 
 using namespace testing;
+namespace fs = std::filesystem;
 using volume::ScalarType;
 
 PackOptions bricksOf8(StoredLattice lattice = StoredLattice::CC, double maxError = 0) {
@@ -138,6 +141,28 @@ TEST(Join, ParametersAreAddedAtTheSameTimes) {
     join(path, packed(later, times, bricksOf8(), folder / "later.tsr"));
     EXPECT_EQ(Archive(path).info().times.size(), 6u);
     for (int p = 0; p < 3; ++p) expectSame(readField(Archive(path), p, 0, 4), made.read(p, 0, 1), true);
+}
+
+TEST(Join, AddedParametersShareTheMasksOfEveryTime) {
+    const TemporaryFolder folder;
+    const std::vector<int> times{0, 1, 2, 3};
+    volume::Dataset made = makeDataset({20, 20, 20},
+                                       {{"T", ScalarType::U8, 1, Texture::Smooth, false, false},
+                                        {"p", ScalarType::U8, 1, Texture::Smooth, false, false}},
+                                       4);
+    made.read = [read = made.read](int p, int c, int t) {
+        volume::Field field = read(p, c, t);
+        volume::Mask mask(field.count());
+        std::mt19937 random{std::uint32_t(t)}; // masks cost more than anything else
+        for (std::uint8_t& flag : mask) flag = random() % 2;
+        field.mask = std::make_shared<const volume::Mask>(std::move(mask));
+        return field;
+    };
+    const std::string whole = packed(made, times, bricksOf8(), folder / "whole.tsr");
+    const std::string path = packed(volume::withParameters(made, {0}), times, bricksOf8(), folder / "T.tsr");
+    join(path, packed(volume::withParameters(made, {1}), times, bricksOf8(), folder / "p.tsr"));
+    expectSameArchives(Archive(whole), Archive(path));
+    EXPECT_LT(double(fs::file_size(path)), 1.1 * double(fs::file_size(whole)));
 }
 
 TEST(Join, IsOnlyOfferedForWhatItCanJoin) {

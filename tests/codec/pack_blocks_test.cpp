@@ -5,6 +5,7 @@
 #include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/volume/regions.h"
+#include "volume/field/quantities.h"
 
 #include <atomic>
 #include <csignal>
@@ -167,14 +168,19 @@ TEST(PackBlocks, TheParametersOfAnInterruptedBlockAreNotPackedAgain) {
     EXPECT_EQ(Archive(folder / "run.tsr.blocks/joined.tsr").info().times.size(), 2u);
     // A crash while pieces are merged leaves them beside what was begun, or beside the block.
     writeFile(folder / "run.tsr.blocks/1.merging", {'b', 'e', 'g', 'u', 'n'});
+    std::vector<int> last{6};
+    packInBlocks(volume::withTimes(made, last), small(), folder / "last.tsr", blocks);
+    fs::rename(folder / "last.tsr", folder / "run.tsr.blocks/3.tsr");
+    writeFile(folder / "run.tsr.blocks/3-0.tsr", {'l', 'e', 'f', 't'});
     std::set<std::pair<int, int>> again;
     volume::Dataset watched = made;
     watched.read = [read = made.read, &again](int p, int c, int t) {
         again.insert({p, t});
         return read(p, c, t);
     };
-    EXPECT_EQ(packInBlocks(watched, small(), folder / "run.tsr", blocks).packed, 8u);
+    EXPECT_EQ(packInBlocks(watched, small(), folder / "run.tsr", blocks).packed, 5u);
     EXPECT_FALSE(again.contains({0, 2}));
+    EXPECT_FALSE(again.contains({1, 6}));
     EXPECT_TRUE(again.contains({1, 2}));
     EXPECT_EQ(readFile(folder / "run.tsr"), readFile(folder / "whole.tsr"));
     EXPECT_EQ(folder.files(), 2u);
@@ -329,7 +335,10 @@ TEST(PackBlocks, OtherWorkInTheFolderIsRefused) {
     const TemporaryFolder folder;
     const volume::Dataset made = series();
     volume::Dataset bad = made;
-    bad.read = [](int, int, int) -> volume::Field { throw Error("cannot be read"); };
+    bad.read = [read = made.read](int p, int c, int t) {
+        if (t == 5) throw Error("cannot be read");
+        return read(p, c, t);
+    };
     EXPECT_THROW(packInBlocks(bad, small(), folder / "run.tsr", {2, {}}), Error);
     for (const auto& [options, times] : {std::pair(small(1e-3), 2), {small(), 3}}) {
         try {

@@ -39,7 +39,7 @@ int endOf(pid_t child) {
 struct Squares {
     const TemporaryFolder& folder;
     std::size_t deadly = 99; ///< the process that computes this one dies
-    SharedSummary run(const std::optional<Launched>& launched, const std::string& about = "squares") const {
+    SharedResults run(const std::optional<Launched>& launched, const std::string& about = "squares") const {
         return shareResults(
             {folder / "out", about, launched}, 9, [&](std::size_t i, const Progress&) { return square(i); },
             [&](const std::vector<std::string>& results, const Progress&) { write(results); });
@@ -75,7 +75,7 @@ TEST(ShareResults, AProcessAloneMakesNoFolder) {
     const TemporaryFolder folder;
     const Squares squares{folder};
     for (const std::optional<Launched>& launched : {std::optional<Launched>(), std::optional(Launched{})}) {
-        const SharedSummary summary = squares.run(launched);
+        const SharedResults summary = squares.run(launched);
         EXPECT_EQ(summary.own, 9u);
         EXPECT_TRUE(summary.last);
         EXPECT_EQ(squares.written(), kSquares);
@@ -126,6 +126,47 @@ TEST(ShareResults, ASecondRunGoesOn) {
     EXPECT_EQ(squares.counts(), "111111111");
     EXPECT_EQ(squares.written(), kSquares);
     EXPECT_FALSE(fs::exists(folder / "out.blocks"));
+}
+
+TEST(ShareResults, APieceWhoseFileIsGoneIsDoneAgain) {
+    const TemporaryFolder folder;
+    const Squares squares{folder}, deadly{folder, 4};
+    ASSERT_EQ(endOf(beginProcess([&] { deadly.run(Launched{0, 2, 2, "job"}); })), -SIGKILL);
+    fs::remove(folder / "computed-2");
+    SharedWork work{folder / "out", "squares", Launched{}};
+    work.isMade = [&](std::size_t i, const std::string& result) {
+        EXPECT_EQ(result, std::to_string(i * i));
+        return fs::exists(folder / ("computed-" + std::to_string(i)));
+    };
+    const SharedResults shared = shareResults(
+        work, 9, [&](std::size_t i, const Progress&) { return squares.square(i); },
+        [&](const std::vector<std::string>& results, const Progress&) { squares.write(results); });
+    EXPECT_EQ(shared.own, 6u);
+    EXPECT_EQ(shared.results[8], "64");
+    EXPECT_EQ(squares.counts(), "111111111");
+}
+
+TEST(ShareResults, EveryProcessKnowsAllResults) {
+    const TemporaryFolder folder;
+    const Squares squares{folder};
+    std::vector<pid_t> children;
+    for (int rank = 0; rank < 3; ++rank)
+        children.push_back(beginProcess([&] {
+            const SharedResults shared = squares.run(Launched{rank, 3, 3, "job"});
+            if (shared.results.size() != 9 || shared.results[7] != "49") throw Error("not all of them");
+        }));
+    for (const pid_t child : children) EXPECT_EQ(endOf(child), 0);
+}
+
+TEST(ShareResults, WorkOfWhichNothingIsDoneLeavesNoFolder) {
+    const TemporaryFolder folder;
+    const auto fails = [](std::size_t, const Progress&) -> std::string { throw Error("no such parameter"); };
+    const auto nothing = [](const std::vector<std::string>&, const Progress&) {};
+    for (const int rank : {0, 1}) {
+        EXPECT_THROW(shareResults({folder / "out", "wrong", Launched{rank, 2, 2, "job"}}, 9, fails, nothing), Error);
+        EXPECT_EQ(fs::exists(folder / "out.blocks"), rank == 0) << "until the last has come and gone";
+    }
+    EXPECT_EQ(Squares{folder}.run(Launched{}).own, 9u) << "other work can begin";
 }
 
 TEST(ShareResults, WhatFailsAtTheEndIsOnlyEndedAgain) {

@@ -75,27 +75,28 @@ wait
 cmp parameters.tsr both.tsr || fail "two processes make another archive of a single time"
 "$tessera" unpack single.tsr -o single-a.raw >/dev/null && "$tessera" unpack both.tsr -o single-b.raw >/dev/null
 cmp single-a.raw single-b.raw || fail "parameters packed apart are other samples"
-options+=(--block-parameters)
-check "one process, by parameter" 0 "$tessera" pack run.json -o one.tsr "${options[@]}"
+check "one process, by parameter" 0 "$tessera" pack run.json -o parts.tsr "${options[@]}" --block-parameters
 
 # One of two processes is killed at a random moment; the other ends the work, or a second run does.
 for run in $(seq "$kills"); do
     rm -rf killed.tsr killed.tsr.blocks
-    env $(as "$run" 0 2) "$tessera" pack run.json -o killed.tsr "${options[@]}" >/dev/null 2>&1 &
+    how=("${options[@]}") whole=one.tsr
+    [ $((run % 2)) = 0 ] || { how+=(--block-parameters) whole=parts.tsr; }
+    env $(as "$run" 0 2) "$tessera" pack run.json -o killed.tsr "${how[@]}" >/dev/null 2>&1 &
     first=$!
-    env $(as "$run" 1 2) "$tessera" pack run.json -o killed.tsr "${options[@]}" >/dev/null 2>&1 &
+    env $(as "$run" 1 2) "$tessera" pack run.json -o killed.tsr "${how[@]}" >/dev/null 2>&1 &
     second=$!
     sleep "0.$(printf %02d $((RANDOM % 60)))"
-    [ $((run % 2)) = 0 ] && pid=$first || pid=$second
+    [ $((run / 2 % 2)) = 0 ] && pid=$first || pid=$second
     kill -KILL $pid 2>/dev/null
     [ $((run % 3)) = 0 ] && kill -KILL $first $second 2>/dev/null
     [ -e killed.tsr.blocks ] || kill -KILL $first $second 2>/dev/null # nobody is left who makes the folder
     wait
-    [ ! -e killed.tsr ] || cmp one.tsr killed.tsr || fail "a kill left another archive"
+    [ ! -e killed.tsr ] || cmp $whole killed.tsr || fail "a kill left another archive"
     [ ! -e killed.tsr.blocks/joined.tsr ] || "$tessera" verify killed.tsr.blocks/joined.tsr >/dev/null ||
         fail "a kill left damaged blocks"
-    check "a second run" 0 "$tessera" pack run.json -o killed.tsr "${options[@]}"
-    cmp one.tsr killed.tsr || fail "another archive after a kill"
+    check "a second run" 0 "$tessera" pack run.json -o killed.tsr "${how[@]}"
+    cmp $whole killed.tsr || fail "another archive after a kill"
 done
 
 mkdir other.tsr.blocks

@@ -146,7 +146,7 @@ void writeField(AtomicFile& file, const Field& field) {
     file.write(field.samples.data(), field.samples.size());
 }
 
-std::string escaped(const std::string& text) {
+std::string xmlText(const std::string& text) {
     std::string out;
     for (const char c : text) {
         switch (c) {

@@ -56,7 +56,7 @@ void writeField(AtomicFile& file, const Field& field);
 std::string exactText(double value);
 
 /// A text as it stands in XML.
-std::string escaped(const std::string& text);
+std::string xmlText(const std::string& text);
 
 /// One time as VTK image data.
 void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int time, const std::string& path,

@@ -75,7 +75,7 @@ std::string fieldData(const DatasetInfo& info, const std::vector<int>& parameter
     for (const Quantity& quantity : info.quantities) {
         units += "; " + listed(quantity.name) + " " + (quantity.unit.empty() ? "-" : quantity.unit);
         if (std::isfinite(quantity.values[std::size_t(time)]))
-            out += number(escaped(quantity.name), quantity.values[std::size_t(time)]);
+            out += number(xmlText(quantity.name), quantity.values[std::size_t(time)]);
     }
     const auto words = [](const std::string& name, const std::string& value) {
         std::string codes;
@@ -105,7 +105,7 @@ std::string headOf(const DatasetInfo& info, const std::vector<int>& parameters, 
     for (const Block& block : blocks) {
         const Parameter& what = info.parameters[std::size_t(block.parameter)];
         head += "<DataArray type=\"" + std::string(block.flags ? "UInt8" : vtkName(block.storage.type)) + "\" Name=\"" +
-                escaped(what.name) + (block.flags ? ".present" : "") + "\"";
+                xmlText(what.name) + (block.flags ? ".present" : "") + "\"";
         if (what.components > 1 && !block.flags)
             head += " NumberOfComponents=\"" + std::to_string(what.components) + "\"";
         head += " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
@@ -167,7 +167,8 @@ std::vector<std::string> writeSeries(const Dataset& dataset, const std::vector<i
         written.push_back(frame);
         at.push_back(dataset.info.times[std::size_t(times[t])]);
     }
-    written.push_back(writeCollection(path.string(), at, written));
+    writeCollection(path.string(), at, written);
+    written.push_back(collectionOf(path.string()));
     return written;
 }
 

@@ -19,18 +19,19 @@ std::string fileOfTime(const std::string& path, std::size_t number) {
     return file.replace_extension().string() + text + ending;
 }
 
-std::string writeCollection(const std::string& path, const std::vector<double>& times,
-                            const std::vector<std::string>& files) {
+std::string collectionOf(const std::string& path) {
+    return fs::path(path).replace_extension(".pvd").string();
+}
+
+void writeCollection(const std::string& path, const std::vector<double>& times, const std::vector<std::string>& files) {
     assert(times.size() == files.size());
     std::string list = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
                        "byte_order=\"LittleEndian\">\n<Collection>\n";
     for (std::size_t t = 0; t < times.size(); ++t)
         list += "<DataSet timestep=\"" + exactText(times[t]) + "\" group=\"\" part=\"0\" file=\"" +
-                escaped(fs::path(files[t]).filename().string()) + "\"/>\n";
+                xmlText(fs::path(files[t]).filename().string()) + "\"/>\n";
     list += "</Collection>\n</VTKFile>\n";
-    const std::string collection = fs::path(path).replace_extension(".pvd").string();
-    writeAtomically(collection, list);
-    return collection;
+    writeAtomically(collectionOf(path), list);
 }
 
 } // namespace tessera::volume

@@ -9,9 +9,9 @@ namespace tessera::volume {
 /// The file of the time with that number: "out.vtp" gives "out_0007.vtp".
 std::string fileOfTime(const std::string& path, std::size_t number);
 
-/// Writes the ParaView collection OUT.pvd beside OUT.vtp or what the path is named, of files beside it, one for each
-/// time; returns its path. Throws MachineError.
-std::string writeCollection(const std::string& path, const std::vector<double>& times,
-                            const std::vector<std::string>& files);
+/// The ParaView collection of these files: "out.vtp" gives "out.pvd".
+std::string collectionOf(const std::string& path);
+/// Writes it: files beside it, one for each time. Throws MachineError.
+void writeCollection(const std::string& path, const std::vector<double>& times, const std::vector<std::string>& files);
 
 } // namespace tessera::volume
