@@ -68,7 +68,7 @@ SharedJob::SharedJob(const std::string& output, const std::string& about, const 
                 if (!remove(std::move(*alone))) throw MachineError("is complete, and cannot be removed", folder_);
                 continue;
             }
-            if (!complete()) // what processes left that have ended without completing it
+            if (!complete() && launched.rank == 0) // what processes left that have ended without completing it
                 for (const std::string_view begins : {kRanks, kLeft})
                     for (const std::string& name : namesIn(folder_, begins)) fs::remove(file(name), problem);
         }
