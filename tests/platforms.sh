@@ -34,6 +34,8 @@ finish() {
     exit "$code"
 }
 trap finish EXIT
+trap 'exit 143' TERM # else a stopped run would count as passed
+trap 'exit 130' INT
 
 # mount_at ROOT FROM TO [OPTIONS]: a folder of this machine within a chroot.
 mount_at() {
