@@ -134,6 +134,7 @@ public:
 
 private:
     volume::Dataset piece(std::size_t number) const;
+    PackedBefore beforeOf(std::size_t number, std::size_t times, PackedBefore before) const;
     std::string fileOf(std::size_t block) const { return job_.file(std::to_string(block) + ".tsr"); }
     std::string pieceOf(std::size_t number) const {
         if (pieces_ == 1) return fileOf(number);
@@ -162,6 +163,14 @@ volume::Dataset Blocks::piece(std::size_t number) const {
     std::iota(times.begin(), times.end(), int(first));
     volume::Dataset block = volume::withTimes(source_, times);
     return pieces_ == 1 ? block : volume::withParameters(block, {int(number % pieces_)});
+}
+
+/// What is known of the source, for one piece: the blocks together have compared as many samples as the source.
+PackedBefore Blocks::beforeOf(std::size_t number, std::size_t times, PackedBefore before) const {
+    if (pieces_ > 1 && !before.resampled.empty()) before.resampled = {before.resampled[number % pieces_]};
+    for (std::optional<ResampleError>& error : before.resampled)
+        if (error) error->samples *= double(times) / double(source_.info.times.size());
+    return before;
 }
 
 void Blocks::gatherRanges(const Progress& progress) {
@@ -254,9 +263,7 @@ std::size_t Blocks::pack(PackSummary& sum, const PackedBefore& before, const Pro
         volume::Dataset own = piece(number);
         const std::string growing = job_.file(std::to_string(number) + ".packing"); // readable from its first time on
         const Progress part = progress.part(share(number), share(number + 1));
-        PackedBefore ownBefore = before;
-        if (pieces_ > 1 && !before.resampled.empty()) ownBefore.resampled = {before.resampled[number % pieces_]};
-        add(sum, codec::pack(own, options_, growing, part, ownBefore));
+        add(sum, codec::pack(own, options_, growing, part, beforeOf(number, own.info.times.size(), before)));
         fs::rename(growing, pieceOf(number));
         syncFolderOf(pieceOf(number));
         if (const auto lock = LockedFile::tryLock(job_.file("join.lock"), LockedFile::Kind::Exclusive))

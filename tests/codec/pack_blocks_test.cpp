@@ -2,6 +2,8 @@
 
 #include "codec/archive/archive.h"
 #include "codec/blocks/shared_job.h"
+#include "codec/container/resample_error.h"
+#include "codec/pack/unpack.h"
 #include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/volume/regions.h"
@@ -150,6 +152,26 @@ TEST(PackBlocks, ProcessesShareTheParametersOfATime) {
             }
             EXPECT_EQ(folder.files(), 3u);
         }
+}
+
+TEST(PackBlocks, AnArchiveThatWasResampledIsSoAsBefore) {
+    const TemporaryFolder folder;
+    volume::Dataset made = series();
+    pack(made, small(0, StoredLattice::BCC), folder / "source.tsr");
+    const auto source = std::make_shared<const Archive>(folder / "source.tsr");
+    for (const bool byParameter : {false, true}) {
+        packInBlocks(storedDataset(source), small(1e-3, StoredLattice::BCC), folder / "again.tsr",
+                     {2, {}, {}, byParameter}, {}, packedBefore(*source));
+        const Archive again(folder / "again.tsr");
+        ASSERT_EQ(again.metadata().resampled.size(), 3u);
+        for (std::size_t p = 0; p < 3; ++p) {
+            const ResampleError &was = *source->metadata().resampled[p], &is = *again.metadata().resampled[p];
+            EXPECT_GT(was.samples, 0);
+            EXPECT_NEAR(is.samples, was.samples, 1e-6 * was.samples);
+            EXPECT_NEAR(is.meanSquare, was.meanSquare, 1e-9 * was.meanSquare);
+            EXPECT_EQ(is.largest, was.largest);
+        }
+    }
 }
 
 TEST(PackBlocks, TheParametersOfAnInterruptedBlockAreNotPackedAgain) {
