@@ -222,7 +222,8 @@ TEST_F(Monkey, AnyInputLeavesAStateThatIsTheSameWhenReopened) {
             if (HasFatalFailure()) return;
         }
         workbench.jobs().wait();
-        std::printf("%.1f min, %d inputs, %.0f MB\n", passed(), step_, tessera::test::residentMemory());
+        std::printf("%.1f min, %d inputs, %.0f MB, allocated %.0f\n", passed(), step_, test::residentMemory(),
+                    test::allocatedMemory());
         std::fflush(stdout);
     } while (passed() < minutes);
 }
