@@ -1,5 +1,6 @@
 #include "tests/vis/function_source.h"
 #include "tests/vis/gl_fixture.h"
+#include "vis/view/geometry_pass.h"
 #include "volume/mesh/isosurface.h"
 
 #include <cmath>
@@ -178,6 +179,36 @@ TEST_F(GeometryPassTest, DrawsLinesAsWideAsWanted) {
     // A surface before them hides them.
     scene.geometry.push_back({.geometry = atDepth(12), .style = {.color = {0, 0, 0}}});
     for (const glm::vec4& pixel : picture(scene)) EXPECT_LT(pixel.r, 0.01f);
+}
+
+// Each combination of settings has a program, of which OpenGL on the processor takes megabytes.
+TEST_F(GeometryPassTest, KeepsOnlySomePrograms) {
+    show([](glm::dvec3) { return 0.5; });
+    const volume::DatasetInfo info = source->info();
+    const auto programsAfter = [&](GeometryPass& pass) {
+        GeometryBuffer buffer;
+        buffer.resize(kSize, kPeels);
+        GrainTexture grain;
+        for (int clips = 0; clips < 4; ++clips) {
+            Scene scene = unlit();
+            scene.geometry.push_back({.geometry = atDepth(8)});
+            for (int c = 0; c < clips; ++c) scene.clips.push_back({.kind = ClipKind(c)});
+            const GeometryJob job{.scene = scene,
+                                  .info = info,
+                                  .lenses = {},
+                                  .size = kSize,
+                                  .tile = {{0, 0}, kSize},
+                                  .pictureSize = kSize,
+                                  .most = kPeels};
+            pass.draw(buffer, job, grain);
+        }
+        return pass.programs();
+    };
+    GeometryPass few(currentDriver(), {2, std::chrono::milliseconds(0)}), fresh(currentDriver(), {2}),
+        many(currentDriver());
+    EXPECT_EQ(programsAfter(few), 2u);
+    EXPECT_EQ(programsAfter(fresh), 4u) << "what was used just now may be needed again";
+    EXPECT_EQ(programsAfter(many), 4u);
 }
 
 TEST_F(GeometryPassTest, GivesThePlaceUnderAPixel) {

@@ -152,9 +152,19 @@ const Program& GeometryPass::program(const GeometryJob& job, bool lines, int loo
     addLighting(recipe, job.scene);
     addClipping(recipe, job.scene);
     addLenses(recipe, job.lenses, job.scene);
-    Program& made = programs_[recipe.key()];
-    if (!made) made = makeProgram(recipe);
-    return made;
+    Made& made = programs_[recipe.key()];
+    if (!made.program) made.program = makeProgram(recipe);
+    made.used = Clock::now();
+    return made.program;
+}
+
+/// Deletes the programs that were not used for the longest time, as ProgramCache does.
+void GeometryPass::dropUnused() {
+    while (programs_.size() > limit_.count) {
+        const auto oldest = std::ranges::min_element(programs_, {}, [](const auto& each) { return each.second.used; });
+        if (Clock::now() - oldest->second.used < limit_.unused) return;
+        programs_.erase(oldest);
+    }
 }
 
 namespace {
@@ -282,6 +292,7 @@ void GeometryPass::draw(GeometryBuffer& buffer, const GeometryJob& job, GrainTex
         if (peel > 0) glEndConditionalRender();
         glTextureBarrier(); // the next peel reads what this one has written
     }
+    dropUnused();
 }
 
 } // namespace tessera::vis

@@ -2,7 +2,7 @@
 
 #include "vis/gl/driver.h"
 #include "vis/gl/handles.h"
-#include "vis/gl/program.h"
+#include "vis/gl/program_cache.h"
 #include "vis/raycast/look_uniforms.h"
 #include "vis/raycast/tile.h"
 #include "vis/scene/scene.h"
@@ -43,10 +43,12 @@ struct GeometryJob {
 /// previous pass. Vertex buffers are kept as long as the geometry is referenced elsewhere.
 class GeometryPass {
 public:
-    explicit GeometryPass(const Driver& driver) : driver_(driver) {}
+    /// Keeps as many programs as `limit` says: there is one for each combination of lights, clips, lenses and looks.
+    explicit GeometryPass(const Driver& driver, ProgramLimit limit = {}) : driver_(driver), limit_(limit) {}
 
     /// Does nothing, and allocates nothing, if the scene has no geometry. `grain`: used only if a look needs it.
     void draw(GeometryBuffer& buffer, const GeometryJob& job, GrainTexture& grain);
+    std::size_t programs() const { return programs_.size(); }
 
 private:
     struct Uploaded {
@@ -67,11 +69,18 @@ private:
         const Program* program;
     };
     const Program& program(const GeometryJob& job, bool lines, int look);
+    void dropUnused();
     std::vector<Draw> collect(const GeometryJob& job, GrainTexture& grain);
     void drawOne(const Draw& each, const GeometryJob& job, int peel) const;
 
     Driver driver_;
-    std::map<std::string, Program> programs_; ///< by recipe: variants for lights, clips and looks
+    ProgramLimit limit_;
+    using Clock = std::chrono::steady_clock;
+    struct Made {
+        Program program;
+        Clock::time_point used;
+    };
+    std::map<std::string, Made> programs_; ///< by recipe
     std::map<const Geometry*, Uploaded> uploaded_;
     Texture table_;
     int tableRows_ = 0;
