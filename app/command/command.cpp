@@ -141,4 +141,9 @@ std::string byProcess(const std::optional<Launched>& started) {
     return " by process " + std::to_string(started->rank + 1) + " of " + std::to_string(started->count);
 }
 
+void sayShare(std::size_t own, std::size_t all, const std::string& what, const std::optional<Launched>& started) {
+    if (const std::string by = byProcess(started); !by.empty())
+        std::printf("%zu of %zu %s%s\n", own, all, what.c_str(), by.c_str());
+}
+
 } // namespace tessera::app

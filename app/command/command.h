@@ -44,6 +44,8 @@ void addAloneOption(CLI::App& command, bool& alone);
 std::optional<Launched> sharing(bool alone);
 /// " by process 2 of 4", "" for a process that was started alone.
 std::string byProcess(const std::optional<Launched>& started);
+/// Prints "3 of 9 pictures drawn by process 2 of 4"; nothing for a process that was started alone.
+void sayShare(std::size_t own, std::size_t all, const std::string& what, const std::optional<Launched>& started);
 
 /// What all processes that share a work must have alike, for SharedWork::about.
 std::string aboutText(const nlohmann::json& work);

@@ -182,8 +182,7 @@ void run(const CompareOptions& options) {
     };
     const codec::SharedResults done = codec::shareResults({options.output, aboutText(about), started, isMade},
                                                           info.times.size(), figure, finish, progress.part(0.5, 1));
-    if (!byProcess(started).empty())
-        std::printf("%zu of %zu figures drawn%s\n", done.own, info.times.size(), byProcess(started).c_str());
+    sayShare(done.own, info.times.size(), "figures drawn", started);
 }
 
 } // namespace

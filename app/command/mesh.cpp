@@ -135,8 +135,7 @@ void writeAllTimes(const MeshRequest& request, const DataRef& data, const volume
     for (std::size_t t = 0; done.last && t < files.size(); ++t)
         std::printf("%s: %s\n", files[t].c_str(), done.results[t].c_str());
     if (done.last && collects) std::printf("%s\n", volume::collectionOf(request.output).c_str());
-    if (!byProcess(started).empty())
-        std::printf("%zu of %zu surfaces%s\n", done.own, files.size(), byProcess(started).c_str());
+    sayShare(done.own, files.size(), "surfaces", started);
 }
 
 void run(MeshRequest request) {

@@ -116,8 +116,7 @@ void run(const ReplayOptions& options) {
     };
     const codec::SharedResults done = codec::shareResults({options.output, aboutText(about), started, isMade},
                                                           reel.count, draw, finish, progress.part(0.1, 1));
-    if (!byProcess(started).empty())
-        std::printf("%zu of %zu pictures drawn%s\n", done.own, reel.count, byProcess(started).c_str());
+    sayShare(done.own, reel.count, "pictures drawn", started);
 }
 
 } // namespace

@@ -125,8 +125,7 @@ void run(const StatsRequest& request) {
     const codec::SharedResults done =
         codec::shareResults({request.output, about, started}, question.times.size(), compute, finish, rest);
     if (done.last) print(request, question, answer);
-    if (!request.options.json && !byProcess(started).empty())
-        std::printf("%zu of %zu times computed%s\n", done.own, question.times.size(), byProcess(started).c_str());
+    if (!request.options.json) sayShare(done.own, question.times.size(), "times computed", started);
 }
 
 } // namespace
