@@ -42,7 +42,7 @@ struct PackRequest {
     double timeStep = 1;
     bool timesGiven = false;
     std::optional<std::size_t> blockTimes;
-    bool blockParameters = false, alone = false;
+    bool blockParameters = false, blockSlabs = false, alone = false;
 };
 
 /// One JSON object per line on stdout, for a window that runs this command.
@@ -202,12 +202,17 @@ std::string inputsOf(const PackRequest& request, const volume::ImportOptions& im
 /// Packs in blocks of times, which processes share.
 void runBlocks(const PackRequest& request, const Launched& started, const PackInput& input, const Progress& progress) {
     const volume::DatasetInfo& info = input.data.info;
-    const bool idle = !request.blockTimes && std::size_t(started.count) > info.times.size(); // else some would be
-    const bool byParameter = (request.blockParameters || idle) && info.parameters.size() > 1;
-    const codec::BlockSummary summary =
-        codec::packInBlocks(input.data, request.options, request.output,
-                            {request.blockTimes.value_or(0), started, inputsOf(request, input.import), byParameter},
-                            progress, input.before);
+    const auto pieces = [&](std::size_t of) { return info.times.size() * of; };
+    const auto areIdle = [&](std::size_t of) { // some of the processes, with so many pieces of each time
+        return !request.blockTimes && !request.blockSlabs && std::size_t(started.count) > pieces(of);
+    };
+    const bool byParameter = (request.blockParameters || areIdle(1)) && info.parameters.size() > 1;
+    const bool bySlab = request.blockSlabs || (areIdle(info.parameters.size()) && input.data.read.inParts() &&
+                                               !codec::hasThreshold(request.options));
+    const codec::BlockSummary summary = codec::packInBlocks(
+        input.data, request.options, request.output,
+        {request.blockTimes.value_or(0), started, inputsOf(request, input.import), byParameter, bySlab}, progress,
+        input.before);
     if (request.json || request.progressJson) {
         nlohmann::json report = reportOf(summary.own, request.output);
         report.update({{"blocks", summary.blocks}, {"ownBlocks", summary.packed}, {"rank", started.rank}});
@@ -261,9 +266,11 @@ bool joins(const PackRequest& request) {
 
 void run(PackRequest request) {
     const bool whole = !request.append && !request.follows && !isStream(request);
-    if ((request.blockTimes || request.blockParameters) && !whole)
-        throw Error("blocks are those of a whole series, without --append and --follow", {},
-                    request.blockParameters ? "--block-parameters" : "--block-times");
+    const char* const blocks = request.blockTimes        ? "--block-times"
+                               : request.blockParameters ? "--block-parameters"
+                               : request.blockSlabs      ? "--block-slabs"
+                                                         : nullptr;
+    if (blocks && !whole) throw Error("blocks are those of a whole series, without --append and --follow", {}, blocks);
     if (!request.follows) checkOutput(request);
     if (request.options.memoryMb > 0) keepNoFreedFrames();
     if (request.follows || isStream(request)) return runGrowing(request);
@@ -277,7 +284,7 @@ void run(PackRequest request) {
     PackInput input = open(request, progress.part(0, 0.02));
     const Progress rest = progress.part(0.02, 1);
     const Launched started = launched();
-    if (whole && !request.alone && (started.count > 1 || request.blockTimes || request.blockParameters))
+    if (whole && !request.alone && (started.count > 1 || blocks))
         return runBlocks(request, started, input, rest);
     say(request, request.append
                      ? codec::append(input.data, request.output, request.options.memoryMb, rest, input.before)
@@ -326,8 +333,14 @@ void addBlocksOption(CLI::App& command, PackRequest& request) {
                   "Pack each parameter of a block by itself, so that processes also share a time; so by itself where "
                   "mpirun or srun starts more processes than there are times, unless --block-times is stated")
         ->group("Several processes");
+    command
+        .add_flag("--block-slabs", request.blockSlabs,
+                  "Pack each parameter of a time by all processes together, which share its layers of bricks; so by "
+                  "itself where mpirun or srun starts more processes than there are parameters at all times, unless "
+                  "--block-times is stated. For raw files, uncompressed NRRD files, and archives on their lattice")
+        ->group("Several processes");
     addAloneOption(command, request.alone);
-    for (const char* const shared : {"--block-times", "--block-parameters"})
+    for (const char* const shared : {"--block-times", "--block-parameters", "--block-slabs"})
         command.get_option("--alone")->excludes(shared)->group("Several processes");
 }
 

@@ -57,9 +57,6 @@ struct ArchiveWriter::Impl {
     /// Codes a frame, as often as it takes to meet a bound of its mean error; true if no token was coded.
     bool codeFrame(FrameCoding& coding, const FrameSamples& samples, const FrameOptions& options, CodedBricks& coded,
                    const Progress& progress);
-    /// Codes every brick; true if no token was coded.
-    bool codeBricks(FrameCoding& coding, const FrameSamples& samples, int zstdLevel, CodedBricks& coded,
-                    const Progress& progress);
 };
 
 bool ArchiveWriter::Impl::mixesParts(std::size_t component) const {
@@ -259,47 +256,16 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     return coding;
 }
 
-bool ArchiveWriter::Impl::codeBricks(FrameCoding& coding, const FrameSamples& samples, int zstdLevel,
-                                     CodedBricks& coded, const Progress& progress) {
-    const volume::BrickGrid& grid = metadata.grid;
-    const BandEncoder encoder(coding.model);
-    bool allWhole = grid.levels > 1;
-    const std::size_t perBatch = batchOf(brickBytes(grid, samples.type()));
-    samples.forSlabs([&](const volume::Field& part, Slab slab) {
-        const volume::BrickGrid own = slab.grid(grid);
-        const std::size_t firstBrick = slab.bricks(grid).first, endBrick = slab.bricks(grid).second;
-        // In batches, to react to a cancel; the batch size does not affect the output.
-        for (std::size_t first = firstBrick; first < endBrick; first += perBatch) {
-            const std::size_t count = std::min(perBatch, endBrick - first);
-            std::vector<std::vector<Bytes>> batch(count);
-            parallelRanges(count, [&](std::size_t begin, std::size_t end) {
-                Compressor compressor(zstdLevel, (commits.header.features & kCompact) != 0);
-                BrickInput input;
-                SplitMemory memory;
-                for (std::size_t b = first + begin; b < first + end; ++b)
-                    batch[b - first] = coding.code(b, part, own, b - firstBrick, encoder, compressor, input, memory);
-            });
-            for (std::size_t b = first; b < first + count; ++b) {
-                allWhole = allWhole && coding.whole[b] != 0;
-                coded.put(b, std::move(batch[b - first]));
-            }
-            progress.advance(double(first + count) / double(grid.brickCount()));
-        }
-        return true;
-    });
-    return allWhole;
-}
-
 bool ArchiveWriter::Impl::codeFrame(FrameCoding& coding, const FrameSamples& samples, const FrameOptions& options,
                                     CodedBricks& coded, const Progress& progress) {
     constexpr int kTrials = 8;
-    const int zstdLevel = zstdLevelFor(samples, options.zstdLevel);
-    if (!coding.measures()) return codeBricks(coding, samples, zstdLevel, coded, progress);
+    const ZstdUse zstd{zstdLevelFor(samples, options.zstdLevel), (commits.header.features & kCompact) != 0};
+    if (!coding.measures()) return codeBricks(coding, samples, zstd, coded, progress);
     double done = 0;
     const auto code = [&] {
         const double half = (1 + done) / 2; // of what is left, since nobody knows how often it takes
         coded.clear();
-        const bool allWhole = codeBricks(coding, samples, zstdLevel, coded, progress.part(done, half));
+        const bool allWhole = codeBricks(coding, samples, zstd, coded, progress.part(done, half));
         done = half;
         return allWhole;
     };
@@ -348,12 +314,19 @@ std::optional<double> ArchiveWriter::addFrame(int parameter, int component, int 
     const std::size_t bricks = grid.brickCount(), levels = std::size_t(grid.levels);
     CodedBricks coded(bricks, levels, samples.store() ? &samples.store()->folder : nullptr);
     const bool allWhole = impl_->codeFrame(coding, samples, options, coded, progress);
+    const auto measured = [&]() -> std::optional<double> {
+        if (!coding.measures()) return std::nullopt;
+        double largest = 0;
+        for (const SampleErrors& errors : coding.errors) largest = std::max(largest, errors.largest);
+        return largest;
+    };
     if (coding.steps) impl_->commits.header.features |= kSteppedBricks;
     if (frame.predicted) impl_->commits.header.features |= kPredictedFrames;
     // Without bands the frame needs no tables.
     const bool idle = allWhole || frame.numbers.kind == NumberKind::Stepped;
     if (frame.model < 0) impl_->writeModel(coding.model, idle, ofTime, frame);
     impl_->lastModel[ofTime].quantum = quantumOf(frame, frame.steps);
+    if (samples.team() && !samples.team()->writes()) return measured(); // models are known alike, for later times
     GrowingFile& file = impl_->file;
     frame.offset = file.position();
     for (std::size_t s = 0; s < levels; ++s)
@@ -372,10 +345,7 @@ std::optional<double> ArchiveWriter::addFrame(int parameter, int component, int 
         impl_->lastFrames[{ofTime, time % impl_->step()}] = std::move(coding.seen);
     }
     impl_->page.frames.push_back(std::move(frame));
-    if (!coding.measures()) return std::nullopt;
-    double largest = 0;
-    for (const SampleErrors& errors : coding.errors) largest = std::max(largest, errors.largest);
-    return largest;
+    return measured();
 }
 
 Archive::Repeats ArchiveWriter::repeats() const {

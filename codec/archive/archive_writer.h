@@ -39,7 +39,8 @@ public:
     /// Codes and writes one component of a parameter at a time index; each once, in any order. The samples must be on
     /// the lattice of the metadata and have the type of the parameter; frames in scratch files require keepsFrames =
     /// false. Bricks are coded on all cores; the bytes do not depend on their number. Returns the largest error of the
-    /// frame in stored units if only its mean was bounded and it was measured.
+    /// frame in stored units if only its mean was bounded and it was measured. Of a frame that a team shares, the
+    /// processes that do not write only code some slabs; they must not commit.
     std::optional<double> addFrame(int parameter, int component, int time, const FrameSamples& samples,
                                    const FrameOptions& options, const Progress& progress = {});
 

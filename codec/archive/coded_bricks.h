@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/archive/frame_coding.h"
 #include "codec/bytes/entropy.h"
 #include "volume/system/scratch_file.h"
 
@@ -40,5 +41,16 @@ private:
     std::vector<Place> places_;             ///< in the scratch file, by brick, then segment
     std::vector<std::vector<Bytes>> bytes_; ///< in memory
 };
+
+/// How streams of bytes are compressed.
+struct ZstdUse {
+    int level = 3;
+    bool thorough = false; ///< as of Compressor
+};
+
+/// Codes every brick of a frame; true if no token was coded. In a team each process codes some slabs; the one that
+/// writes gets the segments of all of them, and every process the properties of their bricks.
+bool codeBricks(FrameCoding& coding, const FrameSamples& samples, const ZstdUse& zstd, CodedBricks& coded,
+                const Progress& progress);
 
 } // namespace tessera::codec

@@ -3,7 +3,6 @@
 #include "codec/archive/archive_state.h"
 #include "codec/archive/brick_access.h"
 #include "codec/archive/brick_input.h"
-#include "codec/archive/coded_bricks.h"
 #include "codec/archive/frame_model.h"
 #include "codec/archive/frame_steps.h"
 

@@ -194,10 +194,10 @@ void tryFitted(const volume::BrickGrid& grid, const FrameSamples& samples, const
 int codeBitsOf(const FrameSamples& samples, const NumberCoding& numbers) {
     if (samples.type() != volume::ScalarType::F32) return codec::codeBitsOf(samples.type());
     if (numbers.kind == NumberKind::Float) return 32;
-    std::uint32_t all = 0;
-    samples.forSlabs([&](const volume::Field& part, Slab) {
+    const auto ofPart = [&](const volume::Field& part, Slab) {
         constexpr std::size_t kRow = 512;
         std::array<std::uint32_t, kRow> codes;
+        std::uint32_t all = 0;
         for (std::size_t first = 0; first < part.count(); first += kRow) {
             const std::size_t count = std::min(kRow, part.count() - first);
             codesOf(numbers, std::as_bytes(part.as<float>().subspan(first, count)), codes.data());
@@ -206,8 +206,10 @@ int codeBitsOf(const FrameSamples& samples, const NumberCoding& numbers) {
             for (std::size_t i = 0; i < count; ++i)
                 all |= codes[i] ^ static_cast<std::uint32_t>(static_cast<std::int32_t>(codes[i]) >> 31);
         }
-        return true;
-    });
+        return all;
+    };
+    std::uint32_t all = 0;
+    for (const std::uint32_t part : samples.ofSlabs<std::uint32_t>("bits", ofPart)) all |= part;
     return std::max(1, int(std::bit_width(all)) + 1);
 }
 

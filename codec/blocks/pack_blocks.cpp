@@ -2,6 +2,7 @@
 
 #include "codec/blocks/join.h"
 #include "codec/blocks/shared_job.h"
+#include "codec/blocks/shared_slabs.h"
 #include "codec/container/options_json.h"
 #include "codec/pack/frame_queue.h"
 #include "codec/pack/pack_grid.h"
@@ -31,13 +32,18 @@ namespace fs = std::filesystem;
 
 using Ranges = std::vector<std::vector<Range>>; ///< by parameter, then component
 
-void check(const PackOptions& options) {
+void check(const volume::Dataset& source, const PackOptions& options, const BlockOptions& blocks) {
     const char* const what = options.lattice == StoredLattice::D4 ? "frames of D4*"
                              : options.sizeMb > 0                 ? "the error that fits a size"
                              : options.discard > 0                ? "the bricks to omit"
                                                                   : nullptr;
     if (what != nullptr)
         throw Error(std::string(what) + " depend on all times: blocks of times cannot be packed apart");
+    if (!blocks.bySlab) return;
+    if (hasThreshold(options)) throw Error("a threshold depends on all slabs of a time: they cannot be packed apart");
+    if (!source.read.inParts())
+        throw Error("slabs are those of raw files, uncompressed NRRD files and archives on the requested lattice; other "
+                    "data are read as a whole");
 }
 
 /// What all processes must agree on.
@@ -57,6 +63,7 @@ std::string aboutJob(const volume::DatasetInfo& info, PackOptions options, const
                           {"options", toJson(options)},
                           {"blockTimes", blocks.times},
                           {"byParameter", blocks.byParameter},
+                          {"bySlab", blocks.bySlab},
                           {"inputs", blocks.inputs}}
         .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -114,8 +121,8 @@ public:
     Blocks(const volume::Dataset& source, const PackOptions& options, const std::string& path,
            const BlockOptions& blocks, const Progress& progress)
         : source_(source), options_(options), path_(path), times_(blocks.times),
-          pieces_(blocks.byParameter ? source.info.parameters.size() : 1),
-          job_(path, aboutJob(source.info, options, blocks), blocks.launched, progress) {
+          pieces_(blocks.byParameter ? source.info.parameters.size() : 1), bySlab_(blocks.bySlab),
+          rank_(blocks.launched.rank), job_(path, aboutJob(source.info, options, blocks), blocks.launched, progress) {
         // An automatic size of bricks depends on the number of times; a last block of one time has the same.
         const volume::Lattice& lattice = source.info.lattice;
         const bool toBcc = options.lattice == StoredLattice::BCC && lattice.kind == volume::LatticeKind::CC;
@@ -146,12 +153,17 @@ private:
     void countJoined();
     double share(std::size_t piece) const { return double(piece) / double(pieces()); }
     void mergeComplete(std::size_t block) const;
+    std::size_t shareOut(const std::string& name, const std::function<bool(std::size_t)>& isDone,
+                         const std::function<void(std::size_t, SlabTeam*)>& work,
+                         const std::function<void(std::size_t, SlabTeam*)>& help, const Progress& progress) const;
     void joinComplete(const Progress& progress);
 
     volume::Dataset source_;
     PackOptions options_;
     std::string path_;
     std::size_t times_, pieces_; ///< of a block
+    bool bySlab_;
+    int rank_;
     SharedJob job_;
     std::size_t joinedBlocks_ = 0;   ///< at least so many
     std::uintmax_t joinedBytes_ = 0; ///< of the file when they were counted
@@ -178,13 +190,14 @@ void Blocks::gatherRanges(const Progress& progress) {
     const auto known = [](const volume::Parameter& parameter) { return !parameter.ranges.empty(); };
     if (std::ranges::all_of(parameters, known)) return;
     const auto isDone = [&](std::size_t number) { return fs::exists(rangesOf(number)); };
-    const auto work = [&](std::size_t number) {
+    const auto find = [&](std::size_t number, SlabTeam* team) {
         volume::Dataset own = piece(number);
-        const Ranges found =
-            unknownRanges(own, options_, rangesOf(number), progress.part(share(number), share(number + 1)));
-        writeAtomically(rangesOf(number), textOf(found));
+        return unknownRanges(own, options_, rangesOf(number), progress.part(share(number), share(number + 1)), team);
     };
-    job_.share("ranges", pieces(), isDone, work, progress);
+    const auto work = [&](std::size_t number, SlabTeam* team) {
+        writeAtomically(rangesOf(number), textOf(find(number, team)));
+    };
+    shareOut("ranges", isDone, work, find, progress);
     Ranges all(parameters.size());
     for (std::size_t number = 0; number < pieces(); ++number) {
         const std::size_t first = number % pieces_, own = parameters.size() / pieces_;
@@ -257,19 +270,51 @@ void Blocks::joinComplete(const Progress& progress) {
     }
 }
 
+/// Shares pieces as SharedJob::share; by slabs, processes that do not `work` on a piece `help` with it.
+std::size_t Blocks::shareOut(const std::string& name, const std::function<bool(std::size_t)>& isDone,
+                             const std::function<void(std::size_t, SlabTeam*)>& work,
+                             const std::function<void(std::size_t, SlabTeam*)>& help, const Progress& progress) const {
+    const auto plain = [&](std::size_t number) { work(number, nullptr); };
+    if (!bySlab_) return job_.share(name, pieces(), isDone, plain, progress);
+    const auto teamOf = [&](std::size_t number, bool writes) {
+        return SharedSlabs(job_, name + "-" + std::to_string(number), writes, progress);
+    };
+    const auto together = [&](std::size_t number) {
+        SharedSlabs team = teamOf(number, true);
+        work(number, &team);
+        team.end();
+    };
+    const auto helped = [&](std::size_t number) {
+        SharedSlabs team = teamOf(number, false);
+        try {
+            if (!team.isOver()) help(number, &team);
+        } catch (const MachineError&) {
+            if (!team.isOver()) throw;
+        }
+    };
+    return job_.share(name, pieces(), isDone, together, progress, helped);
+}
+
 std::size_t Blocks::pack(PackSummary& sum, const PackedBefore& before, const Progress& progress) {
     const auto isDone = [&](std::size_t number) { return isPacked(number, progress); };
-    const auto work = [&](std::size_t number) {
+    const auto packTo = [&](const std::string& path, std::size_t number, SlabTeam* team) {
         volume::Dataset own = piece(number);
-        const std::string growing = job_.file(std::to_string(number) + ".packing"); // readable from its first time on
         const Progress part = progress.part(share(number), share(number + 1));
-        add(sum, codec::pack(own, options_, growing, part, beforeOf(number, own.info.times.size(), before)));
+        const PackedBefore known = beforeOf(number, own.info.times.size(), before);
+        return codec::pack(own, options_, path, part, known, 0, team);
+    };
+    const auto help = [&](std::size_t number, SlabTeam* team) {
+        packTo(job_.scratch(std::to_string(number) + "-helped-" + std::to_string(rank_)), number, team);
+    };
+    const auto work = [&](std::size_t number, SlabTeam* team) {
+        const std::string growing = job_.file(std::to_string(number) + ".packing"); // readable from its first time on
+        add(sum, packTo(growing, number, team));
         fs::rename(growing, pieceOf(number));
         syncFolderOf(pieceOf(number));
         if (const auto lock = LockedFile::tryLock(job_.file("join.lock"), LockedFile::Kind::Exclusive))
             joinComplete(progress);
     };
-    return job_.share("block", pieces(), isDone, work, progress);
+    return shareOut("block", isDone, work, help, progress);
 }
 
 bool Blocks::finish(const Progress& progress) {
@@ -295,11 +340,12 @@ std::size_t blockTimes(std::size_t times, const Launched& launched) {
 
 BlockSummary packInBlocks(const volume::Dataset& source, const PackOptions& options, const std::string& output,
                           const BlockOptions& blocks, const Progress& progress, const PackedBefore& before) {
-    check(options);
+    check(source, options, blocks);
     const std::string path = replacedFile(output);
     if (fs::is_directory(path)) throw Error("is a folder", path);
     BlockOptions settled = blocks;
-    if (settled.times == 0) settled.times = blockTimes(source.info.times.size(), blocks.launched);
+    if (settled.times == 0)
+        settled.times = blocks.bySlab ? 1 : blockTimes(source.info.times.size(), blocks.launched);
     BlockSummary summary;
     const auto started = std::chrono::steady_clock::now();
     Blocks all(source, options, path, settled, progress);

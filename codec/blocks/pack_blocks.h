@@ -17,6 +17,8 @@ struct BlockOptions {
     std::string inputs = {};
     /// Each parameter of a block is packed by itself, so that processes share a time, too.
     bool byParameter = false;
+    /// All processes pack each piece together, slab by slab; the source must be readable in parts.
+    bool bySlab = false;
 };
 
 /// Times of a block for so many processes: 16, or fewer so that each process has a block.
@@ -24,7 +26,7 @@ std::size_t blockTimes(std::size_t times, const Launched& launched);
 
 struct BlockSummary {
     PackSummary own; ///< of the blocks that this process packed; archiveBytes and maxError: of the whole
-    std::size_t blocks = 0, packed = 0; ///< or parts of blocks, by parameter
+    std::size_t blocks = 0, packed = 0; ///< or parts of blocks, by parameter; packed: or written, by slabs
     bool last = false;                  ///< this process gave the archive its name
 };
 
@@ -34,10 +36,12 @@ struct BlockSummary {
 /// when all are joined and the archive has its name. What was complete when all processes ended is continued by the
 /// next run. The bytes of the archive depend on the length of the blocks, and not on the number of processes: nothing
 /// is coded relative to times of another block. By parameter, each block is made of archives of one parameter each,
-/// which do the same for the parameters of a time; regions are those of the whole data. Bounds relative to ranges refer
+/// which do the same for the parameters of a time; regions are those of the whole data. By slabs, the processes share
+/// the layers of bricks of each parameter at a time (codec/blocks/shared_slabs.h), one after the other. Bounds relative to ranges refer
 /// to those of all times, which are found in a pass before.
 ///
-/// Throws as pack(), and Error for options that depend on all times at once: D4*, a size, omitted bricks.
+/// Throws as pack(), and Error for options that depend on all times at once (D4*, a size, omitted bricks), and by slabs
+/// for thresholds and for data that are read as a whole.
 BlockSummary packInBlocks(const volume::Dataset& source, const PackOptions& options, const std::string& path,
                           const BlockOptions& blocks, const Progress& progress = {}, const PackedBefore& before = {});
 

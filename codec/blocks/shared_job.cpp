@@ -12,6 +12,7 @@
 #include <string_view>
 #include <thread>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 namespace tessera::codec {
@@ -71,6 +72,7 @@ SharedJob::SharedJob(const std::string& output, const std::string& about, const 
             if (!complete() && launched.rank == 0) // what processes left that have ended without completing it
                 for (const std::string_view begins : {kRanks, kLeft})
                     for (const std::string& name : namesIn(folder_, begins)) fs::remove(file(name), problem);
+            removeScratch({});
         }
         inside_ = LockedFile::tryLock(file(kLock), LockedFile::Kind::Shared);
         if (inside_ && inside_->hasName() && (!complete() || isOwn())) break;
@@ -108,10 +110,17 @@ SharedJob::~SharedJob() {
     }
 }
 
+void SharedJob::removeScratch(const std::string& begin) const {
+    std::error_code ignored;
+    for (const std::string& name : namesIn(folder_, kScratch + begin))
+        if (!name.ends_with(".lock")) fs::remove(file(name), ignored);
+}
+
 /// Whether there is something that the next run can go on from.
 bool SharedJob::holdsWork() const {
     return std::ranges::any_of(namesIn(folder_, {}), [](const std::string& name) {
-        return !name.ends_with(".lock") && name != kAbout && !name.starts_with(kRanks) && !name.starts_with(kLeft);
+        return !name.ends_with(".lock") && name != kAbout && !name.starts_with(kRanks) && !name.starts_with(kLeft) &&
+               !name.starts_with(kScratch);
     });
 }
 
@@ -135,18 +144,20 @@ void SharedJob::pause(const Progress& progress, double fraction) const {
 }
 
 std::size_t SharedJob::share(const std::string& name, std::size_t count, const std::function<bool(std::size_t)>& isDone,
-                             const std::function<void(std::size_t)>& work, const Progress& progress) const {
+                             const std::function<void(std::size_t)>& work, const Progress& progress,
+                             const std::function<void(std::size_t)>& help) const {
     std::size_t own = 0;
     for (const bool waits : {false, true})
         for (std::size_t piece = 0; piece < count; ++piece)
-            for (;; pause(progress, double(piece) / double(count))) {
+            for (bool helps = bool(help);; pause(progress, double(piece) / double(count))) {
                 const auto lock = LockedFile::tryLock(file(name + "-" + std::to_string(piece) + ".lock"),
                                                       LockedFile::Kind::Exclusive);
                 if (lock && !isDone(piece)) {
                     work(piece);
                     ++own;
                 }
-                if (lock || !waits) break;
+                if (lock || (!waits && !help)) break;
+                if (std::exchange(helps, false)) help(piece);
             }
     return own;
 }

@@ -28,12 +28,18 @@ public:
     /// Does pieces 0 .. count - 1 of the work that is called `name`: first those that nobody does, then it waits for
     /// the others, and does those whose process ended before they were done. Returns how many it did; all are done
     /// then. `isDone(piece)`, which is asked of a piece that nobody does, must see what any process has done;
-    /// `work(piece)` must leave nothing half done. Throws Cancelled, MachineError when the folder is removed.
+    /// `work(piece)` must leave nothing half done. With `help` all processes stay with the same piece: where another one
+    /// does it, `help(piece)` is called once. Throws Cancelled, MachineError when the folder is removed.
     std::size_t share(const std::string& name, std::size_t count, const std::function<bool(std::size_t)>& isDone,
-                      const std::function<void(std::size_t)>& work, const Progress& progress) const;
+                      const std::function<void(std::size_t)>& work, const Progress& progress,
+                      const std::function<void(std::size_t)>& help = {}) const;
 
     /// The path of a file of the folder.
     std::string file(const std::string& name) const { return folder_ + "/" + name; }
+    /// The same for a file that only serves processes that are here: it is removed when the first of others enters.
+    std::string scratch(const std::string& name) const { return file(kScratch + name); }
+    /// Removes all of these whose names begin so, but for locks.
+    void removeScratch(const std::string& begin) const;
     /// A lock between the processes, which is waited for; `fraction` of the progress is reported meanwhile. Throws
     /// Cancelled, MachineError when the folder is removed.
     LockedFile lock(const std::string& name, const Progress& progress, double fraction) const;
@@ -42,6 +48,8 @@ public:
     bool complete() const;
 
 private:
+    static constexpr const char* kScratch = "scratch-";
+
     bool remove(LockedFile alone) const;
     bool holdsWork() const;
     void pause(const Progress& progress, double fraction) const;

@@ -18,6 +18,21 @@ std::size_t sliceSize(const volume::Lattice& lattice) {
     return std::size_t(lattice.size.x) * std::size_t(lattice.size.y);
 }
 
+/// The flags of a slab, 1 where samples are present.
+volume::Mask flagsOf(const Field& part) {
+    return part.mask ? *part.mask : volume::Mask(part.count(), 1);
+}
+bool hasGaps(const volume::Mask& flags) {
+    return std::find(flags.begin(), flags.end(), std::uint8_t(0)) != flags.end();
+}
+
+/// Follows the samples and flags of a slab in a file of its own.
+struct AboutSlab {
+    double offset = 0, scale = 1;
+    volume::ScalarType type{};
+    bool masked = false;
+};
+
 } // namespace
 
 Slab layerOf(const volume::BrickGrid& grid, int layer) {
@@ -37,14 +52,58 @@ volume::BrickGrid Slab::grid(volume::BrickGrid whole) const {
     return whole;
 }
 
+std::size_t FrameSamples::Stored::slabCount() const {
+    return std::size_t((lattice.size.z + slices - 1) / slices);
+}
+
+Slab FrameSamples::Stored::slab(std::size_t number) const {
+    const int first = int(number) * slices;
+    return {first, std::min(slices, lattice.size.z - first)};
+}
+
 void FrameSamples::Stored::put(const Field& part, int first) {
     const std::size_t at = sliceSize(lattice) * std::size_t(first);
-    file.write(at * volume::byteSize(type), part.samples);
-    const volume::Mask present = part.mask ? *part.mask : volume::Mask(part.count(), 1);
-    masked = masked || std::find(present.begin(), present.end(), std::uint8_t(0)) != present.end();
-    file.write(lattice.count() * volume::byteSize(type) + at, std::as_bytes(std::span(present)));
+    file->write(at * volume::byteSize(type), part.samples);
+    const volume::Mask present = flagsOf(part);
+    masked = masked || hasGaps(present);
+    file->write(lattice.count() * volume::byteSize(type) + at, std::as_bytes(std::span(present)));
     offset = part.offset;
     scale = part.scale;
+}
+
+void FrameSamples::Stored::fill(const char* step, const std::function<Field(Slab)>& made) {
+    if (store.team) return fillTogether(step, made);
+    const bool wasMasked = masked;
+    const double wasOffset = offset, wasScale = scale;
+    bool isMasked = false;
+    for (std::size_t number = 0; number < slabCount(); ++number) {
+        masked = wasMasked, offset = wasOffset, scale = wasScale; // as when the slab was written
+        const Field part = made(slab(number));
+        type = part.type;
+        masked = isMasked;
+        put(part, slab(number).first);
+        isMasked = masked;
+    }
+}
+
+/// Each slab becomes a file: its samples, one flag each, and how they are to be read.
+void FrameSamples::Stored::fillTogether(const char* step, const std::function<Field(Slab)>& made) {
+    auto files = store.team->share(step, slabCount(), [&](std::size_t number, const SlabTeam::Write& write) {
+        const Field part = made(slab(number));
+        const volume::Mask present = flagsOf(part);
+        const AboutSlab about{part.offset, part.scale, part.type, hasGaps(present)};
+        write(part.samples);
+        write(std::as_bytes(std::span(present)));
+        write(std::as_bytes(std::span(&about, 1)));
+    });
+    masked = false;
+    for (const auto& each : files) {
+        AboutSlab about;
+        each->read(each->size() - sizeof about, std::as_writable_bytes(std::span(&about, 1)));
+        masked = masked || about.masked;
+        type = about.type, offset = about.offset, scale = about.scale;
+    }
+    slabs = std::move(files);
 }
 
 FrameSamples::FrameSamples(volume::SlicedFrame frame, const volume::BrickGrid& grid, const SlabStore& store,
@@ -53,44 +112,40 @@ FrameSamples::FrameSamples(volume::SlicedFrame frame, const volume::BrickGrid& g
         own_ = volume::withoutParts(std::move(*frame.whole));
         return;
     }
-    stored_ = std::make_unique<Stored>(store);
+    stored_ = std::make_unique<Stored>();
+    stored_->store = store;
     stored_->lattice = frame.lattice;
     stored_->slices = store.layers * slicesOfLayer(grid);
-    const int size = frame.lattice.size.z;
-    for (int first = 0; first < size; first += stored_->slices) {
-        progress.advance(double(first) / size);
-        const Field part = volume::withoutParts(frame.read(first, std::min(stored_->slices, size - first)));
-        stored_->type = part.type;
-        stored_->put(part, first);
-    }
+    if (!store.team) stored_->file = std::make_unique<volume::ScratchFile>(store.folder);
+    stored_->fill("samples", [&](Slab slab) {
+        progress.advance(double(slab.first) / frame.lattice.size.z);
+        return volume::withoutParts(frame.read(slab.first, slab.count));
+    });
+}
+
+std::size_t FrameSamples::slabCount() const {
+    return stored_ ? stored_->slabCount() : 1;
+}
+
+Slab FrameSamples::slab(std::size_t number) const {
+    return stored_ ? stored_->slab(number) : Slab{0, lattice().size.z};
 }
 
 bool FrameSamples::forSlabs(const std::function<bool(const Field&, Slab)>& visit) const {
-    const int size = lattice().size.z;
-    if (whole()) return visit(*whole(), {0, size});
-    for (int first = 0; first < size; first += stored_->slices) {
-        const Slab slab{first, std::min(stored_->slices, size - first)};
-        if (!visit(slices(slab.first, slab.count), slab)) return false;
-    }
+    if (whole()) return visit(*whole(), slab(0));
+    for (std::size_t number = 0; number < slabCount(); ++number)
+        if (const Slab own = slab(number); !visit(slices(own.first, own.count), own)) return false;
     return true;
 }
 
 void FrameSamples::change(const std::function<void(Field&, Slab)>& visit) {
     if (borrowed_) own_ = *std::exchange(borrowed_, nullptr);
-    if (own_) return visit(*own_, {0, own_->lattice.size.z});
-    Stored& stored = *stored_;
-    const bool wasMasked = stored.masked;
-    const double offset = stored.offset, scale = stored.scale;
-    bool isMasked = false;
-    for (int first = 0; first < stored.lattice.size.z; first += stored.slices) {
-        const Slab slab{first, std::min(stored.slices, stored.lattice.size.z - first)};
-        stored.masked = wasMasked, stored.offset = offset, stored.scale = scale; // as when the slab was written
+    if (own_) return visit(*own_, slab(0));
+    stored_->fill("changed-samples", [&](Slab slab) {
         Field part = slices(slab.first, slab.count);
         visit(part, slab);
-        stored.masked = isMasked;
-        stored.put(part, slab.first);
-        isMasked = stored.masked;
-    }
+        return part;
+    });
 }
 
 Field FrameSamples::slices(int first, int count) const {
@@ -108,9 +163,19 @@ Field FrameSamples::slices(int first, int count) const {
 
 void FrameSamples::read(std::size_t at, std::size_t n, std::byte* samples, std::uint8_t* present) const {
     const std::size_t bytes = volume::byteSize(stored_->type);
-    stored_->file.read(at * bytes, {samples, n * bytes});
-    if (present)
-        stored_->file.read(stored_->lattice.count() * bytes + at, std::as_writable_bytes(std::span(present, n)));
+    const auto take = [&](const volume::ScratchFile& file, std::size_t all, std::size_t from, std::size_t count) {
+        file.read(from * bytes, {samples, count * bytes});
+        if (present) file.read(all * bytes + from, std::as_writable_bytes(std::span(present, count)));
+    };
+    if (stored_->file) return take(*stored_->file, stored_->lattice.count(), at, n);
+    const std::size_t perSlice = sliceSize(stored_->lattice), perSlab = perSlice * std::size_t(stored_->slices);
+    while (n > 0) {
+        const std::size_t number = at / perSlab, from = at % perSlab, count = std::min(n, perSlab - from);
+        take(*stored_->slabs[number], perSlice * std::size_t(stored_->slab(number).count), from, count);
+        samples += count * bytes;
+        if (present) present += count;
+        at += count, n -= count;
+    }
 }
 
 std::vector<volume::BrickImportance> importanceOfBricks(const volume::BrickGrid& grid, const FrameSamples& samples,
@@ -119,7 +184,7 @@ std::vector<volume::BrickImportance> importanceOfBricks(const volume::BrickGrid&
     if (samples.whole()) return volume::importanceOfBricks(grid, *samples.whole(), range, categorical, options);
     return volume::importanceOfBricks(
         grid, [&](int first, int count) { return samples.slices(first, count); }, samples.store()->layers, range,
-        categorical, options);
+        categorical, options, samples.team() ? samples.team()->pieces("importance") : Pieces(piecesHere));
 }
 
 } // namespace tessera::codec

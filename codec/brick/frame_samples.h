@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/brick/slab_team.h"
 #include "volume/base/progress.h"
 #include "volume/bricks/brick_importance.h"
 #include "volume/resample/resample_slices.h"
@@ -30,17 +31,18 @@ Slab layerOf(const volume::BrickGrid& grid, int layer);
 struct SlabStore {
     int layers = 1;     ///< brick layers in memory at a time
     std::string folder; ///< directory for scratch files
+    SlabTeam* team = nullptr; ///< processes that share the slabs; null: there is only this one
 };
 
-/// One component at one time, to be written to an archive: a field in memory, or, if larger than memory, samples and
-/// flags in a scratch file that is processed slab by slab. A field is a single slab.
+/// One component at one time, to be written to an archive: a field in memory, or, if larger than memory or shared by
+/// processes, samples and flags in scratch files that are processed slab by slab. A field is a single slab.
 class FrameSamples {
 public:
     /// Refers to the field without copying it: the field must outlive this object.
     FrameSamples(const volume::Field& field) : borrowed_(&field) {}
     FrameSamples(volume::Field&& field) : own_(std::move(field)) {}
-    /// Takes a frame in memory, or writes it to a scratch file slab by slab. Mask values become 0 or 1. Throws
-    /// MachineError, Cancelled, and what reading throws.
+    /// Takes a frame in memory, or writes it to a scratch file slab by slab, which the processes of a team share. Mask
+    /// values become 0 or 1. Throws MachineError, Cancelled, and what reading throws.
     FrameSamples(volume::SlicedFrame frame, const volume::BrickGrid& grid, const SlabStore& store,
                  const Progress& progress);
 
@@ -48,6 +50,10 @@ public:
     const volume::Field* whole() const { return borrowed_ ? borrowed_ : own_ ? &*own_ : nullptr; }
     /// Null for a frame in memory.
     const SlabStore* store() const { return stored_ ? &stored_->store : nullptr; }
+    /// Processes that share the slabs, or null.
+    SlabTeam* team() const { return stored_ ? stored_->store.team : nullptr; }
+    std::size_t slabCount() const;
+    Slab slab(std::size_t number) const;
 
     volume::ScalarType type() const { return whole() ? whole()->type : stored_->type; }
     const volume::Lattice& lattice() const { return whole() ? whole()->lattice : stored_->lattice; }
@@ -59,7 +65,17 @@ public:
 
     /// Visits the slabs in order until `visit` returns false; returns true if none did.
     bool forSlabs(const std::function<bool(const volume::Field& part, Slab slab)>& visit) const;
-    /// Modifies samples, flags, offset and scale slab by slab; offset and scale must be equal in all slabs.
+    /// What `of` gives for each slab, in their order; by all processes of a team, where `step` says what is computed.
+    template <class T>
+    std::vector<T> ofSlabs(const char* step, const std::function<T(const volume::Field& part, Slab slab)>& of) const {
+        const Pieces pieces = team() ? team()->pieces(step) : Pieces(piecesHere);
+        return valuesOf<T>(pieces, slabCount(), [&](std::size_t number) {
+            if (whole()) return std::vector<T>{of(*whole(), slab(number))};
+            return std::vector<T>{of(slices(slab(number).first, slab(number).count), slab(number))};
+        });
+    }
+    /// Modifies samples, flags, offset and scale slab by slab; offset and scale must be equal in all slabs. Of a team,
+    /// one process visits a slab.
     void change(const std::function<void(volume::Field& part, Slab slab)>& visit);
     /// A range of slices as a field.
     volume::Field slices(int first, int count) const;
@@ -73,11 +89,17 @@ private:
         double offset = 0, scale = 1;
         bool masked = false;
         SlabStore store;
-        int slices = 0;           ///< slices per slab
-        volume::ScratchFile file; ///< the samples, then one flag each
+        int slices = 0; ///< slices per slab
+        /// The samples, then one flag each: of the frame, or of each slab, which a process of the team wrote.
+        std::unique_ptr<volume::ScratchFile> file;
+        std::vector<std::unique_ptr<const volume::ScratchFile>> slabs;
 
-        explicit Stored(const SlabStore& to) : store(to), file(to.folder) {}
+        std::size_t slabCount() const;
+        Slab slab(std::size_t number) const;
         void put(const volume::Field& part, int first);
+        /// Replaces the frame by the slabs that `part` gives.
+        void fill(const char* step, const std::function<volume::Field(Slab slab)>& part);
+        void fillTogether(const char* step, const std::function<volume::Field(Slab slab)>& part);
     };
     const volume::Field* borrowed_ = nullptr;
     std::optional<volume::Field> own_;

@@ -90,6 +90,27 @@ double spacingOf(const FrameSamples& samples, double maxError) {
     return exact.kind == NumberKind::Scaled && maxError * exact.step < kFar ? 1 / exact.step : 0;
 }
 
+FloatRange rangeOf(const volume::Field& part) {
+    constexpr std::size_t kLanes = 16; // so that the loop is vectorised
+    std::array<float, kLanes> lo, hi, least;
+    lo.fill(FloatRange().lo), hi.fill(FloatRange().hi), least.fill(FloatRange().least);
+    const auto add = [&](std::size_t lane, float sample) {
+        const float size = std::abs(sample);
+        const bool finite = size <= std::numeric_limits<float>::max();
+        lo[lane] = finite && sample < lo[lane] ? sample : lo[lane];
+        hi[lane] = finite && sample > hi[lane] ? sample : hi[lane];
+        least[lane] = finite && size < least[lane] ? size : least[lane];
+    };
+    const auto samples = part.as<float>();
+    std::size_t i = 0;
+    if (!part.mask)
+        for (; i + kLanes <= samples.size(); i += kLanes)
+            for (std::size_t lane = 0; lane < kLanes; ++lane) add(lane, samples[i + lane]);
+    for (; i < samples.size(); ++i)
+        if (part.present(i)) add(0, samples[i]);
+    return {*std::ranges::min_element(lo), *std::ranges::max_element(hi), *std::ranges::min_element(least)};
+}
+
 /// The largest odd multiple of a spacing such that samples at this spacing round to multiples of it within the bound.
 /// Decimal fractions are not floats: `safeError` is the bound less the error of rounding to floats.
 double multipleWithin(double spacing, double maxError, double safeError) {
@@ -102,27 +123,11 @@ double multipleWithin(double spacing, double maxError, double safeError) {
 } // namespace
 
 FloatRange floatRangeOf(const FrameSamples& frame) {
-    constexpr std::size_t kLanes = 16; // so that the loop is vectorised
-    std::array<float, kLanes> lo, hi, least;
-    lo.fill(FloatRange().lo), hi.fill(FloatRange().hi), least.fill(FloatRange().least);
-    const auto add = [&](std::size_t lane, float sample) {
-        const float size = std::abs(sample);
-        const bool finite = size <= std::numeric_limits<float>::max();
-        lo[lane] = finite && sample < lo[lane] ? sample : lo[lane];
-        hi[lane] = finite && sample > hi[lane] ? sample : hi[lane];
-        least[lane] = finite && size < least[lane] ? size : least[lane];
-    };
-    frame.forSlabs([&](const volume::Field& part, Slab) {
-        const auto samples = part.as<float>();
-        std::size_t i = 0;
-        if (!part.mask)
-            for (; i + kLanes <= samples.size(); i += kLanes)
-                for (std::size_t lane = 0; lane < kLanes; ++lane) add(lane, samples[i + lane]);
-        for (; i < samples.size(); ++i)
-            if (part.present(i)) add(0, samples[i]);
-        return true;
-    });
-    return {*std::ranges::min_element(lo), *std::ranges::max_element(hi), *std::ranges::min_element(least)};
+    FloatRange all;
+    for (const FloatRange& part : frame.ofSlabs<FloatRange>(
+             "range", [](const volume::Field& part, Slab) { return rangeOf(part); }))
+        all = {std::min(all.lo, part.lo), std::max(all.hi, part.hi), std::min(all.least, part.least)};
+    return all;
 }
 
 NumberCoding chooseCoding(const FrameSamples& samples, double maxError) {

@@ -3,6 +3,7 @@
 #include "codec/bytes/stopwatch.h"
 #include "volume/base/number_extent.h"
 #include "volume/field/part_masks.h"
+#include "volume/field/stored_range.h"
 
 #include <algorithm>
 #include <cmath>
@@ -59,6 +60,22 @@ std::vector<Range> rangesOf(const std::vector<Field>& components) {
     return ranges;
 }
 
+/// Of one component in some slices of a frame.
+struct ExtentOfRun {
+    volume::StoredExtent stored;
+    Range range{kNothing}, magnitude{kNothing}; ///< magnitude: of all components together
+};
+
+std::vector<ExtentOfRun> extentsOf(const std::vector<Field>& components, bool isRanged) {
+    const std::vector<Range> ranges = isRanged ? std::vector<Range>() : rangesOf(components);
+    std::vector<ExtentOfRun> extents(components.size());
+    for (std::size_t c = 0; c < components.size(); ++c) {
+        extents[c].stored.add(components[c]);
+        if (!isRanged) extents[c].range = ranges[c], extents[c].magnitude = ranges.back();
+    }
+    return extents;
+}
+
 Field checked(Field field, const volume::Parameter& about, glm::ivec3 size, std::size_t time) {
     if (field.lattice.size != size || field.type != about.type)
         throw Error("frame " + std::to_string(time) + " of " + about.name + " has another size or type");
@@ -96,18 +113,32 @@ std::vector<volume::SlicedFrame> FrameQueue::source(QueuedFrames& step, const vo
     }
     const bool fits = options_.slices.step == 0, isRanged = !parameter.ranges.empty();
     if (!fits && isRanged && !options_.toBcc) return frames; // no preliminary pass is needed
-    const int run = fits ? lattice.size.z : options_.slices.step;
-    for (int first = 0; first < lattice.size.z; first += run) {
+    const auto partsOf = [&](int first, int count) {
         std::vector<Field> parts;
-        for (const volume::SlicedFrame& frame : frames)
-            parts.push_back(frame.read(first, std::min(run, lattice.size.z - first)));
+        for (const volume::SlicedFrame& frame : frames) parts.push_back(frame.read(first, count));
+        return parts;
+    };
+    if (fits) {
+        std::vector<Field> parts = partsOf(0, lattice.size.z);
         if (!isRanged) widenRanges(step.ranges, rangesOf(parts));
-        for (std::size_t c = 0; c < frames.size(); ++c) {
-            if (fits)
-                frames[c] = volume::inMemory(std::move(parts[c]));
-            else
-                frames[c].extent.add(parts[c]);
-        }
+        for (std::size_t c = 0; c < frames.size(); ++c) frames[c] = volume::inMemory(std::move(parts[c]));
+        return frames;
+    }
+    const int run = options_.slices.step;
+    const auto runs = std::size_t((lattice.size.z + run - 1) / run);
+    const Pieces pieces = options_.team ? options_.team->pieces("extents") : Pieces(piecesHere);
+    std::size_t number = 0;
+    for (const ExtentOfRun& part : valuesOf<ExtentOfRun>(pieces, runs, [&](std::size_t piece) {
+             const int first = int(piece) * run;
+             return extentsOf(partsOf(first, std::min(run, lattice.size.z - first)), isRanged);
+         })) {
+        const std::size_t c = number++ % frames.size();
+        frames[c].extent.add(part.stored);
+        if (isRanged) continue;
+        std::vector<Range> ranges(frames.size() == 1 ? 1 : frames.size() + 1, kNothing);
+        ranges[c] = part.range;
+        if (ranges.size() > 1) ranges.back() = part.magnitude;
+        widenRanges(step.ranges, ranges);
     }
     return frames;
 }
@@ -127,7 +158,7 @@ QueuedFrames FrameQueue::read(std::size_t number) const {
     }
     if (options_.rangesOnly) return step;
     const Progress progress{{}, stop_};
-    const SlabStore store{options_.slabLayers, options_.slices.folder};
+    const SlabStore store{options_.slabLayers, options_.slices.folder, options_.team};
     Stopwatch rest(options_.toBcc ? step.resampleSeconds : step.loadSeconds);
     for (volume::SlicedFrame& frame : frames) {
         volume::SlicedFrame stored = frame;

@@ -36,6 +36,7 @@ struct FrameQueueOptions {
     bool ahead = false;         ///< read the next step while the current one is processed; needs memory for both
     bool rangesOnly = false;    ///< compute ranges only, without frames
     bool measures = false;      ///< measure the error of resampling
+    SlabTeam* team = nullptr;   ///< processes that share the work, frame by frame
 };
 
 /// Reads and resamples a data set time by time, and within each time parameter by parameter, one step ahead of the

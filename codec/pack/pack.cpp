@@ -17,6 +17,7 @@
 #include "volume/system/part_file.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <filesystem>
 
@@ -82,14 +83,21 @@ std::vector<volume::Quantity> quantitiesOf(const volume::DatasetInfo& source, co
     return grown ? volume::joined(grown->metadata().sourceQuantities, old, own, added.size()) : own;
 }
 
+/// Brick layers of the slabs that a team shares: one, but for so many that their files would be too many.
+int layersOfTeam(const volume::BrickGrid& grid) {
+    constexpr int kMostSlabs = 256;
+    return (grid.count().z + kMostSlabs - 1) / kMostSlabs;
+}
+
 /// One run of pack or append.
 class Packing {
 public:
     /// Packs into a new archive, or appends to `grown`, whose options are then `options`.
     Packing(volume::Dataset& source, int slabLayers, const PackedBefore& before, const PackOptions& options,
-            const std::string& path, const Archive* grown)
-        : source_(source), dataset_(source), options_(options), path_(path), grown_(grown) {
+            const std::string& path, const Archive* grown, SlabTeam* team = nullptr)
+        : source_(source), dataset_(source), options_(options), path_(path), grown_(grown), team_(team) {
         check(source.info, options);
+        assert(!team || (source.read.inParts() && !grown && options.discard == 0 && !hasThreshold(options)));
         metadata_.source =
             before.grid && source.info.lattice.kind == LatticeKind::BCC ? *before.grid : source.info.lattice;
         metadata_.alternating = options.lattice == StoredLattice::D4;
@@ -119,7 +127,7 @@ public:
         errors_.assign(info.parameters.size(), 0);
         for (const volume::Parameter& parameter : info.parameters)
             errorsBefore_.push_back(parameter.categorical ? 0 : before.maxError * extentOf(parameter));
-        memory_ = planMemory(metadata_, source, options, slabLayers);
+        memory_ = planMemory(metadata_, source, options, team ? layersOfTeam(metadata_.grid) : slabLayers);
         reading_ = {.toBcc = toBcc,
                     .resample = options.resample,
                     .grid = metadata_.grid,
@@ -127,7 +135,8 @@ public:
                     .slabLayers = memory_.slabLayers,
                     .ahead = memory_.readAhead,
                     .rangesOnly = false,
-                    .measures = false};
+                    .measures = false,
+                    .team = team};
         if (metadata_.alternating && memory_.slabLayers > 0) dataset_.read = framesOfD4(reading_.slices).frames.read;
         resampledBefore_ = before.resampled;
     }
@@ -142,6 +151,8 @@ public:
 
 private:
     std::size_t times() const { return dataset_.info.times.size(); }
+    bool writes() const { return !team_ || team_->writes(); }
+    void sayLimits();
     void gather(const Progress& progress);
     void addStep(ArchiveWriter& writer, QueuedFrames fed, const Progress& progress);
     void addFrame(ArchiveWriter& writer, FrameSamples& samples, int parameter, int component, std::size_t time,
@@ -153,6 +164,7 @@ private:
     PackOptions options_;
     std::string path_;
     const Archive* grown_;
+    SlabTeam* team_; ///< or null
     Metadata metadata_;
     Continuation place_;
     MemoryPlan memory_;
@@ -264,7 +276,7 @@ void Packing::addStep(ArchiveWriter& writer, QueuedFrames fed, const Progress& p
                  progress.part(double(c) / frames, double(c + 1) / frames));
     }
     const std::size_t wholeTimes = place_.firstTime + fed.time + 1, least = metadata_.alternating ? 2 : 1;
-    if (p + 1 < dataset_.info.parameters.size() || !place_.wholeTimes || wholeTimes < least) return;
+    if (p + 1 < dataset_.info.parameters.size() || !place_.wholeTimes || wholeTimes < least || !writes()) return;
     Stopwatch write(summary_.writeSeconds);
     writer.commit(soFar(wholeTimes), wholeTimes);
 }
@@ -273,6 +285,15 @@ std::vector<SizeAtBound> Packing::estimate(const Progress& progress) {
     gatherAllRanges(dataset_, reading_, summary_, progress.part(0, 0.5));
     source_.info.parameters = dataset_.info.parameters;
     return estimateSizes(dataset_, reading_, options_, progress.part(0.5, 1));
+}
+
+void Packing::sayLimits() {
+    if (!memory_.keepFrames && times() > 1)
+        summary_.notes.push_back(std::string(team_ ? "slabs are packed apart" : "too little memory to keep the previous time") +
+                                 ": changes of bricks between times are not stored");
+    if (memory_.slabLayers > 0 && !team_)
+        summary_.notes.push_back("too little memory for a whole time; slabs in memory at once: " +
+                                 std::to_string(memory_.slabLayers));
 }
 
 PackSummary Packing::run(const Progress& progress) {
@@ -285,7 +306,7 @@ PackSummary Packing::run(const Progress& progress) {
         summary_.bricks = metadata_.grid.brickCount();
         const auto writer = grown_ ? std::make_unique<ArchiveWriter>(*grown_, metadata_, memory_.keepFrames)
                                    : std::make_unique<ArchiveWriter>(path_, metadata_, memory_.keepFrames);
-        reading_.measures = reading_.toBcc; // not in the preliminary passes
+        reading_.measures = reading_.toBcc && writes(); // not in the preliminary passes
         if (reading_.measures) resampled_.resize(dataset_.info.parameters.size());
         FrameQueue feed(dataset_, reading_, progress.stop);
         const std::vector<volume::Parameter>& parameters = dataset_.info.parameters;
@@ -304,13 +325,9 @@ PackSummary Packing::run(const Progress& progress) {
         }
         settleRanges(dataset_.info, ranges_);
         source_.info.parameters = dataset_.info.parameters;
+        if (!writes()) return summary_;
         Stopwatch write(summary_.writeSeconds);
-        if (!memory_.keepFrames && times() > 1)
-            summary_.notes.push_back(
-                "too little memory to keep the previous time: changes of bricks between times are not stored");
-        if (memory_.slabLayers > 0)
-            summary_.notes.push_back("too little memory for a whole time; slabs in memory at once: " +
-                                     std::to_string(memory_.slabLayers));
+        sayLimits();
         summary_.repeatedBricks = writer->repeats().bricks;
         summary_.repeatedBytes = writer->repeats().bytes;
         const Metadata known = soFar(metadata_.info.times.size());
@@ -325,10 +342,10 @@ PackSummary Packing::run(const Progress& progress) {
 } // namespace
 
 PackSummary pack(volume::Dataset& source, const PackOptions& options, const std::string& output,
-                 const Progress& progress, const PackedBefore& before, int slabLayers) {
+                 const Progress& progress, const PackedBefore& before, int slabLayers, SlabTeam* team) {
     const std::string path = replacedFile(output);
     const auto packing = [&](const PackOptions& with, const std::string& to) {
-        return Packing(source, slabLayers, before, with, to, nullptr);
+        return Packing(source, slabLayers, before, with, to, nullptr, team);
     };
     if (options.sizeMb == 0) return packing(options, path).run(progress);
     const auto trial = [&](const PackOptions& with, const std::string& to, const Progress& part) {
@@ -343,8 +360,8 @@ PackSummary pack(volume::Dataset& source, const PackOptions& options, const std:
 }
 
 std::vector<std::vector<Range>> unknownRanges(volume::Dataset& source, const PackOptions& options,
-                                              const std::string& path, const Progress& progress) {
-    return Packing(source, 0, {}, options, path, nullptr).ranges(progress);
+                                              const std::string& path, const Progress& progress, SlabTeam* team) {
+    return Packing(source, 0, {}, options, path, nullptr, team).ranges(progress);
 }
 
 PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb, const Progress& progress,

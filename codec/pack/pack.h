@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/brick/slab_team.h"
 #include "codec/container/pack_options.h"
 #include "codec/container/resample_error.h"
 #include "codec/pack/pack_summary.h"
@@ -29,19 +30,23 @@ struct PackedBefore {
 /// can be read in parts: only a few brick layers are in memory, and the rest is in scratch files beside `path`, as
 /// large as the stored samples (with B-splines 4 or 8 more bytes per sample). codec/pack/memory_plan.h defines what
 /// `memoryMb` limits. `slabLayers`: number of brick layers in memory, for a source that can be read in parts; 0: slabs
-/// only if frames do not fit, with as many layers as fit.
+/// only if frames do not fit, with as many layers as fit. `team`: processes that call this alike to pack the same data
+/// together, slab by slab, from a source that can be read in parts; one of them writes the archive.
 ///
 /// Unknown ranges are computed while packing (with `maxError`, in a pass before). Categorical parameters are resampled
 /// to the nearest sample and only predicted, so that every level has valid labels. The errors stored in the archive are
 /// the sum of `before` and the new ones. If it throws, no file is left: Error for bad input or options, MachineError
 /// when the file cannot be written, Cancelled.
 PackSummary pack(volume::Dataset& source, const PackOptions& options, const std::string& path,
-                 const Progress& progress = {}, const PackedBefore& before = {}, int slabLayers = 0);
+                 const Progress& progress = {}, const PackedBefore& before = {}, int slabLayers = 0,
+                 SlabTeam* team = nullptr);
 
 /// The unknown ranges of a data set that is going to be packed, by parameter, then component, from a pass over it
-/// within the memory of the options; those without a sample are empty (lo > hi). Throws as pack().
+/// within the memory of the options, which the processes of a team share; those without a sample are empty (lo > hi).
+/// Throws as pack().
 std::vector<std::vector<Range>> unknownRanges(volume::Dataset& source, const PackOptions& options,
-                                              const std::string& path, const Progress& progress = {});
+                                              const std::string& path, const Progress& progress = {},
+                                              SlabTeam* team = nullptr);
 
 /// Appends to an archive with its own options: later times of the same parameters (with d4 preceded by the last times
 /// again, volume::continueD4), or further parameters at the same times. In addition the source may have labels that

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <functional>
 #include <glm/common.hpp>
 #include <limits>
 #include <map>
@@ -230,88 +231,103 @@ std::vector<BrickImportance> withNeighbours(const std::vector<BrickImportance>& 
     return out;
 }
 
+/// A part of a frame: its slices from texel `first` (an even one) on, which hold the layers [layer, end) of bricks.
+struct LayersOfBricks {
+    const Field& field;
+    int first = 0, layer = 0, end = 0;
+};
+
 /// Importance of bricks without the share of their neighbours.
 struct OwnImportance {
     const BrickGrid& grid;
     SmoothedRange about;
     double borderWeight;
-    std::vector<BrickImportance>& bricks; ///< of the whole grid
 
     std::size_t perLayer() const { return std::size_t(grid.count().x) * std::size_t(grid.count().y); }
     int slices() const { return grid.lattice.kind == LatticeKind::BCC ? 2 : 1; } ///< of a texel
 
-    /// The layers [layer, end) of bricks from a part of the frame: its slices from texel `first` (an even one) on,
-    /// kMargin texels more than those layers on both sides where there are so many.
-    void take(const Field& part, int first, int layer, int end) const {
+    /// Of the bricks of a part that has kMargin texels more than those on both sides, where there are so many.
+    std::vector<BrickImportance> of(const LayersOfBricks& part) const {
         std::vector<Smoothed> halves;
-        for (int s = 0; s < slices(); ++s) halves.push_back(smoothedHalf(part, s, about));
-        const glm::ivec3 shift(0, 0, first / 2);
-        parallelFor(perLayer() * std::size_t(end - layer), [&](std::size_t i) {
-            const std::size_t number = perLayer() * std::size_t(layer) + i;
-            const glm::ivec3 brick = brickAt(grid.count(), number);
+        for (int s = 0; s < slices(); ++s) halves.push_back(smoothedHalf(part.field, s, about));
+        const glm::ivec3 shift(0, 0, part.first / 2);
+        return forBricks(part, [&](std::size_t i) {
+            const glm::ivec3 brick = brickAt(grid.count(), perLayer() * std::size_t(part.layer) + i);
             Sums sums;
             for (const Smoothed& half : halves) {
                 const glm::ivec3 lo = (brick * grid.brickSize + 1) / 2 - shift,
                                  hi = glm::min((brick * grid.brickSize + grid.brickSize + 1) / 2 - shift, half.size);
                 addBrick(half, lo, hi, borderWeight, sums);
             }
-            bricks[number] = sums.result();
+            return sums.result();
         });
     }
     /// The same for labels, which need no margins.
-    void takeLabels(const Field& part, int layer, int end) const {
+    std::vector<BrickImportance> ofLabels(const LayersOfBricks& part) const {
         BrickGrid own = grid;
-        own.lattice = part.lattice;
-        parallelFor(perLayer() * std::size_t(end - layer), [&](std::size_t i) {
-            bricks[perLayer() * std::size_t(layer) + i] = importanceOfLabels(own, part, brickAt(own.count(), i));
-        });
+        own.lattice = part.field.lattice;
+        return forBricks(part,
+                         [&](std::size_t i) { return importanceOfLabels(own, part.field, brickAt(own.count(), i)); });
     }
 
     static constexpr int kMargin = 4; ///< reach of the details of smoothed samples
+
+private:
+    std::vector<BrickImportance> forBricks(const LayersOfBricks& part, const auto& of) const {
+        std::vector<BrickImportance> bricks(perLayer() * std::size_t(part.end - part.layer));
+        parallelFor(bricks.size(), [&](std::size_t i) { bricks[i] = of(i); });
+        return bricks;
+    }
 };
 
-/// Importance of all bricks of a frame. `forParts(margin, visit)` calls visit(part, first texel, layer, end) for parts
-/// of the frame that together hold all layers of bricks, with `margin` texels more on both sides.
+/// Importance of all bricks of a frame. `ofParts.operator()<T>(margin, of)` gives what `of(part)` gives, a vector of T,
+/// one after the other for parts that together hold all layers of bricks, with `margin` texels more on both sides.
 std::vector<BrickImportance> importanceOfParts(const BrickGrid& grid, Range range, bool categorical,
-                                               const ImportanceOptions& options, const auto& forParts) {
+                                               const ImportanceOptions& options, const auto& ofParts) {
     const glm::ivec3 count = grid.count();
-    std::vector<BrickImportance> own(countOf(count));
+    const auto own = [&](int margin, const std::function<std::vector<BrickImportance>(const LayersOfBricks&)>& of) {
+        return withNeighbours(ofParts.template operator()<BrickImportance>(margin, of), count, options.neighbours);
+    };
     if (categorical) {
-        const OwnImportance labels{grid, {range}, 1, own};
-        forParts(0, [&](const Field& part, int, int layer, int end) { labels.takeLabels(part, layer, end); });
-        return withNeighbours(own, count, options.neighbours);
+        const OwnImportance labels{grid, {range}, 1};
+        return own(0, [&](const LayersOfBricks& part) { return labels.ofLabels(part); });
     }
     Extent extent;
-    forParts(0, [&](const Field& part, int, int, int) { extent.add(extentOf(part)); });
+    const auto extentOfPart = [](const LayersOfBricks& part) { return std::vector<Extent>{extentOf(part.field)}; };
+    for (const Extent& part : ofParts.template operator()<Extent>(0, extentOfPart)) extent.add(part);
     if (!(range.lo <= range.hi)) range = extent.range;
-    if (!(range.lo < range.hi)) return own; // one value, or nothing
-    const OwnImportance smooth{grid, extent.within(range), options.borderWeight, own};
-    forParts(OwnImportance::kMargin,
-             [&](const Field& part, int first, int layer, int end) { smooth.take(part, first, layer, end); });
-    return withNeighbours(own, count, options.neighbours);
+    if (!(range.lo < range.hi)) return std::vector<BrickImportance>(countOf(count)); // one value, or nothing
+    const OwnImportance smooth{grid, extent.within(range), options.borderWeight};
+    return own(OwnImportance::kMargin, [&](const LayersOfBricks& part) { return smooth.of(part); });
 }
 
 } // namespace
 
 std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Field& field, Range range,
                                                 bool categorical, const ImportanceOptions& options) {
-    return importanceOfParts(grid, range, categorical, options,
-                             [&](int, auto&& visit) { visit(field, 0, 0, grid.count().z); });
+    return importanceOfParts(
+        grid, range, categorical, options,
+        [&]<class T>(int, const std::function<std::vector<T>(const LayersOfBricks&)>& of) {
+            return of({field, 0, 0, grid.count().z});
+        });
 }
 
 std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const SliceReader& read, int layers, Range range,
-                                                bool categorical, const ImportanceOptions& options) {
+                                                bool categorical, const ImportanceOptions& options,
+                                                const Pieces& pieces) {
     const int all = grid.count().z, texels = grid.lattice.texels().z;
     const int slices = grid.lattice.kind == LatticeKind::BCC ? 2 : 1; // of a texel
-    return importanceOfParts(grid, range, categorical, options, [&](int margin, auto&& visit) {
-        for (int layer = 0; layer < all; layer += layers) {
-            const int end = std::min(layer + layers, all);
-            const int first = std::max(layer * grid.brickSize - margin, 0),
-                      last = std::min(end * grid.brickSize + margin, texels);
-            const int from = first * slices, to = std::min(last * slices, grid.lattice.size.z);
-            visit(read(from, to - from), first, layer, end);
-        }
-    });
+    return importanceOfParts(
+        grid, range, categorical, options,
+        [&]<class T>(int margin, const std::function<std::vector<T>(const LayersOfBricks&)>& of) {
+            return valuesOf<T>(pieces, std::size_t((all + layers - 1) / layers), [&](std::size_t piece) {
+                const int layer = int(piece) * layers, end = std::min(layer + layers, all);
+                const int first = std::max(layer * grid.brickSize - margin, 0),
+                          last = std::min(end * grid.brickSize + margin, texels);
+                const int from = first * slices, to = std::min(last * slices, grid.lattice.size.z);
+                return of({read(from, to - from), first, layer, end});
+            });
+        });
 }
 
 } // namespace tessera::volume

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volume/base/describe.h"
+#include "volume/base/pieces.h"
 #include "volume/bricks/brick_grid.h"
 #include "volume/bricks/brick_stats.h"
 #include "volume/field/dataset.h"
@@ -49,7 +50,8 @@ std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Fie
 
 /// The same for a frame that is read in slices, `layers` layers of bricks at a time plus a few slices around them.
 std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const SliceReader& read, int layers, Range range,
-                                                bool categorical, const ImportanceOptions& options = {});
+                                                bool categorical, const ImportanceOptions& options = {},
+                                                const Pieces& pieces = piecesHere);
 
 /// Largest and RMS difference between two frames within a brick, of the decoded values. Both frames have the lattice of
 /// the grid and the same type; scale and offset may differ.

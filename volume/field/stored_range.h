@@ -47,6 +47,13 @@ struct StoredExtent {
         });
     }
 
+    void add(const StoredExtent& more) {
+        lo = std::min(lo, more.lo), hi = std::max(hi, more.hi);
+        masked = masked || more.masked;
+        for (std::size_t n = 0; n < kNumbers; ++n)
+            byPart[n] = {std::min(byPart[n].lo, more.byPart[n].lo), std::max(byPart[n].hi, more.byPart[n].hi)};
+    }
+
     /// Of what is present where masks have this number.
     Range of(std::size_t number) const {
         const Range& own = byPart[number % kNumbers];

@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace tessera::volume {
@@ -15,6 +17,12 @@ ScratchFile::ScratchFile(const std::string& folder) {
     if (file_ < 0)
         throw MachineError(std::string("a temporary file cannot be created: ") + std::strerror(errno), folder);
     ::unlink(name.c_str());
+}
+
+std::unique_ptr<const ScratchFile> ScratchFile::of(const std::string& path) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) throw MachineError(std::string("cannot be read: ") + std::strerror(errno), path);
+    return std::unique_ptr<const ScratchFile>(new ScratchFile(file));
 }
 
 ScratchFile::~ScratchFile() {
@@ -39,6 +47,13 @@ void ScratchFile::read(std::uint64_t at, std::span<std::byte> bytes) const {
         bytes = bytes.subspan(std::size_t(done));
         at += std::uint64_t(done);
     }
+}
+
+std::uint64_t ScratchFile::size() const {
+    struct stat about {};
+    if (::fstat(file_, &about) != 0)
+        throw MachineError(std::string("a temporary file cannot be read: ") + std::strerror(errno));
+    return std::uint64_t(about.st_size);
 }
 
 } // namespace tessera::volume
