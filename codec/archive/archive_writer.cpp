@@ -207,12 +207,13 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     frame.mask = maskFor(samples, options.zstdLevel);
     const auto found = lastModel.find(component);
     const KnownModel* const last = found == lastModel.end() ? nullptr : &found->second;
-    frame.numbers = options.numbers ? *options.numbers : chooseNumbers(grid, samples, last, options);
+    SampleNumbers numbers(samples);
+    frame.numbers = options.numbers ? *options.numbers : chooseNumbers(grid, numbers, last, options);
     frame.wavelet = options.wavelet.value_or(Wavelet::W22);
     frame.keepsAbsent = options.keepsAbsent && frame.mask >= 0;
     frame.valueOffset = samples.offset();
     frame.valueScale = samples.scale();
-    frame.codeBits = codeBitsOf(samples, frame.numbers);
+    frame.codeBits = codeBitsOf(numbers, frame.numbers);
     if (mixesParts(component)) {
         frame.subsampled = true;
         commits.header.features |= kSubsamples;
@@ -224,7 +225,7 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     const bool byBand = (commits.header.features & kBandContexts) != 0;
     coding.model = chooseModel(grid, samples, last, byBand, frame, options, coding.taken);
     const TimeBefore earlier{last, coding.before, time / step()};
-    if (auto steps = chooseSteps(grid, samples, frame, coding.model, options, earlier, coding.taken)) {
+    if (auto steps = chooseSteps(grid, numbers, frame, coding.model, options, earlier, coding.taken)) {
         coding.rounded = frame;
         useSteps(*steps, frame);
         coding.maxError = steps->maxError;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/brick/brick_codec.h"
+#include "codec/brick/frame_samples.h"
 #include "codec/container/index.h"
 #include "volume/bricks/brick_grid.h"
 #include "volume/field/dataset.h"

@@ -73,6 +73,7 @@ void take(const BrickProperties& of, std::size_t b, FrameCoding& coding) {
     coding.frame.bricks[b] = {of.min, of.max, {of.samples, of.infinite, of.mean, {of.counts.begin(), end}}, {}};
     coding.frame.bricks[b].notes.importance = coding.importance[b];
     coding.whole[b] = of.whole != 0 ? 1 : 0;
+    coding.taken.bricks[b].reset(); // another process used its own; it must not serve another quantum
     if (coding.measures()) coding.errors[b] = of.errors;
 }
 
@@ -146,11 +147,13 @@ void codeSlab(FrameCoding& coding, const volume::Field& part, Slab slab, const Z
 void codeTogether(FrameCoding& coding, const FrameSamples& samples, const ZstdUse& zstd, CodedBricks& coded,
                   const Progress& progress) {
     SlabTeam& team = *samples.team();
+    volume::Field part;
     const auto files = team.share("bricks", samples.slabCount(), [&](std::size_t number, const SlabTeam::Write& write) {
         const Slab slab = samples.slab(number);
         std::vector<std::vector<Bytes>> bricks;
         const auto put = [&](std::size_t, std::vector<Bytes> segments) { bricks.push_back(std::move(segments)); };
-        codeSlab(coding, samples.slices(slab.first, slab.count), slab, zstd, put, progress);
+        samples.take(slab.first, slab.count, part);
+        codeSlab(coding, part, slab, zstd, put, progress);
         writeSlab(coding, slab.bricks(coding.grid).first, bricks, write);
     });
     for (std::size_t number = 0; number < files.size(); ++number) {

@@ -191,9 +191,11 @@ void tryFitted(const volume::BrickGrid& grid, const FrameSamples& samples, const
 
 } // namespace
 
-int codeBitsOf(const FrameSamples& samples, const NumberCoding& numbers) {
+int codeBitsOf(SampleNumbers& of, const NumberCoding& numbers) {
+    const FrameSamples& samples = of.samples();
     if (samples.type() != volume::ScalarType::F32) return codec::codeBitsOf(samples.type());
     if (numbers.kind == NumberKind::Float) return 32;
+    if (isBounded(numbers)) return codeBitsOf(of.range(), numbers); // larger samples have larger codes
     const auto ofPart = [&](const volume::Field& part, Slab) {
         constexpr std::size_t kRow = 512;
         std::array<std::uint32_t, kRow> codes;
@@ -213,19 +215,20 @@ int codeBitsOf(const FrameSamples& samples, const NumberCoding& numbers) {
     return std::max(1, int(std::bit_width(all)) + 1);
 }
 
-NumberCoding chooseNumbers(const volume::BrickGrid& grid, const FrameSamples& samples, const KnownModel* last,
+NumberCoding chooseNumbers(const volume::BrickGrid& grid, SampleNumbers& of, const KnownModel* last,
                            const FrameOptions& options) {
     constexpr int kBitsOfFloat = 25; // sign and 24 digits
+    const FrameSamples& samples = of.samples();
     FrameRecord frame;
     frame.mask = samples.masked() ? 0 : -1;
-    frame.numbers = chooseCoding(samples, options.maxError);
-    frame.codeBits = codeBitsOf(samples, frame.numbers);
+    frame.numbers = chooseCoding(of, options.maxError);
+    frame.codeBits = codeBitsOf(of, frame.numbers);
     if (frame.numbers.kind != NumberKind::Scaled || frame.codeBits <= kBitsOfFloat) return frame.numbers;
     const NumberCoding scaled = frame.numbers, bits{NumberKind::Float, 0, 1};
     if (last && last->kind == NumberKind::Float) return bits;
     const double asScaled = sampleMiddles(grid, samples, frame, kTrialBricks).bits();
     frame.numbers = bits;
-    frame.codeBits = codeBitsOf(samples, bits);
+    frame.codeBits = codeBitsOf(of, bits);
     return sampleMiddles(grid, samples, frame, kTrialBricks).bits() < asScaled ? bits : scaled;
 }
 
@@ -243,9 +246,10 @@ double estimateFrameBytes(const volume::BrickGrid& grid, const FrameSamples& sam
                           std::size_t bricks) {
     FrameRecord frame;
     frame.mask = samples.masked() ? 0 : -1;
-    frame.numbers = chooseNumbers(grid, samples, nullptr, options);
+    SampleNumbers of(samples);
+    frame.numbers = chooseNumbers(grid, of, nullptr, options);
     frame.wavelet = options.wavelet.value_or(Wavelet::W22);
-    frame.codeBits = codeBitsOf(samples, frame.numbers);
+    frame.codeBits = codeBitsOf(of, frame.numbers);
     const int shift = frame.codeBits > 16 ? shiftFor(sampleTokens(grid, samples, frame, bricks, {})) : 0;
     const double all = double(grid.brickCount());
     return sampleTokens(grid, samples, frame, bricks, {shift, prefersByBand(frame)}).bits() / 8 * all /

@@ -3,7 +3,7 @@
 #include "codec/archive/archive_state.h"
 #include "codec/archive/frame_options.h"
 #include "codec/brick/brick_codec.h"
-#include "codec/brick/frame_samples.h"
+#include "codec/brick/sample_numbers.h"
 
 #include <optional>
 #include <vector>
@@ -26,12 +26,12 @@ struct Taken {
     }
 };
 
-/// Width of |code| over the present samples of a frame of floats, in bits.
-int codeBitsOf(const FrameSamples& samples, const NumberCoding& numbers);
+/// Width of |code| over the present samples of a frame, in bits.
+int codeBitsOf(SampleNumbers& of, const NumberCoding& numbers);
 
-/// Selects the number coding of a frame; `last` is the model of the previous frame, or none. If decimals or binary
-/// fractions would need as many digits as floats have bits, the shorter coding is selected by trial.
-NumberCoding chooseNumbers(const volume::BrickGrid& grid, const FrameSamples& samples, const KnownModel* last,
+/// Selects the number coding of a frame of samples `of`; `last` is the model of the previous frame, or none. If
+/// decimals or binary fractions would need as many digits as floats have bits, the shorter coding is selected by trial.
+NumberCoding chooseNumbers(const volume::BrickGrid& grid, SampleNumbers& of, const KnownModel* last,
                            const FrameOptions& options);
 
 /// The zstd level for the bricks of a frame; higher for small frames, where it costs little time.

@@ -67,17 +67,18 @@ void tryOwn(StepSearch& search, const SteppedFrame& how, const StepsBefore& befo
     search.improveQuantum();
 }
 
-std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, const FrameSamples& samples,
-                                     const FrameRecord& frame, const Model& model, const FrameOptions& options,
-                                     const StepsBefore& before, const SeenFrame* seen, const Taken& taken) {
-    const std::optional<NumberCoding> numbers = steppedCoding(samples, boundOf(frame, options));
+std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, SampleNumbers& of, const FrameRecord& frame,
+                                     const Model& model, const FrameOptions& options, const StepsBefore& before,
+                                     const SeenFrame* seen, const Taken& taken) {
+    const FrameSamples& samples = of.samples();
+    const std::optional<NumberCoding> numbers = steppedCoding(of, boundOf(frame, options));
     if (!numbers) return std::nullopt;
     SteppedFrame how;
     how.numbers = *numbers;
     how.wavelet = options.wavelet.value_or(Wavelet::W44);
     how.steps = before.steps.value_or(usualSteps());
     how.maxError = boundOf(frame, options);
-    how.codeBits = codeBitsOf(samples, how.numbers) + 1;
+    how.codeBits = codeBitsOf(of, how.numbers) + 1;
     if (how.codeBits > kMostBits) return std::nullopt;
     if (seen && seen->mask != frame.mask) seen = nullptr;
     StepSearch search(StepTrials(grid, samples, frame, options, seen));
@@ -126,9 +127,10 @@ void tryMeanPrediction(StepSearch& search, const SeenFrame& before) {
 }
 
 /// Steps for a bound of the mean error.
-std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, const FrameSamples& samples,
-                                         const FrameRecord& frame, const Model& model, const FrameOptions& options,
-                                         const StepsBefore& before, const SeenFrame* seen, const Taken& taken) {
+std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, SampleNumbers& of, const FrameRecord& frame,
+                                         const Model& model, const FrameOptions& options, const StepsBefore& before,
+                                         const SeenFrame* seen, const Taken& taken) {
+    const FrameSamples& samples = of.samples();
     constexpr double kFirstQuantum = 4;     // in units of the mean error
     constexpr double kLeastShare = 1. / 16; // of the allowed squares, below which boxes are background
     SteppedFrame how;
@@ -136,7 +138,7 @@ std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, const Fr
     how.steps = before.steps.value_or(usualSteps());
     const double quantum = before.steps ? before.quantum : kFirstQuantum * options.rms;
     const RoundingErrors all = roundingErrors(samples, frame.numbers);
-    how.mean = {floatRangeOf(samples), options.rms * options.rms * all.count, options.mostError,
+    how.mean = {of.range(), options.rms * options.rms * all.count, options.mostError,
                 before.steps ? boundsOf(before.steps->quantum) : kMeanQuantum, quantum};
     if (seen && seen->mask != frame.mask) seen = nullptr;
     if (!setQuantum(quantum, how)) return std::nullopt;
@@ -159,21 +161,21 @@ std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, const Fr
 
 } // namespace
 
-std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, const FrameSamples& samples,
-                                        const FrameRecord& frame, const Model& model, const FrameOptions& options,
-                                        const TimeBefore& before, const Taken& taken) {
+std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, SampleNumbers& of, const FrameRecord& frame,
+                                        const Model& model, const FrameOptions& options, const TimeBefore& before,
+                                        const Taken& taken) {
     constexpr int kAgain = 16; // times between those at which all is tried
     const bool mean = options.rms > 0;
     // Samples may be exact under a bound of their mean error, if rounding them does not pay.
     if ((frame.numbers.kind != NumberKind::Quantised && !mean) || options.numbers) return std::nullopt;
     const KnownModel* const last = before.coding;
     const auto attempt = [&](const StepsBefore& steps) {
-        return mean ? tryMeanSteps(grid, samples, frame, model, options, steps, before.seen, taken)
-                    : trySteps(grid, samples, frame, model, options, steps, before.seen, taken);
+        return mean ? tryMeanSteps(grid, of, frame, model, options, steps, before.seen, taken)
+                    : trySteps(grid, of, frame, model, options, steps, before.seen, taken);
     };
     if (!last || before.number % kAgain == 0) return attempt({});
     if (last->kind != NumberKind::Stepped) return attempt({.steps = {}, .rounded = true});
-    const double quantum = last->quantum / std::abs(samples.scale());
+    const double quantum = last->quantum / std::abs(of.samples().scale());
     if (!mean || quantum > 0)
         if (auto again = attempt({.steps = last->steps, .rounded = false, .quantum = quantum})) return again;
     return attempt({});

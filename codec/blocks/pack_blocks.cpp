@@ -42,8 +42,9 @@ void check(const volume::Dataset& source, const PackOptions& options, const Bloc
     if (!blocks.bySlab) return;
     if (hasThreshold(options)) throw Error("a threshold depends on all slabs of a time: they cannot be packed apart");
     if (!source.read.inParts())
-        throw Error("slabs are those of raw files, uncompressed NRRD files and archives on the requested lattice; other "
-                    "data are read as a whole");
+        throw Error(
+            "slabs are those of raw files, uncompressed NRRD files and archives on the requested lattice; other "
+            "data are read as a whole");
 }
 
 /// What all processes must agree on.
@@ -344,8 +345,7 @@ BlockSummary packInBlocks(const volume::Dataset& source, const PackOptions& opti
     const std::string path = replacedFile(output);
     if (fs::is_directory(path)) throw Error("is a folder", path);
     BlockOptions settled = blocks;
-    if (settled.times == 0)
-        settled.times = blocks.bySlab ? 1 : blockTimes(source.info.times.size(), blocks.launched);
+    if (settled.times == 0) settled.times = blocks.bySlab ? 1 : blockTimes(source.info.times.size(), blocks.launched);
     BlockSummary summary;
     const auto started = std::chrono::steady_clock::now();
     Blocks all(source, options, path, settled, progress);

@@ -37,8 +37,8 @@ struct BlockSummary {
 /// next run. The bytes of the archive depend on the length of the blocks, and not on the number of processes: nothing
 /// is coded relative to times of another block. By parameter, each block is made of archives of one parameter each,
 /// which do the same for the parameters of a time; regions are those of the whole data. By slabs, the processes share
-/// the layers of bricks of each parameter at a time (codec/blocks/shared_slabs.h), one after the other. Bounds relative to ranges refer
-/// to those of all times, which are found in a pass before.
+/// the layers of bricks of each parameter at a time (codec/blocks/shared_slabs.h), one after the other. Bounds relative
+/// to ranges refer to those of all times, which are found in a pass before.
 ///
 /// Throws as pack(), and Error for options that depend on all times at once (D4*, a size, omitted bricks), and by slabs
 /// for thresholds and for data that are read as a whole.

@@ -12,7 +12,6 @@
 #include <string_view>
 #include <thread>
 #include <unistd.h>
-#include <utility>
 #include <vector>
 
 namespace tessera::codec {
@@ -21,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr auto kPause = std::chrono::milliseconds(100);
+constexpr std::chrono::milliseconds kPause(100), kShortest(5);
 constexpr auto kLongest = std::chrono::minutes(10); ///< from the first to the last process that is ready
 constexpr const char *kLock = "job.lock", *kAbout = "job.json", *kComplete = "complete";
 /// Files of jobs of launchers: how many processes they have, and which of them have left.
@@ -136,11 +135,11 @@ bool SharedJob::remove(LockedFile alone) const {
     return true;
 }
 
-/// Between two looks at what others are doing.
-void SharedJob::pause(const Progress& progress, double fraction) const {
+void SharedJob::pause(std::chrono::milliseconds& time, const Progress& progress, double fraction) const {
     if (!isThere(folder_)) throw MachineError("was removed meanwhile", folder_);
     progress.advance(fraction, "waiting for other processes");
-    std::this_thread::sleep_for(kPause);
+    std::this_thread::sleep_for(time);
+    time = std::min(2 * time, kPause);
 }
 
 std::size_t SharedJob::share(const std::string& name, std::size_t count, const std::function<bool(std::size_t)>& isDone,
@@ -148,8 +147,9 @@ std::size_t SharedJob::share(const std::string& name, std::size_t count, const s
                              const std::function<void(std::size_t)>& help) const {
     std::size_t own = 0;
     for (const bool waits : {false, true})
-        for (std::size_t piece = 0; piece < count; ++piece)
-            for (bool helps = bool(help);; pause(progress, double(piece) / double(count))) {
+        for (std::size_t piece = 0; piece < count; ++piece) {
+            bool helped = false;
+            for (auto wait = kShortest;; pause(wait, progress, double(piece) / double(count))) {
                 const auto lock = LockedFile::tryLock(file(name + "-" + std::to_string(piece) + ".lock"),
                                                       LockedFile::Kind::Exclusive);
                 if (lock && !isDone(piece)) {
@@ -157,13 +157,15 @@ std::size_t SharedJob::share(const std::string& name, std::size_t count, const s
                     ++own;
                 }
                 if (lock || (!waits && !help)) break;
-                if (std::exchange(helps, false)) help(piece);
+                if (help && !helped) help(piece);
+                helped = true;
             }
+        }
     return own;
 }
 
 LockedFile SharedJob::lock(const std::string& name, const Progress& progress, double fraction) const {
-    for (;; pause(progress, fraction))
+    for (auto wait = kShortest;; pause(wait, progress, fraction))
         if (auto lock = LockedFile::tryLock(file(name), LockedFile::Kind::Exclusive)) return std::move(*lock);
 }
 

@@ -4,6 +4,7 @@
 #include "volume/system/launched.h"
 #include "volume/system/locked_file.h"
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -28,8 +29,8 @@ public:
     /// Does pieces 0 .. count - 1 of the work that is called `name`: first those that nobody does, then it waits for
     /// the others, and does those whose process ended before they were done. Returns how many it did; all are done
     /// then. `isDone(piece)`, which is asked of a piece that nobody does, must see what any process has done;
-    /// `work(piece)` must leave nothing half done. With `help` all processes stay with the same piece: where another one
-    /// does it, `help(piece)` is called once. Throws Cancelled, MachineError when the folder is removed.
+    /// `work(piece)` must leave nothing half done. With `help` all processes stay with the same piece: where another
+    /// one does it, `help(piece)` is called once. Throws Cancelled, MachineError when the folder is removed.
     std::size_t share(const std::string& name, std::size_t count, const std::function<bool(std::size_t)>& isDone,
                       const std::function<void(std::size_t)>& work, const Progress& progress,
                       const std::function<void(std::size_t)>& help = {}) const;
@@ -52,7 +53,8 @@ private:
 
     bool remove(LockedFile alone) const;
     bool holdsWork() const;
-    void pause(const Progress& progress, double fraction) const;
+    /// Waits a little, longer the next time, between two looks at what others are doing.
+    void pause(std::chrono::milliseconds& time, const Progress& progress, double fraction) const;
 
     std::string folder_;
     Launched launched_;

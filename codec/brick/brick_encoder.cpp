@@ -2,6 +2,7 @@
 #include "codec/brick/brick_codec.h"
 #include "codec/brick/brick_levels.h"
 #include "codec/brick/whole_brick.h"
+#include "volume/field/field.h"
 
 #include <array>
 #include <bit>

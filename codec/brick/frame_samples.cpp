@@ -3,6 +3,7 @@
 #include "volume/field/part_masks.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace tessera::codec {
 
@@ -86,21 +87,23 @@ void FrameSamples::Stored::fill(const char* step, const std::function<Field(Slab
     }
 }
 
-/// Each slab becomes a file: its samples, one flag each, and how they are to be read.
+/// Each slab becomes a file: its samples, one flag each if any is absent, and how they are to be read.
 void FrameSamples::Stored::fillTogether(const char* step, const std::function<Field(Slab)>& made) {
     auto files = store.team->share(step, slabCount(), [&](std::size_t number, const SlabTeam::Write& write) {
         const Field part = made(slab(number));
-        const volume::Mask present = flagsOf(part);
+        const volume::Mask present = part.mask ? *part.mask : volume::Mask();
         const AboutSlab about{part.offset, part.scale, part.type, hasGaps(present)};
         write(part.samples);
-        write(std::as_bytes(std::span(present)));
+        if (about.masked) write(std::as_bytes(std::span(present)));
         write(std::as_bytes(std::span(&about, 1)));
     });
     masked = false;
+    maskedSlabs.clear();
     for (const auto& each : files) {
         AboutSlab about;
         each->read(each->size() - sizeof about, std::as_writable_bytes(std::span(&about, 1)));
         masked = masked || about.masked;
+        maskedSlabs.push_back(about.masked ? 1 : 0);
         type = about.type, offset = about.offset, scale = about.scale;
     }
     slabs = std::move(files);
@@ -133,8 +136,12 @@ Slab FrameSamples::slab(std::size_t number) const {
 
 bool FrameSamples::forSlabs(const std::function<bool(const Field&, Slab)>& visit) const {
     if (whole()) return visit(*whole(), slab(0));
-    for (std::size_t number = 0; number < slabCount(); ++number)
-        if (const Slab own = slab(number); !visit(slices(own.first, own.count), own)) return false;
+    Field part;
+    for (std::size_t number = 0; number < slabCount(); ++number) {
+        const Slab own = slab(number);
+        take(own.first, own.count, part);
+        if (!visit(part, own)) return false;
+    }
     return true;
 }
 
@@ -149,29 +156,48 @@ void FrameSamples::change(const std::function<void(Field&, Slab)>& visit) {
 }
 
 Field FrameSamples::slices(int first, int count) const {
-    if (whole()) return volume::slicesOf(*whole(), first, count);
-    Field part = volume::makeField(volume::slicesOf(stored_->lattice, first, count), stored_->type);
-    part.offset = stored_->offset;
-    part.scale = stored_->scale;
-    volume::Mask mask(stored_->masked ? part.count() : 0);
-    read(sliceSize(stored_->lattice) * std::size_t(first), part.count(), part.samples.data(),
-         mask.empty() ? nullptr : mask.data());
-    if (std::find(mask.begin(), mask.end(), std::uint8_t(0)) != mask.end())
-        part.mask = std::make_shared<const volume::Mask>(std::move(mask));
+    Field part;
+    take(first, count, part);
     return part;
 }
 
+void FrameSamples::take(int first, int count, Field& part) const {
+    if (whole()) {
+        part = volume::slicesOf(*whole(), first, count);
+        return;
+    }
+    part.lattice = volume::slicesOf(stored_->lattice, first, count);
+    part.type = stored_->type;
+    part.offset = stored_->offset;
+    part.scale = stored_->scale;
+    part.samples.resize(part.count() * volume::byteSize(part.type));
+    part.mask.reset();
+    volume::Mask mask(stored_->masked ? part.count() : 0);
+    read(sliceSize(stored_->lattice) * std::size_t(first), part.count(), part.samples.data(),
+         mask.empty() ? nullptr : mask.data());
+    if (hasGaps(mask)) part.mask = std::make_shared<const volume::Mask>(std::move(mask));
+}
+
 void FrameSamples::read(std::size_t at, std::size_t n, std::byte* samples, std::uint8_t* present) const {
-    const std::size_t bytes = volume::byteSize(stored_->type);
-    const auto take = [&](const volume::ScratchFile& file, std::size_t all, std::size_t from, std::size_t count) {
+    const std::size_t bytes = volume::byteSize(type());
+    if (const Field* const field = whole()) {
+        std::memcpy(samples, field->samples.data() + at * bytes, n * bytes);
+        for (std::size_t i = 0; present && i < n; ++i) present[i] = field->present(at + i) ? 1 : 0;
+        return;
+    }
+    const auto readFrom = [&](const volume::ScratchFile& file, std::size_t all, std::size_t from, std::size_t count,
+                              std::uint8_t* flags) {
         file.read(from * bytes, {samples, count * bytes});
-        if (present) file.read(all * bytes + from, std::as_writable_bytes(std::span(present, count)));
+        if (flags) file.read(all * bytes + from, std::as_writable_bytes(std::span(flags, count)));
     };
-    if (stored_->file) return take(*stored_->file, stored_->lattice.count(), at, n);
+    if (stored_->file) return readFrom(*stored_->file, stored_->lattice.count(), at, n, present);
     const std::size_t perSlice = sliceSize(stored_->lattice), perSlab = perSlice * std::size_t(stored_->slices);
     while (n > 0) {
         const std::size_t number = at / perSlab, from = at % perSlab, count = std::min(n, perSlab - from);
-        take(*stored_->slabs[number], perSlice * std::size_t(stored_->slab(number).count), from, count);
+        const bool masked = stored_->maskedSlabs[number] != 0;
+        readFrom(*stored_->slabs[number], perSlice * std::size_t(stored_->slab(number).count), from, count,
+                 masked ? present : nullptr);
+        if (present && !masked) std::fill_n(present, count, std::uint8_t(1));
         samples += count * bytes;
         if (present) present += count;
         at += count, n -= count;
@@ -182,9 +208,13 @@ std::vector<volume::BrickImportance> importanceOfBricks(const volume::BrickGrid&
                                                         Range range, bool categorical,
                                                         const volume::ImportanceOptions& options) {
     if (samples.whole()) return volume::importanceOfBricks(grid, *samples.whole(), range, categorical, options);
-    return volume::importanceOfBricks(
-        grid, [&](int first, int count) { return samples.slices(first, count); }, samples.store()->layers, range,
-        categorical, options, samples.team() ? samples.team()->pieces("importance") : Pieces(piecesHere));
+    Field part;
+    const auto read = [&](int first, int count) -> const Field& {
+        samples.take(first, count, part);
+        return part;
+    };
+    return volume::importanceOfBricks(grid, read, samples.store()->layers, range, categorical, options,
+                                      samples.team() ? samples.team()->pieces("importance") : Pieces(piecesHere));
 }
 
 } // namespace tessera::codec

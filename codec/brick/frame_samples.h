@@ -29,8 +29,8 @@ Slab layerOf(const volume::BrickGrid& grid, int layer);
 
 /// Where frames larger than memory are stored.
 struct SlabStore {
-    int layers = 1;     ///< brick layers in memory at a time
-    std::string folder; ///< directory for scratch files
+    int layers = 1;           ///< brick layers in memory at a time
+    std::string folder;       ///< directory for scratch files
     SlabTeam* team = nullptr; ///< processes that share the slabs; null: there is only this one
 };
 
@@ -68,10 +68,19 @@ public:
     /// What `of` gives for each slab, in their order; by all processes of a team, where `step` says what is computed.
     template <class T>
     std::vector<T> ofSlabs(const char* step, const std::function<T(const volume::Field& part, Slab slab)>& of) const {
+        return listOfSlabs<T>(step,
+                              [&](const volume::Field& part, Slab slab) { return std::vector<T>{of(part, slab)}; });
+    }
+    /// The same where that are several values.
+    template <class T>
+    std::vector<T> listOfSlabs(const char* step,
+                               const std::function<std::vector<T>(const volume::Field& part, Slab slab)>& of) const {
         const Pieces pieces = team() ? team()->pieces(step) : Pieces(piecesHere);
+        volume::Field part;
         return valuesOf<T>(pieces, slabCount(), [&](std::size_t number) {
-            if (whole()) return std::vector<T>{of(*whole(), slab(number))};
-            return std::vector<T>{of(slices(slab(number).first, slab(number).count), slab(number))};
+            if (whole()) return of(*whole(), slab(number));
+            take(slab(number).first, slab(number).count, part);
+            return of(part, slab(number));
         });
     }
     /// Modifies samples, flags, offset and scale slab by slab; offset and scale must be equal in all slabs. Of a team,
@@ -79,7 +88,9 @@ public:
     void change(const std::function<void(volume::Field& part, Slab slab)>& visit);
     /// A range of slices as a field.
     volume::Field slices(int first, int count) const;
-    /// For a frame in a scratch file: reads the `n` samples from `at` on, and their flags unless `present` is null.
+    /// The same in place of another field, whose memory is used again.
+    void take(int first, int count, volume::Field& part) const;
+    /// Reads the `n` samples from `at` on, and their flags unless `present` is null.
     void read(std::size_t at, std::size_t n, std::byte* samples, std::uint8_t* present) const;
 
 private:
@@ -93,6 +104,7 @@ private:
         /// The samples, then one flag each: of the frame, or of each slab, which a process of the team wrote.
         std::unique_ptr<volume::ScratchFile> file;
         std::vector<std::unique_ptr<const volume::ScratchFile>> slabs;
+        std::vector<std::uint8_t> maskedSlabs; ///< whether those have flags
 
         std::size_t slabCount() const;
         Slab slab(std::size_t number) const;

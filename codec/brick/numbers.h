@@ -1,15 +1,12 @@
 #pragma once
 
-#include "codec/brick/frame_samples.h"
 #include "codec/bytes/cpu.h"
 
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <optional>
 #include <span>
-#include <vector>
 
 /// Quantisation: samples as 32-bit integer codes, the input of the wavelet transforms.
 namespace tessera::codec {
@@ -30,33 +27,10 @@ struct NumberCoding {
     bool operator==(const NumberCoding&) const = default;
 };
 
-/// Selects the coding of a frame. Integer types: Integer. f32 with `maxError` 0: Scaled if (almost) all present samples
-/// are k / 10^d or k / 2^m with |k| <= 2^29, else Float. f32 with `maxError` > 0 (absolute, in stored units):
-/// Quantised, with a step that leaves room for the rounding to float; lossless if the bound is below the resolution of
-/// float.
-NumberCoding chooseCoding(const FrameSamples& samples, double maxError);
+/// Codes are not larger; two bits remain for the growth of sums in the wavelets.
+inline constexpr double kLargestCode = 1 << 29;
 
-/// Of the finite present samples of a frame of floats; lo > hi if there are none.
-struct FloatRange {
-    float lo = std::numeric_limits<float>::infinity(), hi = -std::numeric_limits<float>::infinity(),
-          least = std::numeric_limits<float>::infinity(); ///< smallest magnitude
-};
-FloatRange floatRangeOf(const FrameSamples& samples);
-
-/// The coding by quantised coefficients with an error bound above 0; none if the bound is below the resolution of
-/// floats.
-std::optional<NumberCoding> steppedCoding(const FrameSamples& samples, double maxError);
-/// The same for samples of a range, whatever numbers they are.
-std::optional<NumberCoding> steppedCoding(const FloatRange& range, double maxError);
-/// Width of |code| over samples of a range, in bits.
-int codeBitsOf(const FloatRange& range, const NumberCoding& coding);
-/// The samples of a frame of floats that are present and finite, and the errors of rounding them.
-struct RoundingErrors {
-    double count = 0, squares = 0; ///< squares: sum; 0 if the coding is not Quantised
-};
-RoundingErrors roundingErrors(const FrameSamples& samples, const NumberCoding& coding);
-
-/// The bound that such a coding is for.
+/// The bound that a Stepped coding is for.
 double boundOf(const NumberCoding& stepped);
 /// Largest error of a sample's code with that coding: 2 kReach + 1 codes make a step of the Quantised one.
 inline constexpr std::int32_t kReach = 16;

@@ -30,7 +30,8 @@ public:
     Pieces pieces(const std::string& step) {
         return [this, step](std::size_t count, const std::function<std::vector<std::byte>(std::size_t)>& work) {
             std::vector<std::vector<std::byte>> results;
-            for (const auto& file : share(step, count, [&](std::size_t piece, const Write& write) { write(work(piece)); }))
+            for (const auto& file :
+                 share(step, count, [&](std::size_t piece, const Write&write) { write(work(piece)); }))
                 file->read(0, results.emplace_back(file->size()));
             return results;
         };

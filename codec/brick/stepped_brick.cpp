@@ -1,6 +1,7 @@
 #include "codec/brick/stepped_brick.h"
 
 #include "codec/wavelet/body_centred.h"
+#include "volume/field/field.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,5 +1,7 @@
 #include "codec/brick/subsamples.h"
 
+#include "volume/field/field.h"
+
 #include <algorithm>
 #include <bit>
 #include <concepts>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "codec/brick/brick_histogram.h"
 #include "codec/brick/numbers.h"
+#include "codec/container/brick_histogram.h"
 #include "codec/container/container.h"
 #include "codec/wavelet/lifting.h"
 #include "codec/wavelet/subbands.h"

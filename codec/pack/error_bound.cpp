@@ -57,8 +57,9 @@ double floatBoundForPsnr(const FrameSamples& samples, double wanted, double exte
                      kLargestStep =
                          16; // lower end of the accepted error, as a fraction (0.26 dB); largest factor between trials
     double bound = std::sqrt(3.0) * wanted, above = std::numeric_limits<double>::infinity(), best = 0;
+    SampleNumbers known(samples);
     for (int trial = 0; trial < kTrials && bound > 0; ++trial) {
-        const NumberCoding numbers = chooseCoding(samples, bound);
+        const NumberCoding numbers = chooseCoding(known, bound);
         const double rms = numbers.kind != NumberKind::Quantised ? 0 : rmsOf(samples, [&](auto number) {
             const auto sample = static_cast<float>(number);
             const double error = double(sampleOf<float>(numbers, codeOf(numbers, sample))) - double(sample);

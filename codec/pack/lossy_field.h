@@ -1,6 +1,6 @@
 #pragma once
 
-#include "codec/brick/numbers.h"
+#include "codec/brick/sample_numbers.h"
 #include "codec/wavelet/lifting.h"
 #include "codec/wavelet/threshold.h"
 #include "volume/bricks/brick_grid.h"

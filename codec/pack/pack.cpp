@@ -289,8 +289,9 @@ std::vector<SizeAtBound> Packing::estimate(const Progress& progress) {
 
 void Packing::sayLimits() {
     if (!memory_.keepFrames && times() > 1)
-        summary_.notes.push_back(std::string(team_ ? "slabs are packed apart" : "too little memory to keep the previous time") +
-                                 ": changes of bricks between times are not stored");
+        summary_.notes.push_back(
+            std::string(team_ ? "slabs are packed apart" : "too little memory to keep the previous time") +
+            ": changes of bricks between times are not stored");
     if (memory_.slabLayers > 0 && !team_)
         summary_.notes.push_back("too little memory for a whole time; slabs in memory at once: " +
                                  std::to_string(memory_.slabLayers));

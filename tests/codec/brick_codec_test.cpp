@@ -1,5 +1,6 @@
 #include "codec/brick/brick_codec.h"
 
+#include "codec/brick/sample_numbers.h"
 #include "codec/brick/subsamples.h"
 #include "tests/codec/make_dataset.h"
 

@@ -1,6 +1,6 @@
 #include "codec/archive/archive.h"
-#include "codec/brick/brick_histogram.h"
 #include "codec/bytes/lzma.h"
+#include "codec/container/brick_histogram.h"
 #include "codec/container/container.h"
 #include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"

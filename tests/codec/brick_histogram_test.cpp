@@ -1,4 +1,4 @@
-#include "codec/brick/brick_histogram.h"
+#include "codec/container/brick_histogram.h"
 
 #include <algorithm>
 #include <cmath>

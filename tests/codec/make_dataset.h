@@ -160,4 +160,10 @@ inline void writeFile(const std::string& path, const std::vector<char>& bytes) {
     std::ofstream(path, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
 }
 
+/// The same data set, read in parts.
+inline volume::Dataset inParts(volume::Dataset made) {
+    made.read = [read = made.read](int p, int c, int t, volume::SliceRange slices) { return read(p, c, t, slices); };
+    return made;
+}
+
 } // namespace tessera::codec::testing

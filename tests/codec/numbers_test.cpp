@@ -1,4 +1,4 @@
-#include "codec/brick/numbers.h"
+#include "codec/brick/sample_numbers.h"
 
 #include <bit>
 #include <cmath>

@@ -4,6 +4,7 @@
 #include "codec/blocks/shared_job.h"
 #include "codec/container/resample_error.h"
 #include "codec/pack/unpack.h"
+#include "tests/codec/child_process.h"
 #include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/volume/regions.h"
@@ -14,9 +15,7 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <set>
-#include <sys/wait.h>
 #include <thread>
-#include <unistd.h>
 
 namespace tessera::codec {
 namespace {
@@ -39,24 +38,6 @@ PackOptions small(double maxError = 0, StoredLattice lattice = StoredLattice::CC
     options.brickSize = 8;
     options.maxError = maxError;
     return options;
-}
-
-/// A process that runs `work`; its exit status is 0 if that returns true.
-template <class Work> pid_t started(Work&& work) {
-    const pid_t child = ::fork();
-    if (child != 0) return child;
-    bool good = false;
-    try {
-        good = work();
-    } catch (...) {
-    }
-    ::_exit(good ? 0 : 1);
-}
-
-int statusOf(pid_t child) {
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
 }
 
 /// Packs by several processes; returns how many of them failed.

@@ -53,11 +53,6 @@ void expectPure(const Dataset& dataset) {
     }
 }
 
-/// The data set as one that is read in parts.
-Dataset inParts(Dataset made) {
-    made.read = [read = made.read](int p, int c, int t, volume::SliceRange slices) { return read(p, c, t, slices); };
-    return made;
-}
 
 TEST(RegionsInArchives, StayApartOnEveryLatticeAndLevel) {
     const TemporaryFolder folder;

@@ -1,5 +1,6 @@
 #include "codec/blocks/share_results.h"
 
+#include "tests/codec/child_process.h"
 #include "tests/codec/make_dataset.h"
 #include "volume/base/error.h"
 
@@ -7,7 +8,6 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 namespace tessera::codec {
@@ -18,21 +18,10 @@ namespace fs = std::filesystem;
 
 /// A process of a job; the exit status is 0 if it returns.
 template <class Work> pid_t beginProcess(Work&& work) {
-    const pid_t child = ::fork();
-    if (child != 0) return child;
-    int status = 1;
-    try {
+    return started([&] {
         work();
-        status = 0;
-    } catch (...) {
-    }
-    ::_exit(status);
-}
-
-int endOf(pid_t child) {
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
+        return true;
+    });
 }
 
 /// Squares, each of which leaves a line in a file named by its number, so that it is seen how often it was computed.
@@ -90,7 +79,7 @@ TEST(ShareResults, EveryPieceIsDoneOnceAndOneProcessFinishes) {
     std::vector<pid_t> children;
     for (int rank = 0; rank < 3; ++rank)
         children.push_back(beginProcess([&] { squares.run(Launched{rank, 3, 3, "job"}); }));
-    for (const pid_t child : children) EXPECT_EQ(endOf(child), 0);
+    for (const pid_t child : children) EXPECT_EQ(statusOf(child), 0);
     EXPECT_EQ(squares.written(), kSquares);
     EXPECT_EQ(squares.counts(), "111111111");
     EXPECT_FALSE(fs::exists(folder / "out.blocks"));
@@ -108,10 +97,10 @@ TEST(ShareResults, TheOthersDoWhatAKilledProcessLeaves) {
     const TemporaryFolder folder;
     const Squares squares{folder}, deadly{folder, 1};
     const pid_t first = beginProcess([&] { deadly.run(Launched{0, 2, 2, "job"}); });
-    ASSERT_EQ(endOf(first), -SIGKILL);
+    ASSERT_EQ(statusOf(first), -SIGKILL);
     EXPECT_EQ(squares.counts(), "100000000");
     const pid_t second = beginProcess([&] { squares.run(Launched{1, 2, 2, "job"}); });
-    EXPECT_EQ(endOf(second), 0);
+    EXPECT_EQ(statusOf(second), 0);
     EXPECT_EQ(squares.written(), kSquares);
     EXPECT_EQ(squares.counts(), "111111111");
 }
@@ -119,7 +108,7 @@ TEST(ShareResults, TheOthersDoWhatAKilledProcessLeaves) {
 TEST(ShareResults, ASecondRunGoesOn) {
     const TemporaryFolder folder;
     const Squares squares{folder}, deadly{folder, 4};
-    ASSERT_EQ(endOf(beginProcess([&] { deadly.run(Launched{0, 2, 2, "job"}); })), -SIGKILL);
+    ASSERT_EQ(statusOf(beginProcess([&] { deadly.run(Launched{0, 2, 2, "job"}); })), -SIGKILL);
     EXPECT_EQ(squares.counts(), "111100000");
     EXPECT_THROW(squares.run(Launched{}, "other squares"), Error) << "the folder is of other work";
     EXPECT_EQ(squares.run(Launched{}).own, 5u) << "also alone";
@@ -131,7 +120,7 @@ TEST(ShareResults, ASecondRunGoesOn) {
 TEST(ShareResults, APieceWhoseFileIsGoneIsDoneAgain) {
     const TemporaryFolder folder;
     const Squares squares{folder}, deadly{folder, 4};
-    ASSERT_EQ(endOf(beginProcess([&] { deadly.run(Launched{0, 2, 2, "job"}); })), -SIGKILL);
+    ASSERT_EQ(statusOf(beginProcess([&] { deadly.run(Launched{0, 2, 2, "job"}); })), -SIGKILL);
     fs::remove(folder / "computed-2");
     SharedWork work{folder / "out", "squares", Launched{}};
     work.isMade = [&](std::size_t i, const std::string& result) {
@@ -155,7 +144,7 @@ TEST(ShareResults, EveryProcessKnowsAllResults) {
             const SharedResults shared = squares.run(Launched{rank, 3, 3, "job"});
             if (shared.results.size() != 9 || shared.results[7] != "49") throw Error("not all of them");
         }));
-    for (const pid_t child : children) EXPECT_EQ(endOf(child), 0);
+    for (const pid_t child : children) EXPECT_EQ(statusOf(child), 0);
 }
 
 TEST(ShareResults, WorkOfWhichNothingIsDoneLeavesNoFolder) {

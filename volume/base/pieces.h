@@ -16,8 +16,8 @@ using Pieces = std::function<std::vector<std::vector<std::byte>>(
     std::size_t count, const std::function<std::vector<std::byte>(std::size_t piece)>& work)>;
 
 /// All pieces here, one after the other.
-inline std::vector<std::vector<std::byte>>
-piecesHere(std::size_t count, const std::function<std::vector<std::byte>(std::size_t)>& work) {
+inline std::vector<std::vector<std::byte>> piecesHere(std::size_t count,
+                                                      const std::function<std::vector<std::byte>(std::size_t)>& work) {
     std::vector<std::vector<std::byte>> results;
     for (std::size_t piece = 0; piece < count; ++piece) results.push_back(work(piece));
     return results;

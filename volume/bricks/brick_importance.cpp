@@ -305,16 +305,16 @@ std::vector<BrickImportance> importanceOfParts(const BrickGrid& grid, Range rang
 
 std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Field& field, Range range,
                                                 bool categorical, const ImportanceOptions& options) {
-    return importanceOfParts(
-        grid, range, categorical, options,
-        [&]<class T>(int, const std::function<std::vector<T>(const LayersOfBricks&)>& of) {
-            return of({field, 0, 0, grid.count().z});
-        });
+    return importanceOfParts(grid, range, categorical, options,
+                             [&]<class T>(int, const std::function<std::vector<T>(const LayersOfBricks&)>& of) {
+                                 return of({field, 0, 0, grid.count().z});
+                             });
 }
 
-std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const SliceReader& read, int layers, Range range,
-                                                bool categorical, const ImportanceOptions& options,
-                                                const Pieces& pieces) {
+std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid,
+                                                const std::function<const Field&(int first, int count)>& read,
+                                                int layers, Range range, bool categorical,
+                                                const ImportanceOptions& options, const Pieces& pieces) {
     const int all = grid.count().z, texels = grid.lattice.texels().z;
     const int slices = grid.lattice.kind == LatticeKind::BCC ? 2 : 1; // of a texel
     return importanceOfParts(

@@ -6,8 +6,8 @@
 #include "volume/bricks/brick_stats.h"
 #include "volume/field/dataset.h"
 #include "volume/field/field.h"
-#include "volume/field/slices.h"
 
+#include <functional>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -49,8 +49,11 @@ std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Fie
                                                 bool categorical, const ImportanceOptions& options = {});
 
 /// The same for a frame that is read in slices, `layers` layers of bricks at a time plus a few slices around them.
-std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const SliceReader& read, int layers, Range range,
-                                                bool categorical, const ImportanceOptions& options = {},
+/// `read(first, count)` gives slices, which are used until it is called again.
+std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid,
+                                                const std::function<const Field&(int first, int count)>& read,
+                                                int layers, Range range, bool categorical,
+                                                const ImportanceOptions& options = {},
                                                 const Pieces& pieces = piecesHere);
 
 /// Largest and RMS difference between two frames within a brick, of the decoded values. Both frames have the lattice of
