@@ -77,11 +77,33 @@ cmp parameters.tsr both.tsr || fail "two processes make another archive of a sin
 cmp single-a.raw single-b.raw || fail "parameters packed apart are other samples"
 check "one process, by parameter" 0 "$tessera" pack run.json -o parts.tsr "${options[@]}" --block-parameters
 
+# By slabs, all processes pack the same time together.
+slabs=(--max-error 0.0001 --brick-size 8)
+check "times of small bricks" 0 "$tessera" pack run.json -o slabs.tsr "${slabs[@]}" --block-times 1
+for i in 0 1 2; do
+    env $(as slabs $i 3) "$tessera" pack run.json -o three.tsr "${slabs[@]}" --block-slabs >rank$i.txt 2>&1 &
+done
+wait
+cat rank?.txt
+cmp slabs.tsr three.tsr || fail "slabs make another archive than whole times"
+for i in 0 1 2; do
+    env $(as idle $i 3) "$tessera" pack single.json -o idle.tsr "${slabs[@]}" --progress-json >rank$i.txt 2>&1 &
+done
+wait
+"$tessera" pack single.json -o parts-of-one.tsr "${slabs[@]}" --block-parameters >/dev/null
+cmp parts-of-one.tsr idle.tsr || fail "three processes make another archive of a single time of two parameters"
+check "slabs of a threshold" 2 "$tessera" pack run.json -o x.tsr "${slabs[@]}" --block-slabs \
+    --threshold.kind hard --threshold.value 0.01
+say "a threshold depends on all slabs" err.txt
+
 # One of two processes is killed at a random moment; the other ends the work, or a second run does.
 for run in $(seq "$kills"); do
     rm -rf killed.tsr killed.tsr.blocks
     how=("${options[@]}") whole=one.tsr
-    [ $((run % 2)) = 0 ] || { how+=(--block-parameters) whole=parts.tsr; }
+    case $((run % 3)) in
+    1) how+=(--block-parameters) whole=parts.tsr ;;
+    2) how=("${slabs[@]}" --block-slabs) whole=slabs.tsr ;;
+    esac
     env $(as "$run" 0 2) "$tessera" pack run.json -o killed.tsr "${how[@]}" >/dev/null 2>&1 &
     first=$!
     env $(as "$run" 1 2) "$tessera" pack run.json -o killed.tsr "${how[@]}" >/dev/null 2>&1 &
@@ -89,7 +111,7 @@ for run in $(seq "$kills"); do
     sleep "0.$(printf %02d $((RANDOM % 60)))"
     [ $((run / 2 % 2)) = 0 ] && pid=$first || pid=$second
     kill -KILL $pid 2>/dev/null
-    [ $((run % 3)) = 0 ] && kill -KILL $first $second 2>/dev/null
+    [ $((run % 4)) = 0 ] && kill -KILL $first $second 2>/dev/null
     [ -e killed.tsr.blocks ] || kill -KILL $first $second 2>/dev/null # nobody is left who makes the folder
     wait
     [ ! -e killed.tsr ] || cmp $whole killed.tsr || fail "a kill left another archive"
