@@ -26,7 +26,6 @@ void copySegment(const Archive& archive, const FileBytes& from, Segment& segment
 } // namespace
 
 bool codedAlike(const Archive& archive, const Archive& more) {
-    constexpr std::uint32_t kSetWhenUsed = kSteppedBricks | kSubsamples | kPredictedFrames | kFittedModels;
     const std::uint32_t own = archive.impl_->header.header.features, others = more.impl_->header.header.features;
     return ((own ^ others) & ~kSetWhenUsed) == 0;
 }

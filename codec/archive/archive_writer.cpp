@@ -218,6 +218,8 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
         frame.subsampled = true;
         commits.header.features |= kSubsamples;
     }
+    // Series are played, for which mixed bricks are decoded too slowly.
+    frame.mixed = metadata.info.times.size() == 1 && frame.numbers.kind == NumberKind::Integer;
     coding.maxError = boundOf(frame, options);
     coding.before = frameBefore(frame, samples);
     coding.repeated = repeated(coding.before, samples, frame, options, nullptr);
@@ -252,6 +254,7 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     coding.seen.bytes.resize(bricks);
     coding.seen.depth.resize(bricks);
     coding.whole.resize(bricks);
+    coding.mixed.resize(bricks);
     frame.bricks.resize(bricks);
     frame.segments.resize(bricks * std::size_t(grid.levels));
     return coding;
@@ -323,6 +326,8 @@ std::optional<double> ArchiveWriter::addFrame(int parameter, int component, int 
     };
     if (coding.steps) impl_->commits.header.features |= kSteppedBricks;
     if (frame.predicted) impl_->commits.header.features |= kPredictedFrames;
+    if (std::ranges::any_of(coding.mixed, [](std::uint8_t flag) { return flag != 0; }))
+        impl_->commits.header.features |= kMixedBricks;
     // Without bands the frame needs no tables.
     const bool idle = allWhole || frame.numbers.kind == NumberKind::Stepped;
     if (frame.model < 0) impl_->writeModel(coding.model, idle, ofTime, frame);

@@ -22,14 +22,23 @@ inline std::size_t brickBytes(const volume::BrickGrid& grid, volume::ScalarType 
 
 inline BrickFormat brickFormat(const volume::BrickGrid& grid, glm::ivec3 brick, volume::ScalarType type,
                                const FrameRecord& frame) {
-    return {grid.lattice.kind, grid.brickSamples(brick, 0), grid.levels,    frame.wavelet,     type,
-            frame.numbers,     frame.keepsAbsent,           frame.codeBits, frame.bodyCentred, frame.steps,
-            frame.subsampled};
+    return {grid.lattice.kind,
+            grid.brickSamples(brick, 0),
+            grid.levels,
+            frame.wavelet,
+            type,
+            frame.numbers,
+            frame.keepsAbsent,
+            frame.codeBits,
+            frame.bodyCentred,
+            frame.steps,
+            frame.subsampled,
+            frame.mixed};
 }
 /// The format of the same brick in another frame of its component.
 inline BrickFormat brickFormat(const BrickFormat& brick, const FrameRecord& frame) {
-    return {brick.kind,        brick.size,     brick.levels,      frame.wavelet, brick.type,      frame.numbers,
-            frame.keepsAbsent, frame.codeBits, frame.bodyCentred, frame.steps,   frame.subsampled};
+    return {brick.kind,        brick.size,     brick.levels,      frame.wavelet, brick.type,       frame.numbers,
+            frame.keepsAbsent, frame.codeBits, frame.bodyCentred, frame.steps,   frame.subsampled, frame.mixed};
 }
 
 /// Number of components of all parameters before one: the index of its first frame within a time.

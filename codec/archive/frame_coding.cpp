@@ -37,6 +37,7 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
                                            format.isStepped() ? nullptr : &model.fitted);
         segments = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
         whole[b] = !segments[0].empty() && isWhole(segments[0][0]) ? 1 : 0;
+        mixed[b] = whole[b] != 0 && isMixed(segments[0][0]) ? 1 : 0;
         roundAsDecoded(format, maxError, taken.bricks[b]->decoded, input);
         if (format.subsampled) addSubsamples(format, input.samples, input.present, compressor, segments);
         seen.depth[b] = static_cast<std::uint8_t>(from.empty() ? 0 : before->depth[b] + 1);

@@ -20,6 +20,7 @@ struct FrameCoding {
     const SeenFrame* before = nullptr;  ///< earlier frame whose bricks may be repeated
     std::vector<std::uint8_t> repeated; ///< flag per brick
     std::vector<std::uint8_t> whole;    ///< flag per brick: no token was coded
+    std::vector<std::uint8_t> mixed;    ///< flag per brick
     std::vector<volume::BrickImportance> importance;
     Taken taken;
     Model model;

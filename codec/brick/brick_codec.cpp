@@ -9,6 +9,7 @@
 #include <bit>
 #include <cassert>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 namespace tessera::codec {
@@ -146,7 +147,9 @@ DecodeStatus decodeWhole(const BrickFormat& format, std::span<const std::byte> i
     const std::size_t total = countOf(format.size);
     const auto absent = std::size_t(std::count(present.begin(), present.end(), std::uint8_t(0)));
     std::vector<std::uint32_t> codes(total - absent);
-    if (const DecodeStatus status = codec::decodeWhole(in, codes); status != DecodeStatus::Ok) return status;
+    std::optional<MixedShape> mixed;
+    if (format.mixed && absent == 0) mixed = {format.size, format.sublattices()};
+    if (const DecodeStatus status = codec::decodeWhole(in, codes, mixed); status != DecodeStatus::Ok) return status;
     if (absent > 0) {
         std::vector<std::uint32_t> spread(total);
         const std::uint32_t* next = codes.data();

@@ -23,7 +23,8 @@ constexpr double
     kPerhapsAsShort =
         1.3; // factors on the size of bands below which a fast trial counts as promising; for some before LZMA
 constexpr double kWorthLevels = 0.9;
-constexpr double kSparse = 0.75; // bits per sample
+constexpr double kWorthMixing = 0.9; // factor on the size that makes up for slow decoding
+constexpr double kSparse = 0.75;     // bits per sample
 constexpr int kLeastZstdLevel = -4, kSomeZstdLevel = 3;
 
 /// Codes of the samples, and what is stored in addition.
@@ -216,6 +217,21 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
     segments[0] = std::move(whole);
 }
 
+/// Codes them as a mixed brick if that is much shorter than what they are now.
+void tryMixed(const BrickFormat& format, std::span<const std::byte> samples, std::span<const std::uint8_t> present,
+              Compressor& compressor, std::vector<Bytes>& segments) {
+    // With one level, other streams may come before the mode.
+    if (!format.mixed || format.levels == 1 || !present.empty() || !compressor.triesLzma()) return;
+    if (countOf(format.size) > kMostMixed) return;
+    std::size_t bytes = 0;
+    for (const Bytes& segment : segments) bytes += segment.size();
+    const std::vector<std::uint32_t> codes = numbersOf(format, samples, present, 0).codes;
+    Bytes mixed = encodeWholeMixed(codes, {format.size, format.sublattices()}, compressor);
+    if (mixed.empty() || double(mixed.size()) >= kWorthMixing * double(bytes)) return;
+    for (Bytes& segment : segments) segment.clear();
+    segments[0] = std::move(mixed);
+}
+
 } // namespace
 
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
@@ -286,7 +302,10 @@ std::vector<Bytes> encodeBrick(const BrickFormat& format, const PreparedBrick& b
         out.push_back(brick.levels[level].zero ? kNothing : kBands);
         bands.encode(brick.levels[level], int(level), out);
     }
-    if (!format.isStepped()) tryWhole(format, samples, present, compressor, segments);
+    if (!format.isStepped()) {
+        tryWhole(format, samples, present, compressor, segments);
+        tryMixed(format, samples, present, compressor, segments);
+    }
 
     Bytes extras;
     if (format.keepsAbsent) encodeStream(brick.absentBits, compressor, extras);

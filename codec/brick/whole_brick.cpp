@@ -9,7 +9,7 @@ namespace tessera::codec {
 
 namespace {
 
-constexpr std::byte kWhole{5}, kPalette{6};
+constexpr std::byte kWhole{5}, kPalette{6}, kMixed{8};
 constexpr std::size_t kMostColours = 256;
 
 /// The distinct codes in ascending (signed) order, and the index of each; empty if there are too many for one-byte
@@ -72,10 +72,46 @@ private:
     std::vector<std::uint8_t> places_; ///< by code from the smallest on; empty if the codes are too far apart
 };
 
+Bytes encodePalette(std::byte mode, std::span<const std::int32_t> palette, Compressor& compressor) {
+    std::vector<std::uint32_t> steps;
+    for (std::size_t i = 0; i < palette.size(); ++i)
+        steps.push_back(i == 0
+                            ? zigzag(std::bit_cast<std::uint32_t>(palette[0]))
+                            : std::bit_cast<std::uint32_t>(palette[i]) - std::bit_cast<std::uint32_t>(palette[i - 1]));
+    Bytes out{mode, static_cast<std::byte>(palette.size() - 1)};
+    encodeStream(steps, compressor, out);
+    return out;
+}
+
+DecodeStatus takePalette(std::span<const std::byte>& in, std::vector<std::uint32_t>& palette) {
+    if (in.empty()) return DecodeStatus::Truncated;
+    palette.resize(static_cast<std::size_t>(in[0]) + 1);
+    in = in.subspan(1);
+    if (const DecodeStatus status = decodeStream(in, palette); status != DecodeStatus::Ok) return status;
+    palette[0] = unzigzag(palette[0]);
+    for (std::size_t i = 1; i < palette.size(); ++i) palette[i] += palette[i - 1];
+    return DecodeStatus::Ok;
+}
+
+DecodeStatus decodeWholeMixed(std::span<const std::byte> in, const MixedShape& shape, std::span<std::uint32_t> codes) {
+    std::vector<std::uint32_t> palette;
+    if (const DecodeStatus status = takePalette(in, palette); status != DecodeStatus::Ok) return status;
+    if (palette.size() < 2 || codes.size() != shape.count() || codes.size() > kMostMixed) return DecodeStatus::BadMode;
+    std::vector<std::uint8_t> symbols(codes.size());
+    const DecodeStatus status = decodeMixed(shape, int(palette.size()), in, symbols);
+    if (status != DecodeStatus::Ok) return status;
+    for (std::size_t i = 0; i < codes.size(); ++i) codes[i] = palette[symbols[i]];
+    return DecodeStatus::Ok;
+}
+
 } // namespace
 
 bool isWhole(std::byte mode) {
-    return mode == kWhole || mode == kPalette;
+    return mode == kWhole || mode == kPalette || mode == kMixed;
+}
+
+bool isMixed(std::byte mode) {
+    return mode == kMixed;
 }
 
 Bytes encodeWhole(std::span<const std::uint32_t> codes, Compressor& compressor) {
@@ -89,14 +125,21 @@ Bytes encodeWhole(std::span<const std::uint32_t> codes, Compressor& compressor) 
         return whole;
     }
     for (std::size_t i = 0; i < codes.size(); ++i) symbols[i] = all.placeOf(codes[i]);
-    std::vector<std::uint32_t> steps;
-    for (std::size_t i = 0; i < palette.size(); ++i)
-        steps.push_back(i == 0
-                            ? zigzag(std::bit_cast<std::uint32_t>(palette[0]))
-                            : std::bit_cast<std::uint32_t>(palette[i]) - std::bit_cast<std::uint32_t>(palette[i - 1]));
-    Bytes whole{kPalette, static_cast<std::byte>(palette.size() - 1)};
-    encodeStream(steps, compressor, whole);
+    Bytes whole = encodePalette(kPalette, palette, compressor);
     encodeStream(symbols, compressor, whole);
+    return whole;
+}
+
+Bytes encodeWholeMixed(std::span<const std::uint32_t> codes, const MixedShape& shape, Compressor& compressor) {
+    if (codes.size() > kMostMixed) return {};
+    const Palette all(codes);
+    const std::span<const std::int32_t> palette = all.colours();
+    if (palette.size() < 2) return {};
+    std::vector<std::uint8_t> symbols(codes.size());
+    for (std::size_t i = 0; i < codes.size(); ++i) symbols[i] = static_cast<std::uint8_t>(all.placeOf(codes[i]));
+    Bytes whole = encodePalette(kMixed, palette, compressor);
+    const Bytes mixed = encodeMixed(shape, int(palette.size()), symbols);
+    whole.insert(whole.end(), mixed.begin(), mixed.end());
     return whole;
 }
 
@@ -107,18 +150,15 @@ std::optional<std::uint32_t> onlyCode(std::span<const std::byte> in) {
     return std::nullopt;
 }
 
-DecodeStatus decodeWhole(std::span<const std::byte> in, std::span<std::uint32_t> codes) {
-    const bool indexed = in[0] == kPalette;
+DecodeStatus decodeWhole(std::span<const std::byte> in, std::span<std::uint32_t> codes,
+                         const std::optional<MixedShape>& mixed) {
+    const std::byte mode = in[0];
     in = in.subspan(1);
+    if (mode == kMixed) return mixed ? decodeWholeMixed(in, *mixed, codes) : DecodeStatus::BadMode;
+    const bool indexed = mode == kPalette;
     std::vector<std::uint32_t> palette;
-    if (indexed) {
-        if (in.empty()) return DecodeStatus::Truncated;
-        palette.resize(static_cast<std::size_t>(in[0]) + 1);
-        in = in.subspan(1);
-        if (const DecodeStatus status = decodeStream(in, palette); status != DecodeStatus::Ok) return status;
-        palette[0] = unzigzag(palette[0]);
-        for (std::size_t i = 1; i < palette.size(); ++i) palette[i] += palette[i - 1];
-    }
+    if (indexed)
+        if (const DecodeStatus status = takePalette(in, palette); status != DecodeStatus::Ok) return status;
     if (const DecodeStatus status = decodeStream(in, codes); status != DecodeStatus::Ok) return status;
     if (!in.empty()) return DecodeStatus::Trailing;
     if (!indexed) {

@@ -42,14 +42,19 @@ inline constexpr int kMostLeftOut = 8;
 class RangeEncoder {
 public:
     TESSERA_INLINE std::uint32_t bit(AdaptiveBit& about, std::uint32_t value) {
-        const std::uint64_t part = (range_ >> 16) * about.share();
+        bitOf(about.share(), value);
+        about.learn(value);
+        return value;
+    }
+    /// A bit that is 1 with a probability of `share` / 65536 (1..65535).
+    TESSERA_INLINE std::uint32_t bitOf(std::uint32_t share, std::uint32_t value) {
+        const std::uint64_t part = (range_ >> 16) * share;
         if (value != 0) {
             range_ = part;
         } else {
             add(part);
             range_ -= part;
         }
-        about.learn(value);
         if (range_ < kLeast) shift();
         return value;
     }
@@ -62,6 +67,7 @@ public:
         }
         return value;
     }
+    bool goesOn() const { return true; }
     /// The bytes, without some zeros at the end.
     Bytes finish() {
         // Of the numbers in the range, one with as many zeros at the end as possible.
@@ -103,11 +109,15 @@ public:
         for (int i = 0; i < 2; ++i) code_ = code_ << 32 | take();
     }
     TESSERA_INLINE std::uint32_t bit(AdaptiveBit& about, std::uint32_t = 0) {
-        const std::uint64_t part = (range_ >> 16) * about.share();
+        const std::uint32_t value = bitOf(about.share());
+        about.learn(value);
+        return value;
+    }
+    TESSERA_INLINE std::uint32_t bitOf(std::uint32_t share, std::uint32_t = 0) {
+        const std::uint64_t part = (range_ >> 16) * share;
         const std::uint32_t value = code_ < part ? 1 : 0;
         range_ = value != 0 ? part : range_ - part;
         code_ -= value != 0 ? 0 : part;
-        about.learn(value);
         if (range_ < kLeast) refill();
         return value;
     }
@@ -122,6 +132,8 @@ public:
         }
         return value;
     }
+    /// Whether what was read so far can be what a writer wrote.
+    bool goesOn() const { return beyond_ <= kMostLeftOut; }
     /// Ok if all bytes were read, and no more than a writer may have left out.
     DecodeStatus end() const {
         if (next_ != end_) return DecodeStatus::Trailing;

@@ -40,9 +40,13 @@ inline constexpr std::uint32_t kSubsamples = 32;
 inline constexpr std::uint32_t kPredictedFrames = 64;
 /// Feature: models can have fitted predictions. Only set once one has.
 inline constexpr std::uint32_t kFittedModels = 128;
+/// Feature: bricks can be mixed. Only set once one is.
+inline constexpr std::uint32_t kMixedBricks = 256;
+/// Features that are only set once they are used.
+inline constexpr std::uint32_t kSetWhenUsed =
+    kSteppedBricks | kSubsamples | kPredictedFrames | kFittedModels | kMixedBricks;
 inline constexpr std::uint32_t kUsualFeatures = kBrickNotes | kCompact | kBandContexts | kBrickStatistics,
-                               kKnownFeatures =
-                                   kUsualFeatures | kSteppedBricks | kSubsamples | kPredictedFrames | kFittedModels;
+                               kKnownFeatures = kUsualFeatures | kSetWhenUsed;
 
 /// xxh3, 64 bits, seed 0.
 std::uint64_t checksum(std::span<const std::byte> bytes);

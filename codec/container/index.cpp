@@ -45,7 +45,7 @@ public:
         : in_(bytes), notes_((header.features & kBrickNotes) != 0),
           statistics_((header.features & kBrickStatistics) != 0), stepped_((header.features & kSteppedBricks) != 0),
           subsamples_((header.features & kSubsamples) != 0), predicted_((header.features & kPredictedFrames) != 0),
-          end_(header.index.offset), shape_(shape), file_(file) {}
+          mixed_((header.features & kMixedBricks) != 0), end_(header.index.offset), shape_(shape), file_(file) {}
 
     IndexPage page() {
         IndexPage page;
@@ -142,6 +142,7 @@ private:
         frame.bodyCentred = (keeps & 2) != 0;
         frame.subsampled = (keeps & 4) != 0;
         frame.predicted = (keeps & 8) != 0;
+        frame.mixed = mixed_;
         frame.codeBits = codeBits;
         frame.mask = in_.get<std::int32_t>();
         frame.model = in_.get<std::int32_t>();
@@ -167,7 +168,7 @@ private:
     }
 
     ByteReader in_;
-    bool notes_, statistics_, stepped_, subsamples_, predicted_;
+    bool notes_, statistics_, stepped_, subsamples_, predicted_, mixed_;
     std::uint64_t end_; ///< of the part of the file that may contain chunks
     const IndexShape& shape_;
     const std::string& file_;

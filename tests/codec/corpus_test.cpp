@@ -1,6 +1,7 @@
 #include "codec/archive/archive.h"
 #include "codec/archive/archive_state.h"
 #include "codec/brick/brick_codec.h"
+#include "codec/brick/whole_brick.h"
 #include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain/decoder.h"
@@ -59,6 +60,11 @@ volume::Dataset wavesDataset() {
     return made;
 }
 
+/// Two small smooth bricks.
+volume::Dataset mixedDataset() {
+    return makeDataset({18, 15, 14}, {{"a", ScalarType::U8, 1, Texture::Smooth, false, false}}, 1);
+}
+
 // Archives of every set of features stay readable: these files were written once.
 TEST(Corpus, StoredArchivesStillDecode) {
     const volume::Dataset made = corpusDataset();
@@ -110,6 +116,13 @@ TEST(Corpus, AStoredArchiveOfFittedPredictionsHasItsSamples) {
     EXPECT_EQ(readField(archive, 0, 0, 0).samples, wavesDataset().read(0, 0, 0).samples);
 }
 
+TEST(Corpus, AStoredArchiveOfMixedBricksHasItsSamples) {
+    const Archive archive(corpus() + "fuzz_archive/mixed-3.tsr");
+    EXPECT_EQ(verifyArchive(archive).damaged, 0u);
+    ASSERT_NE(stateOf(archive, false).header.features & kMixedBricks, 0u);
+    EXPECT_EQ(readField(archive, 0, 0, 0).samples, mixedDataset().read(0, 0, 0).samples);
+}
+
 /// Not a check: writes the seeds of fuzz_brick and fuzz_archive when the format changes
 /// (--gtest_also_run_disabled_tests).
 TEST(Corpus, DISABLED_WriteSeeds) {
@@ -141,6 +154,11 @@ TEST(Corpus, DISABLED_WriteSeeds) {
     fits.effort = 7;
     fits.brickSize = 16;
     pack(waves, fits, corpus() + "fuzz_archive/fitted-3.tsr");
+    volume::Dataset mixed = mixedDataset();
+    PackOptions mixes;
+    mixes.lattice = StoredLattice::CC;
+    mixes.brickSize = 16;
+    pack(mixed, mixes, corpus() + "fuzz_archive/mixed-3.tsr");
     const std::string grown = corpus() + "fuzz_archive/grown-3-statistics.tsr";
     for (int step = 0; step < 3; ++step) {
         const char* const name = step == 1 ? "p" : "T";
@@ -213,6 +231,16 @@ TEST(Corpus, DISABLED_WriteSeeds) {
                 for (const std::size_t byte : {segment.size() % 256, segment.size() / 256}) head.push_back(char(byte));
             for (const std::byte byte : segment) head.push_back(char(byte));
         }
+        writeFile(corpus() + "fuzz_brick/" + std::to_string(number++), head);
+    }
+    for (int lattice = 0; lattice < 2; ++lattice) { // mixed
+        std::vector<char> head{char(lattice), 15, 14, 13, 0, 5, char(ScalarType::U8), 32, 0, 0, 0, 1};
+        volume::Dataset made = makeDataset({16, 15, 14}, {{"x", ScalarType::U8, 1, Texture::Smooth, false, false}}, 1);
+        const volume::Field field = made.read(0, 0, 0);
+        std::vector<std::uint32_t> codes;
+        for (const std::uint8_t sample : field.as<std::uint8_t>()) codes.push_back(sample);
+        for (const std::byte byte : encodeWholeMixed(codes, {{16, 15, 14}, 1 + lattice}, compressor))
+            head.push_back(char(byte));
         writeFile(corpus() + "fuzz_brick/" + std::to_string(number++), head);
     }
     for (int seed = 0; seed < 5; ++seed) {

@@ -21,6 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         format.numbers = {data[8] < 128 ? static_cast<codec::NumberKind>(1 + data[8] % 3) : codec::NumberKind::Stepped,
                           1, 0.5};
     format.subsampled = format.levels > 1 && data[7] / 4 % 4 == 1;
+    format.mixed = data[7] / 16 == 2;
     format.steps = {{data[8] % 8, 2 + data[8] / 8 % 8}, 1u << data[6] % 29};
     const std::size_t count = std::size_t(format.size.x) * std::size_t(format.size.y) * std::size_t(format.size.z);
     std::vector<std::uint8_t> present;

@@ -1,5 +1,6 @@
 #include "tests/codec/plain/bands.h"
 #include "tests/codec/plain/fitted.h"
+#include "tests/codec/plain/mixed.h"
 #include "tests/codec/plain/steps.h"
 
 #include <algorithm>
@@ -155,16 +156,23 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
         }
         if (in.at == in.end && bands.empty()) continue;
         need(in.at < in.end, "no mode");
-        if ((*in.at == 5 || *in.at == 6) && segment == 0) {
+        if ((*in.at == 5 || *in.at == 6 || (*in.at == 8 && knowsMixed_)) && segment == 0) {
             whole = true;
-            const bool indexed = in.number(1) == 6;
+            const auto mode = in.number(1);
+            const bool indexed = mode != 5;
             std::vector<std::uint32_t> colours;
             if (indexed)
                 for (const auto step : stream(in, std::size_t(in.number(1)) + 1))
                     colours.push_back(colours.empty() ? unzigzag(step) : colours.back() + step);
             std::size_t present = 0;
             for (const bool flag : flags) present += flag ? 1 : 0;
-            const auto symbols = stream(in, present);
+            std::vector<std::uint32_t> symbols;
+            if (mode == 8) {
+                need(present == flags.size() && present <= 1 << 19 && colours.size() >= 2, "mixed");
+                symbols = readMixed(in.take(std::size_t(in.end - in.at)), fine, bcc_, int(colours.size()));
+            } else {
+                symbols = stream(in, present);
+            }
             need(in.at == in.end, "trailing bytes");
             const auto codeOf = [&](auto symbol) {
                 need(!indexed || symbol < colours.size(), "index");

@@ -91,7 +91,7 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         const std::uint64_t end = in.number(8);
         Piece found[2];
         for (Piece& part : found) part = readPiece(in);
-        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 || features > 255) return false;
+        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 || features > 511) return false;
         if (end > file_.size()) return false;
         if (end <= end_) return true; // the other copy is as good or better
         hasNotes_ = features % 2 == 1;
@@ -101,7 +101,8 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         knowsSteps_ = features / 16 % 2 == 1;
         knowsSubsamples_ = features / 32 % 2 == 1;
         knowsPredictions_ = features / 64 % 2 == 1;
-        knowsFits_ = features / 128 == 1;
+        knowsFits_ = features / 128 % 2 == 1;
+        knowsMixed_ = features / 256 == 1;
         end_ = end;
         std::copy(found, found + 2, parts);
         return true;
