@@ -28,7 +28,7 @@ struct BrickFormat {
         false;          ///< of BCC: the odd sublattice is predicted from the even one (codec/wavelet/body_centred.h)
     StepChoice steps{}; ///< for numbers of kind Stepped
     bool subsampled = false; ///< segment 0 begins with samples of level 0 (codec/brick/subsamples.h)
-    bool mixed = false;      ///< the brick may be mixed (codec/brick/mixed_brick.h)
+    bool mixed = false;      ///< the brick may be mixed (codec/bytes/mixed_symbols.h)
 
     bool operator==(const BrickFormat&) const = default;
 

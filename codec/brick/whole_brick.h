@@ -1,6 +1,6 @@
 #pragma once
 
-#include "codec/brick/mixed_brick.h"
+#include "codec/bytes/mixed_symbols.h"
 #include "codec/bytes/decode_status.h"
 #include "codec/bytes/entropy.h"
 

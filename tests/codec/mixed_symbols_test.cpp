@@ -1,4 +1,4 @@
-#include "codec/brick/mixed_brick.h"
+#include "codec/bytes/mixed_symbols.h"
 
 #include "codec/archive/archive.h"
 #include "codec/archive/archive_state.h"

@@ -1,4 +1,4 @@
-#include "codec/brick/mixed_brick.h"
+#include "codec/bytes/mixed_symbols.h"
 
 #include "codec/bytes/range_coder.h"
 
