@@ -284,8 +284,7 @@ void run(PackRequest request) {
     PackInput input = open(request, progress.part(0, 0.02));
     const Progress rest = progress.part(0.02, 1);
     const Launched started = launched();
-    if (whole && !request.alone && (started.count > 1 || blocks))
-        return runBlocks(request, started, input, rest);
+    if (whole && !request.alone && (started.count > 1 || blocks)) return runBlocks(request, started, input, rest);
     say(request, request.append
                      ? codec::append(input.data, request.output, request.options.memoryMb, rest, input.before)
                      : codec::pack(input.data, request.options, request.output, rest, input.before));

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "codec/bytes/mixed_symbols.h"
 #include "codec/bytes/decode_status.h"
 #include "codec/bytes/entropy.h"
+#include "codec/bytes/mixed_symbols.h"
 
 #include <optional>
 #include <span>

@@ -53,7 +53,6 @@ void expectPure(const Dataset& dataset) {
     }
 }
 
-
 TEST(RegionsInArchives, StayApartOnEveryLatticeAndLevel) {
     const TemporaryFolder folder;
     for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC, StoredLattice::D4})
