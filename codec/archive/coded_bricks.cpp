@@ -52,18 +52,19 @@ struct BrickProperties {
     float min = 0, max = -1;
     std::uint32_t samples = 0, infinite = 0, mean = 0, bins = 0;
     std::array<std::uint32_t, 32> counts{};
-    std::uint32_t whole = 0;
+    std::uint32_t whole = 0, mixed = 0;
     SampleErrors errors;
 };
 
 BrickProperties propertiesOf(const FrameCoding& coding, std::size_t b) {
     const FrameBrick& brick = coding.frame.bricks[b];
     const BrickHistogram& histogram = brick.histogram;
-    BrickProperties out{brick.min, brick.max, histogram.samples, histogram.infinite, histogram.mean, 0, {}, 0, {}};
+    BrickProperties out{brick.min, brick.max, histogram.samples, histogram.infinite, histogram.mean, 0, {}, 0, 0, {}};
     assert(histogram.counts.size() <= out.counts.size());
     out.bins = static_cast<std::uint32_t>(histogram.counts.size());
     std::ranges::copy(histogram.counts, out.counts.begin());
     out.whole = coding.whole[b];
+    out.mixed = coding.mixed[b];
     if (coding.measures()) out.errors = coding.errors[b];
     return out;
 }
@@ -73,6 +74,7 @@ void take(const BrickProperties& of, std::size_t b, FrameCoding& coding) {
     coding.frame.bricks[b] = {of.min, of.max, {of.samples, of.infinite, of.mean, {of.counts.begin(), end}}, {}};
     coding.frame.bricks[b].notes.importance = coding.importance[b];
     coding.whole[b] = of.whole != 0 ? 1 : 0;
+    coding.mixed[b] = of.mixed != 0 ? 1 : 0;
     coding.taken.bricks[b].reset(); // another process used its own; it must not serve another quantum
     if (coding.measures()) coding.errors[b] = of.errors;
 }

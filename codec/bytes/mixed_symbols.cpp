@@ -12,11 +12,11 @@ namespace tessera::codec {
 
 namespace {
 
-constexpr std::uint32_t kHash = 0x9E3779B1;
+constexpr std::uint32_t kHashFactor = 0x9E3779B1;
 constexpr int kContexts = 6, kInputs = kContexts + 2; // the others: the match, and a constant
 constexpr int kKinds = 4, kActivities = 8;
 constexpr int kFurthest = 3071; ///< of logits, in units of 1/256
-constexpr int kConstant = 256;
+constexpr int kConstantInput = 256;
 constexpr std::int32_t kFirstWeight = 19200, kMostWeight = 1 << 23; ///< 65536 is 1
 constexpr std::size_t kMatched = 4;                                 ///< symbols that begin a match
 
@@ -64,8 +64,8 @@ struct Mean {
 };
 
 std::uint32_t hash(std::uint32_t a, std::uint32_t b) {
-    std::uint32_t h = a * kHash;
-    h = ((h ^ h >> 15) + b) * kHash;
+    std::uint32_t h = a * kHashFactor;
+    h = ((h ^ h >> 15) + b) * kHashFactor;
     return h ^ h >> 15;
 }
 
@@ -162,13 +162,13 @@ private:
         std::array<std::int32_t, kInputs> inputs;
         std::array<Mean*, kContexts> means;
         for (std::size_t k = 0; k < kContexts; ++k) {
-            means[k] = &means_[(contexts_[k] + place) * kHash >> (32 - bits_)];
+            means[k] = &means_[(contexts_[k] + place) * kHashFactor >> (32 - bits_)];
             inputs[k] = logit(*means[k]);
         }
         const bool asked = agrees_;
         Mean& right = right_[kind][std::size_t(std::min(int(std::bit_width(length_)), kLongest))];
         inputs[kContexts] = !asked ? 0 : expected != 0 ? logit(right) : -logit(right);
-        inputs[kContexts + 1] = kConstant;
+        inputs[kContexts + 1] = kConstantInput;
         auto& weights = weights_[kind * kActivities + std::size_t(activity_)];
         std::int64_t sum = 0;
         for (std::size_t k = 0; k < kInputs; ++k) sum += std::int64_t(weights[k]) * inputs[k];
@@ -194,7 +194,7 @@ private:
         if (i + 1 < kMatched) return;
         std::uint32_t before = 0;
         for (std::size_t k = 0; k < kMatched; ++k) before = before << 8 | symbols_[i - k];
-        std::uint32_t& last = last_[before * kHash >> (34 - bits_)];
+        std::uint32_t& last = last_[before * kHashFactor >> (34 - bits_)];
         if (!follows_ && last != 0) {
             matched_ = last;
             while (length_ < kCompared && length_ < matched_ &&
