@@ -208,11 +208,7 @@ std::vector<volume::BrickImportance> importanceOfBricks(const volume::BrickGrid&
                                                         Range range, bool categorical,
                                                         const volume::ImportanceOptions& options) {
     if (samples.whole()) return volume::importanceOfBricks(grid, *samples.whole(), range, categorical, options);
-    Field part;
-    const auto read = [&](int first, int count) -> const Field& {
-        samples.take(first, count, part);
-        return part;
-    };
+    const auto read = [&](int first, int count, Field& part) { samples.take(first, count, part); };
     return volume::importanceOfBricks(grid, read, samples.store()->layers, range, categorical, options,
                                       samples.team() ? samples.team()->pieces("importance") : Pieces(piecesHere));
 }

@@ -111,8 +111,10 @@ TEST(Slices, ImportanceInPartsIsTheSameAsWhole) {
                 const auto compare = [&](const Field& field, Range range, bool categorical) {
                     const auto whole = importanceOfBricks(grid, field, range, categorical);
                     for (const int layers : {1, 2, 3, 100}) {
-                        const auto parts =
-                            importanceOfBricks(grid, slicedFrame(field).read, layers, range, categorical);
+                        const auto read = [from = slicedFrame(field).read](int first, int count, Field& part) {
+                            part = from(first, count);
+                        };
+                        const auto parts = importanceOfBricks(grid, read, layers, range, categorical);
                         ASSERT_EQ(parts.size(), whole.size());
                         for (std::size_t i = 0; i < whole.size(); ++i) {
                             EXPECT_EQ(parts[i].importance, whole[i].importance) << i << " layers " << layers;

@@ -312,11 +312,12 @@ std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Fie
 }
 
 std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid,
-                                                const std::function<const Field&(int first, int count)>& read,
+                                                const std::function<void(int first, int count, Field& part)>& read,
                                                 int layers, Range range, bool categorical,
                                                 const ImportanceOptions& options, const Pieces& pieces) {
     const int all = grid.count().z, texels = grid.lattice.texels().z;
     const int slices = grid.lattice.kind == LatticeKind::BCC ? 2 : 1; // of a texel
+    Field part;
     return importanceOfParts(
         grid, range, categorical, options,
         [&]<class T>(int margin, const std::function<std::vector<T>(const LayersOfBricks&)>& of) {
@@ -325,7 +326,8 @@ std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid,
                 const int first = std::max(layer * grid.brickSize - margin, 0),
                           last = std::min(end * grid.brickSize + margin, texels);
                 const int from = first * slices, to = std::min(last * slices, grid.lattice.size.z);
-                return of({read(from, to - from), first, layer, end});
+                read(from, to - from, part);
+                return of({part, first, layer, end});
             });
         });
 }

@@ -49,9 +49,9 @@ std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Fie
                                                 bool categorical, const ImportanceOptions& options = {});
 
 /// The same for a frame that is read in slices, `layers` layers of bricks at a time plus a few slices around them.
-/// `read(first, count)` gives slices, which are used until it is called again.
+/// `read(first, count, part)` replaces `part` by slices.
 std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid,
-                                                const std::function<const Field&(int first, int count)>& read,
+                                                const std::function<void(int first, int count, Field& part)>& read,
                                                 int layers, Range range, bool categorical,
                                                 const ImportanceOptions& options = {},
                                                 const Pieces& pieces = piecesHere);
