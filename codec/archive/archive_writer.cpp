@@ -293,7 +293,7 @@ bool ArchiveWriter::Impl::codeBricks(FrameCoding& coding, const FrameSamples& sa
 bool ArchiveWriter::Impl::codeFrame(FrameCoding& coding, const FrameSamples& samples, const FrameOptions& options,
                                     CodedBricks& coded, const Progress& progress) {
     constexpr int kTrials = 8;
-    const int zstdLevel = zstdLevelFor(samples, options.zstdLevel);
+    const int zstdLevel = zstdLevelFor(samples, options.zstdLevel, options.effort);
     if (!coding.measures()) return codeBricks(coding, samples, zstdLevel, coded, progress);
     double done = 0;
     const auto code = [&] {
