@@ -263,7 +263,8 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
 bool ArchiveWriter::Impl::codeFrame(FrameCoding& coding, const FrameSamples& samples, const FrameOptions& options,
                                     CodedBricks& coded, const Progress& progress) {
     constexpr int kTrials = 8;
-    const ZstdUse zstd{zstdLevelFor(samples, options.zstdLevel), (commits.header.features & kCompact) != 0};
+    const ZstdUse zstd{zstdLevelFor(samples, options.zstdLevel, options.effort),
+                       (commits.header.features & kCompact) != 0};
     if (!coding.measures()) return codeBricks(coding, samples, zstd, coded, progress);
     double done = 0;
     const auto code = [&] {

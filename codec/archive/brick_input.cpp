@@ -34,18 +34,25 @@ void BrickInput::take(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec
     const volume::Field* const field = frame.whole();
     std::byte* to = samples.data();
     std::uint8_t* flags = masked ? present.data() : nullptr;
-    for (int z = 0; z < size.z; ++z)
-        for (int y = 0; y < size.y; ++y) {
-            const std::size_t from = grid.lattice.index(begin + glm::ivec3(0, y, z));
-            if (!field) {
-                frame.read(from, n, to, flags);
-            } else {
-                std::memcpy(to, field->samples.data() + from * sampleBytes, n * sampleBytes);
-                for (std::size_t i = 0; masked && i < n; ++i) flags[i] = field->present(from + i) ? 1 : 0;
-            }
-            to += n * sampleBytes;
-            if (flags) flags += n;
+    constexpr std::size_t kCacheLine = 64;
+    constexpr int kAhead = 16; // rows that are fetched from memory before they are copied, as they are far apart
+    const auto indexOf = [&](int row) { return grid.lattice.index(begin + glm::ivec3(0, row % size.y, row / size.y)); };
+    const int rows = size.y * size.z;
+    for (int row = 0; row < rows; ++row) {
+        const std::size_t from = indexOf(row);
+        if (field && row + kAhead < rows) {
+            const std::byte* const next = field->samples.data() + indexOf(row + kAhead) * sampleBytes;
+            for (std::size_t i = 0; i < n * sampleBytes; i += kCacheLine) __builtin_prefetch(next + i);
         }
+        if (!field) {
+            frame.read(from, n, to, flags);
+        } else {
+            std::memcpy(to, field->samples.data() + from * sampleBytes, n * sampleBytes);
+            for (std::size_t i = 0; masked && i < n; ++i) flags[i] = field->present(from + i) ? 1 : 0;
+        }
+        to += n * sampleBytes;
+        if (flags) flags += n;
+    }
     if (std::find(present.begin(), present.end(), std::uint8_t(0)) == present.end()) present.clear();
 }
 

@@ -22,12 +22,13 @@ constexpr int kMostTables = 24;
 /// Histogram of the tokens of some bricks, spread over the frame; the bricks are kept in `taken` if it is not null.
 Histogram sampleTokens(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
                        std::size_t most, Contexts contexts, double maxError = 0, Taken* taken = nullptr,
-                       const FittedWeights* fitted = nullptr) {
+                       const FittedWeights* fitted = nullptr, bool quick = false) {
     const std::size_t bricks = grid.brickCount(), count = std::min(bricks, most);
     // Large frames are subsampled. The step is coprime to the number of chunks per row, to cover all positions of a
     // row.
-    constexpr std::size_t kMany = 2 << 20;
-    const int every = samples.count() / bricks * count < kMany ? 1 : 5;
+    constexpr std::size_t kMany = 2 << 20, kQuickMany = 1 << 19;
+    const std::size_t sampled = samples.count() / bricks * count;
+    const int every = sampled >= kMany ? 5 : quick && sampled >= kQuickMany ? 3 : 1;
     Histogram sum(grid.levels, contexts);
     std::mutex mutex;
     if (taken) {
@@ -232,9 +233,11 @@ NumberCoding chooseNumbers(const volume::BrickGrid& grid, SampleNumbers& of, con
     return sampleMiddles(grid, samples, frame, kTrialBricks).bits() < asScaled ? bits : scaled;
 }
 
-int zstdLevelFor(const FrameSamples& samples, int zstdLevel) {
+int zstdLevelFor(const FrameSamples& samples, int zstdLevel, int effort) {
     constexpr std::size_t kSmallFrame = 1 << 19; // samples
-    return samples.count() <= kSmallFrame ? kMostZstdLevel : zstdLevel;
+    constexpr int kQuickLevel = 3;
+    if (samples.count() <= kSmallFrame) return kMostZstdLevel;
+    return effort <= kQuickEffort ? std::min(zstdLevel, kQuickLevel) : zstdLevel;
 }
 
 double boundOf(const FrameRecord& frame, const FrameOptions& options) {
@@ -289,8 +292,9 @@ Model chooseModel(const volume::BrickGrid& grid, const FrameSamples& samples, co
         if (!options.wavelet) frame.wavelet = quick ? Wavelet::W22 : waveletFor(grid, samples, frame);
         const int shift = frame.codeBits > 16 ? shiftFor(sampleMiddles(grid, samples, frame, kTrialBricks)) : 0;
         const Contexts contexts{shift, byBand};
-        const std::size_t of = options.effort <= kQuickEffort ? kTrialBricks : kModelBricks;
-        fresh = makeModel(sampleTokens(grid, samples, frame, of, contexts, maxError, kept), kMostTables);
+        const std::size_t of = quick ? kTrialBricks : kModelBricks;
+        fresh =
+            makeModel(sampleTokens(grid, samples, frame, of, contexts, maxError, kept, nullptr, quick), kMostTables);
         if (options.effort >= kFittedEffort && !options.wavelet && !options.bodyCentred)
             tryFitted(grid, samples, options, frame, *fresh, kept);
     }

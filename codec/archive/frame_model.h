@@ -34,8 +34,9 @@ int codeBitsOf(SampleNumbers& of, const NumberCoding& numbers);
 NumberCoding chooseNumbers(const volume::BrickGrid& grid, SampleNumbers& of, const KnownModel* last,
                            const FrameOptions& options);
 
-/// The zstd level for the bricks of a frame; higher for small frames, where it costs little time.
-int zstdLevelFor(const FrameSamples& samples, int zstdLevel);
+/// The zstd level for the bricks of a frame: higher for small frames, where it costs little time; else low with little
+/// effort.
+int zstdLevelFor(const FrameSamples& samples, int zstdLevel, int effort);
 
 /// The part of the error bound that remains for rounding samples to codes and for repeating bricks.
 double boundOf(const FrameRecord& frame, const FrameOptions& options);

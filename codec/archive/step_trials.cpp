@@ -78,7 +78,7 @@ void useSteps(const SteppedFrame& steps, FrameRecord& frame) {
 StepTrials::StepTrials(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
                        const FrameOptions& options, const SeenFrame* before)
     : type_(samples.type()), maxError_(boundOf(frame, options)), measures_(options.rms > 0),
-      zstdLevel_(measures_ ? zstdLevelFor(samples, options.zstdLevel) : kUsualZstdLevel) {
+      zstdLevel_(measures_ ? zstdLevelFor(samples, options.zstdLevel, options.effort) : kUsualZstdLevel) {
     for (const std::size_t number : bricksToTry(grid, measures_)) {
         const glm::ivec3 brick = grid.indexOf(number);
         Box box;

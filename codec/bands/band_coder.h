@@ -28,7 +28,7 @@ public:
 private:
     Model model_;
     std::vector<Entry> entries_;        ///< at [table << 8 | token]
-    std::vector<std::uint32_t> packed_; ///< the same as frequency | start << 16
+    std::vector<std::uint32_t> packed_; ///< the same as frequency | start << 16, then one for lanes without a token
 };
 
 /// A model prepared for decoding; shared by all bricks of a frame. Thread-safe.

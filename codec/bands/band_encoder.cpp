@@ -1,6 +1,9 @@
 #include "codec/bands/band_coder.h"
 #include "codec/bands/band_rows512.h"
 
+#include <array>
+#include <bit>
+#include <cstring>
 #include <memory>
 
 namespace tessera::codec {
@@ -17,8 +20,10 @@ public:
         pending_ |= static_cast<std::uint64_t>(value) << count_;
         count_ += bits;
         if (count_ < 32) return;
-        for (std::size_t i = 0; i < 4; ++i) bytes_[at_ + i] = static_cast<std::byte>(pending_ >> (8 * i));
-        at_ += 4, count_ -= 32, pending_ >>= 32;
+        auto low = static_cast<std::uint32_t>(pending_);
+        if constexpr (std::endian::native == std::endian::big) low = __builtin_bswap32(low);
+        std::memcpy(bytes_.data() + at_, &low, sizeof low);
+        at_ += sizeof low, count_ -= 32, pending_ >>= 32;
     }
     Bytes taken() {
         for (; count_ > 0; count_ -= 8, pending_ >>= 8) bytes_[at_++] = static_cast<std::byte>(pending_);
@@ -74,55 +79,96 @@ void codeTokens(const TokenRun& run, const std::uint32_t* tables, std::span<cons
 
 #if TESSERA_X86
 
-/// The same, one chunk at a time.
-TESSERA_AVX512 void codeTokens512(const TokenRun& run, const std::uint32_t* tables, const std::uint32_t* packed,
-                                  Coded& out) {
-    const std::size_t mask = std::size_t(run.groups) - 1;
-    std::uint16_t* words = out.words.get() + out.at;
-    for (std::size_t chunk = run.tokens.size() / kLanes; chunk-- > 0;) {
-        const __m512i both = _mm512_cvtepu16_epi32(
-            _mm256_loadu_si256(reinterpret_cast<const __m256i*>(run.tokens.data() + chunk * kLanes)));
-        const __mmask16 active = _mm512_cmpneq_epu32_mask(both, _mm512_set1_epi32(TokenRun::kNone));
-        if (active == 0) continue;
+/// Chunks whose entries are looked up before the first of them is coded: the lookups do not wait for coder states.
+constexpr std::size_t kAhead = 32;
+using Entries = std::array<std::uint32_t, kAhead * kLanes>;
+
+/// Replaces indices by the entries at them, two at a time: as fast as gathers where those are fast.
+[[gnu::noinline]] void lookUp(const std::uint32_t* __restrict packed, std::uint32_t* __restrict entries,
+                              std::size_t count) {
+    for (std::size_t i = 0; i < count; i += 2) {
+        std::uint64_t two;
+        std::memcpy(&two, entries + i, sizeof two);
+        two = packed[two & 0xffffffff] | std::uint64_t(packed[two >> 32]) << 32;
+        std::memcpy(entries + i, &two, sizeof two);
+    }
+}
+
+/// The entries of the tokens of `count` chunks from `first` on; the last of `packed` where there is no token.
+TESSERA_AVX512 void findEntries(const TokenRun& run, const std::uint32_t* tables, std::span<const std::uint32_t> packed,
+                                std::size_t first, std::size_t count, Entries& entries) {
+    const __m512i none = _mm512_set1_epi32(TokenRun::kNone),
+                  idle = _mm512_set1_epi32(static_cast<int>(packed.size() - 1));
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint16_t* tokens = run.tokens.data() + (first + i) * kLanes;
+        const __m512i both = _mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(tokens)));
+        const __mmask16 active = _mm512_cmpneq_epu32_mask(both, none);
         // A chunk belongs to one band.
         const std::uint32_t* own =
-            tables + (run.tokens[chunk * kLanes + std::size_t(__builtin_ctz(active))] >> 13) * kClasses;
+            tables + std::size_t(active == 0 ? 0 : tokens[__builtin_ctz(active)] >> 13) * kClasses;
         const __m512i table =
             _mm512_permutex2var_epi32(_mm512_load_si512(own), _mm512_srli_epi32(both, 8), _mm512_load_si512(own + 16));
         const __m512i index = _mm512_or_si512(table, _mm512_and_si512(both, _mm512_set1_epi32(255)));
-        __m512i entry = _mm512_mask_mov_epi32(_mm512_set1_epi32(1), active, entries512(packed, index));
-        __m512i frequency = _mm512_and_si512(entry, _mm512_set1_epi32(0xffff));
-        const __mmask16 none = _mm512_mask_testn_epi32_mask(active, frequency, frequency);
-        if (none != 0) [[unlikely]] {
-            const __m512i escape = _mm512_or_si512(table, _mm512_set1_epi32(kEscape));
-            entry = _mm512_mask_mov_epi32(entry, none, entries512(packed, escape));
-            frequency = _mm512_and_si512(entry, _mm512_set1_epi32(0xffff));
-            for (std::uint32_t lane = kLanes; lane-- > 0;)
-                if ((none >> lane & 1) != 0) out.escaped.push_back(static_cast<std::uint32_t>(chunk * kLanes + lane));
+        _mm512_store_si512(entries.data() + i * kLanes, _mm512_mask_mov_epi32(idle, active, index));
+    }
+    lookUp(packed.data(), entries.data(), count * kLanes);
+}
+
+/// Replaces the entries of lanes `none` of a chunk, whose tokens have no frequency, by those of the escape.
+TESSERA_AVX512 [[gnu::noinline]] __m512i withEscapes(const TokenRun& run, const std::uint32_t* tables,
+                                                     std::span<const std::uint32_t> packed, std::size_t chunk,
+                                                     __mmask16 none, __m512i entry, Coded& out) {
+    alignas(64) std::uint32_t entries[kLanes];
+    _mm512_store_si512(entries, entry);
+    for (std::size_t lane = kLanes; lane-- > 0;) {
+        if ((none >> lane & 1) == 0) continue;
+        const std::size_t i = chunk * kLanes + lane;
+        entries[lane] = packed[tables[run.tokens[i] >> 8] | kEscape];
+        out.escaped.push_back(static_cast<std::uint32_t>(i));
+    }
+    return _mm512_load_si512(entries);
+}
+
+/// The same, one chunk at a time.
+TESSERA_AVX512 void codeTokens512(const TokenRun& run, const std::uint32_t* tables,
+                                  std::span<const std::uint32_t> packed, Coded& out) {
+    // Moves the first n of sixteen words to the end; from the n-th place on.
+    alignas(64) static constexpr std::uint16_t kToEnd[32] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15,
+                                                             0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const std::size_t mask = std::size_t(run.groups) - 1;
+    alignas(64) Entries entries;
+    std::uint16_t* words = out.words.get() + out.at;
+    for (std::size_t end = run.tokens.size() / kLanes; end > 0;) {
+        const std::size_t count = std::min(end, kAhead), first = end - count;
+        findEntries(run, tables, packed, first, count, entries);
+        for (std::size_t chunk = end; chunk-- > first;) {
+            __m512i entry = _mm512_load_si512(entries.data() + (chunk - first) * kLanes);
+            const __mmask16 none = _mm512_testn_epi32_mask(entry, entry);
+            if (none != 0) [[unlikely]]
+                entry = withEscapes(run, tables, packed, chunk, none, entry, out);
+            const __m512i frequency = _mm512_and_si512(entry, _mm512_set1_epi32(0xffff));
+            std::uint32_t* states = out.states + (chunk & mask) * kLanes;
+            const __m512i state = _mm512_load_si512(states);
+            const __mmask16 full = _mm512_cmpge_epu32_mask(_mm512_srli_epi32(state, 20), frequency);
+            const int taken = __builtin_popcount(full);
+            const __m256i low = _mm512_cvtepi32_epi16(_mm512_maskz_compress_epi32(full, state));
+            const __m256i toEnd = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kToEnd + taken));
+            _mm256_storeu_si256(reinterpret_cast<__m256i*>(words - kLanes), _mm256_permutexvar_epi16(toEnd, low));
+            words -= taken;
+            const __m512i x = _mm512_mask_srli_epi32(state, full, state, 16);
+            // The quotient, below 2^20, in float from a reciprocal that is too small by 2^-21: right or one too small.
+            const __m512 divisor = _mm512_cvtepu32_ps(frequency), guess = _mm512_rcp14_ps(divisor);
+            const __m512 reciprocal =
+                _mm512_mul_ps(guess, _mm512_sub_ps(_mm512_set1_ps(2 - 0x1p-21f), _mm512_mul_ps(divisor, guess)));
+            const __m512i quotient = _mm512_cvttps_epu32(_mm512_mul_ps(_mm512_cvtepu32_ps(x), reciprocal));
+            const __m512i rest = _mm512_sub_epi32(x, _mm512_mullo_epi32(quotient, frequency));
+            const __mmask16 under = _mm512_cmpge_epu32_mask(rest, frequency);
+            const __m512i after = _mm512_add_epi32(_mm512_slli_epi32(quotient, kProbabilityBits),
+                                                   _mm512_add_epi32(rest, _mm512_srli_epi32(entry, 16)));
+            const __m512i more = _mm512_sub_epi32(_mm512_set1_epi32(kProbabilityOne), frequency);
+            _mm512_store_si512(states, _mm512_mask_add_epi32(after, under, after, more));
         }
-        std::uint32_t* states = out.states + (chunk & mask) * kLanes;
-        const __m512i state = _mm512_load_si512(states);
-        const __mmask16 full = _mm512_mask_cmpge_epu32_mask(active, _mm512_srli_epi32(state, 20), frequency);
-        const int count = __builtin_popcount(full);
-        words -= count;
-        _mm256_mask_storeu_epi16(words, static_cast<__mmask16>((1u << count) - 1u),
-                                 _mm512_cvtepi32_epi16(_mm512_maskz_compress_epi32(full, state)));
-        const __m512i x = _mm512_mask_srli_epi32(state, full, state, 16);
-        // Quotient in float, off by at most one, then corrected.
-        const __m512 divisor = _mm512_cvtepu32_ps(frequency);
-        const __m512 guess = _mm512_rcp14_ps(divisor);
-        const __m512 reciprocal = _mm512_mul_ps(guess, _mm512_sub_ps(_mm512_set1_ps(2), _mm512_mul_ps(divisor, guess)));
-        __m512i quotient = _mm512_cvttps_epu32(_mm512_mul_ps(_mm512_cvtepu32_ps(x), reciprocal));
-        __m512i rest = _mm512_sub_epi32(x, _mm512_mullo_epi32(quotient, frequency));
-        const __mmask16 over = _mm512_movepi32_mask(rest);
-        quotient = _mm512_mask_sub_epi32(quotient, over, quotient, _mm512_set1_epi32(1));
-        rest = _mm512_mask_add_epi32(rest, over, rest, frequency);
-        const __mmask16 under = _mm512_cmpge_epu32_mask(rest, frequency);
-        quotient = _mm512_mask_add_epi32(quotient, under, quotient, _mm512_set1_epi32(1));
-        rest = _mm512_mask_sub_epi32(rest, under, rest, frequency);
-        const __m512i after = _mm512_add_epi32(_mm512_slli_epi32(quotient, kProbabilityBits),
-                                               _mm512_add_epi32(rest, _mm512_srli_epi32(entry, 16)));
-        _mm512_store_si512(states, _mm512_mask_mov_epi32(state, active, after));
+        end = first;
     }
     out.at = static_cast<std::size_t>(words - out.words.get());
 }
@@ -154,7 +200,7 @@ Bytes rawBits(const TokenRun& run, std::span<const std::uint32_t> escaped) {
 } // namespace
 
 BandEncoder::BandEncoder(Model model)
-    : model_(std::move(model)), entries_(model_.tables.size() << 8), packed_(entries_.size()) {
+    : model_(std::move(model)), entries_(model_.tables.size() << 8), packed_(entries_.size() + 1) {
     for (std::size_t i = 0; i < model_.tables.size(); ++i) {
         std::uint32_t start = 0;
         for (std::size_t t = 0; t < kTokens; ++t) {
@@ -166,6 +212,7 @@ BandEncoder::BandEncoder(Model model)
             start += frequency;
         }
     }
+    packed_.back() = kProbabilityOne; // does not change a state
 }
 
 void BandEncoder::encode(const TokenRun& run, int level, Bytes& out, Cpu cpu) const {
@@ -178,7 +225,7 @@ void BandEncoder::encode(const TokenRun& run, int level, Bytes& out, Cpu cpu) co
     Coded coded(run.tokens.size());
 #if TESSERA_X86
     if (cpu == Cpu::Avx512)
-        codeTokens512(run, tables, packed_.data(), coded);
+        codeTokens512(run, tables, packed_, coded);
     else
 #endif
         codeTokens(run, tables, entries_, coded);
@@ -190,10 +237,13 @@ void BandEncoder::encode(const TokenRun& run, int level, Bytes& out, Cpu cpu) co
     const std::size_t begin = out.size(), count = coded.size - coded.at;
     out.resize(begin + 2 * count);
     const std::uint16_t* words = coded.words.get() + coded.at;
-    std::byte* to = out.data() + begin;
-    for (std::size_t i = 0; i < count; ++i, to += 2) {
-        to[0] = static_cast<std::byte>(words[i]);
-        to[1] = static_cast<std::byte>(words[i] >> 8);
+    if constexpr (std::endian::native == std::endian::little) {
+        if (count > 0) std::memcpy(out.data() + begin, words, 2 * count);
+    } else {
+        for (std::size_t i = 0; i < count; ++i) {
+            out[begin + 2 * i] = static_cast<std::byte>(words[i]);
+            out[begin + 2 * i + 1] = static_cast<std::byte>(words[i] >> 8);
+        }
     }
 }
 

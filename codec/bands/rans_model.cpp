@@ -30,7 +30,7 @@ double nLogN(std::uint32_t n) {
 }
 
 /// Bits of the tokens of one context coded with their own optimal table, plus those of the table.
-double costOf(const Counts& counts) {
+double costOf(std::span<const std::uint32_t> counts) {
     double total = 0, own = 0, used = 0;
     for (const std::uint32_t count : counts) {
         if (count == 0) continue;
@@ -73,30 +73,39 @@ Frequencies normalised(const Counts& counts) {
 Model clustered(const Histogram& histogram, int mostTables) {
     struct Group {
         Counts counts{};
+        std::size_t used = 0; ///< no token from here on occurs
         std::vector<std::size_t> contexts;
         double mean = 0, cost = 0;
     };
+    const auto costOfFirst = [](const Counts& counts, std::size_t used) {
+        return costOf(std::span(counts).first(used));
+    };
     std::vector<Group> all;
     for (std::size_t c = 0; c < histogram.counts.size(); ++c) {
+        const Counts& counts = histogram.counts[c];
+        std::size_t used = kTokens;
+        while (used > 0 && counts[used - 1] == 0) --used;
         double total = 0, sum = 0;
-        for (std::size_t t = 0; t < kTokens; ++t) {
-            total += histogram.counts[c][t];
-            sum += double(histogram.counts[c][t]) * double(t);
+        for (std::size_t t = 0; t < used; ++t) {
+            total += counts[t];
+            sum += double(counts[t]) * double(t);
         }
-        if (total > 0) all.push_back({histogram.counts[c], {c}, sum / total, costOf(histogram.counts[c])});
+        if (total > 0) all.push_back({counts, used, {c}, sum / total, costOfFirst(counts, used)});
     }
     // Similar contexts have similar means, so only neighbours in the order of means are merged.
     std::vector<Group*> groups;
     for (Group& group : all) groups.push_back(&group);
     std::sort(groups.begin(), groups.end(), [](const Group* a, const Group* b) { return a->mean < b->mean; });
-    const auto joined = [](const Group& a, const Group& b) {
-        Counts counts = a.counts;
-        for (std::size_t t = 0; t < kTokens; ++t) counts[t] += b.counts[t];
-        return counts;
+    const auto join = [](const Group& a, const Group& b, Counts& counts) {
+        const std::size_t used = std::max(a.used, b.used);
+        for (std::size_t t = 0; t < used; ++t) counts[t] = a.counts[t] + b.counts[t];
+        return used;
     };
     std::vector<double> loss(groups.empty() ? 0 : groups.size() - 1);
     const auto weigh = [&](std::size_t i) {
-        loss[i] = costOf(joined(*groups[i], *groups[i + 1])) - groups[i]->cost - groups[i + 1]->cost;
+        Counts both;
+        const std::size_t used = join(*groups[i], *groups[i + 1], both);
+        loss[i] = costOfFirst(both, used) - groups[i]->cost - groups[i + 1]->cost;
     };
     for (std::size_t i = 0; i + 1 < groups.size(); ++i) weigh(i);
     while (groups.size() > 1) {
@@ -104,8 +113,8 @@ Model clustered(const Histogram& histogram, int mostTables) {
         if (*best >= 0 && int(groups.size()) <= mostTables) break;
         const auto i = static_cast<std::size_t>(best - loss.begin());
         Group &one = *groups[i], &other = *groups[i + 1];
-        one.counts = joined(one, other);
-        one.cost = costOf(one.counts);
+        one.used = join(one, other, one.counts);
+        one.cost = costOfFirst(one.counts, one.used);
         one.contexts.insert(one.contexts.end(), other.contexts.begin(), other.contexts.end());
         groups.erase(groups.begin() + std::ptrdiff_t(i) + 1);
         loss.erase(best);

@@ -211,7 +211,7 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
     }
     // If a fast compression is about as short as bands, a thorough one is worth its time.
     if (!tryLevel(codes, kSomeZstdLevel, compressor.triesLzma() ? kPerhapsAsShort : kNearlyAsShort)) return;
-    (void)tryLevel(codes, usual, 1);
+    if (usual != kSomeZstdLevel) (void)tryLevel(codes, usual, 1);
     if (double(whole.size()) >= (dense ? kWorthLevels : 1.0) * double(bytes)) return;
     for (Bytes& segment : segments) segment.clear();
     segments[0] = std::move(whole);

@@ -60,21 +60,29 @@ bool fitsInt16(const BrickFormat& format, bool masked) {
 
 namespace {
 
-/// Extracts one sublattice of samples in storage order.
+/// Extracts slice z of one sublattice of samples in storage order.
+template <class Word, class Number>
+void takeSlice(const BrickFormat& format, const Number* numbers, int sublattice, int z, const Box<Word>& out, int to) {
+    const glm::ivec3 size = out.size;
+    for (int y = 0; y < size.y; ++y) {
+        const std::size_t from =
+            (std::size_t(z * format.sublattices() + sublattice) * std::size_t(size.y) + std::size_t(y)) *
+            std::size_t(size.x);
+        Word* row = out.row(y, to);
+        for (std::size_t x = 0; x < std::size_t(size.x); ++x)
+            row[x] = static_cast<Word>(static_cast<std::int32_t>(numbers[from + x]));
+    }
+}
+
+/// Extracts one sublattice, with its flags.
 template <class Word, class Number>
 void takeSublattice(const BrickFormat& format, const Number* numbers, std::span<const std::uint8_t> present,
                     int sublattice, LevelBox<Word>& out) {
     const glm::ivec3 size = out.size();
-    for (int z = 0; z < size.z; ++z)
-        for (int y = 0; y < size.y; ++y) {
-            const std::size_t from =
-                (std::size_t(z * format.sublattices() + sublattice) * std::size_t(size.y) + std::size_t(y)) *
-                std::size_t(size.x);
-            Word* row = out.box().row(y, z);
-            for (std::size_t x = 0; x < std::size_t(size.x); ++x)
-                row[x] = static_cast<Word>(static_cast<std::int32_t>(numbers[from + x]));
-            if (out.masked()) std::copy_n(present.begin() + std::ptrdiff_t(from), size.x, out.flags().row(y, z));
-        }
+    for (int z = 0; z < size.z; ++z) {
+        takeSlice(format, numbers, sublattice, z, out.box(), z);
+        if (out.masked()) takeSlice(format, present.data(), sublattice, z, out.flags(), z);
+    }
 }
 
 template <class Word, class Number>
@@ -90,8 +98,10 @@ void split(const BrickFormat& format, const Number* numbers, std::span<const std
         const auto box = [&](int level) -> LevelBox<Word>& { return out[std::size_t(level * step + s)]; };
         if (predicted && s == 1) break; // transformed together with the other sublattice
         LevelBox<Word>& whole = levels > 1 ? box(levels) : box(0);
-        whole.reset(format.sublatticeSize(s), masked);
-        takeSublattice(format, numbers, present, s, whole);
+        const glm::ivec3 size = format.sublatticeSize(s);
+        const bool bySlices = levels > 1 && !predicted && liftsFast(format, masked) && countOf(size) > 0;
+        whole.reset(bySlices ? glm::ivec3(size.x, size.y, 1) : size, masked);
+        if (!bySlices) takeSublattice(format, numbers, present, s, whole);
         if (predicted) {
             LevelBox<Word>& odd = out[1];
             odd.reset(format.sublatticeSize(1), false);
@@ -102,8 +112,14 @@ void split(const BrickFormat& format, const Number* numbers, std::span<const std
         }
         for (int level = 0; level + 1 < levels; ++level) {
             LevelBox<Word>&samples = box(levels), &details = box(level);
-            details.reset(samples.size(), masked);
-            if (countOf(samples.size()) == 0) {
+            details.reset(bySlices && level == 0 ? size : samples.size(), masked);
+            if (bySlices && level == 0) { // a slice stays in the cache
+                const auto sliceOf = [&](int z) -> const Word* {
+                    takeSlice(format, numbers, s, z, samples.box(), 0);
+                    return samples.box().values;
+                };
+                splitSlices<Word>(sliceOf, details.box(), format.wavelet, wide);
+            } else if (countOf(samples.size()) == 0) {
                 // the odd sublattice of a single slice
             } else if (liftsFast(format, masked)) {
                 splitBox<Word>(std::as_const(samples).box(), details.box(), format.wavelet, wide);

@@ -125,10 +125,10 @@ struct PackOptions {
         visit(self.effort,
               FieldInfo{.key = "effort",
                         .unit = "",
-                        .doc = "Time spent on a shorter archive. Up to 3 no filter is tried. From 7 on samples are "
-                               "also predicted by weights fitted to them, by which scans gain most; such "
-                               "archives take ten times as long to pack, with 9 twenty, and two to three "
-                               "times as long to read. With 9 data of integers get bricks of 128, too",
+                        .doc = "Time spent on a shorter archive. Up to 3 no filter is tried, and zstd works at level 3 "
+                               "at most. From 7 on samples are also predicted by weights fitted to them, by which "
+                               "scans gain most; such archives take ten times as long to pack, with 9 twenty, and two "
+                               "to three times as long to read. With 9 data of integers get bricks of 128, too",
                         .range = Range{1, 9}});
         visit(self.zstdLevel, FieldInfo{.key = "zstdLevel",
                                         .unit = "",

@@ -91,7 +91,7 @@ std::vector<MergedBytes> bytesOfMerged(const Archive& archive, std::span<const v
         const auto decoder = impl.decoder(frame);
         const BandEncoder encoder(work.modelFor(boxes, wanted, decoder->model(), sums.front().together));
         parallelRanges(boxes.size(), [&](std::size_t first, std::size_t last) {
-            Compressor compressor(zstdLevelFor(field, impl.metadata.options.zstdLevel),
+            Compressor compressor(zstdLevelFor(field, impl.metadata.options.zstdLevel, impl.metadata.options.effort),
                                   (impl.header.header.features & kCompact) != 0);
             BrickInput input;
             SplitMemory memory;

@@ -294,27 +294,35 @@ bool liftsBoxes(Wavelet wavelet) {
 
 template <class Word>
 void splitBox(const Box<const Word>& in, const Box<Word>& out, Wavelet wavelet, bool wide, Cpu cpu) {
+    splitSlices<Word>([&](int z) { return in.row(0, z); }, out, wavelet, wide, cpu);
+}
+
+template <class Word>
+void splitSlices(const std::function<const Word*(int z)>& sliceOf, const Box<Word>& out, Wavelet wavelet, bool wide,
+                 Cpu cpu) {
     const Plan<Word> plan(wavelet, wide, cpu);
-    const glm::ivec3 size = in.size;
+    const glm::ivec3 size = out.size;
     const int ex = (size.x + 1) / 2, ey = (size.y + 1) / 2, ez = (size.z + 1) / 2;
     const int dx = size.x / 2, dy = size.y / 2, dz = size.z / 2;
-    const auto row = std::size_t(in.pitch), slice = row * std::size_t(size.y);
+    const auto row = std::size_t(out.pitch), slice = row * std::size_t(size.y);
     const LineLifter<Word> lifter(wavelet, size.x, wide, cpu);
     std::optional<Blocks<Word>> blocks;
     if (!lifter.lifts()) blocks.emplace();
     for (int z = 0; z < size.z; ++z) {
+        const Word* from = sliceOf(z);
         Word* to = out.row(0, placeOf(z, ez));
-        if (!blocks) lifter.split({in.row(0, z), to, size.y, row});
+        if (!blocks) lifter.split({from, to, size.y, row});
         for (int y0 = 0; blocks && y0 < size.y; y0 += Lines<Word>::kRows) {
             auto& [lines, wholes] = *blocks;
             Word* whole = wholes[0];
             const int rows = std::min(lines.kRows, size.y - y0);
-            for (int y = 0; y < rows; ++y) partRow(in.row(y0 + y, z), in.pitch, lines.even(y), lines.odd(y));
+            for (int y = 0; y < rows; ++y)
+                partRow(from + std::size_t(y0 + y) * row, out.pitch, lines.even(y), lines.odd(y));
             plan.lines(lines, ex, dx, rows, true);
             for (int y = 0; y < rows; ++y) {
                 copyBlocks(lines.even(y), ex, whole);
                 copyBlocks(lines.odd(y), dx, whole + ex);
-                copyBlocks<Word>(whole, in.pitch, to + std::size_t(placeOf(y0 + y, ey)) * row);
+                copyBlocks<Word>(whole, out.pitch, to + std::size_t(placeOf(y0 + y, ey)) * row);
             }
         }
         plan.rows(to, ey, to + std::size_t(ey) * row, dy, row, true);
@@ -352,7 +360,9 @@ template <class Word> void joinBox(const Box<Word>& in, const Box<Word>& out, Wa
 }
 
 template void splitBox(const Box<const std::int16_t>&, const Box<std::int16_t>&, Wavelet, bool, Cpu);
+template void splitSlices(const std::function<const std::int16_t*(int)>&, const Box<std::int16_t>&, Wavelet, bool, Cpu);
 template void splitBox(const Box<const std::int32_t>&, const Box<std::int32_t>&, Wavelet, bool, Cpu);
+template void splitSlices(const std::function<const std::int32_t*(int)>&, const Box<std::int32_t>&, Wavelet, bool, Cpu);
 template void joinBox(const Box<std::int16_t>&, const Box<std::int16_t>&, Wavelet, bool, Cpu);
 template void joinBox(const Box<std::int32_t>&, const Box<std::int32_t>&, Wavelet, bool, Cpu);
 

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
 /// Lifting of boxes without absent samples, in loops over rows that compilers vectorise; results are identical to those
 /// of codec/wavelet/lifting.h.
@@ -38,6 +39,11 @@ constexpr int pitchFor(int width) {
 /// bits; results modulo the word.
 template <class Word>
 void splitBox(const Box<const Word>& in, const Box<Word>& out, Wavelet wavelet, bool wide, Cpu cpu = bestCpu());
+
+/// The same for slices that `sliceOf(z)` gives, for z from 0 on, each once; rows are as far apart as in `out`.
+template <class Word>
+void splitSlices(const std::function<const Word*(int z)>& sliceOf, const Box<Word>& out, Wavelet wavelet, bool wide,
+                 Cpu cpu = bestCpu());
 
 /// Inverse of splitBox; `in` is used as working memory.
 template <class Word>

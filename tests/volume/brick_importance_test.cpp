@@ -216,14 +216,18 @@ TEST(BrickImportance, OddSizesAndEveryBrickSize) {
             Lattice lattice = test::ccLattice({side(), side(), side()});
             lattice.kind = kind;
             const BrickGrid grid{lattice, 1 << (random() % 5), 1, 0};
-            Field field = makeField(lattice, ScalarType::I16);
-            for (std::int16_t& sample : field.as<std::int16_t>()) sample = std::int16_t(random());
+            Field field = makeField(lattice, turn % 2 == 0 ? ScalarType::I16 : ScalarType::U8);
+            for (std::byte& byte : field.samples) byte = std::byte(random() % 256);
             const auto importance = importanceOfBricks(grid, field, {1, 0}, false);
+            const auto portable = importanceOfBricks(grid, field, {1, 0}, false, {}, Cpu::Portable);
             const glm::ivec3 count = grid.count();
             ASSERT_EQ(importance.size(), std::size_t(count.x * count.y * count.z));
-            for (const BrickImportance& brick : importance) {
+            for (std::size_t b = 0; b < importance.size(); ++b) {
+                const BrickImportance brick = importance[b];
                 EXPECT_TRUE(brick.importance >= 0 && brick.importance <= 1);
                 EXPECT_TRUE(brick.detail >= 0 && brick.detail <= 1);
+                EXPECT_EQ(brick.importance, portable[b].importance);
+                EXPECT_EQ(brick.detail, portable[b].detail);
             }
         }
 }

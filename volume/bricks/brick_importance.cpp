@@ -18,25 +18,34 @@ namespace tessera::volume {
 namespace {
 
 constexpr int kTones = 256;
+
+TESSERA_INLINE std::uint32_t toneOf(float value01) {
+    const auto tone = static_cast<std::int32_t>(value01 * kTones);
+    return static_cast<std::uint32_t>(tone < kTones - 1 ? tone : kTones - 1);
+}
+
 /// Sums over the samples of one brick.
 struct Sums {
+    using Counts = std::array<std::uint32_t, kTones>;
+    static constexpr int kTurns = 4; ///< sums and counts used in turn: the additions do not wait for each other
+
     double weight = 0, value = 0, square = 0, details = 0, axes = 0;
     int samples = 0;
-    std::array<std::array<double, kTones>, 2>
-        tones{}; ///< two, used alternately: the additions do not wait for each other
+    std::array<Counts, kTurns> tones{}; ///< of samples of weight 1
+    Counts borderTones{};               ///< of those of the faces
+    double borderWeight;
 
-    static std::size_t toneOf(float value01) { return std::size_t(std::min(int(value01 * kTones), kTones - 1)); }
-    void add(float sample01, double w) {
-        const double value01 = double(sample01);
+    explicit Sums(double ofBorder) : borderWeight(ofBorder) {}
+    TESSERA_INLINE void add(float sample01, bool border) {
+        const double value01 = double(sample01), w = border ? borderWeight : 1;
         weight += w;
         value += w * value01;
         square += w * value01 * value01;
-        tones[0][toneOf(sample01)] += w;
+        ++(border ? borderTones : tones[0])[toneOf(sample01)];
         ++samples;
     }
-    /// The same for `count` values with equal weight.
-    void add(const float* values, int count, double w) {
-        constexpr int kTurns = 4; // as one sum would wait for the one before
+    /// The same for `count` values of the same kind.
+    TESSERA_INLINE void add(const float* values, int count, bool border) {
         std::array<double, kTurns> first{}, second{};
         int x = 0;
         for (; x + kTurns <= count; x += kTurns)
@@ -49,17 +58,29 @@ struct Sums {
             first[0] += double(values[x]);
             second[0] += double(values[x]) * double(values[x]);
         }
-        for (x = 0; x < count; ++x) tones[std::size_t(x % 2)][toneOf(values[x])] += w;
+        const double w = border ? borderWeight : 1;
         weight += w * count;
         value += w * ((first[0] + first[1]) + (first[2] + first[3]));
         square += w * ((second[0] + second[1]) + (second[2] + second[3]));
         samples += count;
+        constexpr int kRun = 64;
+        std::array<std::uint32_t, kRun> run;
+        for (int begin = 0; begin < count; begin += kRun) {
+            const int n = count - begin < kRun ? count - begin : kRun;
+            for (int i = 0; i < n; ++i) run[std::size_t(i)] = toneOf(values[begin + i]);
+            int i = 0;
+            for (; !border && i + kTurns <= n; i += kTurns)
+                for (int turn = 0; turn < kTurns; ++turn) ++tones[std::size_t(turn)][run[std::size_t(i + turn)]];
+            for (; i < n; ++i) ++(border ? borderTones : tones[0])[run[std::size_t(i)]];
+        }
     }
     double entropy() const {
         double bits = 0;
-        for (std::size_t i = 0; i < kTones; ++i)
-            if (const double tone = tones[0][i] + tones[1][i]; tone > 0)
-                bits -= tone / weight * std::log2(tone / weight);
+        for (std::size_t i = 0; i < kTones; ++i) {
+            const double tone =
+                double(tones[0][i] + tones[1][i] + tones[2][i] + tones[3][i]) + borderWeight * double(borderTones[i]);
+            if (tone > 0) bits -= tone / weight * std::log2(tone / weight);
+        }
         return samples > 1 ? std::min(bits / std::log2(double(std::min(samples, kTones))), 1.0) : 0.0;
     }
     BrickImportance result() const {
@@ -74,7 +95,7 @@ struct Sums {
 };
 
 /// Sum of squared differences of `count` samples from the mean of the samples a step before and after.
-double squaresOfDetails(const float* row, std::ptrdiff_t step, int count) {
+TESSERA_INLINE double squaresOfDetails(const float* row, std::ptrdiff_t step, int count) {
     constexpr int kTurns = 8; // as one sum would wait for the one before
     std::array<float, kTurns> sums{};
     int x = 0;
@@ -93,32 +114,50 @@ double squaresOfDetails(const float* row, std::ptrdiff_t step, int count) {
 }
 
 /// Adds a row of a brick without absent samples; `border`: all of it lies on a face.
-void addRow(const Smoothed& from, int begin, int end, int y, int z, bool border, double borderWeight, Sums& sums) {
+TESSERA_INLINE void addRow(const Smoothed& from, int begin, int end, int y, int z, bool border, Sums& sums) {
     const auto step = std::ptrdiff_t(from.size.x), slice = step * from.size.y;
     const float* row = from.values.data() + from.index({begin, y, z});
+    if (z + 2 < from.size.z) { // the next slices are far away
+        __builtin_prefetch(row + 2 * slice);
+        __builtin_prefetch(row + 2 * slice + 16);
+    }
     const int count = end - begin, first = begin == 0 ? 1 : 0, last = end == from.size.x ? count - 1 : count;
     if (last > first) sums.details += squaresOfDetails(row + first, 1, last - first), sums.axes += last - first;
     if (y > 0 && y + 1 < from.size.y) sums.details += squaresOfDetails(row, step, count), sums.axes += count;
     if (z > 0 && z + 1 < from.size.z) sums.details += squaresOfDetails(row, slice, count), sums.axes += count;
     if (border || count < 2) {
-        sums.add(row, count, borderWeight);
+        sums.add(row, count, true);
         return;
     }
-    sums.add(row[0], borderWeight);
-    sums.add(row + 1, count - 2, 1);
-    sums.add(row[count - 1], borderWeight);
+    sums.add(row[0], true);
+    sums.add(row + 1, count - 2, false);
+    sums.add(row[count - 1], true);
+}
+
+/// Adds all rows of a brick without absent samples.
+TESSERA_INLINE void addRowsOf(const Smoothed& from, glm::ivec3 begin, glm::ivec3 end, Sums& sums) {
+    for (int z = begin.z; z < end.z; ++z)
+        for (int y = begin.y; y < end.y; ++y) {
+            const bool border = y == begin.y || y == end.y - 1 || z == begin.z || z == end.z - 1;
+            addRow(from, begin.x, end.x, y, z, border, sums);
+        }
+}
+void addRows(const Smoothed& from, glm::ivec3 begin, glm::ivec3 end, Sums& sums) {
+    addRowsOf(from, begin, end, sums);
+}
+TESSERA_AVX2 void addRowsAvx2(const Smoothed& from, glm::ivec3 begin, glm::ivec3 end, Sums& sums) {
+    addRowsOf(from, begin, end, sums);
 }
 
 /// Adds the samples of a sublattice in the brick that covers [begin, end) of the halved one.
-void addBrick(const Smoothed& from, glm::ivec3 begin, glm::ivec3 end, double borderWeight, Sums& sums) {
+void addBrick(const Smoothed& from, glm::ivec3 begin, glm::ivec3 end, Cpu cpu, Sums& sums) {
+    if (from.coverage.empty()) {
+        (cpu == Cpu::Portable ? addRows : addRowsAvx2)(from, begin, end, sums);
+        return;
+    }
     const std::size_t steps[] = {1, std::size_t(from.size.x), std::size_t(from.size.x) * std::size_t(from.size.y)};
     for (int z = begin.z; z < end.z; ++z)
-        for (int y = begin.y; y < end.y; ++y) {
-            if (from.coverage.empty()) {
-                const bool border = y == begin.y || y == end.y - 1 || z == begin.z || z == end.z - 1;
-                addRow(from, begin.x, end.x, y, z, border, borderWeight, sums);
-                continue;
-            }
+        for (int y = begin.y; y < end.y; ++y)
             for (int x = begin.x; x < end.x; ++x) {
                 const glm::ivec3 at(x, y, z);
                 const std::size_t i = from.index(at);
@@ -134,9 +173,8 @@ void addBrick(const Smoothed& from, glm::ivec3 begin, glm::ivec3 end, double bor
                     sums.details += detail * detail;
                     ++sums.axes;
                 }
-                sums.add(from.values[i], border ? borderWeight : 1);
+                sums.add(from.values[i], border);
             }
-        }
 }
 
 /// For labels: the entropy of their values.
@@ -242,6 +280,7 @@ struct OwnImportance {
     const BrickGrid& grid;
     SmoothedRange about;
     double borderWeight;
+    Cpu cpu;
 
     std::size_t perLayer() const { return std::size_t(grid.count().x) * std::size_t(grid.count().y); }
     int slices() const { return grid.lattice.kind == LatticeKind::BCC ? 2 : 1; } ///< of a texel
@@ -249,15 +288,15 @@ struct OwnImportance {
     /// Of the bricks of a part that has kMargin texels more than those on both sides, where there are so many.
     std::vector<BrickImportance> of(const LayersOfBricks& part) const {
         std::vector<Smoothed> halves;
-        for (int s = 0; s < slices(); ++s) halves.push_back(smoothedHalf(part.field, s, about));
+        for (int s = 0; s < slices(); ++s) halves.push_back(smoothedHalf(part.field, s, about, cpu));
         const glm::ivec3 shift(0, 0, part.first / 2);
         return forBricks(part, [&](std::size_t i) {
             const glm::ivec3 brick = brickAt(grid.count(), perLayer() * std::size_t(part.layer) + i);
-            Sums sums;
+            Sums sums(borderWeight);
             for (const Smoothed& half : halves) {
                 const glm::ivec3 lo = (brick * grid.brickSize + 1) / 2 - shift,
                                  hi = glm::min((brick * grid.brickSize + grid.brickSize + 1) / 2 - shift, half.size);
-                addBrick(half, lo, hi, borderWeight, sums);
+                addBrick(half, lo, hi, cpu, sums);
             }
             return sums.result();
         });
@@ -283,13 +322,13 @@ private:
 /// Importance of all bricks of a frame. `ofParts.operator()<T>(margin, of)` gives what `of(part)` gives, a vector of T,
 /// one after the other for parts that together hold all layers of bricks, with `margin` texels more on both sides.
 std::vector<BrickImportance> importanceOfParts(const BrickGrid& grid, Range range, bool categorical,
-                                               const ImportanceOptions& options, const auto& ofParts) {
+                                               const ImportanceOptions& options, Cpu cpu, const auto& ofParts) {
     const glm::ivec3 count = grid.count();
     const auto own = [&](int margin, const std::function<std::vector<BrickImportance>(const LayersOfBricks&)>& of) {
         return withNeighbours(ofParts.template operator()<BrickImportance>(margin, of), count, options.neighbours);
     };
     if (categorical) {
-        const OwnImportance labels{grid, {range}, 1};
+        const OwnImportance labels{grid, {range}, 1, cpu};
         return own(0, [&](const LayersOfBricks& part) { return labels.ofLabels(part); });
     }
     Extent extent;
@@ -297,15 +336,15 @@ std::vector<BrickImportance> importanceOfParts(const BrickGrid& grid, Range rang
     for (const Extent& part : ofParts.template operator()<Extent>(0, extentOfPart)) extent.add(part);
     if (!(range.lo <= range.hi)) range = extent.range;
     if (!(range.lo < range.hi)) return std::vector<BrickImportance>(countOf(count)); // one value, or nothing
-    const OwnImportance smooth{grid, extent.within(range), options.borderWeight};
+    const OwnImportance smooth{grid, extent.within(range), options.borderWeight, cpu};
     return own(OwnImportance::kMargin, [&](const LayersOfBricks& part) { return smooth.of(part); });
 }
 
 } // namespace
 
 std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Field& field, Range range,
-                                                bool categorical, const ImportanceOptions& options) {
-    return importanceOfParts(grid, range, categorical, options,
+                                                bool categorical, const ImportanceOptions& options, Cpu cpu) {
+    return importanceOfParts(grid, range, categorical, options, cpu,
                              [&]<class T>(int, const std::function<std::vector<T>(const LayersOfBricks&)>& of) {
                                  return of({field, 0, 0, grid.count().z});
                              });
@@ -319,7 +358,7 @@ std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid,
     const int slices = grid.lattice.kind == LatticeKind::BCC ? 2 : 1; // of a texel
     Field part;
     return importanceOfParts(
-        grid, range, categorical, options,
+        grid, range, categorical, options, bestCpu(),
         [&]<class T>(int margin, const std::function<std::vector<T>(const LayersOfBricks&)>& of) {
             return valuesOf<T>(pieces, std::size_t((all + layers - 1) / layers), [&](std::size_t piece) {
                 const int layer = int(piece) * layers, end = std::min(layer + layers, all);

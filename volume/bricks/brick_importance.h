@@ -1,5 +1,6 @@
 #pragma once
 
+#include "volume/base/cpu.h"
 #include "volume/base/describe.h"
 #include "volume/base/pieces.h"
 #include "volume/bricks/brick_grid.h"
@@ -44,9 +45,11 @@ struct ImportanceOptions {
 ///
 /// The cube root keeps the order and spreads the product over 0..1. Labels are neither smoothed nor ordered: of
 /// `categorical` both are the entropy alone. Absent samples and floats that are not finite take no part; a brick
-/// without samples, or of one value among such, has 0. A range of nothing: that of the samples.
+/// without samples, or of one value among such, has 0. A range of nothing: that of the samples. The result does not
+/// depend on `cpu`.
 std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Field& field, Range range,
-                                                bool categorical, const ImportanceOptions& options = {});
+                                                bool categorical, const ImportanceOptions& options = {},
+                                                Cpu cpu = bestCpu());
 
 /// The same for a frame that is read in slices, `layers` layers of bricks at a time plus a few slices around them.
 /// `read(first, count, part)` replaces `part` by slices.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "volume/base/cpu.h"
 #include "volume/base/describe.h"
 #include "volume/field/field.h"
 
@@ -29,7 +30,8 @@ struct SmoothedRange {
     bool inside = false; ///< all lie within the range
 };
 
-/// Beyond the ends of a line its last sample is repeated; absent samples take no part.
-Smoothed smoothedHalf(const Field& field, int sublattice, const SmoothedRange& about);
+/// Beyond the ends of a line its last sample is repeated; absent samples take no part. The result does not depend on
+/// `cpu`.
+Smoothed smoothedHalf(const Field& field, int sublattice, const SmoothedRange& about, Cpu cpu = bestCpu());
 
 } // namespace tessera::volume
