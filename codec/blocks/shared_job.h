@@ -42,6 +42,7 @@ public:
     bool complete() const;
 
 private:
+    void removeEnded() const;
     bool remove(LockedFile alone) const;
     bool holdsWork() const;
     void pause(const Progress& progress, double fraction) const;
