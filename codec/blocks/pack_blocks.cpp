@@ -21,6 +21,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <thread>
 #include <vector>
 
 namespace tessera::codec {
@@ -142,8 +143,13 @@ private:
     }
     std::string rangesOf(std::size_t piece) const { return job_.file("ranges-" + std::to_string(piece)); }
     std::string joined() const { return job_.file("joined.tsr"); }
+    /// States that a block is joined: network file systems show new names at once, but what another machine has written
+    /// into a file maybe later.
+    std::string statementOf(std::size_t block) const { return job_.file(std::to_string(block) + ".joined"); }
     bool isPacked(std::size_t piece, const Progress& progress);
-    void countJoined();
+    void countJoined(const Progress& progress);
+    void countJoinedSeen();
+    bool seesAllJoined() const { return joinedBlocks_ == count() || !fs::exists(statementOf(joinedBlocks_)); }
     double share(std::size_t piece) const { return double(piece) / double(pieces()); }
     void mergeComplete(std::size_t block) const;
     void joinComplete(const Progress& progress);
@@ -194,8 +200,25 @@ void Blocks::gatherRanges(const Progress& progress) {
     settleRanges(source_.info, all);
 }
 
-/// Finds out how many blocks have been joined.
-void Blocks::countJoined() {
+/// Finds out how many blocks have been joined, and waits until this machine sees them; the caller has the lock.
+void Blocks::countJoined(const Progress& progress) {
+    constexpr std::chrono::milliseconds kLongest{10000}, kPause{100};
+    for (auto waited = kPause;; waited += kPause) {
+        try {
+            countJoinedSeen();
+            if (seesAllJoined()) return;
+            if (waited > kLongest) break;
+        } catch (const Error&) { // a part of it is seen
+            if (waited > kLongest) throw;
+        }
+        joinedBytes_ = 0; // open it again
+        progress.advance(share(joinedBlocks_ * pieces_), "waiting for other processes");
+        std::this_thread::sleep_for(kPause);
+    }
+    for (std::size_t block = joinedBlocks_; block < count(); ++block) fs::remove(statementOf(block)); // it was removed
+}
+
+void Blocks::countJoinedSeen() {
     std::error_code missing;
     const std::uintmax_t bytes = fs::file_size(joined(), missing);
     if (job_.complete())
@@ -214,7 +237,7 @@ bool Blocks::isPacked(std::size_t piece, const Progress& progress) {
     };
     if (isThere()) return true;
     const LockedFile lock = job_.lock("join.lock", progress, share(piece));
-    countJoined();
+    countJoined(progress);
     return isThere();
 }
 
@@ -237,7 +260,7 @@ void Blocks::mergeComplete(std::size_t block) const {
 
 /// Joins the complete blocks that follow those joined before; the caller has the lock.
 void Blocks::joinComplete(const Progress& progress) {
-    countJoined();
+    countJoined(progress);
     for (std::size_t block = 0; block < joinedBlocks_; ++block) fs::remove(fileOf(block)); // after a crash
     for (; joinedBlocks_ < count(); ++joinedBlocks_) {
         mergeComplete(joinedBlocks_);
@@ -250,10 +273,9 @@ void Blocks::joinComplete(const Progress& progress) {
         else
             fs::create_hard_link(next, joined(), problem); // in place of no blocks that are not seen here yet
         if (problem == std::errc::file_exists) throw MachineError("is there already", joined());
-        if (problem)
-            fs::rename(next, joined()); // a file system without links
-        else
-            fs::remove(next);
+        if (problem) fs::rename(next, joined()); // a file system without links
+        std::ofstream(statementOf(joinedBlocks_)).flush();
+        fs::remove(next); // not before: so a block that is joined again after a crash is the same
     }
 }
 
