@@ -147,12 +147,12 @@ private:
     /// into a file maybe later.
     std::string statementOf(std::size_t block) const { return job_.file(std::to_string(block) + ".joined"); }
     bool isPacked(std::size_t piece, const Progress& progress);
-    void countJoined(const Progress& progress);
+    bool countJoined(bool waits, const Progress& progress);
     void countJoinedSeen();
     bool seesAllJoined() const { return joinedBlocks_ == count() || !fs::exists(statementOf(joinedBlocks_)); }
     double share(std::size_t piece) const { return double(piece) / double(pieces()); }
     void mergeComplete(std::size_t block) const;
-    void joinComplete(const Progress& progress);
+    void joinComplete(bool waits, const Progress& progress);
 
     volume::Dataset source_;
     PackOptions options_;
@@ -200,22 +200,25 @@ void Blocks::gatherRanges(const Progress& progress) {
     settleRanges(source_.info, all);
 }
 
-/// Finds out how many blocks have been joined, and waits until this machine sees them; the caller has the lock.
-void Blocks::countJoined(const Progress& progress) {
+/// Finds out how many blocks have been joined; false if this machine does not see all of them, where it does
+/// not wait for that. The caller has the lock.
+bool Blocks::countJoined(bool waits, const Progress& progress) {
     constexpr std::chrono::milliseconds kLongest{10000}, kPause{100};
     for (auto waited = kPause;; waited += kPause) {
         try {
             countJoinedSeen();
-            if (seesAllJoined()) return;
+            if (seesAllJoined()) return true;
             if (waited > kLongest) break;
         } catch (const Error&) { // a part of it is seen
             if (waited > kLongest) throw;
         }
         joinedBytes_ = 0; // open it again
+        if (!waits) return false;
         progress.advance(share(joinedBlocks_ * pieces_), "waiting for other processes");
         std::this_thread::sleep_for(kPause);
     }
     for (std::size_t block = joinedBlocks_; block < count(); ++block) fs::remove(statementOf(block)); // it was removed
+    return true;
 }
 
 void Blocks::countJoinedSeen() {
@@ -233,11 +236,11 @@ void Blocks::countJoinedSeen() {
 bool Blocks::isPacked(std::size_t piece, const Progress& progress) {
     const std::size_t block = piece / pieces_;
     const auto isThere = [&] {
-        return block < joinedBlocks_ || fs::exists(pieceOf(piece)) || fs::exists(fileOf(block));
+        return block < joinedBlocks_ || fs::exists(pieceOf(piece)) || fs::exists(fileOf(block)) || job_.complete() ||
+               (fs::exists(statementOf(block)) && fs::exists(joined()));
     };
     if (isThere()) return true;
-    const LockedFile lock = job_.lock("join.lock", progress, share(piece));
-    countJoined(progress);
+    const LockedFile lock = job_.lock("join.lock", progress, share(piece)); // it is not being joined now
     return isThere();
 }
 
@@ -259,8 +262,8 @@ void Blocks::mergeComplete(std::size_t block) const {
 }
 
 /// Joins the complete blocks that follow those joined before; the caller has the lock.
-void Blocks::joinComplete(const Progress& progress) {
-    countJoined(progress);
+void Blocks::joinComplete(bool waits, const Progress& progress) {
+    if (!countJoined(waits, progress)) return;
     for (std::size_t block = 0; block < joinedBlocks_; ++block) fs::remove(fileOf(block)); // after a crash
     for (; joinedBlocks_ < count(); ++joinedBlocks_) {
         mergeComplete(joinedBlocks_);
@@ -289,14 +292,14 @@ std::size_t Blocks::pack(PackSummary& sum, const PackedBefore& before, const Pro
         fs::rename(growing, pieceOf(number));
         syncFolderOf(pieceOf(number));
         if (const auto lock = LockedFile::tryLock(job_.file("join.lock"), LockedFile::Kind::Exclusive))
-            joinComplete(progress);
+            joinComplete(false, progress);
     };
     return job_.share("block", pieces(), isDone, work, progress);
 }
 
 bool Blocks::finish(const Progress& progress) {
     const LockedFile lock = job_.lock("join.lock", progress, 1);
-    joinComplete(progress);
+    joinComplete(true, progress);
     if (job_.complete()) return false;
     if (joinedBlocks_ < count())
         throw MachineError(
