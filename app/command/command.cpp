@@ -1,6 +1,10 @@
 #include "app/command/command.h"
 
+#include "app/data/import_options.h"
+#include "app/data/open.h"
+#include "codec/remote/address.h"
 #include "volume/base/error.h"
+#include "volume/import/files/series.h"
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -129,6 +133,22 @@ std::optional<Launched> sharing(bool alone) {
 
 std::string aboutText(const nlohmann::json& work) {
     return work.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); // paths need not be UTF-8
+}
+
+std::string inputsOf(const std::vector<std::string>& inputs, const volume::ImportOptions& import) {
+    std::string text;
+    for (const std::string& argument : importArguments(import)) text += argument + "\n";
+    if (namesModel(inputs[0]) || codec::isRemote(inputs[0])) return text;
+    for (const volume::SeriesFile& file : volume::expandPaths(inputs))
+        for (const char* const ending : {"", ".json", ".raw"}) {
+            std::filesystem::path path = file.path;
+            if (*ending != 0 && path.extension() != ending) path.replace_extension(ending);
+            std::error_code missing;
+            const auto bytes = std::filesystem::file_size(path, missing);
+            const auto changed = std::filesystem::last_write_time(path, missing).time_since_epoch().count();
+            if (!missing) text += path.string() + " " + std::to_string(bytes) + " " + std::to_string(changed) + "\n";
+        }
+    return text;
 }
 
 void requireFolderOf(const std::string& file) {

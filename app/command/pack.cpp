@@ -182,37 +182,18 @@ void sayNotes(const codec::PackSummary& summary) {
     for (const std::string& note : summary.notes) std::fprintf(stderr, "tessera: %s\n", note.c_str());
 }
 
-/// The files with those beside raw samples, size and time of change of each, and how they are read.
-std::string inputsOf(const PackRequest& request, const volume::ImportOptions& import) {
-    std::string text;
-    for (const std::string& argument : importArguments(import)) text += argument + "\n";
-    if (namesModel(request.inputs[0]) || codec::isRemote(request.inputs[0])) return text;
-    for (const volume::SeriesFile& file : volume::expandPaths(request.inputs))
-        for (const char* const ending : {"", ".json", ".raw"}) {
-            std::filesystem::path path = file.path;
-            if (*ending != 0 && path.extension() != ending) path.replace_extension(ending);
-            std::error_code missing;
-            const auto bytes = std::filesystem::file_size(path, missing);
-            const auto changed = std::filesystem::last_write_time(path, missing).time_since_epoch().count();
-            if (!missing) text += path.string() + " " + std::to_string(bytes) + " " + std::to_string(changed) + "\n";
-        }
-    return text;
-}
-
 /// Packs in blocks of times, which processes share.
 void runBlocks(const PackRequest& request, const Launched& started, const PackInput& input, const Progress& progress) {
     const volume::DatasetInfo& info = input.data.info;
-    const auto pieces = [&](std::size_t of) { return info.times.size() * of; };
-    const auto areIdle = [&](std::size_t of) { // some of the processes, with so many pieces of each time
-        return !request.blockTimes && !request.blockSlabs && std::size_t(started.count) > pieces(of);
-    };
-    const bool byParameter = (request.blockParameters || areIdle(1)) && info.parameters.size() > 1;
-    const bool bySlab = request.blockSlabs || (areIdle(info.parameters.size()) && input.data.read.inParts() &&
+    const std::size_t times = info.times.size(), parameters = info.parameters.size();
+    const auto processes = request.blockTimes || request.blockSlabs ? 0 : std::size_t(started.count); // to be occupied
+    const bool byParameter = (request.blockParameters || processes > times) && parameters > 1;
+    const bool bySlab = request.blockSlabs || (processes > times * parameters && input.data.read.inParts() &&
                                                !codec::hasThreshold(request.options));
     const codec::BlockSummary summary = codec::packInBlocks(
         input.data, request.options, request.output,
-        {request.blockTimes.value_or(0), started, inputsOf(request, input.import), byParameter, bySlab}, progress,
-        input.before);
+        {request.blockTimes.value_or(0), started, inputsOf(request.inputs, input.import), byParameter, bySlab},
+        progress, input.before);
     if (request.json || request.progressJson) {
         nlohmann::json report = reportOf(summary.own, request.output);
         report.update({{"blocks", summary.blocks}, {"ownBlocks", summary.packed}, {"rank", started.rank}});

@@ -70,6 +70,28 @@ Frequencies normalised(const Counts& counts) {
     return out;
 }
 
+constexpr std::uint8_t kNoTable = 255; ///< of a context without tokens, until it gets one
+
+/// Contexts without tokens take the table of the class below, which costs no bits in the map.
+void mapEmptyContexts(Model& model) {
+    std::uint8_t last = 0;
+    for (std::size_t c = 0; c < model.tableOf.size(); ++c) {
+        std::uint8_t& table = model.tableOf[c];
+        const auto kind = model.tableOf.begin() + std::ptrdiff_t(c);
+        if (model.contexts.byBand && c % kClasses == 0 && std::count(kind, kind + kClasses, kNoTable) == kClasses) {
+            // A kind of band without tokens takes the tables of the previous kind.
+            if (c == 0)
+                std::fill_n(kind, kClasses, std::uint8_t(0));
+            else
+                std::copy_n(kind - kClasses, kClasses, kind);
+            c += kClasses - 1;
+            continue;
+        }
+        if (table == kNoTable) table = last;
+        last = table;
+    }
+}
+
 Model clustered(const Histogram& histogram, int mostTables) {
     struct Group {
         Counts counts{};
@@ -125,30 +147,13 @@ Model clustered(const Histogram& histogram, int mostTables) {
     Model model;
     model.levels = histogram.levels;
     model.contexts = histogram.contexts;
-    constexpr std::uint8_t kNone = 255;
-    model.tableOf.assign(histogram.counts.size(), kNone);
+    model.tableOf.assign(histogram.counts.size(), kNoTable);
     for (std::size_t g = 0; g < groups.size(); ++g) {
         model.tables.push_back(normalised(groups[g]->counts));
         for (const std::size_t c : groups[g]->contexts) model.tableOf[c] = static_cast<std::uint8_t>(g);
     }
     if (model.tables.empty()) model.tables.push_back(normalised(Counts{}));
-    // Contexts without tokens take the table of the class below, which costs no bits in the map.
-    std::uint8_t last = 0;
-    for (std::size_t c = 0; c < model.tableOf.size(); ++c) {
-        std::uint8_t& table = model.tableOf[c];
-        const auto kind = model.tableOf.begin() + std::ptrdiff_t(c);
-        if (model.contexts.byBand && c % kClasses == 0 && std::count(kind, kind + kClasses, kNone) == kClasses) {
-            // A kind of band without tokens takes the tables of the previous kind.
-            if (c == 0)
-                std::fill_n(kind, kClasses, std::uint8_t(0));
-            else
-                std::copy_n(kind - kClasses, kClasses, kind);
-            c += kClasses - 1;
-            continue;
-        }
-        if (table == kNone) table = last;
-        last = table;
-    }
+    mapEmptyContexts(model);
     return model;
 }
 

@@ -22,6 +22,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <thread>
 #include <vector>
 
 namespace tessera::codec {
@@ -150,14 +151,19 @@ private:
     }
     std::string rangesOf(std::size_t piece) const { return job_.file("ranges-" + std::to_string(piece)); }
     std::string joined() const { return job_.file("joined.tsr"); }
+    /// States that a block is joined: network file systems show new names at once, but what another machine has written
+    /// into a file maybe later.
+    std::string statementOf(std::size_t block) const { return job_.file(std::to_string(block) + ".joined"); }
     bool isPacked(std::size_t piece, const Progress& progress);
-    void countJoined();
+    bool countJoined(bool waits, const Progress& progress);
+    void countJoinedSeen();
+    bool seesAllJoined() const { return joinedBlocks_ == count() || !fs::exists(statementOf(joinedBlocks_)); }
     double share(std::size_t piece) const { return double(piece) / double(pieces()); }
     void mergeComplete(std::size_t block) const;
     std::size_t shareOut(const std::string& name, const std::function<bool(std::size_t)>& isDone,
                          const std::function<void(std::size_t, SlabTeam*)>& work,
                          const std::function<void(std::size_t, SlabTeam*)>& help, const Progress& progress) const;
-    void joinComplete(const Progress& progress);
+    void joinComplete(bool waits, const Progress& progress);
 
     volume::Dataset source_;
     PackOptions options_;
@@ -208,8 +214,28 @@ void Blocks::gatherRanges(const Progress& progress) {
     settleRanges(source_.info, all);
 }
 
-/// Finds out how many blocks have been joined.
-void Blocks::countJoined() {
+/// Finds out how many blocks have been joined; false if this machine does not see all of them, where it does
+/// not wait for that. The caller has the lock.
+bool Blocks::countJoined(bool waits, const Progress& progress) {
+    constexpr std::chrono::milliseconds kLongest{10000}, kPause{100};
+    for (auto waited = kPause;; waited += kPause) {
+        try {
+            countJoinedSeen();
+            if (seesAllJoined()) return true;
+            if (waited > kLongest) break;
+        } catch (const Error&) { // a part of it is seen
+            if (waited > kLongest) throw;
+        }
+        joinedBytes_ = 0; // open it again
+        if (!waits) return false;
+        progress.advance(share(joinedBlocks_ * pieces_), "waiting for other processes");
+        std::this_thread::sleep_for(kPause);
+    }
+    for (std::size_t block = joinedBlocks_; block < count(); ++block) fs::remove(statementOf(block)); // it was removed
+    return true;
+}
+
+void Blocks::countJoinedSeen() {
     std::error_code missing;
     const std::uintmax_t bytes = fs::file_size(joined(), missing);
     if (job_.complete())
@@ -224,11 +250,11 @@ void Blocks::countJoined() {
 bool Blocks::isPacked(std::size_t piece, const Progress& progress) {
     const std::size_t block = piece / pieces_;
     const auto isThere = [&] {
-        return block < joinedBlocks_ || fs::exists(pieceOf(piece)) || fs::exists(fileOf(block));
+        return block < joinedBlocks_ || fs::exists(pieceOf(piece)) || fs::exists(fileOf(block)) || job_.complete() ||
+               (fs::exists(statementOf(block)) && fs::exists(joined()));
     };
     if (isThere()) return true;
-    const LockedFile lock = job_.lock("join.lock", progress, share(piece));
-    countJoined();
+    const LockedFile lock = job_.lock("join.lock", progress, share(piece)); // it is not being joined now
     return isThere();
 }
 
@@ -250,8 +276,8 @@ void Blocks::mergeComplete(std::size_t block) const {
 }
 
 /// Joins the complete blocks that follow those joined before; the caller has the lock.
-void Blocks::joinComplete(const Progress& progress) {
-    countJoined();
+void Blocks::joinComplete(bool waits, const Progress& progress) {
+    if (!countJoined(waits, progress)) return;
     for (std::size_t block = 0; block < joinedBlocks_; ++block) fs::remove(fileOf(block)); // after a crash
     for (; joinedBlocks_ < count(); ++joinedBlocks_) {
         mergeComplete(joinedBlocks_);
@@ -264,10 +290,9 @@ void Blocks::joinComplete(const Progress& progress) {
         else
             fs::create_hard_link(next, joined(), problem); // in place of no blocks that are not seen here yet
         if (problem == std::errc::file_exists) throw MachineError("is there already", joined());
-        if (problem)
-            fs::rename(next, joined()); // a file system without links
-        else
-            fs::remove(next);
+        if (problem) fs::rename(next, joined()); // a file system without links
+        std::ofstream(statementOf(joinedBlocks_)).flush();
+        fs::remove(next); // not before: so a block that is joined again after a crash is the same
     }
 }
 
@@ -313,14 +338,14 @@ std::size_t Blocks::pack(PackSummary& sum, const PackedBefore& before, const Pro
         fs::rename(growing, pieceOf(number));
         syncFolderOf(pieceOf(number));
         if (const auto lock = LockedFile::tryLock(job_.file("join.lock"), LockedFile::Kind::Exclusive))
-            joinComplete(progress);
+            joinComplete(false, progress);
     };
     return shareOut("block", isDone, work, help, progress);
 }
 
 bool Blocks::finish(const Progress& progress) {
     const LockedFile lock = job_.lock("join.lock", progress, 1);
-    joinComplete(progress);
+    joinComplete(true, progress);
     if (job_.complete()) return false;
     if (joinedBlocks_ < count())
         throw MachineError(

@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 constexpr std::chrono::milliseconds kPause(100), kShortest(5);
 constexpr auto kLongest = std::chrono::minutes(10); ///< from the first to the last process that is ready
 constexpr const char *kLock = "job.lock", *kAbout = "job.json", *kComplete = "complete";
-/// Files of jobs of launchers: how many processes they have, and which of them have left.
-constexpr std::string_view kRanks = "ranks-", kLeft = "left-";
+/// Files of jobs of launchers: how many processes they have, and which of them have come and left.
+constexpr std::string_view kRanks = "ranks-", kCame = "came-", kLeft = "left-";
 
 std::string contentOf(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
@@ -36,8 +36,8 @@ bool isThere(const std::string& path) {
     return fs::exists(path, ignored);
 }
 
-std::string leftFile(const std::string& job, int rank) {
-    return std::string(kLeft) + job + "-" + std::to_string(rank);
+std::string fileOf(std::string_view begin, const std::string& job, int rank) {
+    return std::string(begin) + job + "-" + std::to_string(rank);
 }
 
 std::vector<std::string> namesIn(const std::string& folder, std::string_view begin) {
@@ -54,7 +54,7 @@ SharedJob::SharedJob(const std::string& output, const std::string& about, const 
                      const Progress& progress)
     : folder_(output + ".blocks"), launched_(launched) {
     const auto begin = std::chrono::steady_clock::now();
-    const std::string own = file(leftFile(launched.job, launched.rank));
+    const std::string own = file(fileOf(kLeft, launched.job, launched.rank));
     for (;;) {
         std::error_code problem;
         if (launched.rank == 0) fs::create_directory(folder_, problem);
@@ -68,9 +68,7 @@ SharedJob::SharedJob(const std::string& output, const std::string& about, const 
                 if (!remove(std::move(*alone))) throw MachineError("is complete, and cannot be removed", folder_);
                 continue;
             }
-            if (!complete() && launched.rank == 0) // what processes left that have ended without completing it
-                for (const std::string_view begins : {kRanks, kLeft})
-                    for (const std::string& name : namesIn(folder_, begins)) fs::remove(file(name), problem);
+            if (!complete()) removeEnded();
             removeScratch({});
         }
         inside_ = LockedFile::tryLock(file(kLock), LockedFile::Kind::Shared);
@@ -85,14 +83,17 @@ SharedJob::SharedJob(const std::string& output, const std::string& about, const 
         std::this_thread::sleep_for(kPause);
     }
     const LockedFile alone = lock("about.lock", progress, 0);
-    if (launched.count > 1) writeAtomically(file(std::string(kRanks) + launched.job), std::to_string(launched.count));
+    if (launched.count > 1) {
+        writeAtomically(file(std::string(kRanks) + launched.job), std::to_string(launched.count));
+        std::ofstream(file(fileOf(kCame, launched.job, launched.rank))).flush();
+    }
     if (!isThere(file(kAbout))) writeAtomically(file(kAbout), about);
     if (contentOf(file(kAbout)) != about)
         throw Error("belongs to other data or options; finish that work, or remove the folder", folder_);
 }
 
 SharedJob::~SharedJob() {
-    std::ofstream(file(leftFile(launched_.job, launched_.rank))).flush();
+    std::ofstream(file(fileOf(kLeft, launched_.job, launched_.rank))).flush();
     inside_.reset();
     if (!complete() && holdsWork()) return;
     try {
@@ -101,8 +102,8 @@ SharedJob::~SharedJob() {
         for (const std::string& ranks : namesIn(folder_, kRanks)) {
             const std::string job = ranks.substr(kRanks.size());
             const int count = std::atoi(contentOf(file(ranks)).c_str());
-            for (int rank = 0; rank < count; ++rank)
-                if (!isThere(file(leftFile(job, rank)))) return; // it has not come yet
+            for (int rank = 0; rank < count; ++rank) // one that came and did not leave was killed, as nobody is inside
+                if (!isThere(file(fileOf(kLeft, job, rank))) && !isThere(file(fileOf(kCame, job, rank)))) return;
         }
         remove(std::move(*alone));
     } catch (const Error&) { // the folder stays
@@ -115,11 +116,23 @@ void SharedJob::removeScratch(const std::string& begin) const {
         if (!name.ends_with(".lock")) fs::remove(file(name), ignored);
 }
 
+/// Removes what processes left that have ended without completing the work; nobody is inside. Those of this job may
+/// have left it to others that are still to come: the first process of a job knows that none has been there.
+void SharedJob::removeEnded() const {
+    const std::string own = launched_.job + "-", ownRanks = std::string(kRanks) + launched_.job;
+    std::error_code ignored;
+    for (const std::string_view begins : {kRanks, kCame, kLeft})
+        for (const std::string& name : namesIn(folder_, begins)) {
+            const bool isOwn = name == ownRanks || (begins == kLeft && name.starts_with(std::string(kLeft) + own));
+            if (launched_.rank == 0 || !isOwn) fs::remove(file(name), ignored);
+        }
+}
+
 /// Whether there is something that the next run can go on from.
 bool SharedJob::holdsWork() const {
     return std::ranges::any_of(namesIn(folder_, {}), [](const std::string& name) {
-        return !name.ends_with(".lock") && name != kAbout && !name.starts_with(kRanks) && !name.starts_with(kLeft) &&
-               !name.starts_with(kScratch);
+        return !name.ends_with(".lock") && name != kAbout && !name.starts_with(kRanks) && !name.starts_with(kCame) &&
+               !name.starts_with(kLeft) && !name.starts_with(kScratch);
     });
 }
 

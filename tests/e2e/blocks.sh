@@ -121,6 +121,39 @@ for run in $(seq "$kills"); do
     cmp $whole killed.tsr || fail "another archive after a kill"
 done
 
+# Nothing is left beside the archive where one process was killed and the others ended the work, nor where all were
+# killed and the first process of the next job is not the first to come.
+await() { # await FILE
+    for _ in $(seq 1000); do
+        [ -e "$1" ] && break
+        sleep 0.01
+    done
+}
+start() { # start JOB RANK COUNT
+    env $(as "$@") "$tessera" pack run.json -o left.tsr "${options[@]}" >/dev/null 2>&1 &
+    pids[$2]=$!
+}
+pids=()
+for rank in 0 1 2; do start survivors $rank 3; done
+await left.tsr.blocks/came-survivors--2
+kill -KILL "${pids[2]}" 2>/dev/null
+wait
+cmp one.tsr left.tsr || fail "the others make another archive"
+[ -e left.tsr.blocks ] && fail "the others leave $(ls left.tsr.blocks)"
+rm left.tsr
+for rank in 0 1; do start killed $rank 2; done
+await left.tsr.blocks/came-killed--1
+kill -KILL "${pids[@]}" 2>/dev/null
+wait
+if [ -e left.tsr.blocks/job.json ]; then
+    start next 1 2
+    await left.tsr.blocks/came-next--1
+    start next 0 2
+    wait
+    cmp one.tsr left.tsr || fail "the next job makes another archive"
+    [ -e left.tsr.blocks ] && fail "the next job leaves $(ls left.tsr.blocks)"
+fi
+
 mkdir other.tsr.blocks
 echo '{}' >other.tsr.blocks/job.json
 check "a folder of other work" 2 "$tessera" pack run.json -o other.tsr "${options[@]}"

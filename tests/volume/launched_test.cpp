@@ -14,10 +14,10 @@ namespace {
 class Variables {
 public:
     explicit Variables(const std::vector<std::pair<const char*, const char*>>& values) {
-        for (const char* name :
-             {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_LOCAL_SIZE", "PMIX_NAMESPACE",
-              "PMI_RANK", "PMI_SIZE", "MPI_LOCALNRANKS", "PMI_JOBID", "SLURM_PROCID", "SLURM_NTASKS",
-              "SLURM_STEP_NUM_TASKS", "SLURM_STEP_TASKS_PER_NODE", "SLURM_STEP_ID", "SLURM_JOB_ID"}) {
+        for (const char* name : {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_LOCAL_SIZE",
+                                 "PMIX_NAMESPACE", "PMI_RANK", "PMI_SIZE", "MPI_LOCALNRANKS", "PMI_JOBID",
+                                 "SLURM_PROCID", "SLURM_NTASKS", "SLURM_STEP_NUM_TASKS", "SLURM_STEP_TASKS_PER_NODE",
+                                 "SLURM_STEP_ID", "SLURM_JOB_ID", "SLURM_RESTART_COUNT"}) {
             const char* const before = std::getenv(name);
             before_.emplace_back(name, before != nullptr ? std::optional<std::string>(before) : std::nullopt);
             ::unsetenv(name);
@@ -66,6 +66,15 @@ TEST(Launched, EachLauncherSaysRankAndNumber) {
                                {"SLURM_STEP_ID", "1"},
                                {"SLURM_JOB_ID", "77"}});
         EXPECT_EQ(launched(), (Launched{5, 6, 3, "1-77"}));
+    }
+    {
+        const Variables requeued({{"SLURM_PROCID", "0"},
+                                  {"SLURM_STEP_NUM_TASKS", "2"},
+                                  {"SLURM_STEP_TASKS_PER_NODE", "2"},
+                                  {"SLURM_STEP_ID", "0"},
+                                  {"SLURM_JOB_ID", "77"},
+                                  {"SLURM_RESTART_COUNT", "1"}});
+        EXPECT_EQ(launched(), (Launched{0, 2, 2, "0-77-1"}));
     }
 }
 

@@ -43,6 +43,8 @@ Launched launched() {
         if (!rank || !count || *count < 1 || *rank < 0 || *rank >= *count) continue;
         std::string job(textOf(names.job));
         job.append("-").append(textOf("SLURM_JOB_ID"));
+        if (const std::string_view again = textOf("SLURM_RESTART_COUNT"); !again.empty()) // of a job that was requeued
+            job.append("-").append(again);
         std::erase_if(job, [](char c) { return c == '/' || c == '.'; });
         std::optional<int> beside = numberOf(names.onThisMachine);
         if (!beside) beside = numberOf("SLURM_STEP_TASKS_PER_NODE"); // srun --mpi=pmi2

@@ -15,13 +15,15 @@ namespace tessera {
 std::optional<LockedFile> LockedFile::tryLock(const std::string& path, Kind kind) {
     constexpr mode_t kMode = 0666; // less the umask
     const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kMode);
-    if (file < 0 && errno == ENOENT) return std::nullopt;
+    // ESTALE: another machine has removed it, or its folder.
+    const auto isGone = [] { return errno == ENOENT || errno == ESTALE; };
+    if (file < 0 && isGone()) return std::nullopt;
     if (file < 0) throw MachineError(std::string("cannot open: ") + std::strerror(errno), path);
     LockedFile lock(file);
     const int wanted = kind == Kind::Shared ? LOCK_SH : LOCK_EX;
     while (::flock(file, wanted | LOCK_NB) != 0) {
         if (errno == EINTR) continue;
-        if (errno == EWOULDBLOCK) return std::nullopt;
+        if (errno == EWOULDBLOCK || isGone()) return std::nullopt;
         throw MachineError(std::string("cannot be locked: ") + std::strerror(errno), path);
     }
     return lock;

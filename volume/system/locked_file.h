@@ -13,7 +13,8 @@ public:
     enum class Kind : std::uint8_t { Shared, Exclusive };
 
     /// Locks a file, which is made if there is none. Nothing if another process has a lock that does not allow it, or
-    /// if the folder is missing. Throws MachineError when the file cannot be opened or its file system has no locks.
+    /// if the folder is missing or removed meanwhile. Throws MachineError when the file cannot be opened or its file
+    /// system has no locks.
     static std::optional<LockedFile> tryLock(const std::string& path, Kind kind);
 
     LockedFile(LockedFile&& other) noexcept;
