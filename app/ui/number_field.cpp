@@ -145,4 +145,12 @@ bool numberFields(const char* id, double* values, int count, const NumberStyle& 
     return changed;
 }
 
+bool slider(const char* id, float& value, float lo, float hi, const char* format, ImGuiSliderFlags flags) {
+    return ImGui::SliderFloat(id, &value, lo, hi, format, flags | ImGuiSliderFlags_AlwaysClamp);
+}
+
+bool slider(const char* id, int& value, int lo, int hi, const char* format) {
+    return ImGui::SliderInt(id, &value, lo, hi, format, ImGuiSliderFlags_AlwaysClamp);
+}
+
 } // namespace tessera::app

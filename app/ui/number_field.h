@@ -2,6 +2,7 @@
 
 #include "volume/base/describe.h"
 
+#include <imgui.h>
 #include <optional>
 #include <string>
 
@@ -25,5 +26,9 @@ double snappedNumber(double value, const NumberStyle& style);
 /// where it is; with Ctrl to snappedNumber. Ctrl and the wheel step by as much, with Shift too by a tenth. A double
 /// click or Ctrl+click types. True if a number has changed.
 bool numberFields(const char* id, double* values, int count, const NumberStyle& style);
+
+/// ImGui's slider, but what is typed into it stays between its ends, too.
+bool slider(const char* id, float& value, float lo, float hi, const char* format, ImGuiSliderFlags flags = 0);
+bool slider(const char* id, int& value, int lo, int hi, const char* format);
 
 } // namespace tessera::app

@@ -196,7 +196,9 @@ void toggleTimeAlong(Workbench& workbench, volume::SpaceAxis axis) {
     data.timeAxis.reset();
     const volume::Box& box = workbench.document().info().bounds;
     const int a = static_cast<int>(axis);
-    if (!shown) data.timeAxis = {axis, (workbench.session().cursor[a] - box.lo[a]) / box.size()[a]};
+    // The cross-hair may lie outside of the box.
+    const double place = (workbench.session().cursor[a] - box.lo[a]) / box.size()[a];
+    if (!shown) data.timeAxis = {axis, std::clamp(place, 0.0, 1.0)};
     // Half the room, or twice as much, for the same box: it has the same extent in space and over time.
     Session& session = workbench.session();
     const float scale = workbench.look().scale();

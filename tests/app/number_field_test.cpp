@@ -150,6 +150,45 @@ TEST_F(NumberField, CtrlAndTheWheelStep) {
     EXPECT_EQ(value, 8) << "another place";
 }
 
+TEST_F(NumberField, WhatIsTypedIntoASliderStaysBetweenItsEnds) {
+    float part = 30;
+    int planes = 4;
+    const auto both = [&] {
+        ImGui::GetIO().MouseDown[0] = down;
+        feedModifiers(ImGui::GetIO(), ctrl, false, false);
+        feedWindow([&] {
+            corner = ImGui::GetCursorScreenPos();
+            ImGui::SetNextItemWidth(kWidth);
+            slider("part", part, 0, 100, "%.1f");
+            ImGui::SetNextItemWidth(kWidth);
+            slider("planes", planes, 1, 12, "%d");
+        });
+    };
+    const auto type = [&](float below, const char* text) {
+        mouse = {corner.x + 50, corner.y + 8 + below};
+        ctrl = true;
+        for (const bool isDown : {false, true, false}) down = isDown, both();
+        ctrl = false;
+        both();
+        ImGui::GetIO().AddInputCharactersUTF8(text);
+        both();
+        mouse = {corner.x, corner.y + 200}; // a click elsewhere ends it
+        for (const bool isDown : {true, false}) down = isDown, both();
+    };
+    both();
+    const float next = ImGui::GetFrameHeightWithSpacing();
+    type(0, "42");
+    EXPECT_EQ(part, 42) << "it is typed";
+    type(0, "-6.25");
+    EXPECT_EQ(part, 0);
+    type(0, "1e9");
+    EXPECT_EQ(part, 100);
+    type(next, "7");
+    EXPECT_EQ(planes, 7);
+    type(next, "500");
+    EXPECT_EQ(planes, 12);
+}
+
 TEST_F(NumberField, ADoubleClickTypesAndTakesBackTheFirst) {
     ImGui::GetIO().MouseDoubleClickTime = 0.5f;
     frame();

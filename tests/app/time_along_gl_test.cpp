@@ -265,6 +265,15 @@ TEST_F(TimeAlongWorkbench, AScaleThatALayoutBringsIsThatOfThePanesItIsFittedTo) 
     EXPECT_LE(coveredWidth(workbench, "volume"), 1.02);
 }
 
+TEST_F(TimeAlongWorkbench, ACrossHairOutsideOfTheBoxCutsAtItsEnd) {
+    const volume::Box box = workbench.document().info().bounds;
+    workbench.session().cursor.z = box.lo.z - 0.2 * box.size().z;
+    ASSERT_TRUE(run("Time along z"));
+    settle();
+    ASSERT_TRUE(workbench.session().data.timeAxis);
+    EXPECT_EQ(workbench.session().data.timeAxis->place, 0.0) << "a session with less could not be opened again";
+}
+
 TEST_F(TimeAlongWorkbench, TheDataInSpaceStandBesideAsTheyWere) {
     workbench.session().time = workbench.source()->info().times[1];
     const vis::Camera camera = workbench.session().camera;

@@ -264,6 +264,13 @@ TEST(Architecture, NoJsonInHeadersOfVolume) {
             EXPECT_FALSE(startsWithAny(include.substr(1), kJson)) << file;
 }
 
+// ImGui's own sliders take any number that is typed, also one that a session cannot hold.
+TEST(Architecture, SlidersStayBetweenTheirEnds) {
+    for (const std::string& file : filesOf("app", {".cpp"}))
+        if (file != "app/ui/number_field.cpp")
+            EXPECT_EQ(textOf(kRoot / file).find("ImGui::Slider"), std::string::npos) << file;
+}
+
 // Shaders are files; C++ may only generate "#define NAME value" lines and the version that heads a composed program.
 TEST(Architecture, NoGlslInCpp) {
     for (const std::string folder : {"volume", "codec", "vis", "app"})

@@ -7,6 +7,7 @@
 #include "app/pane/view_parts.h"
 #include "app/session/session_json.h"
 #include "app/ui/keys.h"
+#include "app/ui/number_field.h"
 #include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
 #include "app/views/compare/compare_offers.h"
@@ -82,7 +83,7 @@ void chooseShownView(const ViewContext& context, CompareView& view) {
 void drawModeTools(ToolRow& tools, CompareView& view, CompareMode mode) {
     if (mode == CompareMode::Blink && tools.next(em() * 6, em() * 0.8f)) {
         ImGui::SetNextItemWidth(em() * 6);
-        ImGui::SliderFloat("##blink", &view.blinkSeconds, 0.1f, 10, "%.2g s", ImGuiSliderFlags_Logarithmic);
+        slider("##blink", view.blinkSeconds, 0.1f, 10, "%.2g s", ImGuiSliderFlags_Logarithmic);
         if (ImGui::IsItemHovered()) tooltip("How long each variant is shown");
     }
     if (mode != CompareMode::Difference) return;
@@ -96,7 +97,7 @@ void drawModeTools(ToolRow& tools, CompareView& view, CompareMode mode) {
     }
     if (view.differenceOf != DifferenceOf::Colors || !tools.next(em() * 6, em() * 0.8f)) return;
     ImGui::SetNextItemWidth(em() * 6);
-    ImGui::SliderFloat("##top", &view.differenceTop, 0, 255, view.differenceTop > 0 ? "up to %.0f" : "automatic");
+    slider("##top", view.differenceTop, 0, 255, view.differenceTop > 0 ? "up to %.0f" : "automatic");
     if (ImGui::IsItemHovered()) tooltip("Difference that is drawn brightest, of 255; 0 = the largest that occurs");
 }
 

@@ -5,6 +5,7 @@
 #include "app/queries/focus_share.h"
 #include "app/tools/brush_edit.h"
 #include "app/tools/brush_list.h"
+#include "app/ui/number_field.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
 #include "app/views/data/derived_list.h"
@@ -194,7 +195,7 @@ void drawScatterToolbar(ViewContext& context, ScatterMatrixView& view, const std
     if (tools.next(em() * kSoftWidth)) {
         ImGui::SetNextItemWidth(em() * kSoftWidth);
         float percent = view.softness * 100;
-        if (ImGui::SliderFloat("##soft", &percent, 0, 50, "soft %.0f %%")) view.softness = percent / 100;
+        if (slider("##soft", percent, 0, 50, "soft %.0f %%")) view.softness = percent / 100;
         if (ImGui::IsItemHovered()) tooltip("Soft edge of new brushes, as a share of their width");
     }
     drawOrigin(context, tools, shown);

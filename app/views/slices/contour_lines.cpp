@@ -1,6 +1,7 @@
 #include "app/views/slices/contour_lines.h"
 
 #include "app/pane/controls.h"
+#include "app/ui/number_field.h"
 #include "app/ui/widgets.h"
 
 #include <algorithm>
@@ -43,7 +44,7 @@ void chooseContours(ToolRow& tools, const volume::DatasetInfo& info, ContourSett
     const float width = em() * 8;
     if (!tools.next(width)) return;
     ImGui::SetNextItemWidth(width);
-    ImGui::SliderInt("##contours", &settings.count, 0, 50, settings.count == 0 ? "no contours" : "%d contours");
+    slider("##contours", settings.count, 0, 50, settings.count == 0 ? "no contours" : "%d contours");
     if (ImGui::IsItemHovered())
         tooltip("Number of contour lines over the colour range; of another parameter, or with values, at most this "
                 "many at round values");

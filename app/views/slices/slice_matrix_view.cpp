@@ -1,5 +1,6 @@
 #include "app/pane/axis_label.h"
 #include "app/pane/view_parts.h"
+#include "app/ui/number_field.h"
 #include "app/ui/ticks.h"
 #include "app/views/slices/slice_figure.h"
 #include "volume/base/error.h"
@@ -140,7 +141,7 @@ void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<
     if (tools.next(em() * 3.4f)) chooseAxis(view.axis, directions);
     if (tools.next(em() * 6)) {
         ImGui::SetNextItemWidth(em() * 6);
-        ImGui::SliderInt("##planes", &view.planes, 1, 12, view.planes == 1 ? "%d plane" : "%d planes");
+        slider("##planes", view.planes, 1, 12, view.planes == 1 ? "%d plane" : "%d planes");
     }
     const volume::TimePair time = volume::timesAround(info.times, context.session.time);
     exportMenu(

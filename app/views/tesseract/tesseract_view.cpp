@@ -1,6 +1,7 @@
 #include "app/pane/corner_legends.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/keys.h"
+#include "app/ui/number_field.h"
 #include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
@@ -118,7 +119,7 @@ void drawSliders(TesseractView& view, TesseractCache& cache, const glm::dmat4& r
         ImGui::PushID(i);
         // A drag leaves traces of a degree, which would be written "-0".
         const char* number = std::abs(angle) < 0.5f ? "0" : "%.0f";
-        moved |= ImGui::SliderFloat("##angle", &angle, -180, 180, (name + "  " + number + "\xc2\xb0").c_str());
+        moved |= slider("##angle", angle, -180, 180, (name + "  " + number + "\xc2\xb0").c_str());
         ImGui::PopID();
         if (ImGui::IsItemHovered())
             tooltip(("Rotation in the plane of " + axes[std::size_t(kAxes[i][0])] + " and " +

@@ -147,10 +147,11 @@ void drawKeyframeButtons(ViewContext& context, ToolRow& tools) {
     if (animation.tracks.empty() || !tools.next(em() * 10.2f, em() * 0.8f)) return;
     ImGui::SetNextItemWidth(em() * 5);
     float position = static_cast<float>(animation.position), duration = static_cast<float>(animation.duration);
-    if (ImGui::DragFloat("##position", &position, 0.02f, 0, duration, "at %.2f s")) moveTo(session, double(position));
+    if (ImGui::DragFloat("##position", &position, 0.02f, 0, duration, "at %.2f s", ImGuiSliderFlags_AlwaysClamp))
+        moveTo(session, double(position));
     ImGui::SameLine(0, em() * 0.2f);
     ImGui::SetNextItemWidth(em() * 5);
-    if (ImGui::DragFloat("##duration", &duration, 0.05f, 0.1f, 3600, "of %.2f s"))
+    if (ImGui::DragFloat("##duration", &duration, 0.05f, 0.1f, 3600, "of %.2f s", ImGuiSliderFlags_AlwaysClamp))
         animation.duration = std::clamp(double(duration), 0.1, 3600.0);
 }
 

@@ -1,6 +1,7 @@
 #include "app/pane/plot.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/fitted_text.h"
+#include "app/ui/number_field.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "app/views/timeline/keyframes.h"
@@ -61,7 +62,7 @@ void drawPlaying(ViewContext& context, ToolRow& tools, bool many) {
     if (!tools.next(em() * 7, em() * 0.15f)) return;
     ImGui::BeginDisabled(!many);
     ImGui::SetNextItemWidth(em() * 7);
-    ImGui::SliderFloat("##speed", &animation.speed, 0.1f, 60, "%.3g steps/s", ImGuiSliderFlags_Logarithmic);
+    slider("##speed", animation.speed, 0.1f, 60, "%.3g steps/s", ImGuiSliderFlags_Logarithmic);
     ImGui::EndDisabled();
     if (ImGui::IsItemHovered()) tooltip("Stored times shown per second while playing");
 }
@@ -107,7 +108,7 @@ void drawPlace(Session& session, ToolRow& tools) {
     char format[48];
     std::snprintf(format, sizeof format, "plane at %%.1f %%%% of %s", axis);
     ImGui::SetNextItemWidth(em() * 11);
-    if (ImGui::SliderFloat("##place", &place, 0, 100, format)) along.place = static_cast<double>(place) / 100;
+    if (slider("##place", place, 0, 100, format)) along.place = static_cast<double>(place) / 100;
     if (ImGui::IsItemHovered())
         tooltip("Position of the plane along the axis; the data are read again when you release the mouse");
 }

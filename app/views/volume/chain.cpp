@@ -3,6 +3,7 @@
 #include "app/pane/view_parts.h"
 #include "app/session/shown_scene.h"
 #include "app/ui/keys.h"
+#include "app/ui/number_field.h"
 #include "app/ui/time_text.h"
 
 #include <algorithm>
@@ -53,7 +54,7 @@ void drawOwnTime(ViewContext& context, double& time) {
     std::string format; // of ImGui: without placeholders
     for (const char c : timeText(info, time)) format += c == '%' ? "%%" : std::string(1, c);
     ImGui::SetNextItemWidth(em() * 11);
-    if (ImGui::SliderInt("##time", &index, 0, last, format.c_str())) go(index);
+    if (slider("##time", index, 0, last, format.c_str())) go(index);
     if (ImGui::IsItemHovered()) tooltip("Time of this view alone; the timeline and all numbers stay at theirs");
 }
 
