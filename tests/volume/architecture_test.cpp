@@ -266,9 +266,10 @@ TEST(Architecture, NoJsonInHeadersOfVolume) {
 
 // ImGui's own sliders take any number that is typed, also one that a session cannot hold.
 TEST(Architecture, SlidersStayBetweenTheirEnds) {
-    for (const std::string& file : filesOf("app", {".cpp"}))
-        if (file != "app/ui/number_field.cpp")
-            EXPECT_EQ(textOf(kRoot / file).find("ImGui::Slider"), std::string::npos) << file;
+    for (const std::string& file : filesOf("app", {".cpp"})) {
+        const bool own = file == "app/ui/number_field.cpp";
+        EXPECT_EQ(textOf(kRoot / file).find("ImGui::Slider") != std::string::npos, own) << file;
+    }
 }
 
 // Shaders are files; C++ may only generate "#define NAME value" lines and the version that heads a composed program.
