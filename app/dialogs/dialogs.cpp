@@ -4,6 +4,7 @@
 #include "app/drawing/panels.h"
 #include "app/pane/pane_title.h"
 #include "app/ui/fitted_text.h"
+#include "app/ui/number_field.h"
 #include "app/ui/parameter_widget.h"
 #include "volume/base/byte_text.h"
 #include "volume/base/error.h"
@@ -261,8 +262,7 @@ void PictureDialog::drawPanels(const Session& session, const volume::DatasetInfo
         }
     ImGui::EndChild();
     drawLabel(widgets, "Columns", "Panels side by side; 0: as many as suit");
-    ImGui::SliderInt("##columns", &columns_, 0, std::max(2, int(panels_.size())),
-                     columns_ == 0 ? "as many as suit" : "%d");
+    slider("##columns", columns_, 0, std::max(2, int(panels_.size())), columns_ == 0 ? "as many as suit" : "%d");
 }
 
 std::optional<PictureRequest> PictureDialog::drawForm(Appearance& appearance) {

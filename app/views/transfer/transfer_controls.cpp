@@ -4,6 +4,7 @@
 #include "app/pane/tool_row.h"
 #include "app/pane/view_parts.h"
 #include "app/session/own_functions.h"
+#include "app/ui/number_field.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
 #include "app/user_files/colormap_file.h"
@@ -137,8 +138,7 @@ void drawGradientTop(ToolRow& tools, vis::TransferFunction& function, RegionPage
     const float width = std::min(em() * 9, tools.room() - em() * 2);
     if (!tools.next(width + em() * 2)) return;
     ImGui::SetNextItemWidth(width);
-    ImGui::SliderFloat("top", &function.gradientTop, 1e-3f, 2, "%.3g ranges/cell",
-                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    slider("top", function.gradientTop, 1e-3f, 2, "%.3g ranges/cell", ImGuiSliderFlags_Logarithmic);
     if (ImGui::IsItemHovered())
         tooltip("Gradient magnitude at the top of the plane: change per cell, as a multiple of the value range");
 }
