@@ -1,6 +1,7 @@
 #include "codec/brick/frame_samples.h"
 
 #include "volume/field/part_masks.h"
+#include "volume/system/free_memory.h"
 
 #include <algorithm>
 #include <cstring>
@@ -170,7 +171,9 @@ void FrameSamples::take(int first, int count, Field& part) const {
     part.type = stored_->type;
     part.offset = stored_->offset;
     part.scale = stored_->scale;
-    part.samples.resize(part.count() * volume::byteSize(part.type));
+    const std::size_t bytes = part.count() * volume::byteSize(part.type);
+    volume::reserveLarge(part.samples, bytes);
+    part.samples.resize(bytes);
     part.mask.reset();
     volume::Mask mask(stored_->masked ? part.count() : 0);
     read(sliceSize(stored_->lattice) * std::size_t(first), part.count(), part.samples.data(),

@@ -1,6 +1,7 @@
 #include "volume/field/field.h"
 
 #include "volume/base/parallel.h"
+#include "volume/system/free_memory.h"
 
 namespace tessera::volume {
 
@@ -12,7 +13,9 @@ Field makeField(const Lattice& lattice, ScalarType type) {
     Field field;
     field.lattice = lattice;
     field.type = type;
-    field.samples.resize(lattice.count() * byteSize(type));
+    const std::size_t bytes = lattice.count() * byteSize(type);
+    reserveLarge(field.samples, bytes);
+    field.samples.resize(bytes);
     return field;
 }
 

@@ -1,15 +1,23 @@
 #include "volume/system/free_memory.h"
 
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <string>
+#include <sys/mman.h>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
 
 namespace tessera::volume {
+
+namespace {
+
+constexpr std::size_t kMebi = 1 << 20, kLargestKept = 32 * kMebi;
+
+} // namespace
 
 void keepFreeMemory([[maybe_unused]] std::size_t most, [[maybe_unused]] std::size_t largest) {
 #ifdef __GLIBC__
@@ -19,8 +27,16 @@ void keepFreeMemory([[maybe_unused]] std::size_t most, [[maybe_unused]] std::siz
 }
 
 void keepFreeMemory() {
-    constexpr std::size_t kMebi = 1 << 20;
-    keepFreeMemory(256 * kMebi, 32 * kMebi);
+    keepFreeMemory(256 * kMebi, kLargestKept);
+}
+
+void reserveLarge(std::vector<std::byte>& bytes, std::size_t size) {
+    if (size <= bytes.capacity()) return;
+    bytes.reserve(size);
+    if (size <= kLargestKept) return;
+    constexpr std::uintptr_t kPage = 4096;
+    const auto begin = reinterpret_cast<std::uintptr_t>(bytes.data()), first = (begin + kPage - 1) / kPage * kPage;
+    ::madvise(reinterpret_cast<void*>(first), begin + size - first, MADV_HUGEPAGE); // if it is possible
 }
 
 void giveBackFreeMemory() {

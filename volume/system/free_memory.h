@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 namespace tessera::volume {
 
@@ -16,6 +17,10 @@ void keepFreeMemory();
 /// threads allocate and free for a moment, such as the compilers of drivers, is else kept by the C library for ever.
 /// Does nothing where the C library cannot.
 void giveBackFreeMemory();
+
+/// Makes room for so many bytes. More than the C library keeps for later allocations come from the system in large
+/// pages where it has such, since each page costs a fault.
+void reserveLarge(std::vector<std::byte>& bytes, std::size_t size);
 
 /// Bytes that the system can give to programs without swapping; infinity where it does not say.
 double availableMemory();
