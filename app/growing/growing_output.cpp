@@ -99,8 +99,9 @@ void GrowingOutput::append(const std::string& path, const std::optional<StatedFr
         throw MachineError("was removed while it grew", request_.output);
     }
     const std::vector<double> times = data.info.times;
-    const codec::PackSummary summary = before > 0 ? codec::append(data, request_.output, request_.options.memoryMb)
-                                                  : codec::pack(data, request_.options, request_.output);
+    const codec::PackSummary summary =
+        before > 0 ? codec::append(data, request_.output, request_.options.memoryMb)
+                   : codec::pack(data, request_.options, request_.output, {}, {.ofSeries = true});
     replaces_ = false;
     if (before == 0) sayDecided(series, request_.import, stated ? frameText(*stated) : path);
     if (!series_)

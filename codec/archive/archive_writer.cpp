@@ -219,7 +219,7 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
         commits.header.features |= kSubsamples;
     }
     // Series are played, for which mixed bricks are decoded too slowly.
-    frame.mixed = metadata.info.times.size() == 1 && frame.numbers.kind == NumberKind::Integer;
+    frame.mixed = options.mayMix && metadata.info.times.size() == 1 && frame.numbers.kind == NumberKind::Integer;
     coding.maxError = boundOf(frame, options);
     coding.before = frameBefore(frame, samples);
     coding.repeated = repeated(coding.before, samples, frame, options, nullptr);

@@ -160,7 +160,7 @@ void codeTogether(FrameCoding& coding, const FrameSamples& samples, const ZstdUs
     });
     for (std::size_t number = 0; number < files.size(); ++number) {
         const auto [first, end] = samples.slab(number).bricks(coding.grid);
-        readSlab(*files[number], first, end, coding, team.writes() ? &coded : nullptr);
+        readSlab(*files[number].file, first, end, coding, team.writes() ? &coded : nullptr);
     }
 }
 

@@ -37,6 +37,7 @@ struct FrameOptions {
     int zstdLevel = 3;
     Range range{1, 0}; ///< physical range of the component that importance refers to; lo > hi: that of the frame
     bool categorical = false;
+    bool mayMix = true; ///< bricks of a single time may be mixed, which are slow to decode
     volume::ImportanceOptions importance;
 };
 

@@ -22,6 +22,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <random>
 #include <thread>
 #include <vector>
 
@@ -124,7 +125,7 @@ public:
            const BlockOptions& blocks, const Progress& progress)
         : source_(source), options_(options), path_(path), times_(blocks.times),
           pieces_(blocks.byParameter ? source.info.parameters.size() : 1), bySlab_(blocks.bySlab),
-          rank_(blocks.launched.rank), job_(path, aboutJob(source.info, options, blocks), blocks.launched, progress) {
+          job_(path, aboutJob(source.info, options, blocks), blocks.launched, progress) {
         // An automatic size of bricks depends on the number of times; a last block of one time has the same.
         const volume::Lattice& lattice = source.info.lattice;
         const bool toBcc = options.lattice == StoredLattice::BCC && lattice.kind == volume::LatticeKind::CC;
@@ -170,7 +171,6 @@ private:
     std::string path_;
     std::size_t times_, pieces_; ///< of a block
     bool bySlab_;
-    int rank_;
     SharedJob job_;
     std::size_t joinedBlocks_ = 0;   ///< at least so many
     std::uintmax_t joinedBytes_ = 0; ///< of the file when they were counted
@@ -187,6 +187,7 @@ volume::Dataset Blocks::piece(std::size_t number) const {
 /// What is known of the source, for one piece: the blocks together have compared as many samples as the source.
 PackedBefore Blocks::beforeOf(std::size_t number, std::size_t times, PackedBefore before) const {
     if (pieces_ > 1 && !before.resampled.empty()) before.resampled = {before.resampled[number % pieces_]};
+    before.ofSeries = source_.info.times.size() > 1;
     for (std::optional<ResampleError>& error : before.resampled)
         if (error) error->samples *= double(times) / double(source_.info.times.size());
     return before;
@@ -315,7 +316,7 @@ std::size_t Blocks::shareOut(const std::string& name, const std::function<bool(s
         try {
             if (!team.isOver()) help(number, &team);
         } catch (const MachineError&) {
-            if (!team.isOver()) throw;
+            if (!team.endsSoon()) throw;
         }
     };
     return job_.share(name, pieces(), isDone, together, progress, helped);
@@ -330,7 +331,9 @@ std::size_t Blocks::pack(PackSummary& sum, const PackedBefore& before, const Pro
         return codec::pack(own, options_, path, part, known, 0, team);
     };
     const auto help = [&](std::size_t number, SlabTeam* team) {
-        packTo(job_.scratch(std::to_string(number) + "-helped-" + std::to_string(rank_)), number, team);
+        // Processes of other machines may have the same number.
+        const std::string own = std::to_string(std::random_device()()) + std::to_string(std::random_device()());
+        packTo(job_.scratch(std::to_string(number) + "-helped-" + own), number, team);
     };
     const auto work = [&](std::size_t number, SlabTeam* team) {
         const std::string growing = job_.file(std::to_string(number) + ".packing"); // readable from its first time on

@@ -112,8 +112,7 @@ SharedJob::~SharedJob() {
 
 void SharedJob::removeScratch(const std::string& begin) const {
     std::error_code ignored;
-    for (const std::string& name : namesIn(folder_, kScratch + begin))
-        if (!name.ends_with(".lock")) fs::remove(file(name), ignored);
+    for (const std::string& name : namesIn(folder_, kScratch + begin)) fs::remove(file(name), ignored);
 }
 
 /// Removes what processes left that have ended without completing the work; nobody is inside. Those of this job may
@@ -123,7 +122,7 @@ void SharedJob::removeEnded() const {
     std::error_code ignored;
     for (const std::string_view begins : {kRanks, kCame, kLeft})
         for (const std::string& name : namesIn(folder_, begins)) {
-            const bool isOwn = name == ownRanks || (begins == kLeft && name.starts_with(std::string(kLeft) + own));
+            const bool isOwn = name == ownRanks || (begins != kRanks && name.starts_with(std::string(begins) + own));
             if (launched_.rank == 0 || !isOwn) fs::remove(file(name), ignored);
         }
 }

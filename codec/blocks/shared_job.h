@@ -39,7 +39,7 @@ public:
     std::string file(const std::string& name) const { return folder_ + "/" + name; }
     /// The same for a file that only serves processes that are here: it is removed when the first of others enters.
     std::string scratch(const std::string& name) const { return file(kScratch + name); }
-    /// Removes all of these whose names begin so, but for locks.
+    /// Removes all of these whose names begin so, with locks of pieces that nobody does again.
     void removeScratch(const std::string& begin) const;
     /// A lock between the processes, which is waited for; `fraction` of the progress is reported meanwhile. Throws
     /// Cancelled, MachineError when the folder is removed.

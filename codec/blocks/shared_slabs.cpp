@@ -3,9 +3,12 @@
 #include "volume/base/error.h"
 
 #include <cerrno>
+#include <chrono>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 namespace tessera::codec {
 
@@ -13,35 +16,71 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Gives a file its name when `work` has written all of it. It need not survive a crash of the machine. The caller has
-/// a lock, so nobody else writes it.
+constexpr std::chrono::milliseconds kPause(100), kPatience(10000); ///< until another machine sees a change
+
+/// Gives a file its name when `work` has written all of it, followed by its size. It need not survive a crash of the
+/// machine. The caller has a lock, so nobody else writes it.
 void writeWhole(const std::string& path, const std::function<void(const SlabTeam::Write&)>& work) {
     const std::string writing = path + ".writing";
     errno = 0;
     std::ofstream out(writing, std::ios::binary | std::ios::trunc);
-    work([&](std::span<const std::byte> bytes) {
-        out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
-    });
-    out.close();
-    std::error_code problem;
-    if (out) fs::rename(writing, path, problem);
-    if (!out || problem)
+    const auto requireGood = [&] {
+        if (out) return;
         throw MachineError(std::string("cannot be written: ") + std::strerror(errno != 0 ? errno : EIO), writing);
+    };
+    requireGood();
+    std::uint64_t size = 0;
+    const auto write = [&](std::span<const std::byte> bytes) {
+        errno = 0;
+        out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+        requireGood();
+        size += bytes.size();
+    };
+    work(write);
+    const std::uint64_t all = size;
+    write(std::as_bytes(std::span(&all, 1)));
+    out.close();
+    requireGood();
+    std::error_code problem;
+    fs::rename(writing, path, problem);
+    if (problem) throw MachineError("cannot be named: " + problem.message(), writing);
+}
+
+/// The file, when all of it is seen here; network file systems may show its name before.
+SharedResult openWhole(const std::string& path, const Progress& progress) {
+    for (auto waited = kPause;; waited += kPause) {
+        SharedResult result{volume::ScratchFile::of(path), 0};
+        const std::uint64_t all = result.file->size();
+        if (all >= sizeof result.size) {
+            result.file->read(all - sizeof result.size, std::as_writable_bytes(std::span(&result.size, 1)));
+            if (result.size + sizeof result.size == all) return result;
+        }
+        if (waited > kPatience) throw MachineError("is not whole", path);
+        progress.advance(0);
+        std::this_thread::sleep_for(kPause);
+    }
 }
 
 } // namespace
 
 SharedSlabs::SharedSlabs(const SharedJob& job, const std::string& piece, bool writes, const Progress& progress)
-    : job_(job), piece_(piece), writes_(writes), progress_(progress) {}
+    : job_(job), piece_(piece), writes_(writes), progress_{{}, progress.stop} {}
 
 bool SharedSlabs::isOver() const {
     std::error_code ignored;
     return !writes_ && fs::exists(overFile(), ignored);
 }
 
-std::vector<std::unique_ptr<const volume::ScratchFile>>
-SharedSlabs::share(const std::string& step, std::size_t pieces,
-                   const std::function<void(std::size_t, const Write&)>& work) {
+bool SharedSlabs::endsSoon() const {
+    for (auto waited = kPause; !isOver(); waited += kPause) {
+        if (waited > kPatience) return false;
+        std::this_thread::sleep_for(kPause);
+    }
+    return true;
+}
+
+std::vector<SharedResult> SharedSlabs::share(const std::string& step, std::size_t pieces,
+                                             const std::function<void(std::size_t, const Write&)>& work) {
     const std::string name = piece_ + "-" + std::to_string(steps_++) + "-" + step;
     const auto fileOf = [&](std::size_t number) { return job_.scratch(name + "-" + std::to_string(number)); };
     const auto isDone = [&](std::size_t number) {
@@ -52,14 +91,13 @@ SharedSlabs::share(const std::string& step, std::size_t pieces,
         writeWhole(fileOf(number), [&](const Write& write) { work(number, write); });
     };
     job_.share("scratch-" + name, pieces, isDone, make, progress_);
-    std::vector<std::unique_ptr<const volume::ScratchFile>> results;
-    for (std::size_t number = 0; number < pieces; ++number) results.push_back(volume::ScratchFile::of(fileOf(number)));
+    std::vector<SharedResult> results;
+    for (std::size_t number = 0; number < pieces; ++number) results.push_back(openWhole(fileOf(number), progress_));
     return results;
 }
 
 void SharedSlabs::end() const {
-    std::ofstream(overFile()).flush();
-    job_.removeScratch(piece_ + "-");
+    if (std::ofstream over(overFile()); over.flush()) job_.removeScratch(piece_ + "-");
 }
 
 } // namespace tessera::codec

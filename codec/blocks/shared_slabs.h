@@ -14,14 +14,15 @@ public:
     /// `piece`: its name in the job, which must outlive this object.
     SharedSlabs(const SharedJob& job, const std::string& piece, bool writes, const Progress& progress);
 
-    std::vector<std::unique_ptr<const volume::ScratchFile>>
-    share(const std::string& step, std::size_t pieces,
-          const std::function<void(std::size_t, const Write&)>& work) override;
+    std::vector<SharedResult> share(const std::string& step, std::size_t pieces,
+                                    const std::function<void(std::size_t, const Write&)>& work) override;
     bool writes() const override { return writes_; }
     /// States that the piece has been packed, and removes what was shared.
     void end() const;
     /// Whether it has been packed without this process, in which what it helps with may then fail.
     bool isOver() const;
+    /// Waits a little for that, since another machine may see late that files have gone.
+    bool endsSoon() const;
 
 private:
     std::string overFile() const { return job_.scratch("over-" + piece_); }
@@ -29,7 +30,7 @@ private:
     const SharedJob& job_;
     std::string piece_;
     bool writes_;
-    Progress progress_;
+    Progress progress_; ///< reports nothing: steps are small parts of the piece
     std::size_t steps_ = 0;
 };
 

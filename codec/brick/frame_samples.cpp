@@ -100,14 +100,15 @@ void FrameSamples::Stored::fillTogether(const char* step, const std::function<Fi
     });
     masked = false;
     maskedSlabs.clear();
-    for (const auto& each : files) {
+    slabs.clear();
+    for (SharedResult& each : files) {
         AboutSlab about;
-        each->read(each->size() - sizeof about, std::as_writable_bytes(std::span(&about, 1)));
+        each.file->read(each.size - sizeof about, std::as_writable_bytes(std::span(&about, 1)));
+        slabs.push_back(std::move(each.file));
         masked = masked || about.masked;
         maskedSlabs.push_back(about.masked ? 1 : 0);
         type = about.type, offset = about.offset, scale = about.scale;
     }
-    slabs = std::move(files);
 }
 
 FrameSamples::FrameSamples(volume::SlicedFrame frame, const volume::BrickGrid& grid, const SlabStore& store,

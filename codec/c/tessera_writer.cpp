@@ -194,7 +194,7 @@ void appendTime(tessera_writer* writer, double time, const void* const* arrays) 
     if (writer->grows)
         append(data, path, writer->options.memoryMb);
     else
-        pack(data, writer->options, path);
+        pack(data, writer->options, path, {}, {.ofSeries = true});
     writer->grows = true;
     writer->lastTime = time;
     ++writer->times;

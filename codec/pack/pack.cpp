@@ -83,10 +83,14 @@ std::vector<volume::Quantity> quantitiesOf(const volume::DatasetInfo& source, co
     return grown ? volume::joined(grown->metadata().sourceQuantities, old, own, added.size()) : own;
 }
 
-/// Brick layers of the slabs that a team shares: one, but for so many that their files would be too many.
-int layersOfTeam(const volume::BrickGrid& grid) {
-    constexpr int kMostSlabs = 256;
-    return (grid.count().z + kMostSlabs - 1) / kMostSlabs;
+/// Brick layers of the slabs that a team shares: one, but for so many that their open files would be too many. Those of
+/// the samples of all components are open, and of the result of a step, twice while samples change.
+int layersOfTeam(const volume::BrickGrid& grid, const volume::DatasetInfo& info) {
+    constexpr int kMostFiles = 512;
+    int components = 1;
+    for (const volume::Parameter& parameter : info.parameters) components = std::max(components, parameter.components);
+    const int slabs = std::max(1, kMostFiles / (components + 2));
+    return (grid.count().z + slabs - 1) / slabs;
 }
 
 /// One run of pack or append.
@@ -127,7 +131,7 @@ public:
         errors_.assign(info.parameters.size(), 0);
         for (const volume::Parameter& parameter : info.parameters)
             errorsBefore_.push_back(parameter.categorical ? 0 : before.maxError * extentOf(parameter));
-        memory_ = planMemory(metadata_, source, options, team ? layersOfTeam(metadata_.grid) : slabLayers);
+        memory_ = planMemory(metadata_, source, options, team ? layersOfTeam(metadata_.grid, info) : slabLayers);
         reading_ = {.toBcc = toBcc,
                     .resample = options.resample,
                     .grid = metadata_.grid,
@@ -139,6 +143,7 @@ public:
                     .team = team};
         if (metadata_.alternating && memory_.slabLayers > 0) dataset_.read = framesOfD4(reading_.slices).frames.read;
         resampledBefore_ = before.resampled;
+        ofSeries_ = before.ofSeries;
     }
 
     PackSummary run(const Progress& progress);
@@ -165,6 +170,7 @@ private:
     std::string path_;
     const Archive* grown_;
     SlabTeam* team_; ///< or null
+    bool ofSeries_ = false;
     Metadata metadata_;
     Continuation place_;
     MemoryPlan memory_;
@@ -216,6 +222,7 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
     frame.mostPredicted = options_.mostPredicted;
     frame.keepsAbsent = exact && !resamples && options_.discard == 0;
     frame.categorical = about.categorical;
+    frame.mayMix = !ofSeries_;
     frame.importance = options_.importance;
     if (options_.bccTransform != BccTransform::Auto)
         frame.bodyCentred = options_.bccTransform == BccTransform::BodyCentred;

@@ -16,10 +16,11 @@ namespace tessera::codec {
 
 /// History of samples that come from an archive (their errors so far); empty for other data.
 struct PackedBefore {
-    std::optional<volume::Lattice>
-        grid; ///< original grid of the samples, which is not known from their lattice if that is BCC
+    std::optional<volume::Lattice> grid =
+        {}; ///< original grid of the samples, which is not known from their lattice if that is BCC
     bool lossless = true;
-    double maxError = 0;                                      ///< bound on |error|, relative to a parameter's range
+    double maxError = 0;   ///< bound on |error|, relative to a parameter's range
+    bool ofSeries = false; ///< the data are times of a series that others follow or precede
     std::vector<std::optional<ResampleError>> resampled = {}; ///< Metadata::resampled of that archive
 };
 

@@ -1,5 +1,7 @@
 #include "codec/bytes/mixed_symbols.h"
 
+#include "codec/blocks/pack_blocks.h"
+
 #include "codec/archive/archive.h"
 #include "codec/archive/archive_state.h"
 #include "codec/brick/whole_brick.h"
@@ -162,6 +164,13 @@ TEST(MixedBrick, SeriesMasksAndManyValuesAreNotMixed) {
     EXPECT_FALSE(packed(mirrored(size, ScalarType::U8, 1, true)));
     EXPECT_FALSE(packed(mirrored(size, ScalarType::F32, 1)));
     EXPECT_FALSE(packed(makeDataset(size, {{"a", ScalarType::I32, 1, Texture::Nasty, false, false}}, 1)));
+    const auto inBlocks = [&](int times, std::size_t ofBlock) {
+        packInBlocks(mirrored(size, ScalarType::U8, times), options, folder / "b.tsr", {ofBlock, {}});
+        return declaresMixed(Archive(folder / "b.tsr"));
+    };
+    EXPECT_TRUE(inBlocks(1, 1));
+    EXPECT_FALSE(inBlocks(3, 1)) << "a block of one time is not a single time";
+    EXPECT_FALSE(inBlocks(3, 2));
     options.levels = 1;
     EXPECT_FALSE(packed(mirrored(size, ScalarType::U8, 1)));
 }
