@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::milliseconds kPause(100), kPatience(10000); ///< until another machine sees a change
+constexpr std::chrono::milliseconds kMoment(100), kPatience(10000); ///< until another machine sees a change
 
 /// Gives a file its name when `work` has written all of it, followed by its size. It need not survive a crash of the
 /// machine. The caller has a lock, so nobody else writes it.
@@ -48,7 +48,7 @@ void writeWhole(const std::string& path, const std::function<void(const SlabTeam
 
 /// The file, when all of it is seen here; network file systems may show its name before.
 SharedResult openWhole(const std::string& path, const Progress& progress) {
-    for (auto waited = kPause;; waited += kPause) {
+    for (auto waited = kMoment;; waited += kMoment) {
         SharedResult result{volume::ScratchFile::of(path), 0};
         const std::uint64_t all = result.file->size();
         if (all >= sizeof result.size) {
@@ -57,7 +57,7 @@ SharedResult openWhole(const std::string& path, const Progress& progress) {
         }
         if (waited > kPatience) throw MachineError("is not whole", path);
         progress.advance(0);
-        std::this_thread::sleep_for(kPause);
+        std::this_thread::sleep_for(kMoment);
     }
 }
 
@@ -72,9 +72,9 @@ bool SharedSlabs::isOver() const {
 }
 
 bool SharedSlabs::endsSoon() const {
-    for (auto waited = kPause; !isOver(); waited += kPause) {
+    for (auto waited = kMoment; !isOver(); waited += kMoment) {
         if (waited > kPatience) return false;
-        std::this_thread::sleep_for(kPause);
+        std::this_thread::sleep_for(kMoment);
     }
     return true;
 }

@@ -19,9 +19,9 @@ struct PackedBefore {
     std::optional<volume::Lattice> grid =
         {}; ///< original grid of the samples, which is not known from their lattice if that is BCC
     bool lossless = true;
-    double maxError = 0;   ///< bound on |error|, relative to a parameter's range
-    bool ofSeries = false; ///< the data are times of a series that others follow or precede
+    double maxError = 0;                                      ///< bound on |error|, relative to a parameter's range
     std::vector<std::optional<ResampleError>> resampled = {}; ///< Metadata::resampled of that archive
+    bool ofSeries = false; ///< the data are times of a series that others follow or precede
 };
 
 /// Packs a data set into `path`, which is readable from the first complete time on (with d4, from the second frame).
