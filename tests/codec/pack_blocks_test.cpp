@@ -172,7 +172,9 @@ TEST(PackBlocks, TheParametersOfAnInterruptedBlockAreNotPackedAgain) {
     // A crash while pieces are merged leaves them beside what was begun, or beside the block.
     writeFile(folder / "run.tsr.blocks/1.merging", {'b', 'e', 'g', 'u', 'n'});
     std::vector<int> last{6};
-    packInBlocks(volume::withTimes(made, last), small(), folder / "last.tsr", blocks);
+    PackedBefore ofSeries;
+    ofSeries.ofSeries = true;
+    packInBlocks(volume::withTimes(made, last), small(), folder / "last.tsr", blocks, {}, ofSeries);
     fs::rename(folder / "last.tsr", folder / "run.tsr.blocks/3.tsr");
     writeFile(folder / "run.tsr.blocks/3-0.tsr", {'l', 'e', 'f', 't'});
     std::set<std::pair<int, int>> again;
