@@ -16,8 +16,8 @@ namespace tessera::codec {
 
 /// History of samples that come from an archive (their errors so far); empty for other data.
 struct PackedBefore {
-    std::optional<volume::Lattice> grid =
-        {}; ///< original grid of the samples, which is not known from their lattice if that is BCC
+    /// Original grid of the samples, which is not known from their lattice if that is BCC.
+    std::optional<volume::Lattice> grid = {};
     bool lossless = true;
     double maxError = 0;                                      ///< bound on |error|, relative to a parameter's range
     std::vector<std::optional<ResampleError>> resampled = {}; ///< Metadata::resampled of that archive
