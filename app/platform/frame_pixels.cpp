@@ -5,7 +5,6 @@
 #include "volume/base/error.h"
 
 #include <algorithm>
-#include <backends/imgui_impl_opengl3.h>
 #include <cmath>
 #include <epoxy/gl.h>
 #include <glm/common.hpp>
@@ -89,7 +88,7 @@ public:
         glDisable(GL_SCISSOR_TEST);
         glClearColor(0, 0, 0, 0);
         glClear(GL_COLOR_BUFFER_BIT);
-        ImGui_ImplOpenGL3_RenderDrawData(&frame);
+        Gui::draw(frame);
         for (int n = 0; n < frame.CmdListsCount; ++n) all[std::size_t(n)].swap(frame.CmdLists[n]->CmdBuffer);
     }
     vis::Image read(glm::ivec2 lo, glm::ivec2 hi) const override {

@@ -78,7 +78,13 @@ void Gui::draw(glm::ivec2 framebuffer, Theme theme) {
     const glm::vec3 ground = windowGround(theme);
     glClearColor(ground.r, ground.g, ground.b, 1);
     glClear(GL_COLOR_BUFFER_BIT);
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    draw(*ImGui::GetDrawData());
+}
+
+void Gui::draw(ImDrawData& data) {
+    // The back end binds the program again that was bound. One that has been deleted lasts until then only.
+    glUseProgram(0);
+    ImGui_ImplOpenGL3_RenderDrawData(&data);
 }
 
 glm::vec3 windowGround(Theme theme) {

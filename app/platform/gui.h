@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 #include <memory>
 
+struct ImDrawData;
 struct ImGuiContext;
 struct ImGuiIO;
 
@@ -31,6 +32,8 @@ public:
     static void newFrame();
     /// Draws ImGui's draw data into the bound framebuffer of OpenGL.
     static void draw(glm::ivec2 framebuffer, Theme theme);
+    /// The same by ImGui's back end alone.
+    static void draw(ImDrawData& data);
     /// Takes the font atlas after a rebuild.
     static void uploadFonts();
 
