@@ -44,12 +44,7 @@ void BrickInput::take(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec
             const std::byte* const next = field->samples.data() + indexOf(row + kAhead) * sampleBytes;
             for (std::size_t i = 0; i < n * sampleBytes; i += kCacheLine) __builtin_prefetch(next + i);
         }
-        if (!field) {
-            frame.read(from, n, to, flags);
-        } else {
-            std::memcpy(to, field->samples.data() + from * sampleBytes, n * sampleBytes);
-            for (std::size_t i = 0; masked && i < n; ++i) flags[i] = field->present(from + i) ? 1 : 0;
-        }
+        frame.read(from, n, to, flags);
         to += n * sampleBytes;
         if (flags) flags += n;
     }

@@ -2,7 +2,7 @@
 
 #include "codec/bands/band.h"
 #include "codec/bands/rans_model.h"
-#include "codec/bytes/cpu.h"
+#include "volume/base/cpu.h"
 
 #include <span>
 

@@ -68,19 +68,12 @@ public:
     /// What `of` gives for each slab, in their order; by all processes of a team, where `step` says what is computed.
     template <class T>
     std::vector<T> ofSlabs(const char* step, const std::function<T(const volume::Field& part, Slab slab)>& of) const {
-        return listOfSlabs<T>(step,
-                              [&](const volume::Field& part, Slab slab) { return std::vector<T>{of(part, slab)}; });
-    }
-    /// The same where that are several values.
-    template <class T>
-    std::vector<T> listOfSlabs(const char* step,
-                               const std::function<std::vector<T>(const volume::Field& part, Slab slab)>& of) const {
         const Pieces pieces = team() ? team()->pieces(step) : Pieces(piecesHere);
         volume::Field part;
         return valuesOf<T>(pieces, slabCount(), [&](std::size_t number) {
-            if (whole()) return of(*whole(), slab(number));
+            if (whole()) return std::vector<T>{of(*whole(), slab(number))};
             take(slab(number).first, slab(number).count, part);
-            return of(part, slab(number));
+            return std::vector<T>{of(part, slab(number))};
         });
     }
     /// Modifies samples, flags, offset and scale slab by slab; offset and scale must be equal in all slabs. Of a team,

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "codec/bytes/cpu.h"
+#include "volume/base/cpu.h"
 
 #include <bit>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "codec/bytes/bytes.h"
-#include "codec/bytes/cpu.h"
+#include "volume/base/cpu.h"
 
 #include <algorithm>
 #include <array>

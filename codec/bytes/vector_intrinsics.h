@@ -1,6 +1,6 @@
 #pragma once
 
-#include "codec/bytes/cpu.h"
+#include "volume/base/cpu.h"
 
 /// x86 vector intrinsics, on x86 only.
 #if TESSERA_X86

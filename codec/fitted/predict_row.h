@@ -1,8 +1,8 @@
 #pragma once
 
-#include "codec/bytes/cpu.h"
 #include "codec/fitted/fitted_weights.h"
 #include "codec/fitted/pass_rows.h"
+#include "volume/base/cpu.h"
 
 namespace tessera::codec {
 

@@ -14,7 +14,8 @@
 /// The pipeline from a data set to an archive.
 namespace tessera::codec {
 
-/// History of samples that come from an archive (their errors so far); empty for other data.
+/// What is known of data that come from an archive (the errors of their samples so far) or belong to others; empty for
+/// other data.
 struct PackedBefore {
     /// Original grid of the samples, which is not known from their lattice if that is BCC.
     std::optional<volume::Lattice> grid = {};

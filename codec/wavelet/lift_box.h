@@ -1,7 +1,7 @@
 #pragma once
 
-#include "codec/bytes/cpu.h"
 #include "codec/wavelet/lifting.h"
+#include "volume/base/cpu.h"
 
 #include <cstddef>
 #include <cstdint>

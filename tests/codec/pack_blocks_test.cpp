@@ -221,6 +221,29 @@ TEST(PackBlocks, WhatAKilledProcessLeftIsGoneOnWith) {
     EXPECT_EQ(folder.files(), 2u);
 }
 
+// One that was killed while it was alone in the folder that an earlier job left, and before the first one came.
+TEST(PackBlocks, TheFolderGoesThoughAProcessOfTheJobWasKilled) {
+    const TemporaryFolder folder;
+    const volume::Dataset made = series();
+    volume::Dataset deadly = made;
+    deadly.read = [](int, int, int) -> volume::Field {
+        ::raise(SIGKILL);
+        return {};
+    };
+    const auto packed = [&](const volume::Dataset& of, const std::string& job, int rank) {
+        return statusOf(started([&] {
+            packInBlocks(of, small(), folder / "run.tsr", {2, {rank, 3, 3, job}});
+            return true;
+        }));
+    };
+    ASSERT_EQ(packed(deadly, "1", 0), -SIGKILL);
+    ASSERT_EQ(packed(deadly, "2", 2), -SIGKILL);
+    ASSERT_EQ(packed(made, "2", 1), 0);
+    EXPECT_TRUE(fs::exists(folder / "run.tsr.blocks")) << "the first one is still to come";
+    ASSERT_EQ(packed(made, "2", 0), 0);
+    EXPECT_EQ(folder.files(), 1u);
+}
+
 TEST(PackBlocks, OthersDoTheBlockOfAKilledProcess) {
     const TemporaryFolder folder;
     const volume::Dataset made = series();

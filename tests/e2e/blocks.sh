@@ -124,35 +124,46 @@ done
 # Nothing is left beside the archive where one process was killed and the others ended the work, nor where all were
 # killed and the first process of the next job is not the first to come.
 await() { # await FILE
-    for _ in $(seq 1000); do
-        [ -e "$1" ] && break
+    for _ in $(seq 300); do
+        [ -e "$1" ] && return
         sleep 0.01
     done
+    return 1
 }
 start() { # start JOB RANK COUNT
     env $(as "$@") "$tessera" pack run.json -o left.tsr "${options[@]}" >/dev/null 2>&1 &
     pids[$2]=$!
 }
-pids=()
-for rank in 0 1 2; do start survivors $rank 3; done
-await left.tsr.blocks/came-survivors--2
-kill -KILL "${pids[2]}" 2>/dev/null
-wait
+for try in $(seq 20); do # until the kill is not too late
+    rm -f left.tsr
+    pids=()
+    for rank in 0 1 2; do start survivors$try $rank 3; done
+    await left.tsr.blocks/came-survivors$try--2
+    kill -KILL "${pids[2]}" 2>/dev/null
+    wait "${pids[2]}"
+    killed=$?
+    wait
+    [ $killed = 137 ] && break
+done
+[ $killed = 137 ] || fail "every kill came too late"
 cmp one.tsr left.tsr || fail "the others make another archive"
 [ -e left.tsr.blocks ] && fail "the others leave $(ls left.tsr.blocks)"
-rm left.tsr
-for rank in 0 1; do start killed $rank 2; done
-await left.tsr.blocks/came-killed--1
-kill -KILL "${pids[@]}" 2>/dev/null
-wait
-if [ -e left.tsr.blocks/job.json ]; then
-    start next 1 2
-    await left.tsr.blocks/came-next--1
-    start next 0 2
+for try in $(seq 20); do
+    rm -rf left.tsr left.tsr.blocks
+    pids=()
+    for rank in 0 1; do start killed$try $rank 2; done
+    await left.tsr.blocks/came-killed$try--1
+    kill -KILL "${pids[@]}" 2>/dev/null
     wait
-    cmp one.tsr left.tsr || fail "the next job makes another archive"
-    [ -e left.tsr.blocks ] && fail "the next job leaves $(ls left.tsr.blocks)"
-fi
+    [ -e left.tsr.blocks/job.json ] && break
+done
+[ -e left.tsr.blocks/job.json ] || fail "every kill came too late"
+start next 1 2
+await left.tsr.blocks/came-next--1 || fail "the next job does not go on"
+start next 0 2
+wait
+cmp one.tsr left.tsr || fail "the next job makes another archive"
+[ -e left.tsr.blocks ] && fail "the next job leaves $(ls left.tsr.blocks)"
 
 mkdir other.tsr.blocks
 echo '{}' >other.tsr.blocks/job.json
