@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 
+using namespace tessera;
 using namespace tessera::codec;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
