@@ -135,6 +135,16 @@ TEST_F(ProgramCacheTest, APictureOfManyProgramsKeepsThemAll) {
     EXPECT_EQ(cache.size(), 8u);
 }
 
+// A picture that stays, as after a day's work, needs no others.
+TEST_F(ProgramCacheTest, OthersAreDeletedWhileOneIsUsed) {
+    using namespace std::chrono_literals;
+    vis::ProgramCache cache(false, {.count = 3, .unused = 100ms});
+    for (int number = 0; number < 8; ++number) ASSERT_TRUE(cache.find(numbered(number)));
+    std::this_thread::sleep_for(150ms);
+    ASSERT_TRUE(cache.find(numbered(7)));
+    EXPECT_EQ(cache.size(), 3u);
+}
+
 // So it is with the program that presents: another tone curve is waited for under the former picture.
 TEST_F(ProgramCacheTest, PresentingBlocksNobody) {
     vis::Renderer renderer;

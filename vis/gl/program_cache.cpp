@@ -72,8 +72,8 @@ ProgramCache::Entry& ProgramCache::make(const ProgramRecipe& recipe, bool backgr
     if (isNew) found->second = std::make_shared<Entry>();
     const std::shared_ptr<Entry> entry = found->second;
     entry->used = Clock::now();
-    if (!isNew) return *entry;
     dropUnused();
+    if (!isNew) return *entry;
     const auto link = [entry, shared = shared_](bool apart) {
         try {
             Program program = linkProgram(entry->text);

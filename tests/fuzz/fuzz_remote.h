@@ -1,0 +1,25 @@
+#pragma once
+
+#include "codec/remote/remote_file.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace tessera::fuzz {
+
+/// Reads the begin of a file on another machine and what follows, with a cache in `folder`: an Error or as many bytes
+/// as were asked for.
+inline void readRemote(const std::string& address, const std::filesystem::path& folder) {
+    ::setenv("XDG_CACHE_HOME", folder.c_str(), 1);
+    try {
+        const codec::RemoteFile file(address, {.cache = 16, .connections = 1, .patience = 0});
+        constexpr std::uint64_t kMost = 3 * codec::RemoteFile::kBlockBytes;
+        const FileRange all{0, std::min(file.size(), kMost)};
+        if (file.part(all).bytes().size() != all.length) std::abort();
+        if (const auto fresh = file.freshPart(all); fresh && fresh->bytes().size() != all.length) std::abort();
+    } catch (const Error&) { // the only answer to a bad one
+    }
+}
+
+} // namespace tessera::fuzz
