@@ -4,7 +4,6 @@
 #include "tests/app/workbench_fixture.h"
 #include "tests/resident_memory.h"
 #include "volume/system/confine.h"
-#include "volume/system/free_memory.h"
 
 #include <algorithm>
 #include <chrono>
@@ -196,9 +195,6 @@ protected:
         }
         showFor(45);
         report("at rest: ");
-        std::printf("busy %d\n", workbench.busy());
-        volume::giveBackFreeMemory();
-        report("trimmed: ");
     }
 
     void showFor(double seconds) {

@@ -1,9 +1,15 @@
 #include "tests/resident_memory.h"
 #include "volume/system/free_memory.h"
 
+#include <barrier>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <memory>
 #include <sys/resource.h>
+#include <thread>
 #include <vector>
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
@@ -46,6 +52,33 @@ TEST(FreeMemory, IsKeptForTheNextBlocksUnlessLittleIsToBe) {
     keepFreeMemory();
     (void)faultsOfBlocks();
     EXPECT_LT(faultsOfBlocks(), kPages / 20);
+}
+
+/// Heaps of the C library by its own report.
+int heaps() {
+    char* text = nullptr;
+    std::size_t size = 0;
+    std::FILE* const out = ::open_memstream(&text, &size);
+    ::malloc_info(0, out);
+    std::fclose(out);
+    int count = 0;
+    for (const char* at = text; (at = std::strstr(at, "<heap nr=")) != nullptr; ++at) ++count;
+    std::free(text);
+    return count;
+}
+
+TEST(FreeMemory, ManyThreadsShareAFewHeaps) {
+    const int count = 4 * memoryHeaps();
+    std::barrier together(count);
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < count; ++i)
+        threads.emplace_back([&] {
+            const std::vector<char> own(5000);
+            together.arrive_and_wait(); // all have theirs at a time
+        });
+    threads.clear();
+    EXPECT_LE(heaps(), memoryHeaps());
+    EXPECT_GE(heaps(), 1);
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "volume/system/free_memory.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -7,6 +8,7 @@
 #include <limits>
 #include <string>
 #include <sys/mman.h>
+#include <thread>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -26,8 +28,15 @@ void keepFreeMemory([[maybe_unused]] std::size_t most, [[maybe_unused]] std::siz
 #endif
 }
 
+int memoryHeaps() {
+    return std::max(2, int(std::thread::hardware_concurrency()) / 4);
+}
+
 void keepFreeMemory() {
     keepFreeMemory(256 * kMebi, kLargestKept);
+#ifdef __GLIBC__
+    mallopt(M_ARENA_MAX, memoryHeaps());
+#endif
 }
 
 void reserveLarge(std::vector<std::byte>& bytes, std::size_t size) {
