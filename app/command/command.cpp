@@ -4,7 +4,7 @@
 #include "app/data/open.h"
 #include "codec/remote/address.h"
 #include "volume/base/error.h"
-#include "volume/import/files/series.h"
+#include "volume/import/files/named_files.h"
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -139,15 +139,17 @@ std::string inputsOf(const std::vector<std::string>& inputs, const volume::Impor
     std::string text;
     for (const std::string& argument : importArguments(import)) text += argument + "\n";
     if (namesModel(inputs[0]) || codec::isRemote(inputs[0])) return text;
-    for (const volume::SeriesFile& file : volume::expandPaths(inputs))
-        for (const char* const ending : {"", ".json", ".raw"}) {
-            std::filesystem::path path = file.path;
-            if (*ending != 0 && path.extension() != ending) path.replace_extension(ending);
-            std::error_code missing;
-            const auto bytes = std::filesystem::file_size(path, missing);
-            const auto changed = std::filesystem::last_write_time(path, missing).time_since_epoch().count();
-            if (!missing) text += path.string() + " " + std::to_string(bytes) + " " + std::to_string(changed) + "\n";
-        }
+    const auto add = [&](const std::string& path) {
+        std::error_code missing;
+        if (!std::filesystem::is_regular_file(path, missing)) return; // a folder changes with each result written to it
+        const auto bytes = std::filesystem::file_size(path, missing);
+        const auto changed = std::filesystem::last_write_time(path, missing).time_since_epoch().count();
+        text += path + " " + std::to_string(bytes) + " " + std::to_string(changed) + "\n";
+    };
+    for (const std::string& input : inputs) {
+        add(input);
+        std::ranges::for_each(volume::filesNamedBy(input), add);
+    }
     return text;
 }
 

@@ -74,8 +74,14 @@ TEST_F(NamedFiles, FoldersPatternsAndCases) {
     write("case/system/controlDict"), write("case/0/T"), write("case/constant/polyMesh/points");
     EXPECT_THAT(namedBy("case"), ElementsAre("case/0/T", "case/constant/polyMesh/points", "case/system/controlDict"));
     write("case/cell.foam", "");
-    EXPECT_THAT(namedBy("case/cell.foam"),
-                ElementsAre("case/0/T", "case/constant/polyMesh/points", "case/system/controlDict"));
+    write("case/processor1/-0.5/T");
+    // What comes during the run, or from it, is not read.
+    for (const char* other : {"case/log.solver", "case/run.tsr", "case/2.out", "case/postProcessing/0/p.dat"})
+        write(other);
+    const std::vector<std::string> all{"case/0/T", "case/constant/polyMesh/points", "case/processor1/-0.5/T",
+                                       "case/system/controlDict"};
+    EXPECT_EQ(namedBy("case/cell.foam"), all);
+    EXPECT_EQ(namedBy("case"), all);
 }
 
 } // namespace

@@ -85,18 +85,30 @@ std::vector<fs::path> fitting(const fs::path& header, const std::string& name) {
     return paths;
 }
 
+/// Whether OpenFOAM reads this folder of a case: system, constant, processor0, and those of times. Beside them lie logs
+/// and whatever was computed from the case.
+bool isOfCase(const fs::path& folder) {
+    const std::string name = folder.filename().string();
+    const std::size_t digit = name.find_first_not_of('-');
+    const bool isTime = digit != std::string::npos && name[digit] >= '0' && name[digit] <= '9';
+    return isTime || name == "system" || name == "constant" || name.starts_with("processor");
+}
+
 /// Files that one names directly.
 std::vector<fs::path> namedDirectly(const fs::path& path) {
     std::vector<fs::path> named;
     std::error_code problem;
-    const auto addFolder = [&](const fs::path& folder) {
+    const auto addCase = [&](const fs::path& folder) {
         for (fs::recursive_directory_iterator at(folder, problem), end;
              !problem && at != end && named.size() < kMostNamed; at.increment(problem))
-            named.push_back(at->path());
+            if (at.depth() == 0 && !isOfCase(at->path()))
+                at.disable_recursion_pending();
+            else if (at.depth() > 0)
+                named.push_back(at->path());
     };
     const std::string kind = ending(path);
     if (kind == ".foam" || (fs::is_directory(path, problem) && fs::exists(path / "system" / "controlDict", problem))) {
-        addFolder(kind == ".foam" ? path.parent_path() : path);
+        addCase(kind == ".foam" ? path.parent_path() : path);
     } else if (fs::is_directory(path, problem) || kind == ".pvd" || kind == ".series" || !fs::exists(path, problem)) {
         for (const SeriesFile& file : expandPaths({path.string()})) {
             named.emplace_back(file.path);
