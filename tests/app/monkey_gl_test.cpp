@@ -12,6 +12,7 @@
 #include <epoxy/gl.h>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <gmock/gmock.h>
 #include <random>
 #include <thread>
@@ -191,15 +192,15 @@ protected:
     void rest() {
         for (const std::string& layout : layoutNames()) {
             start(layout, {1000, 700});
-            showFor(1);
+            showWhile([&](double seconds) { return seconds < 1 || (workbench.busy() && seconds < 60); });
         }
-        showFor(45);
+        showWhile([](double seconds) { return seconds < 45; });
         report("at rest: ");
     }
 
-    void showFor(double seconds) {
-        const double end = passed() + seconds / 60;
-        while (passed() < end && !HasFatalFailure()) {
+    void showWhile(const std::function<bool(double seconds)>& goesOn) {
+        const double begin = passed();
+        while (goesOn((passed() - begin) * 60) && !HasFatalFailure()) {
             show();
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
