@@ -92,6 +92,30 @@ done
 wait
 "$tessera" pack single.json -o parts-of-one.tsr "${slabs[@]}" --block-parameters >/dev/null
 cmp parts-of-one.tsr idle.tsr || fail "three processes make another archive of a single time of two parameters"
+
+# Each of them keeps within the memory that was allowed; all of this time at once takes more.
+python3 - <<'EOF2'
+import json, os
+dims = [64, 64, 6000]
+with open("long.raw", "wb") as file: file.write(os.urandom(2 * dims[0] * dims[1] * dims[2]))
+json.dump({"dims": dims, "dtype": "uint16", "times": [0], "components": [{"name": "x"}]}, open("long.json", "w"))
+EOF2
+check "too little memory" 2 "$tessera" pack long.json -o long.tsr --lattice cc --block-slabs --memory 12
+least=$(sed -n 's/.*needs about \([0-9]*\) MB.*/\1/p' err.txt)
+check "a long time at once" 0 "$tessera" pack long.json -o long.tsr --lattice cc --block-times 1 --json
+cp out.txt rank2.txt
+for i in 0 1; do
+    env $(as long $i 2) "$tessera" pack long.json -o long-slabs.tsr --lattice cc --memory "$least" --json >rank$i.txt 2>&1 &
+done
+wait
+cmp long.tsr long-slabs.tsr || fail "slabs within little memory make another archive"
+python3 - "$least" <<'EOF2' || fail "two processes by slabs take more memory than allowed"
+import json, sys
+both, all_ = [json.load(open(f"rank{i}.txt"))["peakMemory"] / 1e6 for i in (0, 1)], json.load(open("rank2.txt"))["peakMemory"] / 1e6
+print("MB of each of two processes:", both, "of", sys.argv[1], "allowed; at once:", all_)
+sys.exit(not 0 < max(both) <= float(sys.argv[1]) < all_)
+EOF2
+rm -f long.raw long.tsr long-slabs.tsr
 check "slabs of a threshold" 2 "$tessera" pack run.json -o x.tsr "${slabs[@]}" --block-slabs \
     --threshold.kind hard --threshold.value 0.01
 say "a threshold depends on all slabs" err.txt
