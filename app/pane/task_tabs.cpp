@@ -2,6 +2,7 @@
 
 #include "app/pane/plot.h"
 #include "app/ui/theme.h"
+#include "app/ui/widgets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,7 +78,7 @@ std::optional<std::size_t> drawTaskTabs(const ViewContext& context, std::span<co
         else
             used = 0;
         used += width;
-        if (ImGui::InvisibleButton(tabs[i].name, {width, ImGui::GetFrameHeight()})) pressed = i;
+        if (mouseArea(tabs[i].name, {width, ImGui::GetFrameHeight()})) pressed = i;
         if (i != front && ImGui::IsItemHovered()) // it would lie over what the tab shows
             tooltip((std::string(tabs[i].name) + "\n" + tabs[i].help).c_str());
         drawFace(context, tabs[i], chosen.faces[i], i == front);

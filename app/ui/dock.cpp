@@ -3,6 +3,7 @@
 #include "app/ui/fitted_text.h"
 #include "app/ui/keys.h"
 #include "app/ui/theme.h"
+#include "app/ui/widgets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +45,7 @@ public:
         ImGui::PushID(pane.c_str());
         ImGui::SetCursorScreenPos(at);
 
-        ImGui::InvisibleButton("tab", {width, strip});
+        mouseArea("tab", {width, strip});
         const bool hovered = ImGui::IsItemHovered(), active = ImGui::IsItemActive();
         if (ImGui::IsItemActivated()) {
             event = {TabEvent::Front, pane};
@@ -176,8 +177,7 @@ void drawSplitters(DockLayout& layout, DockTree& tree, DockController& hand, con
         const bool row = splitter.node->kind == DockKind::Row;
         ImGui::PushID(splitter.node->id);
         ImGui::SetCursorScreenPos(splitter.strip.lo);
-        ImGui::InvisibleButton("splitter", {std::max(splitter.strip.hi.x - splitter.strip.lo.x, 1.0f),
-                                            std::max(splitter.strip.hi.y - splitter.strip.lo.y, 1.0f)});
+        mouseArea("splitter", {splitter.strip.hi.x - splitter.strip.lo.x, splitter.strip.hi.y - splitter.strip.lo.y});
         const float at = row ? mouse.x : mouse.y;
         const float begin = row ? splitter.whole.lo.x : splitter.whole.lo.y;
         const float edge = row ? splitter.strip.lo.x : splitter.strip.lo.y;

@@ -359,4 +359,8 @@ bool beginScrolledTable(const char* id, int columns, ImGuiTableFlags flags, ImVe
     return ImGui::BeginTable(id, columns, flags, size);
 }
 
+bool mouseArea(const char* id, ImVec2 size, ImGuiButtonFlags buttons) {
+    return ImGui::InvisibleButton(id, {std::max(1.0f, size.x), std::max(1.0f, size.y)}, buttons);
+}
+
 } // namespace tessera::app

@@ -3,6 +3,7 @@
 #include "app/ui/fitted_text.h"
 #include "app/ui/theme.h"
 #include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +56,7 @@ void drawNews(Messages& messages, float room, float scale, bool icons) {
         if (icons) list.AddText(at, palette().failure, icon::kWarning);
     }
     list.AddText({at.x + begin, at.y}, palette().text, shown.c_str());
-    bool closed = ImGui::InvisibleButton("news", {end, em});
+    bool closed = mouseArea("news", {end, em});
     if (ImGui::IsItemHovered()) {
         ImGui::BeginTooltip();
         ImGui::PushTextWrapPos(em * 40);

@@ -272,6 +272,14 @@ TEST(Architecture, SlidersStayBetweenTheirEnds) {
     }
 }
 
+// ImGui's own invisible buttons end the program where they have no size.
+TEST(Architecture, AreasForTheMouseHaveASize) {
+    for (const std::string& file : filesOf("app", {".cpp"})) {
+        const bool own = file == "app/ui/widgets.cpp";
+        EXPECT_EQ(textOf(kRoot / file).find("ImGui::InvisibleButton") != std::string::npos, own) << file;
+    }
+}
+
 // Shaders are files; C++ may only generate "#define NAME value" lines and the version that heads a composed program.
 TEST(Architecture, NoGlslInCpp) {
     for (const std::string folder : {"volume", "codec", "vis", "app"})

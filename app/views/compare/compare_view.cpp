@@ -8,6 +8,7 @@
 #include "app/tools/camera_controller.h"
 #include "app/ui/keys.h"
 #include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
 #include "app/views/compare/compare_areas.h"
 #include "app/views/compare/compare_layout.h"
 #include "app/views/compare/compare_menu.h"
@@ -68,9 +69,9 @@ bool picture(const Frame& frame, std::size_t index, const PictureBox& box, bool 
     CompareCache& cache = frame.cache;
     ImGui::SetCursorScreenPos(box.min);
     ImGui::PushID(static_cast<int>(index));
-    ImGui::InvisibleButton("picture", box.size,
-                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
-                               ImGuiButtonFlags_MouseButtonRight);
+    mouseArea("picture", box.size,
+              ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
+                  ImGuiButtonFlags_MouseButtonRight);
     const vis::WorldFrame world = vis::worldFrame(frame.context.source->info().bounds, frame.context.session.stretch);
     CameraController& hand = cache.hands[index];
     hand.blocked = blocked;
@@ -303,7 +304,7 @@ void drawCaptionedPane(const Frame& frame, const std::string& pane, std::size_t 
                                             fitText(caption, box.size.x - em()).c_str());
     if (!frame.context.figure) {
         ImGui::SetCursorScreenPos(box.min);
-        if (ImGui::InvisibleButton("caption", {box.size.x, head})) ImGui::OpenPopup("variant");
+        if (mouseArea("caption", {box.size.x, head})) ImGui::OpenPopup("variant");
         if (ImGui::IsItemHovered()) tooltip("Click to change this variant");
         drawVariantMenu(frame.context, "variant", frame.view, frame.variants, index, &cell, frame.cache.menu);
     }

@@ -2,6 +2,7 @@
 #include "app/queries/async_query.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "app/ui/widgets.h"
 #include "app/views/curves/curves_data.h"
 #include "volume/base/error.h"
 
@@ -249,7 +250,7 @@ void drawPlots(ViewContext& context, const volume::Curves& curves) {
     if (room.x - left < em() * 4) return drawHint("Not enough room", "Enlarge the pane.");
     const float x0 = origin.x + left, x1 = origin.x + room.x - em() * 0.6f;
     ImGui::SetCursorScreenPos({x0, origin.y});
-    ImGui::InvisibleButton("plots", {x1 - x0, room.y - heights.bottom});
+    mouseArea("plots", {x1 - x0, room.y - heights.bottom});
     const bool hovered = ImGui::IsItemHovered(), held = ImGui::IsItemActive();
     Near near;
     PlotFrame frame;

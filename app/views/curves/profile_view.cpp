@@ -5,6 +5,7 @@
 #include "app/tools/profile_line.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "app/ui/widgets.h"
 #include "app/views/curves/profile_data.h"
 #include "app/views/curves/section_view.h"
 #include "vis/gl/plot_texture.h"
@@ -208,7 +209,7 @@ public:
         if (room.x - left < em() * 4) return drawHint("Not enough room", "Enlarge the pane.");
         const float x0 = origin.x + left, x1 = origin.x + room.x - em() * 0.6f;
         ImGui::SetCursorScreenPos({x0, origin.y});
-        ImGui::InvisibleButton("plots", {x1 - x0, room.y - heights.bottom});
+        mouseArea("plots", {x1 - x0, room.y - heights.bottom});
         const bool taken = ImGui::IsItemActive();
         const double share = std::clamp(double((ImGui::GetIO().MousePos.x - x0) / (x1 - x0)), 0.0, 1.0);
         across_.marked = marked(ImGui::IsItemHovered() || taken, share);

@@ -7,6 +7,7 @@
 #include "app/queries/statistics_query.h"
 #include "app/tools/profile_line.h"
 #include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
 #include "app/views/curves/section_data.h"
 #include "volume/flow/flow_channels.h"
 
@@ -249,7 +250,7 @@ void drawSections(ViewContext& context, const std::string& pane, ProfileView& vi
     const float x0 = origin.x + left, x1 = origin.x + room.x - em() * 0.6f;
     const Range across = panels.front().x.range;
     ImGui::SetCursorScreenPos({x0, origin.y});
-    ImGui::InvisibleButton("plots", {x1 - x0, room.y - heights.bottom});
+    mouseArea("plots", {x1 - x0, room.y - heights.bottom});
     const bool taken = ImGui::IsItemActive();
     const double share = std::clamp(double((ImGui::GetIO().MousePos.x - x0) / (x1 - x0)), 0.0, 1.0);
     // What is under the mouse is read; a click or drag takes the cursor to that plane.

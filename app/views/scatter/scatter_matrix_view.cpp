@@ -4,6 +4,7 @@
 #include "app/tools/brush_edit.h"
 #include "app/ui/keys.h"
 #include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
 #include "app/views/scatter/scatter_cells.h"
 #include "app/views/scatter/scatter_toolbar.h"
 #include "vis/gl/plot_texture.h"
@@ -169,8 +170,8 @@ bool drawPlot(ViewContext& context, ScatterCache& cache, ScatterMatrixView& view
     const PlotChannels channels{matrix.infos[column].name, histogram ? std::string() : matrix.infos[row].name};
 
     ImGui::SetCursorScreenPos(frame.min);
-    const bool pressed = ImGui::InvisibleButton("plot", {frame.width(), frame.height()},
-                                                ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    const bool pressed = mouseArea("plot", {frame.width(), frame.height()},
+                                   ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     const ImVec2 way = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0);
     const bool clicked =
         pressed && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && std::hypot(way.x, way.y) < em() * 0.25f;

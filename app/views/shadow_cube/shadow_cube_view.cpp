@@ -8,6 +8,7 @@
 #include "app/ui/keys.h"
 #include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
 #include "app/views/shadow_cube/cube_axes.h"
 #include "app/views/shadow_cube/cube_faces.h"
 #include "app/views/shadow_cube/cube_legends.h"
@@ -332,9 +333,9 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
         frame.space = spaceFrame(frame.min, frame.max(), frame.camera, info.bounds, session.stretch);
     };
     look();
-    ImGui::InvisibleButton("picture", frame.size,
-                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
-                               ImGuiButtonFlags_MouseButtonRight);
+    mouseArea("picture", frame.size,
+              ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
+                  ImGuiButtonFlags_MouseButtonRight);
     const bool hovered = ImGui::IsItemHovered();
     const bool moved = handleMouse(context, frame, cache, view);
     if (cache.drag != CubeDrag::None) context.interacting = true;

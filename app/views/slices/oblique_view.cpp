@@ -8,6 +8,7 @@
 #include "app/tools/profile_line.h"
 #include "app/tools/space_handles.h"
 #include "app/ui/parameter_widget.h"
+#include "app/ui/widgets.h"
 #include "app/views/slices/contour_lines.h"
 #include "app/views/slices/flat_slice.h"
 #include "app/views/slices/inner_slices.h"
@@ -114,7 +115,7 @@ void useMouse(ViewContext& context, ObliqueCache& cache, ObliqueView& view, cons
     const volume::DatasetInfo& info = context.source->info();
     Session& session = context.session;
     ImGui::SetCursorScreenPos(plot.min);
-    ImGui::InvisibleButton("plane", {plot.width(), plot.height()});
+    mouseArea("plane", {plot.width(), plot.height()});
     if (ImGui::BeginPopupContextItem("menu")) {
         drawTiltMenu(session, info, view);
         ImGui::EndPopup();

@@ -6,6 +6,7 @@
 #include "app/tools/plane_sections.h"
 #include "app/tools/profile_line.h"
 #include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
 #include "app/views/slices/contour_lines.h"
 #include "app/views/slices/inner_slices.h"
 #include "app/views/slices/slice_figure.h"
@@ -135,7 +136,7 @@ void handlePlaneMouse(ViewContext& context, SlicePlanes& planes, const PlaneFram
     const SliceAxes& axes = frame.axes;
     ImGui::SetCursorScreenPos(frame.plot.min);
     ImGui::PushID(index);
-    ImGui::InvisibleButton("plane", {frame.plot.width(), frame.plot.height()});
+    mouseArea("plane", {frame.plot.width(), frame.plot.height()});
     if (ImGui::BeginPopupContextItem("menu")) {
         drawBrushMenu(context);
         ImGui::EndPopup();

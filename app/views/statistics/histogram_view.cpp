@@ -91,8 +91,8 @@ void drawPlot(ViewContext& context, HistogramCache& cache, const HistogramView& 
                               : "samples",
              "", frame.min.y, frame.max.y + em() * 0.5f, {.grid = true});
     ImGui::SetCursorScreenPos(frame.min);
-    ImGui::InvisibleButton("plot", {frame.width(), frame.height()},
-                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    mouseArea("plot", {frame.width(), frame.height()},
+              ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     const bool hovered = ImGui::IsItemHovered();
     const PlotChannels channels{channel.name, {}};
     editBrushes(cache.drag, context.session.selection, frame, channels, {BrushTool::Rectangle, view.softness});

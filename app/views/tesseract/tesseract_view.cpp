@@ -5,6 +5,7 @@
 #include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "app/ui/widgets.h"
 #include "app/views/tesseract/tesseract_query.h"
 #include "app/views/tesseract/tesseract_turn.h"
 #include "app/views/tesseract/tesseract_wire.h"
@@ -326,9 +327,9 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
     const ImVec2 max{min.x + size.x, min.y + size.y};
     // In a wide pane the legends have room beside the body.
     const float beside = view.showLegend ? std::clamp(size.x - size.y * 0.95f, 0.0f, em() * 16) : 0;
-    ImGui::InvisibleButton("picture", size,
-                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
-                               ImGuiButtonFlags_MouseButtonRight);
+    mouseArea("picture", size,
+              ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
+                  ImGuiButtonFlags_MouseButtonRight);
     const bool hovered = ImGui::IsItemHovered();
     bool moving = handleInput(cache, view, size);
     if (cache.drag != Drag::None) context.interacting = true;

@@ -8,6 +8,7 @@
 #include "app/session/session_json.h"
 #include "app/session/shown_scene.h"
 #include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -74,7 +75,7 @@ void drawTrack(ViewContext& context, std::size_t index, const Row& row) {
         ImGui::PushID(static_cast<int>(k));
         const float x = row.x(keys[k].at), r = em() * 0.42f;
         ImGui::SetCursorScreenPos({x - r, row.y - r});
-        ImGui::InvisibleButton("key", {2 * r, 2 * r});
+        mouseArea("key", {2 * r, 2 * r});
         const bool hovered = ImGui::IsItemHovered(), held = ImGui::IsItemActive();
         if (held && ImGui::IsMouseDragging(ImGuiMouseButton_Left, 2)) {
             moved = k;
@@ -170,7 +171,7 @@ void drawKeyframes(ViewContext& context, float height) {
     if (row.right - row.left > em() * 4) {
         // The ruler.
         ImGui::SetCursorScreenPos({row.left - em() * 0.5f, origin.y});
-        ImGui::InvisibleButton("ruler", {row.right - row.left + em(), rowHeight()});
+        mouseArea("ruler", {row.right - row.left + em(), rowHeight()});
         if (ImGui::IsItemActive()) {
             moveTo(session, row.at(ImGui::GetIO().MousePos.x));
             context.interacting = true;

@@ -4,6 +4,7 @@
 #include "app/ui/number_field.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "app/ui/widgets.h"
 #include "app/views/timeline/keyframes.h"
 #include "app/views/timeline/playback.h"
 #include "volume/field/time_pair.h"
@@ -139,7 +140,7 @@ void drawTrack(ViewContext& context, TimelineCache& cache, const volume::Dataset
     const std::vector<double>& times = info.times;
     const ImVec2 origin = ImGui::GetCursorScreenPos();
     if (size.x < em() * 4) return;
-    ImGui::InvisibleButton("track", size);
+    mouseArea("track", size);
     const bool hovered = ImGui::IsItemHovered(), held = ImGui::IsItemActive();
     const PlotFrame frame = trackFrame(info, origin, size);
     const float y = frame.min.y + em() * 0.5f;

@@ -1,5 +1,6 @@
 #include "app/views/transfer/color_edit.h"
 
+#include "app/ui/widgets.h"
 #include "vis/transfer/simplify_colors.h"
 
 #include <algorithm>
@@ -52,8 +53,8 @@ std::vector<vis::ColorStop> ownColors(const vis::TransferFunction& function) {
 bool editColors(ColorDrag& drag, std::vector<vis::ColorStop>& stops, ImVec2 min, ImVec2 max) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     ImGui::SetCursorScreenPos({min.x - em() * 0.4f, min.y});
-    ImGui::InvisibleButton("stops", {max.x - min.x + em() * 0.8f, max.y - min.y},
-                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    mouseArea("stops", {max.x - min.x + em() * 0.8f, max.y - min.y},
+              ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     const bool hovered = ImGui::IsItemHovered();
     const int under = hovered ? hitStop(stops, min, max, mouse.x) : -1;
     if (hovered && drag.stop < 0)

@@ -4,6 +4,7 @@
 #include "app/session/shown_scene.h"
 #include "app/tools/brush_edit.h"
 #include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +19,7 @@ void drawStrip(ViewContext& context, CurvePage& page, vis::TransferFunction& fun
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotColors colors = plotColors();
     ImGui::SetCursorScreenPos(min);
-    ImGui::InvisibleButton("strip", {max.x - min.x, max.y - min.y});
+    mouseArea("strip", {max.x - min.x, max.y - min.y});
     const float lo = plot.pixel(range.lo, 0).x, hi = plot.pixel(range.hi, 0).x;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const float reach = em() * 0.7f;
@@ -117,8 +118,8 @@ std::vector<double> peaksAlong(Range range, const std::vector<float>& bars, Rang
 void drawCurve(ViewContext& context, CurvePage& page, vis::TransferFunction& function, const PlotFrame& frame,
                Range range, const std::string& unit, const std::vector<double>& peaks) {
     ImGui::SetCursorScreenPos(frame.min);
-    ImGui::InvisibleButton("curve", {frame.width(), frame.height()},
-                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    mouseArea("curve", {frame.width(), frame.height()},
+              ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     const bool hovered = ImGui::IsItemHovered();
     editOpacity(page.drag, function.opacity, frame, range, peaks);
     if (page.drag.point >= 0) context.interacting = true;

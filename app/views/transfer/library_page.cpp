@@ -2,6 +2,7 @@
 
 #include "app/data/library.h"
 #include "app/pane/view_parts.h"
+#include "app/ui/widgets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,7 @@ bool drawCell(const vis::TransferRecipe& recipe, const vis::TransferFunction& fu
               float side, bool chosen) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float line = ImGui::GetTextLineHeight(), strip = std::round(em() * 0.3f);
-    const bool clicked = ImGui::InvisibleButton(recipe.name.c_str(), {side, side + line + em() * 0.2f});
+    const bool clicked = mouseArea(recipe.name.c_str(), {side, side + line + em() * 0.2f});
     const bool lit = ImGui::IsItemHovered() || ImGui::IsItemFocused();
     const std::string help = recipe.help.empty() ? recipe.name : recipe.name + "\n" + recipe.help;
     if (ImGui::IsItemHovered()) tooltip(help.c_str());

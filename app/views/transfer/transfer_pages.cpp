@@ -3,6 +3,7 @@
 #include "app/pane/view_parts.h"
 #include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
 #include "vis/transfer/boundary_opacity.h"
 #include "vis/transfer/region_guess.h"
 
@@ -133,8 +134,8 @@ void drawRegionPage(ViewContext& context, RegionPage& page, vis::TransferFunctio
         draw.AddImage(textureId(page.picture.name()), a, b);
     }
     ImGui::SetCursorScreenPos(frame.min);
-    ImGui::InvisibleButton("regions", {frame.width(), frame.height()},
-                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    mouseArea("regions", {frame.width(), frame.height()},
+              ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     PlotFrame plane = frame;
     plane.x = plane.y = {0, 1};
     editRegions(page.drag, function.regions, plane);
@@ -189,8 +190,8 @@ BoundaryRooms boundaryRooms(ImVec2 min, ImVec2 room) {
 void drawEmphasis(ViewContext& context, BoundaryPage& page, vis::TransferFunction& function, const PlotFrame& frame) {
     const Range cells = frame.x;
     ImGui::SetCursorScreenPos(frame.min);
-    ImGui::InvisibleButton("emphasis", {frame.width(), frame.height()},
-                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    mouseArea("emphasis", {frame.width(), frame.height()},
+              ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     const bool hovered = ImGui::IsItemHovered();
     constexpr double kMiddle[] = {0.5};
     editOpacity(page.drag, function.emphasis, frame, cells, kMiddle);

@@ -5,6 +5,7 @@
 #include "app/ui/keys.h"
 #include "app/ui/number_field.h"
 #include "app/ui/time_text.h"
+#include "app/ui/widgets.h"
 
 #include <algorithm>
 
@@ -74,7 +75,7 @@ void Chain::take() {
     if (!shown_) return;
     const ImVec2 before = ImGui::GetCursorScreenPos();
     ImGui::SetCursorScreenPos(min_);
-    if (ImGui::InvisibleButton("chain button", size_)) ImGui::OpenPopup(kMenu);
+    if (mouseArea("chain button", size_)) ImGui::OpenPopup(kMenu);
     hovered_ = ImGui::IsItemHovered();
     if (hovered_) tooltip((helpOf(view_) + "\nClick to change").c_str());
     ImGui::SetCursorScreenPos(before);

@@ -15,6 +15,7 @@
 #include "app/ui/keys.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "app/ui/widgets.h"
 #include "app/views/volume/chain.h"
 #include "app/views/volume/space_beside.h"
 
@@ -178,9 +179,9 @@ private:
     /// Mouse and keys over the picture; true while something moves.
     bool useHands() {
         chain_.take();
-        ImGui::InvisibleButton("picture", picture_.size,
-                               ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
-                                   ImGuiButtonFlags_MouseButtonRight);
+        mouseArea("picture", picture_.size,
+                  ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
+                      ImGuiButtonFlags_MouseButtonRight);
         const bool hovered = ImGui::IsItemHovered();
         const ImVec2 mouse = ImGui::GetIO().MousePos;
         cache_.hand.blocked =
