@@ -20,12 +20,16 @@ ImU32 withAlpha(ImVec4 color, float alpha) {
     return ImGui::ColorConvertFloat4ToU32(color);
 }
 
-/// As many ticks as fit without the labels touching.
-TickLabels fittingTicks(AxisSide side, Range range, float length) {
+TickLabels labelsOf(Range range, int most, bool noted) {
+    return noted ? tickLabels(range, most) : wholeTickLabels(range, most);
+}
+
+/// As many ticks as fit without the labels touching. `noted`: numbers may be shortened, which the note says.
+TickLabels fittingTicks(AxisSide side, Range range, float length, bool noted) {
     const float gap = em() * (side == AxisSide::Bottom ? 0.9f : 0.1f);
     TickLabels ticks;
     for (int most : {10, 8, 6, 5, 4, 3, 2, 1}) {
-        ticks = tickLabels(range, most);
+        ticks = labelsOf(range, most, noted);
         float extent = 0;
         for (const std::string& text : ticks.texts) {
             const ImVec2 size = ImGui::CalcTextSize(text.c_str());
@@ -93,30 +97,30 @@ ImU32 toColor(std::array<double, 3> srgb, double alpha) {
     return IM_COL32(byte(srgb[0]), byte(srgb[1]), byte(srgb[2]), byte(alpha));
 }
 
-float axisRoom(AxisSide side, Range range, bool title) {
+float axisRoom(AxisSide side, Range range, TitlePlace title) {
     float room = tickLength() + em() * 0.2f;
     if (side == AxisSide::Bottom)
         room += em();
     else {
         float widest = 0;
         for (int most : {10, 5, 3})
-            for (const std::string& text : tickLabels(range, most).texts)
+            for (const std::string& text : labelsOf(range, most, title != TitlePlace::Nowhere).texts)
                 widest = std::max(widest, ImGui::CalcTextSize(text.c_str()).x);
         room += widest;
     }
-    return std::ceil(room + (title ? em() * 1.3f : 0.0f));
+    return std::ceil(room + (title == TitlePlace::Beside ? em() * 1.3f : 0.0f));
 }
 
 std::string axisNote(AxisSide side, Range range, float length) {
-    return fittingTicks(side, range, length).note;
+    return fittingTicks(side, range, length, true).note;
 }
 
 ColumnHeights columnHeights(float room, std::size_t plots) {
     const float count = std::max(1.0f, static_cast<float>(plots)), gap = em() * 0.4f;
     ColumnHeights out{};
-    out.bottom = axisRoom(AxisSide::Bottom, {0, 1}, true);
+    out.bottom = axisRoom(AxisSide::Bottom, {0, 1}, TitlePlace::Beside);
     out.titled = room >= out.bottom + gap + em() * 2.6f * count;
-    if (!out.titled) out.bottom = axisRoom(AxisSide::Bottom, {0, 1}, false);
+    if (!out.titled) out.bottom = axisRoom(AxisSide::Bottom, {0, 1}, TitlePlace::Elsewhere);
     out.all = std::max(room, out.bottom + gap + em() * 2.4f * count);
     out.each = (out.all - out.bottom - gap) / count;
     return out;
@@ -126,7 +130,9 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
               float lo, float hi, const AxisOptions& options) {
     const bool bottom = side == AxisSide::Bottom;
     const Range range = bottom ? frame.x : frame.y;
-    const TickLabels ticks = fittingTicks(side, range, bottom ? frame.width() : frame.height());
+    const bool titled = !title.empty() || !unit.empty();
+    const TickLabels ticks =
+        fittingTicks(side, range, bottom ? frame.width() : frame.height(), titled || options.noteElsewhere);
     const PlotColors colors = plotColors();
     // If not all fits: the note comes first, since the numbers are wrong without it; then the title, then the unit.
     const std::string note = ticks.note.empty() ? "" : "  " + ticks.note;
@@ -161,7 +167,7 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
                          ticks.texts[i].c_str());
         }
     }
-    if (title.empty() && unit.empty()) return;
+    if (!titled) return;
     const ImVec2 size = ImGui::CalcTextSize(label.c_str());
     if (options.inlineTitle) {
         const ImVec2 at =

@@ -58,10 +58,18 @@ struct AxisOptions {
     bool inlineTitle = false; ///< the title in the row of the numbers (bottom) or above them (left): saves a line
     /// Pixels outside of the frame for a left axis, so that several have their titles in one column; 0 = as needed.
     float room = 0;
+    bool noteElsewhere = false; ///< an axis without title: the caller writes axisNote()
+};
+
+/// Where the title of an axis is, with what its numbers must be read with.
+enum class TitlePlace {
+    Nowhere, ///< then the numbers are whole
+    Elsewhere,
+    Beside ///< in a line of its own
 };
 
 /// Pixels that drawAxis needs outside the frame for ticks, labels and title.
-float axisRoom(AxisSide side, Range range, bool title);
+float axisRoom(AxisSide side, Range range, TitlePlace title);
 
 /// What the numbers of an axis that is `length` pixels long must be read with ("+ 100000"); else "".
 std::string axisNote(AxisSide side, Range range, float length);
@@ -76,7 +84,8 @@ struct ColumnHeights {
 /// For `room` pixels: plots and title as there is room, but no plot lower than its name.
 ColumnHeights columnHeights(float room, std::size_t plots);
 
-/// Ticks, labels and a title with unit along one side of a frame. Labels never overlap and never leave
+/// Ticks, labels and a title with unit along one side of a frame; numbers are whole where there is no title, since
+/// nothing would say what they must be read with. Labels never overlap and never leave
 /// [lo, hi] pixels along the axis: those at the ends are moved inwards.
 void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::string_view title, std::string_view unit,
               float lo, float hi, const AxisOptions& options = {});

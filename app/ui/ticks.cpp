@@ -155,6 +155,29 @@ TickLabels tickLabels(Range range, int most, int maxDigits) {
     return out;
 }
 
+TickLabels wholeTickLabels(Range range, int most) {
+    TickLabels out{niceTicks(range, most), {}, {}};
+    const double step = niceStep(range.hi - range.lo, most), largest = std::max(std::abs(range.lo), std::abs(range.hi));
+    if (out.values.size() < 2 || step <= largest * 1e-12) {
+        for (const double value : out.values) out.texts.push_back(formatNumber(value));
+        return out;
+    }
+    constexpr int kMostDecimals = 5, kMostDigits = 7;
+    const int last = leadingPower(step);
+    const bool fixed = last >= -kMostDecimals && leadingPower(largest) < kMostDigits;
+    for (const double value : out.values) {
+        const bool isZero = std::abs(value) < step / 2;
+        const int power = fixed || isZero ? 0 : leadingPower(std::abs(value)), digits = std::max(0, power - last);
+        char text[64];
+        if (fixed)
+            std::snprintf(text, sizeof text, "%.*f", std::max(0, -last), isZero ? 0.0 : value);
+        else
+            std::snprintf(text, sizeof text, isZero ? "0" : "%.*fe%d", digits, value / std::pow(10.0, power), power);
+        out.texts.emplace_back(text);
+    }
+    return out;
+}
+
 LengthUnit suitableLength(std::string_view unit, double size) {
     static constexpr std::array<std::pair<std::string_view, double>, 5> kUnits{
         {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}}};

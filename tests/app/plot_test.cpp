@@ -43,6 +43,28 @@ TEST_F(PlotTest, TheTitleOfAnAxisStandsInItsMiddleOrAsNearAsItsRoomAllows) {
     EXPECT_LT(upright.max.x, frame.min.x) << "beside the plot";
 }
 
+// Numbers are shortened only where the title says how to read them.
+TEST_F(PlotTest, AnAxisWithoutTitleHasWholeNumbers) {
+    const auto texts = [&](Range range, const char* title, const AxisOptions& options = {}) {
+        PlotFrame own = frame;
+        own.y = range;
+        feedWindow([&] { drawAxis(*ImGui::GetWindowDrawList(), own, AxisSide::Left, title, "", 100, 400, options); });
+        std::vector<std::string> all;
+        for (const DrawnText& each : drawnTexts()) all.push_back(each.text);
+        return all;
+    };
+    using testing::Contains;
+    using testing::Not;
+    const Range speed{0, 0.004}, pressure{101325, 101325.5};
+    EXPECT_THAT(texts(speed, "v"), testing::AllOf(Contains("4.0"), Contains("v  \u00d7 1e-3")));
+    EXPECT_THAT(texts(speed, ""), testing::AllOf(Contains("0.0000"), Contains("0.0040"), Not(Contains("4.0"))));
+    EXPECT_THAT(texts(speed, "", {.noteElsewhere = true}), Contains("4.0"));
+    EXPECT_THAT(texts(pressure, "p"), Not(Contains("101325.20")));
+    EXPECT_THAT(texts(pressure, ""), Contains("101325.20"));
+    EXPECT_GE(axisRoom(AxisSide::Left, pressure, TitlePlace::Nowhere), ImGui::CalcTextSize("101325.25").x);
+    EXPECT_LT(axisRoom(AxisSide::Left, pressure, TitlePlace::Elsewhere), ImGui::CalcTextSize("101325.25").x);
+}
+
 TEST_F(PlotTest, ATitleInTheRowOfTheNumbersStandsAtItsEnd) {
     feedWindow([&] {
         ImDrawList& draw = *ImGui::GetWindowDrawList();

@@ -42,7 +42,9 @@ TEST_F(SmallPlots, PlotsBelowEachOtherGiveUpTheLineOfTheTitleThenScroll) {
                 EXPECT_LE(titled, heights.titled) << "more room never takes the title away: " << room;
                 EXPECT_GE(scrolls, heights.all > room) << room;
                 EXPECT_TRUE(!heights.titled || heights.all == room) << "what scrolls has no line for a title: " << room;
-                EXPECT_EQ(heights.bottom, axisRoom(AxisSide::Bottom, {0, 1}, heights.titled)) << room;
+                EXPECT_EQ(heights.bottom, axisRoom(AxisSide::Bottom, {0, 1},
+                                                   heights.titled ? TitlePlace::Beside : TitlePlace::Elsewhere))
+                    << room;
                 titled = heights.titled;
                 scrolls = heights.all > room;
             }

@@ -53,6 +53,13 @@ TEST(Ticks, SurviveDegenerateRanges) {
     EXPECT_TRUE(niceTicks({std::nan(""), 1}, 5).empty());
     EXPECT_TRUE(niceTicks({0, std::numeric_limits<double>::infinity()}, 5).empty());
     EXPECT_THAT(tickLabels({3, 3}, 5).texts, ElementsAre("3"));
+    EXPECT_THAT(wholeTickLabels({3, 3}, 5).texts, ElementsAre("3"));
+    EXPECT_THAT(wholeTickLabels({0, 0.004}, 4).texts, ElementsAre("0.000", "0.001", "0.002", "0.003", "0.004"));
+    EXPECT_THAT(wholeTickLabels({-1e6, 1e6}, 2).texts, ElementsAre("-1000000", "0", "1000000"));
+    EXPECT_THAT(wholeTickLabels({-1e-7, 2e-7}, 3).texts, ElementsAre("-1e-7", "0", "1e-7", "2e-7"));
+    EXPECT_THAT(wholeTickLabels({0, 3.4e38}, 4).texts, ElementsAre("0", "1e38", "2e38", "3e38"));
+    EXPECT_THAT(wholeTickLabels({1e9, 1e9 + 2}, 2).texts,
+                ElementsAre("1.000000000e9", "1.000000001e9", "1.000000002e9"));
 }
 
 TEST(Ticks, LabelsTellNeighboursApart) {

@@ -241,7 +241,7 @@ void drawPlots(ViewContext& context, const volume::Curves& curves) {
         Range range{kInfinity, -kInfinity};
         for (const std::size_t y : group) range = rangeOf(curves.y[y].values, range);
         up.push_back(paddedRange(range, 0.08));
-        left = std::max(left, axisRoom(AxisSide::Left, up.back(), false));
+        left = std::max(left, axisRoom(AxisSide::Left, up.back(), TitlePlace::Nowhere));
     }
     const ImVec2 origin = ImGui::GetCursorScreenPos();
     const ColumnHeights heights = columnHeights(ImGui::GetContentRegionAvail().y, groups.size());

@@ -200,9 +200,9 @@ public:
 
     void draw() {
         const ImVec2 origin = ImGui::GetCursorScreenPos();
-        float left = pictures() ? axisRoom(AxisSide::Left, times_, false) : 0;
+        float left = pictures() ? axisRoom(AxisSide::Left, times_, TitlePlace::Nowhere) : 0;
         for (std::size_t c = 0; c < profile_->values.size() && !pictures(); ++c)
-            left = std::max(left, axisRoom(AxisSide::Left, paddedRange(rangeOf(c), 0.06), false));
+            left = std::max(left, axisRoom(AxisSide::Left, paddedRange(rangeOf(c), 0.06), TitlePlace::Nowhere));
         const ColumnHeights heights = columnHeights(ImGui::GetContentRegionAvail().y, profile_->values.size());
         const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(heights.all)};
         const float height = heights.each;

@@ -242,7 +242,8 @@ void drawSections(ViewContext& context, const std::string& pane, ProfileView& vi
     const std::vector<FigurePanel> panels = sectionPanels(info, *curves, measure);
     const ImVec2 origin = ImGui::GetCursorScreenPos();
     float left = 0;
-    for (const FigurePanel& panel : panels) left = std::max(left, axisRoom(AxisSide::Left, panel.y.range, false));
+    for (const FigurePanel& panel : panels)
+        left = std::max(left, axisRoom(AxisSide::Left, panel.y.range, TitlePlace::Nowhere));
     const ColumnHeights heights = columnHeights(ImGui::GetContentRegionAvail().y, panels.size());
     const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(heights.all)};
     const float height = heights.each;

@@ -32,6 +32,10 @@ struct TitleParts {
     std::string whole() const { return rest.empty() ? name : name + " " + rest; }
 };
 
+TitlePlace placeOf(TitleWay way) {
+    return way == TitleWay::Across ? TitlePlace::Elsewhere : TitlePlace::Beside;
+}
+
 TitleParts titleParts(const ScatterLayout& matrix, std::size_t i, AxisSide side, float length) {
     const volume::Channel& own = matrix.infos[i];
     TitleParts parts{own.name, own.unit.empty() ? "" : "[" + prettyUnit(own.unit) + "]"};
@@ -278,14 +282,15 @@ MatrixTitles matrixTitles(const ScatterLayout& matrix, ImVec2 room, double most,
                           up = titleWidths(matrix, 1, AxisSide::Left, cellY);
         titles.below = titleWay(across, cellX);
         titles.beside = titleWay(up, cellY);
-        titles.bottom = axisRoom(AxisSide::Bottom, matrix.ranges[0], titles.below != TitleWay::Across);
+        titles.bottom = axisRoom(AxisSide::Bottom, matrix.ranges[0], placeOf(titles.below));
         if (titles.below == TitleWay::TwoLines) titles.bottom += em();
         if (titles.below == TitleWay::Across)
             titles.bottom += std::min(across.whole, mostAcross(room.y, across.rest + em() * 2)) + em() * 0.5f;
-        titles.left = lone ? axisRoom(AxisSide::Left, titles.counts, !titles.countTitle.empty()) : 0;
+        titles.left = lone ? axisRoom(AxisSide::Left, titles.counts,
+                                      titles.countTitle.empty() ? TitlePlace::Nowhere : TitlePlace::Beside)
+                           : 0;
         for (std::size_t i = 1; i < matrix.size(); ++i)
-            titles.left =
-                std::max(titles.left, axisRoom(AxisSide::Left, matrix.ranges[i], titles.beside != TitleWay::Across));
+            titles.left = std::max(titles.left, axisRoom(AxisSide::Left, matrix.ranges[i], placeOf(titles.beside)));
         if (titles.beside == TitleWay::TwoLines) titles.left += em();
         if (titles.beside == TitleWay::Across)
             titles.left += std::min(up.part, mostAcross(room.x, up.rest)) + em() * 0.5f;
@@ -302,7 +307,7 @@ void drawTitleBelow(ImDrawList& draw, const PlotFrame& frame, const TitleParts& 
     const PlotColors colors = plotColors();
     const float middle = (frame.min.x + frame.max.x) / 2, bottom = frame.max.y + titles.bottom;
     if (titles.below == TitleWay::Across) {
-        const float most = titles.bottom - axisRoom(AxisSide::Bottom, frame.x, false) - em() * 0.4f;
+        const float most = titles.bottom - axisRoom(AxisSide::Bottom, frame.x, TitlePlace::Elsewhere) - em() * 0.4f;
         const std::string shown = fittedTitle(title, most);
         const float half = widthOf(shown) / 2;
         addTextUpwards(draw, {middle, bottom - half}, colors.text, shown.c_str());
@@ -322,7 +327,7 @@ void drawTitleBeside(ImDrawList& draw, const PlotFrame& frame, const TitleParts&
     const PlotColors colors = plotColors();
     const float middle = (frame.min.y + frame.max.y) / 2, left = frame.min.x - titles.left;
     if (titles.beside == TitleWay::Across) {
-        const float most = titles.left - axisRoom(AxisSide::Left, frame.y, false) - em() * 0.4f;
+        const float most = titles.left - axisRoom(AxisSide::Left, frame.y, TitlePlace::Elsewhere) - em() * 0.4f;
         const bool two = !title.rest.empty() && frame.height() >= em() * 2.2f;
         float y = middle - em() * (two ? 1.0f : 0.5f);
         for (const std::string& line :
@@ -345,7 +350,7 @@ void drawTitleBeside(ImDrawList& draw, const PlotFrame& frame, const TitleParts&
 void drawMatrixAxes(ImDrawList& draw, const ScatterLayout& matrix, const MatrixTitles& titles) {
     for (std::size_t i = 0; i < matrix.size() && titles.shown; ++i) {
         const PlotFrame across = matrix.cell(i, matrix.size() - 1);
-        drawAxis(draw, across, AxisSide::Bottom, "", "", across.min.x, across.max.x);
+        drawAxis(draw, across, AxisSide::Bottom, "", "", across.min.x, across.max.x, {.noteElsewhere = true});
         drawTitleBelow(draw, across, titleParts(matrix, i, AxisSide::Bottom, across.width()), titles);
         PlotFrame up = matrix.cell(0, i);
         if (matrix.size() == 1) {
@@ -353,7 +358,7 @@ void drawMatrixAxes(ImDrawList& draw, const ScatterLayout& matrix, const MatrixT
             drawAxis(draw, up, AxisSide::Left, titles.countTitle, "", up.min.y, up.max.y, {.room = titles.left});
         }
         if (i == 0) continue;
-        drawAxis(draw, up, AxisSide::Left, "", "", up.min.y, up.max.y);
+        drawAxis(draw, up, AxisSide::Left, "", "", up.min.y, up.max.y, {.noteElsewhere = true});
         drawTitleBeside(draw, up, titleParts(matrix, i, AxisSide::Left, up.height()), titles);
     }
 }

@@ -233,9 +233,9 @@ void drawLarge(ViewContext& context, ScatterCache& cache, ScatterMatrixView& vie
     const ImVec2 min = matrix.cell(matrix.size() - large.cells, 0).min, max = matrix.cell(last, large.cells - 1).max;
     const bool histogram = large.column == large.row;
     const Range x = matrix.ranges[large.column], y = matrix.ranges[large.row];
-    const float left = histogram ? em() * 0.6f : axisRoom(AxisSide::Left, y, true);
+    const float left = histogram ? em() * 0.6f : axisRoom(AxisSide::Left, y, TitlePlace::Beside);
     const PlotFrame frame{{std::round(min.x + em() * 0.4f + left), min.y},
-                          {max.x, std::round(max.y - axisRoom(AxisSide::Bottom, x, true))},
+                          {max.x, std::round(max.y - axisRoom(AxisSide::Bottom, x, TitlePlace::Beside))},
                           x,
                           y};
     ImDrawList& draw = *ImGui::GetWindowDrawList();

@@ -98,8 +98,8 @@ std::optional<PlotFrame> placePicture(const ObliqueLayout& layout, const FlatSli
     const Range x{flat.x.lo * unit.x, flat.x.hi * unit.x}, y{flat.y.lo * unit.y, flat.y.hi * unit.y};
     ImVec2 lo{layout.picture.x, layout.picture.y + em() * (axes ? kTitleAbove : 1.35f)}, hi = layout.pictureEnd;
     if (axes) {
-        lo.x += axisRoom(AxisSide::Left, y, false);
-        hi = {hi.x - em() * 0.8f, hi.y - axisRoom(AxisSide::Bottom, x, false)};
+        lo.x += axisRoom(AxisSide::Left, y, TitlePlace::Elsewhere);
+        hi = {hi.x - em() * 0.8f, hi.y - axisRoom(AxisSide::Bottom, x, TitlePlace::Elsewhere)};
     }
     if (hi.x - lo.x < em() * 2 || hi.y - lo.y < em() * 2) return std::nullopt;
     const double wide = (flat.x.hi - flat.x.lo) * flat.axes.scale.x, high = (flat.y.hi - flat.y.lo) * flat.axes.scale.y;

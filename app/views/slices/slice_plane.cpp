@@ -64,11 +64,12 @@ PlaneFrame planeFrame(const Session& session, const volume::DatasetInfo& info, i
     frame.rangeX = range(axes.right, frame.right.unit), frame.rangeY = range(axes.up, frame.up.unit);
     // Slices below each other begin at the same pixel, whatever their numbers. Where their place stands at the right,
     // the title of the vertical axis stands upright at the left: nothing is above them.
+    const TitlePlace title = frame.beside ? TitlePlace::Beside : TitlePlace::Elsewhere;
     for (const SliceAxes& each : layout.turned) {
         const AxisLabel& label = labels[std::size_t(each.up)];
-        frame.left = std::max(frame.left, axisRoom(AxisSide::Left, range(each.up, label.unit), frame.beside));
+        frame.left = std::max(frame.left, axisRoom(AxisSide::Left, range(each.up, label.unit), title));
     }
-    const float bottom = axisRoom(AxisSide::Bottom, frame.rangeX, false);
+    const float bottom = axisRoom(AxisSide::Bottom, frame.rangeX, TitlePlace::Elsewhere);
     const SliceMargins around = sliceMargins(layout, index, frame.left / em(), bottom / em());
     frame.lo = {min.x + around.left * em(), min.y + around.top * em()};
     frame.hi = {max.x - around.right * em(), max.y - around.bottom * em()};

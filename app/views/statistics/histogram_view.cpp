@@ -77,9 +77,10 @@ void drawPlot(ViewContext& context, HistogramCache& cache, const HistogramView& 
             most = std::max(most, static_cast<double>(count));
     const auto height = [&](double count) { return view.logCounts ? std::log10(1 + count) : count; };
     const Range up{0, height(most) * 1.04};
+    const TitlePlace title = tall ? TitlePlace::Beside : TitlePlace::Nowhere;
     const PlotFrame frame{
-        {origin.x + axisRoom(AxisSide::Left, up, tall), origin.y + em() * 0.4f},
-        {origin.x + room.x - em() * 0.6f, origin.y + room.y - axisRoom(AxisSide::Bottom, range, tall)},
+        {origin.x + axisRoom(AxisSide::Left, up, title), origin.y + em() * 0.4f},
+        {origin.x + room.x - em() * 0.6f, origin.y + room.y - axisRoom(AxisSide::Bottom, range, title)},
         range,
         up};
     if (frame.width() < em() * 4) return drawHint("Not enough room", "Enlarge the pane.");

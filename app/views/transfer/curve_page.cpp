@@ -170,7 +170,8 @@ void drawCurvePage(ViewContext& context, CurvePage& page, const TransferView& vi
 
     const ImVec2 origin = ImGui::GetCursorScreenPos(), room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 5)};
     const bool tall = room.y > em() * 10, titled = room.y > em() * 8;
-    const float left = axisRoom(AxisSide::Left, {0, 1}, tall), bottom = axisRoom(AxisSide::Bottom, span, titled),
+    const float left = axisRoom(AxisSide::Left, {0, 1}, tall ? TitlePlace::Beside : TitlePlace::Nowhere),
+                bottom = axisRoom(AxisSide::Bottom, span, titled ? TitlePlace::Beside : TitlePlace::Nowhere),
                 strip = std::round(em() * 0.9f), stops = function.colors.empty() ? 0 : std::round(em() * 0.8f);
     const PlotFrame frame{{origin.x + left, origin.y + em() * 0.4f},
                           {origin.x + room.x - em() * 0.6f, origin.y + room.y - bottom - strip - stops - em() * 0.35f},

@@ -28,8 +28,10 @@ struct Area {
 
 /// A frame with room for both axes; small areas leave the titles out.
 PlotFrame framed(const Area& area, Range x, Range y) {
-    const float left = axisRoom(AxisSide::Left, y, area.titled(AxisSide::Left)),
-                bottom = axisRoom(AxisSide::Bottom, x, area.titled(AxisSide::Bottom));
+    const auto room = [&](AxisSide side, Range range) {
+        return axisRoom(side, range, area.titled(side) ? TitlePlace::Beside : TitlePlace::Nowhere);
+    };
+    const float left = room(AxisSide::Left, y), bottom = room(AxisSide::Bottom, x);
     return {{area.min.x + left, area.min.y + em() * 0.4f}, {area.max.x - em() * 0.8f, area.max.y - bottom}, x, y};
 }
 
