@@ -212,7 +212,10 @@ void drawOverPlane(ViewContext& context, SlicePlanes& planes, const std::string&
         if (!frame.shared)
             drawAxis(draw, frame.plot, AxisSide::Bottom, frame.right.name, frame.right.unit.name, frame.min.x,
                      std::min(frame.max.x, frame.plot.max.x + em() * 4), {.inlineTitle = true});
-        const auto fits = [&](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x <= frame.title; };
+        const std::string note = axisNote(AxisSide::Left, frame.plot.y, frame.plot.height());
+        const auto fits = [&](const std::string& text) {
+            return ImGui::CalcTextSize((note.empty() ? text : text + "  " + note).c_str()).x <= frame.title;
+        };
         const std::string& unit = frame.up.unit.name;
         const bool whole = fits(titleWithUnit(frame.up.name, unit)), named = whole || fits(frame.up.name);
         drawAxis(draw, frame.plot, AxisSide::Left, named ? frame.up.name : "", whole ? unit : "", frame.min.y,
