@@ -192,7 +192,7 @@ protected:
     void rest() {
         for (const std::string& layout : layoutNames()) {
             start(layout, {1000, 700});
-            showWhile([&](double seconds) { return seconds < 1 || (workbench.busy() && seconds < 60); });
+            showWhile([&](double seconds) { return seconds < 1 || (workbench.busy() && seconds < 10); });
         }
         showWhile([](double seconds) { return seconds < 45; });
         report("at rest: ");
@@ -241,7 +241,7 @@ protected:
 };
 
 TEST_F(Monkey, AnyInputLeavesAStateThatIsTheSameWhenReopened) {
-    const double minutes = numberFrom("TESSERA_MONKEY_MINUTES", 0), restEvery = minutes / 12;
+    const double minutes = numberFrom("TESSERA_MONKEY_MINUTES", 0), restEvery = minutes / 6;
     double nextRest = restEvery;
     do {
         startAnywhere();
