@@ -139,16 +139,20 @@ std::string inputsOf(const std::vector<std::string>& inputs, const volume::Impor
     std::string text;
     for (const std::string& argument : importArguments(import)) text += argument + "\n";
     if (namesModel(inputs[0]) || codec::isRemote(inputs[0])) return text;
-    const auto add = [&](const std::string& path) {
+    const auto add = [&](const std::filesystem::path& path, const std::string& name) {
         std::error_code missing;
         if (!std::filesystem::is_regular_file(path, missing)) return; // a folder changes with each result written to it
         const auto bytes = std::filesystem::file_size(path, missing);
         const auto changed = std::filesystem::last_write_time(path, missing).time_since_epoch().count();
-        text += path + " " + std::to_string(bytes) + " " + std::to_string(changed) + "\n";
+        text += name + " " + std::to_string(bytes) + " " + std::to_string(changed) + "\n";
     };
+    for (const std::string& stated : {import.raw, import.overTime}) add(stated, stated);
     for (const std::string& input : inputs) {
-        add(input);
-        std::ranges::for_each(volume::filesNamedBy(input), add);
+        add(input, input);
+        // As seen from the input, so that all may be moved together.
+        const auto folder = std::filesystem::absolute(input).lexically_normal().parent_path();
+        for (const std::filesystem::path other : volume::filesNamedBy(input))
+            add(other, other.lexically_relative(folder).string());
     }
     return text;
 }

@@ -53,8 +53,8 @@ void sayShare(std::size_t own, std::size_t all, const std::string& what, const s
 
 /// What all processes that share a work must have alike, for SharedWork::about.
 std::string aboutText(const nlohmann::json& work);
-/// What processes that pack these inputs must have alike: the files with all that they name, size and time of change of
-/// each, and how they are read.
+/// What processes that pack these inputs must have alike: the files with all that they name, those that options name,
+/// size and time of change of each, and how they are read.
 std::string inputsOf(const std::vector<std::string>& inputs, const volume::ImportOptions& import);
 /// Throws MachineError where the folder of a file to write does not exist.
 void requireFolderOf(const std::string& file);

@@ -21,7 +21,7 @@ ImU32 withAlpha(ImVec4 color, float alpha) {
 }
 
 TickLabels labelsOf(Range range, int most, bool noted) {
-    return noted ? tickLabels(range, most) : wholeTickLabels(range, most);
+    return noted ? tickLabels(range, most) : fullTickLabels(range, most);
 }
 
 /// As many ticks as fit without the labels touching. `noted`: numbers may be shortened, which the note says.

@@ -63,7 +63,7 @@ struct AxisOptions {
 
 /// Where the title of an axis is, with what its numbers must be read with.
 enum class TitlePlace {
-    Nowhere, ///< then the numbers are whole
+    Nowhere, ///< then the numbers are in full
     Elsewhere,
     Beside ///< in a line of its own
 };
@@ -84,8 +84,8 @@ struct ColumnHeights {
 /// For `room` pixels: plots and title as there is room, but no plot lower than its name.
 ColumnHeights columnHeights(float room, std::size_t plots);
 
-/// Ticks, labels and a title with unit along one side of a frame; numbers are whole where there is no title, since
-/// nothing would say what they must be read with. Labels never overlap and never leave
+/// Ticks, labels and a title with unit along one side of a frame; numbers are in full where there is no title,
+/// since nothing would say what they must be read with. Labels never overlap and never leave
 /// [lo, hi] pixels along the axis: those at the ends are moved inwards.
 void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::string_view title, std::string_view unit,
               float lo, float hi, const AxisOptions& options = {});

@@ -155,10 +155,10 @@ TickLabels tickLabels(Range range, int most, int maxDigits) {
     return out;
 }
 
-TickLabels wholeTickLabels(Range range, int most) {
+TickLabels fullTickLabels(Range range, int most) {
     TickLabels out{niceTicks(range, most), {}, {}};
     const double step = niceStep(range.hi - range.lo, most), largest = std::max(std::abs(range.lo), std::abs(range.hi));
-    if (out.values.size() < 2 || step <= largest * 1e-12) {
+    if (step <= largest * 1e-12) {
         for (const double value : out.values) out.texts.push_back(formatNumber(value));
         return out;
     }

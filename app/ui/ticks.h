@@ -44,8 +44,8 @@ struct TickLabels {
     std::string note;
 };
 TickLabels tickLabels(Range range, int most, int maxDigits = 6);
-/// The same with whole numbers, for axes beside which no note has a place.
-TickLabels wholeTickLabels(Range range, int most);
+/// The same with numbers in full, for axes beside which no note has a place.
+TickLabels fullTickLabels(Range range, int most);
 
 /// A length unit that suits a box of this size: the name and how many of it make one of `unit` (m, cm, mm, um and nm
 /// are known; others stay as they are).

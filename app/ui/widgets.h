@@ -75,7 +75,7 @@ std::string wrappedAtSpaces(const std::string& text, float width);
 /// follows where it is true; where nothing of the table is seen it takes its place and is false.
 bool beginScrolledTable(const char* id, int columns, ImGuiTableFlags flags, ImVec2 size);
 
-/// ImGui's invisible button, at least a pixel wide and high: it ends the program at an area of no size.
+/// ImGui's invisible button, at least a pixel wide and high: ImGui ends the program at one of no size.
 bool mouseArea(const char* id, ImVec2 size, ImGuiButtonFlags buttons = 0);
 
 } // namespace tessera::app

@@ -125,7 +125,7 @@ public:
             if (number >= sent) throw Error("the server breaks the protocol of sftp", address_.text);
             if (kind != Data) refuse(kind, answer);
             const auto bytes = answer.text();
-            const FileRange piece = std::exchange(wanted[number], FileRange{}); // a second answer is none
+            const FileRange piece = std::exchange(wanted[number], FileRange{}); // nothing is left for a second answer
             if (bytes.empty() || bytes.size() > piece.length)
                 throw Error("the server breaks the protocol of sftp", address_.text);
             std::copy(bytes.begin(), bytes.end(), reply.bytes.begin() + std::ptrdiff_t(piece.offset));

@@ -39,6 +39,19 @@ TEST_F(InputsOf, TellChangesOfEveryFileThatIsRead) {
     for (const char* part : {"scan.nhdr", "scan.bytes"}) EXPECT_TRUE(tells("scan.nhdr", part)) << part;
 }
 
+TEST_F(InputsOf, TellChangesOfFilesThatOptionsName) {
+    write("samples.bin", "x");
+    volume::ImportOptions options;
+    for (std::string* option : {&options.raw, &options.overTime}) {
+        *option = folder_ / "stated.txt";
+        write("stated.txt", "x");
+        const std::string before = inputsOf({folder_ / "samples.bin"}, options);
+        write("stated.txt", "other");
+        EXPECT_NE(inputsOf({folder_ / "samples.bin"}, options), before);
+        option->clear();
+    }
+}
+
 // Processes of one job start at different moments, and the first ones have begun to write by then.
 TEST_F(InputsOf, DoNotDependOnResultsBesideThem) {
     write("case/system/controlDict", "x");

@@ -199,20 +199,20 @@ protected:
     }
 
     void showWhile(const std::function<bool(double seconds)>& goesOn) {
-        const double begin = passed();
-        while (goesOn((passed() - begin) * 60) && !HasFatalFailure()) {
+        const double begin = passedMinutes();
+        while (goesOn((passedMinutes() - begin) * 60) && !HasFatalFailure()) {
             show();
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
     }
 
     void report(const char* what) {
-        std::printf("%s%.1f min, %d inputs, %.0f MB, allocated %.0f\n", what, passed(), step_, test::residentMemory(),
-                    test::allocatedMemory());
+        std::printf("%s%.1f min, %d inputs, %.0f MB, allocated %.0f\n", what, passedMinutes(), step_,
+                    test::residentMemory(), test::allocatedMemory());
         std::fflush(stdout);
     }
 
-    double passed() const {
+    double passedMinutes() const {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count() / 60;
     }
 
@@ -257,11 +257,11 @@ TEST_F(Monkey, AnyInputLeavesAStateThatIsTheSameWhenReopened) {
         }
         workbench.jobs().wait();
         report("");
-        if (minutes == 0 || passed() < nextRest) continue;
+        if (minutes == 0 || passedMinutes() < nextRest) continue;
         rest();
         if (HasFatalFailure()) return;
-        nextRest = passed() + restEvery;
-    } while (passed() < minutes);
+        nextRest = passedMinutes() + restEvery;
+    } while (passedMinutes() < minutes);
 }
 
 } // namespace

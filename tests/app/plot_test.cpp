@@ -44,7 +44,7 @@ TEST_F(PlotTest, TheTitleOfAnAxisStandsInItsMiddleOrAsNearAsItsRoomAllows) {
 }
 
 // Numbers are shortened only where the title says how to read them.
-TEST_F(PlotTest, AnAxisWithoutTitleHasWholeNumbers) {
+TEST_F(PlotTest, AnAxisWithoutTitleHasNumbersInFull) {
     const auto texts = [&](Range range, const char* title, const AxisOptions& options = {}) {
         PlotFrame own = frame;
         own.y = range;

@@ -19,6 +19,7 @@ protected:
         workbench.session().render.samples = 1;
     }
     void drawNarrowAndLow() {
+        settle();
         for (int size = 1; size < kWide; size += 7)
             for (const glm::ivec2 window : {glm::ivec2(size, kLow), glm::ivec2(kWide, size)}) {
                 OffscreenFrames(window).draw(workbench, 1, {});

@@ -53,12 +53,16 @@ TEST(Ticks, SurviveDegenerateRanges) {
     EXPECT_TRUE(niceTicks({std::nan(""), 1}, 5).empty());
     EXPECT_TRUE(niceTicks({0, std::numeric_limits<double>::infinity()}, 5).empty());
     EXPECT_THAT(tickLabels({3, 3}, 5).texts, ElementsAre("3"));
-    EXPECT_THAT(wholeTickLabels({3, 3}, 5).texts, ElementsAre("3"));
-    EXPECT_THAT(wholeTickLabels({0, 0.004}, 4).texts, ElementsAre("0.000", "0.001", "0.002", "0.003", "0.004"));
-    EXPECT_THAT(wholeTickLabels({-1e6, 1e6}, 2).texts, ElementsAre("-1000000", "0", "1000000"));
-    EXPECT_THAT(wholeTickLabels({-1e-7, 2e-7}, 3).texts, ElementsAre("-1e-7", "0", "1e-7", "2e-7"));
-    EXPECT_THAT(wholeTickLabels({0, 3.4e38}, 4).texts, ElementsAre("0", "1e38", "2e38", "3e38"));
-    EXPECT_THAT(wholeTickLabels({1e9, 1e9 + 2}, 2).texts,
+    EXPECT_THAT(fullTickLabels({3, 3}, 5).texts, ElementsAre("3"));
+    EXPECT_THAT(fullTickLabels({0, 0.004}, 4).texts, ElementsAre("0.000", "0.001", "0.002", "0.003", "0.004"));
+    EXPECT_THAT(fullTickLabels({-1e6, 1e6}, 2).texts, ElementsAre("-1000000", "0", "1000000"));
+    EXPECT_THAT(fullTickLabels({-1e-7, 2e-7}, 3).texts, ElementsAre("-1e-7", "0", "1e-7", "2e-7"));
+    // A single one.
+    EXPECT_THAT(fullTickLabels({-0.3, 0.4}, 1).texts, ElementsAre("0"));
+    EXPECT_THAT(fullTickLabels({101325.14, 101325.94}, 2).texts, ElementsAre("101325.5"));
+    EXPECT_THAT(fullTickLabels({1234567.1, 1234569.4}, 2).texts, ElementsAre("1234568"));
+    EXPECT_THAT(fullTickLabels({0, 3.4e38}, 4).texts, ElementsAre("0", "1e38", "2e38", "3e38"));
+    EXPECT_THAT(fullTickLabels({1e9, 1e9 + 2}, 2).texts,
                 ElementsAre("1.000000000e9", "1.000000001e9", "1.000000002e9"));
 }
 

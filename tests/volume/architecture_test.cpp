@@ -274,7 +274,7 @@ TEST(Architecture, SlidersStayBetweenTheirEnds) {
 
 // ImGui's own invisible buttons end the program where they have no size.
 TEST(Architecture, AreasForTheMouseHaveASize) {
-    for (const std::string& file : filesOf("app", {".cpp"})) {
+    for (const std::string& file : filesOf("app", {".h", ".cpp"})) {
         const bool own = file == "app/ui/widgets.cpp";
         EXPECT_EQ(textOf(kRoot / file).find("ImGui::InvisibleButton") != std::string::npos, own) << file;
     }

@@ -76,7 +76,8 @@ TEST_F(NamedFiles, FoldersPatternsAndCases) {
     write("case/cell.foam", "");
     write("case/processor1/-0.5/T");
     // What comes during the run, or from it, is not read.
-    for (const char* other : {"case/log.solver", "case/run.tsr", "case/2.out", "case/postProcessing/0/p.dat"})
+    for (const char* other :
+         {"case/log.solver", "case/run.tsr", "case/2.out", "case/postProcessing/0/p.dat", "case/2024_plots/p.png"})
         write(other);
     const std::vector<std::string> all{"case/0/T", "case/constant/polyMesh/points", "case/processor1/-0.5/T",
                                        "case/system/controlDict"};

@@ -85,7 +85,7 @@ bool ComparePictures::openCell(ViewContext& context, const std::string& pane, st
         cell.failure = whyNot(cell.session.data, context.session.data);
         if (!cell.failure.empty()) return false;
         const auto data = dataFor(context, pane, cell.session.data);
-        if (data != cell.data) cell.target.reset();
+        if (data != cell.data) cell.dropPicture();
         cell.data = data;
         if (!data->failure.empty()) {
             cell.failure = data->failure;
@@ -101,7 +101,7 @@ bool ComparePictures::openCell(ViewContext& context, const std::string& pane, st
         }
     } else if (cell.data) {
         cell.data.reset();
-        cell.target.reset();
+        cell.dropPicture();
     }
     return true;
 }

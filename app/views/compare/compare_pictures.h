@@ -57,6 +57,8 @@ struct CompareCell {
     bool shows = false;
     vis::Scene sceneShown;
     glm::ivec2 sizeShown{0};
+    /// The target is that of other data: nothing must be shown of it while another one waits for its turn.
+    void dropPicture() { target.reset(), status = {}, shows = false; }
 
     // Pixels of the finished picture, and the measures computed from them.
     vis::Scene imageOf;

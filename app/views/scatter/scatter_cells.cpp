@@ -72,11 +72,11 @@ float mostAcross(float room, float needed) {
     return std::max({em() * 4.5f, room * 0.2f, needed});
 }
 
-/// Name and unit in so many pixels: the name is cut off, the unit as long as there is room for it.
+/// Name and unit in so many pixels: the name is cut off, the rest never, since numbers mean nothing without it.
 std::string fittedTitle(const TitleParts& parts, float width) {
     if (widthOf(parts.whole()) <= width || parts.rest.empty()) return fitText(parts.whole(), width);
     const std::string name = fitText(parts.name, width - widthOf(" " + parts.rest));
-    return name.empty() ? fitText(parts.whole(), width) : name + " " + parts.rest;
+    return name.empty() ? parts.rest : name + " " + parts.rest;
 }
 
 } // namespace

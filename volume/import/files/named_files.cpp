@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <glob.h>
@@ -89,9 +90,10 @@ std::vector<fs::path> fitting(const fs::path& header, const std::string& name) {
 /// and whatever was computed from the case.
 bool isOfCase(const fs::path& folder) {
     const std::string name = folder.filename().string();
-    const std::size_t digit = name.find_first_not_of('-');
-    const bool isTime = digit != std::string::npos && name[digit] >= '0' && name[digit] <= '9';
-    return isTime || name == "system" || name == "constant" || name.starts_with("processor");
+    double time = 0;
+    const auto [end, failed] = std::from_chars(name.data(), name.data() + name.size(), time);
+    return (failed == std::errc() && end == name.data() + name.size()) || name == "system" || name == "constant" ||
+           name.starts_with("processor");
 }
 
 /// Files that one names directly.
