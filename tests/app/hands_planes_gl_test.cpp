@@ -452,6 +452,23 @@ TEST_F(TiltedPlaneHands, TheCommandTiltsEveryObliqueSliceToTheViewer) {
     EXPECT_TRUE(session().views.contains("oblique")) << "opened where there was none";
 }
 
+// Items after the one that closes the menu are drawn once more.
+TEST_F(TiltedPlaneHands, EveryItemAndEscCloseTheMenuOfThePicture) {
+    showVolume([](Session&) {}, {320, 800}); // the whole menu has room
+    for (const char* const name : {"Reset view", "Parallel projection", "Depth of field", ""}) {
+        click(within(picture, 0.4, 0.45), 1);
+        ASSERT_TRUE(popup()) << name;
+        if (*name != 0)
+            click(item(popup(), {name}).GetCenter());
+        else
+            press(key::kEscape);
+        for (int i = 0; i < 3; ++i) frame();
+        EXPECT_FALSE(popup()) << name;
+    }
+    EXPECT_EQ(session().camera.projection, vis::Projection::Orthographic);
+    EXPECT_GT(session().camera.aperture, 0);
+}
+
 TEST_F(TiltedPlaneHands, AClickInTheMenuFocusesOnWhatIsSeenThere) {
     showVolume(
         [](Session& edited) {

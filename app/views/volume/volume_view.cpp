@@ -44,13 +44,12 @@ struct SpaceCache : ViewCache {
     int renderers() const override { return renderer ? 1 : 0; }
 };
 
-/// Depth of field, and what is in focus: what is under the mouse where the menu was opened, or the cross-hair.
+/// Depth of field, and what is in focus: what lies at `at`, where the menu was opened, or the cross-hair.
 void drawFocusMenu(ViewContext& context, vis::ViewTarget* target, const PictureBox& picture,
-                   const vis::WorldFrame& world) {
+                   const vis::WorldFrame& world, ImVec2 at) {
     vis::Camera& camera = context.session.camera;
     bool blurs = camera.aperture > 0;
     if (ImGui::MenuItem("Depth of field", "", &blurs)) setDepthOfField(camera, blurs);
-    const ImVec2 at = ImGui::GetMousePosOnOpeningCurrentPopup(); // a click on an item closes the popup
     if (ImGui::MenuItem("Focus here", nullptr, false, target != nullptr)) {
         const auto pick = context.renderer.pick(*target, {at.x - picture.min.x, at.y - picture.min.y});
         if (pick)
@@ -64,6 +63,7 @@ void drawFocusMenu(ViewContext& context, vis::ViewTarget* target, const PictureB
 void drawMenu(ViewContext& context, const char* id, VolumeView& view, vis::ViewTarget* target,
               const PictureBox& picture, const vis::WorldFrame& world) {
     if (!ImGui::BeginPopup(id)) return;
+    const ImVec2 at = ImGui::GetMousePosOnOpeningCurrentPopup(); // not known once an item or Esc has closed the menu
     const double aspect = picture.aspect();
     if (escapePressed()) ImGui::CloseCurrentPopup();
     vis::Camera& camera = context.session.camera;
@@ -79,7 +79,7 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, vis::ViewT
     bool parallel = camera.projection == vis::Projection::Orthographic;
     if (ImGui::MenuItem("Parallel projection", "5", &parallel))
         camera.projection = parallel ? vis::Projection::Orthographic : vis::Projection::Perspective;
-    drawFocusMenu(context, target, picture, world);
+    drawFocusMenu(context, target, picture, world, at);
     ImGui::Separator();
     const bool along = timeAxisOf(context.session, context.source->info()) != nullptr;
     if (along || !context.session.data.timeAxis) { // positions in a plane over time are not positions in space
