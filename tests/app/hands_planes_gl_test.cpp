@@ -465,7 +465,7 @@ TEST_F(TiltedPlaneHands, EveryItemAndEscCloseTheMenuOfThePicture) {
         for (int i = 0; i < 3; ++i) frame();
         EXPECT_FALSE(popup()) << name;
     }
-    EXPECT_EQ(session().camera.projection, vis::Projection::Orthographic);
+    EXPECT_EQ(session().camera.projection, vis::Projection::Perspective) << "it was parallel";
     EXPECT_GT(session().camera.aperture, 0);
 }
 
