@@ -67,7 +67,7 @@ PlaneFrame planeFrame(const Session& session, const volume::DatasetInfo& info, i
     const TitlePlace title = frame.beside ? TitlePlace::Beside : TitlePlace::Elsewhere;
     for (const SliceAxes& each : layout.turned) {
         const AxisLabel& label = labels[std::size_t(each.up)];
-        for (const TitlePlace place : {title, TitlePlace::Nowhere}) // it may have no room
+        for (const TitlePlace place : {title, TitlePlace::Nowhere}) // the title may find no room
             frame.left = std::max(frame.left, axisRoom(AxisSide::Left, range(each.up, label.unit), place));
     }
     const float bottom = axisRoom(AxisSide::Bottom, frame.rangeX, TitlePlace::Elsewhere);
