@@ -60,6 +60,12 @@ TEST_F(BinaryFormats, NumPyArrays) {
                 turned[std::size_t((i * 4 + j) * 6 + k)] = float(at(0, (k * 4 + j) * 5 + i, 0, 1));
     const Dataset fortran = openFiles({write("f.npy", npy("<f4", "6, 4, 5", bytesOf(turned), true))}, {});
     for (int i = 0; i < kCount; ++i) ASSERT_EQ(fortran.read(0, 0, 0).value(std::size_t(i)), at(0, i, 0, 1));
+    EXPECT_THAT(failure(write("short.npy", npy("<f4", "6, 4, 5", std::string(479, 'a')))),
+                testing::HasSubstr("has 479 bytes of samples, but its header announces 480"));
+    EXPECT_THAT(failure(write("huge.npy", npy("<f4", "6000000000000, 4000000000000", std::string(480, 'a')))),
+                testing::HasSubstr("announces 9.6e+25"));
+    EXPECT_THAT(failure(write("negative.npy", npy("<f4", "6, 4, -5", std::string(480, 'a')))),
+                testing::HasSubstr("damaged header"));
     EXPECT_THAT(failure(write("c.npy", npy("<c8", "6, 4, 5", std::string(960, 'a')))), testing::HasSubstr("astype"));
 }
 

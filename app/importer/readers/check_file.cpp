@@ -69,6 +69,14 @@ std::size_t bytesIn(const std::string& path) {
     return static_cast<std::size_t>(size);
 }
 
+void wantBytes(double has, double wanted, const std::string& where, const char* what) {
+    if (has >= wanted) return;
+    char numbers[128]; // as %g, since a damaged header may announce more than an integer holds
+    std::snprintf(numbers, sizeof numbers, "has %.15g %s, but its header announces %.15g", std::max(has, 0.0), what,
+                  wanted);
+    throw std::runtime_error((where.empty() ? "" : "its file " + where + " ") + numbers);
+}
+
 void checkLastLine(std::string_view text) {
     if (text.empty()) throw std::runtime_error("is empty");
     if (std::isspace(static_cast<unsigned char>(text.back())) == 0)
@@ -109,10 +117,7 @@ void checkDeflated(const std::string& path, std::size_t begin, double wanted) {
     }
     inflateEnd(&stream);
     if (!ended) throw std::runtime_error("its compressed samples end early: truncated or damaged");
-    if (got < wanted)
-        throw std::runtime_error("holds " + std::to_string(static_cast<long long>(got)) +
-                                 " bytes of samples, but its header announces " +
-                                 std::to_string(static_cast<long long>(wanted)));
+    wantBytes(got, wanted);
 }
 
 void checkLegacy(const std::string& path, std::size_t arrays) {

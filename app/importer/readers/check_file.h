@@ -17,6 +17,9 @@ std::string readPart(const std::string& path, std::size_t begin, std::size_t cou
 std::string readWhole(const std::string& path);
 std::size_t bytesIn(const std::string& path);
 
+/// A file that has fewer bytes than its header announces. `where`: another file that has them, "" = this one.
+void wantBytes(double has, double wanted, const std::string& where = {}, const char* what = "bytes of samples");
+
 /// For text, whose last number might be cut: the last line must have a line end.
 void checkLastLine(std::string_view text);
 

@@ -21,14 +21,6 @@ namespace {
 
 constexpr std::size_t kHead = 1 << 20;
 
-void wantBytes(double has, double wanted, const std::string& where = {}) {
-    if (has < wanted)
-        throw std::runtime_error((where.empty() ? "" : "its file " + where + " ") + "has " +
-                                 std::to_string(static_cast<long long>(std::max(has, 0.0))) +
-                                 " bytes of samples, but its header announces " +
-                                 std::to_string(static_cast<long long>(wanted)));
-}
-
 double fileBytes(const std::string& path, const std::string& name) {
     std::error_code failed;
     const auto size = fs::file_size(path, failed);

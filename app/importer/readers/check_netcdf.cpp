@@ -121,11 +121,7 @@ private:
 void checkNetCdf(const std::string& path) {
     ClassicHeader header(path);
     if (!header.isClassic()) return;
-    const double wanted = header.bytesNeeded(), has = double(bytesIn(path));
-    if (has < wanted)
-        throw std::runtime_error("has " + std::to_string(static_cast<long long>(has)) +
-                                 " bytes, but its header announces " + std::to_string(static_cast<long long>(wanted)) +
-                                 ": truncated");
+    wantBytes(double(bytesIn(path)), header.bytesNeeded(), {}, "bytes");
 }
 
 } // namespace tessera::importer

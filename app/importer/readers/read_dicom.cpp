@@ -159,11 +159,7 @@ Slice describe(const Elements& file, const std::string& path) {
     } else {
         slice.place = first(0x00200013, 0) * slice.thickness; // the instance number
     }
-    const double wanted = double(slice.rows) * slice.columns * slice.frames * slice.bits / 8;
-    if (double(file.text(kPixels).size()) < wanted)
-        throw std::runtime_error("has " + std::to_string(file.text(kPixels).size()) +
-                                 " bytes of samples, but its header announces " +
-                                 std::to_string(static_cast<long long>(wanted)));
+    wantBytes(double(file.text(kPixels).size()), double(slice.rows) * slice.columns * slice.frames * slice.bits / 8);
     return slice;
 }
 

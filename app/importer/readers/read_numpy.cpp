@@ -72,7 +72,8 @@ NpyForm parseNpy(const std::string& bytes) {
     form.swap = descr[0] == '>';
     form.fortran = entry(header, "fortran_order").find("True") != std::string::npos;
     const std::size_t open = header.find('(', header.find("'shape'")), close = header.find(')', open);
-    if (open == std::string::npos || close == std::string::npos) throw std::runtime_error("has a damaged header");
+    if (open == std::string::npos || close == std::string::npos || header.find('-', open) < close)
+        throw std::runtime_error("has a damaged header");
     double all = double(form.bytes);
     for (std::size_t at = open + 1; at < close;) {
         char* end = nullptr;
@@ -82,10 +83,7 @@ NpyForm parseNpy(const std::string& bytes) {
         all *= double(n);
         at = static_cast<std::size_t>(end - header.c_str()) + 1;
     }
-    if (double(bytes.size() - form.begin) < all)
-        throw std::runtime_error("has " + std::to_string(bytes.size() - form.begin) +
-                                 " bytes of samples, but its header announces " +
-                                 std::to_string(static_cast<long long>(all)));
+    wantBytes(double(bytes.size() - form.begin), all);
     return form;
 }
 
