@@ -67,6 +67,7 @@ bool Document::moveTo(RemadeData& made) {
     data.import.overTime = now.import.overTime;
     if (data.files == now.files) data.import.labels = now.import.labels;
     const DataRef recorded = history_.data();
+    const bool noEdit = session_ == history_.before();
     app::moveTo(session_, history_, &info(), made.sources.pictures->info(), data, made.messages);
     data.lattice = recorded.lattice;
     data.axis = recorded.axis;
@@ -76,6 +77,7 @@ bool Document::moveTo(RemadeData& made) {
     if (data.files == recorded.files) data.import.labels = recorded.import.labels;
     data.derived = recorded.derived; // an edit in progress has yet to become a step
     history_.setData(data);
+    if (noEdit) history_.extendDataStep(session_);
     sources_ = made.sources;
     playback_ = {};
     ++edits_;

@@ -94,16 +94,7 @@ bool History::observe(const Session& session, bool editing, double seconds, doub
     if (!pending_ || editing) return false;
     pending_ = false;
     const std::string name = std::exchange(nextName_, {});
-    // The document is updated with changes that are not edits only here, when it is needed.
-    if (base_.animation.tracks.empty()) {
-        document_["time"] = app::toJson(base_.time);
-        document_["animation"] = app::toJson(base_.animation);
-        document_["data"] = app::toJson(base_.data);
-        document_["dock"] = app::toJson(base_.dock);
-        document_["views"] = app::toJson(base_.views);
-    } else {
-        document_ = app::toJson(base_); // any setting may have changed
-    }
+    updateDocument();
     Json now = app::toJson(session);
     Json forward = Json::diff(document_, now);
     if (forward.empty()) { // differs only in ways that JSON does not show
@@ -130,6 +121,32 @@ bool History::observe(const Session& session, bool editing, double seconds, doub
     lastCommit_ = name.empty() ? seconds : -1e9; // never merge with a named step
     trim();
     return true;
+}
+
+void History::updateDocument() {
+    if (base_.animation.tracks.empty()) {
+        document_["time"] = app::toJson(base_.time);
+        document_["animation"] = app::toJson(base_.animation);
+        document_["data"] = app::toJson(base_.data);
+        document_["dock"] = app::toJson(base_.dock);
+        document_["views"] = app::toJson(base_.views);
+    } else {
+        document_ = app::toJson(base_); // any setting may have changed
+    }
+}
+
+void History::extendDataStep(const Session& session) {
+    const auto isOfData = [](const std::string& path) { return path.starts_with("/data/"); };
+    if (position_ == 0 || position_ < steps_.size()) return;
+    HistoryStep& step = steps_.back();
+    if (std::ranges::none_of(pathsOf(step.forward), isOfData)) return;
+    followUnrecorded(base_, session);
+    updateDocument();
+    const Json before = document_.patch(step.inverse);
+    document_ = app::toJson(session);
+    base_ = session;
+    step.forward = Json::diff(before, document_);
+    step.inverse = Json::diff(document_, before);
 }
 
 void History::trim() {

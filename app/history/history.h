@@ -32,6 +32,10 @@ public:
     /// Names the step of the next change, which is then not merged with the one before. Dropped if the edit is empty.
     void nameNext(std::string name) { nextName_ = std::move(name); }
 
+    /// Where the last step changed the data, adds to it how the session came to fit them (a time that they have). To be
+    /// called when nothing else has changed since. Nothing if steps have been undone: that becomes a step of its own.
+    void extendDataStep(const Session& session);
+
     bool canUndo() const { return position_ > 0; }
     bool canRedo() const { return position_ < steps_.size(); }
     /// The session one step back or forth, which becomes the base. Never throws: steps were checked when loaded.
@@ -59,6 +63,8 @@ public:
 
 private:
     void trim();
+    /// Brings document_ up to date with changes of base_ that are not edits, before it is needed.
+    void updateDocument();
 
     Session base_;  ///< after steps_[0, position_)
     Json document_; ///< base_ as JSON

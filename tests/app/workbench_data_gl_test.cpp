@@ -150,6 +150,18 @@ TEST_F(WorkbenchData, OneGridOfAnArchiveInSpaceAndTimeIsAStepOfTheHistory) {
     const auto info = [&]() -> const volume::DatasetInfo& { return workbench.source()->info(); };
     const std::vector<double> all = info().times;
     ASSERT_EQ(info().lattice.kind, volume::LatticeKind::BCC);
+    ASSERT_TRUE(run("Second grid of D4* alone, as stored"));
+    settle();
+    EXPECT_EQ(workbench.session().time, all[1]);
+    EXPECT_EQ(workbench.document().history().steps().size(), 1u) << "the time is no step of its own";
+    ASSERT_TRUE(run("Undo"));
+    settle();
+    EXPECT_EQ(workbench.session().time, all[0]);
+    ASSERT_TRUE(run("Redo"));
+    settle();
+    EXPECT_EQ(workbench.session().time, all[1]);
+    EXPECT_EQ(workbench.document().history().steps().size(), 1u);
+    while (run("Undo")) settle();
     ASSERT_TRUE(run("First grid of D4* alone, as stored"));
     settle();
     EXPECT_EQ(info().lattice.kind, volume::LatticeKind::CC);
