@@ -286,6 +286,23 @@ TEST_F(BinaryFormats, TiffStack) {
     EXPECT_EQ(dataset.info.lengthUnit, "um");
     EXPECT_EQ(dataset.info.times, (std::vector<double>{0, 5}));
     EXPECT_EQ(dataset.read(0, 0, 1).value(7), at(0, 67, 0, 1));
+    writeTiff(imagej, 0, 6, false, "ImageJ=1.53t\nimages=1e300\n");
+    EXPECT_THAT(failure(imagej), testing::HasSubstr("announces 1e300 images, holds 6"));
+    writeTiff(imagej, 0, 6, false, "ImageJ=1.53t\nimages=6\nframes=1e300\n");
+    EXPECT_EQ(openFiles({imagej}, {}).info.times.size(), 1u);
+    // A header of few bytes that announces gigabytes.
+    writeTiff(imagej, 0, 1, false);
+    std::string bytes = read(imagej);
+    const auto shorts = [](int tag, int value) {
+        return bytesOf(std::uint16_t(tag)) + bytesOf(std::uint16_t(3)) + bytesOf(std::uint32_t(1)) +
+               bytesOf(std::uint32_t(value));
+    };
+    for (const auto& [tag, was] : {std::pair{256, 5}, {257, 4}}) {
+        const std::size_t field = bytes.find(shorts(tag, was));
+        ASSERT_NE(field, std::string::npos);
+        bytes.replace(field, 12, shorts(tag, 65000));
+    }
+    EXPECT_THAT(failure(write("b.tif", bytes)), testing::HasSubstr("states 8.45 GB, of which"));
 }
 
 TEST_F(BinaryFormats, TiffSlicesInFiles) {

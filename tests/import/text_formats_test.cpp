@@ -230,6 +230,14 @@ TEST_F(TextFormats, TecplotZonesAreRegions) {
     options.gridSize = {4, 2, 2};
     const Dataset dataset = openFiles(
         {write("a.tec", "VARIABLES = \"x\", \"y\", \"z\", \"T\"\n" + zone("air", 0) + zone("fuel", 1))}, options);
+    const std::string variables = "VARIABLES = \"x\", \"y\", \"z\", \"T\"\n";
+    const Dataset twice =
+        openFiles({write("twice.tec", variables + zone("air", 0) + variables + zone("fuel", 1))}, options);
+    EXPECT_EQ(twice.info.parameters.size(), dataset.info.parameters.size());
+    for (const std::string other :
+         {"VARIABLES = \"x\", \"y\", \"z\", \"p\"\n", "VARIABLES = \"x\", \"y\", \"z\", \"T\", \"p\"\n"})
+        EXPECT_THAT(failure(write("other.tec", variables + zone("air", 0) + other + zone("fuel", 1))),
+                    testing::HasSubstr("states other VARIABLES after its first zone"));
     ASSERT_EQ(dataset.info.parameters.size(), 2u);
     const Field t = dataset.read(0, 0, 0), region = dataset.read(1, 0, 0);
     for (std::size_t i = 0; i < t.count(); ++i) {

@@ -1,6 +1,6 @@
 #include "app/importer/readers/array_file.h"
 
-#include "volume/base/byte_text.h"
+#include "app/importer/readers/check_file.h"
 
 #include <algorithm>
 #include <array>
@@ -193,12 +193,7 @@ void refuseEndless(const std::string& name, std::size_t times) {
 } // namespace
 
 void refuseHollow(const StoredArray& array) {
-    // Of the filters in use zstd packs equal numbers most densely, 128 KiB in a block of 4 bytes: 32768 to 1 (deflate
-    // reaches 1032 to 1). Small arrays may be left to their fill value altogether.
-    constexpr double kMostPerByte = 40'000, kHarmless = double(64 << 20);
-    if (array.statedBytes <= kHarmless + kMostPerByte * array.storedBytes) return;
-    throw std::runtime_error("array \"" + array.name + "\" states " + textOfBytes(array.statedBytes) + ", of which " +
-                             textOfBytes(array.storedBytes) + " are stored");
+    refuseHollow(array.statedBytes, array.storedBytes, "array \"" + array.name + "\"");
 }
 
 void openArrays(std::vector<StoredArray> arrays, Source& source) {

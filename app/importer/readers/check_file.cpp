@@ -1,5 +1,7 @@
 #include "app/importer/readers/check_file.h"
 
+#include "volume/base/byte_text.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -75,6 +77,15 @@ void wantBytes(double has, double wanted, const std::string& where, const char* 
     std::snprintf(numbers, sizeof numbers, "has %.15g %s, but its header announces %.15g", std::max(has, 0.0), what,
                   wanted);
     throw std::runtime_error((where.empty() ? "" : "its file " + where + " ") + numbers);
+}
+
+void refuseHollow(double stated, double stored, const std::string& what) {
+    // Of the filters in use zstd packs equal numbers most densely, 128 KiB in a block of 4 bytes: 32768 to 1 (deflate
+    // reaches 1032 to 1). A little may be left to its fill value altogether.
+    constexpr double kMostPerByte = 40'000, kHarmless = double(64 << 20);
+    if (stated <= kHarmless + kMostPerByte * stored) return;
+    throw std::runtime_error((what.empty() ? "" : what + " ") + "states " + textOfBytes(stated) + ", of which " +
+                             textOfBytes(stored) + " are stored");
 }
 
 void checkLastLine(std::string_view text) {

@@ -20,6 +20,10 @@ std::size_t bytesIn(const std::string& path);
 /// A file that has fewer bytes than its header announces. `where`: another file that has them, "" = this one.
 void wantBytes(double has, double wanted, const std::string& where = {}, const char* what = "bytes of samples");
 
+/// A file that states far more bytes of samples than can be in the bytes that it stores, so that they would fill the
+/// memory for nothing. `what` states them: "" = the file itself.
+void refuseHollow(double stated, double stored, const std::string& what = {});
+
 /// For text, whose last number might be cut: the last line must have a line end.
 void checkLastLine(std::string_view text);
 

@@ -173,7 +173,7 @@ void openHdf(Source& source) {
 #endif
     if (visited < 0) throw std::runtime_error("is truncated or damaged");
     if (ofVtk) {
-        std::ranges::for_each(visit.arrays, refuseHollow);
+        for (const StoredArray& array : visit.arrays) refuseHollow(array);
         vtkNew<vtkHDFReader> reader;
         reader->SetFileName(source.path.c_str());
         source.reader = reader;

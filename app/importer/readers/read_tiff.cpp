@@ -1,11 +1,13 @@
 // TIFF: the pages of a file, or single pages of numbered files, as the slices of a volume. Not read by VTK, whose
 // reader does not report the library's errors.
+#include "app/importer/readers/check_file.h"
 #include "app/importer/readers/read_files.h"
 
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <tiffio.h>
@@ -77,7 +79,11 @@ void readPage(TIFF* file, const Page& page, char* to) {
         std::uint32_t width = 0, height = 0;
         TIFFGetField(file, TIFFTAG_TILEWIDTH, &width);
         TIFFGetField(file, TIFFTAG_TILELENGTH, &height);
-        std::vector<char> tile(std::size_t(TIFFTileSize(file)));
+        const auto tileBytes = std::size_t(std::max<tmsize_t>(TIFFTileSize(file), 0));
+        constexpr std::size_t kHarmless = 16 << 20; // a tile may be larger than the page, but not by far
+        if (tileBytes < std::size_t(width) * height * pixel || tileBytes / 4 > kHarmless + row * page.height)
+            throw std::runtime_error("has tiles that do not fit its pages");
+        std::vector<char> tile(tileBytes);
         for (std::uint32_t y = 0; y < page.height; y += height)
             for (std::uint32_t x = 0; x < page.width; x += width) {
                 if (TIFFReadTile(file, tile.data(), x, y, 0, 0) < 0) fail();
@@ -135,12 +141,12 @@ void readDescription(TIFF* file, Stack& stack, Source& source) {
     };
     const double images = number("images", 1), frames = number("frames", 1), channels = number("channels", 1);
     if (images != double(stack.pages.size()))
-        throw std::runtime_error("announces " + std::to_string(int(images)) + " images, holds " +
+        throw std::runtime_error("announces " + described(text, "images") + " images, holds " +
                                  std::to_string(stack.pages.size()));
     if (channels > 1)
         throw std::runtime_error(
             "has several channels per pixel, which is not supported: write each as a file of its own");
-    if (frames > 1 && std::size_t(images) % std::size_t(frames) == 0) {
+    if (frames > 1 && frames <= images && std::size_t(images) % std::size_t(frames) == 0) {
         stack.slices = std::size_t(images / frames);
         for (int t = 0; t < int(frames); ++t) source.times.push_back(t * number("finterval", 1));
         source.timeUnit = described(text, "finterval").empty() ? "step" : "s";
@@ -219,6 +225,12 @@ void openTiff(Source& source) {
     }
     const Page& form = stack->form;
     vtkTypeOf(form);
+    if (std::max(form.width, form.height) > std::uint32_t(std::numeric_limits<int>::max()))
+        throw std::runtime_error("has pages of " + std::to_string(form.width) + " x " + std::to_string(form.height));
+    double stored = 0;
+    for (const std::string& file : stack->files) stored += double(bytesIn(file));
+    refuseHollow(double(form.width) * form.height * form.samples * (form.bits / 8.0) * double(stack->pages.size()),
+                 stored);
     if (form.planar != PLANARCONFIG_CONTIG && form.samples > 1)
         throw std::runtime_error(
             "has its colours in separate planes, which is not supported: write them pixel by pixel");

@@ -258,9 +258,12 @@ void openTecplot(Source& source) {
                 while (!words.atEnd() && (words.peek() == '=' || words.peek() == '"')) words.next();
         } else if (key == "VARIABLES") {
             words.next();
-            headings.clear();
+            std::vector<Heading> stated;
             while (!words.atEnd() && (words.peek() == '"' || upper(words.ahead()) != "ZONE"))
-                headings.push_back(parseHeading(words.next()));
+                stated.push_back(parseHeading(words.next()));
+            if (!zones.empty() && !std::ranges::equal(stated, headings, {}, &Heading::name, &Heading::name))
+                throw std::runtime_error("states other VARIABLES after its first zone: write each set to a file");
+            headings = std::move(stated);
         } else if (key == "ZONE") {
             if (headings.empty()) throw std::runtime_error("has a zone before its VARIABLES: is it Tecplot ASCII?");
             zones.push_back(described(std::make_shared<const Zone>(readZone(words, headings.size())), headings.size()));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/importer/readers/check_file.h"
+#include "volume/base/utf8.h"
 
 #include <algorithm>
 #include <bit>
@@ -72,29 +73,6 @@ private:
     void need(std::uint64_t count) const {
         if (count > left())
             throw std::runtime_error("ends within " + place + ": truncated at byte " + std::to_string(size_));
-    }
-    static bool isUtf8(const std::string& text) {
-        for (std::size_t i = 0; i < text.size(); ++i) {
-            const auto lead = static_cast<unsigned char>(text[i]);
-            const int more = lead < 0x80 ? 0 : lead >> 5 == 6 ? 1 : lead >> 4 == 14 ? 2 : lead >> 3 == 30 ? 3 : -1;
-            if (more < 0 || i + std::size_t(more) >= text.size()) return false;
-            for (int k = 0; k < more; ++k)
-                if ((static_cast<unsigned char>(text[++i]) & 0xC0) != 0x80) return false;
-        }
-        return true;
-    }
-    static std::string fromLatin(const std::string& text) {
-        std::string out;
-        for (const char c : text) {
-            const auto code = static_cast<unsigned char>(c);
-            if (code < 0x80) {
-                out += c;
-                continue;
-            }
-            out += static_cast<char>(0xC0 | code >> 6);
-            out += static_cast<char>(0x80 | (code & 0x3F));
-        }
-        return out;
     }
     std::ifstream in_;
     std::uint64_t size_, at_ = 0;
