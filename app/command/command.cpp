@@ -2,6 +2,9 @@
 
 #include "app/data/import_options.h"
 #include "app/data/open.h"
+#include "app/ui/ticks.h"
+#include "codec/archive/archive.h"
+#include "codec/container/json_text.h"
 #include "codec/remote/address.h"
 #include "volume/base/error.h"
 #include "volume/import/files/named_files.h"
@@ -131,14 +134,28 @@ std::optional<Launched> sharing(bool alone) {
     return alone ? std::nullopt : std::optional(launched());
 }
 
-std::string aboutText(const nlohmann::json& work) {
-    return work.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); // paths need not be UTF-8
+namespace {
+
+/// An archive on another machine, as it is now: another text once it has grown or been replaced.
+std::string remoteState(const std::string& address, const codec::RemoteOptions& options) {
+    return address + " " + std::to_string(codec::Archive(address, options).fingerprint()) + "\n";
+}
+
+} // namespace
+
+std::string aboutText(nlohmann::json work, const DataRef& data) {
+    std::vector<DataFile> files = data.files;
+    if (data.other) files.insert(files.end(), data.other->files.begin(), data.other->files.end());
+    for (const DataFile& file : files)
+        if (codec::isRemote(file.absolutePath)) work["remote"].push_back(remoteState(file.absolutePath, data.remote));
+    return jsonText(work);
 }
 
 std::string inputsOf(const std::vector<std::string>& inputs, const volume::ImportOptions& import) {
     std::string text;
     for (const std::string& argument : importArguments(import)) text += argument + "\n";
-    if (namesModel(inputs[0]) || codec::isRemote(inputs[0])) return text;
+    if (namesModel(inputs[0])) return text;
+    if (codec::isRemote(inputs[0])) return text + remoteState(inputs[0], {});
     const auto add = [&](const std::filesystem::path& path, const std::string& name) {
         std::error_code missing;
         if (!std::filesystem::is_regular_file(path, missing)) return; // a folder changes with each result written to it
@@ -155,6 +172,14 @@ std::string inputsOf(const std::vector<std::string>& inputs, const volume::Impor
             add(other, other.lexically_relative(folder).string());
     }
     return text;
+}
+
+double timeWithin(const volume::DatasetInfo& info, double time) {
+    for (const double end : {info.times.front(), info.times.back()})
+        if (formatNumber(time) == formatNumber(end)) return end;
+    if (time > info.times.front() && time < info.times.back()) return time;
+    throw Error("is not in " + formatNumber(info.times.front()) + " .. " + formatNumber(info.times.back()), "--time",
+                formatNumber(time));
 }
 
 void requireFolderOf(const std::string& file) {

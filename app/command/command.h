@@ -14,7 +14,11 @@ namespace CLI {
 class App;
 }
 namespace tessera::volume {
+struct DatasetInfo;
 struct ImportOptions;
+}
+namespace tessera::app {
+struct DataRef;
 }
 
 /// The command line. Each subcommand is one file of app/command with one add function; its callback does the work and
@@ -51,11 +55,14 @@ std::string byProcess(const std::optional<Launched>& started);
 /// Prints "3 of 9 pictures drawn by process 2 of 4"; nothing for a process that was started alone.
 void sayShare(std::size_t own, std::size_t all, const std::string& what, const std::optional<Launched>& started);
 
-/// What all processes that share a work must have alike, for SharedWork::about.
-std::string aboutText(const nlohmann::json& work);
+/// What all processes that share a work on these data must have alike, for SharedWork::about; asks other machines for
+/// the state of their archives.
+std::string aboutText(nlohmann::json work, const DataRef& data);
 /// What processes that pack these inputs must have alike: the files with all that they name, those that options name,
-/// size and time of change of each, and how they are read.
+/// size and time of change of each (of an archive on another machine its state), and how they are read.
 std::string inputsOf(const std::vector<std::string>& inputs, const volume::ImportOptions& import);
+/// A time asked for by --time. One that reads as the first or the last one is that. Throws Error for one beyond.
+double timeWithin(const volume::DatasetInfo& info, double time);
 /// Throws MachineError where the folder of a file to write does not exist.
 void requireFolderOf(const std::string& file);
 

@@ -180,8 +180,9 @@ void run(const CompareOptions& options) {
     const auto isMade = [&](std::size_t t, const std::string&) {
         return std::filesystem::exists(volume::fileOfTime(options.output, t));
     };
-    const codec::SharedResults done = codec::shareResults({options.output, aboutText(about), started, isMade},
-                                                          info.times.size(), figure, finish, progress.part(0.5, 1));
+    const codec::SharedResults done =
+        codec::shareResults({options.output, aboutText(about, opened.document.session.data), started, isMade},
+                            info.times.size(), figure, finish, progress.part(0.5, 1));
     sayShare(done.own, info.times.size(), "figures drawn", started);
 }
 

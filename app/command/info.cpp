@@ -9,6 +9,7 @@
 #include "app/user_files/import_memory.h"
 #include "codec/archive/archive.h"
 #include "codec/container/exactness.h"
+#include "codec/container/json_text.h"
 #include "codec/pack/error_bound.h"
 #include "codec/remote/address.h"
 #include "volume/base/byte_text.h"
@@ -154,16 +155,16 @@ void printSession(const std::string& path, bool asJson) {
     for (const DataFile& file : session.data.files) files.push_back(file.path);
     for (const auto& [key, view] : session.views) views.push_back(key);
     if (asJson) {
-        std::printf("%s\n", Json{{"kind", "session"},
-                                 {"file", path},
-                                 {"schema", session.schema},
-                                 {"title", session.title},
-                                 {"files", files},
-                                 {"model", session.data.model},
-                                 {"views", views},
-                                 {"layers", session.layers.size()},
-                                 {"messages", document.messages}}
-                                .dump(1)
+        std::printf("%s\n", jsonText({{"kind", "session"},
+                                      {"file", path},
+                                      {"schema", session.schema},
+                                      {"title", session.title},
+                                      {"files", files},
+                                      {"model", session.data.model},
+                                      {"views", views},
+                                      {"layers", session.layers.size()},
+                                      {"messages", document.messages}},
+                                     1)
                                 .c_str());
         return;
     }
@@ -288,7 +289,7 @@ void describeArchive(const InfoRequest& request) {
         Json document = archiveJson(archive);
         if (request.bricks) document["bricks"] = bricksJson(archive);
         if (request.merge) document["merged"] = layoutsJson(layouts, request.merging);
-        std::printf("%s\n", document.dump(1).c_str());
+        std::printf("%s\n", jsonText(document, 1).c_str());
         return;
     }
     printArchive(archive);

@@ -4,6 +4,7 @@
 #include "app/described/describe_cli.h"
 #include "app/described/describe_json.h"
 #include "app/queries/surface_query.h"
+#include "app/ui/ticks.h"
 #include "codec/blocks/share_results.h"
 #include "volume/base/error.h"
 #include "volume/export/time_files.h"
@@ -85,6 +86,7 @@ void settle(MeshRequest& request, const volume::BrickSource& source) {
     for (const std::string* name : {&request.mesh.channel, &request.mesh.colorBy})
         if (!(name == &request.mesh.colorBy && name->empty()) && !info.findChannel(*name))
             throw Error("there is no parameter \"" + *name + "\"; there are " + known, request.inputs[0]);
+    if (request.mesh.time) request.mesh.time = timeWithin(info, *request.mesh.time);
     if (request.mesh.level >= source.grid().levels)
         throw Error("there are " + std::to_string(source.grid().levels) + " levels", "--level",
                     std::to_string(request.mesh.level));
@@ -92,8 +94,8 @@ void settle(MeshRequest& request, const volume::BrickSource& source) {
 
 [[noreturn]] void throwEmpty(const MeshRequest& request, const volume::DatasetInfo& info) {
     const Range range = info.channelRange(info.channel(*info.findChannel(request.mesh.channel)));
-    throw Error("the surface is empty: values run from " + std::to_string(range.lo) + " to " + std::to_string(range.hi),
-                "--iso", std::to_string(*request.mesh.iso));
+    throw Error("the surface is empty: values run from " + formatNumber(range.lo) + " to " + formatNumber(range.hi),
+                "--iso", formatNumber(*request.mesh.iso));
 }
 
 std::string countsOf(std::size_t vertices, std::size_t triangles) {
@@ -128,7 +130,7 @@ void writeAllTimes(const MeshRequest& request, const DataRef& data, const volume
         if (collects) volume::writeCollection(request.output, info.times, files);
     };
     const std::optional<Launched> started = sharing(request.alone);
-    const std::string about = aboutText({{"data", toJson(data)}, {"options", toJson(request.mesh)}});
+    const std::string about = aboutText({{"data", toJson(data)}, {"options", toJson(request.mesh)}}, data);
     const codec::SharedResults done =
         codec::shareResults({request.output, about, started, isMade}, files.size(), compute, finish, progress);
     if (isEmpty(done.results)) throwEmpty(request, info);

@@ -9,6 +9,7 @@
 #include "codec/blocks/join.h"
 #include "codec/blocks/pack_blocks.h"
 #include "codec/container/exactness.h"
+#include "codec/container/json_text.h"
 #include "codec/pack/unpack.h"
 #include "codec/remote/address.h"
 #include "volume/base/byte_text.h"
@@ -56,7 +57,7 @@ Progress jsonProgress(const Progress& terminal) {
         last = fraction;
         nlohmann::json line{{"fraction", fraction}, {"what", what}};
         if (seconds) line["secondsLeft"] = *seconds;
-        std::printf("%s\n", line.dump().c_str());
+        std::printf("%s\n", jsonText(line).c_str());
         std::fflush(stdout);
     };
     return progress;
@@ -197,7 +198,7 @@ void runBlocks(const PackRequest& request, const Launched& started, const PackIn
     if (request.json || request.progressJson) {
         nlohmann::json report = reportOf(summary.own, request.output);
         report.update({{"blocks", summary.blocks}, {"ownBlocks", summary.packed}, {"rank", started.rank}});
-        std::printf("%s\n", report.dump(request.progressJson ? -1 : 1).c_str());
+        std::printf("%s\n", jsonText(report, request.progressJson ? -1 : 1).c_str());
         return;
     }
     sayNotes(summary.own);
@@ -213,7 +214,7 @@ void runBlocks(const PackRequest& request, const Launched& started, const PackIn
 /// Prints what was packed.
 void say(const PackRequest& request, const codec::PackSummary& summary) {
     if (request.json || request.progressJson) {
-        std::printf("%s\n", reportOf(summary, request.output).dump(request.progressJson ? -1 : 1).c_str());
+        std::printf("%s\n", jsonText(reportOf(summary, request.output), request.progressJson ? -1 : 1).c_str());
         return;
     }
     sayNotes(summary);

@@ -139,14 +139,10 @@ void addTimeOption(CLI::App& command, std::optional<double>& time) {
 }
 
 void showTime(Session& session, const volume::DatasetInfo& info, double time, const std::vector<std::string>& views) {
-    const std::vector<double>& times = info.times;
-    if (time < times.front() || time > times.back())
-        throw Error("is not in " + formatNumber(times.front()) + " .. " + formatNumber(times.back()), "--time",
-                    formatNumber(time));
-    session.time = time;
+    session.time = timeWithin(info, time);
     for (const std::string& name : views) {
         VolumeView* const view = volumeView(session, paneOf(session, name));
-        if (view && view->time) view->time = time;
+        if (view && view->time) view->time = session.time;
     }
 }
 

@@ -106,7 +106,7 @@ void run(const ReplayOptions& options) {
     };
     const auto finish = [&](const std::vector<std::string>&, const Progress& part) {
         if (!options.video.empty())
-            writeVideo((folder / "frame-%04d.png").string(), reel.framesPerSecond, options.video, part);
+            writeVideo((folder / "frame-%04d.png").string(), reel.count, reel.framesPerSecond, options.video, part);
     };
     Json about = aboutPicture(options.picture, opened);
     about.update({{"animation", animation}, {"fps", options.framesPerSecond}, {"video", options.video}});
@@ -114,8 +114,9 @@ void run(const ReplayOptions& options) {
     const auto isMade = [&](std::size_t, const std::string& name) {
         return name.empty() || std::filesystem::exists(folder / name);
     };
-    const codec::SharedResults done = codec::shareResults({options.output, aboutText(about), started, isMade},
-                                                          reel.count, draw, finish, progress.part(0.1, 1));
+    const codec::SharedResults done =
+        codec::shareResults({options.output, aboutText(about, opened.document.session.data), started, isMade},
+                            reel.count, draw, finish, progress.part(0.1, 1));
     sayShare(done.own, reel.count, "pictures drawn", started);
 }
 

@@ -8,6 +8,7 @@
 #include "app/ui/ticks.h"
 #include "app/user_files/import_memory.h"
 #include "codec/blocks/share_results.h"
+#include "codec/container/json_text.h"
 #include "volume/base/error.h"
 #include "volume/system/atomic_file.h"
 
@@ -61,14 +62,14 @@ void check(const StatsRequest& request) {
 }
 
 std::string jsonOf(const Question& question, const Answer& answer) {
-    return Json{{"kind", "statistics"},
-                {"data", question.info().name},
-                {"samples", stateOf(question)},
-                {"lengthUnit", question.info().lengthUnit},
-                {"timeUnit", question.info().timeUnit},
-                {"notes", answer.notes},
-                {"rows", answer.json}}
-               .dump(1) +
+    return jsonText({{"kind", "statistics"},
+                     {"data", question.info().name},
+                     {"samples", stateOf(question)},
+                     {"lengthUnit", question.info().lengthUnit},
+                     {"timeUnit", question.info().timeUnit},
+                     {"notes", answer.notes},
+                     {"rows", answer.json}},
+                    1) +
            "\n";
 }
 
@@ -121,7 +122,7 @@ void run(const StatsRequest& request) {
     };
     // Numbers that are only printed are given by every process.
     const std::optional<Launched> started = sharing(request.alone || request.output.empty());
-    const std::string about = aboutText({{"data", toJson(data)}, {"options", toJson(request.options)}});
+    const std::string about = aboutText({{"data", toJson(data)}, {"options", toJson(request.options)}}, data);
     const codec::SharedResults done =
         codec::shareResults({request.output, about, started}, question.times.size(), compute, finish, rest);
     if (done.last) print(request, question, answer);

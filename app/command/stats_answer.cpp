@@ -6,6 +6,7 @@
 #include "app/ui/ticks.h"
 #include "app/views/curves/section_data.h"
 #include "app/views/statistics/region_data.h"
+#include "codec/container/json_text.h"
 #include "volume/base/unit_product.h"
 #include "volume/flow/flow_channels.h"
 
@@ -183,7 +184,7 @@ Answer answerAt(const StatsRequest& request, const Question& question, double ti
 
 std::string textOf(const Answer& answer) {
     const Json json{{"text", answer.text}, {"csv", answer.csv}, {"rows", answer.json}, {"notes", answer.notes}};
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return jsonText(json);
 }
 
 void addAnswer(Answer& sum, const std::string& later) {

@@ -1,5 +1,6 @@
 #include "app/command/stats_question.h"
 
+#include "app/command/command.h"
 #include "app/pane/view_parts.h"
 #include "app/views/statistics/region_data.h"
 #include "volume/base/error.h"
@@ -66,7 +67,9 @@ Question questionOf(const StatsRequest& request, const Sources& sources) {
     }
     if (!options.along.empty() && options.along != "x" && options.along != "y" && options.along != "z")
         throw Error("needs x, y or z, not \"" + options.along + "\"", "--along");
-    out.times = options.allTimes ? info.times : std::vector<double>{options.time.value_or(info.times.back())};
+    out.times = options.allTimes
+                    ? info.times
+                    : std::vector<double>{options.time ? timeWithin(info, *options.time) : info.times.back()};
     return out;
 }
 

@@ -1,6 +1,7 @@
 #include "app/command/command.h"
 #include "app/data/import_options.h"
 #include "codec/archive/archive.h"
+#include "codec/container/json_text.h"
 #include "codec/remote/remote_file.h"
 #include "volume/base/byte_text.h"
 
@@ -38,15 +39,15 @@ void run(const VerifyRequest& request) {
     // A crash may damage one of the two headers; the data are intact then.
     const bool whole = report.damaged == (report.damagedHeader ? 1 : 0);
     if (json) {
-        std::printf("%s\n", nlohmann::json{{"file", path},
-                                           {"ok", whole},
-                                           {"bricks", report.bricks},
-                                           {"samples", report.samples},
-                                           {"bytes", archive.fileBytes()},
-                                           {"damaged", report.damaged},
-                                           {"damagedBricks", report.damagedBricks},
-                                           {"damage", report.damage}}
-                                .dump(1)
+        std::printf("%s\n", jsonText({{"file", path},
+                                      {"ok", whole},
+                                      {"bricks", report.bricks},
+                                      {"samples", report.samples},
+                                      {"bytes", archive.fileBytes()},
+                                      {"damaged", report.damaged},
+                                      {"damagedBricks", report.damagedBricks},
+                                      {"damage", report.damage}},
+                                     1)
                                 .c_str());
     } else {
         for (const std::string& line : report.damage) std::fprintf(stderr, "%s: %s\n", path.c_str(), line.c_str());

@@ -27,13 +27,15 @@ void requireFfmpeg() {
     if (!installed("ffmpeg")) throw MachineError("ffmpeg, which makes the video, is not installed");
 }
 
-void writeVideo(const std::string& pattern, double framesPerSecond, const std::string& path, const Progress& progress) {
+void writeVideo(const std::string& pattern, std::size_t count, double framesPerSecond, const std::string& path,
+                const Progress& progress) {
     requireFfmpeg();
     std::ostringstream rate;
     rate << framesPerSecond;
     try {
         volume::ChildProcess ffmpeg({"ffmpeg", "-nostdin", "-loglevel", "error", "-y", "-framerate", rate.str(), "-i",
-                                     pattern, "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", path});
+                                     pattern, "-frames:v", std::to_string(count), "-vf",
+                                     "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", path});
         std::array<std::byte, 256> text;
         while (ffmpeg.read(text, [&] { progress.advance(0.5, path); })) {
         }

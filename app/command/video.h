@@ -11,6 +11,7 @@ void requireFfmpeg();
 
 /// Joins numbered pictures (`pattern` as ffmpeg names them, e.g. "out/frame-%04d.png") to a video with ffmpeg; the
 /// ending of `path` says which kind. Sizes are padded to even ones. Throws MachineError when ffmpeg fails.
-void writeVideo(const std::string& pattern, double framesPerSecond, const std::string& path, const Progress& progress);
+void writeVideo(const std::string& pattern, std::size_t count, double framesPerSecond, const std::string& path,
+                const Progress& progress);
 
 } // namespace tessera::app

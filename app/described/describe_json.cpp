@@ -1,5 +1,6 @@
 #include "app/described/describe_json.h"
 
+#include "codec/container/json_text.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -25,7 +26,7 @@ void print(const Json& json, int indent, std::string& out) {
         for (const auto& [key, element] : json.items()) {
             if (!first) out += ",\n";
             first = false;
-            out += inner + Json(key).dump(-1, ' ', false, Json::error_handler_t::replace) + ": ";
+            out += inner + jsonText(key) + ": ";
             print(element, indent + 2, out);
         }
         out += "\n" + std::string(static_cast<std::size_t>(indent), ' ') + "}";
@@ -43,7 +44,7 @@ void print(const Json& json, int indent, std::string& out) {
         }
         out += line ? "]" : "\n" + std::string(static_cast<std::size_t>(indent), ' ') + "]";
     } else {
-        out += json.dump(-1, ' ', false, Json::error_handler_t::replace);
+        out += jsonText(json);
     }
 }
 

@@ -3,6 +3,7 @@
 #include "app/growing/held_signals.h"
 #include "codec/archive/archive.h"
 #include "volume/base/error.h"
+#include "volume/base/number_text.h"
 #include "volume/import/files/raw.h"
 #include "volume/system/part_file.h"
 
@@ -122,13 +123,14 @@ public:
         if (!request.append) return;
         const volume::DatasetInfo info = codec::Archive(request.archive.output).info();
         known_ = info.times.size();
-        last_ = info.times.back();
+        last_ = before_ = info.times.back();
     }
     void run();
 
 private:
     static GrowingRequest withArchive(const StreamRequest& request);
     std::optional<StatedFrame> next();
+    double countedTime() const;
     bool readInto(const fs::path& file);
     [[noreturn]] void endsEarly(std::size_t bytes, std::size_t of) const;
 
@@ -139,6 +141,7 @@ private:
     Input input_;
     std::size_t known_ = 0, read_ = 0; ///< times in the archive before, frames read
     std::optional<double> last_;       ///< time of the archive
+    std::optional<double> before_;     ///< its last time before this run
     std::optional<fs::path> first_;    ///< file of the frame that decided for the others
 };
 
@@ -176,10 +179,19 @@ bool Streaming::readInto(const fs::path& file) {
     return true;
 }
 
+/// The time of the next frame where it does not state one: it goes on after the last one by a step. Times that are
+/// multiples of the step stay so, without adding up errors.
+double Streaming::countedTime() const {
+    const double step = request_.timeStep;
+    if (!before_) return double(read_) * step;
+    const double steps = std::round(*before_ / step);
+    return steps * step == *before_ ? (steps + 1 + double(read_)) * step : *before_ + double(read_ + 1) * step;
+}
+
 /// The next frame that the archive lacks, in its file; none if the input has ended.
 std::optional<StatedFrame> Streaming::next() {
     for (;; ++read_) {
-        StatedFrame frame{read_, double(known_ + read_) * request_.timeStep};
+        StatedFrame frame{read_, countedTime()};
         if (request_.timesGiven) {
             std::array<char, sizeof(double)> bytes{};
             const std::size_t count = input_.read(bytes);
@@ -191,8 +203,8 @@ std::optional<StatedFrame> Streaming::next() {
         if (!readInto(file)) return std::nullopt;
         if (!request_.timesGiven || !last_ || frame.time > *last_) return frame;
         if (!request_.append || output_.series())
-            throw Error("time " + std::to_string(frame.time) + " of frame " + std::to_string(read_) +
-                            " is not after the last one, " + std::to_string(*last_),
+            throw Error("time " + exactText(frame.time) + " of frame " + std::to_string(read_) +
+                            " is not after the last one, " + exactText(*last_),
                         kInput);
         std::fprintf(stderr, "tessera: time %.10g of frame %zu is in the archive already\n", frame.time, read_);
         fs::remove(file);

@@ -1,6 +1,7 @@
 #include "app/growing/growing_output.h"
 
 #include "app/user_files/import_memory.h"
+#include "codec/container/json_text.h"
 #include "codec/pack/pack.h"
 #include "volume/base/byte_text.h"
 #include "volume/base/error.h"
@@ -120,7 +121,7 @@ void GrowingOutput::append(const std::string& path, const std::optional<StatedFr
                 line["frame"] = stated->number;
             else
                 line["file"] = path;
-            std::printf("%s\n", line.dump().c_str());
+            std::printf("%s\n", jsonText(line).c_str());
         } else {
             const std::string of = stated ? frameText(*stated) : std::filesystem::path(path).filename().string();
             std::printf("%s: time %.10g of %s appended (%s, %s, %.2f s)\n", request_.output.c_str(), times[t],

@@ -2,6 +2,7 @@
 
 #include "app/described/describe_json.h"
 #include "codec/archive/archive.h"
+#include "codec/container/json_text.h"
 #include "codec/remote/address.h"
 #include "volume/base/error.h"
 #include "volume/field/labels.h"
@@ -139,7 +140,7 @@ void saveImportMemory(const ImportMemory& memory, const std::string& path) {
     out["rename"] = memory.rename;
     out["lengths"] = memory.lengths;
     AtomicFile file(path);
-    file.write(out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    file.write(jsonText(out, 2) + "\n");
     file.commit();
 }
 

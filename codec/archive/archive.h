@@ -61,6 +61,8 @@ public:
     std::uint32_t version() const;
     /// Size of the archive in bytes; the file may be longer because of an append in progress or an interrupted one.
     std::uint64_t fileBytes() const;
+    /// A number that tells these contents from others: the checksum of the header, which holds those of all the rest.
+    std::uint64_t fingerprint() const;
     /// Number of commits.
     int commits() const;
     /// True when the file has been appended to, or replaced, since it was opened.

@@ -138,6 +138,9 @@ std::uint32_t Archive::version() const {
 std::uint64_t Archive::fileBytes() const {
     return impl_->header.header.fileSize;
 }
+std::uint64_t Archive::fingerprint() const {
+    return checksum(serialise(impl_->header.header));
+}
 int Archive::commits() const {
     return static_cast<int>(impl_->index.pages.size());
 }

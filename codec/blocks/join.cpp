@@ -20,16 +20,9 @@ PackOptions codingOf(const Archive& archive) {
     return options;
 }
 
-/// The channel of a parameter's first component.
-int channelOf(const volume::DatasetInfo& info, int parameter) {
-    const std::vector<volume::Channel> channels = info.channels();
-    const auto found = std::ranges::find(channels, parameter, &volume::Channel::parameter);
-    return int(found - channels.begin());
-}
-
 /// Whether a parameter has no sample at any time.
 bool holdsNothing(const Archive& archive, int parameter) {
-    const int channel = channelOf(archive.info(), parameter);
+    const int channel = archive.info().channelIndex(parameter, 0);
     for (int time = 0; time < int(archive.info().times.size()); ++time)
         for (std::size_t brick = 0; brick < archive.grid().brickCount(); ++brick)
             if (archive.stats({channel, time, 0, archive.grid().indexOf(brick)}).presentFraction > 0) return false;

@@ -3,6 +3,7 @@
 #include "codec/blocks/join.h"
 #include "codec/blocks/shared_job.h"
 #include "codec/blocks/shared_slabs.h"
+#include "codec/container/json_text.h"
 #include "codec/container/options_json.h"
 #include "codec/pack/frame_queue.h"
 #include "codec/pack/pack_grid.h"
@@ -59,16 +60,15 @@ std::string aboutJob(const volume::DatasetInfo& info, PackOptions options, const
                               {"components", parameter.components},
                               {"type", volume::name(parameter.type)}});
     const glm::ivec3 size = info.lattice.size;
-    return nlohmann::json{{"name", info.name},
-                          {"parameters", parameters},
-                          {"times", info.times},
-                          {"size", {size.x, size.y, size.z}},
-                          {"options", toJson(options)},
-                          {"blockTimes", blocks.times},
-                          {"byParameter", blocks.byParameter},
-                          {"bySlab", blocks.bySlab},
-                          {"inputs", blocks.inputs}}
-        .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return jsonText({{"name", info.name},
+                     {"parameters", parameters},
+                     {"times", info.times},
+                     {"size", {size.x, size.y, size.z}},
+                     {"options", toJson(options)},
+                     {"blockTimes", blocks.times},
+                     {"byParameter", blocks.byParameter},
+                     {"bySlab", blocks.bySlab},
+                     {"inputs", blocks.inputs}});
 }
 
 /// Ranges as text that keeps every bit, also of empty ones.

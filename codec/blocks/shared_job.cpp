@@ -63,7 +63,8 @@ SharedJob::SharedJob(const std::string& output, const std::string& about, const 
         const auto isOwn = [&] {
             return launched.count > 1 && contentOf(file(kComplete)) == launched.job && !isThere(own);
         };
-        if (auto alone = LockedFile::tryLock(file(kLock), LockedFile::Kind::Exclusive); alone && alone->hasName()) {
+        if (auto alone = LockedFile::tryLock(file(kLock), LockedFile::Kind::Exclusive);
+            alone && alone->isAt(file(kLock))) {
             if (complete() && !isOwn()) {
                 if (!remove(std::move(*alone))) throw MachineError("is complete, and cannot be removed", folder_);
                 continue;
@@ -72,7 +73,7 @@ SharedJob::SharedJob(const std::string& output, const std::string& about, const 
             removeScratch({});
         }
         inside_ = LockedFile::tryLock(file(kLock), LockedFile::Kind::Shared);
-        if (inside_ && inside_->hasName() && (!complete() || isOwn())) break;
+        if (inside_ && inside_->isAt(file(kLock)) && (!complete() || isOwn())) break;
         inside_.reset(); // somebody is removing it
         if (!isThere(folder_) && std::chrono::steady_clock::now() - begin > kLongest)
             throw MachineError(
@@ -98,7 +99,7 @@ SharedJob::~SharedJob() {
     if (!complete() && holdsWork()) return;
     try {
         auto alone = LockedFile::tryLock(file(kLock), LockedFile::Kind::Exclusive);
-        if (!alone || !alone->hasName() || (!complete() && holdsWork())) return;
+        if (!alone || !alone->isAt(file(kLock)) || (!complete() && holdsWork())) return;
         for (const std::string& ranks : namesIn(folder_, kRanks)) {
             const std::string job = ranks.substr(kRanks.size());
             const int count = std::atoi(contentOf(file(ranks)).c_str());

@@ -3,6 +3,8 @@
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
 #include "volume/base/error.h"
+#include "volume/base/number_text.h"
+#include "volume/base/utf8.h"
 #include "volume/field/slices.h"
 
 #include <algorithm>
@@ -59,8 +61,11 @@ template <class Work> int guarded(Work&& work) noexcept {
     }
 }
 
-std::string textOr(const char* text, const char* otherwise) {
-    return text != nullptr ? text : otherwise;
+/// A text of the caller. An archive holds UTF-8 only, so that another one would not be the same when it is continued.
+std::string textOr(const char* text, const char* otherwise, const std::string& path) {
+    const std::string given = text != nullptr ? text : otherwise;
+    if (!isUtf8(given)) throw Error("a name or a unit is not UTF-8: " + fromLatin(given), path);
+    return given;
 }
 
 volume::Lattice latticeOf(const tessera_grid& grid, const std::string& path) {
@@ -80,8 +85,8 @@ volume::Lattice latticeOf(const tessera_grid& grid, const std::string& path) {
 
 void addParameter(tessera_writer& writer, const tessera_parameter& given) {
     volume::Parameter parameter;
-    parameter.name = textOr(given.name, "");
-    parameter.unit = textOr(given.unit, "");
+    parameter.name = textOr(given.name, "", writer.path);
+    parameter.unit = textOr(given.unit, "", writer.path);
     parameter.components = given.components == 0 ? 1 : given.components;
     if (parameter.name.empty()) throw Error("a parameter has no name", writer.path);
     if (std::ranges::find(writer.info.parameters, parameter.name, &volume::Parameter::name) !=
@@ -97,7 +102,7 @@ void addParameter(tessera_writer& writer, const tessera_parameter& given) {
 
 PackOptions optionsOf(const tessera_grid& grid, const std::string& path) {
     if (!(grid.max_error >= 0 && grid.max_error < 1))
-        throw Error("max_error is " + std::to_string(grid.max_error) + ", not from 0 to below 1", path);
+        throw Error("max_error is " + exactText(grid.max_error) + ", not from 0 to below 1", path);
     if (!(grid.memory_mb >= 0)) throw Error("memory_mb must not be negative", path);
     if (grid.lattice != TESSERA_CC && grid.lattice != TESSERA_BCC)
         throw Error("the lattice is neither TESSERA_CC nor TESSERA_BCC", path);
@@ -137,9 +142,9 @@ std::unique_ptr<tessera_writer> opened(const char* path, const tessera_grid* gri
     volume::DatasetInfo& info = writer->info;
     info.lattice = latticeOf(*grid, path);
     info.bounds = {info.lattice.origin, info.lattice.position(info.lattice.size - 1)};
-    info.lengthUnit = textOr(grid->length_unit, "");
-    info.timeUnit = textOr(grid->time_unit, "s");
-    info.name = textOr(grid->name, "");
+    info.lengthUnit = textOr(grid->length_unit, "", path);
+    info.timeUnit = textOr(grid->time_unit, "s", path);
+    info.name = textOr(grid->name, "", path);
     if (info.name.empty()) info.name = std::filesystem::path(path).stem().string();
     for (int p = 0; p < count; ++p) addParameter(*writer, parameters[p]);
     writer->options = optionsOf(*grid, path);
@@ -162,7 +167,7 @@ Field fieldOf(const T* array, const volume::Parameter& parameter, int component,
         samples[i] = static_cast<float>(*from);
         if (std::isfinite(samples[i])) continue;
         if (std::isfinite(*from))
-            throw Error(std::to_string(*from) + " is too large for a float", path, parameter.name);
+            throw Error(exactText(double(*from)) + " is too large for a float", path, parameter.name);
         mask[i] = 0;
         gaps = true;
     }
@@ -175,8 +180,7 @@ void appendTime(tessera_writer* writer, double time, const void* const* arrays) 
     const std::string& path = writer->path;
     if (!std::isfinite(time)) throw Error("the time is not a finite number", path);
     if (writer->times > 0 && !(time > writer->lastTime))
-        throw Error("time " + std::to_string(time) + " is not after the last one, " + std::to_string(writer->lastTime),
-                    path);
+        throw Error("time " + exactText(time) + " is not after the last one, " + exactText(writer->lastTime), path);
     volume::Dataset data;
     data.info = writer->info;
     data.info.times = {time};

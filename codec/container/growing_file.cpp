@@ -1,6 +1,7 @@
 #include "codec/container/growing_file.h"
 
 #include "volume/base/error.h"
+#include "volume/system/locked_file.h"
 #include "volume/system/part_file.h"
 #include "volume/system/sync.h"
 
@@ -16,13 +17,23 @@ namespace tessera::codec {
 
 GrowingFile::GrowingFile(const std::string& path)
     : path_(replacedFile(path)), kind_(std::filesystem::exists(path_) ? Kind::Replacing : Kind::Fresh) {
+    if (std::filesystem::is_directory(path_)) throw Error("is a folder", path_);
+    lockReplaced();
     removeLeftParts(path_);
     const std::string temporary = partFileOf(path_);
-    file_ = std::fopen(temporary.c_str(), "wbe");
+    constexpr mode_t kMode = 0666; // less the umask
+    const int opened = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kMode);
+    file_ = opened < 0 ? nullptr : ::fdopen(opened, "r+b");
     if (!file_) fail();
-    temporary_ = temporary;
-    lock();
-    append(Bytes(kFirstChunk));
+    try {
+        lock(::fileno(file_)); // before anything is cut: another thread may be writing it
+        temporary_ = temporary;
+        if (::ftruncate(::fileno(file_), 0) != 0) fail();
+        append(Bytes(kFirstChunk));
+    } catch (...) {
+        giveUp();
+        throw;
+    }
 }
 
 GrowingFile::GrowingFile(const std::string& path, const Header& header)
@@ -30,7 +41,7 @@ GrowingFile::GrowingFile(const std::string& path, const Header& header)
     file_ = std::fopen(path.c_str(), "r+be");
     if (!file_) fail();
     try {
-        lock();
+        lock(::fileno(file_));
         Bytes head(kFirstChunk);
         const bool read = std::fread(head.data(), 1, head.size(), file_) == head.size();
         const std::uint64_t size = std::filesystem::file_size(path);
@@ -54,13 +65,19 @@ GrowingFile::GrowingFile(const std::string& path, const Header& header)
 }
 
 GrowingFile::~GrowingFile() {
+    giveUp();
+}
+
+void GrowingFile::giveUp() {
+    if (replaced_ >= 0) ::close(std::exchange(replaced_, -1));
     if (!file_) return;
     if (kind_ == Kind::Appending && std::fflush(file_) == 0)
         (void)!::ftruncate(::fileno(file_), static_cast<off_t>(committed_));
-    std::fclose(file_);
+    const bool own = kind_ == Kind::Fresh && temporary_.empty() && committed_ > 0 && leadsTo(path_, ::fileno(file_));
+    std::fclose(std::exchange(file_, nullptr));
     if (!temporary_.empty())
         std::remove(temporary_.c_str());
-    else if (kind_ == Kind::Fresh)
+    else if (own)
         std::remove(path_.c_str());
 }
 
@@ -68,10 +85,23 @@ void GrowingFile::fail() const {
     throw MachineError(std::string("cannot write: ") + std::strerror(errno), path_);
 }
 
-void GrowingFile::lock() {
-    if (::flock(::fileno(file_), LOCK_EX | LOCK_NB) == 0) return;
+void GrowingFile::lock(int descriptor) const {
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return;
     if (errno == EWOULDBLOCK) throw Error("another program is writing this archive", path_);
     // the file system does not support locks
+}
+
+/// Keeps others from writing to what lies at the path until it is replaced; throws if one does.
+void GrowingFile::lockReplaced() {
+    const int replaced = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+    if (replaced < 0) return; // there is nothing, or it cannot be read
+    try {
+        lock(replaced);
+    } catch (...) {
+        ::close(replaced);
+        throw;
+    }
+    replaced_ = replaced;
 }
 
 void GrowingFile::sync() {
@@ -101,6 +131,7 @@ void GrowingFile::commit(const Header& header) {
     if (kind_ == Kind::Replacing) return; // readers cannot see it under its temporary name
     writeHeaders(header);
     if (temporary_.empty()) return;
+    lockReplaced(); // of another program, since this one began
     if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail();
     temporary_.clear();
     syncFolderOf(path_);
@@ -113,6 +144,8 @@ void GrowingFile::finish() {
         temporary_.clear();
         kind_ = Kind::Appending; // it has its final name and is kept
         syncFolderOf(path_);
+    } else if (!leadsTo(path_, ::fileno(file_))) {
+        throw Error("has been moved, removed or replaced by another program while it was written", path_);
     }
     std::FILE* const file = std::exchange(file_, nullptr);
     if (std::fclose(file) != 0) fail();

@@ -2,6 +2,7 @@
 
 #include "codec/bytes/lzma.h"
 #include "codec/container/container.h"
+#include "codec/container/json_text.h"
 #include "codec/container/options_json.h"
 #include "volume/base/error.h"
 
@@ -223,7 +224,7 @@ std::string toJson(const Metadata& metadata) {
         document["data"]["quantities"].push_back(quantityJson(quantity));
     if (!metadata.resampled.empty()) document["resampled"] = resampledJson(metadata.resampled);
     if (metadata.alternating) document["sourceTimes"] = metadata.sourceTimes;
-    return document.dump(-1, ' ', false, json::error_handler_t::replace);
+    return jsonText(document);
 }
 
 Metadata metadataFromJson(std::string_view text, const std::string& file) {

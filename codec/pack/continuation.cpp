@@ -1,5 +1,6 @@
 #include "codec/pack/continuation.h"
 
+#include "volume/base/number_text.h"
 #include "volume/field/part_masks.h"
 #include "volume/field/quantities.h"
 #include "volume/resample/resample.h"
@@ -136,6 +137,17 @@ std::optional<volume::Dataset> withoutKnownLabels(const volume::Dataset& source,
     return volume::withParameters(source, further);
 }
 
+namespace {
+
+/// Values that have no name so far get theirs; the others keep it.
+void addLabels(const std::vector<volume::Label>& from, std::vector<volume::Label>& to) {
+    for (const volume::Label& label : from)
+        if (std::ranges::find(to, label.value, &volume::Label::value) == to.end()) to.push_back(label);
+    std::ranges::sort(to, {}, &volume::Label::value);
+}
+
+} // namespace
+
 Continuation continuationOf(const Archive& archive, Metadata& metadata) {
     const std::string& path = archive.path();
     const Metadata& old = archive.metadata();
@@ -174,12 +186,13 @@ Continuation continuationOf(const Archive& archive, Metadata& metadata) {
         if (!before) throw Error("the archive has no parameter " + parameter.name + " at its times so far", path);
         requireSame(*before, parameter, path);
         place.parameterOf.push_back(int(before - old.info.parameters.data()));
+        addLabels(parameter.labels, metadata.info.parameters[std::size_t(place.parameterOf.back())].labels);
     }
     for (const Parameter& parameter : old.info.parameters)
         if (!find(added, parameter.name)) throw Error("the data has no parameter " + parameter.name, path);
     if (!(added.times.front() > old.info.times.back()))
-        throw Error("the times to append begin at " + std::to_string(added.times.front()) +
-                        ", which is not after the last one of the archive, " + std::to_string(old.info.times.back()),
+        throw Error("the times to append begin at " + exactText(added.times.front()) +
+                        ", which is not after the last one of the archive, " + exactText(old.info.times.back()),
                     path);
     place.firstTime = old.info.times.size();
     metadata.info.times.insert(metadata.info.times.end(), added.times.begin(), added.times.end());

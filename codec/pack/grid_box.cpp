@@ -66,12 +66,7 @@ bool GridBoxes::bricksSuffice(int parameter, int level) const {
 Field GridBoxes::readBricks(int parameter, int component, int time, int level, const Lattice& box,
                             glm::ivec3 begin) const {
     const volume::BrickGrid& grid = archive_->grid();
-    const std::vector<volume::Channel> channels = archive_->info().channels();
-    const auto channel = int(std::ranges::find_if(channels,
-                                                  [&](const volume::Channel& each) {
-                                                      return each.parameter == parameter && each.component == component;
-                                                  }) -
-                             channels.begin());
+    const int channel = archive_->info().channelIndex(parameter, component);
     const glm::ivec3 end = begin + box.size;
     std::vector<glm::ivec3> touched;
     for (std::size_t number = 0; number < grid.brickCount(); ++number) {

@@ -20,6 +20,7 @@
 #include <cassert>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 
 namespace tessera::codec {
 
@@ -31,6 +32,15 @@ using volume::ScalarType;
 
 void check(const volume::DatasetInfo& source, const PackOptions& options) {
     if (source.parameters.empty() || source.times.empty()) throw Error("there is nothing to pack");
+    for (int axis = 0; axis < 3; ++axis) {
+        if (source.lattice.size[axis] < 1) throw Error("there are no samples to pack");
+        const double spacing = source.lattice.spacing[axis];
+        if (!(spacing > 0) || !std::isfinite(spacing)) throw Error("the spacing must be finite and greater than 0");
+        if (!std::isfinite(source.lattice.origin[axis])) throw Error("the origin must be finite");
+    }
+    if (!std::ranges::all_of(source.times, [](double time) { return std::isfinite(time); }) ||
+        std::ranges::adjacent_find(source.times, std::greater_equal<>{}) != source.times.end())
+        throw Error("the times must be finite and rise");
     if (!(options.maxError >= 0 && options.maxError < 1)) throw Error("the error bound must be from 0 to below 1");
     if (!(options.absError >= 0) || !(options.psnr >= 0)) throw Error("error bounds must not be negative");
     if (hasThreshold(options) && (options.psnr > 0 || options.sizeMb > 0))
@@ -352,6 +362,7 @@ PackSummary Packing::run(const Progress& progress) {
 PackSummary pack(volume::Dataset& source, const PackOptions& options, const std::string& output,
                  const Progress& progress, const PackedBefore& before, int slabLayers, SlabTeam* team) {
     const std::string path = replacedFile(output);
+    if (std::filesystem::is_directory(path)) throw Error("is a folder", path);
     const auto packing = [&](const PackOptions& with, const std::string& to) {
         return Packing(source, slabLayers, before, with, to, nullptr, team);
     };

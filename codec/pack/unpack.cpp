@@ -20,13 +20,6 @@ using volume::Lattice;
 using volume::LatticeKind;
 using volume::ScalarType;
 
-int channelOf(const volume::DatasetInfo& info, int parameter, int component) {
-    const auto channels = info.channels();
-    for (std::size_t c = 0; c < channels.size(); ++c)
-        if (channels[c].parameter == parameter && channels[c].component == component) return int(c);
-    throw Error("no such component");
-}
-
 /// One level of one sublattice as a field on its own CC lattice: coarse samples of BCC coincide with fine ones of their
 /// sublattice, so the two sublattices of a level do not form a BCC lattice.
 Field levelField(const volume::BrickSource& source, int channel, int time, int level, int sublattice) {
@@ -183,13 +176,13 @@ volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level, v
         if (level == 0)
             return volume::withoutParts(volume::resample(stored.read(parameter, component, time), target, cubic));
         const auto linear = categorical ? volume::ResampleFilter::Nearest : volume::ResampleFilter::Linear;
-        const int channel = channelOf(info, parameter, component);
+        const int channel = info.channelIndex(parameter, component);
         const int label = volume::labelOf(info, info.parameters[std::size_t(parameter)]);
         const auto of = [&](int sublattice) {
             Field field = levelField(*source, channel, time, level, sublattice);
             if (label >= 0)
                 field = volume::withParts(std::move(field),
-                                          levelField(*source, channelOf(info, label, 0), time, level, sublattice),
+                                          levelField(*source, info.channelIndex(label, 0), time, level, sublattice),
                                           info.parameters[std::size_t(parameter)].parts);
             return volume::resample(field, target, linear);
         };

@@ -1,6 +1,10 @@
 #include "codec/remote/fetch_queue.h"
 
+#include "volume/base/error.h"
+
 #include <algorithm>
+#include <string>
+#include <system_error>
 
 namespace tessera::codec {
 
@@ -46,15 +50,26 @@ std::vector<Reply> FetchQueue::fetch(std::span<const FileRange> ranges) {
     call.left = ranges.size();
     std::unique_lock lock(mutex_);
     if (ended_) throw Cancelled();
+    startThreads(jobs_.size() + ranges.size());
     for (std::size_t i = 0; i < ranges.size(); ++i) jobs_.push_back({ranges[i], &call, i});
-    while (idle_ < jobs_.size() && threads_.size() < connections_) {
-        threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
-        ++idle_;
-    }
     wanted_.notify_all();
     done_.wait(lock, [&] { return call.left == 0; });
     if (call.failure) std::rethrow_exception(call.failure);
     return std::move(call.replies);
+}
+
+/// Starts threads until there is one for each job, as far as connections suffice. If no more can be started, those that
+/// run do the work; throws MachineError if there is none.
+void FetchQueue::startThreads(std::size_t jobs) {
+    while (idle_ < jobs && threads_.size() < connections_) {
+        try {
+            threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
+        } catch (const std::system_error& error) {
+            if (threads_.empty()) throw MachineError(std::string("no thread can be started: ") + error.what());
+            return;
+        }
+        ++idle_;
+    }
 }
 
 void FetchQueue::work(const std::stop_token& stop) {

@@ -49,6 +49,7 @@ private:
         Call* call;
         std::size_t number; ///< of its reply
     };
+    void startThreads(std::size_t jobs);
     void work(const std::stop_token& stop);
     void end();
     Reply readPatiently(FileRange range, std::unique_ptr<Connection>& connection, const std::stop_token& stop);

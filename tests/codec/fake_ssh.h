@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <unistd.h>
 
@@ -14,7 +15,6 @@ namespace tessera::test {
 class FakeSsh {
 public:
     FakeSsh() {
-        std::filesystem::create_directories(folder);
         const std::filesystem::path program = folder / "ssh";
         std::ofstream(program) << "#!/bin/sh\nexec cat '" << (folder / "answers").string() << "'\n";
         std::filesystem::permissions(program, std::filesystem::perms::owner_all);
@@ -33,10 +33,16 @@ public:
             .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     }
 
-    const std::filesystem::path folder =
-        std::filesystem::temp_directory_path() / ("tessera_ssh_" + std::to_string(::getpid()));
+    const std::filesystem::path folder = newFolder();
 
 private:
+    /// A new folder that only this user can enter: a program in it is run.
+    static std::filesystem::path newFolder() {
+        std::string name = (std::filesystem::temp_directory_path() / "tessera-ssh-XXXXXX").string();
+        if (!::mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
+        return name;
+    }
+
     const std::string before_ = std::getenv("PATH") ? std::getenv("PATH") : "/usr/bin:/bin";
 };
 

@@ -9,9 +9,12 @@
 
 #include <csignal>
 #include <cstring>
+#include <filesystem>
+#include <functional>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <utility>
 
 namespace tessera::codec {
 namespace {
@@ -241,6 +244,90 @@ TEST(Growing, OneProgramWritesAtATime) {
     const Archive archive(path);
     append(second, path);
     EXPECT_THROW(ArchiveWriter(archive, archive.metadata()), Error); // has changed meanwhile
+}
+
+/// Packs four times, and calls `meanwhile` once: before the archive has its name, or after its first time.
+void packWhile(const std::string& path, bool named, const std::function<void()>& meanwhile) {
+    volume::Dataset made = makeDataset({24, 24, 24}, {{"x", ScalarType::F32, 1, Texture::Nasty, false, false}}, 4);
+    bool done = false;
+    const Progress progress{[&](double, const std::string&) {
+                                const bool begun =
+                                    named ? std::filesystem::exists(path)
+                                          : !std::filesystem::is_empty(std::filesystem::path(path).parent_path());
+                                if (!begun || std::exchange(done, true)) return;
+                                meanwhile();
+                            },
+                            {}};
+    PackOptions options;
+    options.lattice = StoredLattice::CC;
+    pack(made, options, path, progress);
+    EXPECT_TRUE(done);
+}
+
+TEST(Growing, AnArchiveThatIsBeingWrittenIsNotReplaced) {
+    const TemporaryFolder folder;
+    volume::Dataset other = makeDataset({9, 9, 9}, {{"x", ScalarType::U8, 1, Texture::Noise, false, false}}, 1);
+    for (const bool named : {false, true}) {
+        const std::string path = folder / (named ? "named.tsr" : "unnamed.tsr");
+        packWhile(path, named, [&] { EXPECT_THROW(pack(other, {}, path), Error); });
+        EXPECT_EQ(timesOf(path), 4u);
+        std::filesystem::remove(path);
+        EXPECT_EQ(folder.files(), 0u);
+    }
+    // One that is to be replaced is not written to either.
+    const std::string path = folder / "a.tsr";
+    pack(other, {}, path);
+    other.info.times = {1};
+    {
+        const GrowingFile replacing(path);
+        EXPECT_THROW(append(other, path), Error);
+    }
+    append(other, path);
+    EXPECT_EQ(timesOf(path), 2u);
+    EXPECT_EQ(folder.files(), 1u);
+}
+
+TEST(Growing, AnArchiveThatWasReplacedMeanwhileIsNotTakenForItsOwn) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.tsr", others = folder / "b.tsr";
+    volume::Dataset other = makeDataset({9, 9, 9}, {{"x", ScalarType::U8, 1, Texture::Noise, false, false}}, 1);
+    pack(other, {}, others);
+    const std::vector<char> bytes = readFile(others);
+    EXPECT_THROW(packWhile(path, true, [&] { std::filesystem::rename(others, path); }), Error); // as by mv
+    EXPECT_EQ(readFile(path), bytes);
+    EXPECT_EQ(folder.files(), 1u);
+    // Nor is it removed where packing fails.
+    std::filesystem::rename(path, others);
+    EXPECT_THROW(packWhile(path, true,
+                           [&] {
+                               std::filesystem::rename(others, path);
+                               throw Error("cancelled");
+                           }),
+                 Error);
+    EXPECT_EQ(readFile(path), bytes);
+    EXPECT_EQ(folder.files(), 1u);
+}
+
+TEST(Growing, LabelsOfLaterTimesGetTheirNames) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.tsr";
+    volume::Dataset made = makeDataset({9, 9, 9}, {{"region", ScalarType::U8, 1, Texture::Noise, false, true}}, 1);
+    std::vector<volume::Label>& labels = made.info.parameters[0].labels;
+    labels = {{1, "plate", "#112233"}, {9, "gas"}};
+    pack(made, {}, path);
+    made.info.times[0] += 1;
+    labels = {{1, "another name"}, {7, "membrane", "#445566"}};
+    append(made, path);
+    EXPECT_EQ(Archive(path).info().parameters[0].labels,
+              (std::vector<volume::Label>{{1, "plate", "#112233"}, {7, "membrane", "#445566"}, {9, "gas"}}));
+}
+
+TEST(Growing, AFolderIsNoArchive) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "a.tsr");
+    volume::Dataset made = makeDataset({9, 9, 9}, {{"x", ScalarType::U8, 1, Texture::Noise, false, false}}, 1);
+    made.read = [](int, int, int) -> volume::Field { throw std::logic_error("read before the path was looked at"); };
+    EXPECT_THROW(pack(made, {}, folder / "a.tsr"), Error);
 }
 
 TEST(Growing, WhatDoesNotContinueAnArchiveIsRefused) {

@@ -80,9 +80,11 @@ class Reading(unittest.TestCase):
         whole, vectors = T[:], U[:]
         for key in (0, -1, (1, 5), (slice(None), 10, 3, 4), (1, slice(10, 40)), (2, slice(60, 10, -7), 5),
                     (..., 3), (0, ..., slice(1, None, 3)), (slice(0, 3, 2), -1, slice(2, 9)), (0, slice(5, 5)),
-                    (1, 69, 12, 10)):
+                    (1, 69, 12, 10), (0, slice(None, None, 2), slice(None, None, 3)),
+                    (slice(0, 3, 2), slice(60, 10, -7), slice(1, None, 2), slice(None, None, 4))):
             same(T[key], whole[key], key)
-        for key in (1, (0, 3, 4, 5), (0, slice(3, 9), ..., 2), (..., slice(0, 2)), (2, 5, 6, 7, -1), (..., slice(None, None, -1))):
+        for key in (1, (0, 3, 4, 5), (0, slice(3, 9), ..., 2), (..., slice(0, 2)), (2, 5, 6, 7, -1), (..., slice(None, None, -1)),
+                    (0, slice(None, None, 2), ..., slice(0, 3, 2)), (1, slice(9, 3, -2), slice(1, 9, 3), 4, slice(None, None, -2))):
             same(U[key], vectors[key], key)
         for key in (3, (0, 70), (0, 0, 0, 0, 0), (..., ...)):
             with self.assertRaises(IndexError):
@@ -174,6 +176,9 @@ class Writing(unittest.TestCase):
     def test_wrong_arrays_are_refused_and_leave_no_file(self):
         for parameters, options in (({"T": self.T[0, 0]}, {}), ({"T": self.T, "U": self.U[:1]}, {}), ({}, {}),
                                     ({"T": self.T}, {"times": [2, 1]}), ({"T": self.T}, {"times": [1, 2, 3]}),
+                                    ({"T": self.T}, {"times": [0, np.nan]}), ({"T": self.T}, {"times": [0, np.inf]}),
+                                    ({"T": self.T}, {"spacing": (0, 1, 1)}), ({"T": self.T}, {"spacing": (1, 1, np.nan)}),
+                                    ({"T": self.T}, {"origin": (np.nan, 0, 0)}), ({"T": self.T[:, :0]}, {}),
                                     ({"T": self.T.astype(np.complex64)}, {}), ({"T": self.T[1].astype(np.int64)}, {}),
                                     ({"T": self.T}, {"quantities": {"U": ("V", [1])}})):
             with self.assertRaises(tessera.Error):

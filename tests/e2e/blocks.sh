@@ -34,10 +34,7 @@ check "without a bound" 0 "$tessera" pack run.json -o exact.tsr --lattice cc --b
 check "unpack that" 0 "$tessera" unpack exact.tsr -o exact.raw
 cmp run.raw exact.raw || fail "it is not lossless"
 
-for i in 0 1 2; do
-    env $(as first $i 3) "$tessera" pack run.json -o three.tsr "${options[@]}" >rank$i.txt 2>&1 &
-done
-wait
+ranks 0 first 3 "$tessera" pack run.json -o three.tsr "${options[@]}"
 cat rank?.txt
 [ "$(awk '/^[0-9]+ of 6 blocks packed by process [1-3] of 3/ { sum += $1 } END { print sum }' rank?.txt)" = 6 ] ||
     fail "the blocks are not shared"
@@ -68,10 +65,7 @@ EOF2
 check "by parameter" 0 "$tessera" pack single.json -o parameters.tsr --max-error 0.0001 --block-parameters
 say "2 of 2 blocks packed" out.txt
 check "a time alone" 0 "$tessera" pack single.json -o single.tsr --max-error 0.0001
-for i in 0 1; do
-    env $(as single $i 2) "$tessera" pack single.json -o both.tsr --max-error 0.0001 >rank$i.txt 2>&1 &
-done
-wait
+ranks 0 single 2 "$tessera" pack single.json -o both.tsr --max-error 0.0001
 cmp parameters.tsr both.tsr || fail "two processes make another archive of a single time"
 "$tessera" unpack single.tsr -o single-a.raw >/dev/null && "$tessera" unpack both.tsr -o single-b.raw >/dev/null
 cmp single-a.raw single-b.raw || fail "parameters packed apart are other samples"
@@ -80,16 +74,10 @@ check "one process, by parameter" 0 "$tessera" pack run.json -o parts.tsr "${opt
 # By slabs, all processes pack the same time together.
 slabs=(--max-error 0.0001 --brick-size 8)
 check "times of small bricks" 0 "$tessera" pack run.json -o slabs.tsr "${slabs[@]}" --block-times 1
-for i in 0 1 2; do
-    env $(as slabs $i 3) "$tessera" pack run.json -o three.tsr "${slabs[@]}" --block-slabs >rank$i.txt 2>&1 &
-done
-wait
+ranks 0 slabs 3 "$tessera" pack run.json -o three.tsr "${slabs[@]}" --block-slabs
 cat rank?.txt
 cmp slabs.tsr three.tsr || fail "slabs make another archive than whole times"
-for i in 0 1 2; do
-    env $(as idle $i 3) "$tessera" pack single.json -o idle.tsr "${slabs[@]}" --progress-json >rank$i.txt 2>&1 &
-done
-wait
+ranks 0 idle 3 "$tessera" pack single.json -o idle.tsr "${slabs[@]}" --progress-json
 "$tessera" pack single.json -o parts-of-one.tsr "${slabs[@]}" --block-parameters >/dev/null
 cmp parts-of-one.tsr idle.tsr || fail "three processes make another archive of a single time of two parameters"
 
@@ -103,15 +91,12 @@ EOF2
 check "too little memory" 2 "$tessera" pack long.json -o long.tsr --lattice cc --block-slabs --memory 12
 least=$(sed -n 's/.*needs about \([0-9]*\) MB.*/\1/p' err.txt)
 check "a long time at once" 0 "$tessera" pack long.json -o long.tsr --lattice cc --block-times 1 --json
-cp out.txt rank2.txt
-for i in 0 1; do
-    env $(as long $i 2) "$tessera" pack long.json -o long-slabs.tsr --lattice cc --memory "$least" --json >rank$i.txt 2>&1 &
-done
-wait
+cp out.txt whole.txt
+ranks 0 long 2 "$tessera" pack long.json -o long-slabs.tsr --lattice cc --memory "$least" --json
 cmp long.tsr long-slabs.tsr || fail "slabs within little memory make another archive"
 python3 - "$least" <<'EOF2' || fail "two processes by slabs take more memory than allowed"
 import json, sys
-both, all_ = [json.load(open(f"rank{i}.txt"))["peakMemory"] / 1e6 for i in (0, 1)], json.load(open("rank2.txt"))["peakMemory"] / 1e6
+both, all_ = [json.load(open(f"rank{i}.txt"))["peakMemory"] / 1e6 for i in (0, 1)], json.load(open("whole.txt"))["peakMemory"] / 1e6
 print("MB of each of two processes:", both, "of", sys.argv[1], "allowed; at once:", all_)
 sys.exit(not 0 < max(both) <= float(sys.argv[1]) < all_)
 EOF2

@@ -35,6 +35,19 @@ say() { # say TEXT FILE: the file must hold the text
         cat "$2"
     }
 }
+ranks() { # ranks STATUS JOB COUNT COMMAND...: by so many processes, each of which must end so; what they say is in rank*.txt
+    local status=$1 job=$2 count=$3 rank children=()
+    shift 3
+    rm -f rank*.txt
+    for rank in $(seq 0 $((count - 1))); do
+        env $(as "$job" "$rank" "$count") "$@" >"rank$rank.txt" 2>&1 &
+        children+=($!)
+    done
+    for rank in "${children[@]}"; do
+        wait "$rank"
+        [ $? = "$status" ] || fail "$*: a process does not end with $status: $(cat rank*.txt)"
+    done
+}
 as() { # as JOB RANK COUNT: what Open MPI says to a process in its environment
     echo "OMPI_COMM_WORLD_RANK=$2 OMPI_COMM_WORLD_SIZE=$3 OMPI_COMM_WORLD_LOCAL_SIZE=$3 PMIX_NAMESPACE=$1"
 }

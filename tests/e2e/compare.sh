@@ -86,4 +86,6 @@ PATH=$work/bin:$PATH replay --video out.mp4 --fps 2 --out more || die "replay to
 [ "$(cat out.mp4)" = video ] || die "no video"
 grep -q -- '-framerate 2 -i more/frame-%04d.png' arguments || die "ffmpeg got: $(cat arguments)"
 [ "$(ls more | wc -l)" = 5 ] || die "frames of the video: $(ls more)"
+# Pictures that lay there before, beyond the last one, are no part of it.
+grep -q -- '-frames:v 5 ' arguments || die "ffmpeg is not told how many frames: $(cat arguments)"
 finish

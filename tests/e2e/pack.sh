@@ -49,6 +49,16 @@ for p, parameter in enumerate(parameters):
     assert parameter["resampled"]["largest"] == max(apart) and abs(parameter["resampled"]["psnr"] - psnr) < 1e-6, (psnr, parameter)
 EOF
 
+# Names of files need not be UTF-8.
+odd=$'caf\xe9.tsr'
+check "pack to an odd name" 0 "$tessera" pack ramp.json -o "$odd" --json
+python3 -c 'import json; json.load(open("out.txt"))' || fail "no JSON: $(cat out.txt)"
+check "verify an odd name" 0 "$tessera" verify "$odd" --json
+say '"ok": true' out.txt
+mkdir folder.tsr
+check "pack to a folder" 2 "$tessera" pack ramp.json -o folder.tsr
+say "folder.tsr: is a folder" err.txt
+
 # Bricks that are alike, put together.
 check "pack small bricks" 0 "$tessera" pack ramp.json -o bricks.tsr --lattice cc --brick-size 4
 check "statistics of bricks" 0 "$tessera" info bricks.tsr --bricks --json

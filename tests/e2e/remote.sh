@@ -160,6 +160,22 @@ way damage=2
 check "wrong once" 0 "$tessera" verify $at/cell.tsr
 forget
 
+# Work that was killed does not go on with other data of the same address.
+cp served/cell.tsr served/run.tsr
+forget
+way delay=0.3
+"$tessera" pack $at/run.tsr -o shared.tsr --lattice cc --block-times 1 > out.txt 2>&1 &
+packing=$!
+for ((i = 0; i < 1000; ++i)); do [ -e shared.tsr.blocks/job.json ] && break; sleep 0.01; done
+kill -KILL $packing && wait $packing
+[ $? = 137 ] || fail "packing had ended before it was killed: $(cat out.txt)"
+way delay=0
+"$tessera" pack served/cell.tsr -o served/run.tsr --max-error 0.01 > /dev/null 2> err || die "pack"
+check "other data of the same address" 2 "$tessera" pack $at/run.tsr -o shared.tsr --lattice cc --block-times 1
+say "shared.tsr.blocks: belongs to other data or options" err.txt
+cp served/cell.tsr served/run.tsr
+check "the same data" 0 "$tessera" pack $at/run.tsr -o shared.tsr --lattice cc --block-times 1
+
 # A network that fails for a while, and for good.
 way busy=3
 check "busy" 0 "$tessera" info $at/cell.tsr

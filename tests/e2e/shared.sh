@@ -6,14 +6,9 @@ source "$2/tests/e2e/common.bash"
 "$tessera" generate fuel-cell -o cell.tsr --size 7x13x20 --times 9 >/dev/null 2>err || die "make data"
 
 together() { # together COUNT COMMAND...: by so many processes; what they say is in rank*.txt
-    local count=$1 job=$RANDOM rank children=()
+    local count=$1
     shift
-    rm -f rank*.txt
-    for rank in $(seq 0 $((count - 1))); do
-        env $(as "$job" "$rank" "$count") "$tessera" "$@" >"rank$rank.txt" 2>&1 &
-        children+=($!)
-    done
-    for rank in "${children[@]}"; do wait "$rank" || fail "$*: a process fails: $(cat rank*.txt)"; done
+    ranks 0 $RANDOM "$count" "$tessera" "$@"
     [ -z "$(ls -d ./*.blocks 2>/dev/null)" ] || fail "$*: $(ls -d ./*.blocks) is left"
 }
 shares() { # shares TOTAL WHAT: each process has said how much it did, in all TOTAL
@@ -90,8 +85,7 @@ for command in "stats cell.tsr --all-times -o nowhere/x.csv" "mesh cell.tsr --ch
 done
 # What is wrong with the options leaves nothing behind.
 together_fails() {
-    for i in 0 1; do env $(as wrong $i 2) "$tessera" "$@" >/dev/null 2>&1 & done
-    wait
+    ranks 2 wrong 2 "$tessera" "$@"
     [ -z "$(ls -d ./*.blocks 2>/dev/null)" ] || fail "$*: $(ls -d ./*.blocks) is left"
 }
 together_fails stats cell.tsr --all-times --balance O2 --velocity nothing -o wrong.csv

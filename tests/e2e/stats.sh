@@ -7,6 +7,14 @@ source "$2/tests/e2e/common.bash"
 "$tessera" stats cell.raw --time 0 > out.txt 2>err || die "statistics of regions"
 say 'Parameter' out.txt
 say 'numbers as computed' out.txt
+for command in "stats cell.raw" "stats cell.raw --balance O2" "stats cell.raw --along z --of T" "mesh cell.raw --channel T --iso 353.4 -o x.ply"; do
+    # shellcheck disable=SC2086
+    for time in 99 -7; do
+        check "$command at time $time" 2 "$tessera" $command --time $time
+        say "is not in 0 .. " err.txt
+    done
+done
+check "the last time, as info shows it" 0 "$tessera" stats cell.raw --time "$("$tessera" info cell.raw | sed -n 's/^  times .* to \([0-9.]*\).*/\1/p')"
 "$tessera" stats cell.raw --all-times -o regions.csv > /dev/null 2>err || die "regions over time"
 [ "$(cut -d, -f1 regions.csv | sort -u | wc -l)" -eq 4 ] || die "origin, head and two times: $(head -3 regions.csv)"
 "$tessera" stats cell.raw --along z --of O2,T --weight massflow -o along.csv > /dev/null 2>err || die "sections"

@@ -59,6 +59,12 @@ holds live.tsr "[0, 0.5, 1, 1.5, 2]" "[0, 1, 2, 3, 4]"
 python3 -c 'import json; l = [json.loads(x) for x in open("lines")]
 assert [(x["frame"], x["time"], x["times"]) for x in l] == [(0, 1.5, 4), (1, 2, 5)], l' || cat lines
 
+# Also where the archive does not begin at 0 or has another step.
+python3 solver.py 0,1 timed | "$tessera" pack - -o after.tsr --raw form.json --times-given "${exact[@]}" > lines || fail "times of its own"
+holds after.tsr "[0, 0.25]" "[0, 1]"
+python3 solver.py 2,3 | "$tessera" pack - --append -o after.tsr --raw form.json --time-step 1.5 > lines || fail "another step"
+holds after.tsr "[0, 0.25, 1.75, 3.25]" "[0, 1, 2, 3]"
+
 # Without --append it replaces; a file is read as a pipe is.
 python3 solver.py 7 > frames
 check "replaced" 0 "$tessera" pack - -o live.tsr --raw form.json "${exact[@]}" < frames

@@ -239,6 +239,17 @@ TEST_F(Export, ValuesInPlaceOfCodes) {
     EXPECT_EQ(bytes.substr(bytes.find("\n\n") + 2), std::string("\0\x7d\xff", 3));
 }
 
+TEST_F(Export, NrrdNeverChangesIntegersThatFloatsCannotHold) {
+    const std::string path = (folder_ / "out.nrrd").string();
+    constexpr int kExact = 1 << 24;
+    exportDataset(codes(ScalarType::I32, {kExact + 1, 1, 2}, 1, 0, false), {}, path); // without gaps they stay integers
+    std::filesystem::remove(path);
+    exportDataset(codes(ScalarType::I32, {kExact, 1, 2}, 1, 0, true), {}, path);
+    std::filesystem::remove(path);
+    EXPECT_THROW(exportDataset(codes(ScalarType::I32, {kExact + 1, 1, 2}, 1, 0, true), {}, path), Error);
+    EXPECT_FALSE(std::filesystem::exists(path));
+}
+
 TEST_F(Export, ComponentsThatLackOtherSamplesBecomeFloats) {
     // No number tells the absent sample from the present ones, and one array of flags cannot speak for three.
     const Dataset dataset = integerVector([](Field& field, int c, int) {

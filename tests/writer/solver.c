@@ -73,6 +73,8 @@ static int arguments(const char* path) {
     refused("no grid", tessera_writer_open(path, NULL, &T, 1) == NULL, "no grid");
     refused("no parameter", tessera_writer_open(path, &grid, NULL, 0) == NULL, "no parameter");
     refused_open(path, grid, (tessera_parameter){.name = NULL}, "has no name");
+    refused_open(path, grid, (tessera_parameter){.name = "T\xe9"}, "is not UTF-8: T\xc3\xa9");
+    refused_open(path, grid, (tessera_parameter){.name = "T", .unit = "\xb0" "C"}, "is not UTF-8: \xc2\xb0" "C");
     refused_open(path, grid, (tessera_parameter){.name = "p"}, "p: two parameters have this name");
     refused_open(path, grid, (tessera_parameter){.name = "U", .components = 2}, "U: has 2 components");
     refused_open(path, grid, (tessera_parameter){.name = "U", .type = 7}, "U: is neither TESSERA_FLOAT");
@@ -100,7 +102,7 @@ static int arguments(const char* path) {
     if (tessera_writer_times(writer, &last) != 0 || last != -7) refused("times", 0, "");
     if (tessera_writer_append(writer, 2.5, arrays) != 0) refused("the first time", 1, "\n");
     if (tessera_writer_error()[0] != '\0') refused("an old error", 1, "\n");
-    refused("the same time", tessera_writer_append(writer, 2.5, arrays) == 2, "2.500000 is not after the last one");
+    refused("the same time", tessera_writer_append(writer, 2.5, arrays) == 2, "2.5 is not after the last one");
     if (tessera_writer_times(writer, &last) != 1 || last != 2.5) refused("times", 0, "");
     tessera_writer_close(writer);
     tessera_writer_close(NULL);

@@ -1,6 +1,7 @@
 #include "volume/export/export.h"
 
 #include "volume/base/error.h"
+#include "volume/base/number_text.h"
 #include "volume/export/export_formats.h"
 
 #include <cmath>
@@ -17,6 +18,12 @@ std::vector<int> orAll(const std::vector<int>& chosen, std::size_t count) {
     std::vector<int> all(count);
     std::iota(all.begin(), all.end(), 0);
     return all;
+}
+
+bool holdsSame(const Field& a, const Field& b) {
+    for (std::size_t i = 0; i < a.count(); ++i)
+        if (b.present(i) && a.value(i) != b.value(i)) return false;
+    return true;
 }
 
 std::string writeNrrd(const Dataset& dataset, const ExportSelection& selection, const std::vector<int>& parameters,
@@ -43,7 +50,14 @@ std::string writeNrrd(const Dataset& dataset, const ExportSelection& selection, 
         for (std::size_t i = 0; i < squares.size(); ++i) sum[i] = static_cast<float>(std::sqrt(squares[i]));
     } else {
         field = dataset.read(channel.parameter, channel.component, times[0]);
-        if (field.mask || field.scale != 1 || field.offset != 0) field = asFloat(field);
+        if (field.mask || field.scale != 1 || field.offset != 0) {
+            const Field floats = asFloat(field);
+            if (field.mask && field.scale == 1 && field.offset == 0 && !holdsSame(floats, field))
+                throw Error(".nrrd marks absent samples as floats do, which cannot hold integers of " + channel.name +
+                                ": write .vti or .raw",
+                            path);
+            field = floats;
+        }
     }
     const Lattice& lattice = info.lattice;
     std::string head = "NRRD0004\n# " + channel.name + " " + channel.unit + "\n";

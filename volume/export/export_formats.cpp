@@ -4,14 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 namespace tessera::volume {
-
-std::string exactText(double value) {
-    return nlohmann::json(value).dump();
-}
 
 namespace {
 

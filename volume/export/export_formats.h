@@ -52,9 +52,6 @@ std::vector<std::uint8_t> presenceOf(const Field& field);
 
 void writeField(AtomicFile& file, const Field& field);
 
-/// Shortest text that reads back equal.
-std::string exactText(double value);
-
 /// A text as it stands in XML.
 std::string xmlText(const std::string& text);
 

@@ -1,4 +1,5 @@
 #include "volume/base/error.h"
+#include "volume/base/number_text.h"
 #include "volume/export/export_formats.h"
 #include "volume/export/time_files.h"
 #include "volume/field/labels.h"

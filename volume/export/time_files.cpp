@@ -1,5 +1,6 @@
 #include "volume/export/time_files.h"
 
+#include "volume/base/number_text.h"
 #include "volume/export/export_formats.h"
 #include "volume/system/atomic_file.h"
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tessera::volume {
 
@@ -54,6 +55,12 @@ std::optional<int> DatasetInfo::findChannel(std::string_view wanted) const {
     return std::nullopt;
 }
 
+int DatasetInfo::channelIndex(int parameter, int component) const {
+    int index = component;
+    for (int p = 0; p < parameter; ++p) index += channelCount(parameters[std::size_t(p)]);
+    return index;
+}
+
 Range DatasetInfo::channelRange(const Channel& channel) const {
     const auto& ranges = parameters[static_cast<std::size_t>(channel.parameter)].ranges;
     const auto component = static_cast<std::size_t>(channel.component);
@@ -66,6 +73,23 @@ int DatasetInfo::nearestTime(double time) const {
         if (std::abs(times[i] - time) < std::abs(times[static_cast<std::size_t>(best)] - time))
             best = static_cast<int>(i);
     return best;
+}
+
+Dataset withTimes(Dataset data, const std::vector<int>& times) {
+    const auto keep = [&](const std::vector<double>& values) {
+        std::vector<double> kept;
+        for (const int time : times)
+            kept.push_back(std::size_t(time) < values.size() ? values[std::size_t(time)]
+                                                             : std::numeric_limits<double>::quiet_NaN());
+        return kept;
+    };
+    data.info.times = keep(data.info.times);
+    for (Quantity& quantity : data.info.quantities) quantity.values = keep(quantity.values);
+    data.read =
+        data.read.through([times](const FrameReader& read, int parameter, int component, int time, SliceRange slices) {
+            return read(parameter, component, times[std::size_t(time)], slices);
+        });
+    return data;
 }
 
 } // namespace tessera::volume

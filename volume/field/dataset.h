@@ -82,6 +82,8 @@ struct DatasetInfo {
     Channel channel(int index) const;
     /// Index into channels() of a channel name; a vector's plain name means its magnitude.
     std::optional<int> findChannel(std::string_view wanted) const;
+    /// Index in channels() of a component, which the parameter must have.
+    int channelIndex(int parameter, int component) const;
     /// Physical range of a channel, {0, 1} while not known.
     Range channelRange(const Channel& channel) const;
     /// Index of the time nearest to `time`.
@@ -94,5 +96,8 @@ struct Dataset {
     DatasetInfo info;
     FrameReader read;
 };
+
+/// A data set at some of its times: ascending indices. A quantity that has no value there has NaN.
+Dataset withTimes(Dataset data, const std::vector<int>& times);
 
 } // namespace tessera::volume

@@ -61,21 +61,4 @@ void setQuantity(DatasetInfo& info, Quantity quantity) {
         info.quantities.push_back(std::move(quantity));
 }
 
-Dataset withTimes(Dataset data, const std::vector<int>& times) {
-    const auto keep = [&](const std::vector<double>& values) {
-        std::vector<double> kept;
-        for (const int time : times)
-            kept.push_back(std::size_t(time) < values.size() ? values[std::size_t(time)]
-                                                             : std::numeric_limits<double>::quiet_NaN());
-        return kept;
-    };
-    data.info.times = keep(data.info.times);
-    for (Quantity& quantity : data.info.quantities) quantity.values = keep(quantity.values);
-    data.read =
-        data.read.through([times](const FrameReader& read, int parameter, int component, int time, SliceRange slices) {
-            return read(parameter, component, times[std::size_t(time)], slices);
-        });
-    return data;
-}
-
 } // namespace tessera::volume

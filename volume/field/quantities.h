@@ -29,7 +29,4 @@ std::vector<Quantity> joined(const std::vector<Quantity>& old, std::size_t oldTi
 /// Adds a quantity, replacing one of the same name. Throws Error unless it has one value for each time.
 void setQuantity(DatasetInfo& info, Quantity quantity);
 
-/// A data set at some of its times: ascending indices. A quantity that has no value there has NaN.
-Dataset withTimes(Dataset data, const std::vector<int>& times);
-
 } // namespace tessera::volume

@@ -1,6 +1,7 @@
 #include "volume/import/growing_series.h"
 
 #include "volume/base/error.h"
+#include "volume/base/number_text.h"
 #include "volume/field/quantities.h"
 #include "volume/import/absent.h"
 #include "volume/import/opened_series.h"
@@ -73,9 +74,8 @@ Dataset timesAfter(Dataset data, double time, const std::string& path) {
         if (data.info.times[t] > time) later.push_back(int(t));
     if (later.size() == data.info.times.size()) return data;
     if (later.empty())
-        throw Error("its time, " + std::to_string(data.info.times.back()) + ", is not after the last one, " +
-                        std::to_string(time),
-                    path);
+        throw Error(
+            "its time, " + exactText(data.info.times.back()) + ", is not after the last one, " + exactText(time), path);
     return withTimes(std::move(data), later);
 }
 

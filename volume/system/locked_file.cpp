@@ -12,6 +12,13 @@
 
 namespace tessera {
 
+bool leadsTo(const std::string& path, int descriptor) {
+    struct stat named {};
+    struct stat open {};
+    return ::stat(path.c_str(), &named) == 0 && ::fstat(descriptor, &open) == 0 && named.st_dev == open.st_dev &&
+           named.st_ino == open.st_ino;
+}
+
 std::optional<LockedFile> LockedFile::tryLock(const std::string& path, Kind kind) {
     constexpr mode_t kMode = 0666; // less the umask
     const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kMode);
@@ -40,9 +47,8 @@ LockedFile::~LockedFile() {
     if (file_ >= 0) ::close(file_);
 }
 
-bool LockedFile::hasName() const {
-    struct stat about {};
-    return ::fstat(file_, &about) == 0 && about.st_nlink > 0;
+bool LockedFile::isAt(const std::string& path) const {
+    return leadsTo(path, file_);
 }
 
 } // namespace tessera

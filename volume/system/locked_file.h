@@ -6,6 +6,9 @@
 
 namespace tessera {
 
+/// Whether a path leads to an open file: others may have moved, removed or replaced it.
+bool leadsTo(const std::string& path, int descriptor);
+
 /// A lock on a file (flock), also between machines where the file system has such locks. It ends with the object or the
 /// process, however the process ends.
 class LockedFile {
@@ -21,8 +24,8 @@ public:
     LockedFile& operator=(LockedFile&& other) noexcept;
     ~LockedFile();
 
-    /// Whether the file still has a name: a lock on a file that has been removed keeps nobody out.
-    bool hasName() const;
+    /// Whether this path still leads to the file: a lock on one that has been moved or removed keeps nobody out.
+    bool isAt(const std::string& path) const;
 
 private:
     explicit LockedFile(int file) : file_(file) {}

@@ -137,7 +137,7 @@ class Parameter:
             if self.components > 1:
                 inner += (slice(None) if isinstance(key[4], slice) and len(picked[4]) == self.components and
                           picked[4].step == 1 else list(picked[4]),)
-            out = np.ma.stack([self.read(t, box=box)[inner] for t in picked[0]])
+            out = np.ma.stack([_picked(self.read(t, box=box), inner) for t in picked[0]])
         return out[tuple(slice(None) if isinstance(k, slice) else 0 for k in key)]
 
     def __array__(self, dtype=None):
@@ -196,7 +196,7 @@ def write(path, parameters, times=None, spacing=(1, 1, 1), origin=(0, 0, 0), *, 
         if each["samples"].shape[:4] != shape:
             raise Error(f"{path}: {each['name']} has the shape {each['samples'].shape[:4]}, {given[0]['name']} {shape}")
     times = [float(t) for t in (range(shape[0]) if times is None else times)]
-    if len(times) != shape[0] or any(a >= b for a, b in zip(times, times[1:])):
+    if len(times) != shape[0] or not np.isfinite(times).all() or any(a >= b for a, b in zip(times, times[1:])):
         raise Error(f"{path}: times must rise, one for each of the {shape[0]} of the arrays")
     quantities = [(key, unit, [float(v) for v in values]) for key, (unit, values) in (quantities or {}).items()]
     for key, _, values in quantities:
@@ -246,6 +246,13 @@ def _within(index, length, what):
 def _from_first(picked):
     """Where the members of a range lie in a box that begins with the least of them."""
     return [each - min(picked) for each in picked] if picked.step != 1 else slice(None)
+
+
+def _picked(values, along):
+    """Picks along each axis by itself; NumPy would take lists for several axes as positions of single samples."""
+    for axis, one in enumerate(along):
+        values = values[(slice(None),) * axis + (one,)]
+    return values
 
 
 def _joined(parts):
