@@ -220,7 +220,9 @@ void run(const DiffRequest& request) {
 
 void addDiffCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "diff", "Compare the values of two data sets, on the same grid or interpolated onto the grid of the first");
+        "diff",
+        "Compare the values of two data sets, on the same grid or interpolated onto the grid of the first; an archive "
+        "that was resampled from the grid of the other is unpacked to it");
     const auto request = std::make_shared<DiffRequest>();
     command->add_option("A", request->first, "Archive or data file")->required();
     command->add_option("B", request->second, "Archive or data file to subtract from it")->required();

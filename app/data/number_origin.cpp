@@ -58,6 +58,7 @@ std::string readFromText(const NumberOrigin& origin, const volume::DatasetInfo& 
                        : error.empty()         ? "resampled to " + origin.lattice + ", stored losslessly"
                                                : "resampled to " + origin.lattice + ", stored with an " + error;
     if (origin.mesh && onGrid && text != computed) text = "resampled, " + text;
+    if (origin.unpacked) text += ", unpacked to the grid of the source";
     if (origin.discarded) text += ", without bricks of little importance";
     return text;
 }

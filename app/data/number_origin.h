@@ -25,6 +25,7 @@ struct NumberOrigin {
     bool exact = true;      ///< every stored sample is what was packed
     double maxError = 0;    ///< else: bound on the error of a sample, relative to the largest range of its components
     double absError = 0;    ///< in the unit of the parameter; 0 = no such bound
+    bool unpacked = false;  ///< interpolated back to the grid that they were resampled from
     bool discarded = false; ///< bricks of little importance are left out
     bool alongTime = false; ///< time takes the place of an axis: read between times
     std::shared_ptr<const volume::BrickSource> cutFrom = {}; ///< then: the data in space that the plane is of

@@ -186,6 +186,23 @@ Sources openWhole(const DataRef& data, std::vector<std::string>& messages, const
     return {drawnOn(numbers, latticeOf(data.lattice)), numbers, std::move(origin)};
 }
 
+/// An archive that was resampled, on the grid of its source, as `tessera unpack` gives it, if that has samples where
+/// `onto` has them: so both are compared without interpolating again. Null otherwise, and where it has to be read in
+/// parts.
+std::shared_ptr<const volume::BrickSource> unpackedOnto(const volume::BrickSource& onto, const DataRef& data) {
+    if (!isArchive(data) || codec::isRemote(data.files[0].absolutePath)) return nullptr;
+    const auto archive = std::make_shared<const codec::Archive>(data.files[0].absolutePath, data.remote);
+    const bool onGridOfSource = archive->grid().lattice.kind == volume::LatticeKind::CC;
+    if ((onGridOfSource && !archive->metadata().alternating) || data.grids != ShownGrids::Both) return nullptr;
+    volume::Dataset dataset = codec::gridDataset(archive, 0);
+    if (4 * double(dataset.info.lattice.count() * sizeof(float)) > volume::availableMemory()) return nullptr;
+    std::vector<std::string> said; // when it was opened
+    const auto axis = axisOf(dataset.info, data, said);
+    auto source = volume::makeMemorySource(volume::onAxis(std::move(dataset), axis), onGrid());
+    if (!volume::samePlaces(*source, onto)) return nullptr;
+    return volume::withLabelNames(std::move(source), data.import.labels);
+}
+
 /// Adds the parameters of the second data set. Pictures use the second data on the lattice of pictures if its grid is
 /// that of the first, else as computed.
 Sources withOther(const Sources& whole, const Sources& other) {
@@ -198,8 +215,8 @@ Sources withOther(const Sources& whole, const Sources& other) {
     return {volume::withOther(whole.pictures, alike ? other.pictures : other.numbers), numbers, std::move(origin)};
 }
 
-/// Opens DataRef::other on the lattice of pictures.
-Sources openOther(const DataRef& data, std::vector<std::string>& messages, const Progress& progress) {
+/// DataRef::other as the data alone.
+DataRef otherAlone(const DataRef& data) {
     DataRef wanted;
     wanted.files = data.other->files;
     wanted.model = data.other->model;
@@ -209,15 +226,32 @@ Sources openOther(const DataRef& data, std::vector<std::string>& messages, const
     wanted.remote = data.remote;
     for (DataFile& file : wanted.files)
         if (file.absolutePath.empty()) file = describeFile(file.path);
-    return openWhole(wanted, messages, progress);
+    return wanted;
+}
+
+/// Opens DataRef::other on the lattice of pictures. Of two data sets on one grid, of which one was resampled, numbers
+/// are those of that grid; but where the first is an archive, only if pictures are drawn on the grid too.
+Sources openOther(const DataRef& data, Sources& whole, std::vector<std::string>& messages, const Progress& progress) {
+    const DataRef wanted = otherAlone(data);
+    Sources other = openWhole(wanted, messages, progress);
+    if (const auto unpacked = unpackedOnto(*whole.numbers, wanted)) {
+        other.numbers = unpacked;
+        other.origin.unpacked = true;
+    } else if (data.lattice == PictureLattice::Grid) {
+        if (const auto own = unpackedOnto(*other.numbers, data)) {
+            whole.numbers = whole.pictures = own;
+            whole.origin.unpacked = true;
+        }
+    }
+    return other;
 }
 
 Sources openStored(const DataRef& data, std::vector<std::string>& messages, const Progress& progress) {
     Sources whole = openWhole(data, messages, progress.part(0, data.other ? 0.5 : 1));
     if (data.other) {
-        const Sources other = openOther(data, messages, progress.part(0.5, 1));
         const std::string path = data.other->files.empty() ? std::string() : data.other->files.front().path;
         try {
+            const Sources other = openOther(data, whole, messages, progress.part(0.5, 1));
             const std::string how = volume::otherText(*whole.numbers, *other.numbers);
             whole = withOther(whole, other);
             messages.push_back((path.empty() ? other.numbers->info().name : fs::path(path).filename().string()) +

@@ -37,6 +37,33 @@ check "an unknown parameter" 2 "$tessera" diff coarse.raw fine.raw -p nothing
 say "nothing" err.txt
 check "no such file" 2 "$tessera" diff coarse.raw none.raw
 
+# An archive that was resampled and its source are compared on the grid of the source: what unpacking gives, either way round,
+# and what packing has said.
+check "a cell" 0 "$tessera" generate fuel-cell -o cell.vti --size 9x11x23 --times 1
+check "on BCC" 0 "$tessera" pack cell.vti -o bcc.tsr
+check "unpacked" 0 "$tessera" unpack bcc.tsr -o unpacked.vti
+rows() { sed -n '/^  [A-Z]/p' out.txt; } # numbers by parameter
+check "with what is unpacked" 0 "$tessera" diff cell.vti unpacked.vti
+rows >expected.txt
+grep -q "^  T " expected.txt || fail "no T in: $(cat out.txt)"
+check "with the archive" 0 "$tessera" diff cell.vti bcc.tsr
+cmp <(rows) expected.txt || fail "the archive differs otherwise from its source than what is unpacked of it: $(cat out.txt)"
+say "unpacked to the grid of the source, on the same grid" out.txt
+check "turned round" 0 "$tessera" diff bcc.tsr cell.vti
+say "unpacked to the grid of the source" out.txt
+rows >turned.txt
+check "info of the archive" 0 "$tessera" info bcc.tsr --json
+python3 - <<'PYTHON' || fail "the largest differences are not those that packing has said: $(cat expected.txt turned.txt)"
+import json
+said = {p["name"]: p["resampled"]["largest"] for p in json.load(open("out.txt"))["parameters"] if "resampled" in p}
+for file in ("expected.txt", "turned.txt"):
+    rows = {line.split()[0]: line.split() for line in open(file)}
+    assert rows["T"][-1] == "0", rows["T"]  # no sample in one only
+    for name in ("T", "O2", "H2O"):
+        row = rows[name]
+        assert abs(max(abs(float(row[2])), abs(float(row[5]))) / said[name] - 1) < 1e-3, (row, said[name])
+PYTHON
+
 check "an archive" 0 "$tessera" pack coarse.raw -o coarse.tsr --lattice cc --lossless
 check "T minus its first time" 0 "$tessera" unpack coarse.tsr --derive "dT [K] = T - at(T, first)" -p dT -o dT.raw
 python3 - <<'PYTHON' || fail "T minus its first time is another"

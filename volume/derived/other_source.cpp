@@ -44,13 +44,6 @@ bool sameSamples(const BrickGrid& a, const BrickGrid& b, double scale) {
            near(a.lattice.origin, b.lattice.origin * scale, a.lattice.spacing);
 }
 
-/// Whether two data sets have samples at the same positions, in any bricks.
-bool samePlaces(const BrickSource& source, const BrickSource& other) {
-    BrickGrid a = other.grid();
-    a.brickSize = source.grid().brickSize, a.levels = source.grid().levels, a.phase = source.grid().phase;
-    return sameSamples(a, source.grid(), lengthScale(source.info(), other.info()));
-}
-
 BrickSamples absentBrick(const BrickGrid& grid, const BrickKey& key) {
     BrickSamples out;
     out.size = grid.brickSamples(key.index, key.level);
@@ -147,8 +140,9 @@ public:
 private:
     void matchTimes() {
         const std::vector<double>&own = info_.times, &all = other_->info().times;
+        const std::string &unit = info_.timeUnit, &others = other_->info().timeUnit; // "": not stated, taken as equal
         if (all.size() > 1 && own.size() > 1 &&
-            (info_.timeUnit != other_->info().timeUnit || info_.timeName != other_->info().timeName))
+            ((unit != others && !unit.empty() && !others.empty()) || info_.timeName != other_->info().timeName))
             throw Error("times in " + info_.timeName + " [" + info_.timeUnit + "] and " + other_->info().timeName +
                         " [" + other_->info().timeUnit + "] cannot be compared");
         const double slack = 1e-9 * std::max(std::abs(all.front()), std::abs(all.back()));
@@ -257,6 +251,12 @@ std::shared_ptr<const BrickSource> besideOther(const BrickSource& source) {
     return with ? with->own() : nullptr;
 }
 
+bool samePlaces(const BrickSource& source, const BrickSource& other) {
+    BrickGrid a = other.grid();
+    a.brickSize = source.grid().brickSize, a.levels = source.grid().levels, a.phase = source.grid().phase;
+    return sameSamples(a, source.grid(), lengthScale(source.info(), other.info()));
+}
+
 std::string otherText(const BrickSource& source, const BrickSource& other) {
     std::string text =
         samePlaces(source, other) ? "on the same grid" : "interpolated onto the grid of " + source.info().name;
@@ -272,6 +272,10 @@ std::string otherText(const BrickSource& source, const BrickSource& other) {
     if (own.empty() != others.empty())
         text += (others.empty() ? ", its lengths" : ", lengths of " + source.info().name) + " taken in " + own +
                 others + ", as its file states no unit of length";
+    if (const std::string& unit = source.info().timeUnit, &ofOther = other.info().timeUnit;
+        unit.empty() != ofOther.empty() && source.info().times.size() > 1 && other.info().times.size() > 1)
+        text += (ofOther.empty() ? ", its times" : ", times of " + source.info().name) + " taken in " + unit + ofOther +
+                ", as its file states no unit of time";
     return text;
 }
 

@@ -49,9 +49,14 @@ std::shared_ptr<const BrickSource> otherOf(const BrickSource& source);
 /// The first data set of a source made by withOther.
 std::shared_ptr<const BrickSource> besideOther(const BrickSource& source);
 
+/// Whether two data sets have samples at the same positions, in any bricks. Throws Error when units of length cannot be
+/// converted.
+bool samePlaces(const BrickSource& source, const BrickSource& other);
+
 /// "interpolated onto the grid of A" or, where nothing is interpolated, "on the same grid", which parameters are
 /// converted before their difference is taken: ", p from bar to Pa", and where only one states a unit of length, what
-/// that of the other is taken to be: ", its lengths taken in mm, as its file states no unit of length".
+/// that of the other is taken to be: ", its lengths taken in mm, as its file states no unit of length". Units of time
+/// likewise.
 std::string otherText(const BrickSource& source, const BrickSource& other);
 
 /// The channel of the other data set with the same name; empty if there is none.
