@@ -173,15 +173,18 @@ std::vector<CompareVariant> fileVariants(const Session& session, const volume::D
     return variants;
 }
 
-std::string equalText(const DataRef& data, const volume::DatasetInfo& info, const std::string& channel) {
+bool isDifference(const DataRef& data, const volume::DatasetInfo& info, const std::string& channel) {
     const auto found = info.findChannel(channel);
-    if (!found) return {};
-    const volume::Channel own = info.channel(*found);
-    const std::string& name = info.parameters[std::size_t(own.parameter)].name;
-    const bool isDifference = std::ranges::any_of(data.derived, [&](const volume::DerivedParameter& derived) {
+    if (!found) return false;
+    const std::string& name = info.parameters[std::size_t(info.channel(*found).parameter)].name;
+    return std::ranges::any_of(data.derived, [&](const volume::DerivedParameter& derived) {
         return derived.name == name && std::holds_alternative<volume::DifferenceRecipe>(derived.recipe);
     });
-    if (!isDifference || !(info.channelRange(own) == Range{0, 0})) return {};
+}
+
+std::string equalText(const DataRef& data, const volume::DatasetInfo& info, const std::string& channel) {
+    if (!isDifference(data, info, channel)) return {};
+    if (!(info.channelRange(info.channel(*info.findChannel(channel))) == Range{0, 0})) return {};
     return channel + (volume::zeroIsOfAllSamples(info) ? " is 0 everywhere: nothing differs"
                                                        : " is 0 wherever it was looked at: nothing seems to differ");
 }

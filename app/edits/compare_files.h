@@ -29,6 +29,9 @@ void showOtherDifference(Session& session, const volume::DatasetInfo& info, cons
 /// compared channel, where it has been derived. None without other data.
 std::vector<CompareVariant> fileVariants(const Session& session, const volume::DatasetInfo& info);
 
+/// Whether a channel is a derived difference, to other data or to another time.
+bool isDifference(const DataRef& data, const volume::DatasetInfo& info, const std::string& channel);
+
 /// "T minus other is 0 everywhere: nothing differs" where a derived difference is that, "" for other channels.
 std::string equalText(const DataRef& data, const volume::DatasetInfo& info, const std::string& channel);
 

@@ -1,6 +1,7 @@
 #include "app/views/compare/compare_pictures.h"
 
 #include "app/data/open.h"
+#include "app/edits/compare_files.h"
 #include "codec/archive/archive.h"
 #include "codec/remote/address.h"
 #include "vis/transfer/transfer_function.h"
@@ -307,6 +308,17 @@ void ComparePictures::showDifferences(vis::TexturesIn where, double top, std::si
     }
 }
 
+namespace {
+
+/// Whether a picture shows how two data sets differ: it has no error beside one that shows their values.
+bool showsDifference(const ViewContext& context, const CompareCell& cell) {
+    const auto& source = cell.source(context);
+    if (!source || cell.session.layers.empty()) return false;
+    return isDifference(cell.session.data, source->info(), vis::shownChannel(cell.session.layers.front().technique));
+}
+
+} // namespace
+
 std::vector<CompareRow> ComparePictures::rows(const ViewContext& context, std::size_t reference) const {
     std::vector<CompareRow> out;
     for (std::size_t i = 0; i < cells_.size(); ++i) {
@@ -323,7 +335,9 @@ std::vector<CompareRow> ComparePictures::rows(const ViewContext& context, std::s
             row.storedBytes = double(archive->fileBytes());
         const bool known = cell.isMeasured() && reference < cells_.size() &&
                            cell.measured->query.reference == cells_[reference]->image;
-        row.measured = known && i != reference && cell.failure.empty();
+        const bool comparable = i != reference && reference < cells_.size() &&
+                                showsDifference(context, cell) == showsDifference(context, *cells_[reference]);
+        row.measured = known && comparable && cell.failure.empty();
         if (row.measured) {
             const vis::ImageDifference& of = cell.measured->result.of;
             row.maximum = of.maximum;
@@ -331,7 +345,7 @@ std::vector<CompareRow> ComparePictures::rows(const ViewContext& context, std::s
             row.psnr = of.psnr;
             row.ssim = of.ssim;
         }
-        if (i != reference && reference < cells_.size()) {
+        if (comparable) {
             const auto& wanted = cells_[reference]->source(context);
             if (cell.samplesOf.own == cell.source(context) && cell.samplesOf.reference == wanted && wanted)
                 row.data = cell.samples;
