@@ -97,6 +97,7 @@ struct CompareOptions {
 void check(const CompareOptions& options) {
     pictureRequest(options.picture, Session{});
     if (options.allTimes && options.time) throw Error("with --all-times there is no single time", {}, "--time");
+    requirePictureEnding(options.output);
     for (const std::string& path : {options.output, options.csv}) {
         if (!path.empty()) requireFolderOf(path);
     }

@@ -247,6 +247,7 @@ bool joins(const PackRequest& request) {
 }
 
 void run(PackRequest request) {
+    if (!codec::namesArchive(request.output)) throw Error("the name of an archive ends with .tsr", request.output);
     const bool whole = !request.append && !request.follows && !isStream(request);
     const char* const blocks = request.blockTimes        ? "--block-times"
                                : request.blockParameters ? "--block-parameters"
@@ -270,6 +271,16 @@ void run(PackRequest request) {
     say(request, request.append
                      ? codec::append(input.data, request.output, request.options.memoryMb, rest, input.before)
                      : codec::pack(input.data, request.options, request.output, rest, input.before));
+}
+
+/// Throws where samples are asked for bit for bit, and an error bound too.
+void refuseContradiction(const CLI::App& command, const codec::PackOptions& options) {
+    const CLI::Option& lossless = *command.get_option("--lossless");
+    if (lossless.count() == 0 || !lossless.as<bool>()) return;
+    if (options.maxError > 0 || options.absError > 0 || options.psnr > 0 || options.sizeMb > 0)
+        throw Error("contradicts a bound on the error or the size (--max-error, --abs-error, --psnr, --target-size, or "
+                    "that of a preset)",
+                    {}, "--lossless");
 }
 
 void addFollowOptions(CLI::App& command, PackRequest& request) {
@@ -364,7 +375,10 @@ void addPackCommand(CLI::App& app) {
     addBlocksOption(*command, *request);
     addDescribed(*command, request->options);
     addImportOptions(*command, request->import);
-    command->callback([request] { run(*request); });
+    command->callback([request, command] {
+        refuseContradiction(*command, request->options);
+        run(*request);
+    });
 }
 
 void addConvertCommand(CLI::App& app) {
@@ -381,6 +395,7 @@ void addConvertCommand(CLI::App& app) {
     addDescribed(*command, request->options);
     command->callback([request, command] {
         if (!codec::namesArchive(request->inputs[0])) throw Error("not an archive (.tsr)", request->inputs[0]);
+        refuseContradiction(*command, request->options);
         const CLI::Option& preset = *command->get_option("--preset");
         request->keepsLattice = command->count("--lattice") == 0 &&
                                 (preset.count() == 0 || !codec::PackOptions::presetHasLattice(preset.results().back()));

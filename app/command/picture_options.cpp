@@ -1,6 +1,7 @@
 #include "app/command/picture_options.h"
 
 #include "app/data/apply_layout.h"
+#include "app/data/format.h"
 #include "app/data/import_options.h"
 #include "app/data/library.h"
 #include "app/described/describe_cli.h"
@@ -222,6 +223,11 @@ PictureRequest pictureRequest(const PictureOptions& options, const Session& sess
     }
     if (request.panels.size() == 1) request.pane = std::exchange(request.panels, {}).front();
     return request;
+}
+
+void requirePictureEnding(const std::string& path) {
+    if (!hasEnding(path, ".png") && !hasEnding(path, ".svg") && !hasEnding(path, ".pdf"))
+        throw Error("pictures are written as .png, .svg or .pdf", path);
 }
 
 Json aboutPicture(const PictureOptions& options, const Opened& opened) {

@@ -50,6 +50,9 @@ std::vector<std::string> viewsOf(const PictureOptions& options);
 /// The pane with this key, or the first view of this kind; "" if there is none.
 std::string paneOf(const Session& session, const std::string& view);
 
+/// Throws Error unless a path ends like a picture: .png, .svg or .pdf.
+void requirePictureEnding(const std::string& path);
+
 /// What is drawn, as SharedWork::about needs it: the session with its data, and the options of its pictures.
 Json aboutPicture(const PictureOptions& options, const Opened& opened);
 

@@ -44,6 +44,7 @@ void addRenderCommand(CLI::App& app) {
         const std::string ending = textEnding(options->output);
         if (ending == "csv" && viewsOf(options->picture).size() != 1)
             throw Error("a table is of one view: name it with --view", options->output);
+        if (ending != "csv") requirePictureEnding(options->output);
         requireFolderOf(options->output);
         Opened opened = openForPicture(options->picture, progress);
         Session& session = opened.document.session;

@@ -3,6 +3,7 @@
 #include "app/drawing/line_pieces.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/ticks.h"
+#include "app/ui/time_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -197,12 +198,15 @@ std::string csvNumber(double value) {
 }
 
 void exportMenu(ViewContext& context, ToolRow& tools, const std::string& title,
-                std::function<VectorPage(const Progress&)> figure, std::function<std::string(const Progress&)> csv) {
+                std::function<VectorPage(const Progress&)> figure, std::function<std::string(const Progress&)> csv,
+                bool atOneTime) {
     std::string name = title; // as a file
     std::replace(name.begin(), name.end(), '/', '_');
     const auto described = [&]() -> ViewExport { // tables and pictures state the origin of their numbers
         if (!context.numbers) return {name, figure, csv};
-        const std::string origin = originText(context.origin, context.numbers->info());
+        const volume::DatasetInfo& info = context.numbers->info();
+        std::string origin = originText(context.origin, info);
+        if (atOneTime && info.times.size() > 1) origin += ", at " + timeText(info, context.session.time);
         ViewExport made{name, {}, {}};
         if (csv)
             made.csv = [csv, origin](const Progress& progress) {

@@ -71,8 +71,10 @@ VectorPage drawingOf(const std::vector<FigurePanel>& panels, int columns);
 /// A number for CSV, empty where it is not finite.
 std::string csvNumber(double value);
 
-/// A tool whose menu exports what a view shows: its picture, vector graphics, a table.
+/// A tool whose menu exports what a view shows: its picture, vector graphics, a table. `atOneTime`: it shows the time
+/// of the session alone, which tables then state.
 void exportMenu(ViewContext& context, ToolRow& tools, const std::string& name,
-                std::function<VectorPage(const Progress&)> figure, std::function<std::string(const Progress&)> csv);
+                std::function<VectorPage(const Progress&)> figure, std::function<std::string(const Progress&)> csv,
+                bool atOneTime = true);
 
 } // namespace tessera::app

@@ -86,6 +86,7 @@ Archive::Archive(const std::string& path, const RemoteOptions& remote) {
     impl.metadata =
         parseMetadata(checkedPart(*impl.bytes, header.metadata, path, "the metadata").bytes(), header.features, path);
     impl.metadata.info.remote = isRemote(path);
+    if (impl.metadata.info.name.empty()) impl.metadata.info.name = std::filesystem::path(path).stem().string();
     impl.channels = impl.metadata.info.channels();
     impl.components = componentCount(impl.metadata.info);
     const std::uint64_t bricks = checkedBrickCount(impl.metadata.grid, path);

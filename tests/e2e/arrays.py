@@ -86,7 +86,7 @@ class Reading(unittest.TestCase):
         for key in (1, (0, 3, 4, 5), (0, slice(3, 9), ..., 2), (..., slice(0, 2)), (2, 5, 6, 7, -1), (..., slice(None, None, -1)),
                     (0, slice(None, None, 2), ..., slice(0, 3, 2)), (1, slice(9, 3, -2), slice(1, 9, 3), 4, slice(None, None, -2))):
             same(U[key], vectors[key], key)
-        for key in (3, (0, 70), (0, 0, 0, 0, 0), (..., ...)):
+        for key in (3, (0, 70), (0, 0, 0, 0, 0), (..., ...), np.array([0, 1]), [0, 1], "x", 1.5):
             with self.assertRaises(IndexError):
                 T[key]
 
@@ -133,6 +133,7 @@ class Writing(unittest.TestCase):
         self.assertEqual((back["T"].unit, back.length_unit, back.name, back.lossless), ("K", "mm", "made", True))
         tessera.write("plain.tsr", {"T": self.T})
         self.assertEqual(tessera.open("plain.tsr").length_unit, "")  # not stated
+        self.assertEqual(tessera.open("plain.tsr").name, "plain")
         self.assertEqual(list(back.quantities["voltage"]), [0.7, 0.5])
         self.assertEqual(back.quantity_units["voltage"], "V")
         self.assertEqual(back["region"].labels, {1: "air", 2: "fuel"})
@@ -178,13 +179,17 @@ class Writing(unittest.TestCase):
                                     ({"T": self.T}, {"times": [2, 1]}), ({"T": self.T}, {"times": [1, 2, 3]}),
                                     ({"T": self.T}, {"times": [0, np.nan]}), ({"T": self.T}, {"times": [0, np.inf]}),
                                     ({"T": self.T}, {"spacing": (0, 1, 1)}), ({"T": self.T}, {"spacing": (1, 1, np.nan)}),
-                                    ({"T": self.T}, {"origin": (np.nan, 0, 0)}), ({"T": self.T[:, :0]}, {}),
+                                    ({"T": self.T}, {"spacing": (1, 1)}), ({5: self.T}, {}), ({"": self.T}, {}),
+                                    ({"T": self.T}, {"units": "K"}), ({"T": self.T}, {"units": {"X": "K"}}),
+                                    ({"T": self.T}, {"labels": {"X": {1: "a"}}}), ({"T": self.T}, {"origin": (np.nan, 0, 0)}), ({"T": self.T[:, :0]}, {}),
                                     ({"T": self.T.astype(np.complex64)}, {}), ({"T": self.T[1].astype(np.int64)}, {}),
                                     ({"T": self.T}, {"quantities": {"U": ("V", [1])}})):
             with self.assertRaises(tessera.Error):
                 tessera.write("wrong.tsr", parameters, **options)
             with self.assertRaises(tessera.Error):
                 tessera.open("wrong.tsr")
+        with self.assertRaisesRegex(tessera.Error, "ends with .tsr"):
+            tessera.write("wrong.vti", {"T": self.T})
 
 
 class Xarray(unittest.TestCase):

@@ -49,6 +49,16 @@ for p, parameter in enumerate(parameters):
     assert parameter["resampled"]["largest"] == max(apart) and abs(parameter["resampled"]["psnr"] - psnr) < 1e-6, (psnr, parameter)
 EOF
 
+# What contradicts itself, and names under which nobody could open it.
+for bound in "--max-error 0.01" "--psnr 60" "--preset visual"; do
+    # shellcheck disable=SC2086
+    check "lossless and $bound" 2 "$tessera" pack ramp.json -o no.tsr --lossless $bound
+    say "--lossless: contradicts" err.txt
+done
+check "another ending" 2 "$tessera" pack ramp.json -o no.vti
+say "ends with .tsr" err.txt
+[ -z "$(ls no.* 2>/dev/null)" ] || fail "written: $(ls no.*)"
+
 # Names of files need not be UTF-8.
 odd=$'caf\xe9.tsr'
 check "pack to an odd name" 0 "$tessera" pack ramp.json -o "$odd" --json

@@ -166,7 +166,7 @@ void drawToolbar(ViewContext& context, CurvesCache& cache, const std::shared_ptr
         exportMenu(
             context, tools, "curves",
             [curves, time = context.session.time](const Progress&) { return curvesDrawing(*curves, time); },
-            [curves](const Progress&) { return curvesCsv(*curves); });
+            [curves](const Progress&) { return curvesCsv(*curves); }, false);
     }
 }
 

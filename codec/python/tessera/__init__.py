@@ -152,9 +152,10 @@ class Parameter:
     def _full(self, key):
         """The key with one entry for each axis."""
         key = key if isinstance(key, tuple) else (key,)
-        if sum(k is Ellipsis for k in key) > 1 or len(key) - (Ellipsis in key) > self.ndim:
+        dots = [i for i, k in enumerate(key) if k is Ellipsis]  # not `in`, since arrays have no single ==
+        if len(dots) > 1 or len(key) - len(dots) > self.ndim:
             raise IndexError(f"{self.name} has {self.ndim} axes")
-        at = key.index(Ellipsis) if Ellipsis in key else len(key)
+        at = dots[0] if dots else len(key)
         rest = tuple(k for k in key[at:] if k is not Ellipsis)
         return key[:at] + (slice(None),) * (self.ndim - at - len(rest)) + rest
 
@@ -183,6 +184,19 @@ def write(path, parameters, times=None, spacing=(1, 1, 1), origin=(0, 0, 0), *, 
     max_error: 0 stores every sample exactly; else the largest error of a sample, relative to the parameter's range.
     options: others of `tessera pack`, by their keys (threshold={...}, brickSize=32, ...).
     """
+    if not os.fspath(path).endswith(".tsr"):
+        raise Error(f"{path}: the name of an archive ends with .tsr")
+    for given, what in ((parameters, "parameters"), (units or {}, "units"), (labels or {}, "labels")):
+        if not isinstance(given, dict) and not hasattr(given, "items"):
+            raise Error(f"{path}: {what} is no dictionary by the names of parameters")
+        for key in given:
+            if not isinstance(key, str) or not key:
+                raise Error(f"{path}: {what}: {key!r} is no name of a parameter")
+            if key not in parameters:
+                raise Error(f"{path}: {what}: there is no parameter {key!r}")
+    for given, what in ((spacing, "spacing"), (origin, "origin")):
+        if np.shape(given) != (3,):
+            raise Error(f"{path}: {what} is {given!r}, not three numbers (x, y, z)")
     units, labels = units or {}, labels or {}
     given = []
     for key, values in parameters.items():
@@ -237,7 +251,11 @@ def _samples(name, values, times):
 
 def _within(index, length, what):
     """An index counted from the start; negative ones count from the end."""
-    at = operator.index(index)
+    try:
+        at = operator.index(index)
+    except TypeError:
+        raise IndexError(f"{what} {index!r} is neither a whole number nor a slice; lists and arrays of indices are not "
+                         "taken: read first, then pick") from None
     if not -length <= at < length:
         raise IndexError(f"{what} {at} of {length}")
     return at + length if at < 0 else at
