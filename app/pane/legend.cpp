@@ -25,8 +25,12 @@ float drawSwatch(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& e
                        toColor(entry.color));
     draw.AddRect({min.x, min.y + em() * 0.25f}, {min.x + size, min.y + em() * 0.25f + size}, colors.frame);
     const double resolution = (entry.data.hi - entry.data.lo) / 1000;
-    const std::string text = entry.title + " = " + formatQuantity(entry.value, entry.unit, resolution);
-    addFittedText(draw, {min.x + size + em() * 0.5f, min.y}, colors.text, text, width - size - em() * 0.5f);
+    const std::string value = " = " + formatQuantity(entry.value, entry.unit, resolution), text = entry.title + value;
+    const ImVec2 at{min.x + size + em() * 0.5f, min.y};
+    const float room = width - size - em() * 0.5f;
+    const std::string cut = fitBefore(entry.title, value, room), shown = cut.empty() ? fitText(text, room) : cut;
+    draw.AddText(at, colors.text, shown.c_str());
+    tellWhole(at, {at.x + room, at.y + em()}, text, shown);
     return em() * 1.25f;
 }
 

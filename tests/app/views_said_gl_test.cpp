@@ -250,6 +250,30 @@ TEST_F(SaidViews, RunningValuesGiveUpUnitsBeforeNumbers) {
     EXPECT_THAT(few, AllOf(HasSubstr(" Pa"), HasSubstr("region "))) << "in the tooltip";
 }
 
+TEST_F(SaidViews, LongNamesInTheReadOutGiveWayToValues) {
+    volume::Dataset data = volume::makeModel("fuel-cell", {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 1}});
+    for (volume::Parameter& parameter : data.info.parameters) {
+        if (parameter.name == "T") parameter.name = "temperature_of_the_cathode_gas_diffusion_layer_after_correction";
+    }
+    show(volume::makeMemorySource(std::move(data), {.lattice = volume::LatticeKind::CC}));
+    const auto body = [&] {
+        ViewContext context{session, source, renderer, jobs, caches};
+        context.headless = true;
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({200, 400});
+        ImGui::Begin("long", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+        updateReadout(context, readout);
+        drawRunningReadout(context, readout, 380);
+        ImGui::End();
+    };
+    for (int i = 0; i < 3; ++i) {
+        frame(body);
+        jobs.wait();
+    }
+    const std::string text = said(body);
+    EXPECT_THAT(text, testing::ContainsRegex("temperature_[a-z_]*\\.\\.\\. [0-9.]+ K"));
+}
+
 /// A lens that was added by a command is the thing to set up: the list goes to it.
 TEST_F(SaidViews, TheListOfLayersGoesToANewLens) {
     headless = false;
