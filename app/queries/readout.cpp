@@ -124,6 +124,11 @@ std::vector<std::string> valueTexts(const volume::DatasetInfo& info, const Reado
         if (!value || channel.name.find('.') != std::string::npos) continue;
         const std::string text = valueText(info, channel, value);
         const std::string unit = units && !channel.unit.empty() ? " " + prettyUnit(channel.unit) : std::string();
+        // Labels without a name of their own are called "region 1".
+        if (text.starts_with(channel.name + " ")) {
+            values.push_back(text);
+            continue;
+        }
         const std::string number = " " + text + unit, cut = fitBefore(channel.name, number, room);
         values.push_back(cut.empty() ? channel.name + number : cut);
     }

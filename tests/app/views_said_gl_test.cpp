@@ -253,6 +253,7 @@ TEST_F(SaidViews, RunningValuesGiveUpUnitsBeforeNumbers) {
 TEST_F(SaidViews, LongNamesInTheReadOutGiveWayToValues) {
     volume::Dataset data = volume::makeModel("fuel-cell", {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 1}});
     for (volume::Parameter& parameter : data.info.parameters) {
+        for (volume::Label& label : parameter.labels) label.name = parameter.name + " " + std::to_string(label.value);
         if (parameter.name == "T") parameter.name = "temperature_of_the_cathode_gas_diffusion_layer_after_correction";
     }
     show(volume::makeMemorySource(std::move(data), {.lattice = volume::LatticeKind::CC}));
@@ -272,6 +273,7 @@ TEST_F(SaidViews, LongNamesInTheReadOutGiveWayToValues) {
     }
     const std::string text = said(body);
     EXPECT_THAT(text, testing::ContainsRegex("temperature_[a-z_]*\\.\\.\\. [0-9.]+ K"));
+    EXPECT_THAT(text, AllOf(HasSubstr("region "), Not(HasSubstr("region region"))));
 }
 
 /// A lens that was added by a command is the thing to set up: the list goes to it.
