@@ -146,8 +146,25 @@ void legendBarItem(const LegendEntry& entry, bool shown) {
     ImGui::Dummy({width, height + em() * 0.3f});
 }
 
+namespace {
+
+/// The value of an end of an upright bar.
+std::string columnEnd(const LegendEntry& entry, bool high) {
+    const Range range = paddedRange(entry.range);
+    return formatNumber(high ? range.hi : range.lo, (range.hi - range.lo) / 100);
+}
+
+constexpr float kColumn = 0.6f, kColumnGap = 0.3f; // em: the strip, and what parts it from its numbers
+
+} // namespace
+
+float legendColumnWidth(const LegendEntry& entry) {
+    const auto width = [&](bool high) { return ImGui::CalcTextSize(columnEnd(entry, high).c_str()).x; };
+    return em() * (kColumn + kColumnGap) + std::max(width(false), width(true));
+}
+
 void drawLegendColumn(ImDrawList& draw, ImVec2 min, float height, const LegendEntry& entry) {
-    const float width = em() * 0.6f, line = ImGui::GetFontSize();
+    const float width = em() * kColumn, line = ImGui::GetFontSize();
     const int steps = std::max(1, static_cast<int>(height));
     for (int i = 0; i < steps; ++i) {
         const glm::dvec4 c = vis::evaluate(entry.function, {0, 1}, 1 - (i + 0.5) / steps);
@@ -157,10 +174,9 @@ void drawLegendColumn(ImDrawList& draw, ImVec2 min, float height, const LegendEn
     }
     if (height < 2 * line) return; // no room for both values
     const PlotColors colors = plotColors();
-    const double digits = (entry.range.hi - entry.range.lo) / 100;
-    const float x = min.x + width + em() * 0.3f;
-    draw.AddText({x, min.y}, colors.text, formatNumber(entry.range.hi, digits).c_str());
-    draw.AddText({x, min.y + height - line}, colors.text, formatNumber(entry.range.lo, digits).c_str());
+    const float x = min.x + width + em() * kColumnGap;
+    draw.AddText({x, min.y}, colors.text, columnEnd(entry, true).c_str());
+    draw.AddText({x, min.y + height - line}, colors.text, columnEnd(entry, false).c_str());
 }
 
 namespace {

@@ -250,6 +250,26 @@ TEST_F(SaidViews, RunningValuesGiveUpUnitsBeforeNumbers) {
     EXPECT_THAT(few, AllOf(HasSubstr(" Pa"), HasSubstr("region "))) << "in the tooltip";
 }
 
+TEST_F(SaidViews, PicturesOverLineAndTimeHaveTheirColorsBesideThem) {
+    show(fuelCell(volume::LatticeKind::CC));
+    profileView.over = ProfileOver::LineAndTime;
+    profileView.channels = {"T", "O2"};
+    const auto shown = [&](const std::string& text) {
+        of("profile", profileView, drawProfileView);
+        const std::vector<std::string> words = drawnWords();
+        return std::ranges::find(words, text) != words.end();
+    };
+    for (const std::string& name : profileView.channels) {
+        const volume::Channel channel = source->info().channel(*source->info().findChannel(name));
+        const Range range = source->info().channelRange(channel);
+        for (const double end : {range.lo, range.hi})
+            EXPECT_TRUE(shown(formatNumber(end, (range.hi - range.lo) / 100))) << name << " " << end;
+        EXPECT_TRUE(shown(prettyUnit(channel.unit))) << name;
+    }
+    decoration.legend = false;
+    EXPECT_FALSE(shown("K"));
+}
+
 TEST_F(SaidViews, LongNamesInTheReadOutGiveWayToValues) {
     volume::Dataset data = volume::makeModel("fuel-cell", {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 1}});
     for (volume::Parameter& parameter : data.info.parameters) {
