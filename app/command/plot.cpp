@@ -48,6 +48,7 @@ SessionDocument plotDocument(const PlotRequest& request, const DataRef& data, co
 /// Draws the plot as the window does.
 void drawPicture(const PlotRequest& request, const DataRef& data, const Sources& sources) {
     PictureRequest picture;
+    picture.decoration.cursor = request.time.has_value();
     const SessionDocument document = plotDocument(request, data, sources.pictures->info(), picture.pane);
     if (std::sscanf(request.size.c_str(), "%dx%d", &picture.size.x, &picture.size.y) != 2 || picture.size.x < 64 ||
         picture.size.y < 64 || picture.size.x > 16384 || picture.size.y > 16384)

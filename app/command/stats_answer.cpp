@@ -220,7 +220,7 @@ std::vector<FigurePanel> figureOf(const Question& question, const Json& rows) {
     }
     std::vector<FigurePanel> out;
     for (auto& [key, panel] : panels) {
-        if (bars) panel.x = {"surface", {0.5, double(panel.series.size()) + 0.5}};
+        if (bars) panel.x = {"surface", {0.5, double(panel.series.size()) + 0.5}, false};
         panel.y.range = paddedRange(panel.y.range, 0.05);
         out.push_back(std::move(panel));
     }

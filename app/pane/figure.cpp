@@ -1,5 +1,6 @@
 #include "app/pane/figure.h"
 
+#include "app/drawing/free_place.h"
 #include "app/drawing/line_pieces.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/ticks.h"
@@ -9,17 +10,20 @@
 #include <cmath>
 #include <cstdio>
 #include <glm/vec4.hpp>
+#include <optional>
+#include <span>
 
 namespace tessera::app {
 
 namespace {
 
 // Size of a panel in points, with margins for numbers and titles.
-constexpr double kLeft = 62, kBottom = 42, kTop = 22, kRight = 12;
+constexpr double kLeft = 62, kBottom = 42, kTop = 22, kRight = 12, kBeside = 8;
 constexpr double kWidth = kLeft + kFigurePlot.x + kRight, kHeight = kTop + kFigurePlot.y + kBottom;
 
 constexpr glm::vec4 kInk{0.133f, 0.133f, 0.133f, 1}, kFrame{0.267f, 0.267f, 0.267f, 1}, kWhite{1};
 constexpr double kThin = 0.7, kLine = 1.2, kHaloWidth = 1.8; // widths of lines
+constexpr double kLegendLine = 11, kKey = 8, kKeyGap = 3;    // the list of series: lines, and keys beside the names
 constexpr double kDash = 5, kDashPeriod = 8, kDot = 2.2;
 
 class Panel {
@@ -31,6 +35,7 @@ public:
     void draw() {
         image();
         axes();
+        drawn_ = out_.size();
         for (const std::vector<glm::dvec2>& contour : panel_.contours) haloed(contour);
         for (const FigureLabel& each : panel_.labels)
             out_.push_back({shapes::Words{.text = each.text,
@@ -46,8 +51,12 @@ public:
         if (std::ranges::any_of(panel_.series, &FigureSeries::bars) && panel_.y.range.lo < 0 && panel_.y.range.hi > 0)
             stroke({{x0_, py(0)}, {x1_, py(0)}}, kFrame, kThin);
         for (const glm::dvec2& mark : panel_.marks) circle(mark, 4.5, {0, 0, 0, 1}, kLine);
+        if (panel_.series.size() < 2) return;
+        place_ = freePlace(legendSize(), {{x0_, y1_}, {x1_, y0_}}, std::span(out_).subspan(drawn_));
         legend();
     }
+    /// The width that the list of series takes beside the plot; 0 where it stands in it.
+    double beside() const { return panel_.series.size() < 2 || place_ ? 0 : legendSize().x + kBeside; }
 
 private:
     static double place(Range range, double value, double from, double to) {
@@ -70,7 +79,8 @@ private:
     }
     void axes() {
         rect({x0_, y1_}, {x1_, y0_}, kFrame, kThin);
-        const TickLabels across = tickLabels(panel_.x.range, 5), up = tickLabels(panel_.y.range, 5);
+        const TickLabels across = panel_.x.numbered ? tickLabels(panel_.x.range, 5) : TickLabels{},
+                         up = tickLabels(panel_.y.range, 5);
         for (std::size_t i = 0; i < across.values.size(); ++i) {
             const double x = px(across.values[i]);
             stroke({{x, y0_}, {x, y0_ + 4}}, kFrame, kThin);
@@ -154,19 +164,28 @@ private:
         out_.push_back({shapes::Picture{
             .box = {{x0_, y1_}, {x1_, y0_}}, .image = {{image.width, image.height}, image.rgba}, .smooth = false}});
     }
+    glm::dvec2 legendSize() const {
+        double width = 0;
+        for (const FigureSeries& series : panel_.series) width = std::max(width, figureTextWidth(series.name));
+        return {width + kKey + kKeyGap, kLegendLine * static_cast<double>(panel_.series.size())};
+    }
     void legend() {
-        if (panel_.series.size() < 2) return;
-        double y = y1_ + 12;
+        const glm::dvec2 at = place_ ? place_->lo : glm::dvec2{x1_ + kBeside, y1_};
+        const bool right = place_ && place_->lo.x > (x0_ + x1_ - legendSize().x) / 2 + 1; // keys at the edge
+        const double edge = right ? place_->hi.x - kKey : at.x;
+        double y = at.y + 9;
         for (const FigureSeries& series : panel_.series) {
-            rect({x1_ - 12, y - 6}, {x1_ - 4, y - 2}, glm::vec4(series.color, 1));
-            text(x1_ - 15, y, series.name, 1);
-            y += 11;
+            rect({edge, y - 6}, {edge + kKey, y - 2}, glm::vec4(series.color, 1));
+            text(right ? edge - kKeyGap : edge + kKey + kKeyGap, y, series.name, right ? 1 : 0);
+            y += kLegendLine;
         }
     }
 
     const FigurePanel& panel_;
     double x0_, x1_, y0_, y1_;
     std::vector<shapes::Mark>& out_;
+    std::size_t drawn_ = 0;                ///< marks before those of the data
+    std::optional<shapes::PageBox> place_; ///< of the list of series within the plot
 };
 
 } // namespace
@@ -180,12 +199,21 @@ double figureTextWidth(const std::string& text) {
 VectorPage drawingOf(const std::vector<FigurePanel>& panels, int columns) {
     const int across = std::max(1, std::min(columns, static_cast<int>(panels.size())));
     const int rows = (static_cast<int>(panels.size()) + across - 1) / across;
+    double beside = 0;
+    for (const FigurePanel& panel : panels) {
+        if (panel.series.size() < 2) continue;
+        std::vector<shapes::Mark> marks;
+        Panel tried(panel, 0, 0, marks);
+        tried.draw();
+        beside = std::max(beside, tried.beside());
+    }
+    const double width = kWidth + beside;
     VectorPage out;
-    out.size = {across * kWidth, std::max(1, rows) * kHeight};
+    out.size = {across * width, std::max(1, rows) * kHeight};
     out.marks.push_back({shapes::Rect{.box = {{0, 0}, out.size}, .color = kWhite}});
     for (std::size_t i = 0; i < panels.size(); ++i) {
         const int column = static_cast<int>(i) % across, row = static_cast<int>(i) / across;
-        Panel(panels[i], column * kWidth, row * kHeight, out.marks).draw();
+        Panel(panels[i], column * width, row * kHeight, out.marks).draw();
     }
     return out;
 }

@@ -16,6 +16,7 @@ namespace tessera::app {
 struct FigureAxis {
     std::string title; ///< with its unit
     Range range;
+    bool numbered = true; ///< categories are not
 };
 
 struct FigureSeries {
@@ -65,7 +66,8 @@ inline constexpr double kFigureText = 9;
 /// Approximate width of a text in points, in the font of figures.
 double figureTextWidth(const std::string& text);
 
-/// Panels in rows of `columns`, black on white.
+/// Panels in rows of `columns`, black on white. The lists of series stand in the plots where they cover nothing, else
+/// beside them.
 VectorPage drawingOf(const std::vector<FigurePanel>& panels, int columns);
 
 /// A number for CSV, empty where it is not finite.

@@ -25,8 +25,12 @@ float drawSwatch(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& e
                        toColor(entry.color));
     draw.AddRect({min.x, min.y + em() * 0.25f}, {min.x + size, min.y + em() * 0.25f + size}, colors.frame);
     const double resolution = (entry.data.hi - entry.data.lo) / 1000;
-    const std::string text = entry.title + " = " + formatQuantity(entry.value, entry.unit, resolution);
-    addFittedText(draw, {min.x + size + em() * 0.5f, min.y}, colors.text, text, width - size - em() * 0.5f);
+    const std::string value = " = " + formatQuantity(entry.value, entry.unit, resolution), text = entry.title + value;
+    const ImVec2 at{min.x + size + em() * 0.5f, min.y};
+    const float room = width - size - em() * 0.5f;
+    const std::string cut = fitBefore(entry.title, value, room), shown = cut.empty() ? fitText(text, room) : cut;
+    draw.AddText(at, colors.text, shown.c_str());
+    tellWhole(at, {at.x + room, at.y + em()}, text, shown);
     return em() * 1.25f;
 }
 
@@ -142,8 +146,25 @@ void legendBarItem(const LegendEntry& entry, bool shown) {
     ImGui::Dummy({width, height + em() * 0.3f});
 }
 
+namespace {
+
+/// The value of an end of an upright bar.
+std::string columnEnd(const LegendEntry& entry, bool high) {
+    const Range range = paddedRange(entry.range);
+    return formatNumber(high ? range.hi : range.lo, (range.hi - range.lo) / 100);
+}
+
+constexpr float kColumn = 0.6f, kColumnGap = 0.3f; // em: the strip, and what parts it from its numbers
+
+} // namespace
+
+float legendColumnWidth(const LegendEntry& entry) {
+    const auto width = [&](bool high) { return ImGui::CalcTextSize(columnEnd(entry, high).c_str()).x; };
+    return em() * (kColumn + kColumnGap) + std::max(width(false), width(true));
+}
+
 void drawLegendColumn(ImDrawList& draw, ImVec2 min, float height, const LegendEntry& entry) {
-    const float width = em() * 0.6f, line = ImGui::GetFontSize();
+    const float width = em() * kColumn, line = ImGui::GetFontSize();
     const int steps = std::max(1, static_cast<int>(height));
     for (int i = 0; i < steps; ++i) {
         const glm::dvec4 c = vis::evaluate(entry.function, {0, 1}, 1 - (i + 0.5) / steps);
@@ -153,10 +174,9 @@ void drawLegendColumn(ImDrawList& draw, ImVec2 min, float height, const LegendEn
     }
     if (height < 2 * line) return; // no room for both values
     const PlotColors colors = plotColors();
-    const double digits = (entry.range.hi - entry.range.lo) / 100;
-    const float x = min.x + width + em() * 0.3f;
-    draw.AddText({x, min.y}, colors.text, formatNumber(entry.range.hi, digits).c_str());
-    draw.AddText({x, min.y + height - line}, colors.text, formatNumber(entry.range.lo, digits).c_str());
+    const float x = min.x + width + em() * kColumnGap;
+    draw.AddText({x, min.y}, colors.text, columnEnd(entry, true).c_str());
+    draw.AddText({x, min.y + height - line}, colors.text, columnEnd(entry, false).c_str());
 }
 
 namespace {

@@ -70,5 +70,6 @@ void legendBarItem(const LegendEntry& entry, bool shown);
 
 /// One narrow upright bar, highest value on top, with the values of its ends at its right; about five em wide.
 void drawLegendColumn(ImDrawList& draw, ImVec2 min, float height, const LegendEntry& entry);
+float legendColumnWidth(const LegendEntry& entry);
 
 } // namespace tessera::app

@@ -134,15 +134,17 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
     const TickLabels ticks =
         fittingTicks(side, range, bottom ? frame.width() : frame.height(), titled || options.noteElsewhere);
     const PlotColors colors = plotColors();
-    // If not all fits: the note comes first, since the numbers are wrong without it; then the title, then the unit.
+    // If not all fits: the note comes first, since the numbers are wrong without it; then the title, then the unit; of
+    // a title that does not fit alone, the unit comes before its last letters.
     const std::string note = ticks.note.empty() ? "" : "  " + ticks.note;
     const float length = bottom || !options.inlineTitle ? hi - lo : 1e6f;
     std::string label;
     const std::string whole = titleWithUnit(title, unit) + note;
     for (const std::string& text :
-         {whole, std::string(title) + note, ticks.note.empty() ? fitText(title, length) : ticks.note}) {
+         {whole, std::string(title) + note, fitBefore(title, whole.substr(title.size()), length),
+          ticks.note.empty() ? fitText(title, length) : ticks.note}) {
         label = text;
-        if (ImGui::CalcTextSize(label.c_str()).x <= length) break;
+        if (!label.empty() && ImGui::CalcTextSize(label.c_str()).x <= length) break;
     }
     const float taken = options.inlineTitle && bottom ? ImGui::CalcTextSize(label.c_str()).x + em() * 0.5f : 0;
     float previousEnd = -1e9f, widest = 0;

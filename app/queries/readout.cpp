@@ -113,16 +113,24 @@ std::vector<std::string> placeTexts(const ViewContext& context) {
     return at;
 }
 
-/// "O2 3.854 mol/m3" of every parameter that is there.
-std::vector<std::string> valueTexts(const volume::DatasetInfo& info, const Readout& readout, bool units) {
+/// "O2 3.854 mol/m3" of every parameter that is there; names are cut off so that no text is wider than `room`.
+std::vector<std::string> valueTexts(const volume::DatasetInfo& info, const Readout& readout, bool units,
+                                    float room = 1e6f) {
     std::vector<std::string> values;
     for (std::size_t i = 0; i < readout.channels.size() && i < readout.values.size(); ++i) {
         const volume::Channel& channel = readout.channels[i];
         const std::optional<double>& value = readout.values[i].interpolated;
         // Components say little beside the magnitude.
         if (!value || channel.name.find('.') != std::string::npos) continue;
-        values.push_back(channel.name + " " + valueText(info, channel, value));
-        if (units && !channel.unit.empty()) values.back() += " " + prettyUnit(channel.unit);
+        const std::string text = valueText(info, channel, value);
+        const std::string unit = units && !channel.unit.empty() ? " " + prettyUnit(channel.unit) : std::string();
+        // Labels without a name of their own are called "region 1".
+        if (text.starts_with(channel.name + " ")) {
+            values.push_back(text);
+            continue;
+        }
+        const std::string number = " " + text + unit, cut = fitBefore(channel.name, number, room);
+        values.push_back(cut.empty() ? channel.name + number : cut);
     }
     return values;
 }
@@ -190,23 +198,23 @@ std::string readoutText(const ViewContext& context, const Readout& readout) {
 
 void drawRunningReadout(const ViewContext& context, const Readout& readout, float height) {
     const volume::DatasetInfo& info = context.numbers->info();
-    const std::vector<std::string> place = placeTexts(context), whole = valueTexts(info, readout, true);
+    const float width = ImGui::GetContentRegionAvail().x;
+    const std::vector<std::string> place = placeTexts(context), whole = valueTexts(info, readout, true, width);
     const float line = ImGui::GetTextLineHeightWithSpacing(), gap = ImGui::GetStyle().ItemSpacing.y;
     const int most = std::max(1, static_cast<int>((height + gap) / line + 0.01f));
     const bool placed = linesOf(place) + linesOf(whole) <= most;
     if (placed) drawFlowing(place);
     // What gives way: the place, the units, then values.
     std::vector<std::string> values = whole, shown = whole;
-    if (!placed && linesOf(shown) > most) shown = values = valueTexts(info, readout, false);
+    if (!placed && linesOf(shown) > most) shown = values = valueTexts(info, readout, false, width);
     while (linesOf(shown) > most && !values.empty()) {
         values.pop_back();
         shown = values;
         shown.emplace_back("...");
     }
     const ImVec2 min = ImGui::GetCursorScreenPos();
-    const float width = ImGui::GetContentRegionAvail().x;
     drawFlowing(shown);
-    if (!placed)
+    if (!placed || shown != valueTexts(info, readout, true))
         tellWhole(min, {min.x + width, min.y + static_cast<float>(most) * line}, readoutText(context, readout), "");
 }
 

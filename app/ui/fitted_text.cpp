@@ -20,6 +20,12 @@ std::string firstThatFits(std::initializer_list<std::string> texts, float width)
     return texts.size() > 0 ? fitText(*(texts.end() - 1), width) : std::string();
 }
 
+std::string fitBefore(std::string_view name, std::string_view end, float width) {
+    const std::string last(end);
+    const std::string first = fitText(name, width - ImGui::CalcTextSize(last.c_str()).x);
+    return first.empty() ? first : first + last;
+}
+
 void fittedText(std::string_view text, float width) {
     const std::string shown = fitText(text, width > 0 ? width : ImGui::GetContentRegionAvail().x);
     ImGui::TextUnformatted(shown.c_str());

@@ -16,6 +16,10 @@ std::string fitText(std::string_view text, float width);
 /// The first of the texts, which say ever less, that is at most `width` pixels wide; else the last one, cut off.
 std::string firstThatFits(std::initializer_list<std::string> texts, float width);
 
+/// A name and what says more than its last letters, " 3.8 mol": where both have no room, the name is cut off before
+/// `end`. Where not even one letter has room beside it, nothing.
+std::string fitBefore(std::string_view name, std::string_view end, float width);
+
 /// The text as an item of a window, at most `width` pixels wide (0: up to the right end of the window). What was cut
 /// off stands in a tooltip.
 void fittedText(std::string_view text, float width = 0);

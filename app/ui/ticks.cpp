@@ -69,6 +69,7 @@ std::string formatNumber(double value, double resolution) {
     const int step = leadingPower(resolution);
     const double magnitude = std::max(std::abs(value), resolution);
     if (magnitude >= 1e7 || magnitude < 1e-3) {
+        if (value == 0 || std::abs(value) < std::pow(10.0, step) / 2) return "0";
         const int lead = leadingPower(magnitude);
         return withoutNegativeZero(tidyExponent(print("%.*e", std::clamp(lead - step, 0, 15), value)));
     }
@@ -82,11 +83,18 @@ std::string formatQuantity(double value, std::string_view unit, double resolutio
 }
 
 std::string prettyUnit(std::string_view unit) {
-    if (unit == "um") return "\u00b5m";
     if (unit == "degC") return "\u00b0C";
     if (unit == "deg") return "\u00b0";
+    const auto letter = [unit](std::size_t i) {
+        return i < unit.size() && std::isalpha(static_cast<unsigned char>(unit[i]));
+    };
     std::string out;
     for (std::size_t i = 0; i < unit.size(); ++i) {
+        if (unit.substr(i, 2) == "um" && (i == 0 || !letter(i - 1)) && !letter(i + 2)) {
+            out += "\u00b5m";
+            ++i;
+            continue;
+        }
         const bool caret = i + 1 < unit.size() && unit[i] == '^';
         const bool exponent = i > 0 && (std::isalpha(static_cast<unsigned char>(unit[i - 1])) || unit[i - 1] == '^') &&
                               (i + 1 == unit.size() || !std::isalnum(static_cast<unsigned char>(unit[i + 1])));

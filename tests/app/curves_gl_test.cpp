@@ -1,9 +1,11 @@
 // The view of curves over time, by the mouse: its default, the polarisation curve, and going to a state.
 #include "app/views/curves/curves_data.h"
+#include "tests/app/drawn_text.h"
 #include "tests/app/views_fixture.h"
 #include "volume/base/error.h"
 
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <set>
 
 namespace tessera::app {
@@ -120,6 +122,36 @@ TEST_F(CurvesViewTest, TablesAndFiguresHoldTheCurves) {
     std::size_t rings = 0;
     for (std::size_t at = 0; (at = svg.find("<circle", at)) != std::string::npos; ++at) ++rings;
     EXPECT_EQ(rings, 2 * (4 + 1)); // four states of two curves, and the marked one
+}
+
+TEST_F(CurvesViewTest, APictureSaysWhatItsAxisIsAndWhichCurveIsWhich) {
+    curvesView.x = "time";
+    curvesView.y = {"mean(T)", "max(T)"};
+    figure = true;
+    const auto words = [&] {
+        for (int i = 0; i < 3; ++i) {
+            drawFrame();
+            jobs.wait();
+        }
+        std::vector<std::string> all = drawnWords();
+        return std::set<std::string>(all.begin(), all.end());
+    };
+    const auto numbered = [](const std::set<std::string>& all) {
+        return std::ranges::any_of(all, [](const std::string& each) { return each.starts_with("max(T) [K]  "); });
+    };
+    const std::set<std::string> marked = words();
+    EXPECT_TRUE(marked.contains("T [K]")) << "the vertical axis";
+    EXPECT_TRUE(numbered(marked));
+    EXPECT_FALSE(app::drawnIn(plotColors().cursor).empty()) << "the state now";
+    decoration.cursor = false;
+    const std::set<std::string> plain = words();
+    EXPECT_TRUE(plain.contains("mean(T) [K]"));
+    EXPECT_FALSE(numbered(plain));
+    EXPECT_TRUE(app::drawnIn(plotColors().cursor).empty());
+    for (const bool dark : {false, true})
+        for (std::size_t a = 0; a < 6; ++a)
+            for (std::size_t b = 0; b < a; ++b)
+                EXPECT_GT(glm::distance(curveInk(a, dark), curveInk(b, dark)), 0.2f) << a << " " << b << " " << dark;
 }
 
 } // namespace

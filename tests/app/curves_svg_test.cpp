@@ -86,5 +86,24 @@ TEST(CurvesSvg, CurvesOfOneUnitShareAPanelAndItsRange) {
         EXPECT_NEAR(dots[dot].y, panels[0].y + panels[0].height * (1 - padded(share, 0.06)), 0.02) << dot;
 }
 
+TEST(CurvesSvg, TheVerticalAxisSaysWhatItShows) {
+    volume::Curves curves;
+    curves.times = {0, 1};
+    curves.x = {"time", "s", {0, 1}};
+    const auto titled = [&](const std::vector<std::string>& names, const std::string& title) {
+        curves.y.clear();
+        for (const std::string& name : names) curves.y.push_back({name, "K", {300, 310}});
+        EXPECT_NE(svgOf(curvesDrawing(curves, {})).find(">" + title + "</text>"), std::string::npos) << title;
+    };
+    titled({"mean(T)", "max(T)"}, "T [K]");
+    titled({"mean(T)"}, "mean(T) [K]");
+    titled({"mean(T)", "max(U)"}, "mean(T), max(U) [K]");
+    titled({"min(T)+max(T)", "max(T)"}, "min(T)+max(T), max(T) [K]");
+    curves.y = {{"deviation(temperature_of_the_anode)", "K", {0, 1}}, {"mean(T)", "K", {0, 1}}};
+    const std::string cut = svgOf(curvesDrawing(curves, {}));
+    EXPECT_NE(cut.find(">deviation(temperature_of"), std::string::npos);
+    EXPECT_NE(cut.find("... [K]</text>"), std::string::npos);
+}
+
 } // namespace
 } // namespace tessera::app

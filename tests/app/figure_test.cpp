@@ -88,7 +88,7 @@ TEST(Figure, TitlesAndTheListOfSeriesStandWhereTheyAreLookedFor) {
     panel.title = "title";
     panel.x = {"across", {0, 10}};
     panel.y = {"up", {0, 4}};
-    panel.series = {{"first", {{0, 0}, {10, 1}}, {1, 0, 0}}, {"second", {{0, 1}, {10, 4}}, {0, 0, 1}}};
+    panel.series = {{"first", {{0, 0}, {10, 1}}, {1, 0, 0}}, {"second", {{0, 1}, {10, 2}}, {0, 0, 1}}};
     const VectorPage page = drawingOf({panel}, 1);
     const auto words = [&](const std::string& text) {
         for (const shapes::Mark& mark : page.marks)
@@ -127,6 +127,66 @@ TEST(Figure, TitlesAndTheListOfSeriesStandWhereTheyAreLookedFor) {
         }
         EXPECT_EQ(swatches, 1);
     }
+}
+
+/// The keys of the list of series, and the frame of the plot.
+struct Listed {
+    std::vector<shapes::PageBox> keys;
+    shapes::PageBox plot{};
+};
+Listed listed(const VectorPage& page, glm::vec3 color) {
+    Listed out;
+    for (const shapes::Mark& mark : page.marks)
+        if (const auto* rect = std::get_if<shapes::Rect>(&mark.shape)) {
+            if (rect->line > 0) out.plot = rect->box;
+            if (rect->color == glm::vec4(color, 1) && rect->box.hi.y - rect->box.lo.y < 5)
+                out.keys.push_back(rect->box);
+        }
+    return out;
+}
+
+TEST(Figure, TheListOfSeriesCoversNothing) {
+    FigurePanel panel;
+    panel.x = {"across", {0, 10}};
+    panel.y = {"up", {0, 4}};
+    const glm::vec3 red{1, 0, 0};
+    const auto with = [&](std::vector<glm::dvec2> first, std::vector<glm::dvec2> second, bool bars = false) {
+        panel.series = {{"first", std::move(first), red, bars}, {"second", std::move(second), {0, 0, 1}, bars}};
+        return drawingOf({panel}, 1);
+    };
+    const auto place = [&](const VectorPage& page) {
+        const Listed found = listed(page, red);
+        EXPECT_EQ(found.keys.size(), 1u);
+        return (found.keys[0].lo - found.plot.lo) / (found.plot.hi - found.plot.lo);
+    };
+    const VectorPage usual = with({{0, 0}, {10, 1}}, {{0, 1}, {10, 2}});
+    EXPECT_GT(place(usual).x, 0.8);
+    EXPECT_LT(place(usual).y, 0.2);
+    // A curve through a corner without a point there.
+    EXPECT_LT(place(with({{0, 0}, {10, 1}}, {{0, 1}, {10, 4}})).x, 0.2);
+    EXPECT_GT(place(with({{0, 4}, {10, 3}}, {{0, 3}, {10, 4}})).y, 0.8);
+    // One that is everywhere leaves the room beside.
+    std::vector<glm::dvec2> everywhere;
+    for (int i = 0; i <= 40; ++i) everywhere.push_back({i / 4.0, i % 2 == 0 ? 0.0 : 4.0});
+    const VectorPage full = with(everywhere, {{0, 2}, {10, 2}});
+    EXPECT_GT(place(full).x, 1);
+    EXPECT_GT(full.size.x, usual.size.x + 20);
+    EXPECT_GT(full.size.x, listed(full, red).keys[0].hi.x + figureTextWidth("second"));
+    const Listed alike = listed(full, red);
+    EXPECT_EQ(alike.plot.hi - alike.plot.lo, kFigurePlot);
+    EXPECT_GT(place(with({{2.5, 4}}, {{7.5, 4}}, true)).x, 0) << "bars count";
+    EXPECT_GT(place(with({{2.5, 4}, {7.5, 4}}, {{7.5, 4}, {12.5, 4}}, true)).x, 1);
+}
+
+TEST(Figure, CategoriesHaveNoNumbers) {
+    FigurePanel panel;
+    panel.x = {"surface", {0.5, 6.5}};
+    panel.y = {"out - in", {0, 100}};
+    panel.series = {{"a", {{4, 50}}, {1, 0, 0}, true}};
+    const auto numbered = [&] { return svgOf(drawingOf({panel}, 1)).find(">4</text>") != std::string::npos; };
+    EXPECT_TRUE(numbered());
+    panel.x.numbered = false;
+    EXPECT_FALSE(numbered());
 }
 
 TEST(Figure, CsvFieldsAreQuotedWhereNeeded) {

@@ -41,6 +41,18 @@ TEST_F(FittedText, EndsWithDotsWhereItHasNoRoom) {
     });
 }
 
+TEST_F(FittedText, ANameGivesWayToWhatFollowsIt) {
+    feedWindow([] {
+        const std::string name = kLong, end = " 435.12 K";
+        const float all = ImGui::CalcTextSize((name + end).c_str()).x;
+        EXPECT_EQ(fitBefore(name, end, all), name + end);
+        const std::string cut = fitBefore(name, end, all / 2);
+        EXPECT_LE(ImGui::CalcTextSize(cut.c_str()).x, all / 2);
+        EXPECT_TRUE(cut.starts_with("temp") && cut.ends_with("... 435.12 K")) << cut;
+        EXPECT_EQ(fitBefore(name, end, ImGui::CalcTextSize(end.c_str()).x), "");
+    });
+}
+
 TEST_F(FittedText, TellsTheWholeUnderTheMouseOnlyWhereItIsShortened) {
     for (const float room : {100.0f, 380.0f}) {
         const bool cut = room < 200;

@@ -43,6 +43,21 @@ TEST_F(PlotTest, TheTitleOfAnAxisStandsInItsMiddleOrAsNearAsItsRoomAllows) {
     EXPECT_LT(upright.max.x, frame.min.x) << "beside the plot";
 }
 
+TEST_F(PlotTest, ALongNameGivesWayToItsUnit) {
+    const std::string name = "mass_fraction_of_oxygen_in_the_cathode_gas_diffusion_layer";
+    const auto title = [&](float room) {
+        feedWindow([&] {
+            drawAxis(*ImGui::GetWindowDrawList(), frame, AxisSide::Bottom, name, "kg/kg", 200, 200 + room, {});
+        });
+        for (const DrawnText& each : drawnTexts())
+            if (each.text.starts_with("mass")) return each.text;
+        return std::string();
+    };
+    EXPECT_EQ(title(600), name + " [kg/kg]");
+    const std::string cut = title(200);
+    EXPECT_TRUE(cut.starts_with("mass_fraction") && cut.ends_with("... [kg/kg]")) << cut;
+}
+
 // Numbers are shortened only where the title says how to read them.
 TEST_F(PlotTest, AnAxisWithoutTitleHasNumbersInFull) {
     const auto texts = [&](Range range, const char* title, const AxisOptions& options = {}) {

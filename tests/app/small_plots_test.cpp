@@ -54,6 +54,20 @@ TEST_F(SmallPlots, PlotsBelowEachOtherGiveUpTheLineOfTheTitleThenScroll) {
     });
 }
 
+TEST_F(SmallPlots, LongNamesInLegendsGiveWayToUnitsAndValues) {
+    LegendEntry swatch = bar("mass_fraction_of_oxygen_in_the_cathode_gas_diffusion_layer");
+    swatch.swatch = true;
+    swatch.value = 325;
+    const std::vector<LegendEntry> entries{bar(swatch.title), swatch};
+    feedWindow([&] {
+        drawLegends(*ImGui::GetWindowDrawList(), entries, {{0, 0}, {700, 560}}, {.form = LegendForm::Lines});
+    });
+    std::string all;
+    for (const DrawnText& each : drawnTexts()) all += each.text + "\n";
+    EXPECT_NE(all.find("... [K]\n"), std::string::npos) << all;
+    EXPECT_NE(all.find("... = 325"), std::string::npos) << all;
+}
+
 TEST_F(SmallPlots, LegendsOfASmallPictureAreOneLineEach) {
     const std::vector<LegendEntry> entries{bar("T"), bar("density")};
     const auto drawn = [&](ImVec2 size, bool whole) {

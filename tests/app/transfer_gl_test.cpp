@@ -5,6 +5,7 @@
 #include "app/views/transfer/color_edit.h"
 #include "app/views/transfer/transfer_controls.h"
 #include "tests/app/fed_imgui.h"
+#include "tests/volume/regions.h"
 #include "vis/gl/headless.h"
 #include "vis/transfer/boundary_opacity.h"
 #include "volume/sources/memory_source.h"
@@ -361,6 +362,31 @@ TEST_F(TransferPages, ARangeWithoutWidthHasNoGradients) {
     function.range = {5, 5};
     frame();
     EXPECT_EQ(session.transfer[channel].range, (Range{5, 5}));
+}
+
+TEST_F(TransferPages, ASingleValueHasTheMiddleColorAsInLegends) {
+    volume::Dataset data = volume::test::datasetOf(
+        {volume::test::sampled<float>(volume::test::ccLattice({4, 4, 4}), [](glm::dvec3) { return 350; })});
+    data.info.parameters[0].ranges = {{350, 350}};
+    source = volume::makeMemorySource(std::move(data), {});
+    renderer.setSource(source);
+    session = defaultSession(source->info(), {});
+    const volume::Channel only = source->info().channel(0);
+    view.channel = only.name;
+    for (int i = 0; i < 3; ++i) frame();
+    const auto placeOf = [&](double share) { // on the strip below the curve
+        const glm::dvec4 c = vis::evaluate(session.transfer[only.name], {0, 1}, share);
+        float x = -1;
+        const ImDrawData* drawn = ImGui::GetDrawData();
+        for (int list = 0; list < drawn->CmdListsCount; ++list)
+            for (const ImDrawVert& corner : drawn->CmdLists[list]->VtxBuffer)
+                if (corner.col == toColor({c.r, c.g, c.b}) && corner.pos.y > 400) x = std::max(x, corner.pos.x);
+        return x;
+    };
+    const float quarter = placeOf(0.25), middle = placeOf(0.5);
+    EXPECT_GT(quarter, 0);
+    EXPECT_GT(middle - quarter, 100);
+    EXPECT_NEAR(middle, (quarter + placeOf(0.75)) / 2, 1.5);
 }
 
 } // namespace

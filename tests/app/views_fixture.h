@@ -31,6 +31,8 @@ protected:
         ViewContext context{session, source, renderer, jobs, caches};
         context.iconFont = fonts.icons;
         context.headless = headless;
+        context.figure = figure;
+        context.decoration = decoration;
         ImGui::SetNextWindowPos({0, 0});
         ImGui::SetNextWindowSize(size);
         ImGui::Begin(pane, nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
@@ -71,7 +73,8 @@ protected:
     std::map<std::string, std::unique_ptr<ViewCache>> caches;
     std::shared_ptr<const volume::BrickSource> source;
     Session session;
-    bool headless = true, busy = false;
+    bool headless = true, figure = false, busy = false;
+    Decoration decoration;
     std::vector<std::string> messages;
     VolumeView volumeView;
     SlicesView slicesView;

@@ -250,6 +250,52 @@ TEST_F(SaidViews, RunningValuesGiveUpUnitsBeforeNumbers) {
     EXPECT_THAT(few, AllOf(HasSubstr(" Pa"), HasSubstr("region "))) << "in the tooltip";
 }
 
+TEST_F(SaidViews, PicturesOverLineAndTimeHaveTheirColorsBesideThem) {
+    show(fuelCell(volume::LatticeKind::CC));
+    profileView.over = ProfileOver::LineAndTime;
+    profileView.channels = {"T", "O2"};
+    const auto shown = [&](const std::string& text) {
+        of("profile", profileView, drawProfileView);
+        const std::vector<std::string> words = drawnWords();
+        return std::ranges::find(words, text) != words.end();
+    };
+    for (const std::string& name : profileView.channels) {
+        const volume::Channel channel = source->info().channel(*source->info().findChannel(name));
+        const Range range = source->info().channelRange(channel);
+        for (const double end : {range.lo, range.hi})
+            EXPECT_TRUE(shown(formatNumber(end, (range.hi - range.lo) / 100))) << name << " " << end;
+        EXPECT_TRUE(shown(prettyUnit(channel.unit))) << name;
+    }
+    decoration.legend = false;
+    EXPECT_FALSE(shown("K"));
+}
+
+TEST_F(SaidViews, LongNamesInTheReadOutGiveWayToValues) {
+    volume::Dataset data = volume::makeModel("fuel-cell", {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 1}});
+    for (volume::Parameter& parameter : data.info.parameters) {
+        for (volume::Label& label : parameter.labels) label.name = parameter.name + " " + std::to_string(label.value);
+        if (parameter.name == "T") parameter.name = "temperature_of_the_cathode_gas_diffusion_layer_after_correction";
+    }
+    show(volume::makeMemorySource(std::move(data), {.lattice = volume::LatticeKind::CC}));
+    const auto body = [&] {
+        ViewContext context{session, source, renderer, jobs, caches};
+        context.headless = true;
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({200, 400});
+        ImGui::Begin("long", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+        updateReadout(context, readout);
+        drawRunningReadout(context, readout, 380);
+        ImGui::End();
+    };
+    for (int i = 0; i < 3; ++i) {
+        frame(body);
+        jobs.wait();
+    }
+    const std::string text = said(body);
+    EXPECT_THAT(text, testing::ContainsRegex("temperature_[a-z_]*\\.\\.\\. [0-9.]+ K"));
+    EXPECT_THAT(text, AllOf(HasSubstr("region "), Not(HasSubstr("region region"))));
+}
+
 /// A lens that was added by a command is the thing to set up: the list goes to it.
 TEST_F(SaidViews, TheListOfLayersGoesToANewLens) {
     headless = false;

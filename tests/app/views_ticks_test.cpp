@@ -107,6 +107,12 @@ TEST(Numbers, DigitsFollowTheResolution) {
     EXPECT_EQ(formatNumber(-0.001, 0.1), "0.0");
     EXPECT_EQ(formatNumber(0.1 + 0.2), "0.3");
     EXPECT_EQ(formatNumber(1.5e-7, 1e-8), "1.5e-7");
+    for (const double resolution : {1e-5, 1e-9, 1e9, 5e-324}) {
+        EXPECT_EQ(formatNumber(0, resolution), "0") << resolution;
+        EXPECT_EQ(formatNumber(-0.0, resolution), "0") << resolution;
+    }
+    EXPECT_EQ(formatNumber(4e-19, 1e-5), "0") << "what is left of a difference";
+    EXPECT_EQ(formatNumber(-2e-5, 5e-5), "-2e-5");
     EXPECT_EQ(formatNumber(std::nan("")), "absent");
     EXPECT_EQ(formatQuantity(5.28, "mol/m3", 0.01), "5.28 mol/m\u00b3");
     EXPECT_EQ(formatQuantity(std::nan(""), "K", 0.01), "absent");
@@ -119,6 +125,11 @@ TEST(Numbers, UnitsCountsAndShares) {
     EXPECT_EQ(prettyUnit("m^-1"), "m^-1");
     EXPECT_EQ(prettyUnit("m2/s"), "m\u00b2/s");
     EXPECT_EQ(prettyUnit("m24"), "m24") << "not an exponent";
+    EXPECT_EQ(prettyUnit("um"), "\u00b5m");
+    EXPECT_EQ(prettyUnit("um3"), "\u00b5m\u00b3");
+    EXPECT_EQ(prettyUnit("1/um^2"), "1/\u00b5m\u00b2");
+    EXPECT_EQ(prettyUnit("sum"), "sum");
+    EXPECT_EQ(prettyUnit("umol"), "umol");
     EXPECT_EQ(formatCount(1234567), "1 234 567");
     EXPECT_EQ(formatCount(999), "999");
     EXPECT_EQ(formatShare(0), "0 %");

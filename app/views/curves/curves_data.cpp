@@ -16,12 +16,21 @@ namespace tessera::app {
 namespace {
 
 constexpr std::size_t kMostQuantities = 8; ///< where the user has not chosen
-constexpr std::array<glm::vec3, 6> kInks{{{0.1f, 0.36f, 0.62f},
-                                          {0.8f, 0.33f, 0.1f},
-                                          {0.15f, 0.5f, 0.25f},
-                                          {0.5f, 0.25f, 0.6f},
-                                          {0.5f, 0.4f, 0.1f},
-                                          {0, 0, 0}}};
+/// By theme: light, dark.
+constexpr std::array<std::array<glm::vec3, 2>, 6> kInks{{{{{0.1f, 0.36f, 0.62f}, {0.45f, 0.68f, 0.98f}}},
+                                                         {{{0.8f, 0.33f, 0.1f}, {1, 0.62f, 0.3f}}},
+                                                         {{{0.15f, 0.5f, 0.25f}, {0.45f, 0.78f, 0.5f}}},
+                                                         {{{0.5f, 0.25f, 0.6f}, {0.78f, 0.6f, 0.92f}}},
+                                                         {{{0.5f, 0.4f, 0.1f}, {0.85f, 0.78f, 0.4f}}},
+                                                         {{{0, 0, 0}, {0.95f, 0.95f, 0.95f}}}}};
+
+/// What stands between the parentheses of "mean(T)"; "" of other formulas.
+std::string argumentOf(const std::string& formula) {
+    const std::size_t open = formula.find('(');
+    const bool one = open != std::string::npos && open > 0 && formula.find('(', open + 1) == std::string::npos &&
+                     formula.find_first_of(")+-*/^") == formula.size() - 1;
+    return one ? formula.substr(open + 1, formula.size() - open - 2) : std::string();
+}
 
 volume::CurvesQuery queryOf(const PlotCurvesQuery& asked, const volume::DatasetInfo& info) {
     volume::CurvesQuery query;
@@ -137,6 +146,20 @@ std::vector<std::vector<std::size_t>> curveGroups(const volume::Curves& curves) 
     return groups;
 }
 
+glm::vec3 curveInk(std::size_t n, bool dark) {
+    return kInks[n % kInks.size()][dark ? 1 : 0];
+}
+
+std::string groupTitle(const volume::Curves& curves, const std::vector<std::size_t>& group) {
+    std::string names, shared = argumentOf(curves.y[group.front()].name);
+    for (const std::size_t y : group) {
+        const std::string& name = curves.y[y].name;
+        names += (names.empty() ? "" : ", ") + name;
+        if (argumentOf(name) != shared) shared.clear();
+    }
+    return group.size() > 1 && !shared.empty() ? shared : names;
+}
+
 glm::dvec2 curvePoint(const volume::Curves& curves, std::size_t y, double time) {
     const volume::TimePair at = volume::timesAround(curves.times, time);
     const auto value = [&at](const std::vector<double>& values) {
@@ -165,25 +188,45 @@ std::string curvesCsv(const volume::Curves& curves) {
     return csv;
 }
 
+namespace {
+
+/// The title of a group with its unit, no longer than the axis of a figure.
+std::string axisTitle(const volume::Curves& curves, const std::vector<std::size_t>& group) {
+    const std::string& unit = curves.y[group.front()].unit;
+    if (group.size() == 1) return curveTitle(curves.y[group.front()]);
+    const std::string title = groupTitle(curves, group);
+    const auto fits = [&](const std::string& text) {
+        return figureTextWidth(titleWithUnit(text, unit)) <= kFigurePlot.y;
+    };
+    if (fits(title)) return titleWithUnit(title, unit);
+    std::string shown = title;
+    while (!shown.empty() && !fits(shown + "...")) {
+        while ((static_cast<unsigned char>(shown.back()) & 0xc0) == 0x80) shown.pop_back(); // whole UTF-8 characters
+        shown.pop_back();
+    }
+    return titleWithUnit(shown + "...", unit);
+}
+
+} // namespace
+
 VectorPage curvesDrawing(const volume::Curves& curves, std::optional<double> time) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     std::vector<FigurePanel> panels;
     for (const std::vector<std::size_t>& group : curveGroups(curves)) {
         FigurePanel panel;
-        const volume::Curve& front = curves.y[group.front()];
         panel.x = {curveTitle(curves.x), paddedRange(rangeOf(curves.x.values, {kInfinity, -kInfinity}), 0.04)};
         Range range{kInfinity, -kInfinity};
         for (std::size_t n = 0; n < group.size(); ++n) {
             const volume::Curve& curve = curves.y[group[n]];
             range = rangeOf(curve.values, range);
-            FigureSeries line{curve.name, {}, kInks[n % kInks.size()]};
+            FigureSeries line{curve.name, {}, curveInk(n, false)};
             for (std::size_t t = 0; t < curves.times.size(); ++t)
                 line.points.push_back({curves.x.values[t], curve.values[t]});
             line.dots = true;
             panel.series.push_back(std::move(line));
             if (time) panel.marks.push_back(curvePoint(curves, group[n], *time));
         }
-        panel.y = {group.size() > 1 ? titleWithUnit("", front.unit) : curveTitle(front), paddedRange(range, 0.06)};
+        panel.y = {axisTitle(curves, group), paddedRange(range, 0.06)};
         panels.push_back(std::move(panel));
     }
     return drawingOf(panels, 2);

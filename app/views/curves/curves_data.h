@@ -45,6 +45,10 @@ Range rangeOf(const std::vector<double>& values, Range range);
 
 /// Curves that share a unit, and so a plot: indices into Curves::y.
 std::vector<std::vector<std::size_t>> curveGroups(const volume::Curves& curves);
+/// Title of their vertical axis without its unit: "T" of mean(T) and max(T), else their names.
+std::string groupTitle(const volume::Curves& curves, const std::vector<std::size_t>& group);
+/// Colour of the nth curve of a plot with several, on a light or dark ground.
+glm::vec3 curveInk(std::size_t n, bool dark);
 /// Where a time lies on a curve: between stored times in between. NaN where not known.
 glm::dvec2 curvePoint(const volume::Curves& curves, std::size_t y, double time);
 /// Title of a curve with its unit.

@@ -4,6 +4,7 @@
 #include "app/ui/time_text.h"
 #include "app/ui/widgets.h"
 #include "app/views/curves/curves_data.h"
+#include "app/views/curves/profile_data.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -20,12 +21,11 @@ struct CurvesCache : ViewCache {
     std::string draft; ///< formula being typed
 };
 
-/// Colour of the nth curve of a plot.
-ImU32 inkOf(std::size_t n) {
-    const PlotColors colors = plotColors();
-    const std::array<ImU32, 5> inks{colors.focus, toColor({0.93, 0.5, 0.2}), toColor({0.35, 0.7, 0.4}),
-                                    toColor({0.65, 0.45, 0.8}), toColor({0.75, 0.65, 0.3})};
-    return inks[n % inks.size()];
+/// Colour of the nth of the curves of a plot.
+ImU32 inkOf(std::size_t n, std::size_t curves) {
+    if (curves == 1) return plotColors().focus;
+    const glm::vec3 ink = curveInk(n, darkTheme());
+    return toColor({ink.r, ink.g, ink.b});
 }
 
 void toggle(std::vector<std::string>& names, const std::string& name) {
@@ -196,36 +196,67 @@ void drawCurve(const volume::Curves& curves, const std::vector<double>& values, 
     }
 }
 
-/// Curves of one unit.
+/// Points along the lines of a group, close enough to find out what they cross.
+std::vector<ImVec2> pointsAlong(const volume::Curves& curves, const std::vector<std::size_t>& group,
+                                const PlotFrame& frame) {
+    constexpr int kParts = 16;
+    std::vector<ImVec2> points;
+    for (const std::size_t y : group)
+        for (std::size_t t = 0; t < curves.times.size(); ++t) {
+            const ImVec2 to = frame.pixel(curves.x.values[t], curves.y[y].values[t]);
+            const ImVec2 from = t > 0 ? frame.pixel(curves.x.values[t - 1], curves.y[y].values[t - 1]) : to;
+            for (int part = 1; part <= kParts; ++part) {
+                const float share = float(part) / kParts;
+                points.push_back({std::lerp(from.x, to.x, share), std::lerp(from.y, to.y, share)});
+            }
+        }
+    return points;
+}
+
+/// The names of the curves of a group with their values now, in the corner that is free.
+void drawNames(const ViewContext& context, const volume::Curves& curves, const std::vector<std::size_t>& group,
+               const PlotFrame& frame) {
+    std::vector<std::string> texts;
+    float width = 0;
+    for (const std::size_t y : group) {
+        std::string& text = texts.emplace_back(curveTitle(curves.y[y]));
+        const double value = curvePoint(curves, y, context.session.time).y;
+        if (std::isfinite(value) && context.decoration.cursor) text += "  " + groupedNumber(value);
+        width = std::max(width, ImGui::CalcTextSize(text.c_str()).x);
+    }
+    const float line = em() * 1.15f, height = line * static_cast<float>(texts.size());
+    width = std::min(width, frame.width() - em());
+    const ImVec2 corner =
+        freeCorner(frame, {width + em() * 0.8f, height + em() * 0.4f}, pointsAlong(curves, group, frame));
+    const float x = corner.x > 0 ? frame.max.x - em() * 0.4f : frame.min.x + em() * 0.4f;
+    float top = corner.y > 0 ? std::max(frame.min.y, frame.max.y - height) : frame.min.y + em() * 0.2f;
+    for (std::size_t n = 0; n < texts.size(); ++n, top += line)
+        addFittedWithBackdrop(*ImGui::GetWindowDrawList(), {x, top}, {corner.x, 0},
+                              group.size() > 1 ? inkOf(n, group.size()) : plotColors().text, texts[n], width);
+}
+
+/// Curves of one unit; `room`: pixels left of the frame for numbers and title.
 void drawPlot(ViewContext& context, const volume::Curves& curves, const std::vector<std::size_t>& group,
-              const PlotFrame& frame, Near& near) {
-    Session& session = context.session;
+              const PlotFrame& frame, float room, Near& near) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotColors colors = plotColors();
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    // Below the curves, which a low plot has no room beside.
-    float top = frame.min.y + em() * 0.2f;
-    for (std::size_t n = 0; n < group.size(); ++n, top += em() * 1.15f) {
-        const volume::Curve& curve = curves.y[group[n]];
-        std::string text = curveTitle(curve);
-        const double value = curvePoint(curves, group[n], session.time).y;
-        if (std::isfinite(value)) text += "  " + groupedNumber(value);
-        addFittedWithBackdrop(draw, {frame.max.x - em() * 0.4f, top}, {1, 0}, group.size() > 1 ? inkOf(n) : colors.text,
-                              text, frame.width() - em());
-    }
+    drawNames(context, curves, group, frame); // below the curves: a low plot has no room beside them
     draw.PushClipRect({frame.min.x - em(), frame.min.y}, {frame.max.x + em(), frame.max.y}, true);
     for (std::size_t n = 0; n < group.size(); ++n)
-        drawCurve(curves, curves.y[group[n]].values, frame, inkOf(n), mouse, near);
+        drawCurve(curves, curves.y[group[n]].values, frame, inkOf(n, group.size()), ImGui::GetIO().MousePos, near);
     for (const std::size_t y : group) { // the state shown now
-        const glm::dvec2 now = curvePoint(curves, y, session.time);
-        if (!std::isfinite(now.x) || !std::isfinite(now.y)) continue;
+        const glm::dvec2 now = curvePoint(curves, y, context.session.time);
+        if (!std::isfinite(now.x) || !std::isfinite(now.y) || !context.decoration.cursor) continue;
         const ImVec2 at = frame.pixel(now.x, now.y);
         draw.AddCircle(at, em() * 0.42f, colors.backdrop, 24, em() * 0.25f);
         draw.AddCircle(at, em() * 0.42f, colors.cursor, 24, em() * 0.13f);
     }
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, colors.frame);
-    drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
+    // The window has it among the names.
+    const std::string title = context.figure ? groupTitle(curves, group) : std::string();
+    drawAxis(draw, frame, AxisSide::Left, title, context.figure ? curves.y[group.front()].unit : "",
+             frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f, {.room = room});
 }
 
 /// The plots below each other over one axis; a click on a point goes to its time.
@@ -237,11 +268,12 @@ void drawPlots(ViewContext& context, const volume::Curves& curves) {
     const Range across = paddedRange(rangeOf(curves.x.values, {kInfinity, -kInfinity}), 0.04);
     std::vector<Range> up;
     float left = 0;
+    const TitlePlace title = context.figure ? TitlePlace::Beside : TitlePlace::Nowhere;
     for (const std::vector<std::size_t>& group : groups) {
         Range range{kInfinity, -kInfinity};
         for (const std::size_t y : group) range = rangeOf(curves.y[y].values, range);
         up.push_back(paddedRange(range, 0.08));
-        left = std::max(left, axisRoom(AxisSide::Left, up.back(), TitlePlace::Nowhere));
+        left = std::max(left, axisRoom(AxisSide::Left, up.back(), title));
     }
     const ImVec2 origin = ImGui::GetCursorScreenPos();
     const ColumnHeights heights = columnHeights(ImGui::GetContentRegionAvail().y, groups.size());
@@ -257,7 +289,7 @@ void drawPlots(ViewContext& context, const volume::Curves& curves) {
     for (std::size_t g = 0; g < groups.size(); ++g) {
         const float top = origin.y + em() * 0.2f + height * static_cast<float>(g);
         frame = {{x0, std::round(top)}, {x1, std::round(top + height - em() * 0.4f)}, across, up[g]};
-        drawPlot(context, curves, groups[g], frame, near);
+        drawPlot(context, curves, groups[g], frame, left, near);
     }
     drawAxis(*ImGui::GetWindowDrawList(), frame, AxisSide::Bottom, curves.x.name == "time" ? "t" : curves.x.name,
              curves.x.unit, origin.x, origin.x + room.x, {.inlineTitle = !heights.titled});

@@ -19,6 +19,7 @@ namespace tessera::app {
 namespace {
 
 constexpr std::size_t kMostProfiles = 8; ///< where the user has not chosen
+constexpr float kBeside = 0.5f;          ///< em: between a picture and its colours
 
 struct ProfileCache : ViewCache {
     AsyncQuery<ProfileQuery, Profile> answers;
@@ -157,6 +158,16 @@ void drawPicture(const Session& session, const std::string& title, const vis::Pl
                           frame.width() - em());
 }
 
+/// The colours of a picture at its right, with the unit between the ends where that has room.
+void drawColors(const LegendEntry& entry, const PlotFrame& frame) {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const float left = frame.max.x + em() * kBeside;
+    drawLegendColumn(draw, {left, frame.min.y}, frame.height(), entry);
+    const std::string unit = prettyUnit(entry.unit);
+    if (ImGui::CalcTextSize(unit.c_str()).x > frame.height() - 3 * ImGui::GetTextLineHeight()) return;
+    addTextUpwards(draw, {left + em() * 1.5f, (frame.min.y + frame.max.y) / 2}, plotColors().faint, unit.c_str());
+}
+
 /// The place nearest to the linked cursor, where that lies near the line.
 std::optional<std::size_t> placeAtCursor(const Profile& profile, glm::dvec3 cursor) {
     std::optional<std::size_t> place;
@@ -207,7 +218,11 @@ public:
         const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(heights.all)};
         const float height = heights.each;
         if (room.x - left < em() * 4) return drawHint("Not enough room", "Enlarge the pane.");
-        const float x0 = origin.x + left, x1 = origin.x + room.x - em() * 0.6f;
+        const float x0 = origin.x + left;
+        float x1 = origin.x + room.x - em() * 0.6f;
+        const float colors = colorsRoom();
+        const bool explained = colors > 0 && x1 - x0 - colors > em() * 8;
+        if (explained) x1 -= colors;
         ImGui::SetCursorScreenPos({x0, origin.y});
         mouseArea("plots", {x1 - x0, room.y - heights.bottom});
         const bool taken = ImGui::IsItemActive();
@@ -222,6 +237,7 @@ public:
                                   across_.range,
                                   pictures() ? times_ : paddedRange(rangeOf(c), 0.06)};
             drawOne(c, frame, taken);
+            if (explained) drawColors(legend(c), frame);
             if (c + 1 == profile_->values.size())
                 drawAxis(*ImGui::GetWindowDrawList(), frame, AxisSide::Bottom, across_.title, across_.unit, origin.x,
                          origin.x + room.x, {.inlineTitle = !heights.titled});
@@ -233,6 +249,14 @@ private:
     bool pictures() const { return over_ == ProfileOver::LineAndTime; }
     const volume::Channel& channel(std::size_t c) const {
         return channels_[static_cast<std::size_t>(profile_->query.channels[c])];
+    }
+    LegendEntry legend(std::size_t c) const { return legendOf(session_, info_, profile_->query.channels[c]); }
+    /// Pixels that the colours of the pictures take beside them; 0 for curves.
+    float colorsRoom() const {
+        float widest = 0;
+        for (std::size_t c = 0; c < profile_->values.size() && pictures() && context_.decoration.legend; ++c)
+            widest = std::max(widest, legendColumnWidth(legend(c)));
+        return widest > 0 ? widest + em() * kBeside : 0;
     }
     Range rangeOf(std::size_t c) const { return info_.channelRange(channel(c)); }
 

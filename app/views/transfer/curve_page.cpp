@@ -159,7 +159,9 @@ void drawCurvePage(ViewContext& context, CurvePage& page, const TransferView& vi
                    int index, std::optional<double> cursor, const std::string& pane) {
     const volume::DatasetInfo& info = context.source->info();
     const volume::Channel channel = info.channel(index);
-    const Range data = info.channelRange(channel), range = vis::effectiveRange(function, data);
+    // A single value lies in the middle of the colours, as in legends and pictures.
+    const Range data = info.channelRange(channel), own = vis::effectiveRange(function, data),
+                range = own.hi == own.lo && data.hi == data.lo ? paddedRange(own) : own;
     // Keep the axis while an end is dragged: else it would grow with the range and move the end away from the mouse.
     if (page.rangeEnd == 0)
         page.bins = histogramBins(info, index,

@@ -1,0 +1,40 @@
+#include "app/drawing/free_place.h"
+
+#include "app/drawing/line_pieces.h"
+
+#include <algorithm>
+
+namespace tessera::app {
+
+using namespace shapes;
+
+namespace {
+
+constexpr double kInset = 4, kClear = 2; ///< points: from the edge of the plot, and from what is drawn
+
+bool overlap(const PageBox& a, const PageBox& b) {
+    return a.lo.x < b.hi.x && b.lo.x < a.hi.x && a.lo.y < b.hi.y && b.lo.y < a.hi.y;
+}
+
+bool covers(const PageBox& box, const Mark& mark) {
+    if (const auto* stroke = std::get_if<Stroke>(&mark.shape))
+        return !piecesWithin(stroke->points, {box.lo, {box.hi.x, box.lo.y}, box.hi, {box.lo.x, box.hi.y}}).empty();
+    if (const auto* rect = std::get_if<Rect>(&mark.shape)) return overlap(box, rect->box);
+    if (const auto* circle = std::get_if<Circle>(&mark.shape))
+        return overlap(box, {circle->center - circle->radius, circle->center + circle->radius});
+    return false;
+}
+
+} // namespace
+
+std::optional<PageBox> freePlace(glm::dvec2 size, const PageBox& plot, std::span<const Mark> marks) {
+    const glm::dvec2 lo = plot.lo + kInset, room = plot.hi - kInset - size - lo;
+    if (room.x < 0 || room.y < 0) return std::nullopt;
+    for (const glm::dvec2 share : {glm::dvec2{1, 0}, {0, 0}, {1, 1}, {0, 1}, {1, 0.5}, {0, 0.5}, {0.5, 0}, {0.5, 1}}) {
+        const PageBox box{lo + share * room, lo + share * room + size}, clear{box.lo - kClear, box.hi + kClear};
+        if (std::ranges::none_of(marks, [&](const Mark& mark) { return covers(clear, mark); })) return box;
+    }
+    return std::nullopt;
+}
+
+} // namespace tessera::app
