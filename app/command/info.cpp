@@ -4,6 +4,7 @@
 #include "app/data/import_options.h"
 #include "app/data/open.h"
 #include "app/data/picture_session.h"
+#include "app/data/require_data.h"
 #include "app/described/describe_cli.h"
 #include "app/history/session_file.h"
 #include "app/user_files/import_memory.h"
@@ -298,8 +299,10 @@ void describeArchive(const InfoRequest& request) {
 }
 
 volume::ImportPreview previewOf(const std::vector<std::string>& paths, const volume::ImportOptions& stated) {
-    if (paths.size() != 1 || !namesModel(paths[0]))
+    if (paths.size() != 1 || !namesModel(paths[0])) {
+        requireData(paths);
         return volume::previewFiles(paths, recallOptions(paths, stated), terminalProgress("info"));
+    }
     const volume::Dataset model = modelNamed(paths[0], stated, terminalProgress("info"));
     return {.format = "built-in model", .info = model.info, .bytes = volume::bytesOf(model.info), .notes = {}};
 }
