@@ -164,13 +164,22 @@ struct Translator {
         copy(std::string_view(text).substr(at, end - at), at);
         return end;
     }
+    [[noreturn]] void failUnknown(const std::string& name, std::size_t at) const {
+        // A name such as "mean(T)" is not found without its parenthesis.
+        if (std::ranges::count(text, '(') > std::ranges::count(text, ')'))
+            fail("a closing parenthesis is missing", text.size());
+        for (const std::string& known : names)
+            if (known.ends_with("(" + name + ")"))
+                fail("\"" + name + "\" has more than one value here: write " + known + ", for example", at);
+        fail("no parameter is named \"" + name + "\"", at);
+    }
     std::size_t word(std::size_t at) {
         std::size_t end = at;
         while (end < text.size() && isWord(text[end])) ++end;
         const std::string_view name = std::string_view(text).substr(at, end - at);
         const std::size_t next = text.find_first_not_of(" \t", end);
         const bool function = next != std::string::npos && text[next] == '(';
-        if (!function && name != "_pi" && name != "_e") fail("no parameter is named \"" + std::string(name) + "\"", at);
+        if (!function && name != "_pi" && name != "_e") failUnknown(std::string(name), at);
         copy(name, at);
         return end;
     }
