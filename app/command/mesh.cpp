@@ -94,7 +94,12 @@ void settle(MeshRequest& request, const volume::BrickSource& source) {
 
 [[noreturn]] void throwEmpty(const MeshRequest& request, const volume::DatasetInfo& info) {
     const Range range = info.channelRange(info.channel(*info.findChannel(request.mesh.channel)));
-    throw Error("the surface is empty: values run from " + formatNumber(range.lo) + " to " + formatNumber(range.hi),
+    const bool within = *request.mesh.iso >= range.lo && *request.mesh.iso <= range.hi;
+    throw Error("the surface is empty: values run from " + formatNumber(range.lo) + " to " + formatNumber(range.hi) +
+                    (info.times.size() > 1 ? " over all times" : "") +
+                    (within ? std::string(", but no cell whose corners are all present reaches this value ") +
+                                  (request.mesh.allTimes ? "at any time" : "at this time")
+                            : ""),
                 "--iso", formatNumber(*request.mesh.iso));
 }
 

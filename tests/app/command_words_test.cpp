@@ -101,6 +101,15 @@ TEST_F(CommandRefusals, ASessionOrAnArchiveInTheWrongPlaceIsSaid) {
     }
 }
 
+TEST_F(CommandRefusals, AnEmptySurfaceIsNotSaidToLieOutsideTheRange) {
+    const auto empty = [&](const std::string& iso) {
+        return std::vector<std::string>{"mesh", "fuel-cell", "--channel", "O2", "--iso",
+                                        iso,    "--level",   "0",         "-o", in("x.stl")};
+    };
+    expect(empty("-7"), " over all times\n");
+    expect(empty("3"), " over all times, but no cell whose corners are all present reaches this value at this time");
+}
+
 TEST(CommandWords, BlanksAroundTheWordsOfAFormulaAreNoPartOfThem) {
     for (const char* text :
          {"dT [K] = T - 300", "dT[K]=T - 300", "  dT  [ K ]  =  T - 300  ", "\tdT [K]\t=\tT - 300\t"}) {
