@@ -8,6 +8,7 @@
 #include "codec/blocks/share_results.h"
 #include "volume/base/error.h"
 #include "volume/export/time_files.h"
+#include "volume/flow/flow_channels.h"
 #include "volume/mesh/mesh_file.h"
 
 #include <CLI/CLI.hpp>
@@ -76,8 +77,7 @@ void check(const MeshRequest& request) {
 /// Sets the parameter where none is named; throws Error for parameters and levels that are not there.
 void settle(MeshRequest& request, const volume::BrickSource& source) {
     const volume::DatasetInfo& info = source.info();
-    std::string known;
-    for (const volume::Channel& channel : info.channels()) known += (known.empty() ? "" : ", ") + channel.name;
+    const std::string known = volume::channelNames(info);
     if (request.mesh.channel.empty()) {
         if (info.channels().size() > 1)
             throw Error("name a parameter with --channel; there are " + known, request.inputs[0]);

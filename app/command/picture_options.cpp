@@ -108,6 +108,19 @@ std::string paneOf(const Session& session, const std::string& view) {
     return {};
 }
 
+void requireViews(const Session& session, const PictureOptions& options) {
+    for (const std::string& name : viewsOf(options)) {
+        if (!paneOf(session, name).empty()) continue;
+        std::string known;
+        for (const std::string& pane : paneKeys(session)) known += (known.empty() ? "" : ", ") + pane;
+        forEachViewKind([&]<class Kind>(const Kind&) {
+            const std::string kind(Kind::State::kType);
+            if (paneOf(session, kind).empty()) known += (known.empty() ? "" : ", ") + kind;
+        });
+        throw Error("there is no view of this name; there are " + known, "--view", name);
+    }
+}
+
 std::vector<std::string> viewsOf(const PictureOptions& options) {
     return options.view.empty() ? std::vector<std::string>() : CLI::detail::split(options.view, ',');
 }

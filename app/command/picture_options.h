@@ -50,6 +50,9 @@ std::vector<std::string> viewsOf(const PictureOptions& options);
 /// The pane with this key, or the first view of this kind; "" if there is none.
 std::string paneOf(const Session& session, const std::string& view);
 
+/// Throws Error where the option --view names none of the session, nor a kind of views.
+void requireViews(const Session& session, const PictureOptions& options);
+
 /// What is drawn, as SharedWork::about needs it: the session with its data, and the options of its pictures.
 Json aboutPicture(const PictureOptions& options, const Opened& opened);
 

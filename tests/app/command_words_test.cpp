@@ -101,6 +101,19 @@ TEST_F(CommandRefusals, ASessionOrAnArchiveInTheWrongPlaceIsSaid) {
     }
 }
 
+TEST_F(CommandRefusals, AnUnknownNameIsAnsweredByThoseThatThereAre) {
+    const std::string data = in("ml.tsr"), picture = in("x.png");
+    expect({"diff", data, in("two.tsr"), "-p", "foo"}, "there is no parameter \"foo\"; there are rho\n");
+    expect({"unpack", data, "-p", "foo", "-o", in("x.vti")}, "there is no parameter \"foo\"; there are rho\n");
+    expect({"stats", "fuel-cell", "--regions", "foo"}, "there is no region \"foo\"; there are ");
+    for (const char* command : {"render", "compare"})
+        expect({command, data, "--view", "regions", "-o", picture},
+               "--view: regions: there is no view of this name; there are ");
+    for (const char* kind : {"curves", "statistics", "profile", "sliceMatrix", "histogram"})
+        expect({"render", data, "--view", "regions", "-o", picture}, kind);
+    expect({"compare", data, "--view", "volume,slices", "-o", picture}, "one view is compared, not several");
+}
+
 TEST_F(CommandRefusals, AnEmptySurfaceIsNotSaidToLieOutsideTheRange) {
     const auto empty = [&](const std::string& iso) {
         return std::vector<std::string>{"mesh", "fuel-cell", "--channel", "O2", "--iso",
