@@ -101,6 +101,16 @@ TEST_F(CommandRefusals, ASessionOrAnArchiveInTheWrongPlaceIsSaid) {
     }
 }
 
+TEST_F(CommandRefusals, OptionsWithoutEffectAreSaid) {
+    const std::string data = in("ml.tsr");
+    expect({"stats", data, "--along", "z", "--planes", "5"}, "--planes: ");
+    expect({"stats", data, "--show", "flux"}, "--show: ");
+    expect({"stats", data, "--weight", "area"}, "--weight: ");
+    expect({"stats", data, "--all-times", "--time", "0"}, "--time: ");
+    expect({"stats", data, "--along", "z", "--line", "0,0,0,1,1,1"}, "--along: ");
+    EXPECT_EQ(said({"stats", data, "--line", "0,0,0,1,1,1", "--planes", "5", "--show", "most"}).status, 0);
+}
+
 TEST_F(CommandRefusals, AnUnknownNameIsAnsweredByThoseThatThereAre) {
     const std::string data = in("ml.tsr"), picture = in("x.png");
     expect({"diff", data, in("two.tsr"), "-p", "foo"}, "there is no parameter \"foo\"; there are rho\n");
