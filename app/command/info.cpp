@@ -136,11 +136,16 @@ void printArchive(const codec::Archive& archive) {
         std::printf("    %-16s %-8s %-8s", parameter.name.c_str(), std::string(volume::name(parameter.type)).c_str(),
                     (parameter.unit + (parameter.unitGuessed ? " (guessed)" : "")).c_str());
         if (parameter.components > 1) std::printf(" vector of %d, length", parameter.components);
-        if (!parameter.ranges.empty() && !parameter.categorical)
+        const bool hasRange = !parameter.ranges.empty() && !parameter.categorical;
+        if (hasRange)
             std::printf(" %s .. %s", numberText(parameter.ranges.back().lo).c_str(),
                         numberText(parameter.ranges.back().hi).c_str());
-        for (const volume::Label& label : parameter.labels) std::printf(" %d %s,", label.value, label.name.c_str());
-        if (parameter.parts.count() > 1) std::printf(" %s", volume::partsText(parameter).c_str());
+        std::string more; // after a range, else the first
+        for (const volume::Label& label : parameter.labels)
+            more += (more.empty() ? " " : ", ") + std::to_string(label.value) +
+                    (label.name.empty() ? "" : " " + label.name);
+        if (parameter.parts.count() > 1) more += (more.empty() ? " " : ", ") + volume::partsText(parameter);
+        std::printf("%s%s", hasRange && !more.empty() ? "," : "", more.c_str());
         if (const std::string words = codec::resampledText(archive.metadata(), p); !words.empty())
             std::printf("  (%s)", words.c_str());
         std::printf("\n");

@@ -134,7 +134,7 @@ void addLayoutOption(CLI::App& command, std::string& layout) {
 void addTransferOption(CLI::App& command, std::vector<std::string>& transfer) {
     std::string names;
     for (const vis::TransferRecipe& recipe : vis::transferLibrary())
-        names += (names.empty() ? ": " : ", ") + recipe.name;
+        names += (names.empty() ? ": " : ", ") + vis::quotedName(recipe);
     command
         .add_option(
             "--transfer", transfer,

@@ -122,6 +122,7 @@ TEST_F(CommandRefusals, AnUnknownNameIsAnsweredByThoseThatThereAre) {
     for (const char* kind : {"curves", "statistics", "profile", "sliceMatrix", "histogram"})
         expect({"render", data, "--view", "regions", "-o", picture}, kind);
     expect({"compare", data, "--view", "volume,slices", "-o", picture}, "one view is compared, not several");
+    expect({"render", data, "--transfer", "foo", "-o", picture}, ", \"CT skin, bone\", ");
 }
 
 TEST_F(CommandRefusals, AnEmptySurfaceIsNotSaidToLieOutsideTheRange) {

@@ -44,7 +44,9 @@ say 'cathode channel' means.svg
 # Names of regions, stated once, are known the next time, and go into archives.
 "$tessera" pack cell.raw -o named.tsr --lattice cc --lossless --label 'region:0=plate#112233' > /dev/null 2>err || die "pack with names"
 "$tessera" info named.tsr > out.txt
-say 'plate' out.txt
+say '0 plate, 1 ' out.txt
+say ' \.\. [-0-9.e]*, 2 parts by region' out.txt
+grep -q ',$' out.txt && fail "a list ends with a comma: $(grep ',$' out.txt)"
 "$tessera" stats cell.raw --by region --of T > out.txt 2>err || die "remembered names"
 say 'plate' out.txt
 "$tessera" stats named.tsr --by region --of T --label region:0=rib > out.txt 2>err || die "names over those of an archive"
