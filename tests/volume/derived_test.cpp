@@ -5,11 +5,14 @@
 #include "volume/derived/derived_names.h"
 #include "volume/derived/expression.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <iterator>
 
 namespace tessera::volume {
 namespace {
@@ -101,6 +104,20 @@ TEST(Expression, SaysWhereItIsWrong) {
     EXPECT_NE(problemOf("1, 2"), "");
     EXPECT_NE(problemOf("f = 3"), "");
     EXPECT_NE(problemOf("f f2"), "") << "a name ends where its letters end";
+}
+
+TEST(Expression, TheGuideListsItsFunctions) {
+    EXPECT_NE(problemOf("pow(f, 2)").find("\"pow\" is not known; the functions are abs, acos, "), std::string::npos);
+    std::ifstream in(TESSERA_SOURCE_DIR "/docs/guide.md");
+    const std::string guide{std::istreambuf_iterator<char>(in), {}}, head = "and these functions:";
+    const std::size_t begin = guide.find(head);
+    ASSERT_NE(begin, std::string::npos);
+    const std::string list = guide.substr(begin, guide.find("`. ", begin) - begin + 1);
+    std::string known;
+    for (const std::string& name : formulaFunctions()) known += (known.empty() ? "`" : ", `") + name + "`";
+    std::string told = list.substr(head.size() + 1);
+    std::ranges::replace(told, '\n', ' ');
+    EXPECT_EQ(told, known);
 }
 
 TEST(Derived, FormulasAreComputedAtEverySampleOfEveryLevel) {

@@ -28,6 +28,12 @@ std::string variable(std::size_t input) {
     throw Error(reason, {}, "position " + std::to_string(position + 1));
 }
 
+std::string listOf(const std::vector<std::string>& names) {
+    std::string list;
+    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+    return list;
+}
+
 /// muParser's error message, with the original names.
 std::string reasonOf(const mu::Parser::exception_type& error) {
     switch (error.GetCode()) {
@@ -48,7 +54,7 @@ std::string reasonOf(const mu::Parser::exception_type& error) {
     case mu::ecTOO_FEW_PARAMS:
         return "the function takes more arguments";
     case mu::ecUNASSIGNABLE_TOKEN:
-        return "\"" + error.GetToken() + "\" is not known";
+        return "\"" + error.GetToken() + "\" is not known; the functions are " + listOf(formulaFunctions());
     case mu::ecMISSING_ELSE_CLAUSE:
         return "\"?\" needs a \":\"";
     default:
@@ -212,6 +218,13 @@ struct Translator {
 };
 
 } // namespace
+
+std::vector<std::string> formulaFunctions() {
+    const mu::Parser parser;
+    std::vector<std::string> names;
+    for (const auto& [name, callback] : parser.GetFunDef()) names.push_back(name);
+    return names;
+}
 
 Expression::Expression(const std::string& text, std::span<const std::string> names, OtherTimes otherTimes) {
     if (text.find_first_not_of(" \t\n") == std::string::npos) fail("the formula is empty", 0);

@@ -3,6 +3,7 @@
 #include "app/pane/view_parts.h"
 #include "app/ui/parameter_widget.h"
 #include "volume/base/unit_product.h"
+#include "volume/derived/expression.h"
 #include "volume/derived/other_source.h"
 
 #include <algorithm>
@@ -65,6 +66,18 @@ void followRecipe(volume::DerivedParameter& own, const volume::DerivedParameter&
     if (before.unit == unitOf(info, was->channel)) own.unit = unitOf(info, is->channel);
 }
 
+/// What a formula may contain.
+const char* formulaHelp() {
+    static const std::string help = [] {
+        std::string text =
+            "Parameters by name (special names in `back quotes`), x y z t, + - * / ^, comparisons, && ||, "
+            "a ? b : c, _pi _e";
+        for (const std::string& name : volume::formulaFunctions()) text += " " + name;
+        return text + "; at another time: at(T, first), last, previous, next, at(T, 0.3)";
+    }();
+    return help.c_str();
+}
+
 void drawOne(ViewContext& context, DerivedDraft& draft, std::size_t index, int& removed) {
     volume::DerivedParameter& own = draft.parameters[index];
     const volume::DatasetInfo& info = context.source->info();
@@ -87,8 +100,7 @@ void drawOne(ViewContext& context, DerivedDraft& draft, std::size_t index, int& 
     // Not while typing: it would cover the error message of the formula.
     if (std::holds_alternative<volume::ExpressionRecipe>(own.recipe) && ImGui::IsItemHovered() &&
         !ImGui::IsItemActive())
-        tooltip("Parameters by name (special names in `back quotes`), x y z t, + - * / ^, comparisons, a ? b : c, abs "
-                "sqrt exp ln log10 sin cos min max; at another time: at(T, first), last, previous, next, at(T, 0.3)");
+        tooltip(formulaHelp());
     if (wrong) {
         ImGui::PushStyleColor(ImGuiCol_Text, palette().failure);
         ImGui::TextWrapped("%s", draft.problems[index].c_str());
