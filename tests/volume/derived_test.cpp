@@ -4,6 +4,7 @@
 #include "volume/bricks/sample_position.h"
 #include "volume/derived/derived_names.h"
 #include "volume/derived/expression.h"
+#include "volume/derived/formula_unit.h"
 
 #include <algorithm>
 #include <array>
@@ -118,6 +119,33 @@ TEST(Expression, TheGuideListsItsFunctions) {
     std::string told = list.substr(head.size() + 1);
     std::ranges::replace(told, '\n', ' ');
     EXPECT_EQ(told, known);
+}
+
+TEST(Expression, TheUnitFollowsFromThoseOfItsParameters) {
+    DatasetInfo info = functions(LatticeKind::CC)->info();
+    info.lengthUnit = "m";
+    info.timeUnit = "s";
+    for (Parameter& parameter : info.parameters) parameter.unit = parameter.name == "U" ? "m/s" : "K";
+    for (const auto& [formula, unit] : {std::pair{"f", "K"},
+                                        {" ( `g g` ) ", "K"},
+                                        {"f - 273.15", "K"},
+                                        {"-2e-3*f + abs(f - at(f, first))/2^3", "K"},
+                                        {"max(f, `g g`, 3)", "K"},
+                                        {"(f - at(f, first)) / (t - at(t, first))", "K/s"},
+                                        {"U.x * t", "m"},
+                                        {"1/t", "1/s"},
+                                        {"sqrt(2) * f", "K"},
+                                        {"f/(f + `g g`)", ""},
+                                        {"f + U.x", ""},
+                                        {"sqrt(f)", ""},
+                                        {"f^2", ""},
+                                        {"f > 3", ""},
+                                        {"f > 3 ? f : 0", ""},
+                                        {"f +", ""},
+                                        {"foo", ""}})
+        EXPECT_EQ(formulaUnit(formula, info), unit) << formula;
+    info.lengthUnit = "mm"; // a factor would be needed
+    EXPECT_EQ(formulaUnit("U.x / x", info), "");
 }
 
 TEST(Derived, FormulasAreComputedAtEverySampleOfEveryLevel) {

@@ -38,6 +38,10 @@ public:
     /// The names of the inputs, in their order.
     const std::vector<int>& used() const { return used_; }
 
+    /// The formula with its inputs replaced by variables(), in the order of inputs().
+    const std::string& translated() const { return translated_; }
+    const std::vector<std::string>& variables() const { return variables_; }
+
     /// The formula at every point: inputs[i] holds the values of inputs()[i], out.size() of them. Thread-safe.
     void evaluate(std::span<const std::vector<double>> inputs, std::span<double> out) const;
 

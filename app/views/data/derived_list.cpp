@@ -4,6 +4,7 @@
 #include "app/ui/parameter_widget.h"
 #include "volume/base/unit_product.h"
 #include "volume/derived/expression.h"
+#include "volume/derived/formula_unit.h"
 #include "volume/derived/other_source.h"
 
 #include <algorithm>
@@ -55,16 +56,22 @@ std::string differenceName(const volume::DatasetInfo& info, const volume::Differ
     return recipe.channel + " minus " + volume::timeText(recipe.reference(), info);
 }
 
-/// Renames a difference that still has its generated name and unit when its parameters change, so that the name stays
-/// correct.
+} // namespace
+
 void followRecipe(volume::DerivedParameter& own, const volume::DerivedParameter& before,
                   const volume::DatasetInfo& info) {
+    const auto *formula = std::get_if<volume::ExpressionRecipe>(&own.recipe),
+               *former = std::get_if<volume::ExpressionRecipe>(&before.recipe);
+    if (formula && former && *formula != *former && before.unit == volume::formulaUnit(former->formula, info))
+        own.unit = volume::formulaUnit(formula->formula, info);
     const auto *is = std::get_if<volume::DifferenceRecipe>(&own.recipe),
                *was = std::get_if<volume::DifferenceRecipe>(&before.recipe);
     if (!is || !was || *is == *was) return;
     if (before.name == differenceName(info, *was)) own.name = differenceName(info, *is);
     if (before.unit == unitOf(info, was->channel)) own.unit = unitOf(info, is->channel);
 }
+
+namespace {
 
 /// What a formula may contain.
 const char* formulaHelp() {
