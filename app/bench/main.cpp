@@ -1,5 +1,6 @@
 #include "app/bench/bench.h"
 #include "app/command/command.h"
+#include "volume/base/error.h"
 #include "volume/system/free_memory.h"
 
 #include <CLI/CLI.hpp>
@@ -62,10 +63,17 @@ struct Options {
     bool json = false;
 };
 
+bool isWanted(const NamedBench& bench, const Options& options) {
+    return options.names.empty() || std::ranges::find(options.names, bench.name) != options.names.end();
+}
+
 void measure(const Options& options) {
+    const auto usesVolume = [&](const NamedBench& bench) { return bench.measureVolumes && isWanted(bench, options); };
+    if (!options.volume.empty() && std::ranges::none_of(kBenches, usesVolume))
+        throw tessera::Error("chooses among the volumes of render, which is not measured", {}, "--volume");
     nlohmann::json tables = nlohmann::json::array();
     for (const NamedBench& bench : kBenches) {
-        if (!options.names.empty() && std::ranges::find(options.names, bench.name) == options.names.end()) continue;
+        if (!isWanted(bench, options)) continue;
         const BenchTable table = bench.measure ? bench.measure() : bench.measureVolumes(options.volume);
         if (options.json)
             tables.push_back({{"name", table.name}, {"columns", table.columns}, {"rows", table.rows}});

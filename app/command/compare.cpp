@@ -50,7 +50,7 @@ CompareVariant parseVariant(const std::string& text) {
 /// there is none.
 std::string comparePane(Session& session, const std::string& wanted) {
     std::string named = wanted.empty() ? std::string() : paneOf(session, wanted);
-    if (!wanted.empty() && named.empty()) throw Error("no view of that name", {}, wanted);
+    if (!wanted.empty() && named.empty()) throw Error("one view is compared, not several", "--view", wanted);
     const auto isComparison = [&](const std::string& pane) {
         return std::holds_alternative<CompareView>(session.views.at(pane));
     };
@@ -108,6 +108,7 @@ std::string prepare(const CompareOptions& options, Opened& opened, const Progres
     opened = openForPicture(options.picture, progress.part(0, options.with.empty() ? 1 : 0.6));
     Session& session = opened.document.session;
     if (!options.with.empty()) openBeside(opened, options.with, progress.part(0.6, 1));
+    requireViews(session, options.picture);
     const std::string pane = comparePane(session, options.picture.view);
     auto& view = std::get<CompareView>(session.views[pane]);
     if (!options.with.empty()) view.variants = fileVariants(session, opened.source->info());

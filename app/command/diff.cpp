@@ -69,6 +69,14 @@ DataRef dataRef(const DiffRequest& request) {
     return data;
 }
 
+/// The parameters of the first data set, for a message.
+std::string namesOfFirst(const volume::DatasetInfo& info) {
+    std::string names;
+    for (const volume::Parameter& parameter : info.parameters)
+        if (!parameter.name.ends_with(volume::kOtherSuffix)) names += (names.empty() ? "" : ", ") + parameter.name;
+    return names;
+}
+
 /// Parameters of both data sets with convertible units, without labels. Throws if a requested one is not among them.
 std::vector<int> comparable(const volume::DatasetInfo& info, const DiffRequest& request) {
     std::vector<int> out;
@@ -92,7 +100,8 @@ std::vector<int> comparable(const volume::DatasetInfo& info, const DiffRequest& 
         }
     }
     for (const std::string& name : request.parameters)
-        if (!info.findChannel(name)) throw Error("there is no parameter \"" + name + "\"", request.first);
+        if (!info.findChannel(name))
+            throw Error("there is no parameter \"" + name + "\"; there are " + namesOfFirst(info), request.first);
     if (out.empty()) throw Error("the two data sets have no parameter in common", request.second);
     if (!left.empty()) std::fprintf(stderr, "tessera: cannot be compared: %s\n", left.c_str());
     return out;

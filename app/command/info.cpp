@@ -4,6 +4,7 @@
 #include "app/data/import_options.h"
 #include "app/data/open.h"
 #include "app/data/picture_session.h"
+#include "app/data/require_data.h"
 #include "app/described/describe_cli.h"
 #include "app/history/session_file.h"
 #include "app/user_files/import_memory.h"
@@ -135,11 +136,16 @@ void printArchive(const codec::Archive& archive) {
         std::printf("    %-16s %-8s %-8s", parameter.name.c_str(), std::string(volume::name(parameter.type)).c_str(),
                     (parameter.unit + (parameter.unitGuessed ? " (guessed)" : "")).c_str());
         if (parameter.components > 1) std::printf(" vector of %d, length", parameter.components);
-        if (!parameter.ranges.empty() && !parameter.categorical)
+        const bool hasRange = !parameter.ranges.empty() && !parameter.categorical;
+        if (hasRange)
             std::printf(" %s .. %s", numberText(parameter.ranges.back().lo).c_str(),
                         numberText(parameter.ranges.back().hi).c_str());
-        for (const volume::Label& label : parameter.labels) std::printf(" %d %s,", label.value, label.name.c_str());
-        if (parameter.parts.count() > 1) std::printf(" %s", volume::partsText(parameter).c_str());
+        std::string more; // after a range, else the first
+        for (const volume::Label& label : parameter.labels)
+            more += (more.empty() ? " " : ", ") + std::to_string(label.value) +
+                    (label.name.empty() ? "" : " " + label.name);
+        if (parameter.parts.count() > 1) more += (more.empty() ? " " : ", ") + volume::partsText(parameter);
+        std::printf("%s%s", hasRange && !more.empty() ? "," : "", more.c_str());
         if (const std::string words = codec::resampledText(archive.metadata(), p); !words.empty())
             std::printf("  (%s)", words.c_str());
         std::printf("\n");
@@ -298,8 +304,10 @@ void describeArchive(const InfoRequest& request) {
 }
 
 volume::ImportPreview previewOf(const std::vector<std::string>& paths, const volume::ImportOptions& stated) {
-    if (paths.size() != 1 || !namesModel(paths[0]))
+    if (paths.size() != 1 || !namesModel(paths[0])) {
+        requireData(paths);
         return volume::previewFiles(paths, recallOptions(paths, stated), terminalProgress("info"));
+    }
     const volume::Dataset model = modelNamed(paths[0], stated, terminalProgress("info"));
     return {.format = "built-in model", .info = model.info, .bytes = volume::bytesOf(model.info), .notes = {}};
 }

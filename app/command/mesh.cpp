@@ -8,6 +8,7 @@
 #include "codec/blocks/share_results.h"
 #include "volume/base/error.h"
 #include "volume/export/time_files.h"
+#include "volume/flow/flow_channels.h"
 #include "volume/mesh/mesh_file.h"
 
 #include <CLI/CLI.hpp>
@@ -76,8 +77,7 @@ void check(const MeshRequest& request) {
 /// Sets the parameter where none is named; throws Error for parameters and levels that are not there.
 void settle(MeshRequest& request, const volume::BrickSource& source) {
     const volume::DatasetInfo& info = source.info();
-    std::string known;
-    for (const volume::Channel& channel : info.channels()) known += (known.empty() ? "" : ", ") + channel.name;
+    const std::string known = volume::channelNames(info);
     if (request.mesh.channel.empty()) {
         if (info.channels().size() > 1)
             throw Error("name a parameter with --channel; there are " + known, request.inputs[0]);
@@ -94,7 +94,12 @@ void settle(MeshRequest& request, const volume::BrickSource& source) {
 
 [[noreturn]] void throwEmpty(const MeshRequest& request, const volume::DatasetInfo& info) {
     const Range range = info.channelRange(info.channel(*info.findChannel(request.mesh.channel)));
-    throw Error("the surface is empty: values run from " + formatNumber(range.lo) + " to " + formatNumber(range.hi),
+    const bool within = *request.mesh.iso >= range.lo && *request.mesh.iso <= range.hi;
+    throw Error("the surface is empty: values run from " + formatNumber(range.lo) + " to " + formatNumber(range.hi) +
+                    (info.times.size() > 1 ? " over all times" : "") +
+                    (within ? std::string(", but no cell whose corners are all present reaches this value ") +
+                                  (request.mesh.allTimes ? "at any time" : "at this time")
+                            : ""),
                 "--iso", formatNumber(*request.mesh.iso));
 }
 

@@ -2,6 +2,7 @@
 #include "app/command/command.h"
 #include "app/data/import_options.h"
 #include "app/data/open.h"
+#include "app/data/require_data.h"
 #include "app/described/describe_cli.h"
 #include "app/growing/follow.h"
 #include "app/growing/frame_stream.h"
@@ -92,6 +93,7 @@ PackInput open(const PackRequest& request, const Progress& progress) {
         const codec::PackedBefore before = codec::packedBefore(*archive);
         return {asStored ? codec::storedDataset(archive) : codec::gridDataset(archive, 0), before};
     }
+    requireData(request.inputs);
     const volume::ImportOptions options = recallOptions(request.inputs, request.import, progress);
     sayRemembered(request.import, options);
     volume::Dataset data = volume::openFiles(request.inputs, options, progress, false);

@@ -109,6 +109,19 @@ std::string paneOf(const Session& session, const std::string& view) {
     return {};
 }
 
+void requireViews(const Session& session, const PictureOptions& options) {
+    for (const std::string& name : viewsOf(options)) {
+        if (!paneOf(session, name).empty()) continue;
+        std::string known;
+        for (const std::string& pane : paneKeys(session)) known += (known.empty() ? "" : ", ") + pane;
+        forEachViewKind([&]<class Kind>(const Kind&) {
+            const std::string kind(Kind::State::kType);
+            if (paneOf(session, kind).empty()) known += (known.empty() ? "" : ", ") + kind;
+        });
+        throw Error("there is no view of this name; there are " + known, "--view", name);
+    }
+}
+
 std::vector<std::string> viewsOf(const PictureOptions& options) {
     return options.view.empty() ? std::vector<std::string>() : CLI::detail::split(options.view, ',');
 }
@@ -122,7 +135,7 @@ void addLayoutOption(CLI::App& command, std::string& layout) {
 void addTransferOption(CLI::App& command, std::vector<std::string>& transfer) {
     std::string names;
     for (const vis::TransferRecipe& recipe : vis::transferLibrary())
-        names += (names.empty() ? ": " : ", ") + recipe.name;
+        names += (names.empty() ? ": " : ", ") + vis::quotedName(recipe);
     command
         .add_option(
             "--transfer", transfer,

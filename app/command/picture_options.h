@@ -53,6 +53,9 @@ std::string paneOf(const Session& session, const std::string& view);
 /// Throws Error unless a path ends like a picture: .png, .svg or .pdf.
 void requirePictureEnding(const std::string& path);
 
+/// Throws Error where the option --view names none of the session, nor a kind of views.
+void requireViews(const Session& session, const PictureOptions& options);
+
 /// What is drawn, as SharedWork::about needs it: the session with its data, and the options of its pictures.
 Json aboutPicture(const PictureOptions& options, const Opened& opened);
 

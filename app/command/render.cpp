@@ -48,6 +48,7 @@ void addRenderCommand(CLI::App& app) {
         requireFolderOf(options->output);
         Opened opened = openForPicture(options->picture, progress);
         Session& session = opened.document.session;
+        requireViews(session, options->picture);
         if (options->time) showTime(session, opened.source->info(), *options->time, viewsOf(options->picture));
         opened.document.history.reset(session);
         PictureMaker maker;

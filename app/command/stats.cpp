@@ -47,7 +47,21 @@ std::string stateOf(const Question& question) {
            originText(question.origin, question.info(), question.channels);
 }
 
+/// Throws Error for an option, by name, that would change nothing.
+void checkUsed(const StatsRequest& request) {
+    const StatsOptions& options = request.options;
+    const auto refuse = [&](const char* option, bool unused, const char* reason) {
+        if (unused && std::ranges::count(request.given, option) > 0) throw Error(reason, {}, option);
+    };
+    refuse("--time", options.allTimes, "with --all-times there is no single time");
+    refuse("--along", !options.line.empty(), "with --line the planes lie across that: give one of the two");
+    refuse("--planes", options.line.empty(), "counts the planes of --line; those of --along are the grid's");
+    for (const char* option : {"--show", "--weight"})
+        refuse(option, !options.planesAcross(), "is of averages over planes, with --along or --line");
+}
+
 void check(const StatsRequest& request) {
+    checkUsed(request);
     const StatsOptions& options = request.options;
     const bool sections = options.planesAcross(), figure = isFigure(request.output);
     if (!request.output.empty() && !figure && !hasEnding(request.output, ".csv") && !hasEnding(request.output, ".json"))
@@ -145,7 +159,11 @@ void addStatsCommand(CLI::App& app) {
     addImportOptions(*command, request->import);
     addRemoteOptions(*command, request->remote);
     addAloneOption(*command, request->alone);
-    command->callback([request] { run(*request); });
+    command->callback([request, command] {
+        for (const CLI::Option* option : command->get_options())
+            if (option->count() > 0) request->given.push_back(option->get_name());
+        run(*request);
+    });
 }
 
 } // namespace tessera::app

@@ -26,10 +26,21 @@ std::vector<std::string> splitList(const std::string& text) {
 
 int channelNamed(const Question& question, const std::string& name) {
     if (const auto channel = question.info().findChannel(name)) return *channel;
+    throw Error("there is no parameter \"" + name + "\"; there are " + volume::channelNames(question.info()),
+                question.info().name);
+}
+
+int regionNamed(const Question& question, const std::string& name) {
+    const volume::DatasetInfo& info = question.info();
+    if (question.label < 0) throw Error("there is no label to take regions from", info.name, "--regions " + name);
+    const volume::Parameter& label = volume::parameterOf(info, question.label);
+    if (const auto value = volume::labelValue(label, name)) return *value;
     std::string known;
-    for (const volume::Channel& channel : question.info().channels())
-        known += (known.empty() ? "" : ", ") + channel.name;
-    throw Error("there is no parameter \"" + name + "\"; there are " + known, question.info().name);
+    for (const volume::Label& each : label.labels)
+        known += (known.empty() ? "" : ", ") + (each.name.empty() ? std::to_string(each.value) : each.name);
+    throw Error("there is no region \"" + name + "\"; " +
+                    (known.empty() ? "regions of " + label.name + " are named by their values" : "there are " + known),
+                info.name);
 }
 
 } // namespace
@@ -47,12 +58,7 @@ Question questionOf(const StatsRequest& request, const Sources& sources) {
         out.label = label.value_or(-1);
     }
     if (!options.balance.empty()) out.balance = channelNamed(out, options.balance);
-    for (const std::string& name : splitList(options.regions)) {
-        const auto value =
-            out.label < 0 ? std::nullopt : volume::labelValue(volume::parameterOf(info, out.label), name);
-        if (!value) throw Error("there is no region \"" + name + "\"", info.name);
-        out.regions.push_back(*value);
-    }
+    for (const std::string& name : splitList(options.regions)) out.regions.push_back(regionNamed(out, name));
     if (!options.line.empty()) {
         const std::vector<std::string> parts = splitList(options.line);
         glm::dvec3 ends[2];

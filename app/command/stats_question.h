@@ -71,6 +71,7 @@ struct StatsRequest {
     std::string output;
     bool alone = false;
     StatsOptions options;
+    std::vector<std::string> given; ///< names of the options that the user stated
     std::vector<volume::DerivedParameter> derived;
     volume::ImportOptions import;
     codec::RemoteOptions remote;

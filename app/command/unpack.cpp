@@ -4,6 +4,7 @@
 #include "app/data/format.h"
 #include "app/data/import_options.h"
 #include "volume/export/export.h"
+#include "volume/flow/flow_channels.h"
 #include "volume/resample/hyperplane.h"
 
 #include <CLI/CLI.hpp>
@@ -32,7 +33,9 @@ volume::ExportSelection select(const UnpackRequest& request, const volume::Datas
     selection.values = values;
     for (const std::string& wanted : request.parameters) {
         const auto found = info.findChannel(wanted);
-        if (!found) throw Error("there is no parameter \"" + wanted + "\"", request.input);
+        if (!found)
+            throw Error("there is no parameter \"" + wanted + "\"; there are " + volume::channelNames(info),
+                        request.input);
         const int parameter = info.channel(*found).parameter;
         if (std::find(selection.parameters.begin(), selection.parameters.end(), parameter) ==
             selection.parameters.end())

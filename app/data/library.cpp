@@ -60,7 +60,7 @@ const vis::TransferRecipe& recipeNamed(const std::string& name, std::span<const 
     for (const auto& list : {own, vis::transferLibrary()})
         for (const vis::TransferRecipe& recipe : list) {
             if (vis::sameName(recipe.name, name)) return recipe;
-            known += (known.empty() ? "" : ", ") + recipe.name;
+            known += (known.empty() ? "" : ", ") + vis::quotedName(recipe);
         }
     throw Error("there is no transfer function of this name; there are " + known, "transfer function", name);
 }

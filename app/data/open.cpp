@@ -5,6 +5,7 @@
 #include "app/data/format.h"
 #include "app/data/packing_errors.h"
 #include "app/data/picture_session.h"
+#include "app/data/require_data.h"
 #include "app/user_files/import_memory.h"
 
 #include "codec/remote/address.h"
@@ -93,6 +94,7 @@ volume::Dataset modelNamed(const std::string& input, const volume::ImportOptions
 
 DataRef dataNamed(const std::vector<std::string>& inputs, const volume::ImportOptions& stated,
                   const Progress& progress) {
+    if (inputs.size() != 1 || !namesModel(inputs[0])) requireData(inputs);
     if (inputs.size() != 1 || !namesModel(inputs[0])) return dataOf(inputs, recallOptions(inputs, stated, progress));
     DataRef data;
     data.model = inputs[0];
@@ -193,6 +195,7 @@ DataRef dataRequested(const OpenRequest& request, const SessionDocument* layout,
     if (request.data) return *request.data;
     DataRef data;
     if (!request.paths.empty()) {
+        requireData(request.paths);
         const volume::ImportOptions stated = request.import.value_or(volume::ImportOptions{});
         data = dataOf(request.paths, recallOptions(request.paths, stated, progress.part(0, 0.1)));
     } else if (hasData(layout->session.data)) {

@@ -35,6 +35,14 @@ bool namesPicture(const std::string& path) {
     return !pictureSuffix(path).empty();
 }
 
+bool holdsSession(const std::string& path) {
+    try {
+        return !sessionTextOfPicture(path).empty();
+    } catch (const Error&) {
+        return false;
+    }
+}
+
 std::string sessionTextOfPicture(const std::string& path) {
     const std::string suffix = pictureSuffix(path);
     const std::optional<std::string> session = suffix == ".svg"   ? sessionInSvg(readText(path))

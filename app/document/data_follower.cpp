@@ -1,6 +1,7 @@
 #include "app/document/data_follower.h"
 
 #include "app/data/pack_child.h"
+#include "app/data/require_data.h"
 #include "app/data/sources.h"
 #include "app/edits/compare_files.h"
 #include "app/user_files/import_memory.h"
@@ -104,6 +105,7 @@ void DataFollower::compareWith(const std::vector<std::string>& paths, const volu
                 [this, title, paths, stated, openView = std::move(openView), from = document_.sources().pictures,
                  session = document_.session()](const Progress& progress) -> Jobs::Finish {
                     const auto made = std::make_shared<RemadeData>(RemadeData{from, {}, session.data, {}});
+                    requireData(paths);
                     const DataRef other = dataOf(paths, recallOptions(paths, stated, progress.part(0, 0.1)));
                     made->data.other =
                         OtherData{.files = other.files, .model = {}, .settings = {}, .import = other.import};

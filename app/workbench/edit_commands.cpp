@@ -9,6 +9,8 @@
 #include "volume/base/error.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cstdlib>
 #include <imgui.h>
 
@@ -268,6 +270,57 @@ std::vector<Command> differenceCommands(Workbench& workbench) {
                     "Add the parameter shown minus its values at the time shown now", volume::OtherTime::Time)};
 }
 
+/// Brings the panel of derived parameters to the front.
+void showData(Workbench& workbench) {
+    Session& session = workbench.session();
+    for (const auto& [pane, view] : session.views)
+        if (std::holds_alternative<DataView>(view)) return workbench.panes().show(session, pane);
+    workbench.panes().open(session, DataView{}, workbench.look().scale());
+}
+
+/// Adds a derived parameter of each kind, from the parameter shown first. Differences have commands of their own.
+std::vector<Command> derivedCommands(Workbench& workbench) {
+    static constexpr std::array<const char*, std::size(kDerivedKinds) - 1> kKindWords = {
+        "expression equation function",
+        "length norm absolute",
+        "grad derivative slope",
+        "div sources",
+        "curl rotation",
+        "fluctuation mean variance",
+        "smooth filter blur gaussian average",
+        "coordinates xyz",
+        "clock"};
+    std::vector<Command> commands;
+    for (std::size_t kind = 0; kind < kKindWords.size(); ++kind) {
+        const bool ofVector = kind == 3 || kind == 4; // divergence and vorticity
+        const auto channel = [&workbench] {
+            return resolveChannel(workbench.document().info(), workbench.session(), "");
+        };
+        std::string name = kDerivedKinds[kind];
+        name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
+        commands.push_back(
+            {.menu = "",
+             .name = "Add derived parameter: " + name,
+             .help = "Add a parameter computed from others; Derived parameters in the pane Data has its settings",
+             .words = "new compute calculate computed " + std::string(kKindWords[kind]),
+             .run =
+                 [&workbench, channel, kind] {
+                     const volume::DatasetInfo& info = workbench.document().info();
+                     const auto of = channel();
+                     if (!of) return;
+                     workbench.message("New parameter: " +
+                                       addDerived(workbench.session(), newDerived(info, kind, info.channel(*of).name)));
+                     showData(workbench);
+                 },
+             .enabled =
+                 [&workbench, channel, ofVector] {
+                     return workbench.document().loaded() && channel().has_value() &&
+                            (!ofVector || !firstVector(workbench.document().info()).empty());
+                 }});
+    }
+    return commands;
+}
+
 /// Gives the layer selected a transfer function of the library.
 void applyToSelected(Workbench& workbench, const vis::TransferRecipe& recipe) {
     Session changed = workbench.session();
@@ -318,7 +371,7 @@ std::vector<Command> transferCommands(Workbench& workbench) {
 std::vector<Command> editCommands(Workbench& workbench) {
     std::vector<Command> all;
     for (const auto make : {historyCommands, brushCommands, timeCommands, latticeCommands, timeAlongCommands,
-                            differenceCommands, transferCommands}) {
+                            differenceCommands, derivedCommands, transferCommands}) {
         std::vector<Command> commands = make(workbench);
         std::ranges::move(commands, std::back_inserter(all));
     }

@@ -141,7 +141,13 @@ void PaneHost::drawPane(const ViewContext& frame, const std::string& pane, int r
         last_, [&](const std::string& each) { return volumeView(frame.session, each) != nullptr; }));
     context.idle = idle_;
     if (cameraPane_ == pane) context.cameraKey = std::exchange(cameraKey_, 0);
-    if (frame.headless) context.offerExport = [&](ViewExport made) { exports_[pane] = std::move(made); };
+    if (tablePane_ == pane)
+        context.offerExport = [&](const ViewExport& made) {
+            tablePane_.clear();
+            if (made.csv && frame.exportText) frame.exportText(made.name + ".csv", made.csv);
+        };
+    else if (frame.headless)
+        context.offerExport = [&](ViewExport made) { exports_[pane] = std::move(made); };
     ImGui::PushID(pane.c_str());
     // By the index taken before, since drawing may remove the view from the session.
     forEachViewKind([&, at = std::size_t(0), index = found->second.index()]<class Kind>(const Kind&) mutable {

@@ -35,6 +35,8 @@ public:
     const ViewCache* cache(const std::string& pane) const;
     /// The exports that the view of a pane offers, headless; null if there are none.
     const ViewExport* exported(const std::string& pane) const;
+    /// Offers the table of the current pane for saving in the next frame.
+    void exportTable(const Session& session) { tablePane_ = current(session); }
     /// Drops the caches of views, after other data were installed.
     void forget() { caches_.clear(); }
 
@@ -69,6 +71,7 @@ private:
 
     Caches caches_;
     std::map<std::string, ViewExport> exports_; ///< by pane, headless
+    std::string tablePane_;                     ///< of exportTable(); "" = none
     DockController hand_;
     std::string focused_, hovered_;
     std::string lastSpace_;              ///< the view of the scene used last

@@ -95,6 +95,22 @@ void addPaneCommands(std::vector<Command>& commands, Workbench& workbench) {
          }});
 }
 
+void addExportCommand(std::vector<Command>& commands, Workbench& workbench) {
+    commands.push_back({.menu = "",
+                        .name = "Export table...",
+                        .help = "Save the numbers of the pane under the mouse, or of the one clicked last, as CSV",
+                        .words = "save csv numbers values spreadsheet",
+                        .run = [&workbench] { workbench.panes().exportTable(workbench.session()); },
+                        .enabled =
+                            [&workbench] {
+                                const Session& session = workbench.session();
+                                const auto found = session.views.find(workbench.panes().current(session));
+                                return workbench.document().loaded() && found != session.views.end() &&
+                                       traitsOf(found->second).csv;
+                            },
+                        .needs = "a pane with a table, such as a plot, under the mouse or clicked last"});
+}
+
 void addKeyboardCommands(std::vector<Command>& commands, Workbench& workbench) {
     const auto add = [&](const char* name, const char* help, const char* words, Shortcut shortcut,
                          std::function<void()> run) {
@@ -207,8 +223,8 @@ void showLayout(Workbench& workbench, const std::string& name, const std::string
 
 std::vector<Command> viewCommands(Workbench& workbench) {
     std::vector<Command> commands;
-    for (const auto add :
-         {addOpeningCommands, addPaneCommands, addKeyboardCommands, addLookCommands, addCameraCommands})
+    for (const auto add : {addOpeningCommands, addPaneCommands, addExportCommand, addKeyboardCommands, addLookCommands,
+                           addCameraCommands})
         add(commands, workbench);
     return commands;
 }

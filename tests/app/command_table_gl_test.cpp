@@ -27,6 +27,7 @@ const std::set<std::string> kElsewhere = {
     "Pack into an archive...",             // WorkbenchData.WhatIsEditedWhilePackingStays
     "Compare with another file...",        // ComparedFiles
     "Save picture...",                     // tests/e2e/window.sh
+    "Export table...",                     // Palette.TheTableOfThePaneClickedLastIsExported
     "Export surface...",                   // AsyncQueries, tests/e2e/mesh.sh
     "Both grids of D4* at every time",     // WorkbenchData.OneGridOfAnArchiveInSpaceAndTimeIsAStepOfTheHistory
     "First grid of D4* alone, as stored",  // the same
@@ -39,6 +40,8 @@ const std::set<std::string> kElsewhere = {
     "Redo",                                // every case here
     "Add flow layer",                      // Palette.FindsByOtherWords
     "Seed brushed",                        // Palette.ALensOfAnotherParameterAndSeedsInTheSelectionAreOneStepEach
+    "Add derived parameter: divergence",   // Palette.FindsByOtherWords, they need a vector
+    "Add derived parameter: vorticity",    // the same
     "Lens: another parameter",             // the same
     "Data in space",                       // TimeAlongWorkbench.TheDataInSpaceStandBesideAsTheyWere
     "Shortcuts",                           // CommandTable.HelpAndPaletteOpen
@@ -104,6 +107,13 @@ Check difference(const char* name) {
         ASSERT_EQ(after.data.derived.size(), before.data.derived.size() + 1);
         EXPECT_EQ(after.data.derived.back().name, name);
         EXPECT_TRUE(after.transfer.at(name).aboutZero);
+    };
+}
+
+Check derivedAdded(const char* name) {
+    return [name](const Session& before, const Session& after) {
+        ASSERT_EQ(after.data.derived.size(), before.data.derived.size() + 1);
+        EXPECT_EQ(after.data.derived.back().name, name);
     };
 }
 
@@ -297,6 +307,13 @@ const std::map<std::string, Check>& checks() {
             {"Minus another time: first", difference("rho minus first")},
             {"Minus another time: previous", difference("rho minus previous")},
             {"Minus another time: last", difference("rho minus last")},
+            {"Add derived parameter: formula", derivedAdded("new rho")},
+            {"Add derived parameter: magnitude", derivedAdded("magnitude")},
+            {"Add derived parameter: gradient", derivedAdded("grad rho")},
+            {"Add derived parameter: deviation over time", derivedAdded("deviation rho")},
+            {"Add derived parameter: smoothed", derivedAdded("smooth rho")},
+            {"Add derived parameter: position", derivedAdded("position")},
+            {"Add derived parameter: time", derivedAdded("time")},
             {"Maximise pane", [](const Session& before,
                                  const Session& after) { EXPECT_NE(after.dock.maximised, before.dock.maximised); }},
             {"Duplicate pane",

@@ -1,6 +1,10 @@
 #include "app/command/command.h"
 #include "app/command/derive_option.h"
+#include "app/drawing/drawing.h"
+#include "app/history/session_file.h"
+#include "volume/system/atomic_file.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -47,6 +51,87 @@ TEST(CommandWords, AWrongValueIsSaidWithItsOption) {
     for (const char* formula : {"T + 1", " = T + 1", "[K] = T"})
         refused({"stats", "nothing.tsr", "--derive", formula, "-o", file},
                 "--derive: needs NAME [UNIT] = FORMULA, not \"" + std::string(formula) + "\"");
+}
+
+/// Files of a folder of its own.
+class CommandRefusals : public testing::Test {
+protected:
+    void SetUp() override {
+        std::filesystem::create_directories(folder);
+        for (const char* name : {"ml.tsr", "two.tsr"})
+            ASSERT_EQ(said({"generate", "marschner-lobb", "--size", "8x8x8", "-o", in(name)}).status, 0);
+        Session session;
+        session.data.model = "marschner-lobb";
+        SessionDocument document;
+        document.session = session;
+        saveSession(document, in("saved.tessera.json"));
+        AtomicFile figure(in("figure.svg"));
+        VectorPage page;
+        page.session = printSession(document, in("figure.svg"));
+        figure.write(fileOf(page, "svg"));
+        figure.commit();
+    }
+    void TearDown() override { std::filesystem::remove_all(folder); }
+    std::string in(const std::string& name) const { return (folder / name).string(); }
+    void expect(const std::vector<std::string>& words, const std::string& text) const {
+        SCOPED_TRACE(testing::PrintToString(words));
+        const Said answer = said(words);
+        EXPECT_EQ(answer.status, 2);
+        EXPECT_THAT(answer.text, HasSubstr(text));
+        EXPECT_EQ(std::ranges::count(answer.text, '\n'), 1);
+    }
+    const std::filesystem::path folder =
+        std::filesystem::path(testing::TempDir()) / ("refusals-" + std::to_string(getpid()));
+};
+
+TEST_F(CommandRefusals, ASessionOrAnArchiveInTheWrongPlaceIsSaid) {
+    const std::string session = in("saved.tessera.json"), figure = in("figure.svg"), one = in("ml.tsr");
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"stats", session},
+                                                  {"mesh", session, "--iso", "0.5", "-o", in("x.ply")},
+                                                  {"plot", session, "-o", in("x.csv")},
+                                                  {"pack", session, "-o", in("x.tsr")},
+                                                  {"diff", session, one}})
+        expect(words, "saved.tessera.json: is a session, and data are expected here");
+    expect({"stats", figure}, "figure.svg: is a picture that contains a session, and data are expected here");
+    expect({"render", session, one, "-o", in("x.png")}, "saved.tessera.json: is a session, which is opened alone\n");
+    for (const char* command : {"info", "stats", "render"}) {
+        std::vector<std::string> words{command, one, in("two.tsr")};
+        if (command == std::string("render")) words.insert(words.end(), {"-o", in("x.png")});
+        expect(words, "ml.tsr: is an archive, which is opened alone; tessera compare --with");
+    }
+}
+
+TEST_F(CommandRefusals, OptionsWithoutEffectAreSaid) {
+    const std::string data = in("ml.tsr");
+    expect({"stats", data, "--along", "z", "--planes", "5"}, "--planes: ");
+    expect({"stats", data, "--show", "flux"}, "--show: ");
+    expect({"stats", data, "--weight", "area"}, "--weight: ");
+    expect({"stats", data, "--all-times", "--time", "0"}, "--time: ");
+    expect({"stats", data, "--along", "z", "--line", "0,0,0,1,1,1"}, "--along: ");
+    EXPECT_EQ(said({"stats", data, "--line", "0,0,0,1,1,1", "--planes", "5", "--show", "most"}).status, 0);
+}
+
+TEST_F(CommandRefusals, AnUnknownNameIsAnsweredByThoseThatThereAre) {
+    const std::string data = in("ml.tsr"), picture = in("x.png");
+    expect({"diff", data, in("two.tsr"), "-p", "foo"}, "there is no parameter \"foo\"; there are rho\n");
+    expect({"unpack", data, "-p", "foo", "-o", in("x.vti")}, "there is no parameter \"foo\"; there are rho\n");
+    expect({"stats", "fuel-cell", "--regions", "foo"}, "there is no region \"foo\"; there are ");
+    for (const char* command : {"render", "compare"})
+        expect({command, data, "--view", "regions", "-o", picture},
+               "--view: regions: there is no view of this name; there are ");
+    for (const char* kind : {"curves", "statistics", "profile", "sliceMatrix", "histogram"})
+        expect({"render", data, "--view", "regions", "-o", picture}, kind);
+    expect({"compare", data, "--view", "volume,slices", "-o", picture}, "one view is compared, not several");
+    expect({"render", data, "--transfer", "foo", "-o", picture}, ", \"CT skin, bone\", ");
+}
+
+TEST_F(CommandRefusals, AnEmptySurfaceIsNotSaidToLieOutsideTheRange) {
+    const auto empty = [&](const std::string& iso) {
+        return std::vector<std::string>{"mesh", "fuel-cell", "--channel", "O2", "--iso",
+                                        iso,    "--level",   "0",         "-o", in("x.stl")};
+    };
+    expect(empty("-7"), " over all times\n");
+    expect(empty("3"), " over all times, but no cell whose corners are all present reaches this value at this time");
 }
 
 TEST(CommandWords, BlanksAroundTheWordsOfAFormulaAreNoPartOfThem) {

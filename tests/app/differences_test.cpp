@@ -63,6 +63,24 @@ void expectSame(const std::vector<double>& a, const std::vector<double>& b) {
     for (std::size_t i = 0; i < a.size(); ++i) ASSERT_TRUE(a[i] == b[i] || (std::isnan(a[i]) && std::isnan(b[i]))) << i;
 }
 
+TEST(DerivedList, TheUnitOfAFormulaFollowsItUntilOneIsTyped) {
+    const volume::DatasetInfo info = opened(cell()).pictures->info();
+    volume::DerivedParameter own = newDerived(info, 0, "O2");
+    EXPECT_EQ(own.unit, "mol/m3");
+    const auto change = [&](const std::string& formula) {
+        const volume::DerivedParameter before = own;
+        own.recipe = volume::ExpressionRecipe{formula};
+        followRecipe(own, before, info);
+        return own.unit;
+    };
+    EXPECT_EQ(change("O2/(O2+H2O)"), "");
+    EXPECT_EQ(change("T - "), "");
+    EXPECT_EQ(change("T - 300"), "K");
+    own.unit = "degC"; // typed
+    EXPECT_EQ(change("T - 273.15"), "degC");
+    EXPECT_EQ(change("O2"), "degC");
+}
+
 TEST(Differences, FromTheFirstTimeHaveTheirNameUnitAndColours) {
     DataRef data = cell();
     const volume::DatasetInfo info = opened(data).pictures->info();

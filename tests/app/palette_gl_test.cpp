@@ -57,6 +57,14 @@ TEST_F(Palette, FindsByOtherWords) {
                                         {"histogram", "New: Histogram"},
                                         {"charcoal", "Look: charcoal"},
                                         {"drawing style", "Look: hatching"},
+                                        {"formula", "Add derived parameter: formula"},
+                                        {"add formula", "Add derived parameter: formula"},
+                                        {"gradient", "Add derived parameter: gradient"},
+                                        {"vorticity", "Add derived parameter: vorticity"},
+                                        {"divergence", "Add derived parameter: divergence"},
+                                        {"curl", "Add derived parameter: vorticity"},
+                                        {"export table", "Export table..."},
+                                        {"csv", "Export table..."},
                                         {"versus", "Compare with another file..."},
                                         {"difference", "Compare with another file..."}})
         EXPECT_TRUE(finds(typed, wanted)) << typed << " should find " << wanted;
@@ -156,6 +164,25 @@ TEST_F(Palette, ALensOfAnotherParameterAndSeedsInTheSelectionAreOneStepEach) {
     ASSERT_TRUE(run("Undo"));
     settle();
     EXPECT_TRUE(workbench.session() == flow);
+}
+
+TEST_F(Palette, ADerivedParameterIsAddedAndItsPanelShown) {
+    ASSERT_TRUE(run("Add derived parameter: vorticity"));
+    settle();
+    EXPECT_EQ(workbench.session().data.derived.back().name, "curl U");
+    EXPECT_EQ(workbench.session().dock.maximised, "data") << "the panel is seen";
+    EXPECT_TRUE(workbench.source()->info().findChannel("|curl U|").has_value());
+}
+
+TEST_F(Palette, TheTableOfThePaneClickedLastIsExported) {
+    ASSERT_FALSE(run("Export table...")) << "the list of layers has none";
+    ASSERT_TRUE(run("New: Histogram"));
+    settle();
+    ASSERT_TRUE(run("Export table..."));
+    for (int i = 0; i < 3; ++i) frame();
+    EXPECT_TRUE(ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel))
+        << "a file is asked";
+    press(key::kEscape);
 }
 
 TEST_F(Palette, WhatIsTypedIsRunByEnter) {

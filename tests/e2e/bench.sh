@@ -8,6 +8,8 @@ say "Usage: tessera bench" out.txt
 say "lattice" out.txt
 check "an unknown table" 1 "$tessera" bench nonsense
 say "nonsense" err.txt
+check "an option without effect" 2 "$tessera" bench lattice --volume ball
+say "--volume" err.txt
 
 # Without it: said plainly.
 mkdir alone

@@ -44,7 +44,9 @@ say 'cathode channel' means.svg
 # Names of regions, stated once, are known the next time, and go into archives.
 "$tessera" pack cell.raw -o named.tsr --lattice cc --lossless --label 'region:0=plate#112233' > /dev/null 2>err || die "pack with names"
 "$tessera" info named.tsr > out.txt
-say 'plate' out.txt
+say '0 plate, 1 ' out.txt
+say ' \.\. [-0-9.e]*, 2 parts by region' out.txt
+grep -q ',$' out.txt && fail "a list ends with a comma: $(grep ',$' out.txt)"
 "$tessera" stats cell.raw --by region --of T > out.txt 2>err || die "remembered names"
 say 'plate' out.txt
 "$tessera" stats named.tsr --by region --of T --label region:0=rib > out.txt 2>err || die "names over those of an archive"
@@ -53,7 +55,7 @@ say 'rib' out.txt
 # Wrong words: status 2 and one line.
 for words in "--of nothing" "--by T" "--along w" "--line 1,2,3" "--balance nothing" "--regions nowhere" \
     "--along z --balance O2" "--velocity T --balance O2" "--label region:x=a" "--label nothing:1=a" "-o out.txt" \
-    "-o regions.svg"; do
+    "-o regions.svg" "--along z --planes 5" "--show flux" "--all-times --time 0"; do
     # shellcheck disable=SC2086
     check "$words" 2 "$tessera" stats cell.raw $words
     [ "$(wc -l < err.txt)" -eq 1 ] || fail "not one line: $words: $(cat err.txt)"

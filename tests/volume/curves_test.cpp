@@ -188,8 +188,18 @@ TEST(Curves, QuantitiesAndFormulasOfThemRunOverEachOther) {
     EXPECT_EQ(rows[1], (std::vector<double>{2, 5000, 0.5, 2500, 9, 14, 625}));
     query.x = "time"; // another word for the axis
     EXPECT_EQ(computeCurves(*source, query).x.values, source->info().times);
-    query.y = {"mean(nothing)"};
-    EXPECT_THROW(computeCurves(*source, query), Error);
+    const auto problem = [&](const std::string& formula) -> std::string {
+        query.y = {formula};
+        try {
+            computeCurves(*source, query);
+        } catch (const Error& error) {
+            return error.reason();
+        }
+        return "";
+    };
+    EXPECT_EQ(problem("mean(nothing)"), "no parameter is named \"nothing\"");
+    EXPECT_EQ(problem("mean(T"), "a closing parenthesis is missing");
+    EXPECT_EQ(problem("T"), "\"T\" has more than one value here: write mean(T), for example");
     EXPECT_EQ(cellQuantities(source->info()).voltage, "cell voltage");
     EXPECT_EQ(cellQuantities(source->info()).current, "j");
 }

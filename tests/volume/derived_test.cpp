@@ -4,12 +4,16 @@
 #include "volume/bricks/sample_position.h"
 #include "volume/derived/derived_names.h"
 #include "volume/derived/expression.h"
+#include "volume/derived/formula_unit.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <iterator>
 
 namespace tessera::volume {
 namespace {
@@ -101,6 +105,47 @@ TEST(Expression, SaysWhereItIsWrong) {
     EXPECT_NE(problemOf("1, 2"), "");
     EXPECT_NE(problemOf("f = 3"), "");
     EXPECT_NE(problemOf("f f2"), "") << "a name ends where its letters end";
+}
+
+TEST(Expression, TheGuideListsItsFunctions) {
+    EXPECT_NE(problemOf("pow(f, 2)").find("\"pow\" is not known; the functions are abs, acos, "), std::string::npos);
+    std::ifstream in(TESSERA_SOURCE_DIR "/docs/guide.md");
+    const std::string guide{std::istreambuf_iterator<char>(in), {}}, head = "and these functions:";
+    const std::size_t begin = guide.find(head);
+    ASSERT_NE(begin, std::string::npos);
+    const std::string list = guide.substr(begin, guide.find("`. ", begin) - begin + 1);
+    std::string known;
+    for (const std::string& name : formulaFunctions()) known += (known.empty() ? "`" : ", `") + name + "`";
+    std::string told = list.substr(head.size() + 1);
+    std::ranges::replace(told, '\n', ' ');
+    EXPECT_EQ(told, known);
+}
+
+TEST(Expression, TheUnitFollowsFromThoseOfItsParameters) {
+    DatasetInfo info = functions(LatticeKind::CC)->info();
+    info.lengthUnit = "m";
+    info.timeUnit = "s";
+    for (Parameter& parameter : info.parameters) parameter.unit = parameter.name == "U" ? "m/s" : "K";
+    for (const auto& [formula, unit] : {std::pair{"f", "K"},
+                                        {" ( `g g` ) ", "K"},
+                                        {"f - 273.15", "K"},
+                                        {"-2e-3*f + abs(f - at(f, first))/2^3", "K"},
+                                        {"max(f, `g g`, 3)", "K"},
+                                        {"(f - at(f, first)) / (t - at(t, first))", "K/s"},
+                                        {"U.x * t", "m"},
+                                        {"1/t", "1/s"},
+                                        {"sqrt(2) * f", "K"},
+                                        {"f/(f + `g g`)", ""},
+                                        {"f + U.x", ""},
+                                        {"sqrt(f)", ""},
+                                        {"f^2", ""},
+                                        {"f > 3", ""},
+                                        {"f > 3 ? f : 0", ""},
+                                        {"f +", ""},
+                                        {"foo", ""}})
+        EXPECT_EQ(formulaUnit(formula, info), unit) << formula;
+    info.lengthUnit = "mm"; // a factor would be needed
+    EXPECT_EQ(formulaUnit("U.x / x", info), "");
 }
 
 TEST(Derived, FormulasAreComputedAtEverySampleOfEveryLevel) {

@@ -143,4 +143,8 @@ bool sameName(std::string_view a, std::string_view b) {
     return left.empty() ? a == b : left == letters(b);
 }
 
+std::string quotedName(const TransferRecipe& recipe) {
+    return recipe.name.find(',') == std::string::npos ? recipe.name : "\"" + recipe.name + "\"";
+}
+
 } // namespace tessera::vis

@@ -121,4 +121,7 @@ bool suits(const TransferRecipe& recipe, Range range);
 /// Names are equal but for case, blanks and signs: "CT bone" is "ct-bone".
 bool sameName(std::string_view a, std::string_view b);
 
+/// The name for a list of them: in quotes where it contains a comma.
+std::string quotedName(const TransferRecipe& recipe);
+
 } // namespace tessera::vis

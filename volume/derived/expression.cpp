@@ -28,6 +28,12 @@ std::string variable(std::size_t input) {
     throw Error(reason, {}, "position " + std::to_string(position + 1));
 }
 
+std::string listOf(const std::vector<std::string>& names) {
+    std::string list;
+    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+    return list;
+}
+
 /// muParser's error message, with the original names.
 std::string reasonOf(const mu::Parser::exception_type& error) {
     switch (error.GetCode()) {
@@ -48,7 +54,7 @@ std::string reasonOf(const mu::Parser::exception_type& error) {
     case mu::ecTOO_FEW_PARAMS:
         return "the function takes more arguments";
     case mu::ecUNASSIGNABLE_TOKEN:
-        return "\"" + error.GetToken() + "\" is not known";
+        return "\"" + error.GetToken() + "\" is not known; the functions are " + listOf(formulaFunctions());
     case mu::ecMISSING_ELSE_CLAUSE:
         return "\"?\" needs a \":\"";
     default:
@@ -164,13 +170,22 @@ struct Translator {
         copy(std::string_view(text).substr(at, end - at), at);
         return end;
     }
+    [[noreturn]] void failUnknown(const std::string& name, std::size_t at) const {
+        // A name such as "mean(T)" is not found without its parenthesis.
+        if (std::ranges::count(text, '(') > std::ranges::count(text, ')'))
+            fail("a closing parenthesis is missing", text.size());
+        for (const std::string& known : names)
+            if (known.ends_with("(" + name + ")"))
+                fail("\"" + name + "\" has more than one value here: write " + known + ", for example", at);
+        fail("no parameter is named \"" + name + "\"", at);
+    }
     std::size_t word(std::size_t at) {
         std::size_t end = at;
         while (end < text.size() && isWord(text[end])) ++end;
         const std::string_view name = std::string_view(text).substr(at, end - at);
         const std::size_t next = text.find_first_not_of(" \t", end);
         const bool function = next != std::string::npos && text[next] == '(';
-        if (!function && name != "_pi" && name != "_e") fail("no parameter is named \"" + std::string(name) + "\"", at);
+        if (!function && name != "_pi" && name != "_e") failUnknown(std::string(name), at);
         copy(name, at);
         return end;
     }
@@ -203,6 +218,13 @@ struct Translator {
 };
 
 } // namespace
+
+std::vector<std::string> formulaFunctions() {
+    const mu::Parser parser;
+    std::vector<std::string> names;
+    for (const auto& [name, callback] : parser.GetFunDef()) names.push_back(name);
+    return names;
+}
 
 Expression::Expression(const std::string& text, std::span<const std::string> names, OtherTimes otherTimes) {
     if (text.find_first_not_of(" \t\n") == std::string::npos) fail("the formula is empty", 0);

@@ -8,12 +8,15 @@
 #include <string>
 #include <vector>
 
-/// Formulas over named values, read by muParser: + - * / ^, comparisons, && ||, a ? b : c, abs, sqrt, exp, ln, log10,
-/// sin, min, max, ... Names may be those of channels ("U.x", "|U|"); any other name is written between back quotes.
+/// Formulas over named values, read by muParser: + - * / ^, comparisons, && ||, a ? b : c, and functions. Names may be
+/// those of channels ("U.x", "|U|"); any other name is written between back quotes.
 namespace tessera::volume {
 
 /// Whether a formula may name values at another time: at(T, first), at(T, 0.3), with T a name.
 enum class OtherTimes { Refused, Allowed };
+
+/// The functions that formulas know, by name in alphabetical order: abs, acos, ...
+std::vector<std::string> formulaFunctions();
 
 class Expression {
 public:
@@ -34,6 +37,10 @@ public:
     const std::vector<Input>& inputs() const { return inputs_; }
     /// The names of the inputs, in their order.
     const std::vector<int>& used() const { return used_; }
+
+    /// The formula with its inputs replaced by variables(), in the order of inputs().
+    const std::string& translated() const { return translated_; }
+    const std::vector<std::string>& variables() const { return variables_; }
 
     /// The formula at every point: inputs[i] holds the values of inputs()[i], out.size() of them. Thread-safe.
     void evaluate(std::span<const std::vector<double>> inputs, std::span<double> out) const;

@@ -66,6 +66,12 @@ const Parameter& parameterOf(const DatasetInfo& info, int channel) {
     return info.parameters.at(std::size_t(info.channel(channel).parameter));
 }
 
+std::string channelNames(const DatasetInfo& info) {
+    std::string names;
+    for (const Channel& channel : info.channels()) names += (names.empty() ? "" : ", ") + channel.name;
+    return names;
+}
+
 std::string labelName(const Parameter& label, int value) {
     for (const Label& known : label.labels)
         if (known.value == value && !known.name.empty()) return known.name;

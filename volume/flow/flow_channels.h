@@ -20,6 +20,9 @@ std::optional<int> densityChannel(const DatasetInfo& info);
 /// Channel of a categorical parameter by name; "" finds the first one.
 std::optional<int> labelChannel(const DatasetInfo& info, const std::string& name = {});
 
+/// The names of all channels, "O2, T, U.x", for a message about one that is not there.
+std::string channelNames(const DatasetInfo& info);
+
 /// The parameter a channel belongs to.
 const Parameter& parameterOf(const DatasetInfo& info, int channel);
 

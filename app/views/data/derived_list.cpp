@@ -3,6 +3,8 @@
 #include "app/pane/view_parts.h"
 #include "app/ui/parameter_widget.h"
 #include "volume/base/unit_product.h"
+#include "volume/derived/expression.h"
+#include "volume/derived/formula_unit.h"
 #include "volume/derived/other_source.h"
 
 #include <algorithm>
@@ -54,15 +56,33 @@ std::string differenceName(const volume::DatasetInfo& info, const volume::Differ
     return recipe.channel + " minus " + volume::timeText(recipe.reference(), info);
 }
 
-/// Renames a difference that still has its generated name and unit when its parameters change, so that the name stays
-/// correct.
+} // namespace
+
 void followRecipe(volume::DerivedParameter& own, const volume::DerivedParameter& before,
                   const volume::DatasetInfo& info) {
+    const auto *formula = std::get_if<volume::ExpressionRecipe>(&own.recipe),
+               *former = std::get_if<volume::ExpressionRecipe>(&before.recipe);
+    if (formula && former && *formula != *former && before.unit == volume::formulaUnit(former->formula, info))
+        own.unit = volume::formulaUnit(formula->formula, info);
     const auto *is = std::get_if<volume::DifferenceRecipe>(&own.recipe),
                *was = std::get_if<volume::DifferenceRecipe>(&before.recipe);
     if (!is || !was || *is == *was) return;
     if (before.name == differenceName(info, *was)) own.name = differenceName(info, *is);
     if (before.unit == unitOf(info, was->channel)) own.unit = unitOf(info, is->channel);
+}
+
+namespace {
+
+/// What a formula may contain.
+const char* formulaHelp() {
+    static const std::string help = [] {
+        std::string text =
+            "Parameters by name (special names in `back quotes`), x y z t, + - * / ^, comparisons, && ||, "
+            "a ? b : c, _pi _e";
+        for (const std::string& name : volume::formulaFunctions()) text += " " + name;
+        return text + "; at another time: at(T, first), last, previous, next, at(T, 0.3)";
+    }();
+    return help.c_str();
 }
 
 void drawOne(ViewContext& context, DerivedDraft& draft, std::size_t index, int& removed) {
@@ -87,8 +107,7 @@ void drawOne(ViewContext& context, DerivedDraft& draft, std::size_t index, int& 
     // Not while typing: it would cover the error message of the formula.
     if (std::holds_alternative<volume::ExpressionRecipe>(own.recipe) && ImGui::IsItemHovered() &&
         !ImGui::IsItemActive())
-        tooltip("Parameters by name (special names in `back quotes`), x y z t, + - * / ^, comparisons, a ? b : c, abs "
-                "sqrt exp ln log10 sin cos min max; at another time: at(T, first), last, previous, next, at(T, 0.3)");
+        tooltip(formulaHelp());
     if (wrong) {
         ImGui::PushStyleColor(ImGuiCol_Text, palette().failure);
         ImGui::TextWrapped("%s", draft.problems[index].c_str());

@@ -20,6 +20,11 @@ void drawDerivedList(ViewContext& context, DerivedDraft& draft);
 /// A derived parameter of this kind that can be computed at once where the data allow it, with a name that is free.
 volume::DerivedParameter newDerived(const volume::DatasetInfo& info, std::size_t kind, const std::string& channel);
 
+/// Changes the name and unit that were given to a derived parameter as they follow from its recipe: the unit of a
+/// formula, name and unit of a difference. What the user typed stays. `before`: the same before its recipe changed.
+void followRecipe(volume::DerivedParameter& own, const volume::DerivedParameter& before,
+                  const volume::DatasetInfo& info);
+
 /// The derived parameter "T minus first": a channel minus itself at another time.
 volume::DerivedParameter newDifference(const volume::DatasetInfo& info, const std::string& channel,
                                        const volume::TimeReference& from);
