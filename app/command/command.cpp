@@ -197,4 +197,20 @@ void sayShare(std::size_t own, std::size_t all, const std::string& what, const s
         std::printf("%zu of %zu %s%s\n", own, all, what.c_str(), by.c_str());
 }
 
+Progress jsonProgress(const Progress& terminal) {
+    Progress progress = terminal;
+    progress.report = [inner = terminal.report, last = -1.0, left = TimeLeft()](double fraction,
+                                                                                const std::string& what) mutable {
+        if (inner) inner(fraction, what); // notices Ctrl-C
+        const std::optional<double> seconds = left.after(fraction);
+        if (fraction - last < 0.005 && fraction < 1) return;
+        last = fraction;
+        nlohmann::json line{{"fraction", fraction}, {"what", what}};
+        if (seconds) line["secondsLeft"] = *seconds;
+        std::printf("%s\n", jsonText(line).c_str());
+        std::fflush(stdout);
+    };
+    return progress;
+}
+
 } // namespace tessera::app

@@ -86,4 +86,7 @@ private:
 /// Ctrl-C requests a stop through its token. Only one at a time.
 Progress terminalProgress(const std::string& title);
 
+/// The same as one JSON object per line on stdout, for a window that runs a command; `terminal` notices Ctrl-C.
+Progress jsonProgress(const Progress& terminal);
+
 } // namespace tessera::app

@@ -4,7 +4,6 @@
 #include "app/data/import_options.h"
 #include "app/data/open.h"
 #include "app/data/picture_session.h"
-#include "app/data/require_data.h"
 #include "app/described/describe_cli.h"
 #include "app/history/session_file.h"
 #include "app/user_files/import_memory.h"

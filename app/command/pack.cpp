@@ -2,7 +2,6 @@
 #include "app/command/command.h"
 #include "app/data/import_options.h"
 #include "app/data/open.h"
-#include "app/data/require_data.h"
 #include "app/described/describe_cli.h"
 #include "app/growing/follow.h"
 #include "app/growing/frame_stream.h"
@@ -46,23 +45,6 @@ struct PackRequest {
     std::optional<std::size_t> blockTimes;
     bool blockParameters = false, blockSlabs = false, alone = false;
 };
-
-/// One JSON object per line on stdout, for a window that runs this command.
-Progress jsonProgress(const Progress& terminal) {
-    Progress progress = terminal;
-    progress.report = [inner = terminal.report, last = -1.0, left = TimeLeft()](double fraction,
-                                                                                const std::string& what) mutable {
-        if (inner) inner(fraction, what); // notices Ctrl-C
-        const std::optional<double> seconds = left.after(fraction);
-        if (fraction - last < 0.005 && fraction < 1) return;
-        last = fraction;
-        nlohmann::json line{{"fraction", fraction}, {"what", what}};
-        if (seconds) line["secondsLeft"] = *seconds;
-        std::printf("%s\n", jsonText(line).c_str());
-        std::fflush(stdout);
-    };
-    return progress;
-}
 
 codec::StoredLattice storedLattice(const std::string& path) {
     const codec::Archive archive(path);

@@ -64,4 +64,8 @@ volume::Dataset modelNamed(const std::string& input, const volume::ImportOptions
 DataRef dataNamed(const std::vector<std::string>& inputs, const volume::ImportOptions& stated,
                   const Progress& progress = {});
 
+/// Throws Error for a file among `paths` that is no data file: a session or a picture that contains one, or an archive
+/// beside other files. Throws nothing for files that are missing.
+void requireData(const std::vector<std::string>& paths);
+
 } // namespace tessera::app

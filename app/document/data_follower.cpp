@@ -1,7 +1,7 @@
 #include "app/document/data_follower.h"
 
+#include "app/data/open.h"
 #include "app/data/pack_child.h"
-#include "app/data/require_data.h"
 #include "app/data/sources.h"
 #include "app/edits/compare_files.h"
 #include "app/user_files/import_memory.h"
