@@ -13,6 +13,7 @@
 #include "volume/system/atomic_file.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
