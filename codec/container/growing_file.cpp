@@ -17,7 +17,6 @@ namespace tessera::codec {
 
 GrowingFile::GrowingFile(const std::string& path)
     : path_(replacedFile(path)), kind_(std::filesystem::exists(path_) ? Kind::Replacing : Kind::Fresh) {
-    if (std::filesystem::is_directory(path_)) throw Error("is a folder", path_);
     lockReplaced();
     removeLeftParts(path_);
     const std::string temporary = partFileOf(path_);
@@ -93,6 +92,7 @@ void GrowingFile::lock(int descriptor) const {
 
 /// Keeps others from writing to what lies at the path until it is replaced; throws if one does.
 void GrowingFile::lockReplaced() {
+    if (replaced_ >= 0) ::close(std::exchange(replaced_, -1)); // another file may lie there by now
     const int replaced = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
     if (replaced < 0) return; // there is nothing, or it cannot be read
     try {

@@ -16,7 +16,7 @@ namespace tessera::codec {
 class GrowingFile {
 public:
     /// Creates a file with space for the headers. Throws MachineError when it cannot be created, Error when another
-    /// program is writing an archive there or the path is a folder.
+    /// program is writing an archive there.
     explicit GrowingFile(const std::string& path);
     /// Continues an archive with this header; bytes beyond it are truncated. Throws Error when the file contains
     /// another archive or another program is writing it.

@@ -49,8 +49,6 @@ void set(BrickSamples& samples, std::size_t i, double value) {
         setAbsent(samples, i);
 }
 
-constexpr int kTimeName = -4; // FormulaNames::channel
-
 } // namespace
 
 struct DerivedBricks::Impl {
@@ -111,12 +109,12 @@ struct DerivedBricks::Impl {
             const Expression::Input& used = expression_->inputs()[n];
             const int channel = names_.channel[std::size_t(used.name)];
             std::vector<double>& of = values.emplace_back(count);
-            if (used.at && channel == kTimeName && !times_[n].exists(key.time)) {
+            if (used.at && channel == FormulaNames::kTime && !times_[n].exists(key.time)) {
                 samples.push_back(nothing(key));
             } else if (channel >= 0) {
                 samples.push_back(used.at ? input(times_[n], key) : input(channel, key));
                 std::copy(samples.back().values.begin(), samples.back().values.end(), of.begin());
-            } else if (channel == kTimeName) {
+            } else if (channel == FormulaNames::kTime) {
                 const double now = source_->info().times[std::size_t(key.time)];
                 std::fill(of.begin(), of.end(), used.at ? times_[n].time(key.time) : now);
             } else {
@@ -294,7 +292,7 @@ struct DerivedBricks::Impl {
             const Expression::Input& used = expression_->inputs()[n];
             const int channel = names_.channel[std::size_t(used.name)];
             const bool fixed = used.at && isFixed(*used.at);
-            if (channel == kTimeName
+            if (channel == FormulaNames::kTime
                     ? !fixed
                     : channel >= 0 && !(used.at ? times_[n].stays(key, toTime) : stays(channel, key, toTime)))
                 return false;

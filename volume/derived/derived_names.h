@@ -11,7 +11,8 @@ namespace tessera::volume {
 /// Names a formula may use: channels, vectors (for their magnitude), then x, y, z, t where these are free.
 struct FormulaNames {
     std::vector<std::string> names;
-    std::vector<int> channel; ///< by name; -1 - axis for a coordinate, -4 for the time
+    static constexpr int kTime = -4;
+    std::vector<int> channel; ///< by name; -1 - axis for a coordinate, kTime for the time
 
     explicit FormulaNames(const DatasetInfo& info);
 

@@ -139,9 +139,9 @@ std::string formulaUnit(const std::string& formula, const DatasetInfo& info) {
         std::map<std::string, std::string, std::less<>> units;
         for (std::size_t i = 0; i < expression.inputs().size(); ++i) {
             const int channel = names.channel[std::size_t(expression.inputs()[i].name)];
-            units[expression.variables()[i]] = channel >= 0    ? info.channel(channel).unit
-                                               : channel == -4 ? info.timeUnit
-                                                               : info.lengthUnit;
+            units[expression.variables()[i]] = channel >= 0                     ? info.channel(channel).unit
+                                               : channel == FormulaNames::kTime ? info.timeUnit
+                                                                                : info.lengthUnit;
         }
         const MaybeUnit unit = FormulaReader(expression.translated(), units).read();
         return unit ? unit->unit : std::string();
