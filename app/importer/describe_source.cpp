@@ -1,9 +1,14 @@
 #include "app/importer/describe_source.h"
 
+#include "app/importer/present.h"
 #include "app/importer/readers/vtk_messages.h"
+#include "volume/import/files/upright.h"
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -142,17 +147,45 @@ void readWords(vtkFieldData* data, volume::FileBlock& block, std::vector<ArrayRe
     if (const std::string unit = text("time_unit"); !unit.empty()) block.timeUnit = unit;
 }
 
-void setLattice(BlockRef& ref, const int extent[6], const double spacing[3], const double origin[3], bool cells) {
+/// The lattice of an image: of its points, or of the middles of its cells, which `box` then encloses. An axis with a
+/// single layer of points has no cells, and one layer of samples. Gives a note on its axes.
+std::string setLattice(BlockRef& ref, const int extent[6], const glm::dmat3& steps, const double origin[3],
+                       bool cells) {
+    volume::StoredGrid grid{glm::ivec3(1), {origin[0], origin[1], origin[2]}, steps};
+    bool inside[3] = {}; // samples lie between points
     for (int axis = 0; axis < 3; ++axis) {
         const int points = extent[2 * axis + 1] - extent[2 * axis] + 1;
-        const double step = spacing[axis] != 0 && std::isfinite(spacing[axis]) ? std::abs(spacing[axis]) : 1;
-        const bool shift = cells && points > 1;
-        ref.block.lattice.size[axis] = shift ? points - 1 : points;
-        ref.block.lattice.spacing[axis] = step;
-        ref.block.lattice.origin[axis] =
-            (std::isfinite(origin[axis]) ? origin[axis] : 0) + step * (extent[2 * axis] + (shift ? 0.5 : 0.0));
         if (points < 1) throw std::runtime_error("has an empty extent");
+        inside[axis] = cells && points > 1;
+        grid.size[axis] = inside[axis] ? points - 1 : points;
+        if (std::isfinite(glm::length(steps[axis])))
+            grid.origin += steps[axis] * (extent[2 * axis] + (inside[axis] ? 0.5 : 0.0));
     }
+    const volume::UprightGrid turned = volume::upright(grid);
+    const volume::Lattice& lattice = ref.block.lattice = turned.lattice;
+    ref.block.cellData = cells;
+    ref.block.box = {lattice.origin, lattice.position(lattice.size - 1)};
+    for (int axis = 0; axis < 3; ++axis)
+        if (inside[turned.from[std::size_t(axis)]]) {
+            ref.block.box.lo[axis] -= lattice.spacing[axis] / 2;
+            ref.block.box.hi[axis] += lattice.spacing[axis] / 2;
+        }
+    return turned.note;
+}
+
+/// Steps along the axes of an image by VTK's numbers.
+glm::dmat3 stepsOf(const double spacing[3], const double* direction) {
+    glm::dmat3 steps(1);
+    for (int row = 0; row < 3; ++row)
+        for (int axis = 0; axis < 3; ++axis) {
+            const double step = spacing[axis] != 0 && std::isfinite(spacing[axis]) ? spacing[axis] : 1;
+            steps[axis][row] = step * (direction != nullptr ? direction[3 * row + axis] : row == axis ? 1.0 : 0.0);
+        }
+    return steps;
+}
+
+void addNote(BlockRef& ref, const std::string& note) {
+    if (!note.empty()) ref.block.notes.push_back(note);
 }
 
 void finish(Source& source, BlockRef& ref) {
@@ -164,13 +197,15 @@ void finish(Source& source, BlockRef& ref) {
     const std::string unit = source.lengthUnit.empty() ? lengthUnitInHeader(source) : source.lengthUnit;
     if (!unit.empty()) ref.block.lengthUnit = unit;
     if (!source.timeUnit.empty()) ref.block.timeUnit = source.timeUnit;
-    ref.block.note = source.note;
-    if (auto* nifti = vtkNIFTIImageReader::SafeDownCast(source.reader)) {
-        ref.scale = nifti->GetRescaleSlope();
-        ref.offset = nifti->GetRescaleIntercept();
-        if (ref.scale == 0) ref.scale = 1;
-        if (ref.scale != 1 || ref.offset != 0)
-            for (ArrayRef& array : ref.arrays) array.form.type = ScalarType::F32;
+    if (!source.timeName.empty()) ref.block.timeName = source.timeName;
+    for (const std::string& note : source.notes) addNote(ref, note);
+    for (ArrayRef& array : ref.arrays) {
+        if (const auto form = source.stored.find(array.vtkName); form != source.stored.end())
+            array.stored = form->second;
+        if (auto* nifti = vtkNIFTIImageReader::SafeDownCast(source.reader))
+            if (nifti->GetRescaleSlope() != 0)
+                array.stored = {nifti->GetRescaleSlope(), nifti->GetRescaleIntercept(), {}};
+        if (array.stored.scales()) array.form.type = ScalarType::F32;
     }
     if (auto* netCdf = vtkNetCDFReader::SafeDownCast(source.reader)) {
         for (ArrayRef& array : ref.arrays) array.form.unit = netCdf->QueryArrayUnits(array.vtkName.c_str());
@@ -201,10 +236,11 @@ std::vector<BlockRef> describeImageHeader(Source& source) {
     if (xml == nullptr || source.format != "vti") return {};
     vtkInformation* information = source.reader->GetOutputInformation(0);
     int extent[6] = {};
-    double spacing[3] = {1, 1, 1}, origin[3] = {0, 0, 0};
+    double spacing[3] = {1, 1, 1}, origin[3] = {0, 0, 0}, direction[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     information->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
     if (information->Has(vtkDataObject::SPACING()) != 0) information->Get(vtkDataObject::SPACING(), spacing);
     if (information->Has(vtkDataObject::ORIGIN()) != 0) information->Get(vtkDataObject::ORIGIN(), origin);
+    if (information->Has(vtkDataObject::DIRECTION()) != 0) information->Get(vtkDataObject::DIRECTION(), direction);
     BlockRef ref;
     const auto add = [&](vtkInformationInformationVectorKey* key, bool ofCells) {
         vtkInformationVector* arrays = information->Get(key);
@@ -222,7 +258,8 @@ std::vector<BlockRef> describeImageHeader(Source& source) {
     if (ref.arrays.empty()) add(vtkDataObject::CELL_DATA_VECTOR(), true);
     const int named = xml->GetNumberOfPointArrays() > 0 ? xml->GetNumberOfPointArrays() : xml->GetNumberOfCellArrays();
     if (ref.arrays.empty() && named > 0) return {}; // the header does not state the types
-    setLattice(ref, extent, spacing, origin, !ref.arrays.empty() && ref.arrays.front().ofCells);
+    addNote(ref, setLattice(ref, extent, stepsOf(spacing, direction), origin,
+                            !ref.arrays.empty() && ref.arrays.front().ofCells));
 
     // With all arrays disabled, an update reads only the field data.
     xml->GetPointDataArraySelection()->DisableAllArrays();
@@ -256,8 +293,9 @@ std::vector<BlockRef> describeBlocks(const Source& given, const std::vector<Bloc
                 addArray(ref, array->GetName() != nullptr ? array->GetName() : "value", array->GetDataType(),
                          array->GetNumberOfComponents(), true);
         if (auto* image = vtkImageData::SafeDownCast(data)) {
-            setLattice(ref, image->GetExtent(), image->GetSpacing(), image->GetOrigin(),
+            setLattice(ref, image->GetExtent(), stepsOf(image->GetSpacing(), nullptr), image->GetOrigin(),
                        !pointData && !ref.arrays.empty());
+            addNote(ref, block.note);
             if (pointData) // cell values would need another grid
                 std::erase_if(ref.arrays, [](const ArrayRef& array) { return array.ofCells; });
         } else {
@@ -296,91 +334,49 @@ vtkSmartPointer<vtkFieldData> fieldDataAlone(const std::string& path) {
     return reader->GetOutput()->GetFieldData();
 }
 
+void mergeBlocks(std::vector<BlockRef>& blocks, const std::vector<BlockRef>& more) {
+    for (const BlockRef& ref : more) {
+        const auto known =
+            std::ranges::find_if(blocks, [&](const BlockRef& block) { return block.block.name == ref.block.name; });
+        if (known == blocks.end()) {
+            blocks.push_back(ref);
+            continue;
+        }
+        for (const ArrayRef& array : ref.arrays)
+            if (std::ranges::none_of(known->arrays,
+                                     [&](const ArrayRef& own) { return own.form.name == array.form.name; }))
+                known->arrays.push_back(array);
+        for (const std::string& note : ref.block.notes)
+            if (std::ranges::find(known->block.notes, note) == known->block.notes.end())
+                known->block.notes.push_back(note);
+        known->block.box.lo = glm::min(known->block.box.lo, ref.block.box.lo);
+        known->block.box.hi = glm::max(known->block.box.hi, ref.block.box.hi);
+    }
+}
+
+std::string meshHead(const Source& source) {
+    if (source.format != "vtu") return {};
+    std::ifstream in(source.path, std::ios::binary);
+    std::string text(std::size_t(1) << 16, '\0');
+    in.read(text.data(), std::streamsize(text.size()));
+    text.resize(std::size_t(in.gcount()));
+    const std::size_t begin = text.find("<Piece"), points = text.find("<Points");
+    if (begin == std::string::npos || points == std::string::npos) return {};
+    const std::size_t point = text.find("RangeMin", points), end = text.find('>', point);
+    if (point == std::string::npos || end == std::string::npos) return {};
+    std::string head = text.substr(begin, text.find('>', begin) - begin) + text.substr(point, end - point);
+    head.resize(std::min(head.size(), head.find("offset", head.find("RangeMin"))));
+    auto* reader = vtkXMLReader::SafeDownCast(source.reader);
+    for (int i = 0; i < reader->GetNumberOfPointArrays(); ++i) head += std::string(";") + reader->GetPointArrayName(i);
+    for (int i = 0; i < reader->GetNumberOfCellArrays(); ++i) head += std::string("|") + reader->GetCellArrayName(i);
+    return head;
+}
+
 vtkDataArray* findArray(vtkDataSet* data, const ArrayRef& array) {
     vtkDataSetAttributes* from = data->GetPointData();
     if (array.ofCells) from = data->GetCellData();
     if (vtkDataArray* named = from->GetArray(array.vtkName.c_str())) return named;
     return array.vtkName == "value" && from->GetNumberOfArrays() == 1 ? from->GetArray(0) : nullptr;
-}
-
-std::string rangesJson(vtkDataSet* data, vtkDataArray* values, const ArrayRef& array) {
-    std::vector<std::uint8_t> used(std::size_t(values->GetNumberOfTuples()), array.ofCells ? 1 : 0);
-    if (!array.ofCells) {
-        vtkNew<vtkIdList> points;
-        for (vtkIdType c = 0; c < data->GetNumberOfCells(); ++c) {
-            data->GetCellPoints(c, points);
-            for (vtkIdType i = 0; i < points->GetNumberOfIds(); ++i) {
-                const auto point = std::size_t(points->GetId(i));
-                if (point < used.size()) used[point] = 1;
-            }
-        }
-    }
-    const int components = array.form.components;
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    std::vector<double> lo(std::size_t(components > 1 ? components + 1 : 1), kInfinity), hi(lo.size(), -kInfinity);
-    const auto widen = [&](std::size_t i, double value) {
-        lo[i] = std::min(lo[i], value);
-        hi[i] = std::max(hi[i], value);
-    };
-    for (std::size_t i = 0; i < used.size(); ++i) {
-        if (used[i] == 0) continue;
-        double square = 0;
-        for (int c = 0; c < components; ++c) {
-            const double value = values->GetComponent(vtkIdType(i), array.firstComponent + c);
-            if (std::isfinite(value)) widen(std::size_t(c), value);
-            square += value * value;
-        }
-        if (components > 1 && std::isfinite(square)) widen(std::size_t(components), std::sqrt(square));
-    }
-    nlohmann::json ranges = nlohmann::json::array();
-    for (std::size_t i = 0; i < lo.size(); ++i)
-        ranges.push_back(lo[i] <= hi[i] ? nlohmann::json{lo[i], hi[i]} : nlohmann::json());
-    return nlohmann::json{{"ranges", ranges}}.dump();
-}
-
-std::string headerJson(const std::vector<BlockRef>& blocks) {
-    using json = nlohmann::ordered_json;
-    const auto triple = [](const auto& v) { return json::array({v.x, v.y, v.z}); };
-    json out;
-    out["format"] = blocks.front().block.format;
-    out["blocks"] = json::array();
-    for (const BlockRef& ref : blocks) {
-        const volume::FileBlock& block = ref.block;
-        json entry;
-        entry["name"] = block.name;
-        entry["mesh"] = block.mesh;
-        entry["cellData"] = block.cellData;
-        entry["dims"] = triple(block.lattice.size);
-        entry["spacing"] = triple(block.lattice.spacing);
-        entry["origin"] = triple(block.lattice.origin);
-        entry["box"] = {block.box.lo.x, block.box.lo.y, block.box.lo.z, block.box.hi.x, block.box.hi.y, block.box.hi.z};
-        entry["cells"] = {block.cells};
-        entry["cellSize"] = triple(block.cellSize);
-        entry["lengthUnit"] = block.lengthUnit;
-        entry["timeName"] = block.timeName;
-        entry["timeUnit"] = block.timeUnit;
-        if (!block.note.empty()) entry["note"] = block.note;
-        entry["times"] = block.times;
-        entry["quantities"] = json::array();
-        for (const volume::Quantity& quantity : block.quantities) {
-            json values = json::array();
-            for (const double value : quantity.values) values.push_back(std::isfinite(value) ? json(value) : json());
-            entry["quantities"].push_back({{"name", quantity.name}, {"unit", quantity.unit}, {"values", values}});
-        }
-        entry["arrays"] = json::array();
-        for (const ArrayRef& array : ref.arrays) {
-            json words;
-            words["name"] = array.form.name;
-            words["unit"] = array.form.unit;
-            words["components"] = array.form.components;
-            words["type"] = volume::name(array.form.type);
-            for (const volume::Label& label : array.form.labels)
-                words["labels"][std::to_string(label.value)] = label.name;
-            entry["arrays"].push_back(std::move(words));
-        }
-        out["blocks"].push_back(std::move(entry));
-    }
-    return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 } // namespace tessera::importer

@@ -15,13 +15,13 @@ struct ArrayRef {
     bool ofCells = false;
     std::string vtkName;
     int firstComponent = 0;
+    StoredForm stored = {};
 };
 
 /// A block and how its arrays are found in VTK's data.
 struct BlockRef {
     volume::FileBlock block;
     std::vector<ArrayRef> arrays;
-    double scale = 1, offset = 0; ///< NIfTI scaling: physical = offset + scale * stored
 };
 
 /// Describes an image from its header, without reading samples; empty if the header does not suffice.
@@ -37,10 +37,17 @@ void describeFieldData(vtkFieldData* data, volume::FileBlock& block, std::vector
 /// The field data of an unstructured grid, read without its points and cells.
 vtkSmartPointer<vtkFieldData> fieldDataAlone(const std::string& path);
 
+/// Adds what another time, or file, of the same data shows: blocks (by name), their arrays, and the box of all.
+void mergeBlocks(std::vector<BlockRef>& blocks, const std::vector<BlockRef>& more);
+
+/// What the header of a file of VTK's unstructured grids says of its mesh and arrays: equal where all but the values
+/// are. "" for other files, and where the header does not tell.
+std::string meshHead(const Source& source);
+
 /// The array in a block; null if it is missing.
 vtkDataArray* findArray(vtkDataSet* data, const ArrayRef& array);
 
-/// The JSON answer to a "ranges" request (volume/import/files/stream.h).
+/// The JSON answer to a "ranges" request (volume/import/files/stream.h); no array (null) has no range.
 std::string rangesJson(vtkDataSet* data, vtkDataArray* values, const ArrayRef& array);
 
 /// The JSON of a header message (volume/import/files/stream.h).

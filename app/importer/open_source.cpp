@@ -14,6 +14,7 @@
 #include <vtkCompositeDataSet.h>
 #include <vtkDataObjectTree.h>
 #include <vtkFieldData.h>
+#include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkMultiBlockDataSet.h>
@@ -41,7 +42,7 @@ void flatten(vtkDataObject* data, const std::string& name, std::vector<Block>& b
     }
     auto* leaf = vtkDataSet::SafeDownCast(data);
     if (leaf != nullptr && leaf->GetNumberOfPoints() > 0 && leaf->GetNumberOfCells() > 0)
-        blocks.push_back({name, leaf});
+        blocks.push_back({name, leaf, {}});
 }
 
 int arraysIn(vtkDataObject* data) {
@@ -128,7 +129,11 @@ std::vector<Block> readBlocks(const Source& source, int time) {
     }
     std::vector<Block> kept;
     for (std::size_t i = 0; i < blocks.size(); ++i)
-        if (dimensions[i] == most) kept.push_back({blocks[i].name, asEvenGrid(blocks[i].data)});
+        if (dimensions[i] == most) {
+            kept.push_back({blocks[i].name, asEvenGrid(blocks[i].data), {}});
+            if (auto* image = vtkImageData::SafeDownCast(kept.back().data))
+                kept.back().data = uprightImage(image, kept.back().note);
+        }
     if (kept.empty()) throw std::runtime_error("holds no grid and no cells");
     for (const Block& block : kept) {
         const double* box = block.data->GetBounds();

@@ -10,7 +10,8 @@ namespace tessera::importer {
 /// A leaf of a composite data set with the name of its block.
 struct Block {
     std::string name;
-    vtkSmartPointer<vtkDataSet> data;
+    vtkSmartPointer<vtkDataSet> data; ///< an image has the axes of space
+    std::string note;                 ///< about its axes, "" = none
 };
 
 /// Chooses a reader and reads the header of a file, or of several that are slices of one volume. Throws

@@ -1,10 +1,13 @@
 #include "app/importer/sampler.h"
 
+#include "app/importer/present.h"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vtkCell.h>
 #include <vtkGenericCell.h>
+#include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
 
@@ -29,7 +32,9 @@ std::shared_ptr<const Sampling> makeSampling(vtkDataSet* mesh, const volume::Lat
     const double* box = mesh->GetBounds();
     double largest = 0;
     for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, box[2 * axis + 1] - box[2 * axis]);
+    const std::vector<std::uint8_t> present = presentCells(mesh);
     for (vtkIdType c = 0; c < mesh->GetNumberOfCells(); ++c) {
+        if (!volume::isPresent(present, std::size_t(c))) continue;
         double bounds[6];
         mesh->GetCellBounds(c, bounds);
         int begin[3], end[3];
@@ -80,7 +85,7 @@ std::shared_ptr<const Sampling> makeSampling(vtkDataSet* mesh, const volume::Lat
 }
 
 void sampleArray(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* array, bool ofCells, int component,
-                 volume::ScalarType type, void* out) {
+                 volume::ScalarType type, void* out, std::vector<std::uint8_t>& mask) {
     vtkNew<vtkGenericCell> cell;
     std::vector<double> weights(64);
     std::int32_t loaded = -1;
@@ -91,7 +96,11 @@ void sampleArray(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* array
             values[at] = T{};
             if (c < 0) continue;
             if (ofCells) {
-                values[at] = static_cast<T>(array->GetComponent(c, component));
+                const double value = array->GetComponent(c, component);
+                if (std::isnan(value))
+                    mask[at] = 0;
+                else
+                    values[at] = static_cast<T>(value);
                 continue;
             }
             if (c != loaded) mesh->GetCell(loaded = c, cell);
@@ -100,22 +109,58 @@ void sampleArray(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* array
             const double pcoords[3] = {sampling.pcoords[at * 3], sampling.pcoords[at * 3 + 1],
                                        sampling.pcoords[at * 3 + 2]};
             cell->InterpolateFunctions(pcoords, weights.data());
+            const auto corner = [&](std::size_t p) { return array->GetComponent(cell->GetPointId(int(p)), component); };
+            const auto nearest = std::max_element(weights.begin(), weights.begin() + std::ptrdiff_t(points));
+            const double own = corner(std::size_t(nearest - weights.begin()));
+            if (std::isnan(own)) {
+                mask[at] = 0;
+                continue;
+            }
             if constexpr (std::is_floating_point_v<T>) {
-                double sum = 0;
-                for (std::size_t p = 0; p < points; ++p)
-                    sum += weights[p] * array->GetComponent(cell->GetPointId(int(p)), component);
-                values[at] = static_cast<T>(sum);
+                double sum = 0, missing = 0;
+                for (std::size_t p = 0; p < points; ++p) {
+                    const double value = corner(p);
+                    if (std::isnan(value))
+                        missing += weights[p];
+                    else
+                        sum += weights[p] * value;
+                }
+                values[at] = static_cast<T>(missing != 0 ? sum / (1 - missing) : sum);
             } else {
-                const auto nearest = std::max_element(weights.begin(), weights.begin() + std::ptrdiff_t(points));
-                values[at] =
-                    static_cast<T>(array->GetComponent(cell->GetPointId(int(nearest - weights.begin())), component));
+                values[at] = static_cast<T>(own);
             }
         }
     });
 }
 
-void sampleCells(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* cells, vtkDataArray* smoothed, int component,
-                 float* out) {
+namespace {
+
+/// Values of cells averaged to the points of the cells, without those that are NaN.
+std::vector<double> averagedToPoints(vtkDataSet* mesh, vtkDataArray* cells, int component) {
+    std::vector<double> sums(std::size_t(mesh->GetNumberOfPoints()), 0);
+    std::vector<std::int32_t> counts(sums.size(), 0);
+    vtkNew<vtkIdList> points;
+    for (vtkIdType c = 0; c < mesh->GetNumberOfCells(); ++c) {
+        const double value = cells->GetComponent(c, component);
+        if (std::isnan(value)) continue;
+        mesh->GetCellPoints(c, points);
+        for (vtkIdType p = 0; p < points->GetNumberOfIds(); ++p) {
+            const auto point = std::size_t(points->GetId(p));
+            if (point >= sums.size()) continue;
+            sums[point] += value;
+            ++counts[point];
+        }
+    }
+    for (std::size_t p = 0; p < sums.size(); ++p) sums[p] /= std::max(counts[p], 1);
+    return sums;
+}
+
+} // namespace
+
+void sampleCells(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* cells, int component, float* out,
+                 std::vector<std::uint8_t>& mask) {
+    const std::vector<double> smoothed = averagedToPoints(mesh, cells, component);
+    const auto atPoint = [&](vtkIdType p) { return std::size_t(p) < smoothed.size() ? smoothed[std::size_t(p)] : 0; };
     vtkNew<vtkGenericCell> cell;
     std::vector<double> weights(64);
     std::int32_t loaded = -1;
@@ -124,8 +169,7 @@ void sampleCells(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* cells
     const auto interpolated = [&](const double pcoords[3]) {
         cell->InterpolateFunctions(pcoords, weights.data());
         double sum = 0;
-        for (std::size_t p = 0; p < points; ++p)
-            sum += weights[p] * smoothed->GetComponent(cell->GetPointId(int(p)), component);
+        for (std::size_t p = 0; p < points; ++p) sum += weights[p] * atPoint(cell->GetPointId(int(p)));
         return sum;
     };
     for (std::size_t at = 0; at < sampling.cells.size(); ++at) {
@@ -139,11 +183,15 @@ void sampleCells(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* cells
             if (weights.size() < points) weights.resize(points);
             own = least = most = cells->GetComponent(c, component);
             for (std::size_t p = 0; p < points; ++p) {
-                const double value = smoothed->GetComponent(cell->GetPointId(int(p)), component);
+                const double value = atPoint(cell->GetPointId(int(p)));
                 least = std::min(least, value);
                 most = std::max(most, value);
             }
             atMiddle = interpolated(middle);
+        }
+        if (std::isnan(own)) {
+            mask[at] = 0;
+            continue;
         }
         const double pcoords[3] = {sampling.pcoords[at * 3], sampling.pcoords[at * 3 + 1],
                                    sampling.pcoords[at * 3 + 2]};

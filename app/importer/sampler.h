@@ -23,14 +23,16 @@ struct Sampling {
 std::shared_ptr<const Sampling> makeSampling(vtkDataSet* mesh, const volume::Lattice& lattice);
 
 /// One component at every sample: point values are interpolated in the cell; cell values (`ofCells`) and integers are
-/// those of the cell or the nearest corner. Absent samples are 0. `out` holds lattice.count() numbers of `type`.
+/// those of the cell or the nearest corner. NaN is no value: it takes no part in interpolation, and a sample whose
+/// nearest corner has none is absent in `mask`. Absent samples are 0. `out` holds lattice.count() numbers of `type`.
 void sampleArray(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* array, bool ofCells, int component,
-                 volume::ScalarType type, void* out);
+                 volume::ScalarType type, void* out, std::vector<std::uint8_t>& mask);
 
 /// One component of an array of cells at every sample: the value of the cell, plus the change of the values averaged to
-/// points (`smoothed`, of `mesh`) from the centre of the cell to the sample, clamped to the range of those points. So a
-/// sample at the centre has the cell's value, and linear fields are reproduced.
-void sampleCells(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* cells, vtkDataArray* smoothed, int component,
-                 float* out);
+/// points from the centre of the cell to the sample, clamped to the range of those points. So a sample at the centre
+/// has the cell's value, and linear fields are reproduced. NaN is no value: such cells are absent in `mask`, and take
+/// no part in the averages.
+void sampleCells(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* cells, int component, float* out,
+                 std::vector<std::uint8_t>& mask);
 
 } // namespace tessera::importer

@@ -291,8 +291,10 @@ Gathered gather(Assembly& all, bool numbers, DatasetInfo& info, std::vector<std:
         for (std::size_t b = 0; b < file.blocks.size(); ++b) {
             const FileBlock& block = file.blocks[b];
             found.blocks += isBlock(file, block) ? 1 : 0;
-            found.scattered = found.scattered || block.note.starts_with("scattered points");
-            if (!block.note.empty() && std::ranges::find(notes, block.note) == notes.end()) notes.push_back(block.note);
+            for (const std::string& note : block.notes) {
+                found.scattered = found.scattered || note.starts_with("scattered points");
+                if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+            }
             if (!block.lengthUnit.empty()) info.lengthUnit = block.lengthUnit;
             if (!numbers && !block.timeName.empty()) info.timeName = block.timeName;
             if (!numbers && !block.timeUnit.empty()) info.timeUnit = block.timeUnit;

@@ -246,8 +246,8 @@ void openArrays(std::vector<StoredArray> arrays, Source& source) {
         source.timeUnit = "step";
     }
     if (left > 0)
-        source.note =
-            std::to_string(left) + (left == 1 ? " array" : " arrays") + " of another size than the grid ignored";
+        source.notes.push_back(std::to_string(left) + (left == 1 ? " array" : " arrays") +
+                               " of another size than the grid ignored");
     source.read = [chosen, grid](std::size_t time) -> vtkSmartPointer<vtkDataObject> {
         vtkSmartPointer<vtkDataSet> data = makeGrid(grid);
         for (const Chosen& one : *chosen) {

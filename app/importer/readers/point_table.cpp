@@ -204,8 +204,8 @@ vtkSmartPointer<vtkDataSet> scattered(const PointTable& table, const std::array<
                 }
                 rowOf.push_back(best);
             }
-    source.note = "scattered points: each sample has the values of the nearest of " + std::to_string(table.rows()) +
-                  " points, and is absent where none lies within 1.5 steps";
+    source.notes.push_back("scattered points: each sample has the values of the nearest of " +
+                           std::to_string(table.rows()) + " points, and is absent where none lies within 1.5 steps");
     return image(table, sizes, lo, step, rowOf, source);
 }
 

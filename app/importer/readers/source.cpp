@@ -4,6 +4,7 @@
 #include "volume/base/trimmed.h"
 #include "volume/base/unit_conversion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <sstream>
@@ -21,6 +22,10 @@ double meantTime(double time) {
     std::snprintf(text, sizeof text, "%.7g", time);
     const double meant = std::stod(text);
     return float(meant) == float(time) ? meant : time;
+}
+
+bool StoredForm::isValue(double stored) const {
+    return stored >= lowest && stored <= highest && std::ranges::find(fill, stored) == fill.end(); // not of NaN
 }
 
 namespace {

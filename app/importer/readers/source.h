@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
@@ -13,6 +14,20 @@
 
 /// The result of a reader: an opened file.
 namespace tessera::importer {
+
+/// How the stored numbers of an array become values, and which of them are none. Stored numbers are compared before
+/// they are scaled; NaN is never a value.
+struct StoredForm {
+    double scale = 1, offset = 0; ///< value = offset + scale * stored
+    std::vector<double> fill;     ///< stored numbers that mean "no value"
+    double lowest = -std::numeric_limits<double>::infinity();
+    double highest = std::numeric_limits<double>::infinity(); ///< stored numbers beyond these are no values
+    bool operator==(const StoredForm&) const = default;
+
+    bool scales() const { return scale != 1 || offset != 0; }
+    bool masks() const { return *this != StoredForm{scale, offset, {}}; }
+    bool isValue(double stored) const;
+};
 
 /// An opened file, of which only the header has been read.
 struct Source {
@@ -25,8 +40,13 @@ struct Source {
     std::vector<double> times;                ///< empty: not stated
     std::vector<double> readerTimes;          ///< the same, as VTK's reader has them (float32 converted to double)
     std::map<std::string, std::string> units; ///< stated by the file, by array
+    std::map<std::string, StoredForm> stored; ///< by array; others are values as they stand
     std::string lengthUnit, timeUnit;         ///< stated by the file
-    std::string note;                         ///< for the user: how the samples were obtained
+    std::string timeName; ///< what the times count, where it is no time (a voltage); "" = not stated
+    /// For the user: how the samples were obtained, what is guessed, what was left out, each in one sentence.
+    std::vector<std::string> notes;
+    /// Indices of times that together show every block and array: those where fields begin later, too.
+    std::vector<std::size_t> shownAt{0};
 };
 
 /// Names of time values in VTK files.

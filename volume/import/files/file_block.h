@@ -27,14 +27,14 @@ struct FileBlock {
     std::string name;       ///< of the block, "" where the file is one block
     bool resamples = false; ///< `read` can sample on any grid; a grid only on its own otherwise
     bool mesh = false;      ///< cells that are sampled; else samples lie on `lattice` as they are
-    bool cellData = false;  ///< mesh: values belong to cells, so samples go to the middle of cells
+    bool cellData = false;  ///< values belong to cells, so samples lie in the middle of cells, within `box`
     Lattice lattice;        ///< of a grid
-    Box box;                ///< extent of a mesh
+    Box box;                ///< extent of a mesh, or of the cells of a grid
     double cells = 0;       ///< of a mesh
     glm::dvec3 cellSize{0}; ///< harmonic mean of the extents of a mesh's cells, per axis
     std::string lengthUnit, timeUnit, provenance; ///< "" = not stated
     std::string timeName;                         ///< "" = not stated
-    std::string note;                             ///< for the user: how the samples came about
+    std::vector<std::string> notes;               ///< for the user: how the samples came about, what was left out
     std::vector<Array> arrays;
     std::vector<double> times;        ///< empty: one frame whose time is not stated
     std::vector<Quantity> quantities; ///< one value for each time, or one for the only frame

@@ -119,12 +119,18 @@ FileBlock parseBlock(const json& entry, const std::string& file, const std::stri
     block.lengthUnit = reader.text("lengthUnit");
     block.timeUnit = reader.text("timeUnit");
     block.timeName = reader.text("timeName");
-    block.note = reader.text("note");
+    if (const auto list = entry.find("notes"); list != entry.end()) {
+        if (!list->is_array() || list->size() > kMostArrays) reader.fail("notes");
+        for (const json& note : *list) {
+            if (!note.is_string()) reader.fail("notes");
+            block.notes.push_back(note.get<std::string>());
+        }
+    }
     block.mesh = reader.flag("mesh");
+    block.cellData = reader.flag("cellData");
+    const std::vector<double> box = reader.numbers("box", 6, 6);
+    block.box = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
     if (block.mesh) {
-        block.cellData = reader.flag("cellData");
-        const std::vector<double> box = reader.numbers("box", 6, 6);
-        block.box = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
         block.cellSize = reader.triple("cellSize");
         block.cells = reader.numbers("cells", 1, 1)[0];
         for (int axis = 0; axis < 3; ++axis)

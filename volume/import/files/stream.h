@@ -19,9 +19,9 @@
 /// kind 1, header: JSON text; one for each FILE, in order, before any request. A FILE after `--like` is expected to
 /// have the layout of the one before it; N files after `--slices` are slices of one volume and count as one. Keys:
 /// "format", "blocks": [{"name", "mesh", "cellData", "dims", "spacing", "origin", "box" (6 numbers, x first), "cells",
-/// "cellSize", "lengthUnit", "timeName", "timeUnit", "note", "times", "quantities": [{"name", "unit", "values": [a
+/// "cellSize", "lengthUnit", "timeName", "timeUnit", "notes", "times", "quantities": [{"name", "unit", "values": [a
 /// number or null for each time]}], "arrays": [{"name", "unit", "components", "type", "labels": {"1": "air"}}]}].
-/// "timeName", "note" and "quantities" are optional.
+/// "timeName", "notes" and "quantities" are optional.
 ///
 /// kind 2, frame: u32 type (ScalarType), u32 mask (0 or 1), i32 nx, ny, nz, then nx*ny*nz samples, x fastest, then, if
 /// mask is 1, as many bytes (1 present, 0 absent). It answers the line

@@ -1,0 +1,82 @@
+#include "app/importer/present.h"
+
+#include <limits>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkPointData.h>
+
+namespace tessera::importer {
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Clears the flags of points or cells that have one of the bits.
+void clearGhosts(vtkDataSetAttributes* attributes, int bits, std::size_t count, std::vector<std::uint8_t>& flags) {
+    vtkDataArray* ghosts = attributes->GetArray("vtkGhostType");
+    if (ghosts == nullptr || std::size_t(ghosts->GetNumberOfTuples()) != count) return;
+    for (std::size_t i = 0; i < count; ++i) {
+        if ((int(ghosts->GetComponent(vtkIdType(i), 0)) & bits) == 0) continue;
+        if (flags.empty()) flags.assign(count, 1);
+        flags[i] = 0;
+    }
+}
+
+} // namespace
+
+std::vector<std::uint8_t> presentCells(vtkDataSet* data) {
+    constexpr int kNoData = int(vtkDataSetAttributes::DUPLICATECELL) | int(vtkDataSetAttributes::REFINEDCELL) |
+                            int(vtkDataSetAttributes::HIDDENCELL);
+    std::vector<std::uint8_t> flags;
+    clearGhosts(data->GetCellData(), kNoData, std::size_t(data->GetNumberOfCells()), flags);
+    return flags;
+}
+
+std::vector<std::uint8_t> presentPoints(vtkDataSet* data) {
+    const auto count = std::size_t(data->GetNumberOfPoints());
+    std::vector<std::uint8_t> flags;
+    vtkDataArray* valid = data->GetPointData()->GetArray("vtkValidPointMask");
+    if (valid != nullptr && std::size_t(valid->GetNumberOfTuples()) == count) {
+        flags.resize(count);
+        for (std::size_t i = 0; i < count; ++i) flags[i] = valid->GetComponent(vtkIdType(i), 0) != 0 ? 1 : 0;
+    }
+    clearGhosts(data->GetPointData(), vtkDataSetAttributes::HIDDENPOINT, count, flags);
+    return flags;
+}
+
+std::vector<std::uint8_t> presentValues(vtkDataSet* data, vtkDataArray* from, const ArrayRef& array, int component) {
+    std::vector<std::uint8_t> flags = array.ofCells ? presentCells(data) : presentPoints(data);
+    if (from == nullptr || !array.stored.masks()) return flags;
+    const auto count = std::size_t(from->GetNumberOfTuples());
+    if (flags.empty()) flags.assign(count, 1);
+    for (std::size_t i = 0; i < count && i < flags.size(); ++i)
+        if (!array.stored.isValue(from->GetComponent(vtkIdType(i), component))) flags[i] = 0;
+    return flags;
+}
+
+vtkSmartPointer<vtkDataArray> valuesOf(vtkDataSet* data, vtkDataArray* from, const ArrayRef& array) {
+    const std::vector<std::uint8_t> flags = array.ofCells ? presentCells(data) : presentPoints(data);
+    const StoredForm& form = array.stored;
+    if (flags.empty() && !form.masks() && !form.scales()) return from;
+    auto values = vtkSmartPointer<vtkDoubleArray>::New();
+    values->SetNumberOfComponents(from->GetNumberOfComponents());
+    values->SetNumberOfTuples(from->GetNumberOfTuples());
+    for (vtkIdType i = 0; i < from->GetNumberOfTuples(); ++i)
+        for (int c = 0; c < from->GetNumberOfComponents(); ++c) {
+            const double stored = from->GetComponent(i, c);
+            const bool present = (std::size_t(i) >= flags.size() || flags[std::size_t(i)] != 0) &&
+                                 (!form.masks() || form.isValue(stored));
+            values->SetComponent(i, c, present ? form.offset + form.scale * stored : kNaN);
+        }
+    return values;
+}
+
+vtkSmartPointer<vtkDataArray> noValues(vtkDataSet* data, const ArrayRef& array) {
+    auto values = vtkSmartPointer<vtkDoubleArray>::New();
+    values->SetNumberOfComponents(array.firstComponent + array.form.components);
+    values->SetNumberOfTuples(array.ofCells ? data->GetNumberOfCells() : data->GetNumberOfPoints());
+    values->Fill(kNaN);
+    return values;
+}
+
+} // namespace tessera::importer
