@@ -1,7 +1,7 @@
 #include "app/importer/formats.h"
 
+#include "app/importer/meshes/foam_units.h"
 #include "app/importer/readers/check_file.h"
-#include "app/importer/readers/foam_units.h"
 #include "app/importer/readers/read_files.h"
 #include "volume/base/unit_conversion.h"
 

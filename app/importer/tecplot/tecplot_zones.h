@@ -1,7 +1,7 @@
 #pragma once
 
-#include "app/importer/readers/point_table.h"
 #include "app/importer/readers/source.h"
+#include "app/importer/tables/point_table.h"
 
 #include <array>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "app/importer/readers/foam_units.h"
+#include "app/importer/meshes/foam_units.h"
 
 #include "app/importer/readers/check_file.h"
 

@@ -1,4 +1,4 @@
-#include "app/importer/readers/array_file.h"
+#include "app/importer/arrays/array_file.h"
 
 #include "app/importer/readers/check_file.h"
 

@@ -1,5 +1,5 @@
 // NumPy: .npy, and .npz, a zip file of them.
-#include "app/importer/readers/array_file.h"
+#include "app/importer/arrays/array_file.h"
 #include "app/importer/readers/check_file.h"
 #include "app/importer/readers/read_files.h"
 

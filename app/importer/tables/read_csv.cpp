@@ -1,7 +1,7 @@
 // Tables with a heading: CSV of ParaView, Fluent, STAR-CCM+, COMSOL and spreadsheets.
 #include "app/importer/readers/check_file.h"
-#include "app/importer/readers/point_table.h"
 #include "app/importer/readers/read_files.h"
+#include "app/importer/tables/point_table.h"
 #include "volume/base/trimmed.h"
 
 #include <algorithm>

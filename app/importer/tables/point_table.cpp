@@ -1,4 +1,4 @@
-#include "app/importer/readers/point_table.h"
+#include "app/importer/tables/point_table.h"
 
 #include "volume/base/trimmed.h"
 

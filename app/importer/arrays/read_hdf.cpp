@@ -1,5 +1,5 @@
 // HDF5: VTKHDF by VTK's reader, else the datasets of the file by their paths.
-#include "app/importer/readers/array_file.h"
+#include "app/importer/arrays/array_file.h"
 #include "app/importer/readers/read_files.h"
 
 #include <algorithm>

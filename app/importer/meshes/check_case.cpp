@@ -1,6 +1,6 @@
 // Checks for truncated OpenFOAM and EnSight cases, in which each array is a separate file.
+#include "app/importer/meshes/foam_units.h"
 #include "app/importer/readers/check_file.h"
-#include "app/importer/readers/foam_units.h"
 
 #include <algorithm>
 #include <cctype>
