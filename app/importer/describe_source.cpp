@@ -301,7 +301,8 @@ std::vector<BlockRef> describeBlocks(const Source& given, const std::vector<Bloc
         } else {
             ref.block.mesh = true;
             ref.block.cellData = !pointData;
-            ref.block.cells = double(data->GetNumberOfCells());
+            const std::vector<std::uint8_t> present = presentCells(data);
+            ref.block.cells = double(present.empty() ? data->GetNumberOfCells() : std::ranges::count(present, 1));
             const double* box = data->GetBounds();
             ref.block.box = {{box[0], box[2], box[4]}, {box[1], box[3], box[5]}};
             ref.block.cellSize = meanCellSize(data);

@@ -41,6 +41,25 @@ TEST(NumberedNames, LastRunOfDigitsCounts) {
     EXPECT_EQ(numberedName("a123456789012345678901234567890.raw").number, std::nullopt);
 }
 
+TEST(NumberedNames, DecimalsBelongToANumberThatStandsByItself) {
+    const auto is = [](const std::string& name, const std::string& pattern, double number) {
+        EXPECT_EQ(numberedName(name).pattern, pattern) << name;
+        EXPECT_EQ(numberedName(name).number, number) << name;
+    };
+    is("run_0.05.vtu", "run_#.vtu", 0.05);
+    is("run_10.vtu", "run_#.vtu", 10);
+    is("run_0.15_mesh.vtu", "run_#_mesh.vtu", 0.15);
+    is("t1e-05.vtu", "t#.vtu", 1e-5);
+    is("T_2.5e+02.vtu", "T_#.vtu", 250);
+    is("U_-0.7.vtu", "U_#.vtu", -0.7);
+    is("a-7.vtu", "a-#.vtu", 7);
+    is("0.25.vti", "#.vti", 0.25);
+    is("run2.0001.vtu", "run2.#.vtu", 1); // a run and its first step
+    is("v1.2.vtu", "v1.#.vtu", 2);
+    is("a_00.5.vtu", "a_00.#.vtu", 5);
+    is("cell1e5.vtu", "cell1e#.vtu", 5);
+}
+
 TEST_F(ImportSeries, FilesOfAGroupAreSortedByNumber) {
     for (const char* name : {"a_10.vti", "a_9.vti", "b.vti", "a_100.vti"}) write(name);
     const std::string base = folder_.string() + "/";

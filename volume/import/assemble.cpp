@@ -2,6 +2,7 @@
 
 #include "volume/base/error.h"
 #include "volume/field/mesh_origin.h"
+#include "volume/import/block_label.h"
 #include "volume/import/common_grid.h"
 #include "volume/import/files/formats.h"
 
@@ -20,11 +21,23 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// One array of one block that feeds a parameter.
+/// One array of one block of a group that feeds a parameter.
 struct Contribution {
-    std::size_t group, block;
-    int array;
+    std::size_t group, block, array;
 };
+
+/// Where it is at one time: null where the file of that time lacks the block or the array.
+struct Found {
+    const FileBlock* block = nullptr;
+    int array = 0, localTime = 0;
+};
+
+Found inFile(const FileGroup& group, const Contribution& from, FileGroup::Frame frame) {
+    const GroupBlock& block = group.blocks[from.block];
+    const int at = block.at[frame.file], array = block.arrays[from.array][frame.file];
+    if (at < 0 || array < 0) return {};
+    return {&group.files[frame.file]->blocks[std::size_t(at)], array, frame.localTime};
+}
 
 Field allAbsent(const Lattice& lattice, ScalarType type) {
     Field field = makeField(lattice, type);
@@ -75,23 +88,20 @@ struct Assembly {
     std::vector<double> times;
     std::vector<Parameter> parameters;
     std::vector<std::vector<Contribution>> feeds; ///< per parameter; empty = the generated label
-    std::vector<std::uint8_t> label;              ///< samples of the generated label
-    std::shared_ptr<const Mask> labelMask;
+    BlockLabel label;                             ///< the generated label
 
-    const FileBlock* blockAt(const Contribution& from, double time, int& local) const {
+    Found at(const Contribution& from, double time) const {
         const FileGroup& group = groups[from.group];
-        std::size_t at = 0;
+        std::size_t index = 0;
         if (!group.times.empty()) {
             const auto found = std::find(group.times.begin(), group.times.end(), time);
             if (found == group.times.end()) {
-                if (group.times.size() > 1) return nullptr;
+                if (group.times.size() > 1) return {};
             } else {
-                at = static_cast<std::size_t>(found - group.times.begin());
+                index = static_cast<std::size_t>(found - group.times.begin());
             }
         }
-        const FileGroup::Frame frame = group.frames[at];
-        local = frame.localTime;
-        return &group.files[frame.file]->blocks[from.block];
+        return inFile(group, from, group.frames[index]);
     }
 
     bool inParts() const {
@@ -109,17 +119,17 @@ struct Assembly {
         const auto p = static_cast<std::size_t>(parameter);
         if (feeds[p].empty()) {
             Field field = makeField(part, ScalarType::U8);
-            std::copy(label.begin(), label.end(), field.as<std::uint8_t>().begin());
-            field.mask = labelMask;
+            std::ranges::copy(label.samples, field.as<std::uint8_t>().begin());
+            field.mask = label.mask;
             return field;
         }
         Field merged;
         for (const Contribution& from : feeds[p]) {
             if (!merged.samples.empty() && !merged.mask) break;
-            int local = 0;
-            const FileBlock* block = blockAt(from, times[static_cast<std::size_t>(timeIndex)], local);
-            if (block == nullptr) continue;
-            Field field = inType(block->read(from.array, component, local, lattice, slices), parameters[p].type);
+            const Found found = at(from, times[static_cast<std::size_t>(timeIndex)]);
+            if (found.block == nullptr) continue;
+            Field field =
+                inType(found.block->read(found.array, component, found.localTime, lattice, slices), parameters[p].type);
             field.lattice = part;
             if (merged.samples.empty())
                 merged = std::move(field);
@@ -137,9 +147,10 @@ struct Assembly {
             const FileGroup& group = groups[from.group];
             for (const FileGroup::Frame& frame : group.frames) {
                 progress.advance(done++ / double(group.frames.size() * feeds.size()));
-                const FileBlock& block = group.files[frame.file]->blocks[from.block];
+                const Found found = inFile(group, from, frame);
+                if (found.block == nullptr) continue;
                 const std::vector<Range> own =
-                    block.ranges ? block.ranges(from.array, frame.localTime) : std::vector<Range>{};
+                    found.block->ranges ? found.block->ranges(found.array, found.localTime) : std::vector<Range>{};
                 if (own.empty() || (!all.empty() && own.size() != all.size())) return {};
                 if (all.empty()) all = own;
                 for (std::size_t i = 0; i < own.size(); ++i)
@@ -150,61 +161,14 @@ struct Assembly {
             if (!(range.lo <= range.hi)) return {};
         return all;
     }
-
-    /// Labels each sample with the set of blocks that cover it. A block that covers every sample adds no information
-    /// and is left out.
-    void makeLabel(Parameter& parameter, const Progress& progress) {
-        struct Block {
-            std::string name;
-            Field cover;
-        };
-        std::vector<Block> blocks;
-        std::size_t total = 0;
-        for (const FileGroup& group : groups) total += group.files.front()->blocks.size();
-        std::vector<std::uint8_t> anywhere(lattice.count(), 0);
-        for (const FileGroup& group : groups)
-            for (const FileBlock& block : group.files.front()->blocks) {
-                progress.advance(double(blocks.size()) / double(total), "blocks");
-                Field cover = block.read(-1, 0, 0, lattice, {});
-                for (std::size_t i = 0; i < anywhere.size(); ++i) anywhere[i] = anywhere[i] != 0 || cover.present(i);
-                blocks.push_back({block.name, std::move(cover)});
-            }
-        std::erase_if(blocks, [&](const Block& block) {
-            for (std::size_t i = 0; i < anywhere.size(); ++i)
-                if (anywhere[i] != 0 && !block.cover.present(i)) return false;
-            return blocks.size() > 1;
-        });
-        std::map<std::vector<bool>, std::uint8_t> values;
-        label.assign(lattice.count(), 0);
-        std::vector<bool> covers(blocks.size());
-        Mask mask = anywhere;
-        for (std::size_t i = 0; i < label.size(); ++i) {
-            if (anywhere[i] == 0) continue;
-            for (std::size_t b = 0; b < blocks.size(); ++b) covers[b] = blocks[b].cover.present(i);
-            const auto at = values.find(covers);
-            if (at != values.end()) {
-                label[i] = at->second;
-                continue;
-            }
-            if (values.size() == 255)
-                throw Error("more than 255 combinations of overlapping blocks", files.front().entry.path);
-            const auto value = static_cast<std::uint8_t>(values.size() + 1);
-            values.emplace(covers, value);
-            label[i] = value;
-            std::string name;
-            for (std::size_t b = 0; b < blocks.size(); ++b)
-                if (covers[b]) name += (name.empty() ? "" : " + ") + blocks[b].name;
-            parameter.labels.push_back({value, name.empty() ? "other" : name});
-        }
-        labelMask = std::make_shared<const Mask>(std::move(mask));
-    }
 };
 
 /// Whether a block is a mesh, or one of several adjacent grids of a file, whose arrays of equal name are one parameter.
-bool isBlock(const OpenedFile& file, const FileBlock& block) {
-    return block.mesh || (file.blocks.size() > 1 && std::ranges::none_of(file.blocks, [&](const FileBlock& other) {
-                              return &other != &block && other.lattice == block.lattice;
-                          }));
+bool isBlock(const FileGroup& group, const GroupBlock& block) {
+    return block.form.mesh ||
+           (group.blocks.size() > 1 && std::ranges::none_of(group.blocks, [&](const GroupBlock& other) {
+                return &other != &block && other.form.lattice == block.form.lattice;
+            }));
 }
 
 std::string dataName(const std::vector<OpenedFile>& files) {
@@ -241,23 +205,23 @@ public:
     Parameters(Assembly& all, DatasetInfo& info) : all_(all), info_(info) {
         // Files on one grid all stay visible: arrays of equal name get the file's name added.
         for (const FileGroup& group : all.groups)
-            for (const FileBlock& block : group.files.front()->blocks)
-                if (!isBlock(*group.files.front(), block))
-                    for (const Array& array : block.arrays) ++onGrids_[array.name];
+            for (const GroupBlock& block : group.blocks)
+                if (!isBlock(group, block))
+                    for (const Array& array : block.form.arrays) ++onGrids_[array.name];
     }
 
     void add(std::size_t group, std::size_t number, std::size_t array) {
-        const OpenedFile& file = *all_.groups[group].files.front();
-        const FileBlock& block = file.blocks[number];
+        const FileGroup& files = all_.groups[group];
+        const FileBlock& block = files.blocks[number].form;
         const Array& about = block.arrays[array];
-        const bool joins = isBlock(file, block);
-        const ScalarType type = typeInAll(all_.groups[group], number, array);
+        const bool joins = isBlock(files, files.blocks[number]);
+        const ScalarType type = typeInAll(files, number, array);
         std::string name = about.name;
         if (!joins && onGrids_[name] > 1) {
-            const std::string stem = fs::path(file.entry.path).stem().string();
+            const std::string stem = fs::path(files.files.front()->entry.path).stem().string();
             name = about.name == "value" ? stem : stem + "." + about.name;
         }
-        const Contribution from{group, number, static_cast<int>(array)};
+        const Contribution from{group, number, array};
         const auto known = byName_.find(name);
         if (known == byName_.end()) {
             byName_.emplace(name, info_.parameters.size());
@@ -282,19 +246,25 @@ private:
     std::map<std::string, int> onGrids_;
 };
 
+void addNotes(const FileBlock& block, Gathered& found, std::vector<std::string>& notes) {
+    for (const std::string& note : block.notes) {
+        found.scattered = found.scattered || note.starts_with("scattered points");
+        if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+    }
+}
+
 /// Merges the metadata of all blocks, and gathers their arrays as parameters.
 Gathered gather(Assembly& all, bool numbers, DatasetInfo& info, std::vector<std::string>& notes) {
     Gathered found;
     Parameters parameters(all, info);
     for (std::size_t g = 0; g < all.groups.size(); ++g) {
-        const OpenedFile& file = *all.groups[g].files.front();
-        for (std::size_t b = 0; b < file.blocks.size(); ++b) {
-            const FileBlock& block = file.blocks[b];
-            found.blocks += isBlock(file, block) ? 1 : 0;
-            for (const std::string& note : block.notes) {
-                found.scattered = found.scattered || note.starts_with("scattered points");
-                if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
-            }
+        const FileGroup& group = all.groups[g];
+        notes.insert(notes.end(), group.notes.begin(), group.notes.end());
+        for (const OpenedFile* file : group.files)
+            for (const FileBlock& block : file->blocks) addNotes(block, found, notes);
+        for (std::size_t b = 0; b < group.blocks.size(); ++b) {
+            const FileBlock& block = group.blocks[b].form;
+            found.blocks += isBlock(group, group.blocks[b]) ? 1 : 0;
             if (!block.lengthUnit.empty()) info.lengthUnit = block.lengthUnit;
             if (!numbers && !block.timeName.empty()) info.timeName = block.timeName;
             if (!numbers && !block.timeUnit.empty()) info.timeUnit = block.timeUnit;
@@ -313,8 +283,8 @@ Gathered gather(Assembly& all, bool numbers, DatasetInfo& info, std::vector<std:
 std::optional<double> cellsOf(const std::vector<FileGroup>& groups) {
     std::optional<double> cells;
     for (const FileGroup& group : groups)
-        for (const FileBlock& block : group.files.front()->blocks)
-            if (block.mesh) cells = cells.value_or(0) + block.cells;
+        for (const GroupBlock& block : group.blocks)
+            if (block.form.mesh) cells = cells.value_or(0) + block.form.cells;
     return cells;
 }
 
@@ -336,7 +306,11 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
     info.lengthUnit = row != nullptr ? row->lengthUnit : ""; // unless the file states one, below
     info.timeUnit = "";                                      // few files state it
     const bool numbers = std::ranges::any_of(all->groups, &FileGroup::timesAreNumbers);
-    if (numbers) info.timeName = "step";
+    const auto isWhole = [](double time) { return time == std::floor(time); };
+    if (numbers && std::ranges::all_of(info.times, isWhole))
+        info.timeName = "step";
+    else if (numbers)
+        result.notes.emplace_back("times are the numbers in the names of the files");
 
     const Gathered found = gather(*all, numbers, info, result.notes);
     result.mesh = found.blocks > 0;
@@ -356,7 +330,10 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
     const bool named = std::ranges::find(info.parameters, "region", &Parameter::name) != info.parameters.end();
     if (!found.anyLabel && found.blocks > 1 && !named) {
         Parameter region{"region", "", 1, ScalarType::U8, true, {}, {}};
-        if (readSamples) all->makeLabel(region, progress);
+        if (readSamples) {
+            all->label = labelOfBlocks(all->groups, all->lattice, result.notes, progress);
+            region.labels = all->label.labels;
+        }
         info.parameters.push_back(std::move(region));
         all->feeds.emplace_back();
         result.notes.push_back("label region created from the names of the blocks");

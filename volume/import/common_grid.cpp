@@ -60,6 +60,12 @@ Lattice gridForMesh(const Box& box, glm::dvec3 cellSize, bool cellData, glm::ive
     return grid;
 }
 
+/// The box of a block: that of its cells, or from its first sample to its last.
+Box extentOf(const FileBlock& block) {
+    const Lattice& own = block.lattice;
+    return block.mesh || block.cellData ? block.box : Box{own.origin, own.position(own.size - 1)};
+}
+
 /// Throws Error if a file whose samples cannot be interpolated lies on another grid than the others.
 void checkGrids(const std::vector<OpenedFile>& files) {
     const FileBlock* fixed = nullptr;
@@ -96,7 +102,7 @@ Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize,
     if (equalGrids) {
         if (gridSize != glm::ivec3(0) && gridSize != first.lattice.size)
             notes.push_back("already on a grid of " + words(first.lattice.size) + ": the requested grid is not used");
-        bounds = {first.lattice.origin, first.lattice.position(first.lattice.size - 1)};
+        bounds = extentOf(first);
         return first.lattice;
     }
     checkGrids(files);
@@ -110,7 +116,7 @@ Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize,
         const bool firstOfGroup = groups.insert(file.entry.group).second;
         for (const FileBlock& block : file.blocks) {
             const Lattice& own = block.lattice;
-            const Box extent = block.mesh ? block.box : Box{own.origin, own.position(own.size - 1)};
+            const Box extent = extentOf(block);
             box.lo = glm::min(box.lo, extent.lo);
             box.hi = glm::max(box.hi, extent.hi);
             const double count = block.mesh ? block.cells : double(own.count());

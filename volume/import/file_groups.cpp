@@ -1,6 +1,7 @@
 #include "volume/import/file_groups.h"
 
 #include "volume/base/error.h"
+#include "volume/base/number_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,43 +13,107 @@ namespace tessera::volume {
 
 namespace {
 
-bool sameForm(const OpenedFile& a, const OpenedFile& b) {
-    return std::equal(a.blocks.begin(), a.blocks.end(), b.blocks.begin(), b.blocks.end(),
-                      [single = a.blocks.size() == 1](const FileBlock& p, const FileBlock& q) {
-                          return (p.name == q.name || single) && p.mesh == q.mesh &&
-                                 std::equal(p.arrays.begin(), p.arrays.end(), q.arrays.begin(), q.arrays.end(),
-                                            [](const Array& x, const Array& y) {
-                                                return x.name == y.name && x.components == y.components;
-                                            });
-                      });
+/// Whether files of one name pattern hold an array of the same name: else they are parameters, not times.
+bool sharesArray(const OpenedFile& a, const OpenedFile& b) {
+    for (const FileBlock& block : a.blocks)
+        for (const Array& array : block.arrays)
+            for (const FileBlock& other : b.blocks)
+                if (std::ranges::find(other.arrays, array.name, &Array::name) != other.arrays.end()) return true;
+    return false;
+}
+
+/// The block of the group that is block `index` of a file: by its name, and among blocks of one name by their order;
+/// the only block of a file is that of the others whatever its name.
+GroupBlock* sameBlock(FileGroup& group, const OpenedFile& file, std::size_t index) {
+    const bool single = file.blocks.size() == 1 && group.blocks.size() == 1;
+    if (single) return &group.blocks.front();
+    const std::string& name = file.blocks[index].name;
+    auto before = std::count_if(file.blocks.begin(), file.blocks.begin() + std::ptrdiff_t(index),
+                                [&](const FileBlock& block) { return block.name == name; });
+    for (GroupBlock& block : group.blocks)
+        if (block.form.name == name && before-- == 0) return &block;
+    return nullptr;
+}
+
+/// Adds the blocks and arrays of the last file of a group.
+void addBlocks(FileGroup& group) {
+    const OpenedFile& file = *group.files.back();
+    const std::size_t f = group.files.size() - 1;
+    for (GroupBlock& block : group.blocks) {
+        block.at.push_back(-1);
+        for (std::vector<int>& at : block.arrays) at.push_back(-1);
+    }
+    for (std::size_t b = 0; b < file.blocks.size(); ++b) {
+        const FileBlock& own = file.blocks[b];
+        GroupBlock* block = sameBlock(group, file, b);
+        if (block == nullptr) {
+            group.blocks.push_back({own, std::vector<int>(f + 1, -1), {}});
+            block = &group.blocks.back();
+            block->form.arrays.clear();
+        }
+        block->at[f] = int(b);
+        for (std::size_t a = 0; a < own.arrays.size(); ++a) {
+            std::vector<Array>& arrays = block->form.arrays;
+            auto known = std::ranges::find(arrays, own.arrays[a].name, &Array::name);
+            if (known == arrays.end()) {
+                known = arrays.insert(known, own.arrays[a]);
+                block->arrays.emplace_back(f + 1, -1);
+            }
+            if (known->components != own.arrays[a].components) {
+                group.notes.push_back(own.arrays[a].name + " has " + std::to_string(own.arrays[a].components) +
+                                      " components in " + file.entry.path + ", " + std::to_string(known->components) +
+                                      " before: it is absent there");
+                continue;
+            }
+            if (known->unit.empty()) known->unit = own.arrays[a].unit;
+            block->arrays[std::size_t(known - arrays.begin())][f] = int(a);
+        }
+    }
+}
+
+/// The index of a time that a list states for a file, among the file's own.
+int localTime(const std::vector<double>& own, double time) {
+    const auto at = std::ranges::find(own, time);
+    return at != own.end() ? int(at - own.begin()) : 0;
 }
 
 /// The times of a group and the frame of each, from lists, the files or their names.
 void setTimes(FileGroup& group) {
     std::map<double, FileGroup::Frame> byTime;
     const auto add = [&](double time, std::size_t file, int local) {
-        if (!byTime.emplace(time, FileGroup::Frame{file, local}).second)
-            throw Error("has the same time " + std::to_string(time) + " as " +
-                            group.files[byTime.at(time).file]->entry.path,
-                        group.files[file]->entry.path);
+        const auto [at, isNew] = byTime.emplace(time, FileGroup::Frame{file, local});
+        if (isNew) return;
+        const std::string& before = group.files[at->second.file]->entry.path;
+        const std::string& path = group.files[file]->entry.path;
+        if (group.files[file]->blocks.front().times.size() < 2)
+            throw Error("has the same time " + std::to_string(time) + " as " + before, path);
+        group.notes.push_back("time " + exactText(time) + " is that of " + path + ", not of " + before);
+        at->second = {file, local}; // a run that was continued from an earlier time
     };
     // Numbers in names are used only if no file of the group states a time.
-    bool anyTime = false, allDistinct = true;
+    bool anyTime = false, allDistinct = true, anySeries = false;
     std::set<double> seen;
     for (const OpenedFile* file : group.files) {
         const auto& own = file->blocks.front().times;
         if (file->entry.time || !own.empty()) anyTime = true;
+        anySeries = anySeries || (!file->entry.time && own.size() > 1);
         const double first = file->entry.time ? *file->entry.time : own.empty() ? 0 : own.front();
         if ((file->entry.time || !own.empty()) && !seen.insert(first).second) allDistinct = false;
     }
     const bool several = group.files.size() > 1 || group.files.front()->entry.growing;
+    const bool counted = several && (!anyTime || !allDistinct) && anySeries; // all times, one after the other
+    if (counted) group.notes.emplace_back("the files state the same times, which are counted instead");
     for (std::size_t f = 0; f < group.files.size(); ++f) {
         const SeriesFile& entry = group.files[f]->entry;
         const auto& own = group.files[f]->blocks.front().times;
-        if (own.size() > 1 && (!several || allDistinct)) {
-            for (std::size_t t = 0; t < own.size(); ++t) add(own[t], f, static_cast<int>(t));
+        if (counted) {
+            group.timesAreNumbers = true;
+            for (std::size_t t = 0; t < std::max<std::size_t>(own.size(), 1); ++t)
+                add(double(byTime.size()), f, static_cast<int>(t));
         } else if (entry.time) {
-            add(*entry.time, f, 0);
+            add(*entry.time, f, localTime(own, *entry.time));
+        } else if (own.size() > 1) {
+            for (std::size_t t = 0; t < own.size(); ++t) add(own[t], f, static_cast<int>(t));
         } else if (own.size() == 1 && (!several || allDistinct)) {
             add(own[0], f, 0);
         } else if (several) {
@@ -69,18 +134,26 @@ void setTimes(FileGroup& group) {
 std::vector<FileGroup> groupsInTime(const std::vector<OpenedFile>& files) {
     std::vector<FileGroup> groups;
     for (const OpenedFile& file : files) {
-        const bool follows = !groups.empty() && groups.back().files.front()->entry.group == file.entry.group &&
-                             sameForm(*groups.back().files.front(), file);
-        if (!follows) groups.emplace_back();
-        groups.back().files.push_back(&file);
+        const auto follows = std::ranges::find_if(groups, [&](const FileGroup& group) {
+            return group.files.front()->entry.group == file.entry.group &&
+                   (file.entry.time || std::ranges::any_of(group.files, [&](const OpenedFile* other) {
+                        return sharesArray(*other, file);
+                    }));
+        });
+        FileGroup& group = follows != groups.end() ? *follows : groups.emplace_back();
+        group.files.push_back(&file);
+        addBlocks(group);
     }
     for (FileGroup& group : groups) setTimes(group);
     return groups;
 }
 
 ScalarType typeInAll(const FileGroup& group, std::size_t block, std::size_t array) {
-    ScalarType type = group.files.front()->blocks[block].arrays[array].type;
-    for (const OpenedFile* file : group.files) type = commonType(type, file->blocks[block].arrays[array].type);
+    const GroupBlock& of = group.blocks[block];
+    ScalarType type = of.form.arrays[array].type;
+    for (std::size_t f = 0; f < group.files.size(); ++f)
+        if (const int at = of.arrays[array][f]; at >= 0)
+            type = commonType(type, group.files[f]->blocks[std::size_t(of.at[f])].arrays[std::size_t(at)].type);
     return type;
 }
 

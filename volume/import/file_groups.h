@@ -15,9 +15,19 @@ struct OpenedFile {
     std::vector<FileBlock> blocks;
 };
 
-/// Files of one group, consecutive in time: they differ only in their samples.
+/// A block of the files of a group, which need not all have it, nor all of its arrays.
+struct GroupBlock {
+    FileBlock form;      ///< of the first file that has the block, with the arrays of all
+    std::vector<int> at; ///< per file: index of the block in it, -1 where it is not there
+    std::vector<std::vector<int>>
+        arrays; ///< per array of `form` and file: index of the array, -1 where it is not there
+};
+
+/// Files of one group, consecutive in time.
 struct FileGroup {
     std::vector<const OpenedFile*> files;
+    std::vector<GroupBlock> blocks; ///< of any file
+    std::vector<std::string> notes;
     struct Frame {
         std::size_t file;
         int localTime;
@@ -27,8 +37,9 @@ struct FileGroup {
     bool timesAreNumbers = false;
 };
 
-/// Files whose entries are of one group and whose blocks hold the same arrays form a group, in the order of the files,
-/// which must outlive it. Throws Error where two of one have the same time.
+/// Files whose entries are of one group follow each other in time, in the order of the files, which must outlive it.
+/// But files that no list names, and that share no array, are parameters of one time: they form groups of their own.
+/// Throws Error where two of one list have the same time.
 std::vector<FileGroup> groupsInTime(const std::vector<OpenedFile>& files);
 
 /// A type that holds an array's numbers in every file of its group.

@@ -41,7 +41,8 @@ std::vector<SeriesFile> parsePvd(const std::string& xml, const std::string& file
 /// Contents of a .series (ParaView's JSON: {"files": [{"name": .., "time": ..}]}).
 std::vector<SeriesFile> parseSeries(const std::string& json, const std::string& file);
 
-/// Last run of digits of a file name without ending: "small_0010.vti" -> {"small_#.vti", 10}.
+/// The last number in a file name without ending: "small_0010.vti" -> {"small_#.vti", 10}, "run_0.05.vtu" ->
+/// {"run_#.vtu", 0.05}. Decimals, an exponent and a sign belong to it where it stands by itself.
 struct NumberedName {
     std::string pattern;
     std::optional<double> number;
