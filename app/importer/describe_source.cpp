@@ -213,20 +213,26 @@ void finish(Source& source, BlockRef& ref) {
     }
 }
 
-/// Harmonic mean of the extents of the cells per axis.
-glm::dvec3 meanCellSize(vtkDataSet* mesh) {
-    glm::dvec3 inverse(0);
+/// The cells that are data: their number, their box, and the harmonic mean of their extents per axis.
+void describeCells(vtkDataSet* mesh, volume::FileBlock& block) {
+    const double* all = mesh->GetBounds();
     double largest = 0;
-    const double* box = mesh->GetBounds();
-    for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, box[2 * axis + 1] - box[2 * axis]);
-    const vtkIdType count = mesh->GetNumberOfCells();
-    for (vtkIdType c = 0; c < count; ++c) {
+    for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, all[2 * axis + 1] - all[2 * axis]);
+    const std::vector<std::uint8_t> present = presentCells(mesh);
+    glm::dvec3 inverse(0), lo(std::numeric_limits<double>::max()), hi(std::numeric_limits<double>::lowest());
+    for (vtkIdType c = 0; c < mesh->GetNumberOfCells(); ++c) {
+        if (!volume::isPresent(present, std::size_t(c))) continue;
         double bounds[6];
         mesh->GetCellBounds(c, bounds);
-        for (int axis = 0; axis < 3; ++axis)
-            inverse[axis] += 1 / std::max(bounds[2 * axis + 1] - bounds[2 * axis], 1e-7 * largest);
+        const glm::dvec3 least(bounds[0], bounds[2], bounds[4]), most(bounds[1], bounds[3], bounds[5]);
+        lo = glm::min(lo, least);
+        hi = glm::max(hi, most);
+        inverse += 1.0 / glm::max(most - least, 1e-7 * largest);
+        ++block.cells;
     }
-    return glm::dvec3(double(count)) / inverse;
+    if (block.cells < 1) throw std::runtime_error("holds no cells that are data, only ghosts of other pieces");
+    block.box = {lo, hi};
+    block.cellSize = glm::dvec3(block.cells) / inverse;
 }
 
 } // namespace
@@ -301,11 +307,7 @@ std::vector<BlockRef> describeBlocks(const Source& given, const std::vector<Bloc
         } else {
             ref.block.mesh = true;
             ref.block.cellData = !pointData;
-            const std::vector<std::uint8_t> present = presentCells(data);
-            ref.block.cells = double(present.empty() ? data->GetNumberOfCells() : std::ranges::count(present, 1));
-            const double* box = data->GetBounds();
-            ref.block.box = {{box[0], box[2], box[4]}, {box[1], box[3], box[5]}};
-            ref.block.cellSize = meanCellSize(data);
+            describeCells(data, ref.block);
         }
         describeFieldData(data->GetFieldData(), ref.block, ref.arrays);
         if (source.times.size() > 1) ref.block.quantities.clear(); // they belong to one time only

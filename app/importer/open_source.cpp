@@ -2,6 +2,7 @@
 
 #include "app/importer/even_grid.h"
 #include "app/importer/formats.h"
+#include "app/importer/present.h"
 #include "app/importer/readers/check_file.h"
 #include "app/importer/readers/vtk_messages.h"
 #include "volume/import/files/formats.h"
@@ -10,7 +11,6 @@
 #include <filesystem>
 #include <stdexcept>
 #include <vtkAbstractArray.h>
-#include <vtkCell.h>
 #include <vtkCompositeDataSet.h>
 #include <vtkDataObjectTree.h>
 #include <vtkFieldData.h>
@@ -71,16 +71,6 @@ vtkSmartPointer<vtkDataObject> readByVtk(const Source& source, int time) {
     vtkSmartPointer<vtkDataObject> copy = vtkSmartPointer<vtkDataObject>::Take(output->NewInstance());
     copy->ShallowCopy(output);
     return copy;
-}
-
-int dimensionOf(vtkDataSet* data) {
-    const int type = data->GetDataObjectType();
-    if (type == VTK_IMAGE_DATA || type == VTK_UNIFORM_GRID || type == VTK_RECTILINEAR_GRID) return 3;
-    int most = 0;
-    // Files may mix dimensions (boundary patches after volume cells): the first thousand cells are enough to tell.
-    const vtkIdType count = std::min<vtkIdType>(data->GetNumberOfCells(), 1000);
-    for (vtkIdType i = 0; i < count; ++i) most = std::max(most, data->GetCell(i)->GetCellDimension());
-    return most;
 }
 
 } // namespace

@@ -27,19 +27,47 @@ bool sameLattice(const Lattice& a, const Lattice& b) {
     return true;
 }
 
-/// The grid a mesh is sampled on: per axis about one sample per cell of harmonic-mean extent, at most 1024 an axis and
-/// 16 M in all; in the middle of cells for cell data, else from border to border.
-Lattice gridForMesh(const Box& box, glm::dvec3 cellSize, bool cellData, glm::ivec3 wanted) {
-    constexpr double kMostPerAxis = 1024, kMost = 16e6;
-    const glm::dvec3 extent = box.size();
+/// What is known of the meshes of all files together.
+struct Meshes {
+    Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
+    glm::dvec3 perLength{0}; ///< sum over the cells of 1 / extent
+    double cells = 0;
+    bool cellData = true;
+    std::vector<const FileBlock*> blocks;
+};
+
+/// Samples per axis: about one per cell of harmonic-mean extent, at most 1024 an axis and 16 M in all, and not more
+/// than 16 per cell, so that a small region of small cells does not ask for samples everywhere. Within that, a block
+/// thinner than the samples are apart gets as many as it has cells.
+glm::dvec3 samplesForMesh(const Meshes& meshes) {
+    constexpr double kMostPerAxis = 1024;
+    const double most = std::min(16e6, std::max(16 * meshes.cells, 50e3));
+    const glm::dvec3 extent = meshes.box.size();
     const double largest = std::max({extent.x, extent.y, extent.z});
+    const auto samples = [&](int axis, double cellSize) {
+        if (!(extent[axis] > 1e-9 * largest && cellSize > 0)) return 1.0;
+        return std::clamp(std::round(extent[axis] / cellSize), 1.0, kMostPerAxis);
+    };
     glm::dvec3 n(1);
-    for (int axis = 0; axis < 3; ++axis)
-        if (extent[axis] > 1e-9 * largest && cellSize[axis] > 0)
-            n[axis] = std::clamp(std::round(extent[axis] / cellSize[axis]), 1.0, kMostPerAxis);
+    for (int axis = 0; axis < 3; ++axis) n[axis] = samples(axis, meshes.cells / meshes.perLength[axis]);
     const double total = n.x * n.y * n.z;
-    if (total > kMost)
-        for (int axis = 0; axis < 3; ++axis) n[axis] = std::max(1.0, std::floor(n[axis] * std::cbrt(kMost / total)));
+    if (total > most)
+        for (int axis = 0; axis < 3; ++axis) n[axis] = std::max(1.0, std::floor(n[axis] * std::cbrt(most / total)));
+    for (const FileBlock* block : meshes.blocks)
+        for (int axis = 0; axis < 3; ++axis) {
+            const double thick = block->box.size()[axis], wanted = samples(axis, block->cellSize[axis]);
+            const bool thin = block->mesh && thick > 0 && thick < 1.5 * extent[axis] / n[axis];
+            if (thin && wanted > n[axis] && n.x * n.y * n.z / n[axis] * wanted <= most) n[axis] = wanted;
+        }
+    return n;
+}
+
+/// The grid a mesh is sampled on: in the middle of cells for cell data, else from border to border.
+Lattice gridForMesh(const Meshes& meshes, glm::ivec3 wanted) {
+    const Box& box = meshes.box;
+    const bool cellData = meshes.cellData;
+    const glm::dvec3 extent = box.size(), n = samplesForMesh(meshes);
+    const double largest = std::max({extent.x, extent.y, extent.z});
     Lattice grid;
     for (int axis = 0; axis < 3; ++axis) {
         const bool flat = !(extent[axis] > 1e-9 * largest);
@@ -106,30 +134,29 @@ Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize,
         return first.lattice;
     }
     checkGrids(files);
-    Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
-    glm::dvec3 perLength(0);
-    double cells = 0;
-    bool cellData = true;
-    double all = 0, blocks = 0;
+    Meshes meshes;
+    double cells = 0, blocks = 0;
     std::set<std::string> groups;
     for (const OpenedFile& file : files) {
         const bool firstOfGroup = groups.insert(file.entry.group).second;
         for (const FileBlock& block : file.blocks) {
             const Lattice& own = block.lattice;
             const Box extent = extentOf(block);
-            box.lo = glm::min(box.lo, extent.lo);
-            box.hi = glm::max(box.hi, extent.hi);
+            meshes.box.lo = glm::min(meshes.box.lo, extent.lo);
+            meshes.box.hi = glm::max(meshes.box.hi, extent.hi);
             const double count = block.mesh ? block.cells : double(own.count());
-            all += count;
-            perLength += count / (block.mesh ? block.cellSize : own.spacing);
+            meshes.cells += count;
+            meshes.perLength += count / (block.mesh ? block.cellSize : own.spacing);
             if (firstOfGroup && block.mesh) {
                 cells += block.cells;
                 ++blocks;
             }
-            cellData = cellData && block.cellData;
+            meshes.cellData = meshes.cellData && block.cellData;
+            meshes.blocks.push_back(&block);
         }
     }
-    const Lattice grid = gridForMesh(box, all / perLength, cellData, gridSize);
+    const Lattice grid = gridForMesh(meshes, gridSize);
+    const Box& box = meshes.box;
     bounds = box;
     for (int axis = 0; axis < 3; ++axis) // an axis without extent gets one layer of samples, or the requested number
         if (!(box.size()[axis] > 0)) bounds.hi[axis] = grid.position(grid.size - 1)[axis];
