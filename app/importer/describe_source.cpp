@@ -1,6 +1,6 @@
 #include "app/importer/describe_source.h"
 
-#include "app/importer/present.h"
+#include "app/importer/present_cells.h"
 #include "app/importer/readers/vtk_messages.h"
 #include "volume/import/files/upright.h"
 
@@ -10,6 +10,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
@@ -338,9 +339,11 @@ vtkSmartPointer<vtkFieldData> fieldDataAlone(const std::string& path) {
 }
 
 void mergeBlocks(std::vector<BlockRef>& blocks, const std::vector<BlockRef>& more) {
+    std::map<std::string, int> seen; // blocks of one name follow in the same order
     for (const BlockRef& ref : more) {
-        const auto known =
-            std::ranges::find_if(blocks, [&](const BlockRef& block) { return block.block.name == ref.block.name; });
+        int before = seen[ref.block.name]++;
+        const auto known = std::ranges::find_if(
+            blocks, [&](const BlockRef& block) { return block.block.name == ref.block.name && before-- == 0; });
         if (known == blocks.end()) {
             blocks.push_back(ref);
             continue;

@@ -5,6 +5,8 @@
 
 #include <vector>
 #include <vtkDataArray.h>
+#include <vtkFieldData.h>
+#include <vtkSmartPointer.h>
 
 namespace tessera::importer {
 

@@ -64,8 +64,11 @@ template <class T> void copyArray(vtkDataArray* array, int component, const Stor
 const Block* blockAt(const std::vector<Block>& blocks, const std::vector<BlockRef>& described, std::size_t index) {
     const std::string& name = described[index].block.name;
     if (blocks.size() == described.size() && blocks[index].name == name) return &blocks[index];
-    const auto at = std::ranges::find(blocks, name, &Block::name);
-    return at != blocks.end() ? &*at : nullptr;
+    auto before = std::count_if(described.begin(), described.begin() + std::ptrdiff_t(index),
+                                [&](const BlockRef& ref) { return ref.block.name == name; });
+    for (const Block& block : blocks)
+        if (block.name == name && before-- == 0) return &block;
+    return nullptr;
 }
 
 Frame frameOf(const Block* block, const BlockRef& ref, int array, int component, const Lattice& lattice,

@@ -2,7 +2,7 @@
 
 #include "app/importer/even_grid.h"
 #include "app/importer/formats.h"
-#include "app/importer/present.h"
+#include "app/importer/present_cells.h"
 #include "app/importer/readers/check_file.h"
 #include "app/importer/readers/vtk_messages.h"
 #include "volume/import/files/formats.h"

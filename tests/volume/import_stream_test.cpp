@@ -195,7 +195,7 @@ TEST_F(FakeImporter, FailuresCostOneLine) {
 TEST_F(FakeImporter, ScatteredPointsAreNamedAsTheOrigin) {
     const auto provenance = [&](const std::string& note) {
         std::string header = kHeader;
-        header.insert(header.find("\"mesh\""), "\"note\":\"" + note + "\",");
+        header.insert(header.find("\"mesh\""), "\"notes\":[\"" + note + "\"],");
         use(message(1, header) + "sleep 1000");
         return previewFiles({(folder_ / "a.vti").string()}, {}).info.provenance;
     };

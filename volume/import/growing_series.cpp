@@ -64,6 +64,9 @@ Dataset openOfSeries(const GrowingSeries& series, const std::string& path, const
     if (own.size() + known.size() != both.info.times.size())
         throw Error("states the same time as " + series.first + ", so that the times of the series are not known",
                     path);
+    for (const Parameter& parameter : both.info.parameters)
+        if (std::ranges::find(series.info.parameters, parameter.name, &Parameter::name) == series.info.parameters.end())
+            throw Error("holds other arrays than " + series.first + ": " + parameter.name, path);
     if (own.empty()) throw Error("holds other arrays than " + series.first, path);
     return withTimes(std::move(both), own);
 }

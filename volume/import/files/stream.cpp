@@ -127,9 +127,11 @@ FileBlock parseBlock(const json& entry, const std::string& file, const std::stri
         }
     }
     block.mesh = reader.flag("mesh");
-    block.cellData = reader.flag("cellData");
-    const std::vector<double> box = reader.numbers("box", 6, 6);
-    block.box = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
+    block.cellData = (block.mesh || entry.contains("cellData")) && reader.flag("cellData");
+    if (block.mesh || block.cellData) {
+        const std::vector<double> box = reader.numbers("box", 6, 6);
+        block.box = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
+    }
     if (block.mesh) {
         block.cellSize = reader.triple("cellSize");
         block.cells = reader.numbers("cells", 1, 1)[0];
