@@ -97,7 +97,8 @@ Json archiveJson(const codec::Archive& archive) {
             {"lossless", archive.metadata().lossless},
             {"maxError", archive.metadata().maxError},
             {"exactness", codec::exactnessText(archive.metadata())},
-            {"provenance", info.provenance}};
+            {"provenance", info.provenance},
+            {"notes", info.notes}};
 }
 
 std::string triple(glm::ivec3 v) {
@@ -150,6 +151,7 @@ void printArchive(const codec::Archive& archive) {
         std::printf("\n");
     }
     if (!info.provenance.empty()) std::printf("  %s\n", info.provenance.c_str());
+    for (const std::string& note : info.notes) std::printf("  %s\n", note.c_str());
 }
 
 void printSession(const std::string& path, bool asJson) {

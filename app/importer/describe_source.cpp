@@ -38,19 +38,6 @@ namespace {
 
 using volume::ScalarType;
 
-/// Makes the reader skip the points and cells of a file.
-class FieldDataReader : public vtkXMLUnstructuredGridReader {
-public:
-    static FieldDataReader* New() {
-        auto* reader = new FieldDataReader;
-        reader->InitializeObjectBase();
-        return reader;
-    }
-
-protected:
-    void ReadXMLData() override { ReadFieldData(); }
-};
-
 ScalarType typeOf(int vtkType) {
     switch (vtkType) {
     case VTK_UNSIGNED_CHAR:
@@ -68,13 +55,8 @@ ScalarType typeOf(int vtkType) {
     }
 }
 
-bool isHelper(const std::string& name) {
-    return name.empty() || name == "vtkValidPointMask" || name == "vtkGhostType" || name == "vtkGhostLevels" ||
-           name == "vtkOriginalPointIds" || name == "vtkOriginalCellIds";
-}
-
 void addArray(BlockRef& ref, const std::string& name, int vtkType, int components, bool ofCells) {
-    if (isHelper(name) || components < 1 || components > 16) return;
+    if (isVtkHelper(name) || components < 1 || components > 16) return;
     for (const ArrayRef& other : ref.arrays)
         if (other.vtkName == name) return;
     const std::string shown =
@@ -89,63 +71,6 @@ void addArray(BlockRef& ref, const std::string& name, int vtkType, int component
         return;
     }
     for (int c = 0; c < components; ++c) add(shown + "." + std::to_string(c), 1, c);
-}
-
-/// Whether VTK files use this name for a time.
-bool isTimeName(const std::string& name) {
-    return std::ranges::find(kTimeNames, name) != kTimeNames.end();
-}
-
-/// Undoes %20, %2C, %3B and %25 in a listed name.
-std::string unlisted(const std::string& text) {
-    std::string out;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const std::string code = text.substr(i, 3);
-        const bool known = code == "%20" || code == "%2C" || code == "%3B" || code == "%25";
-        out += known ? static_cast<char>(std::stoi(code.substr(1), nullptr, 16)) : text[i];
-        if (known) i += 2;
-    }
-    return out;
-}
-
-/// Units, labels and the unit of lengths from the field data, in the form exportDataset writes:
-/// "O2,H2 mol/m3; T K; region -" and "region 1 air side; ...".
-void readWords(vtkFieldData* data, volume::FileBlock& block, std::vector<ArrayRef>& arrays) {
-    const auto text = [&](const char* name) -> std::string {
-        auto* words = data != nullptr ? vtkStringArray::SafeDownCast(data->GetAbstractArray(name)) : nullptr;
-        return words != nullptr && words->GetNumberOfValues() > 0 ? std::string(words->GetValue(0)) : std::string();
-    };
-    const auto each = [](const std::string& list, char separator, const auto& body) {
-        std::istringstream in(list);
-        for (std::string item; std::getline(in, item, separator);) {
-            const std::size_t begin = item.find_first_not_of(' ');
-            if (begin != std::string::npos) body(item.substr(begin, item.find_last_not_of(' ') - begin + 1));
-        }
-    };
-    each(text("units"), ';', [&](const std::string& item) {
-        const std::size_t space = item.find(' ');
-        if (space == std::string::npos) return;
-        const std::string unit = item.substr(space + 1);
-        each(item.substr(0, space), ',', [&](const std::string& listed) {
-            const std::string name = unlisted(listed);
-            for (ArrayRef& array : arrays)
-                if (array.form.name == name && unit != "-") array.form.unit = unit;
-            for (volume::Quantity& quantity : block.quantities)
-                if (quantity.name == name && unit != "-") quantity.unit = unit;
-            if (isTimeName(name) && unit != "-") block.timeUnit = unit;
-        });
-    });
-    each(text("labels"), ';', [&](const std::string& item) {
-        std::istringstream in(item);
-        std::string name, words;
-        int value = 0;
-        if (!(in >> name >> value) || !std::getline(in >> std::ws, words)) return;
-        for (ArrayRef& array : arrays)
-            if (array.form.name == unlisted(name)) array.form.labels.push_back({value, words});
-    });
-    block.lengthUnit = text("length_unit");
-    block.timeName = text("time_name");
-    if (const std::string unit = text("time_unit"); !unit.empty()) block.timeUnit = unit;
 }
 
 /// The lattice of an image: of its points, or of the middles of its cells, which `box` then encloses. An axis with a
@@ -212,6 +137,27 @@ void finish(Source& source, BlockRef& ref) {
         for (ArrayRef& array : ref.arrays) array.form.unit = netCdf->QueryArrayUnits(array.vtkName.c_str());
         if (netCdf->GetTimeUnits() != nullptr) ref.block.timeUnit = netCdf->GetTimeUnits();
     }
+}
+
+/// Whether reading the numbers as 32-bit floating point changes one of them.
+bool losesDigits(vtkDataArray* from) {
+    const int type = from->GetDataType();
+    if (typeOf(type) != ScalarType::F32 || type == VTK_FLOAT) return false;
+    for (vtkIdType i = 0; i < from->GetNumberOfTuples(); ++i)
+        for (int c = 0; c < from->GetNumberOfComponents(); ++c)
+            if (const double value = from->GetComponent(i, c); std::isfinite(value) && double(float(value)) != value)
+                return true;
+    return false;
+}
+
+/// Names the arrays whose numbers are rounded.
+void noteRounded(BlockRef& ref, vtkDataSet* data) {
+    std::string names;
+    for (const ArrayRef& array : ref.arrays) {
+        vtkDataArray* from = findArray(data, array);
+        if (from != nullptr && losesDigits(from)) names += (names.empty() ? "" : ", ") + array.form.name;
+    }
+    if (!names.empty()) addNote(ref, "64-bit numbers are read as 32-bit ones, with 7 digits: " + names);
 }
 
 /// The cells that are data: their number, their box, and the harmonic mean of their extents per axis.
@@ -310,32 +256,13 @@ std::vector<BlockRef> describeBlocks(const Source& given, const std::vector<Bloc
             ref.block.cellData = !pointData;
             describeCells(data, ref.block);
         }
+        noteRounded(ref, data);
         describeFieldData(data->GetFieldData(), ref.block, ref.arrays);
         if (source.times.size() > 1) ref.block.quantities.clear(); // they belong to one time only
         finish(source, ref);
         described.push_back(std::move(ref));
     }
     return described;
-}
-
-void describeFieldData(vtkFieldData* data, volume::FileBlock& block, std::vector<ArrayRef>& arrays) {
-    if (data == nullptr) return;
-    for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
-        vtkDataArray* array = data->GetArray(i);
-        if (array == nullptr || array->GetName() == nullptr || array->GetNumberOfValues() != 1) continue;
-        const std::string name = array->GetName();
-        if (isHelper(name) || isTimeName(name)) continue;
-        block.quantities.push_back({name, "", {meantTime(array->GetComponent(0, 0))}});
-    }
-    readWords(data, block, arrays);
-}
-
-vtkSmartPointer<vtkFieldData> fieldDataAlone(const std::string& path) {
-    vtkNew<FieldDataReader> reader;
-    reader->SetFileName(path.c_str());
-    reader->Update();
-    throwReported();
-    return reader->GetOutput()->GetFieldData();
 }
 
 void mergeBlocks(std::vector<BlockRef>& blocks, const std::vector<BlockRef>& more) {

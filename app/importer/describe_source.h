@@ -32,6 +32,9 @@ std::vector<BlockRef> describeImageHeader(Source& source);
 /// Describes blocks that have been read.
 std::vector<BlockRef> describeBlocks(const Source& source, const std::vector<Block>& blocks);
 
+/// Whether an array of this name says something of points and cells, and is no parameter (vtkGhostType).
+bool isVtkHelper(const std::string& name);
+
 /// Takes over the field data of one time: numbers (a voltage) become quantities; texts state units, labels, and the
 /// name and unit of the times.
 void describeFieldData(vtkFieldData* data, volume::FileBlock& block, std::vector<ArrayRef>& arrays);

@@ -38,12 +38,4 @@ vtkSmartPointer<vtkDataArray> valuesOf(vtkDataSet* data, vtkDataArray* from, con
     return values;
 }
 
-vtkSmartPointer<vtkDataArray> noValues(vtkDataSet* data, const ArrayRef& array) {
-    auto values = vtkSmartPointer<vtkDoubleArray>::New();
-    values->SetNumberOfComponents(array.firstComponent + array.form.components);
-    values->SetNumberOfTuples(array.ofCells ? data->GetNumberOfCells() : data->GetNumberOfPoints());
-    values->Fill(kNaN);
-    return values;
-}
-
 } // namespace tessera::importer

@@ -20,7 +20,4 @@ std::vector<std::uint8_t> presentValues(vtkDataSet* data, vtkDataArray* from, co
 /// The values of an array of a mesh, NaN where there is none. The array itself where it holds nothing else.
 vtkSmartPointer<vtkDataArray> valuesOf(vtkDataSet* data, vtkDataArray* from, const ArrayRef& array);
 
-/// An array of a mesh that is absent everywhere, at a time or in a file without it.
-vtkSmartPointer<vtkDataArray> noValues(vtkDataSet* data, const ArrayRef& array);
-
 } // namespace tessera::importer

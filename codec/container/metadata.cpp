@@ -220,6 +220,7 @@ std::string toJson(const Metadata& metadata) {
         {"maxError", metadata.maxError},
         {"options", toJson(metadata.options)}};
     if (info.timeName != volume::DatasetInfo().timeName) document["data"]["timeName"] = info.timeName;
+    if (!info.notes.empty()) document["data"]["notes"] = info.notes;
     for (const volume::Quantity& quantity : metadata.alternating ? metadata.sourceQuantities : info.quantities)
         document["data"]["quantities"].push_back(quantityJson(quantity));
     if (!metadata.resampled.empty()) document["resampled"] = resampledJson(metadata.resampled);
@@ -255,6 +256,8 @@ Metadata metadataFromJson(std::string_view text, const std::string& file) {
         for (const Node& quantity : data["quantities"].items(4096)) quantities.push_back(readQuantity(quantity));
     }
     info.provenance = data["provenance"].text();
+    if (data.has("notes"))
+        for (const Node& note : data["notes"].items(4096)) info.notes.push_back(note.text());
 
     const Node grid = root["grid"];
     metadata.grid.lattice = info.lattice;

@@ -68,6 +68,7 @@ struct DatasetInfo {
     std::string timeUnit = "s";       ///< of `times`, "" where there is none
     std::vector<Quantity> quantities; ///< over the times
     std::string provenance;           ///< where it came from, free text
+    std::vector<std::string> notes;   ///< for the user: how it was read, and what is guessed or left out
     bool remote = false;              ///< on another machine: reading a sample costs far more than decoding it
     bool operator==(const DatasetInfo&) const = default;
 

@@ -284,6 +284,7 @@ OpenedSeries openSeries(const std::vector<SeriesFile>& entries, const ImportOpti
     }
     dataset = withParameters(std::move(dataset), options.parameters);
     if (!unitsStated && formatNamed(opened.format) != nullptr) guessUnits(dataset, readSamples);
+    dataset.info.notes = opened.notes;
     return opened;
 }
 

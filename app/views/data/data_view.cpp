@@ -106,6 +106,7 @@ void drawSummary(const ViewContext& context) {
         quantities += (quantities.empty() ? "" : ", ") + titleWithUnit(quantity.name, quantity.unit);
     if (!quantities.empty()) row("Over time", quantities);
     if (!info.provenance.empty()) row("Origin", info.provenance);
+    for (std::size_t n = 0; n < info.notes.size(); ++n) row(n == 0 ? "Notes" : "", info.notes[n]);
     ImGui::EndTable();
 }
 
