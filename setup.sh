@@ -13,7 +13,8 @@ packages=(
     libcairo2-dev zlib1g-dev                                         # figures as PDF
     libcurl4-openssl-dev                                             # archives on web servers
     fonts-roboto-unhinted fonts-font-awesome                         # text and icons
-    libvtk9-dev libtiff-dev                                          # tessera-import: readers of foreign formats
+    libvtk9-dev libtiff-dev libpugixml-dev                           # tessera-import: readers of foreign formats
+    libblosc-dev liblz4-dev libbz2-dev
 )
 test_packages=( # only ./test.sh needs these
     libgtest-dev libgmock-dev clang-format glslang-tools xvfb xdotool xauth

@@ -7,7 +7,4 @@ void openFluentHdf(Source&) {
 void openXdmf(Source&) {
     throw std::runtime_error("x");
 }
-void openZarr(Source&) {
-    throw std::runtime_error("x");
-}
 }
