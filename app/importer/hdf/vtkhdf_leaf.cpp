@@ -162,20 +162,20 @@ std::optional<ImagePart> imagePart(const HdfShape& shape, const std::array<std::
 }
 
 /// First row of an array at a step.
-std::int64_t rowOf(const VtkHdfArray& array, const VtkHdfLeaf& leaf, std::size_t step) {
+std::int64_t arrayRow(const VtkHdfArray& array, const VtkHdfLeaf& leaf, std::size_t step) {
     if (step < array.begins.size()) return array.begins[step];
     if (leaf.steps.empty()) return std::int64_t(step);
     const VtkHdfMeshStep& mesh = leaf.steps[std::min(step, leaf.steps.size() - 1)];
     return std::int64_t(array.ofCells ? mesh.cellBegin : mesh.pointBegin);
 }
 
-std::size_t rowsOf(const VtkHdfArray& array, const VtkHdfLeaf& leaf, std::size_t step) {
+std::size_t arrayRows(const VtkHdfArray& array, const VtkHdfLeaf& leaf, std::size_t step) {
     const VtkHdfMeshStep& mesh = leaf.steps[std::min(step, leaf.steps.size() - 1)];
     return array.ofCells ? mesh.cellCount : mesh.pointCount;
 }
 
 /// Why an array cannot be read; "" = it can.
-std::string faultOf(const HdfFile& file, const VtkHdfLeaf& leaf, const VtkHdfArray& array) {
+std::string arrayFault(const HdfFile& file, const VtkHdfLeaf& leaf, const VtkHdfArray& array) {
     try {
         const std::optional<HdfShape> shape = file.shape(array.path);
         if (!shape || !shape->numbers) return "holds no numbers";
@@ -184,13 +184,13 @@ std::string faultOf(const HdfFile& file, const VtkHdfLeaf& leaf, const VtkHdfArr
             const ImageHead head = imageHead(file, leaf.group);
             const std::array<std::size_t, 3> size = head.size(array.ofCells);
             for (std::size_t t = 0; t < std::max<std::size_t>(leaf.times.size(), 1); ++t)
-                if (!imagePart(*shape, size, leaf.times.size(), rowOf(array, leaf, t)))
+                if (!imagePart(*shape, size, leaf.times.size(), arrayRow(array, leaf, t)))
                     return "has another size than its grid";
         } else {
             for (std::size_t t = 0; t < leaf.steps.size(); ++t) {
-                const std::int64_t row = rowOf(array, leaf, t);
+                const std::int64_t row = arrayRow(array, leaf, t);
                 if (row < 0 || std::size_t(row) > shape->dims[0] ||
-                    rowsOf(array, leaf, t) > shape->dims[0] - std::size_t(row))
+                    arrayRows(array, leaf, t) > shape->dims[0] - std::size_t(row))
                     return "has fewer values than its mesh";
             }
         }
@@ -290,7 +290,7 @@ VtkHdfLeaf openVtkHdfLeaf(const HdfFile& file, const std::string& group, const s
             const std::string steady = group + "/Steps/" + kind;
             array.begins = file.integers(steady + "Offsets/" + member);
             if (array.ofField) array.sizes = file.integers(steady + "Sizes/" + member);
-            const std::string fault = array.ofField ? "" : faultOf(file, leaf, array);
+            const std::string fault = array.ofField ? "" : arrayFault(file, leaf, array);
             if (fault.empty())
                 leaf.arrays.push_back(std::move(array));
             else
@@ -348,12 +348,12 @@ vtkSmartPointer<vtkDataSet> readVtkHdfLeaf(const HdfFile& file, const VtkHdfLeaf
         if (!shape) throw std::runtime_error("array \"" + array.name + "\" is gone");
         if (leaf.type == "ImageData") {
             const std::optional<ImagePart> part =
-                imagePart(*shape, head.size(array.ofCells), leaf.times.size(), rowOf(array, leaf, step));
+                imagePart(*shape, head.size(array.ofCells), leaf.times.size(), arrayRow(array, leaf, step));
             if (!part) continue;
             values = file.array(array.path, part->slab);
             components = part->components;
         } else {
-            values = file.rows(array.path, std::size_t(rowOf(array, leaf, step)), rowsOf(array, leaf, step));
+            values = file.rows(array.path, std::size_t(arrayRow(array, leaf, step)), arrayRows(array, leaf, step));
             for (std::size_t axis = 1; axis < shape->dims.size(); ++axis) components *= shape->dims[axis];
         }
         values->SetNumberOfComponents(int(std::min<std::size_t>(components, std::numeric_limits<int>::max())));
