@@ -78,8 +78,9 @@ vtkSmartPointer<vtkDataObject> readByVtk(const Source& source, int time) {
 Source openSource(const std::vector<std::string>& files) {
     const std::string& path = files.front();
     if (!fs::exists(path)) throw std::runtime_error("no such file");
-    const volume::FileFormat* format =
-        fs::is_directory(path) ? volume::formatNamed("OpenFOAM") : volume::formatOfFile(path);
+    const volume::FileFormat* format = volume::isZarrFolder(path) ? volume::formatNamed("Zarr")
+                                       : fs::is_directory(path)   ? volume::formatNamed("OpenFOAM")
+                                                                  : volume::formatOfFile(path);
     if (format == nullptr)
         throw std::runtime_error("unknown ending \"" + fs::path(path).extension().string() +
                                  "\": " + volume::readableSuffixes() + " or .raw");

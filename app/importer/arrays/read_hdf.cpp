@@ -1,4 +1,4 @@
-// HDF5: VTKHDF by VTK's reader, else the datasets of the file by their paths.
+// HDF5 files without a known structure: their datasets by their paths.
 #include "app/importer/arrays/array_file.h"
 #include "app/importer/readers/read_files.h"
 
@@ -7,8 +7,6 @@
 #include <memory>
 #include <stdexcept>
 #include <utility>
-#include <vtkHDFReader.h>
-#include <vtkNew.h>
 #include <vtkType.h>
 
 namespace tessera::importer {
@@ -159,12 +157,11 @@ void openHdf(Source& source) {
     if (file->id() < 0)
         throw std::runtime_error(H5Fis_hdf5(source.path.c_str()) > 0 ? "is truncated or damaged"
                                                                      : "is not an HDF5 file");
-    const bool ofVtk = H5Lexists(file->id(), "VTKHDF", H5P_DEFAULT) > 0;
+    if (H5Lexists(file->id(), "VTKHDF", H5P_DEFAULT) > 0) return openVtkHdf(source);
     if (H5Lexists(file->id(), "CGNSLibraryVersion", H5P_DEFAULT) > 0)
         throw std::runtime_error("is a CGNS file: give it the ending .cgns");
     if (H5Lexists(file->id(), "meshes", H5P_DEFAULT) > 0 && H5Lexists(file->id(), "settings", H5P_DEFAULT) > 0)
-        throw std::runtime_error("is a Fluent case in HDF5, which is not read: export as CGNS or EnSight Gold from "
-                                 "Fluent, or save it in the older format (.cas, .dat)");
+        return openFluentHdf(source);
     Visit visit{file, {}};
 #if H5_VERSION_GE(1, 12, 0) // takes the fields to query as a further argument
     const herr_t visited = H5Ovisit(file->id(), H5_INDEX_NAME, H5_ITER_INC, visitDataset, &visit, H5O_INFO_BASIC);
@@ -172,13 +169,6 @@ void openHdf(Source& source) {
     const herr_t visited = H5Ovisit(file->id(), H5_INDEX_NAME, H5_ITER_INC, visitDataset, &visit);
 #endif
     if (visited < 0) throw std::runtime_error("is truncated or damaged");
-    if (ofVtk) {
-        for (const StoredArray& array : visit.arrays) refuseHollow(array);
-        vtkNew<vtkHDFReader> reader;
-        reader->SetFileName(source.path.c_str());
-        source.reader = reader;
-        return;
-    }
     openArrays(std::move(visit.arrays), source);
 }
 

@@ -16,5 +16,9 @@ void openCgns(Source& source);
 void openExodus(Source& source);
 void openFluent(Source& source);
 void openPlot3d(Source& source);
+void openVtkHdf(Source& source);
+void openFluentHdf(Source& source);
+void openXdmf(Source& source);
+void openZarr(Source& source);
 
 } // namespace tessera::importer

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 
 namespace tessera::volume {
@@ -57,6 +58,17 @@ const FileFormat* formatOfFile(const std::string& path) {
     char head[132] = {};
     in.read(head, sizeof head);
     return in && std::string_view(head + 128, 4) == "DICM" ? formatNamed("DICOM") : nullptr;
+}
+
+bool isZarrFolder(const std::string& path) {
+    const std::filesystem::path folder(path);
+    std::error_code missing;
+    if (!std::filesystem::is_directory(folder, missing)) return false;
+    const std::filesystem::path named = folder.filename().empty() ? folder.parent_path() : folder;
+    if (named.extension() == ".zarr") return true;
+    for (const char* file : {".zgroup", ".zarray", "zarr.json"})
+        if (std::filesystem::is_regular_file(folder / file, missing)) return true;
+    return false;
 }
 
 bool isSlice(const FileFormat& format, const std::string& path) {

@@ -26,6 +26,9 @@ const FileFormat* formatNamed(std::string_view name);
 /// The format of a file by its name, else by its first bytes (DICOM files need no suffix).
 const FileFormat* formatOfFile(const std::string& path);
 
+/// Whether a folder is a data set in itself, one of Zarr: by its ending, or by the files of its description.
+bool isZarrFolder(const std::string& path);
+
 /// Whether a file is a single slice of a volume: a TIFF file only if it has one page.
 bool isSlice(const FileFormat& format, const std::string& path);
 

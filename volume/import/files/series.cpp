@@ -107,7 +107,7 @@ std::vector<std::string> expandFolder(const std::string& folder) {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
         const std::string name = entry.path().filename().string();
         if (name.starts_with(".")) continue;
-        if (!entry.is_regular_file()) continue;
+        if (!entry.is_regular_file() && !isZarrFolder(entry.path().string())) continue;
         byEnding[ending(name)].push_back(entry.path().string());
         const FileFormat* format =
             ending(name) == ".txt" ? nullptr : formatOfFile(entry.path().string()); // usually plain text
@@ -291,11 +291,17 @@ std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths) {
     std::set<std::string> seen; // ignore duplicate paths
     int rounds = 0;
     while (!pending.empty()) {
-        const std::string path = pending.back();
+        std::string path = pending.back();
         pending.pop_back();
+        while (path.size() > 1 && path.back() == '/') path.pop_back();
         if (!seen.insert(path).second) continue;
         if (++rounds > int(kMostFiles)) throw Error("names too many files", path);
         std::error_code ignored;
+        if (isZarrFolder(path)) {
+            const NumberedName name = numberedName(path);
+            files.push_back({path, {}, name.number, name.pattern, {}});
+            continue;
+        }
         if (fs::is_directory(path, ignored) && !fs::exists(fs::path(path) / "system" / "controlDict")) {
             const std::vector<std::string> inside = expandFolder(path);
             pending.insert(pending.end(), inside.rbegin(), inside.rend());

@@ -26,10 +26,10 @@ struct SeriesFile {
     bool operator==(const SeriesFile&) const = default;
 };
 
-/// Expands the paths given by the user: a directory (an OpenFOAM case, its single .pvd or .series, or its files of the
-/// most frequent known suffix), a pattern with * or ?, a ParaView .pvd or .series file, or files. Groups keep the order
-/// of their first file; files of a group are sorted by time, then number. Duplicate paths are ignored. Throws Error for
-/// paths that do not exist or cannot be read.
+/// Expands the paths given by the user: a directory (of Zarr, an OpenFOAM case, its single .pvd or .series, or its
+/// files of the most frequent known suffix), a pattern with * or ?, a ParaView .pvd or .series file, or files. Groups
+/// keep the order of their first file; files of a group are sorted by time, then number. Duplicate paths are ignored.
+/// Throws Error for paths that do not exist or cannot be read.
 std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths);
 
 /// The files that a pattern with * or ? fits, in alphabetical order; empty if there is none.
