@@ -190,7 +190,6 @@ void addNote(BlockRef& ref, const std::string& note) {
 
 void finish(Source& source, BlockRef& ref) {
     ref.block.times = source.times;
-    if (source.format == "OpenFOAM") ref.block.timeUnit = "s";
     for (ArrayRef& array : ref.arrays)
         if (const auto unit = source.units.find(array.vtkName); unit != source.units.end())
             array.form.unit = unit->second;
