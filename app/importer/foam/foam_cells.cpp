@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <optional>
 #include <span>
 #include <vtkCellArray.h>
@@ -95,6 +99,17 @@ struct GridMaker {
     }
 };
 
+/// Whether a tetrahedron of three points of the mesh and a fourth one has no volume.
+bool isFlat(const FoamMesh& mesh, const std::array<std::int32_t, 3>& corners, const double apex[3]) {
+    glm::dmat3 edges;
+    for (int column = 0; column < 3; ++column)
+        for (int axis = 0; axis < 3; ++axis)
+            edges[column][axis] =
+                mesh.points[3 * std::size_t(corners[std::size_t(column)]) + std::size_t(axis)] - apex[axis];
+    const double most = glm::length(edges[0]) * glm::length(edges[1]) * glm::length(edges[2]);
+    return !(std::abs(glm::determinant(edges)) > 1e-12 * most);
+}
+
 /// Per cell the faces on it: where they begin in the list, and the list.
 void facesOfCells(const FoamMesh& mesh, std::vector<std::size_t>& begin, std::vector<std::int32_t>& faces) {
     begin.assign(mesh.cells + 1, 0);
@@ -153,6 +168,7 @@ FoamGrid gridOfFoam(const FoamMesh& mesh) {
             // Both cells of a face divide it alike, from its point of the lowest number.
             std::ranges::rotate(face, std::ranges::min_element(face));
             for (std::size_t i = 1; i + 1 < face.size(); ++i) {
+                if (isFlat(mesh, {face[0], face[i], face[i + 1]}, middle)) continue; // points on one line
                 maker.add(VTK_TETRA, {face[0], face[i], face[i + 1], apex});
                 cellOf.push_back(static_cast<std::int32_t>(c));
             }

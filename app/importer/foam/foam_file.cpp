@@ -253,10 +253,12 @@ std::int64_t FoamCursor::count(std::size_t most) {
 std::size_t FoamCursor::binaryList(std::size_t bytes, std::size_t other, std::size_t count) {
     expect('(');
     const std::size_t left = file_.bytes.size() - at_;
-    const auto closes = [&](std::size_t each) { return count < left / each && file_.bytes[at_ + count * each] == ')'; };
+    const auto closes = [&](std::size_t each) {
+        return left > 0 && count <= (left - 1) / each && file_.bytes[at_ + count * each] == ')';
+    };
     if (closes(bytes)) return bytes;
     if (closes(other)) return other;
-    if (count >= left / bytes) endsEarly();
+    if (left == 0 || count > (left - 1) / bytes) endsEarly();
     throw std::runtime_error("has a binary list of another length than it states");
 }
 

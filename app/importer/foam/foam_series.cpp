@@ -122,6 +122,15 @@ void leaveOutUndivided(FoamSeries& series) {
     series.meshes.erase("");
 }
 
+/// What splitMeshRegions writes into each region is the region's number: the regions say as much.
+void leaveOutDivision(FoamSeries& series) {
+    if (series.foam.regions.size() < 2) return;
+    std::size_t count = 0;
+    for (auto& time : series.fields)
+        for (auto& [region, fields] : time) count += region.empty() ? 0 : fields.erase("cellToRegion");
+    if (count > 0) series.notes.emplace_back("Field cellToRegion is left out: the regions have names.");
+}
+
 /// Times that together show all fields, and the box of all meshes.
 std::vector<std::size_t> showingTimes(const FoamSeries& series) {
     std::set<std::size_t> shown{0};
@@ -212,6 +221,7 @@ FoamSeries seriesOfFoam(FoamCase given) {
     for (std::size_t t = 0; t < times; ++t)
         for (const std::string& region : foam.regions)
             if (foam.isStill(region) || foam.hasMeshAt(region, t)) finder.look(region, t);
+    leaveOutDivision(series);
     const bool any = std::ranges::any_of(series.fields, [](const auto& time) {
         return std::ranges::any_of(time, [](const auto& region) { return !region.second.empty(); });
     });
