@@ -116,7 +116,6 @@ void addNote(BlockRef& ref, const std::string& note) {
 
 void finish(Source& source, BlockRef& ref) {
     ref.block.times = source.times;
-    if (source.format == "OpenFOAM") ref.block.timeUnit = "s";
     for (ArrayRef& array : ref.arrays)
         if (const auto unit = source.units.find(array.vtkName); unit != source.units.end())
             array.form.unit = unit->second;
@@ -237,10 +236,17 @@ std::vector<BlockRef> describeBlocks(const Source& given, const std::vector<Bloc
         vtkDataSet* data = block.data;
         BlockRef ref;
         ref.block.name = block.name;
+        std::string both; // of a mesh: fields of cells that are stored at points, too, interpolated
         for (int i = 0; i < data->GetPointData()->GetNumberOfArrays(); ++i)
-            if (vtkDataArray* array = data->GetPointData()->GetArray(i))
-                addArray(ref, array->GetName() != nullptr ? array->GetName() : "value", array->GetDataType(),
-                         array->GetNumberOfComponents(), false);
+            if (vtkDataArray* array = data->GetPointData()->GetArray(i)) {
+                const std::string name = array->GetName() != nullptr ? array->GetName() : "value";
+                if (vtkImageData::SafeDownCast(data) == nullptr && !isHelper(name) &&
+                    data->GetCellData()->HasArray(name.c_str()) != 0)
+                    both += (both.empty() ? "" : ", ") + name;
+                else
+                    addArray(ref, name, array->GetDataType(), array->GetNumberOfComponents(), false);
+            }
+        if (!both.empty()) addNote(ref, "Stored in cells and at points, shown as in cells: " + both + ".");
         const bool pointData = !ref.arrays.empty();
         for (int i = 0; i < data->GetCellData()->GetNumberOfArrays(); ++i)
             if (vtkDataArray* array = data->GetCellData()->GetArray(i))
@@ -254,7 +260,8 @@ std::vector<BlockRef> describeBlocks(const Source& given, const std::vector<Bloc
                 std::erase_if(ref.arrays, [](const ArrayRef& array) { return array.ofCells; });
         } else {
             ref.block.mesh = true;
-            ref.block.cellData = !pointData;
+            // OpenFOAM's values are of cells, beside which there may be the motion of points.
+            ref.block.cellData = !pointData || source.format == "OpenFOAM";
             describeCells(data, ref.block);
         }
         noteRounded(ref, data);

@@ -1,12 +1,10 @@
 #include "app/importer/formats.h"
 
-#include "app/importer/meshes/foam_units.h"
 #include "app/importer/readers/check_file.h"
 #include "app/importer/readers/read_files.h"
 #include "volume/base/unit_conversion.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -17,7 +15,6 @@
 #include <vtkNIFTIImageReader.h>
 #include <vtkNetCDFCFReader.h>
 #include <vtkNew.h>
-#include <vtkOpenFOAMReader.h>
 #include <vtkStringArray.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLMultiBlockDataReader.h>
@@ -29,8 +26,6 @@
 #include <vtk_netcdf.h>
 
 namespace tessera::importer {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -48,26 +43,6 @@ template <class ImageReader, void (*check)(const std::string&)> void openImage(S
     check(source.path);
     reader->SetFileName(source.path.c_str());
     source.reader = reader;
-}
-
-void openFoam(Source& source) {
-    vtkNew<vtkOpenFOAMReader> reader;
-    const std::string& path = source.path;
-    const std::string file = fs::is_directory(path) ? (fs::path(path) / "case.foam").string() : path;
-    reader->SetFileName(file.c_str());
-    reader->UpdateInformation();
-    for (int i = 0; i < reader->GetNumberOfPatchArrays(); ++i) {
-        const std::string name = reader->GetPatchArrayName(i);
-        reader->SetPatchArrayStatus(name.c_str(), name.ends_with("internalMesh") ? 1 : 0);
-    }
-    reader->EnableAllCellArrays();
-    reader->DisableAllLagrangianArrays();
-    reader->CreateCellToPointOff(); // cell values are averaged here, for each block separately
-    source.reader = reader;
-    source.units = foamUnits(path);
-    source.check = [](const Source& self, std::size_t time) {
-        checkFoam(self.path, time < self.readerTimes.size() ? self.readerTimes[time] : 0);
-    };
 }
 
 /// The unit that the axes "(time, z, y, x)" state, where those of space agree: of degrees and a height there is none.

@@ -33,8 +33,8 @@ void flatten(vtkDataObject* data, const std::string& name, std::vector<Block>& b
             std::string inner;
             if (multi->HasMetaData(i) != 0 && multi->GetMetaData(i)->Has(vtkCompositeDataSet::NAME()) != 0)
                 inner = multi->GetMetaData(i)->Get(vtkCompositeDataSet::NAME());
-            // A region of OpenFOAM is a block named after it that holds "internalMesh".
-            const bool keep = inner == "internalMesh" || inner == "default" || inner.empty();
+            // A region of OpenFOAM, as foamToVTK and ParaView write it, is a block named after it with an inner one.
+            const bool keep = inner == "internal" || inner == "internalMesh" || inner == "default" || inner.empty();
             flatten(multi->GetBlock(i), keep && !name.empty() ? name : inner, blocks);
         }
         if (multi == nullptr) throw std::runtime_error("holds a kind of composite data that is not read");
@@ -50,6 +50,17 @@ int arraysIn(vtkDataObject* data) {
     for (const int kind : {vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::FIELD})
         if (vtkFieldData* arrays = data->GetAttributesAsFieldData(kind)) found += arrays->GetNumberOfArrays();
     return found;
+}
+
+/// A copy that a reader cannot fill anew: VTK's shallow copies of blocks share the grids in them.
+vtkSmartPointer<vtkDataObject> copyOf(vtkDataObject* output) {
+    vtkSmartPointer<vtkDataObject> copy = vtkSmartPointer<vtkDataObject>::Take(output->NewInstance());
+    copy->ShallowCopy(output);
+    auto* from = vtkMultiBlockDataSet::SafeDownCast(output);
+    auto* to = vtkMultiBlockDataSet::SafeDownCast(copy);
+    for (unsigned i = 0; from != nullptr && i < from->GetNumberOfBlocks(); ++i)
+        if (vtkDataObject* block = from->GetBlock(i)) to->SetBlock(i, copyOf(block));
+    return copy;
 }
 
 /// The output of VTK's reader at one time: a copy, because the reader reuses its output for the next.
@@ -68,9 +79,7 @@ vtkSmartPointer<vtkDataObject> readByVtk(const Source& source, int time) {
         throw std::runtime_error("ends early or is damaged: " + std::string(error.what()));
     }
     if (output == nullptr) throw std::runtime_error("contains no data");
-    vtkSmartPointer<vtkDataObject> copy = vtkSmartPointer<vtkDataObject>::Take(output->NewInstance());
-    copy->ShallowCopy(output);
-    return copy;
+    return copyOf(output);
 }
 
 } // namespace

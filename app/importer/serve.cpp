@@ -19,6 +19,7 @@
 #include <stdexcept>
 #include <string>
 #include <unistd.h>
+#include <vtkFieldData.h>
 
 namespace tessera::importer {
 

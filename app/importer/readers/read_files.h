@@ -14,6 +14,7 @@ void openTiff(Source& source);
 void openDicom(Source& source);
 void openCgns(Source& source);
 void openExodus(Source& source);
+void openFoam(Source& source);
 void openFluent(Source& source);
 void openPlot3d(Source& source);
 void openVtkHdf(Source& source);

@@ -54,6 +54,7 @@ const FileFormat* formatNamed(std::string_view name) {
 
 const FileFormat* formatOfFile(const std::string& path) {
     if (const FileFormat* format = formatOf(path)) return format;
+    if (namesFoamCase(path)) return formatNamed("OpenFOAM");
     std::ifstream in(path, std::ios::binary);
     char head[132] = {};
     in.read(head, sizeof head);
@@ -69,6 +70,23 @@ bool isZarrFolder(const std::string& path) {
     for (const char* file : {".zgroup", ".zarray", "zarr.json"})
         if (std::filesystem::is_regular_file(folder / file, missing)) return true;
     return false;
+}
+
+bool isFoamCase(const std::string& folder) {
+    const std::filesystem::path root(folder);
+    std::error_code ignored;
+    for (const char* part : {"system/controlDict", "system/controlDict.gz", "constant/polyMesh"})
+        if (std::filesystem::exists(root / part, ignored)) return true;
+    return false;
+}
+
+bool namesFoamCase(const std::string& path) {
+    const std::filesystem::path file(path);
+    const std::string name = file.filename().string(), folder = file.parent_path().filename().string();
+    if (name == "controlDict" || name == "controlDict.gz")
+        return folder == "system" || std::filesystem::absolute(file).parent_path().filename() == "system";
+    const FileFormat* format = formatOf(path);
+    return format != nullptr && format->name == "OpenFOAM";
 }
 
 bool isSlice(const FileFormat& format, const std::string& path) {

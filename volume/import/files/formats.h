@@ -29,6 +29,12 @@ const FileFormat* formatOfFile(const std::string& path);
 /// Whether a folder is a data set in itself, one of Zarr: by its ending, or by the files of its description.
 bool isZarrFolder(const std::string& path);
 
+/// Whether a folder is a case of OpenFOAM: it has system/controlDict, packed by gzip or not, or a mesh.
+bool isFoamCase(const std::string& folder);
+
+/// Whether a file stands for the case around it: case.foam, case.OpenFOAM, system/controlDict.
+bool namesFoamCase(const std::string& path);
+
 /// Whether a file is a single slice of a volume: a TIFF file only if it has one page.
 bool isSlice(const FileFormat& format, const std::string& path);
 

@@ -1,6 +1,7 @@
 #include "volume/import/files/named_files.h"
 
 #include "volume/base/error.h"
+#include "volume/import/files/formats.h"
 #include "volume/import/files/series.h"
 
 #include <algorithm>
@@ -93,7 +94,7 @@ bool isOfCase(const fs::path& folder) {
     double time = 0;
     const auto [end, failed] = std::from_chars(name.data(), name.data() + name.size(), time);
     return (failed == std::errc() && end == name.data() + name.size()) || name == "system" || name == "constant" ||
-           name.starts_with("processor");
+           name == "0.orig" || name.starts_with("processor");
 }
 
 /// Files that one names directly.
@@ -109,8 +110,11 @@ std::vector<fs::path> namedDirectly(const fs::path& path) {
                 named.push_back(at->path());
     };
     const std::string kind = ending(path);
-    if (kind == ".foam" || (fs::is_directory(path, problem) && fs::exists(path / "system" / "controlDict", problem))) {
-        addCase(kind == ".foam" ? path.parent_path() : path);
+    if (fs::is_directory(path, problem) && isFoamCase(path.string())) {
+        addCase(path);
+    } else if (namesFoamCase(path.string())) {
+        const fs::path folder = fs::absolute(path).parent_path();
+        addCase(path.filename().string().starts_with("controlDict") ? folder.parent_path() : folder);
     } else if (fs::is_directory(path, problem) || kind == ".pvd" || kind == ".series" || !fs::exists(path, problem)) {
         for (const SeriesFile& file : expandPaths({path.string()})) {
             named.emplace_back(file.path);

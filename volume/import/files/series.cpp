@@ -113,12 +113,16 @@ std::vector<std::string> expandFolder(const std::string& folder) {
             ending(name) == ".txt" ? nullptr : formatOfFile(entry.path().string()); // usually plain text
         if (format != nullptr && format->advice.empty()) byFormat[format].push_back(entry.path().string());
     }
+    if (isFoamCase(folder)) { // any .foam file stands for it
+        std::vector<std::string>& named = byEnding[".foam"];
+        std::ranges::sort(named);
+        return {named.empty() ? folder : named.front()};
+    }
     for (const char* list : {".foam", ".pvd", ".series"})
         if (const auto at = byEnding.find(list); at != byEnding.end()) {
             if (at->second.size() > 1) throw Error("holds several " + std::string(list) + " files, name one", folder);
             return at->second;
         }
-    if (fs::exists(fs::path(folder) / "system" / "controlDict")) return {folder};
     std::vector<std::string> best = byEnding[".raw"];
     for (const auto& [format, paths] : byFormat) // in the order of the table
         if (paths.size() > best.size()) best = paths;
@@ -302,7 +306,7 @@ std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths) {
             files.push_back({path, {}, name.number, name.pattern, {}});
             continue;
         }
-        if (fs::is_directory(path, ignored) && !fs::exists(fs::path(path) / "system" / "controlDict")) {
+        if (fs::is_directory(path, ignored) && !isFoamCase(path)) {
             const std::vector<std::string> inside = expandFolder(path);
             pending.insert(pending.end(), inside.rbegin(), inside.rend());
             continue;
