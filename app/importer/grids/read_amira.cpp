@@ -268,10 +268,12 @@ std::string labelsOfMaterials(const AmiraHeader& header) {
     return all;
 }
 
+/// The materials name the values of the only array of whole numbers.
 void addLabels(const AmiraForm& form, vtkDataSet& grid) {
-    if (form.labels.empty() || form.arrays.size() != 1) return;
+    const auto isWhole = [](const AmiraArray& array) { return array.type != "float" && array.type != "double"; };
+    if (form.labels.empty() || std::ranges::count_if(form.arrays, isWhole) != 1) return;
     std::string text = form.labels, name;
-    for (const char c : form.arrays[0].name)
+    for (const char c : std::ranges::find_if(form.arrays, isWhole)->name)
         name += c == ' ' ? "%20" : c == ',' ? "%2C" : c == ';' ? "%3B" : c == '%' ? "%25" : std::string(1, c);
     for (std::size_t at = 0; (at = text.find("NAME ", at)) != std::string::npos; at += name.size())
         text.replace(at, 4, name);

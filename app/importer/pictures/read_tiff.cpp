@@ -119,6 +119,27 @@ vtkSmartPointer<vtkDataArray> calibrated(const TiffStack& stack, const vtkSmartP
     return out;
 }
 
+/// Flags of the planes of a channel that a file holds, one for each pixel.
+vtkSmartPointer<vtkDataArray> presence(const TiffStack& stack, std::size_t channel, std::size_t time,
+                                       const std::string& name) {
+    const std::size_t pixels = std::size_t(stack.form.form.width) * stack.form.form.height;
+    auto present = pixelArray(VTK_UNSIGNED_CHAR, pixels * stack.slices, name + ".present");
+    auto* flags = static_cast<unsigned char*>(present->GetVoidPointer(0));
+    for (std::size_t z = 0; z < stack.slices; ++z) {
+        const bool held = stack.planes[stack.planeAt(time, channel, z)].file != TiffPlane::kNone;
+        std::fill_n(flags + z * pixels, pixels, static_cast<unsigned char>(held ? 1 : 0));
+    }
+    return present;
+}
+
+/// Whether a plane of the channel is in no file, at any time.
+bool lacksPlanes(const TiffStack& stack, std::size_t channel) {
+    for (std::size_t time = 0; time < stack.times; ++time)
+        for (std::size_t z = 0; z < stack.slices; ++z)
+            if (stack.planes[stack.planeAt(time, channel, z)].file == TiffPlane::kNone) return true;
+    return false;
+}
+
 vtkSmartPointer<vtkDataObject> readTiffStack(const TiffStack& stack, std::size_t time) {
     const PixelForm& form = stack.form.form;
     const auto arraysPerPlane = std::size_t(form.samples) * std::size_t(form.parts());
@@ -135,27 +156,19 @@ vtkSmartPointer<vtkDataObject> readTiffStack(const TiffStack& stack, std::size_t
         for (std::size_t a = 0; a < arraysPerPlane; ++a)
             arrays.push_back(pixelArray(type, pixels * stack.slices, names[channel * arraysPerPlane + a]));
         const auto bytes = std::size_t(arrays[0]->GetDataTypeSize()) * pixels;
-        std::vector<std::size_t> missing;
         for (std::size_t z = 0; z < stack.slices; ++z) {
-            const TiffPlane& plane = stack.planes[(time * stack.channels + channel) * stack.slices + z];
+            const TiffPlane& plane = stack.planes[stack.planeAt(time, channel, z)];
             std::vector<void*> to;
             for (const auto& array : arrays) to.push_back(static_cast<char*>(array->GetVoidPointer(0)) + z * bytes);
-            if (plane.file != TiffPlane::kNone) {
+            if (plane.file != TiffPlane::kNone)
                 reader.read(plane, to);
-                continue;
-            }
-            missing.push_back(z);
-            for (void* at : to) std::fill_n(static_cast<char*>(at), bytes, char(0));
+            else
+                for (void* at : to) std::fill_n(static_cast<char*>(at), bytes, char(0));
         }
+        const bool lacking = lacksPlanes(stack, channel);
         for (auto& array : arrays) {
             image->GetPointData()->AddArray(calibrated(stack, array));
-            if (missing.empty()) continue;
-            auto present =
-                pixelArray(VTK_UNSIGNED_CHAR, pixels * stack.slices, std::string(array->GetName()) + ".present");
-            auto* flags = static_cast<unsigned char*>(present->GetVoidPointer(0));
-            std::fill_n(flags, pixels * stack.slices, static_cast<unsigned char>(1));
-            for (const std::size_t z : missing) std::fill_n(flags + z * pixels, pixels, static_cast<unsigned char>(0));
-            image->GetPointData()->AddArray(present);
+            if (lacking) image->GetPointData()->AddArray(presence(stack, channel, time, array->GetName()));
         }
     }
     return image;

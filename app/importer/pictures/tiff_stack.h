@@ -39,6 +39,10 @@ struct TiffStack {
     /// Coefficients of the calibration of ImageJ: value = c0 + c1 * stored + c2 * stored^2 ...; empty = none.
     std::vector<double> calibration;
     std::string valueUnit;
+
+    std::size_t planeAt(std::size_t time, std::size_t channel, std::size_t slice) const {
+        return (time * channels + channel) * slices + slice;
+    }
 };
 
 /// Sorts planes that come in an order of dimensions, "CZT" with the fastest first. False if their number differs.
