@@ -321,7 +321,7 @@ void describe(const InfoRequest& request) {
     } else if (request.bricks || request.merge) {
         throw Error("only archives (.tsr) have bricks", paths[0]);
     } else if (paths.size() == 1 &&
-               (namesPicture(paths[0]) || (hasEnding(paths[0], ".json") && looksLikeSession(readText(paths[0]))))) {
+               (opensAsPicture(paths[0]) || (hasEnding(paths[0], ".json") && looksLikeSession(readText(paths[0]))))) {
         printSession(paths[0], asJson);
     } else {
         const volume::ImportPreview preview = previewOf(paths, request.import);

@@ -32,7 +32,7 @@ enum class Kind { Session, Picture, Data };
 
 Kind kindOf(const std::string& path) {
     if (codec::isRemote(path)) return Kind::Data;
-    if (namesPicture(path)) return Kind::Picture;
+    if (opensAsPicture(path)) return Kind::Picture;
     if (!hasEnding(path, ".json")) return Kind::Data;
     if (hasEnding(path, ".tessera.json")) return Kind::Session;
     // Other JSON files are sessions (layouts) or the sidecars of raw files.

@@ -43,6 +43,11 @@ bool holdsSession(const std::string& path) {
     }
 }
 
+bool opensAsPicture(const std::string& path) {
+    const std::string suffix = pictureSuffix(path);
+    return !suffix.empty() && (suffix != ".png" || holdsSession(path));
+}
+
 std::string sessionTextOfPicture(const std::string& path) {
     const std::string suffix = pictureSuffix(path);
     const std::optional<std::string> session = suffix == ".svg"   ? sessionInSvg(readText(path))

@@ -107,7 +107,7 @@ std::string summary(const std::string& path, const volume::ImportOptions& stated
     std::string name = fs::path(path).filename().string();
     std::transform(name.begin(), name.end(), name.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (namesPicture(name)) {
+    if (opensAsPicture(path)) {
         sessionTextOfPicture(path);
         return "A picture that contains its session.";
     }

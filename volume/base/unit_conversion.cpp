@@ -35,6 +35,9 @@ constexpr Known kKnown[] = {
     {"micron", 1e-6, kLength},
     {"in", 0.0254, kLength},
     {"ft", 0.3048, kLength},
+    {"angstrom", 1e-10, kLength},
+    {"\u00c5", 1e-10, kLength},
+    {"bohr", 5.29177210903e-11, kLength},
     {"g", 1e-3, kMass, true},
     {"t", 1e3, kMass},
     {"s", 1, kTime, true},
@@ -74,8 +77,8 @@ constexpr Known kKnown[] = {
 };
 
 constexpr std::pair<std::string_view, double> kPrefixes[] = {
-    {"n", 1e-9}, {"u", 1e-6}, {"\u00b5", 1e-6}, {"\u03bc", 1e-6}, {"m", 1e-3}, {"c", 1e-2},
-    {"d", 1e-1}, {"h", 1e2},  {"k", 1e3},       {"M", 1e6},       {"G", 1e9}};
+    {"n", 1e-9}, {"p", 1e-12}, {"u", 1e-6}, {"\u00b5", 1e-6}, {"\u03bc", 1e-6}, {"m", 1e-3},
+    {"c", 1e-2}, {"d", 1e-1},  {"h", 1e2},  {"k", 1e3},       {"M", 1e6},       {"G", 1e9}};
 
 /// Temperature scales with another zero: kelvin = factor * value + offset.
 struct Scale {
@@ -147,9 +150,9 @@ std::optional<UnitConversion> unitConversion(const std::string& from, const std:
 
 std::string lengthUnitNamed(std::string_view word) {
     static constexpr std::pair<std::string_view, std::string_view> kWords[] = {
-        {"meter", "m"},       {"millimeter", "mm"}, {"centimeter", "cm"}, {"kilometer", "km"},
-        {"micrometer", "um"}, {"micron", "um"},     {"nanometer", "nm"},  {"foot", "ft"},
-        {"feet", "ft"},       {"inch", "in"},       {"inches", "in"}};
+        {"meter", "m"},   {"millimeter", "mm"},     {"centimeter", "cm"},  {"kilometer", "km"}, {"micrometer", "um"},
+        {"micron", "um"}, {"nanometer", "nm"},      {"foot", "ft"},        {"feet", "ft"},      {"inch", "in"},
+        {"inches", "in"}, {"angstrom", "angstrom"}, {"\u00c5", "angstrom"}};
     std::string plain;
     for (const char c : word) plain += char(std::tolower(static_cast<unsigned char>(c)));
     if (plain.ends_with("metre") || plain.ends_with("metres")) plain.replace(plain.rfind("tre"), 3, "ter");

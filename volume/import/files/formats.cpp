@@ -110,6 +110,10 @@ bool isSlice(const FileFormat& format, const std::string& path) {
     return number(wide ? 8 : 4, big) == 0 || !in;
 }
 
+bool isPicture(const FileFormat& format) {
+    return format.slices && format.name != "TIFF" && format.name != "DICOM";
+}
+
 std::string readableSuffixes() {
     std::string all;
     for (const FileFormat& format : kFormats)

@@ -38,6 +38,9 @@ bool namesFoamCase(const std::string& path);
 /// Whether a file is a single slice of a volume: a TIFF file only if it has one page.
 bool isSlice(const FileFormat& format, const std::string& path);
 
+/// Whether files of a format are pictures first of all, which stand beside data of other formats (PNG, JPEG, ...).
+bool isPicture(const FileFormat& format);
+
 /// All suffixes with a reader, separated by blanks.
 std::string readableSuffixes();
 

@@ -124,37 +124,57 @@ std::vector<std::string> expandFolder(const std::string& folder) {
             return at->second;
         }
     std::vector<std::string> best = byEnding[".raw"];
-    for (const auto& [format, paths] : byFormat) // in the order of the table
-        if (paths.size() > best.size()) best = paths;
+    const auto choose = [&](bool pictures) {
+        for (const auto& [format, paths] : byFormat) // in the order of the table
+            if (isPicture(*format) == pictures && paths.size() > best.size()) best = paths;
+    };
+    choose(false);
+    if (best.empty()) choose(true); // which may also stand beside data
     if (best.empty()) throw Error("holds no data file", folder);
     std::sort(best.begin(), best.end());
     return best;
 }
 
-/// Files with a single page are slices; they become one entry per volume: TIFF by numbers in names, DICOM by folder.
+/// Files with a single page are slices; they become one entry per volume: pictures by numbers in names, DICOM by
+/// folder. Volumes of numbered times become a series.
 std::vector<SeriesFile> withSlices(std::vector<SeriesFile> files) {
     std::vector<SeriesFile> out;
+    std::map<std::string, std::size_t> fitting, volumes; // files of a name, and where each volume is in `out`
+    for (const SeriesFile& entry : files) ++fitting[sliceName(entry.path).volume];
     for (SeriesFile& entry : files) {
         const FileFormat* format = entry.time ? nullptr : formatOfFile(entry.path);
         if (format == nullptr || !format->slices || !isSlice(*format, entry.path)) {
             out.push_back(std::move(entry));
             continue;
         }
-        if (format->name == "DICOM") entry.group = fs::path(entry.path).parent_path().string() + "#DICOM";
-        const auto volume = std::ranges::find_if(
-            out, [&](const SeriesFile& other) { return !other.slices.empty() && other.group == entry.group; });
-        if (volume != out.end()) {
-            volume->slices.push_back(entry.path);
+        const SliceName name = sliceName(entry.path);
+        const std::string pattern = numberedName(entry.path).pattern;
+        std::string volume = entry.group; // as a list of files says it
+        if (format->name == "DICOM") {
+            volume = entry.group = fs::path(entry.path).parent_path().string() + "#DICOM";
+        } else if (entry.group == pattern && fitting[name.volume] > 1) { // else the letter z stands for something else
+            volume = name.volume;
+            entry.group = name.series;
+        }
+        if (const auto known = volumes.find(volume); known != volumes.end()) {
+            out[known->second].slices.push_back(entry.path);
             continue;
         }
+        volumes.emplace(volume, out.size());
         entry.slices = {entry.path};
         out.push_back(std::move(entry));
     }
-    for (SeriesFile& entry : out)
-        if (entry.slices.size() == 1)
-            entry.slices.clear();
-        else if (!entry.slices.empty())
-            entry.number.reset(); // counts slices
+    for (SeriesFile& entry : out) {
+        if (entry.slices.size() == 1) entry.slices.clear();
+        if (entry.slices.empty()) continue;
+        const SliceName name = sliceName(entry.path);
+        const bool byLetter = entry.group == name.series && name.slice;
+        if (byLetter)
+            std::ranges::stable_sort(entry.slices, {},
+                                     [](const std::string& path) { return sliceName(path).slice.value_or(0); });
+        entry.path = entry.slices.front();
+        entry.number = byLetter ? name.time : std::nullopt; // the last number counts slices
+    }
     return out;
 }
 
@@ -232,6 +252,46 @@ NumberedName numberedName(const std::string& path) {
     name.number = parseTime(std::string_view(stem).substr(begin, end - begin));
     name.pattern = (file.parent_path() / (stem.substr(0, begin) + "#" + stem.substr(end) + tail)).string();
     return name;
+}
+
+SliceName sliceName(const std::string& path) {
+    const std::string name = fs::path(path).filename().string();
+    const std::size_t end = name.rfind('.') == std::string::npos ? name.size() : name.rfind('.');
+    const auto isDigit = [&](std::size_t i) { return std::isdigit(static_cast<unsigned char>(name[i])) != 0; };
+    const auto isLetter = [&](std::size_t i) { return std::isalpha(static_cast<unsigned char>(name[i])) != 0; };
+    /// The digits that follow a letter of their own.
+    const auto digitsAfter = [&](char letter) {
+        for (std::size_t at = 0; at + 1 < end; ++at) {
+            if (std::tolower(static_cast<unsigned char>(name[at])) != letter || !isDigit(at + 1)) continue;
+            if (at > 0 && isLetter(at - 1)) continue;
+            std::size_t stop = at + 1;
+            while (stop < end && isDigit(stop)) ++stop;
+            constexpr std::size_t kMostDigits = 15;
+            if (stop - at <= kMostDigits) return std::pair(at + 1, stop);
+        }
+        return std::pair(std::size_t(0), std::size_t(0));
+    };
+    const auto numberIn = [&](std::pair<std::size_t, std::size_t> digits) {
+        return parseTime(std::string_view(name).substr(digits.first, digits.second - digits.first));
+    };
+    const auto without = [&](std::string text, std::pair<std::size_t, std::size_t> digits) {
+        return text.replace(digits.first, digits.second - digits.first, "#");
+    };
+    const auto slice = digitsAfter('z'), time = digitsAfter('t');
+    const std::string folder = fs::path(path).parent_path().string();
+    if (slice.second == 0) {
+        const NumberedName last = numberedName(path);
+        return {last.pattern, last.pattern, last.number, {}};
+    }
+    SliceName found{(fs::path(folder) / without(name, slice)).string(), {}, numberIn(slice), {}};
+    found.series = found.volume;
+    if (time.second == 0) return found;
+    found.time = numberIn(time);
+    const bool timeFirst = time.first < slice.first; // later digits first, so that places stay right
+    found.series =
+        (fs::path(folder) / (timeFirst ? without(without(name, slice), time) : without(without(name, time), slice)))
+            .string();
+    return found;
 }
 
 std::vector<SeriesFile> parsePvd(const std::string& xml, const std::string& file) {
@@ -346,7 +406,11 @@ std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths) {
     });
     const auto same = [](const SeriesFile& a, const SeriesFile& b) { return a.path == b.path && a.time == b.time; };
     files.erase(std::unique(files.begin(), files.end(), same), files.end());
-    return withSlices(std::move(files));
+    files = withSlices(std::move(files));
+    for (const SeriesFile& entry : files) rank.emplace(entry.group, rank.size());
+    std::stable_sort(files.begin(), files.end(),
+                     [&](const SeriesFile& a, const SeriesFile& b) { return rank[a.group] < rank[b.group]; });
+    return files;
 }
 
 } // namespace tessera::volume

@@ -49,4 +49,13 @@ struct NumberedName {
 };
 NumberedName numberedName(const std::string& path);
 
+/// The number of a slice in the name of its file, and that of its time where it has one: those that follow a letter z
+/// and a letter t of their own ("run_t03_z012_c1.tif"), else the last. `volume` is the name without the number of the
+/// slice, `series` without that of the time, too.
+struct SliceName {
+    std::string volume, series;
+    std::optional<double> slice, time;
+};
+SliceName sliceName(const std::string& path);
+
 } // namespace tessera::volume
