@@ -5,9 +5,10 @@ if(VTK_FOUND)
   file(GLOB_RECURSE import_sources CONFIGURE_DEPENDS app/importer/*.cpp)
   list(REMOVE_ITEM import_sources ${CMAKE_SOURCE_DIR}/app/importer/main.cpp)
   find_package(TIFF REQUIRED)
+  find_package(BZip2 REQUIRED)
   # The readers, which tests and fuzz targets link too.
   add_library(importer STATIC ${import_sources})
-  target_link_libraries(importer PUBLIC volume nlohmann_json::nlohmann_json ${VTK_LIBRARIES} TIFF::TIFF ZLIB::ZLIB)
+  target_link_libraries(importer PUBLIC volume nlohmann_json::nlohmann_json ${VTK_LIBRARIES} TIFF::TIFF ZLIB::ZLIB BZip2::BZip2)
   set_target_properties(importer PROPERTIES UNITY_BUILD_BATCH_SIZE 3) # VTK's headers: less to compile after a change
   target_include_directories(importer SYSTEM PUBLIC ${VTK_INCLUDE_DIRS})
   add_executable(tessera-import app/importer/main.cpp)
