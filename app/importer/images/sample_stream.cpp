@@ -290,11 +290,23 @@ private:
         const bool packed = files_.encoding == SampleEncoding::Deflate || files_.encoding == SampleEncoding::Bzip2;
         if (!packed) return;
         std::vector<char> skipped(kPiece);
-        for (auto left = std::uint64_t(files_.byteSkip); left > 0;) {
+        for (std::uint64_t left = bytesBefore(part); left > 0;) {
             const auto count = std::size_t(std::min<std::uint64_t>(left, kPiece));
             if (decoder_->take(std::span(skipped).first(count)) != count) throwShort();
             left -= count;
         }
+    }
+
+    /// Decoded bytes to skip, which only the whole stream tells where they are stated from its end.
+    std::uint64_t bytesBefore(std::size_t part) {
+        if (files_.byteSkip >= 0) return std::uint64_t(files_.byteSkip);
+        std::vector<char> piece(kPiece);
+        std::uint64_t all = 0;
+        for (std::size_t got = kPiece; got == kPiece; all += got) got = decoder_->take(piece);
+        decoder_ = makeDecoder(part);
+        const std::uint64_t wanted = each_ + std::uint64_t(-(files_.byteSkip + 1));
+        if (all < wanted) throwShort();
+        return all - wanted;
     }
 
     std::unique_ptr<Decoder> makeDecoder(std::size_t part) {

@@ -61,7 +61,25 @@ void readArrays(const StoredImage& image, const volume::ReadBytes& read, std::si
     }
 }
 
-/// An image without arrays. Samples of cells need one more point along each axis.
+vtkSmartPointer<vtkDataObject> readFrame(const StoredImage& image, const volume::ReadBytes& read, int type,
+                                         std::size_t frame) {
+    vtkSmartPointer<vtkImageData> out = gridOf(image);
+    vtkDataSetAttributes* to = out->GetPointData();
+    if (image.cells) to = out->GetCellData();
+    std::vector<vtkSmartPointer<vtkDataArray>> arrays;
+    for (const StoredChannel& channel : image.channels) {
+        arrays.push_back(vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type)));
+        arrays.back()->SetName(channel.name.c_str());
+        arrays.back()->SetNumberOfComponents(channel.components);
+        arrays.back()->SetNumberOfTuples(vtkIdType(image.samples() / image.frames / image.offsets.size()));
+        to->AddArray(arrays.back());
+    }
+    readArrays(image, read, frame, type, arrays);
+    return out;
+}
+
+} // namespace
+
 vtkSmartPointer<vtkImageData> gridOf(const StoredImage& image) {
     auto out = vtkSmartPointer<vtkImageData>::New();
     glm::dvec3 origin = image.grid.origin;
@@ -82,25 +100,6 @@ vtkSmartPointer<vtkImageData> gridOf(const StoredImage& image) {
     out->SetOrigin(origin.x, origin.y, origin.z);
     return out;
 }
-
-vtkSmartPointer<vtkDataObject> readFrame(const StoredImage& image, const volume::ReadBytes& read, int type,
-                                         std::size_t frame) {
-    vtkSmartPointer<vtkImageData> out = gridOf(image);
-    vtkDataSetAttributes* to = out->GetPointData();
-    if (image.cells) to = out->GetCellData();
-    std::vector<vtkSmartPointer<vtkDataArray>> arrays;
-    for (const StoredChannel& channel : image.channels) {
-        arrays.push_back(vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type)));
-        arrays.back()->SetName(channel.name.c_str());
-        arrays.back()->SetNumberOfComponents(channel.components);
-        arrays.back()->SetNumberOfTuples(vtkIdType(image.samples() / image.frames / image.offsets.size()));
-        to->AddArray(arrays.back());
-    }
-    readArrays(image, read, frame, type, arrays);
-    return out;
-}
-
-} // namespace
 
 void serveStored(Source& source, StoredImage image) {
     const volume::ReadBytes read = samplesOf(image, source.path);

@@ -10,6 +10,7 @@ void openNrrd(Source& source);
 void openNifti(Source& source);
 void openMetaImage(Source& source);
 void openMgh(Source& source);
+void openMinc(Source& source);
 void openTecplot(Source& source);
 void openNumpy(Source& source);
 void openHdf(Source& source);

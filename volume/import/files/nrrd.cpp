@@ -75,8 +75,8 @@ void readPlaces(const NrrdHeader& header, StoredImage& image) {
     }
     const double lines = wholeNumber(header, "lineskip"), bytes = wholeNumber(header, "byteskip");
     if (lines < 0) throw Error("is out of range", {}, "line skip");
-    if (bytes < 0 && files.encoding != SampleEncoding::Raw)
-        throw Error("below 0 is possible for the encoding raw only", {}, "byte skip");
+    const bool hasEnds = files.encoding != SampleEncoding::Hex && files.encoding != SampleEncoding::Text;
+    if (bytes < 0 && !hasEnds) throw Error("below 0 is not possible for text", {}, "byte skip");
     files.lineSkip = std::uint64_t(lines);
     files.byteSkip = std::int64_t(bytes);
     const std::string endian = inSmall(header.field("endian"));

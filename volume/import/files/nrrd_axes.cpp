@@ -138,10 +138,11 @@ void guessOpen(std::vector<NrrdAxis>& axes, std::vector<std::size_t> open, std::
                             std::to_string(axes[a].size) + " runs along: it is taken as " +
                             (along == Along::Times ? "time" : "components"));
     };
-    for (std::size_t n = open.size(); n-- > 0;)
-        if (!timed && isTimeUnit(axes[open[n]].unit)) decide(n, Along::Times, false);
     const std::size_t space = countOf(axes, open, Along::Space);
-    while (!open.empty() && (directed || space + open.size() > 3)) {
+    const auto tooMany = [&] { return !open.empty() && (directed || space + open.size() > 3); };
+    for (std::size_t n = open.size(); n-- > 0;)
+        if (!timed && tooMany() && isTimeUnit(axes[open[n]].unit)) decide(n, Along::Times, false);
+    while (tooMany()) {
         constexpr std::size_t kFewComponents = 4;
         if (axes[open.front()].size <= kFewComponents)
             decide(0, Along::Components, true);

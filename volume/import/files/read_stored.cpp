@@ -82,7 +82,7 @@ SamplePart partOf(const StoredImage& image, const std::string& path, const std::
     SamplePart part{path, name, files.begin, 0};
     if (files.lineSkip > 0) part.begin = afterLines(in, part.begin, files.lineSkip);
     const bool packed = files.encoding == SampleEncoding::Deflate || files.encoding == SampleEncoding::Bzip2;
-    if (files.byteSkip < 0) {
+    if (files.byteSkip < 0 && !packed) {
         const double back = wanted - double(files.byteSkip) - 1;
         if (double(whole) < back + double(part.begin))
             throw Error(which + "is shorter than its header announces: truncated");

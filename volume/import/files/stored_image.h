@@ -32,8 +32,8 @@ struct SampleFiles {
     std::vector<std::string> names; ///< beside the header; empty: they follow in the header's own file
     std::uint64_t begin = 0;        ///< bytes before all else in each file: the header
     std::uint64_t lineSkip = 0;     ///< then so many lines
-    /// Then so many bytes, of deflated samples once they are inflated. Negative: samples end at the end of their file,
-    /// before -byteSkip - 1 further bytes.
+    /// Then so many bytes, of deflated samples once they are inflated. Negative: samples end -byteSkip - 1 bytes before
+    /// the end.
     std::int64_t byteSkip = 0;
 };
 
