@@ -22,7 +22,6 @@
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
-#include <vtkNIFTIImageReader.h>
 #include <vtkNetCDFReader.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -59,10 +58,7 @@ void addArray(BlockRef& ref, const std::string& name, int vtkType, int component
     if (isVtkHelper(name) || components < 1 || components > 16) return;
     for (const ArrayRef& other : ref.arrays)
         if (other.vtkName == name) return;
-    const std::string shown =
-        name == "ImageFile" || name == "MetaImage" || name == "NIFTI" || name == "scalars" || name == "ImageScalars"
-            ? "value"
-            : name;
+    const std::string shown = name == "ImageFile" || name == "scalars" || name == "ImageScalars" ? "value" : name;
     const auto add = [&](const std::string& label, int count, int first) {
         ref.arrays.push_back({{label, "", count, typeOf(vtkType), false, {}}, ofCells, name, first});
     };
@@ -119,8 +115,7 @@ void finish(Source& source, BlockRef& ref) {
     for (ArrayRef& array : ref.arrays)
         if (const auto unit = source.units.find(array.vtkName); unit != source.units.end())
             array.form.unit = unit->second;
-    const std::string unit = source.lengthUnit.empty() ? lengthUnitInHeader(source) : source.lengthUnit;
-    if (!unit.empty()) ref.block.lengthUnit = unit;
+    if (!source.lengthUnit.empty()) ref.block.lengthUnit = source.lengthUnit;
     if (!source.timeUnit.empty()) ref.block.timeUnit = source.timeUnit;
     if (!source.timeName.empty()) ref.block.timeName = source.timeName;
     for (const std::string& note : source.notes) addNote(ref, note);
@@ -128,9 +123,6 @@ void finish(Source& source, BlockRef& ref) {
     for (ArrayRef& array : ref.arrays) {
         if (const auto form = source.stored.find(array.vtkName); form != source.stored.end())
             array.stored = form->second;
-        if (auto* nifti = vtkNIFTIImageReader::SafeDownCast(source.reader))
-            if (nifti->GetRescaleSlope() != 0)
-                array.stored = {nifti->GetRescaleSlope(), nifti->GetRescaleIntercept(), {}};
         if (array.stored.scales()) array.form.type = ScalarType::F32;
     }
     if (auto* netCdf = vtkNetCDFReader::SafeDownCast(source.reader)) {

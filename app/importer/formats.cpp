@@ -11,8 +11,6 @@
 #include <vector>
 #include <vtkGenericDataObjectReader.h>
 #include <vtkGenericEnSightReader.h>
-#include <vtkMetaImageReader.h>
-#include <vtkNIFTIImageReader.h>
 #include <vtkNetCDFCFReader.h>
 #include <vtkNew.h>
 #include <vtkStringArray.h>
@@ -32,15 +30,6 @@ namespace {
 template <class XmlReader> void openXml(Source& source) {
     checkXml(source.path);
     vtkNew<XmlReader> reader;
-    reader->SetFileName(source.path.c_str());
-    source.reader = reader;
-}
-
-/// Image files are recognised by content, so that a wrong one is refused with a reason.
-template <class ImageReader, void (*check)(const std::string&)> void openImage(Source& source) {
-    vtkNew<ImageReader> reader;
-    if (reader->CanReadFile(source.path.c_str()) == 0) throw std::runtime_error("is damaged or has another format");
-    check(source.path);
     reader->SetFileName(source.path.c_str());
     source.reader = reader;
 }

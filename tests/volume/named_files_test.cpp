@@ -55,6 +55,11 @@ TEST_F(NamedFiles, HeadersAndSidecars) {
     write("c.nhdr", "NRRD0004\ntype: uchar\ndata file: c with space.bin\n");
     write("c with space.bin");
     EXPECT_THAT(namedBy("c.nhdr"), ElementsAre("c with space.bin"));
+    write("e.nhdr", "NRRD0004\ntype: uchar\ndata file: e%03d.bin 1 2 1\n");
+    for (const char* part : {"e001.bin", "e002.bin", "f.img"}) write(part, "x");
+    EXPECT_THAT(namedBy("e.nhdr"), ElementsAre("e001.bin", "e002.bin"));
+    write("f.hdr", "x");
+    EXPECT_THAT(namedBy("f.hdr"), ElementsAre("f.img"));
     write("d.mhd", "NDims = 3\nElementDataFile = d.zraw\n");
     write("d.zraw");
     EXPECT_THAT(namedBy("d.mhd"), ElementsAre("d.zraw"));

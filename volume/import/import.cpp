@@ -154,18 +154,21 @@ std::set<std::string> namesInFile(const std::vector<LabelRule>& rules, const Imp
     return names;
 }
 
-/// A .nrrd file that needs no VTK.
+/// A .nrrd file whose samples are raw, which needs no other program.
 std::optional<FileBlock> openNrrd(const std::string& path) {
-    const std::filesystem::path file(path);
-    if (file.extension() != ".nrrd" && file.extension() != ".nhdr") return std::nullopt;
-    std::string head(std::size_t(1) << 20, '\0');
+    const FileFormat* format = formatOf(path);
+    if (format == nullptr || format->name != "nrrd" || !std::filesystem::exists(path)) return std::nullopt;
+    std::string head(kMostNrrdHeader, '\0');
     std::ifstream in(path, std::ios::binary);
     in.read(head.data(), static_cast<std::streamsize>(head.size()));
     head.resize(static_cast<std::size_t>(in.gcount()));
-    const std::optional<RawForm> form = parseNrrd(head, path);
-    if (!form) return std::nullopt;
-    return openForm(*form, path, form->dataFile.empty() ? path : (file.parent_path() / form->dataFile).string(),
-                    "nrrd");
+    try {
+        const StoredImage image = parseNrrd(head);
+        if (image.files.encoding != SampleEncoding::Raw || isLongInteger(image.type)) return std::nullopt;
+        return openStored(image, path, "nrrd");
+    } catch (const Error& error) {
+        throw Error(error.reason(), path, error.place());
+    }
 }
 
 /// Name of the only block of a file: the part a .pvd states, else the file's name without number.

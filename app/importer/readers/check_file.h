@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -32,14 +31,6 @@ void checkXml(const std::string& path);
 
 /// The zlib or gzip stream at `begin` must end, and hold at least `wanted` bytes once inflated.
 void checkDeflated(const std::string& path, std::size_t begin, double wanted);
-
-void checkMetaImage(const std::string& path);
-void checkNifti(const std::string& path);
-void checkNrrd(const std::string& path);
-
-/// The samples of a NRRD file if they are stored as text, in it or in one file that it names; else nothing. Throws if
-/// the last line is cut.
-std::optional<std::string> textOfNrrd(const std::string& path);
 
 /// NetCDF in the classic formats (CDF 1, 2 and 5): the file must reach the last value that its header states. HDF5
 /// files are checked by their library.

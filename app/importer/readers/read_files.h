@@ -7,6 +7,10 @@ namespace tessera::importer {
 
 void openCsv(Source& source);
 void openNrrd(Source& source);
+void openNifti(Source& source);
+void openMetaImage(Source& source);
+void openMgh(Source& source);
+void openMinc(Source& source);
 void openTecplot(Source& source);
 void openNumpy(Source& source);
 void openHdf(Source& source);

@@ -1,18 +1,11 @@
 #include "app/importer/readers/source.h"
 
-#include "app/importer/readers/check_file.h"
-#include "volume/base/trimmed.h"
-#include "volume/base/unit_conversion.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <sstream>
 #include <vtkDataArray.h>
 #include <vtkDataObject.h>
 #include <vtkFieldData.h>
-#include <vtkNIFTIImageHeader.h>
-#include <vtkNIFTIImageReader.h>
 
 namespace tessera::importer {
 
@@ -26,40 +19,6 @@ double meantTime(double time) {
 
 bool StoredForm::isValue(double stored) const {
     return stored >= lowest && stored <= highest && std::ranges::find(fill, stored) == fill.end(); // not of NaN
-}
-
-namespace {
-
-/// VTK says "um" of a MetaImage that states no unit.
-std::string lengthUnitOfMeta(const std::string& path) {
-    std::istringstream head(readPart(path, 0, 1 << 16));
-    for (std::string line; std::getline(head, line);) {
-        const std::size_t equals = line.find('=');
-        if (equals == std::string::npos) break; // samples
-        const std::string_view key = volume::trimmed(std::string_view(line).substr(0, equals));
-        if (key == "DistanceUnits") return volume::lengthUnitNamed(volume::trimmed(line.substr(equals + 1)));
-        if (key == "ElementDataFile") break;
-    }
-    return {};
-}
-
-} // namespace
-
-std::string lengthUnitInHeader(const Source& source) {
-    if (source.format == "MetaImage") return lengthUnitOfMeta(source.path);
-    auto* nifti = vtkNIFTIImageReader::SafeDownCast(source.reader);
-    vtkNIFTIImageHeader* header = nifti != nullptr ? nifti->GetNIFTIHeader() : nullptr;
-    if (header == nullptr) return {};
-    switch (header->GetXYZTUnits() & vtkNIFTIImageHeader::UnitsSpace) { // VTK leaves the numbers as they are
-    case vtkNIFTIImageHeader::UnitsMeter:
-        return "m";
-    case vtkNIFTIImageHeader::UnitsMM:
-        return "mm";
-    case vtkNIFTIImageHeader::UnitsMicron:
-        return "um";
-    default:
-        return {};
-    }
 }
 
 void findTime(vtkDataObject* data, std::vector<double>& times) {

@@ -58,10 +58,6 @@ inline constexpr std::array<std::string_view, 3> kTimeNames = {"TimeValue", "TIM
 /// Undoes float32 rounding of a time: 0.1 for the double of the float32 nearest to 0.1.
 double meantTime(double time);
 
-/// The unit of lengths in the header of an image (MetaImage, NIfTI) whose reader has read it; "" for other files and
-/// where none is stated.
-std::string lengthUnitInHeader(const Source& source);
-
 /// Time stated in the field data (TimeValue), appended to `times`.
 void findTime(vtkDataObject* data, std::vector<double>& times);
 

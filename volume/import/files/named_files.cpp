@@ -76,8 +76,16 @@ std::set<std::string> possibleNames(const std::string& text) {
     return names;
 }
 
-/// Files in the folder of a header that match a name in it, which may contain asterisks.
-std::vector<fs::path> fitting(const fs::path& header, const std::string& name) {
+/// "slice%03d.raw" with an asterisk in place of the number.
+std::string withAsterisk(const std::string& name) {
+    const std::size_t mark = name.find('%'), end = name.find_first_not_of("0123456789", mark + 1);
+    if (mark == std::string::npos || end == std::string::npos || name[end] != 'd') return name;
+    return name.substr(0, mark) + "*" + name.substr(end + 1);
+}
+
+/// Files in the folder of a header that match a name in it, which may contain asterisks, or a number's place.
+std::vector<fs::path> fitting(const fs::path& header, const std::string& named) {
+    const std::string name = withAsterisk(named);
     const fs::path path = fs::path(name).is_absolute() ? fs::path(name) : header.parent_path() / name;
     if (name.find('*') == std::string::npos) return {path};
     glob_t found{};
@@ -125,6 +133,8 @@ std::vector<fs::path> namedDirectly(const fs::path& path) {
     } else if (kind == ".xyz" || kind == ".p3d" || kind == ".x") {
         for (const char* values : {".q", ".Q", ".qst", ".f", ".fun", ".F"})
             named.push_back(fs::path(path).replace_extension(values));
+    } else if (kind == ".hdr" || kind == ".img") { // NIfTI and Analyze in two files
+        for (const char* other : {".hdr", ".img", ".img.gz"}) named.push_back(fs::path(path).replace_extension(other));
     } else if (kind == ".raw") {
         named.push_back(fs::path(path).replace_extension(".json"));
     } else if (isHeader(kind)) {

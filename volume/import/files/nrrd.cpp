@@ -1,192 +1,193 @@
 #include "volume/import/files/nrrd.h"
 
 #include "volume/base/error.h"
+#include "volume/base/trimmed.h"
 #include "volume/base/unit_conversion.h"
-#include "volume/import/files/import_limits.h"
+#include "volume/import/files/nrrd_axes.h"
+#include "volume/import/files/nrrd_header.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
+#include <cstdio>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace tessera::volume {
 
 namespace {
 
-std::vector<double> numbers(std::string text, const std::string& file, const std::string& field) {
-    std::replace(text.begin(), text.end(), ',', ' ');
-    std::istringstream in(text);
-    std::vector<double> out;
-    for (double value = 0; in >> value;) out.push_back(value);
-    if (!in.eof()) throw Error("\"" + text.substr(0, 60) + "\" is not a list of numbers", file, field);
+std::string inSmall(std::string_view text) {
+    std::string out;
+    for (const char c : text) out += char(std::tolower(static_cast<unsigned char>(c)));
     return out;
 }
 
-std::optional<RawType> typeOf(const std::string& word) {
-    static constexpr std::pair<std::string_view, RawType> kTypes[] = {
-        {"signed char", RawType::I8},     {"int8", RawType::I8},
-        {"int8_t", RawType::I8},          {"uchar", RawType::U8},
-        {"unsigned char", RawType::U8},   {"uint8", RawType::U8},
-        {"uint8_t", RawType::U8},         {"short", RawType::I16},
-        {"short int", RawType::I16},      {"int16", RawType::I16},
-        {"int16_t", RawType::I16},        {"ushort", RawType::U16},
-        {"unsigned short", RawType::U16}, {"uint16", RawType::U16},
-        {"uint16_t", RawType::U16},       {"int", RawType::I32},
-        {"int32", RawType::I32},          {"int32_t", RawType::I32},
-        {"float", RawType::F32},          {"double", RawType::F64}};
+StoredType typeOfNrrd(const std::string& stated) {
+    static constexpr std::pair<std::string_view, StoredType> kTypes[] = {
+        {"char", StoredType::I8},      {"int8", StoredType::I8},    {"uchar", StoredType::U8},
+        {"uint8", StoredType::U8},     {"short", StoredType::I16},  {"int16", StoredType::I16},
+        {"ushort", StoredType::U16},   {"uint16", StoredType::U16}, {"int", StoredType::I32},
+        {"int32", StoredType::I32},    {"uint", StoredType::U32},   {"uint32", StoredType::U32},
+        {"longlong", StoredType::I64}, {"int64", StoredType::I64},  {"ulonglong", StoredType::U64},
+        {"uint64", StoredType::U64},   {"float", StoredType::F32},  {"double", StoredType::F64}};
+    std::string word; // "unsigned long long int" is ulonglong
+    for (const char c : inSmall(stated))
+        if (std::isspace(static_cast<unsigned char>(c)) == 0) word += c;
+    if (word.starts_with("signed")) word.erase(0, 6);
+    if (word.starts_with("unsigned")) word = "u" + word.substr(8);
+    if (word.ends_with("_t")) word.resize(word.size() - 2);
+    for (const char* const long_ : {"shortint", "longlongint"})
+        if (word.ends_with(long_)) word.resize(word.size() - 3);
     for (const auto& [name, type] : kTypes)
         if (name == word) return type;
-    return std::nullopt;
+    if (stated.empty()) throw Error("is missing", {}, "type");
+    throw Error("has samples of type \"" + stated.substr(0, 40) + "\", which is not read: write it as numbers", {},
+                "type");
 }
 
-/// Lengths of the vectors "(a,b,c) (d,e,f) ..."; "none" gives 1.
-std::vector<double> lengths(const std::string& text, const std::string& file, const std::string& field) {
-    std::vector<double> out;
-    std::istringstream in(text);
-    for (std::string word; in >> word;) {
-        if (word == "none") {
-            out.push_back(1);
-            continue;
-        }
-        if (word.size() < 2 || word.front() != '(' || word.back() != ')') throw Error("needs vectors", file, field);
-        double sum = 0;
-        for (const double x : numbers(word.substr(1, word.size() - 2), file, field)) sum += x * x;
-        out.push_back(std::sqrt(sum));
+SampleEncoding encodingOf(const std::string& stated) {
+    const std::string word = inSmall(stated);
+    if (word == "raw") return SampleEncoding::Raw;
+    if (word == "gz" || word == "gzip") return SampleEncoding::Deflate;
+    if (word == "bz2" || word == "bzip2") return SampleEncoding::Bzip2;
+    if (word == "hex") return SampleEncoding::Hex;
+    if (word == "txt" || word == "text" || word == "ascii") return SampleEncoding::Text;
+    if (word.empty()) throw Error("is missing", {}, "encoding");
+    throw Error("\"" + stated.substr(0, 40) + "\" is not read: write it with the encoding raw or gzip", {}, "encoding");
+}
+
+double wholeNumber(const NrrdHeader& header, const char* field) {
+    const std::vector<double> stated = nrrdNumbers(header.field(field), field);
+    if (stated.empty()) return 0;
+    if (stated[0] != std::floor(stated[0]) || std::abs(stated[0]) > 1e15) throw Error("is out of range", {}, field);
+    return stated[0];
+}
+
+void readPlaces(const NrrdHeader& header, StoredImage& image) {
+    SampleFiles& files = image.files;
+    files.encoding = encodingOf(header.field("encoding"));
+    files.names = nrrdDataFiles(header);
+    if (files.names.empty()) {
+        if (!header.hasEnd) throw Error("the header does not end");
+        files.begin = header.end;
     }
-    return out;
+    const double lines = wholeNumber(header, "lineskip"), bytes = wholeNumber(header, "byteskip");
+    if (lines < 0) throw Error("is out of range", {}, "line skip");
+    const bool hasEnds = files.encoding != SampleEncoding::Hex && files.encoding != SampleEncoding::Text;
+    if (bytes < 0 && !hasEnds) throw Error("below 0 is not possible for text", {}, "byte skip");
+    files.lineSkip = std::uint64_t(lines);
+    files.byteSkip = std::int64_t(bytes);
+    const std::string endian = inSmall(header.field("endian"));
+    image.bigEndian = endian == "big";
+    if (!endian.empty() && endian != "big" && endian != "little")
+        throw Error("is \"" + endian.substr(0, 40) + "\", not big or little", {}, "endian");
+    if (endian.empty() && volume::sizeOf(image.type) > 1 && files.encoding != SampleEncoding::Text)
+        image.notes.push_back("the file states no byte order: its samples are read as little-endian");
 }
 
-/// What a header says, field by field.
-struct Header {
-    std::string spaceUnits, axisUnits; ///< words in quotes, one for each axis
-    std::optional<RawType> type;
-    std::vector<double> sizes, spacing, origin;
-    std::string encoding, kinds, content;
-    bool skips = false;  ///< lines or bytes before the samples
-    std::size_t end = 0; ///< of the header, where it ends
-    bool hasEnd = false; ///< false: the file ends before the header does
-};
-
-/// A key with a value of its own, "key:=value".
-void takePair(const std::string& key, const std::string& value, const std::string& file, RawForm& form,
-              RawForm::Component& component) {
-    if (key == "unit") component.unit = value;
-    if (key == "time" && !value.empty()) form.times = numbers(value, file, key);
-}
-
-void takeField(const std::string& key, const std::string& value, const std::string& file, RawForm& form,
-               Header& header) {
-    if (key == "type")
-        header.type = typeOf(value);
-    else if (key == "encoding")
-        header.encoding = value;
-    else if (key == "sizes")
-        header.sizes = numbers(value, file, key);
-    else if (key == "spacings")
-        header.spacing = numbers(value, file, key);
-    else if (key == "space directions")
-        header.spacing = lengths(value, file, key);
-    else if (key == "space origin" && value.size() > 1)
-        header.origin = numbers(value.substr(1, value.size() - 2), file, key);
-    else if (key == "kinds")
-        header.kinds = value;
-    else if (key == "space units")
-        header.spaceUnits = value;
-    else if (key == "units")
-        header.axisUnits = value;
-    else if (key == "content")
-        header.content = value;
-    else if (key == "endian")
-        form.bigEndian = value == "big";
-    else if (key == "data file" || key == "datafile")
-        form.dataFile = value;
-    else if (key == "line skip" || key == "lineskip" || key == "byte skip" || key == "byteskip")
-        header.skips = header.skips || value != "0";
-}
-
-/// The unit of "\"mm\" \"mm\" \"mm\"", "" where axes differ or state none.
-std::string unitOfAxes(const std::string& quoted) {
-    std::vector<std::string> axes;
-    std::istringstream in(quoted);
-    for (std::string word; in >> std::quoted(word);)
-        if (!word.empty() && axes.size() < 3) axes.push_back(word); // a further axis counts components or times
-    return lengthUnitOfAxes(axes);
-}
-
-std::string lengthUnitOf(const Header& header) {
-    const std::string unit = unitOfAxes(header.spaceUnits);
-    return unit.empty() ? unitOfAxes(header.axisUnits) : unit;
-}
-
-Header readHeader(std::string_view head, const std::string& file, RawForm& form, RawForm::Component& component) {
-    Header header;
-    while (header.end < head.size() && !header.skips) {
-        const std::size_t end = head.find('\n', header.end);
-        if (end == std::string_view::npos) break;
-        std::string line(head.substr(header.end, end - header.end));
-        header.end = end + 1;
-        if (line.ends_with('\r')) line.pop_back();
-        if (line.empty()) {
-            header.hasEnd = true;
-            break;
-        }
-        if (line.starts_with('#') || line.starts_with("NRRD")) continue;
-        if (const std::size_t pair = line.find(":="); pair != std::string::npos) {
-            takePair(line.substr(0, pair), line.substr(pair + 2), file, form, component);
-            continue;
-        }
-        const std::size_t colon = line.find(": ");
-        if (colon == std::string::npos) throw Error("\"" + line.substr(0, 60) + "\" is not a field", file, "header");
-        std::string value = line.substr(colon + 2);
-        value.erase(value.find_last_not_of(" \t") + 1);
-        takeField(line.substr(0, colon), value, file, form, header);
+/// The names of components of some kinds.
+std::vector<std::string> componentNames(const std::string& kind, const std::string& label, std::size_t count) {
+    static const std::vector<std::pair<std::string_view, std::vector<std::string>>> kNamed = {
+        {"hsv-color", {"hue", "saturation", "brightness"}},
+        {"xyz-color", {"X", "Y", "Z"}},
+        {"quaternion", {"w", "x", "y", "z"}},
+        {"2d-symmetric-matrix", {"xx", "xy", "yy"}},
+        {"2d-masked-symmetric-matrix", {"confidence", "xx", "xy", "yy"}},
+        {"2d-matrix", {"xx", "xy", "yx", "yy"}},
+        {"2d-masked-matrix", {"confidence", "xx", "xy", "yx", "yy"}},
+        {"3d-symmetric-matrix", {"xx", "xy", "xz", "yy", "yz", "zz"}},
+        {"3d-masked-symmetric-matrix", {"confidence", "xx", "xy", "xz", "yy", "yz", "zz"}},
+        {"3d-matrix", {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"}},
+        {"3d-masked-matrix", {"confidence", "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"}}};
+    for (const auto& [name, names] : kNamed)
+        if (name == kind && names.size() == count) return names;
+    std::vector<std::string> words; // a label such as "Vx;Vy;Vz"
+    for (std::size_t at = 0; at <= label.size();) {
+        const std::size_t end = std::min(label.find_first_of(";,", at), label.size());
+        words.emplace_back(trimmed(std::string_view(label).substr(at, end - at)));
+        at = end + 1;
     }
-    return header;
+    return words.size() == count && count > 1 ? words : std::vector<std::string>();
+}
+
+void nameChannels(const NrrdHeader& header, const std::vector<NrrdAxis>& axes, StoredImage& image) {
+    std::string kind, label;
+    std::size_t lists = 0;
+    for (const NrrdAxis& axis : axes)
+        if (axis.along == StoredAxis::Along::Components && axis.size > 1 && lists++ == 0) {
+            kind = axis.kind;
+            label = axis.label;
+        }
+    const std::size_t count = image.offsets.size();
+    const auto is = [&](std::initializer_list<const char*> kinds) {
+        return std::ranges::find(kinds, kind) != kinds.end();
+    };
+    ComponentKind parts = ComponentKind::Channels;
+    if (is({"vector", "2-vector", "3-vector", "covariant-vector", "normal", "point", "3-gradient", "3-normal"}))
+        parts = ComponentKind::Vector;
+    if (is({"rgb-color", "rgba-color", "3-color", "4-color"})) parts = ComponentKind::Colors;
+    if (kind == "complex") parts = ComponentKind::Complex;
+    if (count == 3 && (kind.empty() || kind == "???" || kind == "none")) {
+        parts = ComponentKind::Vector;
+        image.notes.emplace_back("the file does not say what its 3 components are: they are shown as a vector");
+    }
+    if (lists > 1 && parts == ComponentKind::Colors) parts = ComponentKind::Channels;
+    const std::string& content = header.field("content");
+    setChannels(image, content.empty() ? "value" : content, parts, componentNames(kind, label, count));
+}
+
+void addRangeNote(const NrrdHeader& header, StoredImage& image) {
+    const std::string &low = header.field("oldmin"), &high = header.field("oldmax");
+    const bool whole = image.type != StoredType::F32 && image.type != StoredType::F64;
+    if (low.empty() || high.empty() || !whole) return;
+    const std::vector<double> lo = nrrdNumbers(low, "old min"), hi = nrrdNumbers(high, "old max");
+    if (lo.size() != 1 || hi.size() != 1 || !std::isfinite(lo[0]) || !std::isfinite(hi[0])) return;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "the stored numbers are shown; they were made from values between %.10g and %.10g (old min, old max)",
+                  lo[0], hi[0]);
+    image.notes.emplace_back(text);
+}
+
+/// An identity, or not stated.
+bool isUsualFrame(const std::string& frame) {
+    if (frame.empty()) return true;
+    const auto columns = nrrdVectors(frame, "measurement frame");
+    for (std::size_t c = 0; c < columns.size(); ++c)
+        for (std::size_t r = 0; columns[c] && r < columns[c]->size(); ++r)
+            if (std::abs((*columns[c])[r] - (r == c ? 1 : 0)) > 1e-6) return false;
+    return true;
 }
 
 } // namespace
 
-std::string lengthUnitOfNrrd(std::string_view head) {
-    RawForm form;
-    RawForm::Component component;
-    return lengthUnitOf(readHeader(head, {}, form, component));
-}
-
-std::optional<RawForm> parseNrrd(std::string_view head, const std::string& file, NrrdEncoding wanted) {
-    if (!head.starts_with("NRRD")) throw Error("is not an NRRD file", file);
-    RawForm form;
-    RawForm::Component component;
-    component.name = "value";
-    const Header header = readHeader(head, file, form, component);
-    if (header.skips) return std::nullopt;
-    if (!header.hasEnd && form.dataFile.empty()) throw Error("the header does not end", file);
-    if (header.sizes.empty()) throw Error("is missing", file, "sizes");
-    const auto isKind = [&](const char* kind) { return header.kinds.find(kind) != std::string::npos; };
-    const bool vector = isKind("vector") || isKind("color") || isKind("list") || isKind("matrix");
-    const bool text = header.encoding == "ascii" || header.encoding == "text" || header.encoding == "txt";
-    const bool asWanted = wanted == NrrdEncoding::Raw ? header.encoding == "raw" : text;
-    if (!asWanted || !header.type || header.sizes.size() > 3 || vector ||
-        form.dataFile.find(' ') != std::string::npos || form.dataFile == "LIST")
-        return std::nullopt;
-    for (std::size_t axis = 0; axis < header.sizes.size(); ++axis) {
-        const int i = static_cast<int>(axis);
-        const double size = header.sizes[axis];
-        if (!(size >= 1 && size <= kMostSamplesPerAxis) || size != std::floor(size))
-            throw Error("is out of range", file, "sizes");
-        form.lattice.size[i] = static_cast<int>(size);
-        if (axis < header.spacing.size() && header.spacing[axis] > 0 && std::isfinite(header.spacing[axis]))
-            form.lattice.spacing[i] = header.spacing[axis];
-        if (axis < header.origin.size() && std::isfinite(header.origin[axis]))
-            form.lattice.origin[i] = header.origin[axis];
+StoredImage parseNrrd(std::string_view head) {
+    const NrrdHeader header = readNrrdHeader(head);
+    StoredImage image;
+    image.type = typeOfNrrd(header.field("type"));
+    readPlaces(header, image);
+    const std::vector<NrrdAxis> axes = nrrdAxes(header, image.notes);
+    std::vector<StoredAxis> stored;
+    for (const NrrdAxis& axis : axes) stored.push_back({axis.along, axis.size});
+    setAxes(image, stored);
+    placeNrrd(header, axes, image);
+    nameChannels(header, axes, image);
+    image.unit = nrrdWords(header.field("sampleunits")).empty() ? "" : header.field("sampleunits");
+    if (image.unit.size() > 1 && image.unit.front() == '"') image.unit = nrrdWords(image.unit).front();
+    if (const auto own = header.pairs.find("unit"); own != header.pairs.end()) image.unit = own->second;
+    if (const auto time = header.pairs.find("time"); time != header.pairs.end() && image.frames == 1) {
+        const std::vector<double> stated = nrrdNumbers(time->second, "time");
+        if (stated.size() == 1 && std::isfinite(stated[0])) image.times = stated;
     }
-    if (form.times.size() > 1 || (form.times.size() == 1 && !std::isfinite(form.times[0]))) form.times.clear();
-    if (!header.content.empty()) component.name = header.content;
-    component.type = *header.type;
-    if (form.dataFile.empty()) form.skip = header.end;
-    form.components.push_back(std::move(component));
-    form.lengthUnit = lengthUnitOf(header);
-    return form;
+    addRangeNote(header, image);
+    if (!isUsualFrame(header.field("measurementframe")) && image.offsets.size() > 1)
+        image.notes.emplace_back(
+            "components are along the axes of the file's measurement frame, not turned to x, y, z");
+    for (const std::string& field : header.unknown)
+        image.notes.push_back("the field \"" + field.substr(0, 60) + "\" is not one of NRRD and was left out");
+    return image;
 }
 
 } // namespace tessera::volume
