@@ -13,7 +13,7 @@ packages=(
     libcairo2-dev zlib1g-dev                                         # figures as PDF
     libcurl4-openssl-dev                                             # archives on web servers
     fonts-roboto-unhinted fonts-font-awesome                         # text and icons
-    libvtk9-dev libtiff-dev                                          # tessera-import: readers of foreign formats
+    libvtk9-dev libtiff-dev libgdcm-dev                              # tessera-import: readers of foreign formats
 )
 test_packages=( # only ./test.sh needs these
     libgtest-dev libgmock-dev clang-format glslang-tools xvfb xdotool xauth
@@ -33,7 +33,7 @@ if ! command -v apt-get >/dev/null; then
     echo "setup: no apt-get here. What the build needs has these names on Fedora (not tried):" >&2
     echo "    gcc-c++ cmake ninja-build pkgconf glm-devel json-devel cli11-devel tbb-devel libzstd-devel xz-devel" >&2
     echo "    xxhash-devel libpng-devel libcurl-devel muParser-devel imgui-devel stb-devel freetype-devel cairo-devel glfw-devel libepoxy-devel" >&2
-    echo "    mesa-libEGL-devel mesa-dri-drivers google-roboto-fonts fontawesome4-fonts vtk-devel libtiff-devel" >&2
+    echo "    mesa-libEGL-devel mesa-dri-drivers google-roboto-fonts fontawesome4-fonts vtk-devel libtiff-devel gdcm-devel" >&2
     echo "    zlib-devel; for tests: gtest-devel gmock-devel clang-tools-extra glslang xorg-x11-server-Xvfb xdotool xorg-x11-xauth" >&2
     echo "    poppler-utils librsvg2-tools; for the Python package: pybind11-devel python3-devel python3-numpy python3-xarray" >&2
     exit 0
