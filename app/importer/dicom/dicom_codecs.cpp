@@ -137,7 +137,7 @@ DicomDecoded decodeDicomFrame(const std::string& syntax, const DicomForm& form, 
                                  std::to_string(form.columns) + " x " + std::to_string(form.rows));
     if (size->bits < 2 || size->bits > 16)
         throw std::runtime_error("has compressed numbers of " + std::to_string(size->bits) +
-                                 " bits, which are not read");
+                                 " bits, which are not read: write it uncompressed or as RLE");
     const int used = size->bits, bits = used <= 8 ? 8 : 16, high = used - 1;
     const auto small = [](int value) { return static_cast<unsigned short>(value); };
     gdcm::Image image;

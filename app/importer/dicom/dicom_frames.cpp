@@ -30,7 +30,6 @@ void takePlane(const DicomGroups& groups, DicomFrame& frame) {
         if (glm::length(across) > 0 && glm::length(down) > 0 && glm::length(glm::cross(across, down)) > 0) {
             frame.across = glm::normalize(across);
             frame.down = glm::normalize(down);
-            frame.oriented = true;
         }
     }
 }
@@ -112,13 +111,15 @@ void placeFrames(const DicomItem& data, std::vector<DicomFrame>& frames, std::si
             along = offsets[0] == 0 || !frame.corner ? offsets[f] : offsets[f] - frame.corner->z; // those are z itself
         else if (slices.size() == count)
             along = (slices[f] - 1) * step;
-        else if (!timed)
+        else if (!timed) {
             along = double(f) * step;
-        if (!along) continue;
+            frame.guessed = true;
+        }
+        if (!along && frame.corner) continue;
         if (frame.corner)
-            *frame.corner += normal * *along;
+            *frame.corner += normal * along.value_or(0);
         else
-            frame.location = *along;
+            frame.location = along.value_or(0);
     }
 }
 
@@ -147,6 +148,7 @@ DicomImage describeDicom(const DicomFile& file, const std::string& path, std::si
     image.lookUp = data.find(0x00283000) != nullptr;
     image.temporalStep = data.number(0x00200110);
     if (data.find(0x3004000e) != nullptr) image.doseUnit = data.text(0x30040002);
+    if (image.modality == "PT") image.activityUnit = data.text(0x00541001);
     image.mosaic = image.kind.find("MOSAIC") != std::string::npos;
     image.localizer = image.kind.find("LOCALIZER") != std::string::npos;
     image.overlays = std::ranges::any_of(data.elements,

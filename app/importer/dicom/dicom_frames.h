@@ -40,7 +40,8 @@ DicomAxisWords wordsOf(DicomAxis axis);
 
 /// What all frames of a file share.
 struct DicomImage {
-    std::string path, series, seriesName, modality, doseUnit, kind; ///< `kind`: ImageType
+    std::string path, series, seriesName, modality, kind; ///< `kind`: ImageType
+    std::string doseUnit, activityUnit;
     DicomForm form;
     std::optional<double> number;                ///< of the series
     std::optional<double> padding, paddingLimit; ///< stored numbers
@@ -60,7 +61,8 @@ struct DicomFrame {
     double columnStep = 0, rowStep = 0; ///< 0 = not stated
     double thickness = 0, between = 0;  ///< of slices, 0 = not stated
     double slope = 1, intercept = 0;
-    bool rescaled = false, oriented = false, atDetector = false;
+    bool rescaled = false, atDetector = false;
+    bool guessed = false;    ///< its place is a guess
     std::string rescaleType; ///< unit of the scaled numbers as the file writes it
     std::optional<double> location;
     double number = 0; ///< order of last resort

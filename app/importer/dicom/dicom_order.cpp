@@ -107,6 +107,25 @@ void setTimes(DicomOrder& order, int axis, const Values& values, std::size_t mos
     order.timeUnit.clear();
 }
 
+/// Positions in time as times, where the file says how far apart they are or when each was taken.
+void setTemporal(DicomOrder& order, const std::vector<DicomImage>& images, const std::map<int, Values>& weak,
+                 std::size_t most, const DicomPlaces& places, const std::vector<DicomFrame>& frames,
+                 const std::vector<std::size_t>& chosen) {
+    const double step = images[frames[chosen.front()].image].temporalStep.value_or(0);
+    if (step > 0) {
+        const double first = order.times.front();
+        for (double& time : order.times) time = (time - first) * step;
+        order.timeUnit = "ms";
+        order.timeName = "time";
+        return;
+    }
+    const auto clock = weak.find(int(DicomAxis::Acquired));
+    if (clock == weak.end() || !tellsApart(places, {&clock->second})) return;
+    DicomOrder byClock = order;
+    setTimes(byClock, clock->first, clock->second, most, places, frames, chosen);
+    if (byClock.time == order.time && byClock.times.size() == order.times.size()) order = byClock;
+}
+
 /// What of the words of an image type tells a kind apart.
 std::string wordsOfKind(const std::vector<std::string>& kinds, std::size_t index) {
     const auto split = [](const std::string& text) {
@@ -194,18 +213,7 @@ DicomOrder orderDicom(const std::vector<DicomImage>& images, const std::vector<D
                 setTimes(order, axis, values, most, places, frames, chosen);
             else
                 continue;
-            const auto clock = weak.find(int(DicomAxis::Acquired));
-            if (axis == int(DicomAxis::Temporal) && images[frames[chosen[0]].image].temporalStep.value_or(0) > 0) {
-                const double first = order.times.front();
-                for (double& time : order.times) time = (time - first) * *images[frames[chosen[0]].image].temporalStep;
-                order.timeUnit = "ms";
-                order.timeName = "time";
-            } else if (axis == int(DicomAxis::Temporal) && clock != weak.end() &&
-                       tellsApart(places, {&clock->second}) && distinct(clock->second).size() >= most) {
-                DicomOrder byClock = order;
-                setTimes(byClock, clock->first, clock->second, most, places, frames, chosen);
-                if (byClock.time == order.time) order = byClock;
-            }
+            if (axis == int(DicomAxis::Temporal)) setTemporal(order, images, weak, most, places, frames, chosen);
             return order;
         }
     if (fewDoubles) {
@@ -223,6 +231,7 @@ DicomOrder orderDicom(const std::vector<DicomImage>& images, const std::vector<D
                 continue;
             setParameters(order, inner->first, inner->second, kinds);
             setTimes(order, axis, values, most / parameters, places, frames, chosen);
+            if (axis == int(DicomAxis::Temporal)) setTemporal(order, images, {}, most, places, frames, chosen);
             return order;
         }
     for (const auto& [axis, values] : strong)

@@ -52,7 +52,7 @@ std::vector<double> alongNormal(const std::vector<DicomFrame>& frames, const std
         for (const std::size_t f : chosen) out.push_back(glm::dot(*frames[f].corner, normal));
     } else if (all([](const DicomFrame& frame) { return frame.location.has_value(); })) {
         for (const std::size_t f : chosen) out.push_back(*frames[f].location);
-        if (chosen.size() > 1)
+        if (!first.guessed && std::ranges::any_of(out, [&](double place) { return place != out.front(); }))
             stack.notes.emplace_back("no image states its position: slices are placed by their location");
     } else {
         const double step = first.between != 0 ? std::abs(first.between) : first.thickness > 0 ? first.thickness : 1;
@@ -67,6 +67,9 @@ std::vector<double> alongNormal(const std::vector<DicomFrame>& frames, const std
             stack.notes.emplace_back(
                 "a guess: no image states its position, so slices follow the numbers of the images");
     }
+    if (first.guessed)
+        stack.notes.emplace_back(
+            "a guess: nothing says where the frames lie, so they are slices in their order, one thickness apart");
     return out;
 }
 

@@ -65,7 +65,9 @@ int storedType(double low, double high, bool real, int bits) {
 /// The unit of scaled numbers: of CT unless another is stated; "" where it is none.
 std::string unitOf(const DicomImage& image, const DicomFrame& frame, Source& source) {
     if (!image.doseUnit.empty()) return image.doseUnit == "GY" ? "Gy" : "";
-    const std::string& type = frame.rescaleType;
+    const std::string &activity = image.activityUnit, &type = frame.rescaleType;
+    if (activity == "BQML") return "Bq/ml";
+    if (activity == "GML") return "g/ml";
     if (image.modality == "CT") {
         if (frame.rescaled && (type.empty() || type == "HU" || type == "[hnsf'U]")) return "HU";
         if (!frame.rescaled) source.notes.emplace_back("CT without a rescale: its numbers are those stored, not HU");

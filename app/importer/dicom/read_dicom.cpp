@@ -142,15 +142,25 @@ std::string patternOf(const std::vector<std::string>& names, const std::vector<s
     return begin + "*" + end;
 }
 
+/// The folder that holds these files and no others; "" if there is none.
+std::string folderOf(const std::vector<std::string>& names, const std::vector<std::string>& all) {
+    const fs::path folder = fs::path(names.front()).parent_path();
+    const auto inside = [&](const std::string& name) { return fs::path(name).parent_path() == folder; };
+    const bool own =
+        std::ranges::all_of(names, inside) && std::size_t(std::ranges::count_if(all, inside)) == names.size();
+    return own ? folder.string() : std::string();
+}
+
 /// What lies beside the stack that is shown, and how to open it.
-std::string aboutOther(const DicomFind& found, const std::vector<std::size_t>& stack,
+std::string aboutOther(const DicomFind& found, const fs::path& home, const std::vector<std::size_t>& stack,
                        const std::set<std::size_t>& shown) {
     const DicomImage& image = found.images[found.frames[stack.front()].image];
     std::set<std::size_t> files;
     for (const std::size_t f : stack) files.insert(found.frames[f].image);
     std::vector<std::string> names, all;
-    for (const std::size_t file : files) names.push_back(fileName(found.images[file].path));
-    for (const std::string& path : found.files) all.push_back(fileName(path));
+    for (const std::size_t file : files)
+        names.push_back(fs::path(found.images[file].path).lexically_relative(home).string());
+    for (const std::string& path : found.files) all.push_back(fs::path(path).lexically_relative(home).string());
     std::string text = "not shown: ";
     if (image.localizer) text += "a localizer, ";
     text +=
@@ -161,6 +171,7 @@ std::string aboutOther(const DicomFind& found, const std::vector<std::size_t>& s
     if (std::ranges::any_of(files, [&](std::size_t file) { return shown.contains(file); }))
         return text + " in the same file";
     if (names.size() == 1) return text + ": open " + names.front();
+    if (const std::string folder = folderOf(names, all); !folder.empty()) return text + ": open " + folder;
     const std::string pattern = patternOf(names, all);
     if (!pattern.empty()) return text + ": open '" + pattern + "'";
     return text + ": put its " + std::to_string(names.size()) + " files (" + names[0] + ", " + names[1] +
@@ -207,7 +218,7 @@ void openDicom(Source& source) {
     for (const std::size_t f : chosen) shown.insert(found.frames[f].image);
     constexpr std::size_t kMostTold = 6;
     for (std::size_t s = 1; s < stacks.size() && s <= kMostTold; ++s)
-        source.notes.push_back(aboutOther(found, stacks[s], shown));
+        source.notes.push_back(aboutOther(found, fs::path(source.path).parent_path(), stacks[s], shown));
     if (stacks.size() > kMostTold + 1)
         source.notes.push_back("not shown: " + std::to_string(stacks.size() - kMostTold - 1) +
                                " more series or stacks");
