@@ -14,7 +14,7 @@ packages=(
     libcurl4-openssl-dev                                             # archives on web servers
     fonts-roboto-unhinted fonts-font-awesome                         # text and icons
     libvtk9-dev libtiff-dev libjpeg-dev libpugixml-dev               # tessera-import: readers of foreign formats
-    libblosc-dev liblz4-dev libbz2-dev
+    libblosc-dev liblz4-dev libbz2-dev libgdcm-dev
 )
 test_packages=( # only ./test.sh needs these
     libgtest-dev libgmock-dev clang-format glslang-tools xvfb xdotool xauth
@@ -35,8 +35,8 @@ if ! command -v apt-get >/dev/null; then
     echo "    gcc-c++ cmake ninja-build pkgconf glm-devel json-devel cli11-devel tbb-devel libzstd-devel xz-devel" >&2
     echo "    xxhash-devel libpng-devel libcurl-devel muParser-devel imgui-devel stb-devel freetype-devel cairo-devel glfw-devel libepoxy-devel" >&2
     echo "    mesa-libEGL-devel mesa-dri-drivers google-roboto-fonts fontawesome4-fonts vtk-devel libtiff-devel libjpeg-turbo-devel" >&2
-    echo "    pugixml-devel blosc-devel lz4-devel bzip2-devel zlib-devel; for tests: gtest-devel gmock-devel clang-tools-extra glslang" >&2
-    echo "    xorg-x11-server-Xvfb xdotool xorg-x11-xauth" >&2
+    echo "    pugixml-devel blosc-devel lz4-devel bzip2-devel gdcm-devel zlib-devel; for tests: gtest-devel gmock-devel clang-tools-extra" >&2
+    echo "    glslang xorg-x11-server-Xvfb xdotool xorg-x11-xauth" >&2
     echo "    poppler-utils librsvg2-tools; for the Python package: pybind11-devel python3-devel python3-numpy python3-xarray" >&2
     exit 0
 fi
