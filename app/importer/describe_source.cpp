@@ -22,7 +22,6 @@
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkNIFTIImageReader.h>
-#include <vtkNetCDFReader.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
@@ -199,6 +198,7 @@ void finish(Source& source, BlockRef& ref) {
     if (!source.timeUnit.empty()) ref.block.timeUnit = source.timeUnit;
     if (!source.timeName.empty()) ref.block.timeName = source.timeName;
     for (const std::string& note : source.notes) addNote(ref, note);
+    for (const volume::Quantity& quantity : source.quantities) ref.block.quantities.push_back(quantity);
     for (ArrayRef& array : ref.arrays) {
         if (const auto form = source.stored.find(array.vtkName); form != source.stored.end())
             array.stored = form->second;
@@ -206,10 +206,6 @@ void finish(Source& source, BlockRef& ref) {
             if (nifti->GetRescaleSlope() != 0)
                 array.stored = {nifti->GetRescaleSlope(), nifti->GetRescaleIntercept(), {}};
         if (array.stored.scales()) array.form.type = ScalarType::F32;
-    }
-    if (auto* netCdf = vtkNetCDFReader::SafeDownCast(source.reader)) {
-        for (ArrayRef& array : ref.arrays) array.form.unit = netCdf->QueryArrayUnits(array.vtkName.c_str());
-        if (netCdf->GetTimeUnits() != nullptr) ref.block.timeUnit = netCdf->GetTimeUnits();
     }
 }
 

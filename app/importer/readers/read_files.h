@@ -10,6 +10,7 @@ void openNrrd(Source& source);
 void openTecplot(Source& source);
 void openNumpy(Source& source);
 void openHdf(Source& source);
+void openNetCdf(Source& source);
 void openTiff(Source& source);
 void openDicom(Source& source);
 void openCgns(Source& source);
