@@ -22,7 +22,6 @@
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
-#include <vtkNetCDFReader.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
@@ -124,10 +123,6 @@ void finish(Source& source, BlockRef& ref) {
         if (const auto form = source.stored.find(array.vtkName); form != source.stored.end())
             array.stored = form->second;
         if (array.stored.scales()) array.form.type = ScalarType::F32;
-    }
-    if (auto* netCdf = vtkNetCDFReader::SafeDownCast(source.reader)) {
-        for (ArrayRef& array : ref.arrays) array.form.unit = netCdf->QueryArrayUnits(array.vtkName.c_str());
-        if (netCdf->GetTimeUnits() != nullptr) ref.block.timeUnit = netCdf->GetTimeUnits();
     }
 }
 

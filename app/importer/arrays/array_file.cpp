@@ -1,263 +1,244 @@
 #include "app/importer/arrays/array_file.h"
 
+#include "app/importer/arrays/array_axes.h"
+#include "app/importer/arrays/array_grid.h"
+#include "app/importer/arrays/array_times.h"
+#include "app/importer/arrays/conventions.h"
+#include "app/importer/arrays/whole_numbers.h"
 #include "app/importer/readers/check_file.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
-#include <map>
+#include <limits>
 #include <memory>
-#include <optional>
 #include <stdexcept>
-#include <vtkDoubleArray.h>
-#include <vtkImageData.h>
+#include <vtkCellData.h>
+#include <vtkFieldData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkRectilinearGrid.h>
+#include <vtkStringArray.h>
 
 namespace tessera::importer {
 
 namespace {
 
-using Dims = std::vector<std::size_t>;
+constexpr std::size_t kMostParts = 64;
 
-std::string lastPart(const std::string& path) {
-    std::string word = path.substr(path.rfind('/') == std::string::npos ? 0 : path.rfind('/') + 1);
-    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return word;
-}
-
-/// The meaning of an array's axes.
-struct Form {
-    Dims grid; ///< z, y, x
-    std::size_t times = 1;
-    bool timeAxis = false, vector = false;
+/// A parameter: an array at one index of each axis that is none of space, time or a vector.
+struct Part {
+    StoredArray array;
+    std::string name;
+    int timeAxis = -1;   ///< of ArrayFile::axes
+    int vectorAxis = -1; ///< number of the axis of `array` that holds the components of a vector
+    Dims fixed = {};     ///< index along each axis that is none of the others
+    std::vector<Along> along = {};
+    NarrowForm narrow = {};
 };
 
-/// Matches the axes with `grid` if it is known. Else guesses: with four or more axes, a last one of length 3 holds
-/// components.
-std::optional<Form> formOf(Dims dims, const Dims& grid) {
-    Form form;
-    const auto matches = [&](const Dims& own) {
-        Dims all = own;
-        while (all.size() < 3) all.insert(all.begin(), 1);
-        return all == grid;
-    };
-    if (!grid.empty()) {
-        for (const bool vector : {false, true})
-            for (const bool time : {false, true}) {
-                if (dims.size() < (vector ? 3u : 2u) + (time ? 1u : 0u) || (vector && dims.back() != 3)) continue;
-                const Dims own(dims.begin() + (time ? 1 : 0), dims.end() - (vector ? 1 : 0));
-                if (own.size() < 2 || !matches(own)) continue;
-                form = {grid, time ? dims.front() : 1, time, vector};
-                return form;
-            }
-        return std::nullopt;
-    }
-    if (dims.size() < 2 || dims.size() > 5) return std::nullopt;
-    form.vector = dims.size() >= 4 && dims.back() == 3;
-    if (dims.size() == 5 && !form.vector) return std::nullopt;
-    if (form.vector) dims.pop_back();
-    form.timeAxis = dims.size() == 4;
-    if (form.timeAxis) {
-        form.times = dims.front();
-        dims.erase(dims.begin());
-    }
-    while (dims.size() < 3) dims.insert(dims.begin(), 1);
-    form.grid = dims;
-    return form;
+struct Opened {
+    ArrayGrid grid;
+    TimesOfArrays times;
+    std::vector<Part> parts;
+    std::string words; ///< of labels, as field data
+};
+
+/// The slab of a part at one time; nothing where it has none.
+bool slabAt(const Opened& opened, const Part& part, std::size_t time, Slab& slab) {
+    slab.first = part.fixed;
+    slab.count.assign(part.along.size(), 1);
+    for (std::size_t a = 0; a < part.along.size(); ++a) slab.count[a] = part.along[a].count;
+    if (part.timeAxis < 0) return true;
+    const int index = opened.times.along.at(part.timeAxis)[opened.times.times.empty() ? 0 : time];
+    if (index < 0) return false;
+    const auto at = std::ranges::find(part.array.axes, part.timeAxis) - part.array.axes.begin();
+    slab.first[std::size_t(at)] = std::size_t(index);
+    return true;
 }
 
-std::vector<double> numbersOf(const StoredArray& array) {
-    const auto values = array.read(0, array.dims.front());
+/// How an array is drawn, once for each index of its further axes; none if there are too many.
+std::vector<Part> partsOf(const ArrayFile& file, const StoredArray& array, const Opened& opened) {
+    Part whole{array, array.name};
+    whole.timeAxis = timeAxisOf(opened.times, array);
+    whole.fixed.assign(array.dims.size(), 0);
+    whole.along.resize(array.dims.size());
+    std::vector<std::size_t> further;
+    std::array<bool, 3> used{};
+    bool timed = false;
+    for (std::size_t a = 0; a < array.dims.size(); ++a) {
+        const int axis = array.axes[a];
+        const int along = int(file.axes[axis].kind) - int(AxisKind::X);
+        if (axis == whole.timeAxis && !timed)
+            timed = true;
+        else if (along >= 0 && along < 3 && !used[std::size_t(along)]) {
+            used[std::size_t(along)] = true;
+            whole.along[a] = {array.dims[a], along};
+        } else if (array.dims[a] != 1) {
+            further.push_back(a);
+        }
+    }
+    if (further.size() == 1 && array.dims[further[0]] == 3 && array.axes[further[0]] >= 0) {
+        const std::string word = lowered(leafOf(file.axes[array.axes[further[0]]].name));
+        if (word.empty() || word.starts_with("comp") || word.starts_with("vec") || word.starts_with("dim")) {
+            whole.vectorAxis = int(further[0]);
+            whole.along[further[0]] = {3, 3};
+            return {whole};
+        }
+    }
+    std::vector<Part> parts{whole};
+    for (const std::size_t axis : further) {
+        std::vector<Part> more;
+        if (array.dims[axis] > kMostParts || parts.size() * array.dims[axis] > kMostParts) return {};
+        for (const Part& part : parts)
+            for (std::size_t i = 0; i < array.dims[axis]; ++i) {
+                more.push_back(part);
+                more.back().fixed[axis] = i;
+                more.back().name += "." + std::to_string(i);
+            }
+        parts = std::move(more);
+    }
+    return parts;
+}
+
+vtkSmartPointer<vtkDataArray> readPart(const Opened& opened, const Part& part, std::size_t time) {
+    Slab slab;
+    if (!slabAt(opened, part, time, slab)) return nullptr;
+    const auto values = narrowed(part.array.read(slab), part.array.form, part.narrow);
+    auto array = inGridOrder(values, part.along, opened.grid, part.vectorAxis >= 0 ? 3 : 1);
+    array->SetName(part.name.c_str());
+    return array;
+}
+
+/// Whole numbers of 64 bits become those of 32 where all fit: looks at all times of a part.
+void narrowPart(const Opened& opened, Part& part, std::vector<std::string>& notes) {
+    if (!isWide(part.array.vtkType)) return;
+    constexpr double kMostLookedAt = double(1 << 30);
+    const std::size_t frames = part.timeAxis < 0 ? 1 : std::max<std::size_t>(1, opened.times.times.size());
+    if (part.array.statedBytes <= kMostLookedAt) {
+        WholeRange range;
+        Slab slab;
+        for (std::size_t t = 0; t < frames; ++t)
+            if (slabAt(opened, part, t, slab)) widen(range, part.array.read(slab), part.array.form);
+        part.narrow = narrowFor(range, part.array.form);
+        if (part.narrow.fits || !range.inexact()) return;
+    }
+    notes.push_back("whole numbers of \"" + part.name + "\" beyond 16777216 are rounded to float32");
+}
+
+/// Names what is left out, by why.
+void noteLeft(const std::vector<std::string>& left, const std::string& why, std::vector<std::string>& notes) {
+    constexpr std::size_t kMostNamed = 12;
+    if (left.empty()) return;
+    std::string list;
+    for (std::size_t i = 0; i < left.size() && i < kMostNamed; ++i) list += (i > 0 ? ", " : "") + left[i];
+    if (left.size() > kMostNamed) list += " and " + std::to_string(left.size() - kMostNamed) + " more";
+    notes.push_back(why + ": " + list);
+}
+
+/// One-dimensional arrays along a time axis, and single numbers, are quantities over time.
+bool takeQuantity(const StoredArray& array, const Opened& opened, Source& source) {
+    const bool overTime = array.axes.size() == 1 && opened.times.along.contains(array.axes[0]);
+    const bool single = array.dims.empty();
+    if (!overTime && !single) return false;
+    const std::vector<double> values = valuesBy(array.form, numbersOf(array));
     std::vector<double> out;
-    for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i) out.push_back(values->GetComponent(i, 0));
-    return out;
+    const std::size_t times = std::max<std::size_t>(1, opened.times.times.size());
+    for (std::size_t t = 0; t < times; ++t) {
+        const int index = single ? 0 : opened.times.along.at(array.axes[0])[t];
+        const bool known = index >= 0 && std::size_t(index) < values.size();
+        out.push_back(known ? values[std::size_t(index)] : std::numeric_limits<double>::quiet_NaN());
+    }
+    source.quantities.push_back({array.name, array.unit, std::move(out)});
+    return true;
 }
 
-/// Coordinates along an axis if they are monotonic; reversed if they decrease.
-struct Places {
-    std::vector<double> at;
-    bool falling = false, even = true;
-};
-std::optional<Places> placesOf(std::vector<double> values) {
-    Places places{std::move(values)};
-    if (places.at.size() > 1 && places.at.front() > places.at.back()) {
-        places.falling = true;
-        std::reverse(places.at.begin(), places.at.end());
-    }
-    for (std::size_t i = 1; i < places.at.size(); ++i)
-        if (!(places.at[i] > places.at[i - 1])) return std::nullopt;
-    const double step = (places.at.back() - places.at.front()) / double(std::max<std::size_t>(places.at.size(), 2) - 1);
-    for (std::size_t i = 0; i < places.at.size(); ++i)
-        places.even = places.even && std::abs(places.at[i] - places.at.front() - step * double(i)) <= 0.01 * step;
-    return places;
+void takeTimes(const ArrayFile& file, const Opened& opened, Source& source) {
+    const bool several = opened.times.times.size() > 1;
+    source.times = opened.times.times;
+    source.timeUnit = opened.times.unit;
+    source.timeName = opened.times.name;
+    source.shownAt = several ? opened.times.shownAt : std::vector<std::size_t>{0};
+    if (!source.times.empty() || !file.onlyTime || !std::isfinite(file.onlyTime->places.front())) return;
+    const TimeUnit unit = timeUnitOf(file.onlyTime->unit);
+    source.times = file.onlyTime->places;
+    source.timeUnit = unit.unit;
+    if (!unit.since.empty()) source.notes.push_back("times count from " + unit.since);
 }
 
-struct Grid {
-    std::array<std::size_t, 3> size{1, 1, 1}; ///< x, y, z
-    std::array<std::optional<Places>, 3> places;
-};
-
-/// Values of one time in the order of the grid: axes with decreasing coordinates are reversed.
-vtkSmartPointer<vtkDataArray> inOrder(vtkDataArray* values, const Grid& grid, int components) {
-    if (std::ranges::none_of(grid.places, [](const auto& places) { return places && places->falling; })) {
-        values->SetNumberOfComponents(components);
-        return values;
+vtkSmartPointer<vtkDataObject> readFrame(const Opened& opened, std::size_t time) {
+    const auto data = vtkSmartPointer<vtkDataSet>::Take(opened.grid.data->NewInstance());
+    data->CopyStructure(opened.grid.data);
+    vtkDataSetAttributes* to = data->GetPointData();
+    if (opened.grid.ofCells) to = data->GetCellData();
+    for (const Part& part : opened.parts)
+        if (const auto array = readPart(opened, part, time)) to->AddArray(array);
+    if (!opened.words.empty()) {
+        vtkNew<vtkStringArray> words;
+        words->SetName("labels");
+        words->InsertNextValue(opened.words);
+        data->GetFieldData()->AddArray(words);
     }
-    auto out = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(values->GetDataType()));
-    out->SetNumberOfComponents(components);
-    out->SetNumberOfTuples(values->GetNumberOfTuples() / components);
-    vtkIdType to = 0;
-    const auto turned = [&](std::size_t axis, std::size_t i) {
-        return grid.places[axis] && grid.places[axis]->falling ? grid.size[axis] - 1 - i : i;
-    };
-    for (std::size_t k = 0; k < grid.size[2]; ++k)
-        for (std::size_t j = 0; j < grid.size[1]; ++j)
-            for (std::size_t i = 0; i < grid.size[0]; ++i, ++to) {
-                const std::size_t from = (turned(2, k) * grid.size[1] + turned(1, j)) * grid.size[0] + turned(0, i);
-                for (int c = 0; c < components; ++c)
-                    out->SetComponent(to, c, values->GetComponent(vtkIdType(from) * components + c, 0));
-            }
-    return out;
-}
-
-vtkSmartPointer<vtkDataSet> makeGrid(const Grid& grid) {
-    bool even = true;
-    for (const auto& places : grid.places) even = even && (!places || places->even);
-    const int size[3] = {int(grid.size[0]), int(grid.size[1]), int(grid.size[2])};
-    double origin[3] = {0, 0, 0}, step[3] = {1, 1, 1};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (!grid.places[axis]) continue;
-        const std::vector<double>& at = grid.places[axis]->at;
-        origin[axis] = at.front();
-        if (at.size() > 1) step[axis] = (at.back() - at.front()) / double(at.size() - 1);
-    }
-    if (even) {
-        vtkNew<vtkImageData> image;
-        image->SetDimensions(size);
-        image->SetOrigin(origin);
-        image->SetSpacing(step);
-        return image;
-    }
-    vtkNew<vtkRectilinearGrid> uneven;
-    uneven->SetDimensions(size);
-    const auto coordinates = [&](std::size_t axis) {
-        auto array = vtkSmartPointer<vtkDoubleArray>::New();
-        for (std::size_t i = 0; i < grid.size[axis]; ++i)
-            array->InsertNextValue(grid.places[axis] ? grid.places[axis]->at[i] : double(i));
-        return array;
-    };
-    uneven->SetXCoordinates(coordinates(0));
-    uneven->SetYCoordinates(coordinates(1));
-    uneven->SetZCoordinates(coordinates(2));
-    return uneven;
-}
-
-/// The grid that most arrays share; prefers three axes to two, then the larger grid.
-Dims commonGrid(const std::vector<StoredArray>& arrays) {
-    std::map<Dims, std::array<std::size_t, 3>> votes; // long axes, arrays, samples
-    for (const StoredArray& array : arrays) {
-        const std::optional<Form> form = formOf(array.dims, {});
-        if (!form) continue;
-        std::size_t axes = 0, samples = 1;
-        for (const std::size_t n : form->grid) {
-            axes += n > 1 ? 1 : 0;
-            samples *= n;
-        }
-        auto& vote = votes[form->grid];
-        vote = {axes, vote[1] + 1, samples};
-    }
-    Dims best;
-    std::array<std::size_t, 3> most{};
-    for (const auto& [grid, vote] : votes)
-        if (vote > most) {
-            most = vote;
-            best = grid;
-        }
-    if (best.empty()) throw std::runtime_error("holds no array of [z, y, x] or [t, z, y, x]");
-    for (const std::size_t n : best)
-        if (n == 0 || n > 1000000) throw std::runtime_error("has an array of invalid size");
-    return best;
-}
-
-/// Throws where a damaged file states so many times that their list alone would fill the memory.
-void refuseEndless(const std::string& name, std::size_t times) {
-    constexpr std::size_t kMostTimes = 10'000'000;
-    if (times > kMostTimes)
-        throw std::runtime_error("array \"" + name + "\" states " + std::to_string(times) + " times, more than " +
-                                 std::to_string(kMostTimes));
+    return data;
 }
 
 } // namespace
 
-void refuseHollow(const StoredArray& array) {
-    refuseHollow(array.statedBytes, array.storedBytes, "array \"" + array.name + "\"");
+std::vector<double> numbersOf(const StoredArray& array) {
+    const auto values = array.read({Dims(array.dims.size(), 0), array.dims});
+    std::vector<double> out(std::size_t(values->GetNumberOfValues()));
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = values->GetComponent(vtkIdType(i), 0);
+    return out;
 }
 
-void openArrays(std::vector<StoredArray> arrays, Source& source) {
-    const Dims dims = commonGrid(arrays);
-    Grid grid;
-    for (std::size_t axis = 0; axis < 3; ++axis) grid.size[axis] = dims[2 - axis];
-    struct Chosen {
-        StoredArray array;
-        Form form;
-    };
-    auto chosen = std::make_shared<std::vector<Chosen>>();
-    std::vector<double> times;
-    std::size_t frames = 1, left = 0;
-    for (StoredArray& array : arrays) {
-        const std::string word = lastPart(array.name);
-        if (array.dims.size() == 1) {
-            const bool time = word == "t" || word == "time" || word == "times";
-            if (time) refuseEndless(array.name, array.dims[0]);
-            if (time) refuseHollow(array);
-            if (time) times = numbersOf(array);
-            if (time && !array.unit.empty()) source.timeUnit = array.unit;
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                if (word == std::string(1, char('x' + axis)) && array.dims[0] == grid.size[axis]) {
-                    refuseHollow(array);
-                    grid.places[axis] = placesOf(numbersOf(array));
-                    if (!array.unit.empty()) source.lengthUnit = array.unit;
-                }
-            continue;
-        }
-        if (std::optional<Form> form = formOf(array.dims, dims)) {
-            refuseEndless(array.name, form->times);
-            refuseHollow(array);
-            frames = std::max(frames, form->times);
-            chosen->push_back({std::move(array), *form});
-        } else {
-            ++left;
+void openArrays(ArrayFile file, Source& source) {
+    std::vector<std::string> empty;
+    std::erase_if(file.arrays, [&](const StoredArray& array) {
+        const bool none = std::ranges::find(array.dims, 0u) != array.dims.end();
+        if (none) empty.push_back("\"" + array.name + "\"");
+        return none;
+    });
+    giveAxes(file, source.notes);
+    guessKinds(file, source.notes);
+    joinAxes(file);
+    auto opened = std::make_shared<Opened>();
+    opened->grid = makeGrid(file, commonGrid(file), source.notes);
+    source.lengthUnit = opened->grid.lengthUnit;
+    std::vector<const StoredArray*> drawn;
+    for (const StoredArray& array : file.arrays)
+        if (isOnGrid(file, array, opened->grid.axes)) drawn.push_back(&array);
+    opened->times = timesOf(file, drawn, source.notes);
+    for (const StoredArray* array : drawn) refuseHollow(*array);
+    std::vector<std::string> others, many;
+    for (const StoredArray* array : drawn) {
+        std::vector<Part> parts = partsOf(file, *array, *opened);
+        if (parts.empty()) many.push_back("\"" + array->name + "\" " + axesText(file, *array));
+        for (Part& part : parts) {
+            narrowPart(*opened, part, source.notes);
+            source.stored[part.name] = part.narrow.fits ? part.narrow.form : part.array.form;
+            const std::string unit = shownUnit(part.array.unit);
+            if (!unit.empty()) source.units[part.name] = unit;
+            opened->words += wordsFor(part.name, part.array.words);
+            opened->parts.push_back(std::move(part));
         }
     }
-    for (const Chosen& one : *chosen) {
-        if (one.form.timeAxis && one.form.times != frames)
-            throw std::runtime_error("array \"" + one.array.name + "\" has " + std::to_string(one.form.times) +
-                                     " times, another " + std::to_string(frames));
-        if (!one.array.unit.empty()) source.units[one.array.name] = one.array.unit;
+    if (opened->parts.empty()) throw std::runtime_error("holds no array of numbers on a grid");
+    takeTimes(file, *opened, source);
+    for (const StoredArray& array : file.arrays) {
+        if (isOnGrid(file, array, opened->grid.axes)) continue;
+        if (takeQuantity(array, *opened, source)) continue;
+        others.push_back("\"" + array.name + "\" " + axesText(file, array));
     }
-    const bool inOrderOfTime = std::is_sorted(times.begin(), times.end(), std::less_equal<>());
-    if (times.size() == frames && inOrderOfTime) {
-        source.times = times;
-    } else if (frames > 1) {
-        for (std::size_t t = 0; t < frames; ++t) source.times.push_back(double(t));
-        source.timeUnit = "step";
+    for (volume::Quantity& quantity : file.numbers) {
+        quantity.values.assign(std::max<std::size_t>(1, source.times.size()), quantity.values.front());
+        source.quantities.push_back(std::move(quantity));
     }
-    if (left > 0)
-        source.notes.push_back(std::to_string(left) + (left == 1 ? " array" : " arrays") +
-                               " of another size than the grid ignored");
-    source.read = [chosen, grid](std::size_t time) -> vtkSmartPointer<vtkDataObject> {
-        vtkSmartPointer<vtkDataSet> data = makeGrid(grid);
-        for (const Chosen& one : *chosen) {
-            const auto values = one.form.timeAxis ? one.array.read(time, 1) : one.array.read(0, one.array.dims.front());
-            auto array = inOrder(values, grid, one.form.vector ? 3 : 1);
-            array->SetName(one.array.name.c_str());
-            data->GetPointData()->AddArray(array);
-        }
-        return data;
-    };
+    noteLeft(others,
+             others.size() == 1 ? "1 array of another size than the grid left out"
+                                : std::to_string(others.size()) + " arrays of another size than the grid left out",
+             source.notes);
+    noteLeft(empty, "left out, since they hold no samples", source.notes);
+    noteLeft(many, "left out, since they have too many further axes", source.notes);
+    noteLeft(file.notNumbers, "left out, since they hold no numbers", source.notes);
+    source.read = [opened](std::size_t time) { return readFrame(*opened, time); };
 }
 
 } // namespace tessera::importer

@@ -2,30 +2,82 @@
 
 #include "app/importer/readers/source.h"
 
+#include <array>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 #include <vtkDataArray.h>
+#include <vtkType.h>
 
-/// Files that hold named arrays without a geometry: NumPy, plain HDF5.
+/// Files that hold named arrays on axes: NetCDF, plain HDF5, NumPy. A reader fills an ArrayFile; openArrays finds the
+/// grid in it.
 namespace tessera::importer {
+
+using Dims = std::vector<std::size_t>;
+
+enum class AxisKind { Unknown, X, Y, Z, Time, Other };
+
+/// An axis, which arrays share.
+struct StoredAxis {
+    std::string name; ///< "" = unnamed
+    std::size_t length = 0;
+    AxisKind kind = AxisKind::Unknown;
+    std::vector<double> places = {}; ///< of its samples; empty = not stated
+    std::vector<double> faces = {};  ///< of its cells, one more than samples; empty = values belong to points
+    std::string unit = {};
+    bool down = false; ///< its places increase downwards
+    bool operator==(const StoredAxis&) const = default;
+};
+
+/// A part of an array: first index and number along each of its axes.
+struct Slab {
+    Dims first, count;
+};
 
 struct StoredArray {
     std::string name, unit;                  ///< the name may be a path, "fields/T"
-    std::vector<std::size_t> dims;           ///< slowest first
+    Dims dims;                               ///< slowest first
+    std::vector<int> axes;                   ///< of ArrayFile::axes, one for each of `dims`; empty = none is known
+    int vtkType = VTK_FLOAT;                 ///< of what `read` gives
+    StoredForm form = {};                    ///< how the stored numbers become values
     double statedBytes = 0, storedBytes = 0; ///< by its axes, and what the file holds of it, which may be compressed
-    /// Reads the stored numbers of one component: all, or those at one index of the first axis.
-    std::function<vtkSmartPointer<vtkDataArray>(std::size_t first, std::size_t count)> read;
+    bool chosen = false;                     ///< its grid is the one to read, whatever other arrays there are
+    std::string words = {};                  ///< of whole numbers: "0 air; 1 solid"; "" = none
+    /// Reads stored numbers, one component, in the order in which they are stored.
+    std::function<vtkSmartPointer<vtkDataArray>(const Slab& part)> read = {};
+};
+
+/// Places of a curved grid along one axis of space: numbers on one or more of its axes.
+struct CurvedPlaces {
+    AxisKind kind = AxisKind::Unknown;
+    std::vector<int> axes; ///< slowest first
+    std::vector<double> at;
+    std::string unit;
+    std::string name;
+};
+
+struct ArrayFile {
+    std::vector<StoredAxis> axes;
+    std::vector<StoredArray> arrays;
+    std::vector<CurvedPlaces> curved = {};
+    std::vector<volume::Quantity> numbers = {}; ///< that belong to the whole file, one value each
+    std::vector<std::string> notNumbers = {};   ///< names of what holds no numbers
+    std::optional<StoredAxis> onlyTime = {};    ///< of arrays without an axis of time
 };
 
 /// Throws where an array states far more bytes than any filter can make of those that are stored, which would fill the
 /// memory: a damaged file.
 void refuseHollow(const StoredArray& array);
 
-/// Makes a source of arrays: those of [z, y, x], [t, z, y, x] or with 3 components as a last axis share the commonest
-/// grid and become parameters; one-dimensional arrays named x, y, z are coordinates; t, time or times are times. Throws
-/// if there is no grid.
-void openArrays(std::vector<StoredArray> arrays, Source& source);
+/// All numbers of an array, as they are stored.
+std::vector<double> numbersOf(const StoredArray& array);
+
+/// Makes a source of the arrays that share the commonest grid: three axes of space before two, then most arrays, then
+/// most samples. Others are named in a note. Axes of arrays that name none are guessed: [z, y, x], [t, z, y, x], or
+/// with 3 components as a last axis; one-dimensional arrays named x, y, z are coordinates then; t, time or times are
+/// times. Throws if there is no grid.
+void openArrays(ArrayFile file, Source& source);
 
 } // namespace tessera::importer

@@ -1,5 +1,6 @@
 // NumPy: .npy, and .npz, a zip file of them.
 #include "app/importer/arrays/array_file.h"
+#include "app/importer/arrays/whole_numbers.h"
 #include "app/importer/readers/check_file.h"
 #include "app/importer/readers/read_files.h"
 
@@ -19,9 +20,10 @@ namespace {
 
 struct NpyForm {
     int vtkType = VTK_VOID;
+    std::string descr, unit; ///< the unit of a time
     std::size_t bytes = 0, begin = 0;
-    bool swap = false, fortran = false;
-    std::vector<std::size_t> dims;
+    bool swap = false, fortran = false, half = false;
+    Dims dims;
 };
 
 std::uint64_t little(const std::string& bytes, std::size_t at, std::size_t count) {
@@ -39,38 +41,18 @@ std::string entry(const std::string& header, const std::string& key) {
     return header.substr(colon + 1, header.find('\'', header.find(',', colon)) - colon - 1);
 }
 
-NpyForm parseNpy(const std::string& bytes) {
-    if (!bytes.starts_with("\x93NUMPY")) throw std::runtime_error("is not a NumPy array");
-    NpyForm form;
-    const bool old = little(bytes, 6, 1) == 1;
-    const std::size_t length = little(bytes, 8, old ? 2 : 4);
-    form.begin = (old ? 10 : 12) + length;
-    if (form.begin > bytes.size()) throw std::runtime_error("ends within its header: truncated");
-    const std::string header = bytes.substr(old ? 10 : 12, length);
-    const std::size_t word = header.find('\'', header.find(':', header.find("'descr'")));
-    const std::string descr = header.substr(word + 1, header.find('\'', word + 1) - word - 1);
-    static constexpr struct {
-        const char* code;
-        int vtkType;
-    } kTypes[] = {{"f4", VTK_FLOAT},
-                  {"f8", VTK_DOUBLE},
-                  {"u1", VTK_UNSIGNED_CHAR},
-                  {"b1", VTK_UNSIGNED_CHAR},
-                  {"i1", VTK_SIGNED_CHAR},
-                  {"u2", VTK_UNSIGNED_SHORT},
-                  {"i2", VTK_SHORT},
-                  {"i4", VTK_INT},
-                  {"u4", VTK_UNSIGNED_INT},
-                  {"i8", VTK_LONG_LONG},
-                  {"u8", VTK_UNSIGNED_LONG_LONG}};
-    for (const auto& [code, type] : kTypes)
-        if (descr.size() == 3 && descr.substr(1) == code) form.vtkType = type;
-    if (form.vtkType == VTK_VOID)
-        throw std::runtime_error("has numbers of type " + descr.substr(0, 40) +
-                                 ", which is not read: write it with astype(numpy.float32)");
-    form.bytes = static_cast<std::size_t>(descr[2] - '0');
-    form.swap = descr[0] == '>';
-    form.fortran = entry(header, "fortran_order").find("True") != std::string::npos;
+struct NpyType {
+    std::string_view code;
+    int vtkType;
+};
+constexpr NpyType kNpyTypes[] = {{"f2", VTK_FLOAT},          {"f4", VTK_FLOAT},         {"f8", VTK_DOUBLE},
+                                 {"u1", VTK_UNSIGNED_CHAR},  {"b1", VTK_UNSIGNED_CHAR}, {"i1", VTK_SIGNED_CHAR},
+                                 {"u2", VTK_UNSIGNED_SHORT}, {"i2", VTK_SHORT},         {"i4", VTK_INT},
+                                 {"u4", VTK_UNSIGNED_INT},   {"i8", VTK_LONG_LONG},     {"u8", VTK_UNSIGNED_LONG_LONG},
+                                 {"M8", VTK_LONG_LONG},      {"m8", VTK_LONG_LONG}};
+
+/// The shape of an array; its size must be that of the bytes.
+void parseShape(const std::string& header, std::size_t has, NpyForm& form) {
     const std::size_t open = header.find('(', header.find("'shape'")), close = header.find(')', open);
     if (open == std::string::npos || close == std::string::npos || header.find('-', open) < close)
         throw std::runtime_error("has a damaged header");
@@ -83,51 +65,106 @@ NpyForm parseNpy(const std::string& bytes) {
         all *= double(n);
         at = static_cast<std::size_t>(end - header.c_str()) + 1;
     }
-    wantBytes(double(bytes.size() - form.begin), all);
+    if (form.dims.size() > 32) throw std::runtime_error("has a damaged header");
+    wantBytes(double(has), all);
+}
+
+/// The form of an array of numbers; its `vtkType` is VTK_VOID for others.
+NpyForm parseNpy(const std::string& bytes) {
+    if (!bytes.starts_with("\x93NUMPY")) throw std::runtime_error("is not a NumPy array");
+    NpyForm form;
+    const bool old = little(bytes, 6, 1) == 1;
+    const std::size_t length = little(bytes, 8, old ? 2 : 4);
+    form.begin = (old ? 10 : 12) + length;
+    if (form.begin > bytes.size()) throw std::runtime_error("ends within its header: truncated");
+    const std::string header = bytes.substr(old ? 10 : 12, length);
+    const std::size_t colon = header.find(':', header.find("'descr'")), word = header.find('\'', colon);
+    if (colon == std::string::npos || word == std::string::npos) throw std::runtime_error("has a damaged header");
+    form.descr = header.substr(word + 1, header.find('\'', word + 1) - word - 1);
+    if (header.find('[', colon) < word) form.descr = "a structure";
+    for (const auto& [code, type] : kNpyTypes)
+        if (form.descr.size() >= 3 && form.descr.substr(1, 2) == code &&
+            (form.descr.size() == 3 || (code[1] == '8' && form.descr[3] == '['))) {
+            form.vtkType = type;
+            form.half = code == "f2";
+        }
+    if (form.vtkType == VTK_VOID) return form;
+    if (form.descr[1] == 'M' || form.descr[1] == 'm') { // [ns], [s], [25s]
+        form.unit = form.descr.substr(std::min<std::size_t>(4, form.descr.size()));
+        form.unit = form.unit.substr(0, form.unit.find(']'));
+        if (form.unit == "m") form.unit = "min";
+        if (form.descr[1] == 'M') form.unit += " since 1970-01-01";
+    }
+    form.bytes = static_cast<std::size_t>(form.descr[2] - '0');
+    form.swap = form.descr[0] == '>';
+    form.fortran = entry(header, "fortran_order").find("True") != std::string::npos;
+    parseShape(header, bytes.size() - form.begin, form);
     return form;
 }
 
-StoredArray arrayOf(std::shared_ptr<const std::string> bytes, const NpyForm& form, const std::string& name) {
+/// The numbers of a part of an array, as they are stored, in the machine's order of bytes.
+vtkSmartPointer<vtkDataArray> readNpy(const std::string& bytes, const NpyForm& form, const Slab& part) {
+    const std::size_t axes = form.dims.size();
+    Dims stride(axes, 1);
+    for (std::size_t a = 1; a < axes; ++a) {
+        const std::size_t axis = form.fortran ? a : axes - 1 - a, faster = form.fortran ? a - 1 : axes - a;
+        stride[axis] = stride[faster] * form.dims[faster];
+    }
+    std::size_t all = 1;
+    for (const std::size_t n : part.count) all *= n;
+    const std::size_t row = axes == 0 ? 1 : part.count.back(), step = axes == 0 ? 1 : stride.back();
+    std::string numbers(all * form.bytes, '\0');
+    Dims index(axes, 0);
+    for (std::size_t n = 0; n < all; n += row) {
+        std::size_t from = 0;
+        for (std::size_t a = 0; a < axes; ++a) from += (part.first[a] + index[a]) * stride[a];
+        const char* at = bytes.data() + form.begin + from * form.bytes;
+        char* to = numbers.data() + n * form.bytes;
+        if (step == 1)
+            std::memcpy(to, at, row * form.bytes);
+        else
+            for (std::size_t i = 0; i < row; ++i)
+                std::memcpy(to + i * form.bytes, at + i * step * form.bytes, form.bytes);
+        for (std::size_t a = axes > 0 ? axes - 1 : 0; a-- > 0;) {
+            if (++index[a] < part.count[a]) break;
+            index[a] = 0;
+        }
+    }
+    if (form.swap)
+        for (std::size_t n = 0; n < all; ++n)
+            std::reverse(numbers.data() + n * form.bytes, numbers.data() + (n + 1) * form.bytes);
+    auto out = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(form.vtkType));
+    out->SetNumberOfTuples(vtkIdType(all));
+    if (form.half)
+        for (std::size_t n = 0; n < all; ++n) {
+            std::uint16_t bits = 0;
+            std::memcpy(&bits, numbers.data() + 2 * n, 2);
+            out->SetComponent(vtkIdType(n), 0, double(floatOfHalf(bits)));
+        }
+    else
+        std::memcpy(out->GetVoidPointer(0), numbers.data(), numbers.size());
+    return out;
+}
+
+StoredArray npyArray(std::shared_ptr<const std::string> bytes, const NpyForm& form, const std::string& name) {
     StoredArray array;
     array.name = name;
+    array.unit = form.unit;
     array.dims = form.dims;
-    array.read = [bytes = std::move(bytes), form](std::size_t first, std::size_t count) {
-        std::size_t inner = 1;
-        for (std::size_t axis = 1; axis < form.dims.size(); ++axis) inner *= form.dims[axis];
-        auto out = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(form.vtkType));
-        out->SetNumberOfTuples(vtkIdType(inner * count));
-        char* to = static_cast<char*>(out->GetVoidPointer(0));
-        if (!form.fortran) {
-            std::memcpy(to, bytes->data() + form.begin + first * inner * form.bytes, inner * count * form.bytes);
-        } else { // Fortran order: the first index is the fastest
-            std::vector<std::size_t> index(form.dims.size(), 0);
-            index[0] = first;
-            for (std::size_t n = 0; n < inner * count; ++n) {
-                std::size_t from = 0;
-                for (std::size_t axis = form.dims.size(); axis-- > 0;) from = from * form.dims[axis] + index[axis];
-                std::memcpy(to + n * form.bytes, bytes->data() + form.begin + from * form.bytes, form.bytes);
-                for (std::size_t axis = form.dims.size(); axis-- > 0;) {
-                    if (++index[axis] < (axis == 0 ? first + count : form.dims[axis])) break;
-                    index[axis] = 0;
-                }
-            }
-        }
-        if (form.swap)
-            for (std::size_t n = 0; n < inner * count; ++n)
-                std::reverse(to + n * form.bytes, to + (n + 1) * form.bytes);
-        return out;
-    };
+    array.vtkType = form.vtkType;
+    array.statedBytes = array.storedBytes = double(bytes->size());
+    array.read = [bytes = std::move(bytes), form](const Slab& part) { return readNpy(*bytes, form, part); };
     return array;
 }
 
 /// Unpacks the members of a zip file.
-std::vector<StoredArray> readZip(const std::string& bytes) {
+ArrayFile readZip(const std::string& bytes) {
     const std::size_t end = bytes.rfind("PK\5\6");
     if (!bytes.starts_with("PK") || end == std::string::npos)
         throw std::runtime_error("has no list of its members at its end: truncated, or no .npz file");
     std::size_t at = little(bytes, end + 16, 4);
     const std::size_t members = little(bytes, end + 10, 2);
-    std::vector<StoredArray> arrays;
+    ArrayFile file;
     for (std::size_t m = 0; m < members; ++m) {
         if (little(bytes, at, 4) != 0x02014b50) throw std::runtime_error("has a damaged list of members");
         const std::size_t method = little(bytes, at + 10, 2), crc = little(bytes, at + 16, 4);
@@ -178,9 +215,12 @@ std::vector<StoredArray> readZip(const std::string& bytes) {
         if (!name.ends_with(".npy")) continue;
         name.resize(name.size() - 4);
         const NpyForm form = parseNpy(*member);
-        if (!form.dims.empty()) arrays.push_back(arrayOf(std::move(member), form, name));
+        if (form.vtkType == VTK_VOID)
+            file.notNumbers.push_back("\"" + name + "\" (" + form.descr.substr(0, 40) + ")");
+        else
+            file.arrays.push_back(npyArray(std::move(member), form, name));
     }
-    return arrays;
+    return file;
 }
 
 } // namespace
@@ -192,8 +232,13 @@ void openNumpy(Source& source) {
         return;
     }
     const NpyForm form = parseNpy(*bytes);
+    if (form.vtkType == VTK_VOID)
+        throw std::runtime_error("has numbers of type " + form.descr.substr(0, 40) +
+                                 ", which is not read: write it with astype(numpy.float32)");
     if (form.dims.empty()) throw std::runtime_error("holds a single number");
-    openArrays({arrayOf(bytes, form, std::filesystem::path(source.path).stem().string())}, source);
+    ArrayFile file;
+    file.arrays.push_back(npyArray(bytes, form, std::filesystem::path(source.path).stem().string()));
+    openArrays(std::move(file), source);
 }
 
 } // namespace tessera::importer

@@ -14,6 +14,7 @@ void openMinc(Source& source);
 void openTecplot(Source& source);
 void openNumpy(Source& source);
 void openHdf(Source& source);
+void openNetCdf(Source& source);
 void openTiff(Source& source);
 void openPng(Source& source);
 void openJpeg(Source& source);
