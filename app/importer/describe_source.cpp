@@ -190,6 +190,7 @@ void addNote(BlockRef& ref, const std::string& note) {
 
 void finish(Source& source, BlockRef& ref) {
     ref.block.times = source.times;
+    ref.block.quantities.insert(ref.block.quantities.end(), source.quantities.begin(), source.quantities.end());
     if (source.format == "OpenFOAM") ref.block.timeUnit = "s";
     for (ArrayRef& array : ref.arrays)
         if (const auto unit = source.units.find(array.vtkName); unit != source.units.end())
@@ -199,6 +200,7 @@ void finish(Source& source, BlockRef& ref) {
     if (!source.timeUnit.empty()) ref.block.timeUnit = source.timeUnit;
     if (!source.timeName.empty()) ref.block.timeName = source.timeName;
     for (const std::string& note : source.notes) addNote(ref, note);
+    for (const std::string& note : *source.found) addNote(ref, note);
     for (ArrayRef& array : ref.arrays) {
         if (const auto form = source.stored.find(array.vtkName); form != source.stored.end())
             array.stored = form->second;

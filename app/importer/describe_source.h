@@ -5,6 +5,7 @@
 
 #include <vector>
 #include <vtkDataArray.h>
+#include <vtkFieldData.h>
 
 namespace tessera::importer {
 

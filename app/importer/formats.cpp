@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 #include <vtkGenericDataObjectReader.h>
-#include <vtkGenericEnSightReader.h>
 #include <vtkMetaImageReader.h>
 #include <vtkNIFTIImageReader.h>
 #include <vtkNetCDFCFReader.h>
@@ -121,15 +120,6 @@ void openNetCdf(Source& source) {
     if (!best.empty()) reader->SetDimensions(best.c_str());
     source.lengthUnit = unitOfAxes(source.path, best);
     source.reader = reader;
-}
-
-void openEnSight(Source& source) {
-    checkLastLine(readWhole(source.path));
-    vtkNew<vtkGenericEnSightReader> reader;
-    reader->SetCaseFileName(source.path.c_str());
-    reader->ReadAllVariablesOn();
-    source.reader = reader;
-    source.check = [](const Source& self, std::size_t time) { checkEnSight(self.path, time, self.readerTimes.size()); };
 }
 
 void openLegacy(Source& source) {

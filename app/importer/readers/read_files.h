@@ -12,6 +12,7 @@ void openNumpy(Source& source);
 void openHdf(Source& source);
 void openTiff(Source& source);
 void openDicom(Source& source);
+void openEnSight(Source& source);
 void openCgns(Source& source);
 void openExodus(Source& source);
 void openFluent(Source& source);
