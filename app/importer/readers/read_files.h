@@ -16,6 +16,7 @@ void openEnSight(Source& source);
 void openCgns(Source& source);
 void openExodus(Source& source);
 void openFluent(Source& source);
+void openGmsh(Source& source);
 void openPlot3d(Source& source);
 
 } // namespace tessera::importer
