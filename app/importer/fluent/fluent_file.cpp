@@ -96,6 +96,7 @@ void FluentFile::endOfBinary(FluentSection& section) {
         if (failed == std::errc() && number % 1000 == section.number && bytes_[after] == ')') {
             section.end = at; // blanks and a bracket may be between
             at_ = after;
+            section.close = at;
             while (at_ < bytes_.size() && bytes_[at_] == ')') ++at_;
             return;
         }
@@ -138,7 +139,9 @@ bool FluentFile::next(FluentSection& section) {
             section.header = wordsIn(std::string_view(bytes_).substr(at, end - at));
         }
         if (section.number == 4) swap_ = !section.header.empty() && section.header[0] != "60";
-        section.comment = comment_;
+        section.comment = std::move(comment_);
+        comment_.clear();
+        section.open = open;
         if (section.binary && section.begin != 0) {
             endOfBinary(section);
             return true;
@@ -148,6 +151,7 @@ bool FluentFile::next(FluentSection& section) {
         while (section.end > section.begin && (isBlank(bytes_[section.end - 1]) || bytes_[section.end - 1] == ')'))
             --section.end;
         at_ = end + 1;
+        section.close = end;
         return true;
     }
 }

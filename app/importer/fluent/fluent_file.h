@@ -15,6 +15,7 @@ struct FluentSection {
     bool binary = false, wide = false; ///< wide: 8 bytes a number
     std::vector<std::string> header;   ///< words of the first inner bracket, or of the section where it has none
     std::size_t begin = 0, end = 0;    ///< of its numbers in the file; equal: it has none
+    std::size_t open = 0, close = 0;   ///< of the whole section
     std::string comment;               ///< the text of the remark before it
 };
 

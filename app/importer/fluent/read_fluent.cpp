@@ -154,8 +154,8 @@ FluentValues readFluentValues(const std::string& path, const FluentCase& mesh) {
             if (firstDomain == 0) firstDomain = remarkOf(section.comment).domain;
             takeValues(file, section, mesh, firstDomain, values);
         }
-        if (!values.time && section.end > section.begin && section.number != 300)
-            values.time = flowTime(std::string_view(file.bytes()).substr(section.begin, section.end - section.begin));
+        if (!values.time && !section.binary && section.number != 300)
+            values.time = flowTime(std::string_view(file.bytes()).substr(section.open, section.close - section.open));
     }
     if (sections == 0) throw std::runtime_error("is no Fluent file");
     if (values.arrays.empty()) throw std::runtime_error("holds no values of cells");

@@ -6,19 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <filesystem>
 #include <hdf5.h>
 #include <stdexcept>
 #include <string>
 #include <vtkCGNSReader.h>
 #include <vtkDataArraySelection.h>
 #include <vtkExodusIIReader.h>
-#include <vtkMultiBlockPLOT3DReader.h>
 #include <vtkNew.h>
 
 namespace tessera::importer {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -80,31 +76,6 @@ void openExodus(Source& source) {
     reader->SetAllArrayStatus(vtkExodusIIReader::ELEM_BLOCK, 1);
     reader->GenerateObjectIdCellArrayOff();
     reader->ApplyDisplacementsOff();
-    source.reader = reader;
-}
-
-void openPlot3d(Source& source) {
-    vtkNew<vtkMultiBlockPLOT3DReader> reader;
-    reader->SetXYZFileName(source.path.c_str());
-    reader->SetAutoDetectFormat(1);
-    bool any = false;
-    for (const char* ending : {".q", ".Q", ".qst"}) {
-        const fs::path solution = fs::path(source.path).replace_extension(ending);
-        if (any || !fs::exists(solution)) continue;
-        reader->SetQFileName(solution.string().c_str());
-        reader->SetScalarFunctionNumber(-1);
-        reader->SetVectorFunctionNumber(-1);
-        any = true;
-    }
-    for (const char* ending : {".f", ".fun", ".F"}) {
-        const fs::path functions = fs::path(source.path).replace_extension(ending);
-        if (any || !fs::exists(functions)) continue;
-        reader->SetFunctionFileName(functions.string().c_str());
-        any = true;
-    }
-    if (!any)
-        throw std::runtime_error(
-            "holds a grid without values: these are expected in a file of the same name with the ending .q or .f");
     source.reader = reader;
 }
 
