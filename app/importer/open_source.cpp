@@ -19,6 +19,7 @@
 #include <vtkInformationVector.h>
 #include <vtkMultiBlockDataSet.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkStructuredGrid.h>
 
 namespace tessera::importer {
 
@@ -76,6 +77,7 @@ vtkSmartPointer<vtkDataObject> readByVtk(const Source& source, int time) {
 int dimensionOf(vtkDataSet* data) {
     const int type = data->GetDataObjectType();
     if (type == VTK_IMAGE_DATA || type == VTK_UNIFORM_GRID || type == VTK_RECTILINEAR_GRID) return 3;
+    if (auto* grid = vtkStructuredGrid::SafeDownCast(data)) return grid->GetDataDimension(); // its cells may be hidden
     int most = 0;
     // Files may mix dimensions (boundary patches after volume cells): the first thousand cells are enough to tell.
     const vtkIdType count = std::min<vtkIdType>(data->GetNumberOfCells(), 1000);

@@ -240,12 +240,13 @@ vtkSmartPointer<vtkDataSet> blockOf(const EnSightPart& part) {
     return grid;
 }
 
-/// Marks points or cells of a block by a bit of VTK's.
-void addMarks(const std::vector<std::int32_t>& flags, bool whereZero, unsigned char bit, vtkDataSetAttributes* to) {
+/// Marks the points or cells of a block: `none` where a flag is 0, else `some`.
+void addMarks(const std::vector<std::int32_t>& flags, const char* name, unsigned char none, unsigned char some,
+              vtkDataSetAttributes* to) {
     if (flags.empty()) return;
     vtkNew<vtkUnsignedCharArray> marks;
-    marks->SetName("vtkGhostType");
-    for (const std::int32_t flag : flags) marks->InsertNextValue((flag == 0) == whereZero ? bit : 0);
+    marks->SetName(name);
+    for (const std::int32_t flag : flags) marks->InsertNextValue(flag == 0 ? none : some);
     to->AddArray(marks);
 }
 
@@ -345,8 +346,8 @@ EnSightGrid gridOfPart(const EnSightPart& part) {
     if (part.kind == EnSightPart::Kind::Cells) return meshOf(part);
     EnSightGrid out;
     out.data = blockOf(part);
-    addMarks(part.blanks, true, vtkDataSetAttributes::HIDDENPOINT, out.data->GetPointData());
-    addMarks(part.ghosts, false, vtkDataSetAttributes::DUPLICATECELL, out.data->GetCellData());
+    addMarks(part.blanks, "vtkValidPointMask", 0, 1, out.data->GetPointData()); // takes no cells away
+    addMarks(part.ghosts, "vtkGhostType", 0, vtkDataSetAttributes::DUPLICATECELL, out.data->GetCellData());
     return out;
 }
 

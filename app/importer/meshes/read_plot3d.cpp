@@ -65,13 +65,13 @@ vtkSmartPointer<vtkStructuredGrid> gridOfBlock(const OpenedPlot3d& opened, std::
     }
     grid->SetPoints(places);
     if (!form.blanks) return grid;
-    vtkNew<vtkUnsignedCharArray> hidden; // 0: no point; others tell kinds of boundaries and of overlaps
-    hidden->SetName("vtkGhostType");
+    vtkNew<vtkUnsignedCharArray> valid; // 0: no point; others tell kinds of boundaries and of overlaps
+    valid->SetName("vtkValidPointMask"); // which, unlike hidden points, takes no cells away
     for (std::size_t n = 0; n < points; ++n) {
         const std::size_t at = begin + axes * points * step + n * opened.bytes->step(4);
-        hidden->InsertNextValue(opened.bytes->whole(at, form.swap) == 0 ? vtkDataSetAttributes::HIDDENPOINT : 0);
+        valid->InsertNextValue(opened.bytes->whole(at, form.swap) == 0 ? 0 : 1);
     }
-    grid->GetPointData()->AddArray(hidden);
+    grid->GetPointData()->AddArray(valid);
     return grid;
 }
 
