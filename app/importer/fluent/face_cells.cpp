@@ -150,10 +150,11 @@ FacesOfCells facesOfCells(const FaceMesh& mesh, const std::vector<std::uint8_t>&
 }
 
 vtkSmartPointer<vtkUnstructuredGrid> cellsOfFaces(const FaceMesh& mesh, const FacesOfCells& of, std::size_t first,
-                                                  std::size_t last) {
+                                                  std::size_t last, bool allPoints) {
     auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
     grid->Allocate(vtkIdType(last - first));
     UsedPoints used(mesh);
+    for (std::size_t p = 0; allPoints && p < mesh.places.size() / 3; ++p) used(std::int32_t(p));
     std::vector<Face> faces;
     std::vector<vtkIdType> ids;
     for (std::size_t c = first; c < last; ++c) {

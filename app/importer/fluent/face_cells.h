@@ -34,9 +34,10 @@ struct FacesOfCells {
 /// `use[f]` 0: the face is left out. Throws if a face names a cell that is not there.
 FacesOfCells facesOfCells(const FaceMesh& mesh, const std::vector<std::uint8_t>& use);
 
-/// The cells [first, last) with the points that they use: tetrahedra, hexahedra, wedges and pyramids where their faces
-/// make such, else polyhedra; polygons in two dimensions. Throws if a cell has too few faces or a face a bad point.
+/// The cells [first, last) with the points that they use, or `allPoints`: tetrahedra, hexahedra, wedges and pyramids
+/// where their faces make such, else polyhedra; polygons in two dimensions. Throws if a cell has too few faces or a
+/// face a bad point.
 vtkSmartPointer<vtkUnstructuredGrid> cellsOfFaces(const FaceMesh& mesh, const FacesOfCells& of, std::size_t first,
-                                                  std::size_t last);
+                                                  std::size_t last, bool allPoints = false);
 
 } // namespace tessera::importer
