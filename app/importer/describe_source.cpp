@@ -188,6 +188,11 @@ void addNote(BlockRef& ref, const std::string& note) {
     if (!note.empty()) ref.block.notes.push_back(note);
 }
 
+/// Says that an array of cells is left out of an image: it would need another grid than those of points.
+void addNoteOfCells(BlockRef& ref, const std::string& name) {
+    if (!isHelper(name)) addNote(ref, "values of cells are left out, beside values of points: " + name);
+}
+
 void finish(Source& source, BlockRef& ref) {
     ref.block.times = source.times;
     ref.block.quantities.insert(ref.block.quantities.end(), source.quantities.begin(), source.quantities.end());
@@ -257,7 +262,10 @@ std::vector<BlockRef> describeImageHeader(Source& source) {
         }
     };
     add(vtkDataObject::POINT_DATA_VECTOR(), false);
-    if (ref.arrays.empty()) add(vtkDataObject::CELL_DATA_VECTOR(), true);
+    if (ref.arrays.empty())
+        add(vtkDataObject::CELL_DATA_VECTOR(), true);
+    else
+        for (int i = 0; i < xml->GetNumberOfCellArrays(); ++i) addNoteOfCells(ref, xml->GetCellArrayName(i));
     const int named = xml->GetNumberOfPointArrays() > 0 ? xml->GetNumberOfPointArrays() : xml->GetNumberOfCellArrays();
     if (ref.arrays.empty() && named > 0) return {}; // the header does not state the types
     addNote(ref, setLattice(ref, extent, stepsOf(spacing, direction), origin,
@@ -298,8 +306,11 @@ std::vector<BlockRef> describeBlocks(const Source& given, const std::vector<Bloc
             setLattice(ref, image->GetExtent(), stepsOf(image->GetSpacing(), nullptr), image->GetOrigin(),
                        !pointData && !ref.arrays.empty());
             addNote(ref, block.note);
-            if (pointData) // cell values would need another grid
+            if (pointData) {
+                for (const ArrayRef& array : ref.arrays)
+                    if (array.ofCells) addNoteOfCells(ref, array.form.name);
                 std::erase_if(ref.arrays, [](const ArrayRef& array) { return array.ofCells; });
+            }
         } else {
             ref.block.mesh = true;
             ref.block.cellData = !pointData;
