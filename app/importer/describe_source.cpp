@@ -109,8 +109,14 @@ void addNote(BlockRef& ref, const std::string& note) {
     if (!note.empty()) ref.block.notes.push_back(note);
 }
 
+/// Says that an array of cells is left out of an image: it would need another grid than those of points.
+void addNoteOfCells(BlockRef& ref, const std::string& name) {
+    if (!isVtkHelper(name)) addNote(ref, "values of cells are left out, beside values of points: " + name);
+}
+
 void finish(Source& source, BlockRef& ref) {
     ref.block.times = source.times;
+    ref.block.quantities.insert(ref.block.quantities.end(), source.quantities.begin(), source.quantities.end());
     for (ArrayRef& array : ref.arrays)
         if (const auto unit = source.units.find(array.vtkName); unit != source.units.end())
             array.form.unit = unit->second;
@@ -118,7 +124,7 @@ void finish(Source& source, BlockRef& ref) {
     if (!source.timeUnit.empty()) ref.block.timeUnit = source.timeUnit;
     if (!source.timeName.empty()) ref.block.timeName = source.timeName;
     for (const std::string& note : source.notes) addNote(ref, note);
-    for (const volume::Quantity& quantity : source.quantities) ref.block.quantities.push_back(quantity);
+    for (const std::string& note : *source.found) addNote(ref, note);
     for (ArrayRef& array : ref.arrays) {
         if (const auto form = source.stored.find(array.vtkName); form != source.stored.end())
             array.stored = form->second;
@@ -195,7 +201,10 @@ std::vector<BlockRef> describeImageHeader(Source& source) {
         }
     };
     add(vtkDataObject::POINT_DATA_VECTOR(), false);
-    if (ref.arrays.empty()) add(vtkDataObject::CELL_DATA_VECTOR(), true);
+    if (ref.arrays.empty())
+        add(vtkDataObject::CELL_DATA_VECTOR(), true);
+    else
+        for (int i = 0; i < xml->GetNumberOfCellArrays(); ++i) addNoteOfCells(ref, xml->GetCellArrayName(i));
     const int named = xml->GetNumberOfPointArrays() > 0 ? xml->GetNumberOfPointArrays() : xml->GetNumberOfCellArrays();
     if (ref.arrays.empty() && named > 0) return {}; // the header does not state the types
     addNote(ref, setLattice(ref, extent, stepsOf(spacing, direction), origin,
@@ -227,7 +236,7 @@ std::vector<BlockRef> describeBlocks(const Source& given, const std::vector<Bloc
         for (int i = 0; i < data->GetPointData()->GetNumberOfArrays(); ++i)
             if (vtkDataArray* array = data->GetPointData()->GetArray(i)) {
                 const std::string name = array->GetName() != nullptr ? array->GetName() : "value";
-                if (vtkImageData::SafeDownCast(data) == nullptr && !isHelper(name) &&
+                if (vtkImageData::SafeDownCast(data) == nullptr && !isVtkHelper(name) &&
                     data->GetCellData()->HasArray(name.c_str()) != 0)
                     both += (both.empty() ? "" : ", ") + name;
                 else
@@ -243,8 +252,11 @@ std::vector<BlockRef> describeBlocks(const Source& given, const std::vector<Bloc
             setLattice(ref, image->GetExtent(), stepsOf(image->GetSpacing(), nullptr), image->GetOrigin(),
                        !pointData && !ref.arrays.empty());
             addNote(ref, block.note);
-            if (pointData) // cell values would need another grid
+            if (pointData) {
+                for (const ArrayRef& array : ref.arrays)
+                    if (array.ofCells) addNoteOfCells(ref, array.form.name);
                 std::erase_if(ref.arrays, [](const ArrayRef& array) { return array.ofCells; });
+            }
         } else {
             ref.block.mesh = true;
             // OpenFOAM's values are of cells, beside which there may be the motion of points.

@@ -8,12 +8,15 @@
 #include <string>
 #include <vector>
 #include <vtkGenericDataObjectReader.h>
-#include <vtkGenericEnSightReader.h>
 #include <vtkNew.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLMultiBlockDataReader.h>
 #include <vtkXMLPImageDataReader.h>
+#include <vtkXMLPRectilinearGridReader.h>
+#include <vtkXMLPStructuredGridReader.h>
 #include <vtkXMLPUnstructuredGridReader.h>
+#include <vtkXMLPartitionedDataSetCollectionReader.h>
+#include <vtkXMLPartitionedDataSetReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 #include <vtkXMLStructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
@@ -27,15 +30,6 @@ template <class XmlReader> void openXml(Source& source) {
     vtkNew<XmlReader> reader;
     reader->SetFileName(source.path.c_str());
     source.reader = reader;
-}
-
-void openEnSight(Source& source) {
-    checkLastLine(readWhole(source.path));
-    vtkNew<vtkGenericEnSightReader> reader;
-    reader->SetCaseFileName(source.path.c_str());
-    reader->ReadAllVariablesOn();
-    source.reader = reader;
-    source.check = [](const Source& self, std::size_t time) { checkEnSight(self.path, time, self.readerTimes.size()); };
 }
 
 void openLegacy(Source& source) {

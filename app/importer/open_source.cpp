@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <stdexcept>
 #include <vtkAbstractArray.h>
+#include <vtkAppendFilter.h>
 #include <vtkCompositeDataSet.h>
 #include <vtkDataObjectTree.h>
 #include <vtkFieldData.h>
@@ -18,7 +19,12 @@
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkMultiBlockDataSet.h>
+#include <vtkNew.h>
+#include <vtkPartitionedDataSet.h>
+#include <vtkPartitionedDataSetCollection.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkStructuredGrid.h>
+#include <vtkUnstructuredGrid.h>
 
 namespace tessera::importer {
 
@@ -26,7 +32,36 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// Pieces of one data set as one: those of a parallel program.
+vtkSmartPointer<vtkDataSet> joined(const std::vector<vtkDataSet*>& pieces) {
+    if (pieces.empty()) return nullptr;
+    if (pieces.size() == 1) return pieces[0];
+    vtkNew<vtkAppendFilter> append;
+    append->MergePointsOff();
+    for (vtkDataSet* piece : pieces) append->AddInputData(piece);
+    append->Update();
+    vtkDataSet* whole = append->GetOutput();
+    return whole;
+}
+
 void flatten(vtkDataObject* data, const std::string& name, std::vector<Block>& blocks) {
+    if (auto* collection = vtkPartitionedDataSetCollection::SafeDownCast(data)) {
+        for (unsigned i = 0; i < collection->GetNumberOfPartitionedDataSets(); ++i) {
+            vtkInformation* about = collection->HasMetaData(i) != 0 ? collection->GetMetaData(i) : nullptr;
+            const bool named = about != nullptr && about->Has(vtkCompositeDataSet::NAME()) != 0;
+            const std::string own = named ? about->Get(vtkCompositeDataSet::NAME()) : "";
+            flatten(collection->GetPartitionedDataSet(i), own.empty() ? name : own, blocks);
+        }
+        return;
+    }
+    if (auto* partitioned = vtkPartitionedDataSet::SafeDownCast(data)) { // a vtkMultiPieceDataSet is one, too
+        std::vector<vtkDataSet*> pieces;
+        for (unsigned i = 0; i < partitioned->GetNumberOfPartitions(); ++i)
+            if (vtkDataSet* piece = partitioned->GetPartition(i); piece != nullptr && piece->GetNumberOfCells() > 0)
+                pieces.push_back(piece);
+        if (const auto whole = joined(pieces)) blocks.push_back({name, whole, {}});
+        return;
+    }
     if (vtkDataObjectTree::SafeDownCast(data) != nullptr) {
         auto* multi = vtkMultiBlockDataSet::SafeDownCast(data);
         for (unsigned i = 0; multi != nullptr && i < multi->GetNumberOfBlocks(); ++i) {
@@ -110,7 +145,7 @@ Source openSource(const std::vector<std::string>& files) {
     vtkInformation* information = source.reader->GetOutputInformation(0);
     const auto* key = vtkStreamingDemandDrivenPipeline::TIME_STEPS();
     auto* steps = const_cast<vtkInformationDoubleVectorKey*>(key);
-    if (information->Has(steps) != 0)
+    if (information->Has(steps) != 0 && source.format != "vtk") // whose reader says 0 for every stated time
         source.readerTimes.assign(information->Get(steps), information->Get(steps) + information->Length(steps));
     for (const double time : source.readerTimes) source.times.push_back(meantTime(time));
     if (!std::is_sorted(source.times.begin(), source.times.end(), std::less_equal<>())) source.times.clear();

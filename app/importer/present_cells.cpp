@@ -8,6 +8,7 @@
 #include <vtkGenericCell.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkStructuredGrid.h>
 
 namespace tessera::importer {
 
@@ -46,6 +47,7 @@ int dimensionOfCell(int type) {
 int dimensionOf(vtkDataSet* data) {
     const int type = data->GetDataObjectType();
     if (type == VTK_IMAGE_DATA || type == VTK_UNIFORM_GRID || type == VTK_RECTILINEAR_GRID) return 3;
+    if (auto* grid = vtkStructuredGrid::SafeDownCast(data)) return grid->GetDataDimension(); // its cells may be hidden
     vtkNew<vtkCellTypes> types;
     data->GetCellTypes(types);
     int most = 0;

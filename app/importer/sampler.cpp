@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <vtkCell.h>
+#include <vtkCellType.h>
 #include <vtkGenericCell.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
@@ -18,6 +19,19 @@ namespace {
 // Directions that no mesh is aligned with.
 constexpr double kAside[3] = {0.31e-5, 0.47e-5, 0.59e-5};
 constexpr double kSlack = 3e-5; // cells, more than kAside
+
+/// Weights of the corners of a cell at a place in its own coordinates. Those of a polyhedron and a polygon are by
+/// InterpolateFunctions only at places of space.
+void weightsAt(vtkGenericCell* cell, const double pcoords[3], double* weights) {
+    const int type = cell->GetCellType();
+    if (type != VTK_POLYHEDRON && type != VTK_POLYGON) {
+        cell->InterpolateFunctions(pcoords, weights);
+        return;
+    }
+    int part = 0;
+    double place[3];
+    cell->EvaluateLocation(part, pcoords, place, weights);
+}
 
 } // namespace
 
@@ -108,7 +122,7 @@ void sampleArray(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* array
             if (weights.size() < points) weights.resize(points);
             const double pcoords[3] = {sampling.pcoords[at * 3], sampling.pcoords[at * 3 + 1],
                                        sampling.pcoords[at * 3 + 2]};
-            cell->InterpolateFunctions(pcoords, weights.data());
+            weightsAt(cell, pcoords, weights.data());
             const auto corner = [&](std::size_t p) { return array->GetComponent(cell->GetPointId(int(p)), component); };
             const auto nearest = std::max_element(weights.begin(), weights.begin() + std::ptrdiff_t(points));
             const double own = corner(std::size_t(nearest - weights.begin()));
@@ -167,7 +181,7 @@ void sampleCells(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* cells
     double own = 0, atMiddle = 0, least = 0, most = 0, middle[3] = {};
     std::size_t points = 0;
     const auto interpolated = [&](const double pcoords[3]) {
-        cell->InterpolateFunctions(pcoords, weights.data());
+        weightsAt(cell, pcoords, weights.data());
         double sum = 0;
         for (std::size_t p = 0; p < points; ++p) sum += weights[p] * atPoint(cell->GetPointId(int(p)));
         return sum;

@@ -6,56 +6,17 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <filesystem>
 #include <hdf5.h>
 #include <stdexcept>
 #include <string>
 #include <vtkCGNSReader.h>
 #include <vtkDataArraySelection.h>
 #include <vtkExodusIIReader.h>
-#include <vtkFLUENTReader.h>
-#include <vtkMultiBlockPLOT3DReader.h>
 #include <vtkNew.h>
 
 namespace tessera::importer {
 
-namespace fs = std::filesystem;
-
 namespace {
-
-/// A section of a Fluent file is "(number ...)"; binary ones end with "End of Binary Section number)".
-void checkFluent(const std::string& path) {
-    const std::string text = readWhole(path);
-    const std::string name = fs::path(path).filename().string();
-    std::size_t at = 0, sections = 0;
-    while ((at = text.find_first_not_of(" \t\r\n", at)) != std::string::npos) {
-        if (text[at] != '(') throw std::runtime_error("its file " + name + " has something between its sections");
-        const int number = std::atoi(text.c_str() + at + 1);
-        if (number >= 2000 && number < 4000) {
-            const std::string end = "End of Binary Section ";
-            std::size_t stop = text.find(end, at);
-            while (stop != std::string::npos && std::atoi(text.c_str() + stop + end.size()) != number)
-                stop = text.find(end, stop + 1);
-            stop = stop == std::string::npos ? stop : text.find(')', stop);
-            if (stop == std::string::npos)
-                throw std::runtime_error("its file " + name + " ends within a section: truncated");
-            at = stop + 1;
-        } else {
-            int depth = 0;
-            bool quoted = false;
-            for (; at < text.size(); ++at) {
-                if (text[at] == '"') quoted = !quoted;
-                if (quoted) continue;
-                depth += text[at] == '(' ? 1 : text[at] == ')' ? -1 : 0;
-                if (depth == 0) break;
-            }
-            if (at >= text.size()) throw std::runtime_error("its file " + name + " ends within a section: truncated");
-            ++at;
-        }
-        ++sections;
-    }
-    if (sections == 0) throw std::runtime_error("its file " + name + " is no Fluent file");
-}
 
 /// The length of a node DimensionalUnits_t below the first base that has one: five words of 32 letters, mass and length
 /// first. Files in HDF5 only, as all of CGNS 3 and later are by default.
@@ -115,43 +76,6 @@ void openExodus(Source& source) {
     reader->SetAllArrayStatus(vtkExodusIIReader::ELEM_BLOCK, 1);
     reader->GenerateObjectIdCellArrayOff();
     reader->ApplyDisplacementsOff();
-    source.reader = reader;
-}
-
-void openFluent(Source& source) {
-    const fs::path values = fs::path(source.path).replace_extension(".dat");
-    if (!fs::exists(values))
-        throw std::runtime_error("holds a mesh without values: its file " + values.filename().string() +
-                                 " is not beside it");
-    checkFluent(source.path);
-    checkFluent(values.string());
-    vtkNew<vtkFLUENTReader> reader;
-    reader->SetFileName(source.path.c_str());
-    source.reader = reader;
-}
-
-void openPlot3d(Source& source) {
-    vtkNew<vtkMultiBlockPLOT3DReader> reader;
-    reader->SetXYZFileName(source.path.c_str());
-    reader->SetAutoDetectFormat(1);
-    bool any = false;
-    for (const char* ending : {".q", ".Q", ".qst"}) {
-        const fs::path solution = fs::path(source.path).replace_extension(ending);
-        if (any || !fs::exists(solution)) continue;
-        reader->SetQFileName(solution.string().c_str());
-        reader->SetScalarFunctionNumber(-1);
-        reader->SetVectorFunctionNumber(-1);
-        any = true;
-    }
-    for (const char* ending : {".f", ".fun", ".F"}) {
-        const fs::path functions = fs::path(source.path).replace_extension(ending);
-        if (any || !fs::exists(functions)) continue;
-        reader->SetFunctionFileName(functions.string().c_str());
-        any = true;
-    }
-    if (!any)
-        throw std::runtime_error(
-            "holds a grid without values: these are expected in a file of the same name with the ending .q or .f");
     source.reader = reader;
 }
 

@@ -29,7 +29,8 @@ void checkXml(const std::string& path, std::set<std::string>& seen) {
     if (readPart(path, size - std::min(size, kTail), kTail).find("</VTKFile>") == std::string::npos)
         throw std::runtime_error("ends before its last tag: truncated");
     const std::string ending = fs::path(path).extension().string();
-    const bool lists = ending == ".vtm" || ending.starts_with(".pv");
+    const bool lists = ending.starts_with(".vtm") || ending == ".vtb" || ending == ".vtpd" || ending == ".vtpc" ||
+                       ending.starts_with(".pv");
     if (!lists) return;
     const std::string text = readWhole(path);
     static const std::regex kNamed("\\s(?:file|Source)\\s*=\\s*\"([^\"]*)\"");

@@ -36,10 +36,6 @@ void checkDeflated(const std::string& path, std::size_t begin, double wanted);
 /// files are checked by their library.
 void checkNetCdf(const std::string& path);
 
-/// The files of a case that are read at one time.
-/// EnSight Gold, one of several steps: all parts of the geometry, and in each variable a value for each point or cell.
-void checkEnSight(const std::string& path, std::size_t step, std::size_t steps);
-
 /// Legacy VTK files: the reader silently stops at the end of a truncated one. `arrays` is the number it read. Such a
 /// file does not state its number of arrays (except in a FIELD), so one cut exactly between two arrays is not detected.
 void checkLegacy(const std::string& path, std::size_t arrays);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,8 +47,11 @@ struct Source {
     std::vector<volume::Quantity> quantities; ///< one value for each time, or one
     std::string lengthUnit, timeUnit;         ///< stated by the file
     std::string timeName; ///< what the times count, where it is no time (a voltage); "" = not stated
+    std::vector<volume::Quantity> quantities; ///< stated by the file: one number for each time
     /// For the user: how the samples were obtained, what is guessed, what was left out, each in one sentence.
     std::vector<std::string> notes;
+    /// The same, found while times are read: by `read`, which sees no source.
+    std::shared_ptr<std::vector<std::string>> found = std::make_shared<std::vector<std::string>>();
     /// Indices of times that together show every block and array: those where fields begin later, too.
     std::vector<std::size_t> shownAt{0};
 };

@@ -61,6 +61,8 @@ struct Layout {
     std::string path;
     int version = 0;
     bool swap = false;
+    std::int32_t fileType = 0; ///< 1: a grid alone, 2: a solution alone
+    bool drawings = false;
     std::vector<Heading> headings;
     std::vector<BinaryZone> zones;
 };
@@ -173,8 +175,7 @@ void readHeader(Bytes& bytes, Layout& layout) {
     const std::int32_t one = bytes.integer();
     if (one != 1 && one != 1 << 24) throw std::runtime_error("is damaged in its header");
     layout.swap = bytes.swap = one != 1;
-    if (version >= 109 && bytes.integer() == 2)
-        throw std::runtime_error("holds a solution without its grid: write both into one file (file type FULL)");
+    if (version >= 109) layout.fileType = bytes.integer();
     bytes.text(); // title
     for (std::size_t left = bytes.count("variables"); left > 0; --left)
         layout.headings.push_back(parseHeading(bytes.text()));
@@ -183,8 +184,10 @@ void readHeader(Bytes& bytes, Layout& layout) {
             readZoneHeader(bytes, layout);
         } else if (marker == 399) {
             skipGeometry(bytes, version);
+            layout.drawings = true;
         } else if (marker == 499) {
             skipText(bytes);
+            layout.drawings = true;
         } else if (marker == 599) {
             for (std::size_t labels = bytes.count("labels"); labels > 0; --labels) bytes.text();
         } else if (marker == 699) {
@@ -248,7 +251,7 @@ void readVariables(Bytes& bytes, Layout& layout, std::size_t z) {
 }
 
 void readCells(Bytes& bytes, const Layout& layout, std::size_t z, BinaryZone& zone) {
-    if (zone.cornersFrom >= 0) return;
+    if (zone.cornersFrom >= 0 || layout.fileType == 2) return;
     bytes.place = "the cells of " + called(layout, z);
     zone.corners = bytes.at();
     bytes.skip(zone.zone.cells * std::uint64_t(cornersOf(zone.zone.cellType)) * 4);
@@ -343,10 +346,16 @@ TecplotZone finished(const std::shared_ptr<const Layout>& layout, std::size_t z)
 
 } // namespace
 
-void openBinaryTecplot(Source& source) {
+bool isTecplotGrid(const std::string& head) {
+    if (head.size() < 16 || std::atoi(head.substr(5, 3).c_str()) < 109) return false;
+    const std::string type = head.substr(12, 4);
+    return type == std::string("\1\0\0\0", 4) || type == std::string("\0\0\0\1", 4);
+}
+
+TecplotFile readBinaryTecplot(const std::string& path) {
     Layout read;
-    read.path = source.path;
-    Bytes bytes(source.path);
+    read.path = path;
+    Bytes bytes(path);
     readHeader(bytes, read);
     for (std::size_t z = 0; z < read.zones.size(); ++z) {
         bytes.place = called(read, z);
@@ -374,7 +383,7 @@ void openBinaryTecplot(Source& source) {
         if (from.strand >= 0) zone.strand = from.strand;
         zones.push_back(std::move(zone));
     }
-    giveZones(layout->headings, std::move(zones), source);
+    return {layout->headings, std::move(zones), layout->fileType == 1, layout->fileType == 2, layout->drawings};
 }
 
 } // namespace tessera::importer

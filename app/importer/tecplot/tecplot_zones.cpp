@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <set>
 #include <span>
@@ -123,6 +124,13 @@ vtkSmartPointer<vtkPointSet> gridOf(const TecplotZone& zone) {
         grid->SetDimensions(int(zone.size[0]), int(zone.size[1]), int(zone.size[2]));
         return grid;
     }
+    if (zone.cellType == VTK_POLYHEDRON || zone.cellType == VTK_POLYGON) {
+        if (!zone.faces) throw std::runtime_error("has a zone of polyhedra without faces");
+        FaceMesh mesh = zone.faces();
+        mesh.places.resize(3 * zone.points); // set by the caller
+        const FacesOfCells of = facesOfCells(mesh, std::vector<std::uint8_t>(mesh.faces(), 1));
+        return cellsOfFaces(mesh, of, 0, mesh.cells, true);
+    }
     const std::vector<vtkIdType> corners = zone.corners();
     if (std::any_of(corners.begin(), corners.end(),
                     [&](vtkIdType corner) { return corner < 0 || corner >= vtkIdType(zone.points); }))
@@ -223,6 +231,45 @@ void sameOverTime(Frames& frames) {
         }
 }
 
+/// The box of the points of a zone.
+std::array<double, 6> boxOf(const Part& part) {
+    std::array<double, 6> box{};
+    for (const std::size_t v : part.variables(false)) {
+        const int axis = axisOf(part.headings[v].name);
+        if (axis < 0 || part.zone.types[v] == VTK_VOID) continue;
+        const std::vector<double> places = part.values(v);
+        const auto [low, high] = std::ranges::minmax_element(places);
+        if (low == places.end()) continue;
+        box[std::size_t(2 * axis)] = *low;
+        box[std::size_t(2 * axis + 1)] = *high;
+    }
+    return box;
+}
+
+/// The first time, and those at which a block begins, or a zone reaches out of what was seen of its block before.
+std::vector<std::size_t> timesToShowOf(const Frames& frames) {
+    std::vector<std::size_t> shown;
+    std::map<std::string, std::array<double, 6>> seen;
+    for (std::size_t t = 0; t < frames.blocks.size(); ++t) {
+        bool more = t == 0;
+        for (const Frames::Block& block : frames.blocks[t]) {
+            const Part part = frames.part(block);
+            const bool isNew = !seen.contains(block.name);
+            if (frames.blocks.size() < 2 || (part.isRow() && !isNew)) break; // rows become grids when they are read
+            const std::array<double, 6> box = boxOf(part);
+            std::array<double, 6>& known = seen.try_emplace(block.name, box).first->second;
+            more = more || isNew;
+            for (std::size_t side = 0; side < 6; ++side) {
+                const bool beyond = side % 2 == 0 ? box[side] < known[side] : box[side] > known[side];
+                if (beyond) known[side] = box[side];
+                more = more || beyond;
+            }
+        }
+        if (more) shown.push_back(t);
+    }
+    return shown;
+}
+
 } // namespace
 
 std::size_t cornersOf(int cellType) {
@@ -234,6 +281,8 @@ std::size_t cornersOf(int cellType) {
         return 4;
     case VTK_TRIANGLE:
         return 3;
+    case VTK_LINE:
+        return 2;
     default:
         return 0;
     }
@@ -270,13 +319,13 @@ void giveZones(std::vector<Heading> headings, std::vector<TecplotZone> zones, So
             return frames.zones[a.zone].strand < frames.zones[b.zone].strand;
         });
         for (std::size_t b = 0; b < blocks.size(); ++b)
-            if (blocks.size() == 1)
-                blocks[b].name.clear();
-            else if (blocks[b].name.empty())
-                blocks[b].name = "zone " + std::to_string(b + 1);
+            if (blocks[b].name.empty()) blocks[b].name = "zone " + std::to_string(b + 1);
     }
+    if (std::ranges::all_of(frames.blocks, [](const auto& blocks) { return blocks.size() == 1; }))
+        for (std::vector<Frames::Block>& blocks : frames.blocks) blocks[0].name.clear();
     sameOverTime(frames);
     for (const Frames::Block& block : frames.blocks.front()) noteUnits(frames.part(block), source);
+    source.shownAt = timesToShowOf(frames);
     const auto kept = std::make_shared<const Frames>(std::move(frames));
     source.read = [kept, units = source](std::size_t time) -> vtkSmartPointer<vtkDataObject> {
         Source scratch = units;

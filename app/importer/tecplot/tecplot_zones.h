@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/importer/fluent/face_cells.h"
 #include "app/importer/readers/source.h"
 #include "app/importer/tables/point_table.h"
 
@@ -28,6 +29,15 @@ struct TecplotZone {
     std::vector<int> types;        ///< VTK's, by variable; VTK_VOID where the zone has no values of it
     std::function<std::vector<double>(std::size_t variable)> values; ///< one for each of its points or cells
     std::function<std::vector<vtkIdType>()> corners;                 ///< from 0, cornersOf(cellType) for each cell
+    std::function<FaceMesh()> faces; ///< of polyhedra and polygons, without the places of points
+};
+
+/// What a file holds.
+struct TecplotFile {
+    std::vector<Heading> headings;
+    std::vector<TecplotZone> zones;
+    bool grid = false, solution = false; ///< the other is in another file
+    bool drawings = false;               ///< it holds texts and drawings, too
 };
 
 /// Number of corners of a VTK cell type.
@@ -41,6 +51,12 @@ void countOrdered(TecplotZone& zone);
 void giveZones(std::vector<Heading> headings, std::vector<TecplotZone> zones, Source& source);
 
 /// Reads the layout of a file that begins with "#!TDV"; its numbers are read later, per time.
-void openBinaryTecplot(Source& source);
+TecplotFile readBinaryTecplot(const std::string& path);
+
+/// Reads a text file with all of its numbers.
+TecplotFile readAsciiTecplot(const std::string& path);
+
+/// Whether the first bytes of such a file say that it holds a grid alone.
+bool isTecplotGrid(const std::string& head);
 
 } // namespace tessera::importer

@@ -28,9 +28,9 @@ std::string ending(const fs::path& path) {
 }
 
 bool isHeader(const std::string& kind) {
-    constexpr std::array<std::string_view, 14> kHeaders = {".json",  ".nhdr", ".mhd",  ".vtm",  ".pvtu",
-                                                           ".pvti",  ".pvtr", ".pvts", ".pvtk", ".case",
-                                                           ".encas", ".xmf",  ".xdmf", ".vthb"};
+    constexpr std::array<std::string_view, 18> kHeaders = {".json", ".nhdr", ".mhd",  ".vtm",  ".pvtu",  ".pvti",
+                                                           ".pvtr", ".pvts", ".pvtk", ".case", ".encas", ".sos",
+                                                           ".vtmb", ".vtpc", ".vtpd", ".xmf",  ".xdmf",  ".vthb"};
     return std::find(kHeaders.begin(), kHeaders.end(), kind) != kHeaders.end();
 }
 
@@ -129,9 +129,12 @@ std::vector<fs::path> namedDirectly(const fs::path& path) {
             named.insert(named.end(), file.slices.begin(), file.slices.end());
         }
     } else if (kind == ".cas" || kind == ".msh") { // the values of Fluent, and those of PLOT3D
-        named.push_back(fs::path(path).replace_extension(".dat"));
+        for (const char* values : {".dat", ".dat.gz"}) named.push_back(fs::path(path).replace_extension(values));
+    } else if (path.string().ends_with(".cas.gz") || path.string().ends_with(".msh.gz")) {
+        for (const char* values : {".dat", ".dat.gz"})
+            named.push_back(path.parent_path() / path.stem().replace_extension(values));
     } else if (kind == ".xyz" || kind == ".p3d" || kind == ".x") {
-        for (const char* values : {".q", ".Q", ".qst", ".f", ".fun", ".F"})
+        for (const char* values : {".q", ".Q", ".qst", ".f", ".fun", ".F", ".nam"})
             named.push_back(fs::path(path).replace_extension(values));
     } else if (kind == ".hdr" || kind == ".img") { // NIfTI and Analyze in two files
         for (const char* other : {".hdr", ".img", ".img.gz"}) named.push_back(fs::path(path).replace_extension(other));
