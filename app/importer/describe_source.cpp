@@ -206,7 +206,10 @@ void finish(Source& source, BlockRef& ref) {
             if (nifti->GetRescaleSlope() != 0)
                 array.stored = {nifti->GetRescaleSlope(), nifti->GetRescaleIntercept(), {}};
         if (array.stored.scales()) array.form.type = ScalarType::F32;
+        if (const auto labels = source.labels.find(array.vtkName); labels != source.labels.end())
+            array.form.labels = labels->second;
     }
+    ref.block.quantities.insert(ref.block.quantities.end(), source.quantities.begin(), source.quantities.end());
     if (auto* netCdf = vtkNetCDFReader::SafeDownCast(source.reader)) {
         for (ArrayRef& array : ref.arrays) array.form.unit = netCdf->QueryArrayUnits(array.vtkName.c_str());
         if (netCdf->GetTimeUnits() != nullptr) ref.block.timeUnit = netCdf->GetTimeUnits();
@@ -367,6 +370,7 @@ std::string meshHead(const Source& source) {
     std::string head = text.substr(begin, text.find('>', begin) - begin) + text.substr(point, end - point);
     head.resize(std::min(head.size(), head.find("offset", head.find("RangeMin"))));
     auto* reader = vtkXMLReader::SafeDownCast(source.reader);
+    if (reader == nullptr) return {}; // its arrays are read by names (app/importer/swept_names.h)
     for (int i = 0; i < reader->GetNumberOfPointArrays(); ++i) head += std::string(";") + reader->GetPointArrayName(i);
     for (int i = 0; i < reader->GetNumberOfCellArrays(); ++i) head += std::string("|") + reader->GetCellArrayName(i);
     return head;

@@ -4,6 +4,7 @@
 #include "app/importer/formats.h"
 #include "app/importer/readers/check_file.h"
 #include "app/importer/readers/vtk_messages.h"
+#include "app/importer/swept_names.h"
 #include "volume/import/files/formats.h"
 
 #include <algorithm>
@@ -104,7 +105,10 @@ Source openSource(const std::vector<std::string>& files) {
     source.format = format->name;
     known->open(source);
     throwReported();
-    if (source.reader == nullptr) return source;
+    if (source.reader == nullptr) {
+        if (source.format == "CSV") foldSweptNames(source, source.read(0)); // of others reading is not yet wanted
+        return source;
+    }
     source.reader->UpdateInformation();
     throwReported();
     vtkInformation* information = source.reader->GetOutputInformation(0);
@@ -114,6 +118,10 @@ Source openSource(const std::vector<std::string>& files) {
         source.readerTimes.assign(information->Get(steps), information->Get(steps) + information->Length(steps));
     for (const double time : source.readerTimes) source.times.push_back(meantTime(time));
     if (!std::is_sorted(source.times.begin(), source.times.end(), std::less_equal<>())) source.times.clear();
+    if (source.times.size() < 2 && namesSweptArrays(source)) {
+        if (source.check) source.check(source, 0);
+        foldSweptNames(source, readByVtk(source, 0));
+    }
     return source;
 }
 
