@@ -129,6 +129,8 @@ void finish(Source& source, BlockRef& ref) {
         if (const auto form = source.stored.find(array.vtkName); form != source.stored.end())
             array.stored = form->second;
         if (array.stored.scales()) array.form.type = ScalarType::F32;
+        if (const auto labels = source.labels.find(array.vtkName); labels != source.labels.end())
+            array.form.labels = labels->second;
     }
 }
 
@@ -307,6 +309,7 @@ std::string meshHead(const Source& source) {
     std::string head = text.substr(begin, text.find('>', begin) - begin) + text.substr(point, end - point);
     head.resize(std::min(head.size(), head.find("offset", head.find("RangeMin"))));
     auto* reader = vtkXMLReader::SafeDownCast(source.reader);
+    if (reader == nullptr) return {}; // its arrays are read by names (app/importer/swept_names.h)
     for (int i = 0; i < reader->GetNumberOfPointArrays(); ++i) head += std::string(";") + reader->GetPointArrayName(i);
     for (int i = 0; i < reader->GetNumberOfCellArrays(); ++i) head += std::string("|") + reader->GetCellArrayName(i);
     return head;

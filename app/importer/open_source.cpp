@@ -5,6 +5,8 @@
 #include "app/importer/present_cells.h"
 #include "app/importer/readers/check_file.h"
 #include "app/importer/readers/vtk_messages.h"
+#include "app/importer/swept_names.h"
+#include "app/importer/tables/table_rows.h"
 #include "volume/import/files/formats.h"
 
 #include <algorithm>
@@ -125,6 +127,9 @@ Source openSource(const std::vector<std::string>& files) {
     const volume::FileFormat* format = volume::isZarrFolder(path) ? volume::formatNamed("Zarr")
                                        : fs::is_directory(path)   ? volume::formatNamed("OpenFOAM")
                                                                   : volume::formatOfFile(path);
+    // Fluent's text exports have any ending, or none.
+    const bool anyEnding = format == nullptr || format->name == "Tecplot" || format->name == "PLOT3D";
+    if (anyEnding && !fs::is_directory(path) && beginsAsTable(path)) format = volume::formatNamed("CSV");
     if (format == nullptr)
         throw std::runtime_error("unknown ending \"" + fs::path(path).extension().string() +
                                  "\": " + volume::readableSuffixes() + " or .raw");
@@ -139,7 +144,10 @@ Source openSource(const std::vector<std::string>& files) {
     source.format = format->name;
     known->open(source);
     throwReported();
-    if (source.reader == nullptr) return source;
+    if (source.reader == nullptr) {
+        if (source.format == "CSV") foldSweptNames(source, source.read(0)); // of others reading is not yet wanted
+        return source;
+    }
     source.reader->UpdateInformation();
     throwReported();
     vtkInformation* information = source.reader->GetOutputInformation(0);
@@ -149,6 +157,10 @@ Source openSource(const std::vector<std::string>& files) {
         source.readerTimes.assign(information->Get(steps), information->Get(steps) + information->Length(steps));
     for (const double time : source.readerTimes) source.times.push_back(meantTime(time));
     if (!std::is_sorted(source.times.begin(), source.times.end(), std::less_equal<>())) source.times.clear();
+    if (source.times.size() < 2 && namesSweptArrays(source)) {
+        if (source.check) source.check(source, 0);
+        foldSweptNames(source, readByVtk(source, 0));
+    }
     return source;
 }
 

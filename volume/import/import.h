@@ -30,7 +30,7 @@ ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOp
 /// compression. `meshRanges`: Parameter::ranges of meshes are those of their own values at points or cells, for which
 /// every file is read; else unknown, as those of grids are. Throws Error.
 Dataset openFiles(const std::vector<std::string>& paths, const ImportOptions& options, const Progress& progress = {},
-                  bool meshRanges = true);
+                  bool meshRanges = true, Misfits misfits = Misfits::Refused);
 
 /// Fills in Parameter::ranges (present samples, all times) by reading every frame once. Throws Error, Cancelled.
 void scanRanges(Dataset& dataset, const Progress& progress = {});

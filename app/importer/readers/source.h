@@ -44,7 +44,7 @@ struct Source {
     std::vector<double> readerTimes;          ///< the same, as VTK's reader has them (float32 converted to double)
     std::map<std::string, std::string> units; ///< stated by the file, by array
     std::map<std::string, StoredForm> stored; ///< by array; others are values as they stand
-    std::vector<volume::Quantity> quantities; ///< one value for each time, or one
+    std::map<std::string, std::vector<volume::Label>> labels; ///< stated by the file, by array
     std::string lengthUnit, timeUnit;         ///< stated by the file
     std::string timeName; ///< what the times count, where it is no time (a voltage); "" = not stated
     std::vector<volume::Quantity> quantities; ///< stated by the file: one number for each time

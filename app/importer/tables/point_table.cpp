@@ -1,22 +1,13 @@
 #include "app/importer/tables/point_table.h"
 
 #include "volume/base/trimmed.h"
+#include "volume/base/unit_conversion.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <optional>
-#include <stdexcept>
 #include <vtkDataArray.h>
-#include <vtkDoubleArray.h>
-#include <vtkImageData.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkRectilinearGrid.h>
-#include <vtkUnsignedCharArray.h>
+#include <vtkFloatArray.h>
 
 namespace tessera::importer {
 
@@ -28,185 +19,26 @@ std::string lower(std::string_view text) {
     return out;
 }
 
-/// Common name of three components, "" if they are not a vector.
-std::string vectorName(const std::string& x, const std::string& y, const std::string& z) {
-    if (x.empty() || x.size() != y.size() || x.size() != z.size()) return {};
-    if (const std::string all = lower(x + y + z); all == "uvw") return x;
-    for (const char* ends : {"xyz", "XYZ", "012"}) {
-        if (x.back() != ends[0] || y.back() != ends[1] || z.back() != ends[2]) continue;
-        std::string base = x.substr(0, x.size() - 1);
-        if (base.empty() || y.compare(0, base.size(), base) != 0 || z.compare(0, base.size(), base) != 0) continue;
-        const bool separated = std::string_view("_.:- ").find(base.back()) != std::string_view::npos;
-        if (ends[0] == '0' && !separated) continue;
-        if (separated) base.pop_back();
-        if (!base.empty()) return base;
-    }
-    for (const char* kind : {"-velocity", " velocity"}) { // "x-velocity" of Fluent
-        const std::string end = kind;
-        if (lower(x) == "x" + end && lower(y) == "y" + end && lower(z) == "z" + end) return "velocity";
-    }
-    return {};
+/// Whether a text is surely a unit: what measures the same as one of those that tables of solvers have.
+bool isUnit(const std::string& text) {
+    static constexpr std::array<const char*, 32> kUnits = {
+        "m",  "K",  "Pa",   "m/s",  "kg/m3",    "mol/m3",  "s",     "V",     "A",    "A/m2",      "A/m3",
+        "W",  "J",  "W/m2", "W/m3", "S/m",      "m2/s",    "m2/s2", "kg",    "N",    "mol",       "J/kg",
+        "m2", "m3", "1/s",  "Pa s", "J/(kg K)", "W/(m K)", "V/m",   "m2/s3", "kg/s", "mol/(m2 s)"};
+    return text == "%" || std::ranges::any_of(
+                              kUnits, [&](const char* unit) { return volume::unitConversion(text, unit).has_value(); });
 }
 
-/// Distinct values along an axis, in order.
-struct Axis {
-    std::vector<double> places;
-    double first = 0, step = 1;
-    bool even = true;
-
-    explicit Axis(const std::vector<double>& column) {
-        places = column;
-        std::sort(places.begin(), places.end());
-        const double slack = 1e-6 * (places.back() - places.front());
-        places.erase(std::unique(places.begin(), places.end(), [&](double a, double b) { return b - a <= slack; }),
-                     places.end());
-        first = places.front();
-        if (places.size() < 2) return;
-        step = (places.back() - first) / double(places.size() - 1);
-        for (std::size_t i = 0; i < places.size(); ++i)
-            even = even && std::abs(places[i] - (first + step * double(i))) <= 0.01 * step;
-    }
-    std::size_t index(double place) const {
-        const auto above = std::lower_bound(places.begin(), places.end(), place - 0.5e-6 * (places.back() - first));
-        auto at = above == places.end() ? places.end() - 1 : above;
-        if (at != places.begin() && std::abs(*(at - 1) - place) < std::abs(*at - place)) --at;
-        return static_cast<std::size_t>(at - places.begin());
-    }
-};
-
-/// Whether the rows traverse the grid in some order of axes and directions, but stop before its end.
-bool stopsEarly(const std::vector<std::array<std::size_t, 3>>& nodes, const std::array<std::size_t, 3>& sizes) {
-    std::array<int, 3> order{0, 1, 2};
-    do {
-        for (int flips = 0; flips < 8; ++flips) {
-            bool inOrder = true;
-            for (std::size_t row = 0; inOrder && row < nodes.size(); ++row) {
-                std::size_t index = 0;
-                for (int k = 2; k >= 0; --k) {
-                    const auto axis = static_cast<std::size_t>(order[std::size_t(k)]);
-                    const std::size_t at = nodes[row][axis];
-                    index = index * sizes[axis] + ((flips >> axis & 1) != 0 ? sizes[axis] - 1 - at : at);
-                }
-                inOrder = index == row;
-            }
-            if (inOrder) return true;
-        }
-    } while (std::next_permutation(order.begin(), order.end()));
-    return false;
+/// "mean(T)" is a function of T.
+bool isFunction(std::string_view name) {
+    static constexpr std::array<std::string_view, 12> kNames = {"max", "min", "mean", "avg", "sum",  "abs",
+                                                                "log", "ln",  "mag",  "rms", "sqrt", "grad"};
+    return std::ranges::find(kNames, lower(name)) != kNames.end();
 }
 
-/// Name of the vector that starts at a column, or "".
-std::string vectorAt(const std::vector<Heading>& headings, std::size_t c) {
-    if (c + 2 >= headings.size() || headings[c + 1].unit != headings[c].unit ||
-        headings[c + 2].unit != headings[c].unit)
-        return {};
-    return vectorName(headings[c].name, headings[c + 1].name, headings[c + 2].name);
-}
-
-PointTable inOrder(const PointTable& table, const std::vector<std::ptrdiff_t>& rowOf) {
-    PointTable out{table.headings, {}, table.types};
-    for (const std::vector<double>& column : table.columns) {
-        std::vector<double> values(rowOf.size(), 0);
-        for (std::size_t i = 0; i < rowOf.size(); ++i)
-            if (rowOf[i] >= 0) values[i] = column[std::size_t(rowOf[i])];
-        out.columns.push_back(std::move(values));
-    }
-    return out;
-}
-
-vtkSmartPointer<vtkDataSet> image(const PointTable& table, const std::array<std::size_t, 3>& sizes,
-                                  const std::array<double, 3>& origin, const std::array<double, 3>& step,
-                                  const std::vector<std::ptrdiff_t>& rowOf, Source& source) {
-    vtkNew<vtkImageData> grid;
-    grid->SetDimensions(int(sizes[0]), int(sizes[1]), int(sizes[2]));
-    grid->SetOrigin(origin.data());
-    grid->SetSpacing(step.data());
-    addColumns(inOrder(table, rowOf), grid->GetPointData(), source);
-    if (std::find(rowOf.begin(), rowOf.end(), -1) != rowOf.end()) {
-        vtkNew<vtkUnsignedCharArray> valid;
-        valid->SetName("vtkValidPointMask");
-        for (const std::ptrdiff_t row : rowOf) valid->InsertNextValue(row >= 0 ? 1 : 0);
-        grid->GetPointData()->AddArray(valid);
-    }
-    return grid;
-}
-
-/// The sizes of a grid over a box with about as many samples as there are points, and steps as equal as can be. An axis
-/// thinner than a step gets two samples, and the others share out the points left: steps as small as its extent would
-/// make millions of samples of a few points that are far apart.
-std::array<std::size_t, 3> sizesFor(const std::array<double, 3>& extent, double points) {
-    std::array<std::size_t, 3> sizes{1, 1, 1};
-    std::vector<std::size_t> axes; // the thinnest last
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        if (extent[axis] > 0) axes.push_back(axis);
-    std::ranges::sort(axes, std::ranges::greater(), [&](std::size_t axis) { return extent[axis]; });
-    const auto steps = [&](std::size_t axis) { // by logarithms, since volumes may over- and underflow
-        double volume = 0;
-        for (const std::size_t each : axes) volume += std::log(extent[each]);
-        return std::exp(std::log(extent[axis]) - (volume - std::log(points)) / double(axes.size()));
-    };
-    for (; axes.size() > 1 && steps(axes.back()) < 1; axes.pop_back()) {
-        sizes[axes.back()] = 2;
-        points = std::max(1.0, points / 2);
-    }
-    for (const std::size_t axis : axes)
-        sizes[axis] = static_cast<std::size_t>(std::clamp(std::round(steps(axis)), 1.0, 1023.0)) + 1;
-    return sizes;
-}
-
-vtkSmartPointer<vtkDataSet> scattered(const PointTable& table, const std::array<std::vector<double>, 3>& places,
-                                      Source& source) {
-    std::array<double, 3> lo{}, step{1, 1, 1};
-    std::array<double, 3> extent{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto [least, most] = std::minmax_element(places[axis].begin(), places[axis].end());
-        lo[axis] = *least;
-        extent[axis] = *most - *least;
-    }
-    if (extent == std::array<double, 3>{}) throw std::runtime_error("holds a single point");
-    const std::array<std::size_t, 3> sizes = sizesFor(extent, double(table.rows()));
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        if (sizes[axis] > 1) step[axis] = extent[axis] / double(sizes[axis] - 1);
-    const auto numberOf = [&](const std::array<std::ptrdiff_t, 3>& at) {
-        return (std::size_t(at[2]) * sizes[1] + std::size_t(at[1])) * sizes[0] + std::size_t(at[0]);
-    };
-    std::vector<std::vector<std::size_t>> near(sizes[0] * sizes[1] * sizes[2]); // rows by the sample nearest to them
-    for (std::size_t row = 0; row < table.rows(); ++row) {
-        std::array<std::ptrdiff_t, 3> at{};
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            at[axis] = std::clamp<std::ptrdiff_t>(std::lround((places[axis][row] - lo[axis]) / step[axis]), 0,
-                                                  std::ptrdiff_t(sizes[axis]) - 1);
-        near[numberOf(at)].push_back(row);
-    }
-    std::vector<std::ptrdiff_t> rowOf;
-    for (std::size_t k = 0; k < sizes[2]; ++k)
-        for (std::size_t j = 0; j < sizes[1]; ++j)
-            for (std::size_t i = 0; i < sizes[0]; ++i) {
-                const std::array<std::size_t, 3> at{i, j, k};
-                double closest = 1.5 * 1.5;
-                std::ptrdiff_t best = -1;
-                for (int n = 0; n < 125; ++n) {
-                    const std::array<std::ptrdiff_t, 3> cell{std::ptrdiff_t(i) + n % 5 - 2,
-                                                             std::ptrdiff_t(j) + n / 5 % 5 - 2,
-                                                             std::ptrdiff_t(k) + n / 25 - 2};
-                    bool inside = true;
-                    for (std::size_t axis = 0; axis < 3; ++axis)
-                        inside = inside && cell[axis] >= 0 && cell[axis] < std::ptrdiff_t(sizes[axis]);
-                    if (!inside) continue;
-                    for (const std::size_t row : near[numberOf(cell)]) {
-                        double distance = 0;
-                        for (std::size_t axis = 0; axis < 3; ++axis)
-                            distance += std::pow((places[axis][row] - lo[axis]) / step[axis] - double(at[axis]), 2);
-                        if (distance > closest || (distance == closest && best >= 0)) continue;
-                        closest = distance;
-                        best = static_cast<std::ptrdiff_t>(row);
-                    }
-                }
-                rowOf.push_back(best);
-            }
-    source.notes.push_back("scattered points: each sample has the values of the nearest of " +
-                           std::to_string(table.rows()) + " points, and is absent where none lies within 1.5 steps");
-    return image(table, sizes, lo, step, rowOf, source);
+/// Whether brackets hold the name of a component: "Velocity[i]".
+bool isComponent(std::string_view inside) {
+    return inside.size() == 1 && std::string_view("ijkxyzXYZ0123456789").find(inside[0]) != std::string_view::npos;
 }
 
 } // namespace
@@ -215,105 +47,91 @@ Heading parseHeading(std::string_view text) {
     const std::string all(volume::trimmed(text));
     for (const char* pair : {"[]", "()"}) {
         if (all.size() < 3 || all.back() != pair[1]) continue;
-        const std::size_t open = all.rfind(pair[0]);
-        if (open == std::string::npos || open == 0 || (pair[0] == '(' && all[open - 1] != ' ')) continue;
+        std::size_t open = all.size() - 1; // of the pair that ends the text: "(J/(kg K))"
+        for (int depth = 0; open != std::string::npos; --open) {
+            depth += all[open] == pair[1] ? 1 : all[open] == pair[0] ? -1 : 0;
+            if (depth == 0 || open == 0) break;
+        }
+        if (open == 0 || all[open] != pair[0]) continue;
+        const std::string name(volume::trimmed(std::string_view(all).substr(0, open)));
         std::string unit(volume::trimmed(std::string_view(all).substr(open + 1, all.size() - open - 2)));
+        const bool apart = all[open - 1] == ' ';
+        if (!apart && (pair[0] == '[' ? isComponent(unit) : !isUnit(unit) || isFunction(name))) continue;
         if (unit == "-" || unit == "1") unit.clear();
-        return {std::string(volume::trimmed(std::string_view(all).substr(0, open))), unit};
+        return {name, unit};
     }
+    const std::size_t slash = all.find(" / ");
+    if (slash != std::string::npos && isUnit(all.substr(slash + 3)))
+        return {all.substr(0, slash), all.substr(slash + 3)};
     return {all, {}};
 }
 
 int axisOf(std::string_view name) {
-    const std::string word = lower(name);
+    std::string word;
+    for (const char c : lower(name))
+        if (std::string_view(" _-:.[]").find(c) == std::string_view::npos) word += c;
+    static constexpr std::array<std::string_view, 15> kNames = {
+        "coordinate", "coordinates", "coord",       "coords",     "position",     "pos",    "point", "points",
+        "centroid",   "cellcenter",  "cellcenters", "cellcentre", "cellcentroid", "center", "centre"};
     for (int axis = 0; axis < 3; ++axis) {
-        const std::string letter(1, char('x' + axis)), digit(1, char('0' + axis));
-        for (const std::string& known :
-             {letter, letter + "-coordinate", letter + " coordinate", letter + "coordinate", "coordinate" + letter,
-              "points:" + digit, "points_" + digit, "coords:" + digit, "coord" + letter, letter + "coord"})
-            if (word == known) return axis;
+        const char letter = char('x' + axis), digit = char('0' + axis);
+        if (word == std::string(1, letter)) return axis;
+        if (word.size() < 2 || word.size() > 20) continue;
+        const auto isName = [&](std::string_view base) { return std::ranges::find(kNames, base) != kNames.end(); };
+        const std::string_view view = word;
+        if (view.back() == letter || view.back() == digit) {
+            // "pos1" may be anything, "Points:1" is a component.
+            const bool plural = view.back() == letter || view.ends_with(std::string("s") + digit) ||
+                                name.find_first_of("_:[") != std::string_view::npos;
+            if (plural && isName(view.substr(0, view.size() - 1))) return axis;
+        }
+        if (view.front() == letter && isName(view.substr(1))) return axis;
     }
     return -1;
 }
 
-std::size_t columnsTogether(const std::vector<Heading>& headings, std::size_t column) {
-    return vectorAt(headings, column).empty() ? 1 : 3;
+std::ptrdiff_t placeColumn(const std::vector<Heading>& headings, int axis) {
+    const auto find = [&](const auto& is) {
+        const auto at = std::ranges::find_if(headings, [&](const Heading& heading) { return is(heading.name); });
+        return at == headings.end() ? std::ptrdiff_t(-1) : at - headings.begin();
+    };
+    const std::ptrdiff_t own = find([&](const std::string& name) { return axisOf(name) == axis; });
+    if (own >= 0 || axis != 0) return own;
+    // Of an axisymmetric model, r and z.
+    const bool plane = find([](const std::string& name) { return axisOf(name) == 1; }) < 0 &&
+                       find([](const std::string& name) { return axisOf(name) == 2; }) >= 0 &&
+                       find([](const std::string& name) {
+                           const std::string word = lower(name);
+                           return word == "phi" || word == "theta";
+                       }) < 0;
+    return plane ? find([](const std::string& name) { return lower(name) == "r"; }) : -1;
+}
+
+bool hasPlaces(const std::vector<Heading>& headings) {
+    int found = 0;
+    for (int axis = 0; axis < 3; ++axis) found += placeColumn(headings, axis) >= 0 ? 1 : 0;
+    return found >= 2;
 }
 
 void addColumns(const PointTable& table, vtkDataSetAttributes* to, Source& source) {
+    const std::ptrdiff_t radius = placeColumn(table.headings, 0);
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
         const Heading& heading = table.headings[c];
-        if (axisOf(heading.name) >= 0) continue;
-        const std::string vector = vectorAt(table.headings, c);
-        const int components = vector.empty() ? 1 : 3;
-        int type = table.types.empty() ? VTK_FLOAT : table.types[c];
-        for (std::size_t k = 1; type != VTK_FLOAT && k < std::size_t(components); ++k)
-            if (table.types[c + k] != type) type = VTK_FLOAT;
+        if (axisOf(heading.name) >= 0 || std::ptrdiff_t(c) == radius) continue;
+        const int type = table.types.empty() ? VTK_FLOAT : table.types[c];
         const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
-        array->SetName((vector.empty() ? heading.name : vector).c_str());
-        array->SetNumberOfComponents(components);
+        array->SetName(heading.name.c_str());
         array->SetNumberOfTuples(vtkIdType(table.rows()));
-        for (int k = 0; k < components; ++k)
+        if (auto* floats = vtkFloatArray::SafeDownCast(array))
             for (std::size_t row = 0; row < table.rows(); ++row)
-                array->SetComponent(vtkIdType(row), k, table.columns[c + std::size_t(k)][row]);
-        if (!heading.unit.empty()) source.units[array->GetName()] = heading.unit;
+                floats->SetValue(vtkIdType(row), float(table.columns[c][row]));
+        else
+            for (std::size_t row = 0; row < table.rows(); ++row)
+                array->SetComponent(vtkIdType(row), 0, table.columns[c][row]);
+        if (!heading.unit.empty()) source.units[heading.name] = heading.unit;
+        if (c < table.labels.size() && !table.labels[c].empty()) source.labels[heading.name] = table.labels[c];
         to->AddArray(array);
-        if (components == 3) c += 2;
     }
-}
-
-vtkSmartPointer<vtkDataSet> gridOfPoints(const PointTable& table, Source& source) {
-    std::array<std::vector<double>, 3> places;
-    for (std::size_t c = 0; c < table.columns.size(); ++c)
-        if (const int axis = axisOf(table.headings[c].name); axis >= 0) {
-            places[std::size_t(axis)] = table.columns[c];
-            if (!table.headings[c].unit.empty()) source.lengthUnit = table.headings[c].unit;
-        }
-    if (places[0].empty() || places[1].empty()) throw std::runtime_error("has no columns x and y with positions");
-    if (places[2].empty()) places[2].assign(table.rows(), 0);
-    for (const std::vector<double>& column : places)
-        for (const double value : column)
-            if (!std::isfinite(value)) throw std::runtime_error("has a position that is not a number");
-    const std::array<Axis, 3> axes{Axis(places[0]), Axis(places[1]), Axis(places[2])};
-    std::array<std::size_t, 3> sizes{};
-    double product = 1;
-    bool even = true;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        sizes[axis] = axes[axis].places.size();
-        product *= double(sizes[axis]);
-        even = even && axes[axis].even;
-    }
-    const double rows = double(table.rows());
-    if (product > 5 * rows) return scattered(table, places, source);
-    std::vector<std::ptrdiff_t> rowOf(static_cast<std::size_t>(product), -1);
-    std::vector<std::array<std::size_t, 3>> nodes;
-    for (std::size_t row = 0; row < table.rows(); ++row) {
-        nodes.push_back({axes[0].index(places[0][row]), axes[1].index(places[1][row]), axes[2].index(places[2][row])});
-        const std::size_t at = (nodes[row][2] * sizes[1] + nodes[row][1]) * sizes[0] + nodes[row][0];
-        if (rowOf[at] >= 0)
-            throw std::runtime_error("has the same position in rows " + std::to_string(rowOf[at] + 1) + " and " +
-                                     std::to_string(row + 1));
-        rowOf[at] = static_cast<std::ptrdiff_t>(row);
-    }
-    if (product > rows && stopsEarly(nodes, sizes))
-        throw std::runtime_error("holds " + std::to_string(table.rows()) + " of the " + std::to_string(rowOf.size()) +
-                                 " points of its grid, in order: truncated");
-    if (even)
-        return image(table, sizes, {axes[0].first, axes[1].first, axes[2].first},
-                     {axes[0].step, axes[1].step, axes[2].step}, rowOf, source);
-    if (product > rows) return scattered(table, places, source);
-    vtkNew<vtkRectilinearGrid> grid;
-    grid->SetDimensions(int(sizes[0]), int(sizes[1]), int(sizes[2]));
-    const auto coordinates = [](const Axis& axis) {
-        auto array = vtkSmartPointer<vtkDoubleArray>::New();
-        for (const double place : axis.places) array->InsertNextValue(place);
-        return array;
-    };
-    grid->SetXCoordinates(coordinates(axes[0]));
-    grid->SetYCoordinates(coordinates(axes[1]));
-    grid->SetZCoordinates(coordinates(axes[2]));
-    addColumns(inOrder(table, rowOf), grid->GetPointData(), source);
-    return grid;
 }
 
 } // namespace tessera::importer

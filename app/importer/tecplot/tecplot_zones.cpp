@@ -66,13 +66,9 @@ struct Part {
 /// Adds the arrays one at a time, so that only one of them is in memory twice. Without `read` only notes their units.
 void addArrays(const Part& part, bool ofCells, bool read, vtkDataSetAttributes* to, Source& source) {
     const std::vector<std::size_t> variables = part.variables(ofCells);
-    const std::vector<Heading> names = part.table(variables, false).headings;
-    for (std::size_t c = 0; c < variables.size();) {
-        const std::size_t together = columnsTogether(names, c);
-        if (axisOf(names[c].name) < 0)
-            addColumns(part.table(std::span(variables).subspan(c, together), read), to, source);
-        c += together;
-    }
+    for (std::size_t c = 0; c < variables.size(); ++c)
+        if (axisOf(part.headings[variables[c]].name) < 0)
+            addColumns(part.table(std::span(variables).subspan(c, 1), read), to, source);
 }
 
 vtkSmartPointer<vtkPoints> pointsOf(const Part& part) {
