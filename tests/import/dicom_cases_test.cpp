@@ -120,6 +120,45 @@ TEST_F(DicomCases, FilmsAreTimes) {
         given("kinds/nm_dyn.dcm"), [](glm::ivec3 at, int t) { return at.x + 10 * at.y + 110 * (t + 3); }, 1);
 }
 
+TEST_F(DicomCases, SeveralImagesAtOnePlaceAreTimesOrParameters) {
+    struct Axis {
+        const char *folder, *name, *unit;
+        double second;
+    };
+    for (const Axis& axis : {Axis{"trigger", "trigger time", "ms", 40.5},
+                             {"clock", "time", "s", 3},
+                             {"bvalue", "b-value", "s/mm2", 500},
+                             {"order", "image", "", 1}}) {
+        SCOPED_TRACE(axis.folder);
+        const std::string folder = given(std::string("series/") + axis.folder);
+        expectGrid(folder, {3, 2, 2}, {0.25, 0.5, 2}, {1, 2, 10});
+        expectSamples(folder, usual);
+        const DatasetInfo info = openFiles({folder}, {}).info;
+        EXPECT_EQ(info.times, (std::vector<double>{0, axis.second}));
+        EXPECT_EQ(info.timeName, axis.name);
+        EXPECT_EQ(info.timeUnit, axis.unit);
+    }
+    EXPECT_THAT(notesOf(given("series/order")), testing::HasSubstr("in order of their numbers"));
+    const DatasetInfo kinds = openFiles({given("series/kinds")}, {}).info;
+    ASSERT_EQ(kinds.parameters.size(), 2u);
+    EXPECT_EQ(kinds.parameters[0].name, "magnitude");
+    EXPECT_EQ(kinds.parameters[1].name, "angle");
+    EXPECT_FALSE(kinds.parameters[1].categorical);
+    expectSamples(
+        given("series/kinds"), [](glm::ivec3 at, int) { return usual(at, 1); }, 1);
+}
+
+TEST_F(DicomCases, EachSliceHasItsOwnRescale) {
+    expectSamples(given("series/pet"), [](glm::ivec3 at, int t) { return usual(at, t) * (0.5 + 0.25 * at.z); });
+    EXPECT_EQ(openFiles({given("series/pet")}, {}).info.parameters[0].unit, "Bq/ml");
+    EXPECT_THAT(notesOf(given("series/pet")), testing::HasSubstr("differs from slice to slice"));
+}
+
+TEST_F(DicomCases, SagittalSlicesRunAlongX) {
+    expectGrid(given("series/sagittal"), {2, 3, 2}, {3, 0.25, 0.5}, {2, 2, 9.5}); // the second slice comes first
+    expectSamples(given("series/sagittal"), [](glm::ivec3 at, int) { return usual({at.y, 1 - at.z, 1 - at.x}, 0); });
+}
+
 TEST_F(DicomCases, DosesAreScaledAndPlacedByTheirList) {
     expectGrid(given("kinds/dose.dcm"), kTenElevenTwelve, {0.25, 0.5, 2}, {1, 2, 10});
     expectSamples(given("kinds/dose.dcm"), [](glm::ivec3 at, int t) { return 0.1 * usual(at, t); });

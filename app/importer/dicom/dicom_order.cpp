@@ -126,7 +126,7 @@ void setTemporal(DicomOrder& order, const std::vector<DicomImage>& images, const
     if (byClock.time == order.time && byClock.times.size() == order.times.size()) order = byClock;
 }
 
-/// What of the words of an image type tells a kind apart.
+/// What of the words of an image type tells a kind apart. Not "phase", which is a name of labels (of materials) here.
 std::string wordsOfKind(const std::vector<std::string>& kinds, std::size_t index) {
     const auto split = [](const std::string& text) {
         std::vector<std::string> out(1);
@@ -146,7 +146,7 @@ std::string wordsOfKind(const std::vector<std::string>& kinds, std::size_t index
         });
         if (same || own[i].empty()) continue;
         static constexpr std::pair<const char*, const char*> kLong[] = {
-            {"M", "magnitude"}, {"P", "phase"}, {"R", "real"}, {"I", "imaginary"}};
+            {"M", "magnitude"}, {"P", "angle"}, {"R", "real"}, {"I", "imaginary"}};
         std::string word = own[i];
         for (const auto& [brief, whole] : kLong)
             if (word == brief) word = whole;

@@ -114,6 +114,12 @@ Sameness sameIn(const DicomVolume& volume, std::size_t parameter) {
     return same;
 }
 
+/// The first file that the stack is made of.
+const DicomImage& imageIn(const DicomVolume& volume) {
+    const auto used = std::ranges::find_if(volume.stack.frames, [](std::size_t f) { return f != kNoFrame; });
+    return volume.images[volume.frames[*used].image];
+}
+
 DicomArray arrayOf(const DicomVolume& volume, std::size_t parameter, const std::string& name, Source& source) {
     const Sameness same = sameIn(volume, parameter);
     DicomArray array;
@@ -231,7 +237,7 @@ vtkSmartPointer<vtkDataObject> atUnevenPlaces(vtkSmartPointer<vtkImageData> imag
 vtkSmartPointer<vtkDataObject> readDicomTime(const OpenDicom& open, std::size_t time) {
     const DicomVolume& volume = *open.volume;
     const DicomStack& stack = volume.stack;
-    const DicomForm& form = volume.images[volume.frames[stack.frames[0] != kNoFrame ? stack.frames[0] : 0].image].form;
+    const DicomForm& form = imageIn(volume).form;
     vtkSmartPointer<vtkImageData> image = imageOfDicom(stack, form);
     std::vector<vtkSmartPointer<vtkDataArray>> arrays;
     for (const DicomArray& array : open.arrays) arrays.push_back(newArray(array, image->GetNumberOfPoints()));
@@ -308,8 +314,7 @@ void openDicomVolume(const std::shared_ptr<const DicomVolume>& volume, Source& s
     double bytes = 0, stored = 0;
     for (std::size_t p = 0; p < stack.parameters.size(); ++p) {
         std::string name = stack.parameters[p];
-        const auto used = std::ranges::find_if(stack.frames, [](std::size_t f) { return f != kNoFrame; });
-        const DicomImage& image = volume->images[volume->frames[*used].image];
+        const DicomImage& image = imageIn(*volume);
         if (name.empty()) name = image.doseUnit.empty() ? "value" : "dose";
         DicomArray array = arrayOf(*volume, p, name, source);
         for (std::size_t c = 0; c < std::size_t(image.form.samples); ++c) {
@@ -326,6 +331,8 @@ void openDicomVolume(const std::shared_ptr<const DicomVolume>& volume, Source& s
         if (!array.unit.empty()) source.units[array.name] = array.unit;
         if (array.form != StoredForm{}) source.stored[array.name] = array.form;
     }
+    std::set<std::string> told; // parameters may have the same to say
+    std::erase_if(source.notes, [&](const std::string& note) { return !told.insert(note).second; });
     if (stack.inMillimetres) source.lengthUnit = "mm";
     source.times = stack.times;
     source.timeUnit = stack.timeUnit;

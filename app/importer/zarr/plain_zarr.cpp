@@ -1,4 +1,5 @@
 #include "app/importer/arrays/array_file.h"
+#include "app/importer/arrays/conventions.h"
 #include "app/importer/zarr/ome_zarr.h"
 #include "app/importer/zarr/zarr_array.h"
 
@@ -49,34 +50,63 @@ StoredForm formOf(const json& about, const ZarrArray& array) {
     return form;
 }
 
+/// The axes that xarray names, as indices of the file's; none where it names none.
+std::vector<int> axesOf(const json& about, const ZarrArray& array, ArrayFile& file) {
+    const auto names = about.find("_ARRAY_DIMENSIONS");
+    if (names == about.end() || !names->is_array() || names->size() != array.shape.size()) return {};
+    std::vector<int> axes;
+    for (std::size_t d = 0; d < array.shape.size(); ++d) {
+        if (!(*names)[d].is_string()) return {};
+        const auto name = (*names)[d].get<std::string>();
+        const auto known = std::ranges::find_if(
+            file.axes, [&](const StoredAxis& axis) { return axis.name == name && axis.length == array.shape[d]; });
+        axes.push_back(int(known - file.axes.begin()));
+        if (known == file.axes.end()) file.axes.push_back({name, array.shape[d], kindByName(name)});
+    }
+    return axes;
+}
+
+/// Arrays named like their only axis are its places.
+void placeAxes(ArrayFile& file) {
+    std::erase_if(file.arrays, [&](const StoredArray& array) {
+        if (array.axes.size() != 1) return false;
+        StoredAxis& axis = file.axes[std::size_t(array.axes.front())];
+        if (array.name != axis.name) return false;
+        refuseHollow(array);
+        axis.places = valuesBy(array.form, numbersOf(array));
+        axis.unit = array.unit;
+        return true;
+    });
+}
+
 } // namespace
 
 void openPlainZarr(Source& source, const std::string& folder) {
     std::vector<std::pair<std::string, std::string>> found;
     findArrays(folder, "", 0, found);
-    std::vector<StoredArray> arrays;
+    ArrayFile file;
     for (const auto& [name, path] : found) {
         try {
             const ZarrArray array = openZarrArray(path);
             const json about = zarrJson(path, ".zattrs");
-            StoredArray stored{name, "", array.shape, array.statedBytes(), array.stored, {}};
+            if (array.shape.empty()) continue;
+            StoredArray stored{.name = name, .unit = "", .dims = array.shape, .axes = axesOf(about, array, file)};
+            stored.vtkType = array.vtkType();
+            stored.form = formOf(about, array);
+            stored.statedBytes = array.statedBytes();
+            stored.storedBytes = array.stored;
             if (const auto unit = about.find("units"); unit != about.end() && unit->is_string())
                 stored.unit = unit->get<std::string>();
-            stored.read = [array](std::size_t first, std::size_t count) {
-                std::vector<std::size_t> begin(array.shape.size(), 0), size = array.shape;
-                begin[0] = first;
-                size[0] = count;
-                return readZarr(array, begin, size);
-            };
-            if (const StoredForm form = formOf(about, array); form != StoredForm{}) source.stored[name] = form;
-            if (!array.shape.empty()) arrays.push_back(std::move(stored));
+            stored.read = [array](const Slab& part) { return readZarr(array, part.first, part.count); };
+            file.arrays.push_back(std::move(stored));
         } catch (const std::runtime_error& error) {
             if (found.size() == 1) throw;
             source.notes.push_back("array \"" + name + "\" left out: it " + error.what());
         }
     }
-    if (arrays.empty()) throw std::runtime_error("holds no array of numbers");
-    openArrays(std::move(arrays), source);
+    if (file.arrays.empty()) throw std::runtime_error("holds no array of numbers");
+    placeAxes(file);
+    openArrays(std::move(file), source);
 }
 
 } // namespace tessera::importer

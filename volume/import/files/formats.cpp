@@ -26,6 +26,18 @@ void eachSuffix(const FileFormat& format, auto&& body) {
     }
 }
 
+/// With its mark, or, as early files are, with the first element of its identification.
+bool beginsLikeDicom(std::string_view head) {
+    if (head.size() >= 132 && head.substr(128, 4) == "DICM") return true;
+    if (head.size() < 132 || head[1] != 0 || head[3] != 0) return false;
+    if (head[0] == 2 && head[2] == 0) return head.substr(4, 2) == "UL";
+    if (head[0] != 8) return false;
+    const auto isLetter = [](char c) { return c >= 'A' && c <= 'Z'; };
+    const bool first = head[2] == 0 || head[2] == 5 || head[2] == 8 || head[2] == 0x12 || head[2] == 0x16;
+    const bool brief = head[4] > 0 && head[4] <= 64 && head[5] == 0 && head[6] == 0 && head[7] == 0;
+    return first && ((isLetter(head[4]) && isLetter(head[5])) || brief);
+}
+
 } // namespace
 
 std::span<const FileFormat> fileFormats() {
@@ -58,7 +70,7 @@ const FileFormat* formatOfFile(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
     char head[132] = {};
     in.read(head, sizeof head);
-    return in && std::string_view(head + 128, 4) == "DICM" ? formatNamed("DICOM") : nullptr;
+    return beginsLikeDicom({head, static_cast<std::size_t>(in.gcount())}) ? formatNamed("DICOM") : nullptr;
 }
 
 bool isZarrFolder(const std::string& path) {
