@@ -2,6 +2,7 @@
 #include "app/importer/arrays/hdf_layouts.h"
 #include "app/importer/readers/read_files.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <vtkHDFReader.h>
 #include <vtkNew.h>
@@ -22,7 +23,10 @@ void openHdf(Source& source) {
         source.reader = reader;
         return;
     }
-    if (!textOf(hdf.attributesOf(""), "_NCProperties").empty()) {
+    const bool netCdf = std::ranges::any_of(hdf.datasets(), [](const HdfDataset& dataset) {
+        return dataset.attributes.contains("_Netcdf4Dimid") || dataset.attributes.contains("_Netcdf4Coordinates");
+    });
+    if (netCdf || !textOf(hdf.attributesOf(""), "_NCProperties").empty()) {
         openNetCdf(source);
         return;
     }
