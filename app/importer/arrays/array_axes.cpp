@@ -104,6 +104,31 @@ bool takeAxesOfOther(ArrayFile& file, StoredArray& array) {
     return false;
 }
 
+/// Whether the one-dimensional arrays x, y and z have the lengths of axes in this order, slowest first.
+bool haveLengths(const std::vector<StoredArray>& arrays, const Dims& grid, std::string_view order) {
+    bool any = false;
+    for (const StoredArray& array : arrays) {
+        const std::string word = lowered(leafOf(array.name));
+        const std::size_t at = word.size() == 1 ? order.find(word[0]) : std::string::npos;
+        if (!array.axes.empty() || array.dims.size() != 1 || at == std::string::npos) continue;
+        any = true;
+        if (array.dims[0] != grid[at + grid.size() - order.size()]) return false;
+    }
+    return any;
+}
+
+/// Whether the axes are [x, y, z], not [z, y, x], by the lengths of x, y and z.
+bool isRising(const std::vector<StoredArray>& arrays, const Dims& grid) {
+    const bool solid = grid[0] > 1;
+    return !haveLengths(arrays, grid, solid ? "zyx" : "yx") && haveLengths(arrays, grid, solid ? "xyz" : "xy");
+}
+
+/// Whether the lengths of x, y and z tell the order of the axes.
+bool areToldApart(const std::vector<StoredArray>& arrays, const Dims& grid) {
+    const bool solid = grid[0] > 1;
+    return haveLengths(arrays, grid, solid ? "zyx" : "yx") != haveLengths(arrays, grid, solid ? "xyz" : "xy");
+}
+
 /// Makes the one-dimensional arrays along axes without names their places, and takes them from the arrays.
 void takePlaces(ArrayFile& file, std::array<StoredAxis, 4>& axes) {
     std::erase_if(file.arrays, [&](const StoredArray& array) {
@@ -142,49 +167,39 @@ void refuseHollow(const StoredArray& array) {
     refuseHollow(array.statedBytes, array.storedBytes, "array \"" + array.name + "\"");
 }
 
-void giveAxes(ArrayFile& file, std::vector<std::string>& notes) {
-    std::vector<std::string> taken;
+void giveAxes(ArrayFile& file, GuessedAxes& guessed) {
     for (StoredArray& array : file.arrays)
-        if (array.axes.empty() && takeAxesOfOther(file, array)) taken.push_back(array.name);
-    if (!taken.empty()) notes.push_back("axes of " + quoted(taken) + " guessed: those of an array of the same shape");
+        if (array.axes.empty() && takeAxesOfOther(file, array)) guessed.likeOthers.push_back(array.name);
     const Dims grid = namelessGrid(file.arrays);
     if (grid.empty()) return;
     std::size_t times = 1;
-    std::vector<std::optional<Form>> forms;
-    for (const StoredArray& array : file.arrays) {
-        forms.push_back(array.axes.empty() ? formOf(array.dims, grid) : std::nullopt);
-        if (!forms.back()) continue;
-        times = std::max(times, forms.back()->times);
-    }
-    std::vector<std::string> guessed, channels;
+    for (const StoredArray& array : file.arrays)
+        if (const std::optional<Form> form = array.axes.empty() ? formOf(array.dims, grid) : std::nullopt)
+            times = std::max(times, form->times);
+    const bool told = areToldApart(file.arrays, grid), rising = told && isRising(file.arrays, grid);
     std::array<StoredAxis, 4> axes{StoredAxis{"", grid[2], AxisKind::X}, StoredAxis{"", grid[1], AxisKind::Y},
                                    StoredAxis{"", grid[0], AxisKind::Z}, StoredAxis{"", times, AxisKind::Time}};
-    std::vector<StoredArray*> formed;
-    std::vector<Form> wanted;
-    for (std::size_t a = 0; a < file.arrays.size(); ++a)
-        if (forms[a]) wanted.push_back(*forms[a]);
-    takePlaces(file, axes); // none of those that have a form
-    for (StoredArray& array : file.arrays)
-        if (array.axes.empty() && formOf(array.dims, grid)) formed.push_back(&array);
-    for (std::size_t a = 0; a < formed.size(); ++a) {
-        const Form& form = wanted[a];
-        StoredArray& array = *formed[a];
-        if (form.timeAxis) {
+    if (rising) // [x, y, z], or [x, y]
+        std::swap(axes[0].length, axes[grid[0] > 1 ? 2 : 1].length);
+    takePlaces(file, axes);
+    for (StoredArray& array : file.arrays) {
+        const std::optional<Form> form = array.axes.empty() ? formOf(array.dims, grid) : std::nullopt;
+        if (!form) continue;
+        if (form->timeAxis) {
             StoredAxis time = axes[3];
-            if (form.times != time.length) time = {"", form.times, AxisKind::Time};
+            if (form->times != time.length) time = {"", form->times, AxisKind::Time};
             array.axes.push_back(addAxis(file, time));
         }
-        const std::size_t spatial = array.dims.size() - (form.timeAxis ? 1 : 0) - (form.componentAxis ? 1 : 0);
-        for (std::size_t axis = spatial; axis-- > 0;) array.axes.push_back(addAxis(file, axes[axis]));
-        if (form.componentAxis) array.axes.push_back(addAxis(file, {"", form.components, AxisKind::Other}));
-        guessed.push_back(array.name);
-        if (form.componentAxis && form.components != 3) channels.push_back(array.name);
+        const std::size_t spatial = array.dims.size() - (form->timeAxis ? 1 : 0) - (form->componentAxis ? 1 : 0);
+        for (std::size_t axis = spatial; axis-- > 0;)
+            array.axes.push_back(addAxis(file, axes[rising ? spatial - 1 - axis : axis]));
+        if (form->componentAxis) array.axes.push_back(addAxis(file, {"", form->components, AxisKind::Other}));
+        if (!told) guessed.byOrder.push_back(array.name);
+        if (form->componentAxis && form->components != 3) guessed.channels.push_back(array.name);
     }
-    notes.push_back("order of the axes guessed: x is the last, before it y and z, of " + quoted(guessed) +
-                    (channels.empty() ? "" : "; the last axis of " + quoted(channels) + " holds channels"));
 }
 
-void guessKinds(ArrayFile& file, std::vector<std::string>& notes) {
+void guessKinds(ArrayFile& file, GuessedAxes& guessed) {
     const auto hasAxis = [&](const StoredArray& array, std::string_view name) {
         return std::ranges::any_of(array.axes, [&](int axis) { return lowered(file.axes[axis].name) == name; });
     };
@@ -196,7 +211,6 @@ void guessKinds(ArrayFile& file, std::vector<std::string>& notes) {
     for (const StoredArray& array : file.arrays)
         if (array.axes.size() >= 2) arrays.push_back(&array);
     std::ranges::stable_sort(arrays, std::greater(), [](const StoredArray* one) { return one->axes.size(); });
-    std::vector<std::string> guessed;
     for (const StoredArray* array : arrays) {
         std::vector<int> unknown;
         std::vector<AxisKind> free{AxisKind::X, AxisKind::Y, AxisKind::Z, AxisKind::Time}, known;
@@ -219,15 +233,40 @@ void guessKinds(ArrayFile& file, std::vector<std::string>& notes) {
             StoredAxis& about = file.axes[axis];
             about.kind = free.empty() ? AxisKind::Other : free.front();
             if (!free.empty()) free.erase(free.begin());
-            constexpr const char* kNames[] = {"?", "x", "y", "z", "times", "another parameter"};
-            guessed.push_back(kNames[int(about.kind)] + std::string(" = \"") +
-                              (about.name.empty() ? std::to_string(about.length) + " samples" : about.name) + "\"");
+            guessed.kinds.push_back(axis);
         }
     }
-    if (guessed.empty()) return;
+}
+
+std::vector<std::string> notesOn(const GuessedAxes& guessed, const ArrayFile& file,
+                                 const std::vector<const StoredArray*>& drawn) {
+    std::vector<std::string> notes;
+    const auto ofDrawn = [&](const std::vector<std::string>& names) {
+        std::vector<std::string> out;
+        for (const std::string& name : names)
+            if (std::ranges::find(drawn, name, [](const StoredArray* one) { return one->name; }) != drawn.end())
+                out.push_back(name);
+        return out;
+    };
+    if (const auto names = ofDrawn(guessed.likeOthers); !names.empty())
+        notes.push_back("axes of " + quoted(names) + " guessed: those of an array of the same shape");
+    if (const auto names = ofDrawn(guessed.byOrder); !names.empty())
+        notes.push_back("order of the axes guessed: x is the last, before it y and z, of " + quoted(names));
+    if (const auto names = ofDrawn(guessed.channels); !names.empty())
+        notes.push_back("guessed: the last axis of " + quoted(names) + " holds channels");
     std::string list;
-    for (std::size_t i = 0; i < guessed.size() && i < 8; ++i) list += (i > 0 ? ", " : "") + guessed[i];
-    notes.push_back("axes guessed by their order, since their names do not tell: " + list);
+    for (const int axis : guessed.kinds) {
+        const bool used = std::ranges::any_of(drawn, [axis](const StoredArray* array) {
+            return std::ranges::find(array->axes, axis) != array->axes.end();
+        });
+        if (!used) continue;
+        constexpr const char* kNames[] = {"?", "x", "y", "z", "times", "another parameter"};
+        const StoredAxis& about = file.axes[axis];
+        list += (list.empty() ? "" : ", ") + std::string(kNames[int(about.kind)]) + " = \"" +
+                (about.name.empty() ? std::to_string(about.length) + " samples" : about.name) + "\"";
+    }
+    if (!list.empty()) notes.push_back("axes guessed by their order, since their names do not tell: " + list);
+    return notes;
 }
 
 void joinAxes(ArrayFile& file) {
@@ -259,20 +298,21 @@ GridAxes gridOf(const ArrayFile& file, const StoredArray& array) {
 }
 
 GridAxes commonGrid(const ArrayFile& file) {
-    std::map<GridAxes, std::array<std::size_t, 4>> votes; // chosen, long axes, arrays, samples
+    std::map<GridAxes, std::array<std::size_t, 5>> votes; // chosen, long axes, those not staggered, arrays, samples
     std::map<GridAxes, GridAxes> whole;                   // with axes of one sample
     for (const StoredArray& array : file.arrays) {
         const GridAxes grid = gridOf(file, array), key = longAxes(file, grid);
         if (std::ranges::count(grid, -1) > 1) continue;
-        std::array<std::size_t, 4> own{0, 0, 0, 1};
+        std::array<std::size_t, 5> own{0, 0, 0, 0, 1};
         for (const int axis : key) {
             if (axis < 0) continue;
             own[1] += 1;
-            own[3] *= file.axes[axis].length;
+            own[2] += lowered(file.axes[axis].name).ends_with("stag") ? 0 : 1;
+            own[4] *= file.axes[axis].length;
         }
-        if (own[3] == 0) continue;
+        if (own[4] == 0) continue;
         auto& vote = votes[key];
-        vote = {vote[0] + (array.chosen ? 1 : 0), own[1], vote[2] + 1, own[3]};
+        vote = {vote[0] + (array.chosen ? 1 : 0), own[1], own[2], vote[3] + 1, own[4]};
         const auto known = whole.emplace(key, grid).first;
         for (std::size_t axis = 0; axis < 3; ++axis)
             if (known->second[axis] < 0) known->second[axis] = grid[axis];

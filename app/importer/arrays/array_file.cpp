@@ -196,8 +196,9 @@ void openArrays(ArrayFile file, Source& source) {
         if (none) empty.push_back("\"" + array.name + "\"");
         return none;
     });
-    giveAxes(file, source.notes);
-    guessKinds(file, source.notes);
+    GuessedAxes guessed;
+    giveAxes(file, guessed);
+    guessKinds(file, guessed);
     joinAxes(file);
     auto opened = std::make_shared<Opened>();
     opened->grid = makeGrid(file, commonGrid(file), source.notes);
@@ -205,6 +206,7 @@ void openArrays(ArrayFile file, Source& source) {
     std::vector<const StoredArray*> drawn;
     for (const StoredArray& array : file.arrays)
         if (isOnGrid(file, array, opened->grid.axes)) drawn.push_back(&array);
+    for (std::string& note : notesOn(guessed, file, drawn)) source.notes.push_back(std::move(note));
     opened->times = timesOf(file, drawn, source.notes);
     for (const StoredArray* array : drawn) refuseHollow(*array);
     std::vector<std::string> others, many;
@@ -237,7 +239,7 @@ void openArrays(ArrayFile file, Source& source) {
              source.notes);
     noteLeft(empty, "left out, since they hold no samples", source.notes);
     noteLeft(many, "left out, since they have too many further axes", source.notes);
-    noteLeft(file.notNumbers, "left out, since they hold no numbers", source.notes);
+    noteLeft(file.unread, "left out", source.notes);
     source.read = [opened](std::size_t time) { return readFrame(*opened, time); };
 }
 

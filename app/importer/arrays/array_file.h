@@ -63,7 +63,7 @@ struct ArrayFile {
     std::vector<StoredArray> arrays;
     std::vector<CurvedPlaces> curved = {};
     std::vector<volume::Quantity> numbers = {}; ///< that belong to the whole file, one value each
-    std::vector<std::string> notNumbers = {};   ///< names of what holds no numbers
+    std::vector<std::string> unread = {};       ///< names of what is left out, with why: "name" (text)
     std::optional<StoredAxis> onlyTime = {};    ///< of arrays without an axis of time
 };
 

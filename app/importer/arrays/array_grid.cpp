@@ -27,7 +27,7 @@ struct Line {
     bool falling = false, stated = false;
 };
 
-bool isRising(const std::vector<double>& at) {
+bool rises(const std::vector<double>& at) {
     for (std::size_t i = 0; i < at.size(); ++i)
         if (!std::isfinite(at[i]) || (i > 0 && !(at[i] > at[i - 1]))) return false;
     return true;
@@ -41,7 +41,7 @@ bool unwrap(std::vector<double>& at) {
         if (at[i] < at[i - 1] - 180) ++turns;
         out[i] = at[i] + 360 * turns;
     }
-    if (turns != 1 || !isRising(out) || out.back() - out.front() > 360) return false;
+    if (turns != 1 || !rises(out) || out.back() - out.front() > 360) return false;
     at = out;
     return true;
 }
@@ -58,7 +58,7 @@ Line lineOf(const StoredAxis& axis, std::size_t along, std::vector<std::string>&
         notes.push_back("\"" + leafOf(axis.name) + "\" counts downwards: " + kLetters[along] + " = -" +
                         leafOf(axis.name));
     }
-    if (along == 0 && lowered(axis.unit).starts_with("deg") && !isRising(line.at) && unwrap(line.at)) {
+    if (along == 0 && lowered(axis.unit).starts_with("deg") && !rises(line.at) && unwrap(line.at)) {
         line.faces.clear();
         notes.push_back("\"" + leafOf(axis.name) + "\" passes its end: 360 degrees added from there on");
     } else if (line.at.size() > 1 && line.at.front() > line.at.back()) {
@@ -66,13 +66,13 @@ Line lineOf(const StoredAxis& axis, std::size_t along, std::vector<std::string>&
         std::ranges::reverse(line.at);
         std::ranges::reverse(line.faces);
     }
-    line.stated = isRising(line.at);
+    line.stated = rises(line.at);
     if (!line.stated) {
         notes.push_back("places along " + std::string(kLetters[along]) + " (\"" + leafOf(axis.name) +
                         "\") neither rise nor fall throughout: it counts samples");
         return {};
     }
-    const bool around = line.faces.size() == line.at.size() + 1 && isRising(line.faces);
+    const bool around = line.faces.size() == line.at.size() + 1 && rises(line.faces);
     for (std::size_t i = 0; around && i < line.at.size(); ++i)
         if (line.at[i] < line.faces[i] || line.at[i] > line.faces[i + 1]) line.faces.clear();
     if (!around) line.faces.clear();

@@ -33,7 +33,9 @@ public:
         const auto variables = tagged();
         for (std::size_t v = 0; v < variables; ++v) {
             skip(padded(size()));
-            std::vector<std::size_t> axes(size());
+            const std::size_t rank = size();
+            if (rank > 1024) throw std::runtime_error("has a damaged header");
+            std::vector<std::size_t> axes(rank);
             for (std::size_t& axis : axes) axis = size();
             skipAttributes();
             const double one = bytesOf(number(4));
@@ -70,8 +72,9 @@ private:
     static std::size_t padded(std::size_t bytes) { return (bytes + 3) / 4 * 4; }
     void need(std::size_t bytes) {
         if (at_ + bytes <= bytes_.size()) return;
-        bytes_ = readPart(path_, 0, std::max(bytes_.size() * 2, at_ + bytes));
-        if (at_ + bytes > bytes_.size()) throw std::runtime_error("ends within its header: truncated");
+        const std::size_t whole = bytesIn(path_); // before memory is taken for what a damaged header states
+        if (at_ + bytes > whole) throw std::runtime_error("ends within its header: truncated");
+        bytes_ = readPart(path_, 0, std::min(whole, std::max(bytes_.size() * 2, at_ + bytes)));
     }
     double number(std::size_t bytes) {
         need(bytes);

@@ -161,7 +161,9 @@ hid_t openDataset(hid_t file, const std::string& path) {
     const HdfHandle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
     H5Pset_efile_prefix(access.id(), "${ORIGIN}");
     H5Pset_virtual_prefix(access.id(), "${ORIGIN}");
-    return H5Dopen2(file, path.c_str(), access.id());
+    const hid_t dataset = H5Dopen2(file, path.c_str(), access.id());
+    // Through a link to another file the library takes no prefix that differs from its own.
+    return dataset >= 0 ? dataset : H5Oopen(file, path.c_str(), H5P_DEFAULT);
 }
 
 /// The first file that a data set has its samples in and that is not there; "" if all are.

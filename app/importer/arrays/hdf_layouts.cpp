@@ -142,6 +142,14 @@ int axisBy(const HdfFile& hdf, const AxisHint& hint, std::size_t length, ArrayFi
     return int(file.axes.size()) - 1;
 }
 
+/// The axis of the arrays along which a one-dimensional data set lies, by its scale; -1 = none.
+int knownAxis(const HdfFile& hdf, const HdfDataset& dataset, const ArrayFile& file) {
+    const HdfDataset* scale = dataset.scales.empty() ? nullptr : hdf.findKey(dataset.scales.front());
+    for (std::size_t a = 0; scale != nullptr && a < file.axes.size(); ++a)
+        if (leafOf(scale->path) == leafOf(file.axes[a].name) && file.axes[a].length == dataset.dims[0]) return int(a);
+    return -1;
+}
+
 } // namespace
 
 ArrayFile readHdfArrays(const HdfFile& hdf) {
@@ -151,7 +159,7 @@ ArrayFile readHdfArrays(const HdfFile& hdf) {
     std::vector<std::pair<StoredArray, std::string>> arrays;
     for (const HdfDataset& dataset : hdf.datasets()) {
         if (!dataset.problem.empty()) {
-            file.notNumbers.push_back("\"" + dataset.path + "\" (" + dataset.problem + ")");
+            file.unread.push_back("\"" + dataset.path + "\" (" + dataset.problem + ")");
             continue;
         }
         StoredArray array = hdf.arrayOf(dataset);
@@ -164,14 +172,9 @@ ArrayFile readHdfArrays(const HdfFile& hdf) {
     }
     for (auto& [array, key] : arrays) {
         const HdfDataset* dataset = hdf.findKey(key);
-        const bool isScale = dataset != nullptr && textOf(dataset->attributes, "CLASS") == "DIMENSION_SCALE";
-        if (used.contains(key) || (isScale && namesOnly(*dataset))) continue;
-        for (std::size_t a = 0; a < file.axes.size() && array.dims.size() == 1; ++a) // along an axis that is known
-            if (isScale == false && dataset != nullptr && !dataset->scales.empty() &&
-                hdf.findKey(dataset->scales[0]) != nullptr &&
-                leafOf(hdf.findKey(dataset->scales[0])->path) == leafOf(file.axes[a].name) &&
-                file.axes[a].length == array.dims[0])
-                array.axes = {int(a)};
+        if (used.contains(key) || (dataset != nullptr && namesOnly(*dataset))) continue;
+        if (dataset != nullptr && array.dims.size() == 1)
+            if (const int axis = knownAxis(hdf, *dataset, file); axis >= 0) array.axes = {axis};
         file.arrays.push_back(std::move(array));
     }
     return file;

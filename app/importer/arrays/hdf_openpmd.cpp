@@ -58,7 +58,9 @@ bool readComponent(const HdfFile& hdf, const std::string& path, Component& out) 
         values->Fill(number);
         return values;
     };
-    return true;
+    constexpr double kMostBytes = 4e9; // which the file does not store
+    out.array.storedBytes = out.array.statedBytes;
+    return out.array.statedBytes <= kMostBytes;
 }
 
 /// A record in one iteration: one component, or several of a vector.
@@ -141,7 +143,8 @@ StoredArray arrayOver(const std::string& name, const Growing& growing, ArrayFile
     for (const StoredAxis& axis : growing.axes) array.axes.push_back(addOwn(file, axis));
     array.statedBytes *= double(growing.records.size() * first.components.size());
     array.storedBytes = array.statedBytes;
-    for (const Component& component : first.components) refuseHollow(component.array);
+    for (const Record& record : growing.records)
+        for (const Component& component : record.components) refuseHollow(component.array);
     array.read = [records = growing.records, vector, type = array.vtkType](const Slab& part) {
         const std::size_t skip = vector ? 2 : 1;
         const Slab inner{Dims(part.first.begin() + long(skip), part.first.end()),
@@ -250,7 +253,7 @@ ArrayFile readOpenPmd(const HdfFile& hdf, std::vector<std::string>& notes) {
             }
     for (const auto& [name, growing] : all)
         if (!growing.records.empty()) file.arrays.push_back(arrayOver(name, growing, file));
-    for (std::size_t i = 0; i < unread.size() && i < 12; ++i) file.notNumbers.push_back(unread[i]);
+    for (std::size_t i = 0; i < unread.size() && i < 12; ++i) file.unread.push_back(unread[i]);
     if (staggered)
         notes.push_back("components of vectors lie up to half a cell apart (a staggered grid): drawn at one place");
     if (file.arrays.empty()) throw std::runtime_error("follows openPMD, but holds no meshes on even grids");

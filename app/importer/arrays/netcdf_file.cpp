@@ -92,6 +92,15 @@ nc_type baseOfEnum(int group, nc_type type, std::string& words) {
     return base;
 }
 
+std::string kindOfNc(int group, nc_type type) {
+    if (type == NC_CHAR || type == NC_STRING) return "text";
+    int kind = 0;
+    if (type <= NC_MAX_ATOMIC_TYPE ||
+        nc_inq_user_type(group, type, nullptr, nullptr, nullptr, nullptr, &kind) != NC_NOERR)
+        return {};
+    return kind == NC_COMPOUND ? "compound" : kind == NC_VLEN ? "lists" : kind == NC_OPAQUE ? "opaque" : "";
+}
+
 int unsignedOf(int vtkType) {
     switch (vtkType) {
     case VTK_SIGNED_CHAR:
@@ -175,6 +184,7 @@ void NetCdfFile::addVariable(int group, int id, const std::string& path) {
     variable.group = group;
     variable.id = id;
     variable.path = path + name;
+    variable.kind = kindOfNc(group, type);
     if (type > NC_MAX_ATOMIC_TYPE) type = baseOfEnum(group, type, variable.words);
     const NcType* known = ncTypeOf(type);
     if (known != nullptr) variable.vtkType = known->vtkType;

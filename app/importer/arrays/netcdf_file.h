@@ -21,6 +21,7 @@ struct NetCdfVariable {
     int group = 0, id = 0;
     std::string path;
     int vtkType = VTK_VOID; ///< VTK_CHAR: text; VTK_VOID: no numbers
+    std::string kind;       ///< "text", "compound"; "" of numbers
     Dims dims;
     std::vector<int> dimensions; ///< indices of NetCdfFile::dimensions
     Attributes attributes;

@@ -2,6 +2,7 @@
 #include "app/importer/arrays/hdf_layouts.h"
 #include "app/importer/readers/read_files.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace tessera::importer {
@@ -12,7 +13,10 @@ void openHdf(Source& source) {
     if (hdf.has("CGNSLibraryVersion")) throw std::runtime_error("is a CGNS file: give it the ending .cgns");
     if (hdf.has("meshes") && hdf.has("settings")) return openFluentHdf(source);
     if (hdf.has("VTKHDF")) return openVtkHdf(source);
-    if (!textOf(hdf.attributesOf(""), "_NCProperties").empty()) {
+    const bool netCdf = std::ranges::any_of(hdf.datasets(), [](const HdfDataset& dataset) {
+        return dataset.attributes.contains("_Netcdf4Dimid") || dataset.attributes.contains("_Netcdf4Coordinates");
+    });
+    if (netCdf || !textOf(hdf.attributesOf(""), "_NCProperties").empty()) {
         openNetCdf(source);
         return;
     }

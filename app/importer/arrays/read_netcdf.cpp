@@ -216,7 +216,7 @@ void openNetCdf(Source& source) {
     for (const NetCdfVariable& variable : reading.nc->variables) {
         if (reading.used.contains(variable.path)) continue;
         if (!isNumeric(variable)) {
-            reading.file.notNumbers.push_back("\"" + variable.path + "\"");
+            reading.file.unread.push_back("\"" + variable.path + "\" (" + variable.kind + ")");
             continue;
         }
         if (isTimeOfFile(variable) && !reading.file.onlyTime) {

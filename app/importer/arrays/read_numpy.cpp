@@ -216,7 +216,7 @@ ArrayFile readZip(const std::string& bytes) {
         name.resize(name.size() - 4);
         const NpyForm form = parseNpy(*member);
         if (form.vtkType == VTK_VOID)
-            file.notNumbers.push_back("\"" + name + "\" (" + form.descr.substr(0, 40) + ")");
+            file.unread.push_back("\"" + name + "\" (" + form.descr.substr(0, 40) + ")");
         else
             file.arrays.push_back(npyArray(std::move(member), form, name));
     }
