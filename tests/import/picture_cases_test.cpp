@@ -109,6 +109,12 @@ TEST_F(PictureCases, Png) {
     const std::string path = write("one.png", png);
     EXPECT_EQ(openFiles({path}, {}).info.lattice.size, glm::ivec3(10, 11, 1));
     expectCutsAreTold(path, path);
+    // A picture beside a stack is none of its slices.
+    for (const char* name : {"l/s1.png", "l/s2.png"}) write(name, png);
+    write("l/logo.png", read(stored("pictures/png_slices/s_0001.png")));
+    const Dataset stack = openFiles({(folder_ / "l").string()}, {});
+    EXPECT_EQ(stack.info.lattice.size, glm::ivec3(10, 11, 2));
+    EXPECT_EQ(stack.info.parameters.size(), 1u);
     // Pictures beside data are not the data.
     write("mixed/a.png", png);
     write("mixed/b.png", png);

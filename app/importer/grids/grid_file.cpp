@@ -46,8 +46,15 @@ std::size_t GridBytes::take(std::size_t begin, std::size_t count, char* to) {
 }
 
 std::string GridBytes::part(std::size_t begin, std::size_t count) {
-    std::string bytes(count, '\0');
-    bytes.resize(take(begin, count, bytes.data()));
+    constexpr std::size_t kOnce = 1 << 20; // so that a short file takes little memory
+    std::string bytes;
+    while (bytes.size() < count) {
+        const std::size_t had = bytes.size(), wanted = std::min(kOnce, count - had);
+        bytes.resize(had + wanted);
+        const std::size_t got = take(begin + had, wanted, bytes.data() + had);
+        bytes.resize(had + got);
+        if (got < wanted) break;
+    }
     return bytes;
 }
 

@@ -129,7 +129,13 @@ std::vector<std::string> expandFolder(const std::string& folder) {
             if (isPicture(*format) == pictures && paths.size() > best.size()) best = paths;
     };
     choose(false);
-    if (best.empty()) choose(true); // which may also stand beside data
+    if (best.empty()) { // pictures, which may also stand beside data, and beside the stack: a logo
+        choose(true);
+        std::map<std::string, std::size_t> alike;
+        for (const std::string& path : best) ++alike[numberedName(path).pattern];
+        const auto single = [&](const std::string& path) { return alike[numberedName(path).pattern] == 1; };
+        if (!std::ranges::all_of(best, single)) std::erase_if(best, single);
+    }
     if (best.empty()) throw Error("holds no data file", folder);
     std::sort(best.begin(), best.end());
     return best;
