@@ -33,7 +33,9 @@ public:
         const auto variables = tagged();
         for (std::size_t v = 0; v < variables; ++v) {
             skip(padded(size()));
-            std::vector<std::size_t> axes(size());
+            const std::size_t rank = size();
+            if (rank > 1024) throw std::runtime_error("has a damaged header"); // as NetCDF limits it
+            std::vector<std::size_t> axes(rank);
             for (std::size_t& axis : axes) axis = size();
             skipAttributes();
             const double one = bytesOf(number(4));
