@@ -34,7 +34,7 @@ public:
         for (std::size_t v = 0; v < variables; ++v) {
             skip(padded(size()));
             const std::size_t rank = size();
-            if (rank > 1024) throw std::runtime_error("has a damaged header");
+            if (rank > 1024) throw std::runtime_error("has a damaged header"); // as NetCDF limits it
             std::vector<std::size_t> axes(rank);
             for (std::size_t& axis : axes) axis = size();
             skipAttributes();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "app/importer/readers/source.h"
+
 #include <algorithm>
 #include <bit>
 #include <cstddef>
@@ -22,6 +24,8 @@ struct HeaderBytes {
         if (swap) std::reverse(one, one + sizeof(T));
         return std::bit_cast<T>(one);
     }
+    /// A float32 as the decimal number it was made from, as far as that can be told.
+    double real(std::size_t place) const { return meantTime(double(at<float>(place))); }
     /// A text of so many bytes at most, up to its first zero.
     std::string text(std::size_t place, std::size_t most) const {
         const std::string_view part = std::string_view(bytes).substr(std::min(place, bytes.size()), most);

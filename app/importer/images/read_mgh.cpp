@@ -39,9 +39,8 @@ void placeMgh(const HeaderBytes& in, volume::StoredImage& image) {
     if (in.at<std::int16_t>(28) != 0) {
         for (std::size_t axis = 0; axis < 3; ++axis)
             for (std::size_t row = 0; row < 3; ++row)
-                image.grid.steps[int(axis)][int(row)] =
-                    double(in.at<float>(30 + 4 * axis)) * double(in.at<float>(42 + 4 * (3 * axis + row)));
-        for (std::size_t row = 0; row < 3; ++row) middle[int(row)] = double(in.at<float>(78 + 4 * row));
+                image.grid.steps[int(axis)][int(row)] = in.real(30 + 4 * axis) * in.real(42 + 4 * (3 * axis + row));
+        for (std::size_t row = 0; row < 3; ++row) middle[int(row)] = in.real(78 + 4 * row);
     } else {
         image.notes.emplace_back("the file states no orientation: FreeSurfer's usual one (coronal, 1 mm) is taken");
     }

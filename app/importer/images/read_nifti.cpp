@@ -34,6 +34,7 @@ constexpr int kIntentLabel = 1002, kIntentDisplacement = 1006, kIntentVector = 1
 /// The fields of either version.
 struct NiftiHeader {
     bool analyze = false, pair = false;
+    int bytes = 348;
     std::array<double, 8> dim{}, pixdim{};
     int type = 0, intent = 0, units = 0, qform = 0, sform = 0;
     double begin = 0, slope = 0, intercept = 0, toffset = 0;
@@ -46,7 +47,7 @@ struct NiftiHeader {
 void readFields1(const HeaderBytes& in, NiftiHeader& header) {
     for (std::size_t i = 0; i < 8; ++i) {
         header.dim[i] = in.at<std::int16_t>(40 + 2 * i);
-        header.pixdim[i] = double(in.at<float>(76 + 4 * i));
+        header.pixdim[i] = in.real(76 + 4 * i);
     }
     header.type = in.at<std::int16_t>(70);
     header.begin = double(in.at<float>(108));
@@ -61,11 +62,11 @@ void readFields1(const HeaderBytes& in, NiftiHeader& header) {
     header.intercept = double(in.at<float>(116));
     header.intent = in.at<std::int16_t>(68);
     header.units = static_cast<unsigned char>(in.bytes[123]);
-    header.toffset = double(in.at<float>(136));
+    header.toffset = in.real(136);
     header.qform = in.at<std::int16_t>(252);
     header.sform = in.at<std::int16_t>(254);
-    for (std::size_t i = 0; i < 6; ++i) header.quaternion[i] = double(in.at<float>(256 + 4 * i));
-    for (std::size_t i = 0; i < 12; ++i) header.rows[i] = double(in.at<float>(280 + 4 * i));
+    for (std::size_t i = 0; i < 6; ++i) header.quaternion[i] = in.real(256 + 4 * i);
+    for (std::size_t i = 0; i < 12; ++i) header.rows[i] = in.real(280 + 4 * i);
     header.intentName = in.text(328, 16);
 }
 
@@ -98,6 +99,7 @@ NiftiHeader readNiftiHeader(const std::string& path, bool& bigEndian) {
         if (size != 348 && size != 540) continue;
         bigEndian = big;
         if (in.bytes.size() < std::size_t(size)) break;
+        header.bytes = size;
         if (size == 348)
             readFields1(in, header);
         else
@@ -127,12 +129,11 @@ NiftiType typeOfNifti(int code) {
         {1792, StoredType::F64, 2, ComponentKind::Complex},  {2304, StoredType::U8, 4, ComponentKind::Colors}};
     for (const NiftiType& type : kTypes)
         if (type.code == code) return type;
-    const bool known = code == 1 || code == 1536 || code == 2048;
-    throw std::runtime_error((known ? code == 1 ? "has samples of 1 bit" : "has samples of 128 bits"
-                                    : "has samples of "
-                                      "unknown type " +
-                                          std::to_string(code)) +
-                             std::string(", which are not read: write them as float32 (nibabel: set_data_dtype)"));
+    std::string what = "of unknown type " + std::to_string(code);
+    if (code == 1) what = "of 1 bit";
+    if (code == 1536 || code == 2048) what = "of 128 bits";
+    throw std::runtime_error("has samples " + what +
+                             ", which are not read: write them as float32 (nibabel: set_data_dtype)");
 }
 
 struct Affine {
@@ -259,8 +260,8 @@ void setUnits(const NiftiHeader& header, StoredImage& image) {
     image.timeName = unit.name;
     const double step = header.pixdim[4];
     const bool stated = std::isfinite(step) && step > 0;
-    const double first = std::isfinite(header.toffset) ? meantTime(header.toffset) : 0;
-    image.times = volume::evenTimes(image.frames, first, stated ? meantTime(step) : 1);
+    const double first = std::isfinite(header.toffset) ? header.toffset : 0;
+    image.times = volume::evenTimes(image.frames, first, stated ? step : 1);
     if (!stated) image.notes.emplace_back("the file states no step between its times: they are counted");
 }
 
@@ -298,7 +299,8 @@ std::string headerOf(const std::string& path) {
 void setAxesOfNifti(const NiftiHeader& header, int components, StoredImage& image) {
     std::vector<StoredAxis> axes{{StoredAxis::Along::Components, std::size_t(components)}};
     for (std::size_t i = 1; i <= 7; ++i) {
-        const double size = i <= std::size_t(header.dim[0]) ? header.dim[i] : 1;
+        double size = i <= std::size_t(header.dim[0]) ? header.dim[i] : 1;
+        if (i > 3 && size == 0) size = 1; // some writers leave axes without meaning at 0
         if (!(size >= 1 && size <= 1e9)) throw std::runtime_error("states a size that is out of range");
         axes.push_back({i < 4   ? StoredAxis::Along::Space
                         : i > 4 ? StoredAxis::Along::Components
@@ -334,10 +336,11 @@ void openNifti(Source& source) {
         samples = besides(source.path, image.files.names[0]);
     }
     image.files.encoding = compressionOf(samples);
-    const double least = header.pair ? 0 : source.path.empty() ? 0 : 348;
-    const double begin = std::isfinite(header.begin) ? std::max(std::abs(header.begin), least) : least;
+    // In one file the samples lie behind the header and the four bytes that tell of extensions.
+    const double least = header.pair ? 0 : double(header.bytes) + 4;
+    const double begin = std::isfinite(header.begin) ? std::max(header.begin, least) : least;
     if (!(begin < 1e15)) throw std::runtime_error("states a place of its samples that is out of range");
-    image.files.byteSkip = std::int64_t(header.begin == 0 && !header.pair ? 352 : begin);
+    image.files.byteSkip = std::int64_t(begin);
     placeNifti(header, image);
     setUnits(header, image);
     std::string name(volume::trimmed(header.intentName));

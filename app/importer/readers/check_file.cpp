@@ -54,8 +54,11 @@ std::string besides(const std::string& file, const std::string& name) {
 
 std::string readPart(const std::string& path, std::size_t begin, std::size_t count) {
     std::ifstream in(path, std::ios::binary);
+    in.seekg(0, std::ios::end);
+    const std::streamoff end = in.tellg(); // a count from a damaged header must take no memory
+    const std::size_t left = end > 0 && std::size_t(end) > begin ? std::size_t(end) - begin : 0;
     in.seekg(static_cast<std::streamoff>(begin));
-    std::string text(count, '\0');
+    std::string text(std::min(count, left), '\0');
     in.read(text.data(), static_cast<std::streamsize>(count));
     text.resize(static_cast<std::size_t>(in.gcount()));
     return text;
