@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <stdexcept>
 #include <vtkAbstractArray.h>
 #include <vtkAppendFilter.h>
@@ -182,6 +183,9 @@ std::vector<Block> readBlocks(const Source& source, int time) {
                 kept.back().data = uprightImage(image, kept.back().note);
         }
     if (kept.empty()) throw std::runtime_error("holds no grid and no cells");
+    std::map<std::string, int> named; // blocks of the same name are told apart
+    for (Block& block : kept)
+        if (const int count = ++named[block.name]; count > 1) block.name += " (" + std::to_string(count) + ")";
     for (const Block& block : kept) {
         const double* box = block.data->GetBounds();
         const bool flat = box[0] == box[1] || box[2] == box[3] || box[4] == box[5];

@@ -198,10 +198,12 @@ TEST_F(TextFormats, TecplotStructured) {
 
 TEST_F(TextFormats, TecplotBlocksOfCellsAndRepeatedNumbers) {
     const std::string path =
-        write("a.dat", "VARIABLES = X Y Z T p\nZONE NODES=12, ELEMENTS=2, DATAPACKING=BLOCK, ZONETYPE=FEBRICK, "
-                       "VARLOCATION=([5]=CELLCENTERED)\n"
-                       "0 1 2 0 1 2 0 1 2 0 1 2\n3*0 3*1 3*0 3*1\n6*0 6*1\n"
-                       "0 1 2 0 1 2 0 1 2 0 1 2\n100 200\n1 2 5 4 7 8 11 10\n2 3 6 5 8 9 12 11\n");
+        write("a.dat",
+              "VARIABLES = X Y Z T p\nZONE NODES=12, ELEMENTS=2, DATAPACKING=BLOCK, ZONETYPE=FEBRICK, "
+              "VARLOCATION=([5]=CELLCENTERED)\n"
+              "0 1 2 0 1 2 0 1 2 0 1 2\n3*0 3*1 3*0 3*1\n6*0 6*1\n"
+              "0 1 2 0 1 2 0 1 2 0 1 2\n100 200\n1 2 5 4 7 8 11 10\n3 6 5 2 9 12 11 8\n"); // cut within its last number
+                                                                                           // it would be whole
     ImportOptions options;
     options.gridSize = {5, 2, 2};
     const Dataset dataset = openFiles({path}, options);

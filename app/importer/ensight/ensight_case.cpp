@@ -76,7 +76,9 @@ class CaseLines {
 public:
     explicit CaseLines(const std::string& path) {
         case_.path = path;
-        std::istringstream in(readWhole(path));
+        const std::string text = readWhole(path);
+        openEnd_ = !text.ends_with('\n');
+        std::istringstream in(text);
         for (std::string line; std::getline(in, line);) {
             line = trim(line.substr(0, line.find('#')));
             if (!line.empty()) lines_.push_back(line);
@@ -90,6 +92,10 @@ public:
             const std::size_t colon = line.find(':');
             if (colon == std::string::npos) {
                 section = lower(line);
+                static constexpr std::string_view kSections[] = {
+                    "format", "geometry", "variable", "time", "file", "material", "scripts", "block_continuation"};
+                if (isCut() && std::ranges::find(kSections, section) == std::end(kSections) && !numberIn(section))
+                    throw std::runtime_error("ends within a line: truncated");
                 continue;
             }
             const std::string key = trim(lower(line.substr(0, colon)));
@@ -114,6 +120,9 @@ public:
     }
 
 private:
+    /// Whether the line just read is the last and may have been cut: it needs no line end, but must make sense.
+    bool isCut() const { return openEnd_ && at_ == lines_.size(); }
+
     void note(const std::string& text) {
         if (std::ranges::find(case_.notes, text) == case_.notes.end()) case_.notes.push_back(text);
     }
@@ -173,6 +182,7 @@ private:
         if (what == "tensor asym") variable.kind = Kind::Tensor;
         const bool known = what == "scalar" || variable.kind != Kind::Scalar;
         variable.ofCells = where == "element";
+        if (isCut() && words.size() < 2) throw std::runtime_error("ends within a line: truncated");
         if (!known || (where != "node" && where != "element")) {
             note("\"" + key + ": " + value.substr(0, 60) + "\" is left out");
             return;
@@ -293,7 +303,7 @@ private:
     EnSightCase case_;
     std::vector<std::string> lines_;
     std::size_t at_ = 0;
-    bool typed_ = false;
+    bool typed_ = false, openEnd_ = false;
     int set_ = 1, fileSet_ = 1;
     long start_ = 0, increment_ = 1;
     std::map<int, std::size_t> steps_;
@@ -370,34 +380,6 @@ std::vector<double> allTimes(const EnSightCase& about) {
     for (const double time : all)
         if (out.empty() || time > out.back() + slack) out.push_back(time);
     return out;
-}
-
-std::vector<std::string> casesOfServers(const std::string& path) {
-    std::istringstream in(readWhole(path));
-    std::vector<std::string> cases;
-    std::string folder, named;
-    const auto add = [&] {
-        if (named.empty()) return;
-        const std::string beside = besides(path, named);
-        cases.push_back(fs::exists(beside) || folder.empty() ? beside
-                                                             : besides(path, (fs::path(folder) / named).string()));
-        named.clear();
-        folder.clear();
-    };
-    for (std::string line; std::getline(in, line);) {
-        const std::size_t colon = line.find(':');
-        if (colon == std::string::npos) continue;
-        const std::string key = trim(lower(line.substr(0, colon)));
-        std::string value = trim(line.substr(colon + 1));
-        if (value.starts_with('"') && value.ends_with('"') && value.size() > 1)
-            value = value.substr(1, value.size() - 2);
-        if (key == "machine id") add();
-        if (key == "data_path" || key == "data path") folder = value;
-        if (key == "casefile") named = value;
-    }
-    add();
-    if (cases.empty()) throw std::runtime_error("names no case file (casefile:)");
-    return cases;
 }
 
 } // namespace tessera::importer

@@ -14,6 +14,7 @@
 #include <set>
 #include <stdexcept>
 #include <vtkAppendFilter.h>
+#include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkCompositeDataSet.h>
 #include <vtkFloatArray.h>
@@ -132,6 +133,15 @@ std::vector<std::string> namesOf(const std::vector<EnSightPart>& parts) {
     return names;
 }
 
+void noteOnce(std::vector<std::string>& notes, const std::string& note) {
+    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+}
+
+/// Whether a part is a volume: boundaries often have no values, and are not shown.
+bool isSolid(vtkDataSet& data) {
+    return data.GetNumberOfCells() > 0 && data.GetCell(0)->GetCellDimension() == 3;
+}
+
 struct NamedBlock {
     std::string name;
     vtkSmartPointer<vtkDataSet> data;
@@ -152,7 +162,11 @@ void addBlocks(const EnSightCase& about, double time, KnownParts& known, std::ve
             EnSightBytes file(place.path, place.step, geometry.form);
             const auto values = readEnSightValues(file, geometry.parts, componentsOf(variable.kind), variable.ofCells);
             for (std::size_t p = 0; p < grids.size(); ++p)
-                if (values[p] && grids[p].data != nullptr) addValues(variable, *values[p], grids[p]);
+                if (values[p] && grids[p].data != nullptr)
+                    addValues(variable, *values[p], grids[p]);
+                else if (grids[p].data != nullptr && isSolid(*grids[p].data))
+                    noteOnce(notes,
+                             variable.name + " has no values in part " + std::to_string(geometry.parts[p].number));
         });
     }
     const std::vector<std::string> names = namesOf(geometry.parts);
@@ -161,7 +175,7 @@ void addBlocks(const EnSightCase& about, double time, KnownParts& known, std::ve
         if (grids[p].data == nullptr) continue;
         const std::string left = "part " + names[p] + ": its " + std::to_string(grids[p].left) +
                                  " surface cells, lines and points beside cells of more dimensions are left out";
-        if (grids[p].left > 0 && std::ranges::find(notes, left) == notes.end()) notes.push_back(left);
+        if (grids[p].left > 0) noteOnce(notes, left);
         const auto same = std::find_if(blocks.begin(), blocks.begin() + std::ptrdiff_t(own),
                                        [&](const NamedBlock& block) { return block.name == names[p]; });
         if (same == blocks.begin() + std::ptrdiff_t(own)) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 namespace tessera::importer {
 
@@ -59,9 +60,7 @@ private:
             readTree(section);
             break;
         case kInterface:
-            for (std::int64_t f = headerNumber(section, 0, 16);
-                 f >= 1 && f <= headerNumber(section, 1, 16) && f < kMost; ++f)
-                children_.insert(f - 1);
+            pieces_.emplace_back(headerNumber(section, 0, 16), headerNumber(section, 1, 16));
             break;
         case kNonConformal:
             for (std::size_t at = section.begin; !file_.atEnd(section, at); file_.whole(section, at))
@@ -78,7 +77,8 @@ private:
     /// Zone, first and last number; the zone 0 states how many there are in all.
     static Span spanOf(const FluentSection& section) {
         const Span span{headerNumber(section, 0, 16), headerNumber(section, 1, 16), headerNumber(section, 2, 16)};
-        if (span.zone < 0 || span.first < 0 || span.last >= kMost || (span.zone > 0 && span.last < span.first - 1))
+        if (span.zone < 0 || span.first < 0 || span.last < 0 || span.last >= kMost ||
+            (span.zone > 0 && span.last < span.first - 1))
             throw std::runtime_error("is damaged in the header of a section");
         return span;
     }
@@ -161,6 +161,10 @@ private:
             if (f >= 0 && std::size_t(f) < use_.size()) use_[std::size_t(f)] = 0;
         for (const std::int64_t f : children_) // pieces of the faces at an interface, beside these
             if (f >= 0 && std::size_t(f) < use_.size()) use_[std::size_t(f)] = 0;
+        for (const auto& [first, last] : pieces_)
+            for (std::int64_t f = std::max<std::int64_t>(first, 1); f <= std::min(last, std::int64_t(use_.size())); ++f)
+                use_[std::size_t(f - 1)] = 0;
+        if (case_.mesh.cells > 2 * case_.mesh.faces()) throw std::runtime_error("has more cells than faces for them");
         case_.faces = facesOfCells(case_.mesh, use_);
         std::ranges::sort(case_.zones, {}, &FluentZone::first);
         if (case_.zones.empty()) case_.zones.push_back({0, "", 0, case_.mesh.cells});
@@ -172,6 +176,7 @@ private:
     FluentCase case_;
     std::map<std::int64_t, std::string> names_;
     std::set<std::int64_t> parents_, children_;
+    std::vector<std::pair<std::int64_t, std::int64_t>> pieces_; ///< of faces at interfaces, from 1
     std::vector<std::uint8_t> use_;
     std::int64_t statedFaces_ = 0, statedPoints_ = 0;
 };

@@ -39,6 +39,17 @@ struct OpenedGmsh {
     std::vector<double> times;
 };
 
+std::set<int> groupsOf(const GmshMesh& mesh) {
+    std::set<int> groups;
+    for (const GmshCell& cell : mesh.cells) groups.insert(cell.group);
+    return groups;
+}
+
+std::string nameOfGroup(const GmshMesh& mesh, int group) {
+    if (const auto name = mesh.groups.find(group); name != mesh.groups.end()) return name->second;
+    return group == 0 ? std::string("rest") : "group " + std::to_string(group);
+}
+
 GmshBlock blockOfGroup(const GmshMesh& mesh, int group,
                        const std::unordered_map<std::int64_t, std::size_t>& pointOfId) {
     GmshBlock block;
@@ -66,14 +77,16 @@ GmshBlock blockOfGroup(const GmshMesh& mesh, int group,
         groups->InsertNextValue(group);
     }
     block.grid->SetPoints(points);
-    const auto name = mesh.groups.find(group);
-    block.name = name != mesh.groups.end() ? name->second
-                                           : (group == 0 ? std::string("rest") : "group " + std::to_string(group));
+    block.name = nameOfGroup(mesh, group);
     if (mesh.values.empty()) {
         block.grid->GetCellData()->AddArray(groups);
+        std::string text; // of all groups, since blocks have one array in common
+        for (const int any : groupsOf(mesh))
+            text +=
+                (text.empty() ? "" : "; ") + ("physical%20group " + std::to_string(any)) + " " + nameOfGroup(mesh, any);
         vtkNew<vtkStringArray> labels;
         labels->SetName("labels");
-        labels->InsertNextValue("physical%20group " + std::to_string(group) + " " + block.name);
+        labels->InsertNextValue(text);
         block.grid->GetFieldData()->AddArray(labels);
     }
     return block;
@@ -126,9 +139,7 @@ void openGmsh(Source& source) {
     const auto opened = std::make_shared<OpenedGmsh>();
     std::unordered_map<std::int64_t, std::size_t> pointOfId;
     for (std::size_t n = 0; n < mesh.pointIds.size(); ++n) pointOfId.emplace(mesh.pointIds[n], n);
-    std::set<int> groups;
-    for (const GmshCell& cell : mesh.cells) groups.insert(cell.group);
-    for (const int group : groups) opened->blocks.push_back(blockOfGroup(mesh, group, pointOfId));
+    for (const int group : groupsOf(mesh)) opened->blocks.push_back(blockOfGroup(mesh, group, pointOfId));
     source.notes = mesh.notes;
     if (mesh.values.empty()) source.notes.push_back("holds no values: physical groups are shown as labels");
     std::set<double> times;

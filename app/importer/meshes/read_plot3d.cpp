@@ -65,7 +65,7 @@ vtkSmartPointer<vtkStructuredGrid> gridOfBlock(const OpenedPlot3d& opened, std::
     }
     grid->SetPoints(places);
     if (!form.blanks) return grid;
-    vtkNew<vtkUnsignedCharArray> valid; // 0: no point; others tell kinds of boundaries and of overlaps
+    vtkNew<vtkUnsignedCharArray> valid;  // 0: no point; others tell kinds of boundaries and of overlaps
     valid->SetName("vtkValidPointMask"); // which, unlike hidden points, takes no cells away
     for (std::size_t n = 0; n < points; ++n) {
         const std::size_t at = begin + axes * points * step + n * opened.bytes->step(4);

@@ -38,6 +38,18 @@ bool beginsLikeDicom(std::string_view head) {
     return first && ((isLetter(head[4]) && isLetter(head[5])) || brief);
 }
 
+bool isDigits(std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// Removes a number after `mark` from the end of a name; false if there is none.
+bool removeNumber(std::string& name, std::string_view mark) {
+    const std::size_t at = name.rfind(mark);
+    if (at == std::string::npos || !isDigits(std::string_view(name).substr(at + mark.size()))) return false;
+    name.resize(at);
+    return true;
+}
+
 } // namespace
 
 std::span<const FileFormat> fileFormats() {
@@ -47,6 +59,11 @@ std::span<const FileFormat> fileFormats() {
 const FileFormat* formatOf(std::string_view path) {
     std::string name(path.substr(path.find_last_of('/') == std::string_view::npos ? 0 : path.find_last_of('/') + 1));
     std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    std::string parts = name; // Exodus of several processes: a.e.4.0
+    if (removeNumber(parts, ".") && removeNumber(parts, ".") && parts.ends_with(".e"))
+        return formatNamed("Exodus in parts");
+    std::string later = name; // of a mesh that changed: a.e-s002
+    if (removeNumber(later, "-s") && later.ends_with(".e")) name = later;
     const FileFormat* best = nullptr;
     std::size_t longest = 0;
     for (const FileFormat& format : kFormats)
