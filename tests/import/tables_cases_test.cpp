@@ -83,7 +83,10 @@ TEST_F(TableCases, ComsolGridForm) {
     const Field t = field(dataset, "T");
     for (int x = 0; x < 8; ++x) EXPECT_EQ(t.value(dataset.info.lattice.index({x, 4, 2})), 343 + x);
     EXPECT_EQ(unit(dataset, "T"), "K");
-    const std::string path = write("grid.txt", read(given("tables/comsol_grid.txt")));
+    std::string text = read(given("tables/comsol_grid.txt"));
+    text.resize(text.find_last_not_of(" \n") + 1);
+    text.resize(text.find_last_of(" \n") + 1); // a number of one digit: cuts within the last one are not seen
+    const std::string path = write("grid.txt", text + "7\n");
     expectCutsAreTold(path, path, {}, 30);
 }
 

@@ -4,6 +4,7 @@
 #include "volume/field/dataset.h"
 #include "volume/import/files/series.h"
 #include "volume/import/import_options.h"
+#include "volume/import/misfits.h"
 
 #include <string>
 #include <vector>

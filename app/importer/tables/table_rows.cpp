@@ -74,6 +74,11 @@ bool isTecplot(std::string_view text) {
     return false;
 }
 
+/// Whether a last field without a line end goes on: "", "2.", "1e-".
+bool endsWithin(std::string_view field) {
+    return field.empty() || std::string_view(".,+-eE").find(field.back()) != std::string_view::npos;
+}
+
 class TableReader {
 public:
     explicit TableReader(std::vector<std::string>& notes) : notes_(notes) {}
@@ -223,7 +228,7 @@ private:
         if (fields_.size() == columns + 1 && fields_[columns].empty()) fields_.dropLast();
         if (fields_.size() == columns && line.text == heading_) return; // the heading of a further zone
         if (table_.rows() == 0 && isBeforeRows(line)) return;
-        const bool cut = !line.whole && (fields_.size() < columns || (columns > 0 && fields_[columns - 1].empty()));
+        const bool cut = !line.whole && (fields_.size() < columns || endsWithin(fields_[columns - 1]));
         if (fields_.size() != columns || cut)
             throw std::runtime_error("line " + std::to_string(line.number) + " has " + std::to_string(fields_.size()) +
                                      " fields, its heading " + std::to_string(columns) +
