@@ -365,6 +365,11 @@ void FoamCursor::expectEnd() {
     while (more()) {
         const std::string_view next = word();
         last = next.back();
+        if (depth == 0 && next.front() == '#' && more()) { // #remove "inlet.*" needs no semicolon
+            word();
+            last = ';';
+            continue;
+        }
         if (next == "(" || next == "{" || next == "[") ++depth;
         if (next == ")" || next == "}" || next == "]") --depth;
     }

@@ -109,7 +109,10 @@ void leaveOutUndivided(FoamSeries& series) {
         if (!region.empty()) sum += series.meshes[region].cells;
     const auto whole = series.meshes.find("");
     if (regions.size() < 2 || !regions.front().empty() || whole == series.meshes.end()) return;
-    if (whole->second.cells != sum) return;
+    const bool others = std::ranges::any_of(series.fields, [](const auto& time) {
+        return std::ranges::any_of(time, [](const auto& part) { return !part.first.empty() && !part.second.empty(); });
+    });
+    if (whole->second.cells != sum || !others) return;
     NameList names;
     for (auto& time : series.fields) {
         for (const auto& [name, field] : time[""]) names.add(name);
