@@ -152,7 +152,9 @@ TEST_F(FoamTexts, ValuesMayBeNamed) {
     write("c/0/U", head("volVectorField") +
                        "#include \"include/first\"\ndimensions [0 1 -1 0 0];\ninternalField uniform "
                        "$flow;\nboundaryField { #includeEtc \"caseDicts/setConstraintTypes\" }\n");
+    write("c/0/q", scalars("uniform 4") + "\n#remove \"inlet.*\"\n");
     const OpenedCase opened = open();
+    EXPECT_EQ(opened.mean("q"), 4);
     EXPECT_EQ(opened.mean("T"), 350);
     EXPECT_EQ(opened.mean("p"), 0.5);
     EXPECT_EQ(opened.about("p").unit, "Pa");

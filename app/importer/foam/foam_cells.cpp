@@ -28,30 +28,28 @@ struct CellFaces {
     PointList points; ///< each once, in ascending order
 };
 
-/// Whether a face has the edge between two points.
-bool hasEdge(const PointList& face, std::int32_t a, std::int32_t b) {
-    for (std::size_t i = 0; i < face.size(); ++i) {
-        const std::int32_t from = face[i], to = face[(i + 1) % face.size()];
-        if ((from == a && to == b) || (from == b && to == a)) return true;
-    }
-    return false;
-}
-
 /// The points that edges lead to from those of a base, in its order; nothing where it is not one for each.
-std::optional<PointList> oppositeOf(const CellFaces& cell, const PointList& base) {
-    PointList opposite;
-    for (const std::int32_t corner : base) {
-        std::int32_t found = -1;
-        for (const std::int32_t point : cell.points) {
-            if (std::ranges::find(base, point) != base.end()) continue;
-            if (std::ranges::none_of(cell.faces, [&](const PointList& face) { return hasEdge(face, corner, point); }))
-                continue;
-            if (found >= 0) return std::nullopt;
-            found = point;
+std::optional<PointList> oppositeOf(const CellFaces& cell, std::size_t base) {
+    const PointList& corners = cell.faces[base];
+    const auto isCorner = [&](std::int32_t point) { return std::ranges::find(corners, point) != corners.end(); };
+    PointList opposite(corners.size(), -1);
+    for (std::size_t f = 0; f < cell.faces.size(); ++f)
+        for (std::size_t i = 0; f != base && i < cell.faces[f].size(); ++i) {
+            const PointList& face = cell.faces[f];
+            const auto corner = std::ranges::find(corners, face[i]);
+            if (corner == corners.end()) continue;
+            for (const std::size_t step : {std::size_t(1), face.size() - 1}) {
+                const std::int32_t point = face[(i + step) % face.size()];
+                if (isCorner(point)) continue;
+                std::int32_t& known = opposite[std::size_t(corner - corners.begin())];
+                if (known >= 0 && known != point) return std::nullopt;
+                known = point;
+            }
         }
-        if (found < 0 || std::ranges::find(opposite, found) != opposite.end()) return std::nullopt;
-        opposite.push_back(found);
-    }
+    for (std::size_t i = 0; i < opposite.size(); ++i)
+        if (opposite[i] < 0 || std::find(opposite.begin(), opposite.begin() + std::ptrdiff_t(i), opposite[i]) !=
+                                   opposite.begin() + std::ptrdiff_t(i))
+            return std::nullopt;
     return opposite;
 }
 
@@ -76,7 +74,7 @@ std::optional<std::pair<int, PointList>> shapeOf(const CellFaces& cell) {
         if (out.size() != points) return std::nullopt;
         return std::pair{pyramid ? VTK_PYRAMID : VTK_TETRA, out};
     }
-    const std::optional<PointList> opposite = oppositeOf(cell, *base);
+    const std::optional<PointList> opposite = oppositeOf(cell, std::size_t(base - cell.faces.begin()));
     if (!opposite) return std::nullopt;
     out.insert(out.end(), opposite->begin(), opposite->end());
     if (wedge) { // the base of VTK's wedge turns the other way

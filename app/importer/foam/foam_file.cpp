@@ -262,8 +262,7 @@ std::size_t FoamCursor::binaryList(std::size_t bytes, std::size_t other, std::si
     throw std::runtime_error("has a binary list of another length than it states");
 }
 
-std::vector<std::int32_t> FoamCursor::labels(std::size_t most) {
-    std::vector<std::int32_t> out;
+void FoamCursor::addLabels(std::size_t most, std::vector<std::int32_t>& out) {
     const auto add = [&](std::int64_t value) {
         if (value < -1 || value > std::numeric_limits<std::int32_t>::max())
             throw std::runtime_error("has the number " + std::to_string(value) + ", which is no index");
@@ -272,35 +271,32 @@ std::vector<std::int32_t> FoamCursor::labels(std::size_t most) {
     const std::int64_t stated = count(most);
     if (stated == 0) {
         if (peek() == '(') skipBrackets();
-        return out;
+        return;
     }
-    const auto wanted = std::size_t(std::max<std::int64_t>(stated, 0));
+    const std::size_t wanted = std::size_t(std::max<std::int64_t>(stated, 0)), before = out.size();
     if (stated > 0 && peek() == '{') { // also in binary files
         ++at_;
         add(label());
         expect('}');
-        out.resize(wanted, out.front());
-        return out;
+        out.resize(before + wanted, out.back());
+        return;
     }
     if (file_.binary && stated > 0) {
         const std::size_t each = binaryList(file_.labelBytes, 12 - file_.labelBytes, wanted);
-        out.reserve(wanted);
         const char* from = file_.bytes.data() + at_;
         for (std::size_t i = 0; i < wanted; ++i)
             add(each == 8 ? foamNumberAt<std::int64_t>(from + 8 * i, file_.swap)
                           : foamNumberAt<std::int32_t>(from + 4 * i, file_.swap));
         at_ += wanted * each + 1;
-        return out;
+        return;
     }
     expect('(');
     if (stated > 0 && wanted > file_.bytes.size() - at_) endsEarly();
-    out.reserve(wanted);
     while (peek() != ')') add(label());
     ++at_;
-    if (stated > 0 && out.size() != wanted)
-        throw std::runtime_error("has " + std::to_string(out.size()) + " numbers in a list of " +
+    if (stated > 0 && out.size() - before != wanted)
+        throw std::runtime_error("has " + std::to_string(out.size() - before) + " numbers in a list of " +
                                  std::to_string(wanted));
-    return out;
 }
 
 void FoamCursor::value(double* out, std::size_t components) {
@@ -369,6 +365,11 @@ void FoamCursor::expectEnd() {
     while (more()) {
         const std::string_view next = word();
         last = next.back();
+        if (depth == 0 && next.front() == '#' && more()) { // #remove "inlet.*" needs no semicolon
+            word();
+            last = ';';
+            continue;
+        }
         if (next == "(" || next == "{" || next == "[") ++depth;
         if (next == ")" || next == "}" || next == "]") --depth;
     }

@@ -61,7 +61,13 @@ public:
     double number();
     std::int64_t label();
     /// A list of labels: "3(0 1 2)", "3{7}", "(0 1 2)", or binary. More than `most` are refused.
-    std::vector<std::int32_t> labels(std::size_t most);
+    std::vector<std::int32_t> labels(std::size_t most) {
+        std::vector<std::int32_t> out;
+        addLabels(most, out);
+        return out;
+    }
+    /// The same, appended.
+    void addLabels(std::size_t most, std::vector<std::int32_t>& out);
     /// A list of values of so many numbers each: "2((0 0 1) (1 2 3))", "2{(0 0 1)}", or binary. More than `most` values
     /// are refused.
     std::vector<double> numbers(std::size_t components, std::size_t most);

@@ -40,9 +40,10 @@ void readFaces(FoamCursor& in, const FoamFile& file, FoamMesh& mesh) {
     } else {
         const std::int64_t stated = in.count(mostIn(file));
         if (stated != 0 || in.peek() == '(') in.expect('(');
+        mesh.faceBegin.reserve(std::size_t(std::max<std::int64_t>(stated, 0)) + 1);
+        mesh.facePoints.reserve(4 * mesh.faceBegin.capacity());
         while (in.peek() != ')' && !(stated == 0 && in.peek() == 0)) {
-            const std::vector<std::int32_t> face = in.labels(mostIn(file));
-            mesh.facePoints.insert(mesh.facePoints.end(), face.begin(), face.end());
+            in.addLabels(mostIn(file), mesh.facePoints);
             mesh.faceBegin.push_back(mesh.facePoints.size());
         }
         if (in.peek() == ')') in.expect(')');

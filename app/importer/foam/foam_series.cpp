@@ -109,7 +109,10 @@ void leaveOutUndivided(FoamSeries& series) {
         if (!region.empty()) sum += series.meshes[region].cells;
     const auto whole = series.meshes.find("");
     if (regions.size() < 2 || !regions.front().empty() || whole == series.meshes.end()) return;
-    if (whole->second.cells != sum) return;
+    const bool others = std::ranges::any_of(series.fields, [](const auto& time) {
+        return std::ranges::any_of(time, [](const auto& part) { return !part.first.empty() && !part.second.empty(); });
+    });
+    if (whole->second.cells != sum || !others) return;
     NameList names;
     for (auto& time : series.fields) {
         for (const auto& [name, field] : time[""]) names.add(name);
@@ -191,6 +194,18 @@ void sayWhatIsLeft(FoamSeries& series, const LeftOut& left) {
                                " cells are other polyhedra: each is divided into tetrahedra, which have its value.");
 }
 
+/// Throws where no field is left.
+void wantFields(const FoamSeries& series, const LeftOut& left) {
+    for (const auto& time : series.fields)
+        for (const auto& [region, fields] : time)
+            if (!fields.empty()) return;
+    if (!left.unread.empty())
+        throw std::runtime_error("has no field that can be read: " + left.unread.begin()->second.text());
+    throw std::runtime_error("has a mesh and no values: there is no field of cells or points in " +
+                             std::string(series.foam.times.empty() ? "it, and no folder of a time (such as 0)"
+                                                                   : "the folders of its times"));
+}
+
 } // namespace
 
 const FoamSeries::Mesh& FoamSeries::meshAt(const std::string& region, std::size_t time) {
@@ -222,18 +237,12 @@ FoamSeries seriesOfFoam(FoamCase given) {
         for (const std::string& region : foam.regions)
             if (foam.isStill(region) || foam.hasMeshAt(region, t)) finder.look(region, t);
     leaveOutDivision(series);
-    const bool any = std::ranges::any_of(series.fields, [](const auto& time) {
-        return std::ranges::any_of(time, [](const auto& region) { return !region.second.empty(); });
-    });
-    if (!any && left.unread.empty())
-        throw std::runtime_error(
-            "has a mesh and no values: there is no field of cells or points in " +
-            std::string(foam.times.empty() ? "it, and no folder of a time (such as 0)" : "the folders of its times"));
-    if (!any) throw std::runtime_error("has no field that can be read: " + left.unread.begin()->second.text());
+    wantFields(series, left);
     for (const std::string& region : foam.regions)
         if (foam.hasMeshAt(region, 0)) series.meshAt(region, 0);
     leaveOutUndivided(series);
     leaveOutMisfits(series, left);
+    wantFields(series, left);
     series.shownAt = showingTimes(series);
     sayWhatIsLeft(series, left);
     return series;
