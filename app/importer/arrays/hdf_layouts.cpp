@@ -36,7 +36,7 @@ std::string groupOf(const std::string& path) {
 }
 
 /// Axes by names that are data sets beside this one, where there are some.
-Hints hintsByNames(const HdfFile& hdf, const HdfDataset& dataset, const std::vector<std::string>& names,
+Hints hintsByNames(const HdfArrays& hdf, const HdfDataset& dataset, const std::vector<std::string>& names,
                    const std::string& group) {
     if (names.size() > dataset.dims.size()) return {};
     Hints hints(dataset.dims.size());
@@ -50,7 +50,7 @@ Hints hintsByNames(const HdfFile& hdf, const HdfDataset& dataset, const std::vec
 }
 
 /// The axes of the signals of all groups NXdata, by key.
-std::map<std::string, Hints> nexusHints(const HdfFile& hdf) {
+std::map<std::string, Hints> nexusHints(const HdfArrays& hdf) {
     std::map<std::string, Hints> out;
     for (const std::string& path : hdf.groups()) {
         const Attributes attributes = hdf.attributesOf(path);
@@ -98,7 +98,7 @@ bool namesOnly(const HdfDataset& scale) {
     return textOf(scale.attributes, "NAME").starts_with("This is a netCDF dimension but not");
 }
 
-Hints scaleHints(const HdfFile& hdf, const HdfDataset& dataset) {
+Hints scaleHints(const HdfArrays& hdf, const HdfDataset& dataset) {
     Hints hints(dataset.dims.size());
     for (std::size_t a = 0; a < hints.size(); ++a) {
         if (a < dataset.labels.size()) hints[a].name = dataset.labels[a];
@@ -110,7 +110,7 @@ Hints scaleHints(const HdfFile& hdf, const HdfDataset& dataset) {
     return hints;
 }
 
-Hints hintsOf(const HdfFile& hdf, const HdfDataset& dataset, const std::map<std::string, Hints>& nexus) {
+Hints hintsOf(const HdfArrays& hdf, const HdfDataset& dataset, const std::map<std::string, Hints>& nexus) {
     if (const auto at = nexus.find(dataset.key); at != nexus.end()) return at->second;
     Hints hints = tagHints(dataset);
     if (!hints.empty()) return hints;
@@ -119,7 +119,8 @@ Hints hintsOf(const HdfFile& hdf, const HdfDataset& dataset, const std::map<std:
 }
 
 /// The axis that a hint describes; equal ones are one.
-int axisBy(const HdfFile& hdf, const AxisHint& hint, std::size_t length, ArrayFile& file, std::set<std::string>& used) {
+int axisBy(const HdfArrays& hdf, const AxisHint& hint, std::size_t length, ArrayFile& file,
+           std::set<std::string>& used) {
     StoredAxis axis{hint.name, length};
     axis.kind = kindByName(hint.name);
     if (hint.step > 0 && length < 10'000'000)
@@ -143,7 +144,7 @@ int axisBy(const HdfFile& hdf, const AxisHint& hint, std::size_t length, ArrayFi
 }
 
 /// The axis of the arrays along which a one-dimensional data set lies, by its scale; -1 = none.
-int knownAxis(const HdfFile& hdf, const HdfDataset& dataset, const ArrayFile& file) {
+int knownAxis(const HdfArrays& hdf, const HdfDataset& dataset, const ArrayFile& file) {
     const HdfDataset* scale = dataset.scales.empty() ? nullptr : hdf.findKey(dataset.scales.front());
     for (std::size_t a = 0; scale != nullptr && a < file.axes.size(); ++a)
         if (leafOf(scale->path) == leafOf(file.axes[a].name) && file.axes[a].length == dataset.dims[0]) return int(a);
@@ -152,7 +153,7 @@ int knownAxis(const HdfFile& hdf, const HdfDataset& dataset, const ArrayFile& fi
 
 } // namespace
 
-ArrayFile readHdfArrays(const HdfFile& hdf) {
+ArrayFile readHdfArrays(const HdfArrays& hdf) {
     ArrayFile file;
     const std::map<std::string, Hints> nexus = nexusHints(hdf);
     std::set<std::string> used;

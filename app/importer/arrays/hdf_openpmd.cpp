@@ -33,7 +33,7 @@ struct Component {
     Attributes attributes;
 };
 
-bool readComponent(const HdfFile& hdf, const std::string& path, Component& out) {
+bool readComponent(const HdfArrays& hdf, const std::string& path, Component& out) {
     out.attributes = hdf.attributesOf(path);
     if (const HdfDataset* dataset = hdf.find(path)) {
         if (!dataset->problem.empty()) return false;
@@ -166,7 +166,7 @@ StoredArray arrayOver(const std::string& name, const Growing& growing, ArrayFile
 }
 
 /// The records of a folder of meshes by name; those that cannot be read are named.
-std::map<std::string, Record> recordsIn(const HdfFile& hdf, const std::string& folder,
+std::map<std::string, Record> recordsIn(const HdfArrays& hdf, const std::string& folder,
                                         std::vector<std::string>& unread) {
     std::map<std::string, Record> out;
     std::map<std::string, std::vector<std::string>> components;
@@ -216,11 +216,11 @@ std::map<std::string, Record> partsOfRecord(const std::string& name, const Recor
 
 } // namespace
 
-bool isOpenPmd(const HdfFile& hdf) {
+bool isOpenPmd(const HdfArrays& hdf) {
     return !textOf(hdf.attributesOf(""), "openPMD").empty() && hdf.has("data");
 }
 
-ArrayFile readOpenPmd(const HdfFile& hdf, std::vector<std::string>& notes) {
+ArrayFile readOpenPmd(const HdfArrays& hdf, std::vector<std::string>& notes) {
     ArrayFile file;
     std::string meshes = textOf(hdf.attributesOf(""), "meshesPath");
     if (meshes.empty()) meshes = "meshes/";

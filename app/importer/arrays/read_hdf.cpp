@@ -9,7 +9,7 @@ namespace tessera::importer {
 
 void openHdf(Source& source) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    const HdfFile hdf(source.path);
+    const HdfArrays hdf(source.path);
     if (hdf.has("CGNSLibraryVersion")) throw std::runtime_error("is a CGNS file: give it the ending .cgns");
     if (hdf.has("meshes") && hdf.has("settings")) return openFluentHdf(source);
     if (hdf.has("VTKHDF")) return openVtkHdf(source);

@@ -225,7 +225,7 @@ std::vector<std::string> fluentWords(const HdfFile& file, const std::string& pat
     return words;
 }
 
-std::vector<FluentZone> readFluentMesh(const HdfFile& file, std::vector<std::string>& notes) {
+std::vector<FluentHdfZone> readFluentMesh(const HdfFile& file, std::vector<std::string>& notes) {
     const std::vector<double> dimension = file.attribute(kMesh, "dimension");
     const bool flat = !dimension.empty() && dimension[0] == 2;
     FluentFaces faces = readFaces(file);
@@ -240,10 +240,10 @@ std::vector<FluentZone> readFluentMesh(const HdfFile& file, std::vector<std::str
     std::vector<bool> refined(std::size_t(most), false), kid(std::size_t(most), false);
     readTree(file, std::string(kMesh) + "/cells/tree", refined, kid);
     const FacesOfCells lists = facesOfCells(faces, std::size_t(most));
-    std::vector<FluentZone> zones;
+    std::vector<FluentHdfZone> zones;
     std::size_t left = 0;
     for (const ZoneHead& head : heads) {
-        FluentZone zone{head.name, nullptr, {}};
+        FluentHdfZone zone{head.name, nullptr, {}};
         MeshCells cells;
         for (std::int64_t id = head.cells.first; id <= head.cells.last; ++id) {
             if (refined[std::size_t(id - 1)]) continue; // its parts are cells

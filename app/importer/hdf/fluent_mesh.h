@@ -21,14 +21,14 @@ using CellFace = std::vector<std::int64_t>;
 bool addFluentCell(std::span<const CellFace> faces, bool flat, MeshCells& cells);
 
 /// A cell zone: a mesh of its own, and which of Fluent's cells its cells are.
-struct FluentZone {
+struct FluentHdfZone {
     std::string name;
     vtkSmartPointer<vtkUnstructuredGrid> mesh;
     std::vector<std::int64_t> cells; ///< numbers from 1
 };
 
 /// Throws with one line of reason where the mesh is damaged. Cells that cannot be made are left out, with a note.
-std::vector<FluentZone> readFluentMesh(const HdfFile& file, std::vector<std::string>& notes);
+std::vector<FluentHdfZone> readFluentMesh(const HdfFile& file, std::vector<std::string>& notes);
 
 /// Words of a list "a;b;c", which is one string or several.
 std::vector<std::string> fluentWords(const HdfFile& file, const std::string& path);

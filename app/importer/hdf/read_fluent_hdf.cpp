@@ -242,16 +242,16 @@ std::vector<FluentField> fieldsOf(const HdfFile& file, const std::vector<std::st
 
 /// The values of a field in the order of the cells of each zone; null where it has none.
 std::vector<vtkSmartPointer<vtkDoubleArray>> valuesOf(const HdfFile& file, const FluentField& field,
-                                                      const std::vector<FluentZone>& zones) {
+                                                      const std::vector<FluentHdfZone>& zones) {
     std::size_t cells = 0;
-    for (const FluentZone& zone : zones) cells = std::max(cells, std::size_t(zone.cells.back()));
+    for (const FluentHdfZone& zone : zones) cells = std::max(cells, std::size_t(zone.cells.back()));
     std::vector<std::vector<double>> parts;
     for (const std::string& group : field.groups)
         for (std::size_t column = 0; column < field.columns; ++column)
             parts.push_back(readColumn(file, group, field.column + column, cells));
     if (parts.size() == 2) parts.emplace_back(cells, 0.0); // a flat mesh
     std::vector<vtkSmartPointer<vtkDoubleArray>> out;
-    for (const FluentZone& zone : zones) {
+    for (const FluentHdfZone& zone : zones) {
         auto values = vtkSmartPointer<vtkDoubleArray>::New();
         values->SetName(field.name.c_str());
         values->SetNumberOfComponents(int(parts.size()));
@@ -281,7 +281,7 @@ void openFluentHdf(Source& source) {
     if (files.empty())
         throw std::runtime_error("holds a mesh without values: its file " +
                                  fs::path(withoutEnding(source.path)).filename().string() + ".dat.h5 is not beside it");
-    const auto zones = std::make_shared<const std::vector<FluentZone>>(readFluentMesh(mesh, source.notes));
+    const auto zones = std::make_shared<const std::vector<FluentHdfZone>>(readFluentMesh(mesh, source.notes));
     auto data = std::make_shared<std::vector<HdfFile>>();
     std::vector<double> times;
     std::set<std::string> earlier;
@@ -318,7 +318,7 @@ void openFluentHdf(Source& source) {
     source.read = [zones, data, fields, order](std::size_t time) -> vtkSmartPointer<vtkDataObject> {
         const std::size_t step = order[std::min(time, order.size() - 1)];
         std::vector<vtkSmartPointer<vtkUnstructuredGrid>> meshes;
-        for (const FluentZone& zone : *zones) {
+        for (const FluentHdfZone& zone : *zones) {
             meshes.push_back(vtkSmartPointer<vtkUnstructuredGrid>::New());
             meshes.back()->CopyStructure(zone.mesh);
         }

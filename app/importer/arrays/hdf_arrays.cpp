@@ -1,4 +1,4 @@
-#include "app/importer/arrays/hdf_file.h"
+#include "app/importer/arrays/hdf_arrays.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -217,7 +217,7 @@ double storedBytesOf(hid_t file, hid_t dataset, hid_t made, double stated) {
 
 } // namespace
 
-HdfFile::HdfFile(const std::string& path) : folder_(fs::path(path).parent_path().string()) {
+HdfArrays::HdfArrays(const std::string& path) : folder_(fs::path(path).parent_path().string()) {
     file_ = std::make_shared<const HdfHandle>(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (file_->id() < 0)
         throw std::runtime_error(H5Fis_hdf5(path.c_str()) > 0 ? "is truncated or damaged" : "is not an HDF5 file");
@@ -238,8 +238,8 @@ HdfFile::HdfFile(const std::string& path) : folder_(fs::path(path).parent_path()
     }
 }
 
-herr_t HdfFile::visitObject(hid_t, const char* name, const H5O_info_t* info, void* self) {
-    auto& file = *static_cast<HdfFile*>(self);
+herr_t HdfArrays::visitObject(hid_t, const char* name, const H5O_info_t* info, void* self) {
+    auto& file = *static_cast<HdfArrays*>(self);
     const std::string path = std::string(name) == "." ? "" : name;
     if (info->type == H5O_TYPE_GROUP) file.groups_.push_back(path);
     if (info->type != H5O_TYPE_DATASET) return 0;
@@ -251,12 +251,12 @@ herr_t HdfFile::visitObject(hid_t, const char* name, const H5O_info_t* info, voi
     return 0;
 }
 
-herr_t HdfFile::visitLink(hid_t, const char* name, const H5L_info_t* info, void* self) {
-    if (info->type == H5L_TYPE_EXTERNAL) static_cast<HdfFile*>(self)->external_.emplace_back(name);
+herr_t HdfArrays::visitLink(hid_t, const char* name, const H5L_info_t* info, void* self) {
+    if (info->type == H5L_TYPE_EXTERNAL) static_cast<HdfArrays*>(self)->external_.emplace_back(name);
     return 0;
 }
 
-void HdfFile::addDataset(const std::string& path) {
+void HdfArrays::addDataset(const std::string& path) {
     const HdfHandle dataset(openDataset(file_->id(), path), H5Dclose);
     if (dataset.id() < 0) throw std::runtime_error("is truncated or damaged");
     const HdfHandle type(H5Dget_type(dataset.id()), H5Tclose), space(H5Dget_space(dataset.id()), H5Sclose);
@@ -283,7 +283,7 @@ void HdfFile::addDataset(const std::string& path) {
     datasets_.push_back(std::move(out));
 }
 
-const HdfDataset* HdfFile::find(const std::string& path) const {
+const HdfDataset* HdfArrays::find(const std::string& path) const {
     const auto at = std::ranges::find(datasets_, path, &HdfDataset::path);
     if (at != datasets_.end()) return &*at;
     if (!has(path)) return nullptr; // another path to a data set that is known
@@ -291,24 +291,24 @@ const HdfDataset* HdfFile::find(const std::string& path) const {
     return object.id() < 0 || H5Iget_type(object.id()) != H5I_DATASET ? nullptr : findKey(keyOf(object.id()));
 }
 
-const HdfDataset* HdfFile::findKey(const std::string& key) const {
+const HdfDataset* HdfArrays::findKey(const std::string& key) const {
     const auto at = std::ranges::find(datasets_, key, &HdfDataset::key);
     return key.empty() || at == datasets_.end() ? nullptr : &*at;
 }
 
-Attributes HdfFile::attributesOf(const std::string& object) const {
+Attributes HdfArrays::attributesOf(const std::string& object) const {
     const HdfHandle opened(H5Oopen(file_->id(), object.empty() ? "/" : object.c_str(), H5P_DEFAULT), H5Oclose);
     return opened.id() < 0 ? Attributes() : hdfAttributes(opened.id());
 }
 
-bool HdfFile::has(const std::string& path) const {
+bool HdfArrays::has(const std::string& path) const {
     for (std::size_t slash = path.find('/', 1);; slash = path.find('/', slash + 1)) {
         if (H5Lexists(file_->id(), path.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) return false;
         if (slash == std::string::npos) return true;
     }
 }
 
-StoredArray HdfFile::arrayOf(const HdfDataset& dataset) const {
+StoredArray HdfArrays::arrayOf(const HdfDataset& dataset) const {
     StoredArray array;
     array.name = dataset.path;
     for (const char* name : {"units", "unit", "Units", "Unit", "UNITS"})
@@ -325,7 +325,7 @@ StoredArray HdfFile::arrayOf(const HdfDataset& dataset) const {
     return array;
 }
 
-std::vector<double> HdfFile::numbers(const HdfDataset& dataset) const {
+std::vector<double> HdfArrays::numbers(const HdfDataset& dataset) const {
     const StoredArray array = arrayOf(dataset);
     refuseHollow(array);
     return valuesBy(array.form, numbersOf(array));

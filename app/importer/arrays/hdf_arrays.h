@@ -39,10 +39,10 @@ struct HdfDataset {
     double statedBytes = 0, storedBytes = 0;
 };
 
-class HdfFile {
+class HdfArrays {
 public:
     /// Throws if the file is no HDF5 file or is damaged.
-    explicit HdfFile(const std::string& path);
+    explicit HdfArrays(const std::string& path);
 
     const std::vector<HdfDataset>& datasets() const { return datasets_; }
     /// Paths of the groups, "" first; none ends with a slash.
