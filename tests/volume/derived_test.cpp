@@ -175,6 +175,39 @@ TEST(Derived, FormulasAreComputedAtEverySampleOfEveryLevel) {
     }
 }
 
+TEST(Derived, AFormulaOfAVectorHasItsComponentsAndIsOneForFlow) {
+    const auto below = functions(LatticeKind::CC);
+    below->absent = [](glm::dvec3 p) { return p.x > 2 && p.y < 6; };
+    std::vector<std::string> messages;
+    const auto source = deriveAll(below,
+                                  {{"V", "", ExpressionRecipe{" vector ( f, min(`g g`, 3), 0/(z<9 ? 0 : 1) )"}},
+                                   {"W", "", ExpressionRecipe{"vector(U.x, U.y, U.z)"}},
+                                   {"div", "", DivergenceRecipe{"W"}}},
+                                  messages);
+    ASSERT_TRUE(messages.empty()) << messages.front();
+    ASSERT_EQ(source->info().parameters[3].components, 3);
+    EXPECT_EQ(source->info().parameters[3].ranges.size(), 4u);
+    for (const auto& [channel, component] : {std::pair{"V.x", 0}, {"V.y", 1}, {"|V|", 3}, {"div", 4}}) {
+        const auto index = source->info().findChannel(channel);
+        ASSERT_TRUE(index) << channel;
+        forSamples(*source, *index, 1, 0, [&](glm::dvec3 p, std::optional<double> value) {
+            // No number in one component, so no vector.
+            ASSERT_EQ(value.has_value(), !below->absent(p) && (component == 4 || !(p.z < 9)));
+            const double f = below->value[0](p, 1), g = std::min(below->value[1](p, 1), 3.0);
+            const double wanted[] = {f, g, 0, std::hypot(f, g), 4};
+            EXPECT_NEAR(value.value_or(wanted[component]), wanted[component], 1e-3) << channel;
+        });
+    }
+    EXPECT_EQ(problemOf("vector(f, 1)"), "position 1: vector(a, b, c) takes three values");
+    EXPECT_EQ(problemOf("vector(f, foo, 1)"), "position 11: no parameter is named \"foo\"");
+    EXPECT_EQ(problemOf("vector(f, 1, 2"), "position 15: a closing parenthesis is missing");
+    EXPECT_NE(problemOf("2 * vector(f, 1, 2)").find("stands alone"), std::string::npos);
+    DatasetInfo info = below->info();
+    for (Parameter& parameter : info.parameters) parameter.unit = parameter.name == "U" ? "m/s" : "K";
+    EXPECT_EQ(formulaUnit("vector(U.x, U.y, 0)", info), "m/s");
+    EXPECT_EQ(formulaUnit("vector(U.x, f, 0)", info), "");
+}
+
 TEST(Derived, DifferencesOfLinearFieldsAreExact) {
     for (const LatticeKind kind : kKinds)
         for (const bool holes : {false, true}) {

@@ -52,6 +52,12 @@ void set(BrickSamples& samples, std::size_t i, double value) {
 } // namespace
 
 struct DerivedBricks::Impl {
+    struct Formula {
+        explicit Formula(Expression of) : expression(std::move(of)) {}
+        Expression expression;
+        std::vector<InputTime> times; ///< of its inputs
+    };
+
     Impl(std::shared_ptr<const BrickSource> source, DerivedRecipe recipe)
         : source_(std::move(source)), cached_(std::make_shared<const BrickCache>(source_, kInputBudget)),
           inputs_(*cached_), recipe_(std::move(recipe)), names_(source_->info()),
@@ -61,12 +67,13 @@ struct DerivedBricks::Impl {
           means_(
               kResultBudget, [this](const BrickKey& key) { return std::make_shared<const Bricks>(moments(key)); },
               bytesOf) {
-        if (const auto* formula = std::get_if<ExpressionRecipe>(&recipe_)) {
-            expression_.emplace(formula->formula, names_.names, OtherTimes::Allowed);
-            for (const Expression::Input& input : expression_->inputs())
-                times_.emplace_back(cached_, names_.channel[std::size_t(input.name)],
-                                    input.at.value_or(TimeReference{}));
-        }
+        if (const auto* recipeOf = std::get_if<ExpressionRecipe>(&recipe_))
+            for (const std::string& text : formulaComponents(recipeOf->formula)) {
+                Formula& formula = formulas_.emplace_back(Expression(text, names_.names, OtherTimes::Allowed));
+                for (const Expression::Input& input : formula.expression.inputs())
+                    formula.times.emplace_back(cached_, names_.channel[std::size_t(input.name)],
+                                               input.at.value_or(TimeReference{}));
+            }
         if (const auto* difference = std::get_if<DifferenceRecipe>(&recipe_)) {
             const int channel = channelOf(difference->channel);
             times_.emplace_back(cached_, channel, difference->reference());
@@ -100,30 +107,41 @@ struct DerivedBricks::Impl {
         return std::visit([&](const auto& recipe) { return make(recipe, key); }, recipe_);
     }
 
+    /// A formula, or one for each component of a vector, which is absent where one of them is.
     Bricks make(const ExpressionRecipe&, const BrickKey& key) const {
+        Bricks out;
+        for (const Formula& formula : formulas_) out.push_back(resultOf(formula, key));
+        for (std::size_t i = 0; out.size() > 1 && i < out[0].values.size(); ++i)
+            if (std::ranges::any_of(out, [&](const BrickSamples& of) { return !of.isPresent(i); }))
+                for (BrickSamples& component : out) setAbsent(component, i);
+        return out;
+    }
+
+    BrickSamples resultOf(const Formula& formula, const BrickKey& key) const {
         BrickSamples out = empty(key);
         const std::size_t count = out.values.size();
         std::vector<BrickSamples> samples;
         std::vector<std::vector<double>> values;
-        for (std::size_t n = 0; n < expression_->inputs().size(); ++n) {
-            const Expression::Input& used = expression_->inputs()[n];
+        for (std::size_t n = 0; n < formula.expression.inputs().size(); ++n) {
+            const Expression::Input& used = formula.expression.inputs()[n];
+            const InputTime& at = formula.times[n];
             const int channel = names_.channel[std::size_t(used.name)];
             std::vector<double>& of = values.emplace_back(count);
-            if (used.at && channel == FormulaNames::kTime && !times_[n].exists(key.time)) {
+            if (used.at && channel == FormulaNames::kTime && !at.exists(key.time)) {
                 samples.push_back(nothing(key));
             } else if (channel >= 0) {
-                samples.push_back(used.at ? input(times_[n], key) : input(channel, key));
+                samples.push_back(used.at ? input(at, key) : input(channel, key));
                 std::copy(samples.back().values.begin(), samples.back().values.end(), of.begin());
             } else if (channel == FormulaNames::kTime) {
                 const double now = source_->info().times[std::size_t(key.time)];
-                std::fill(of.begin(), of.end(), used.at ? times_[n].time(key.time) : now);
+                std::fill(of.begin(), of.end(), used.at ? at.time(key.time) : now);
             } else {
                 SamplePositions position(source_->grid(), key.index, key.level);
                 for (std::size_t i = 0; i < count; ++i, position.next()) of[i] = position.at()[-1 - channel];
             }
         }
         std::vector<double> results(count);
-        expression_->evaluate(values, results);
+        formula.expression.evaluate(values, results);
         for (std::size_t i = 0; i < count; ++i) {
             const bool present =
                 std::all_of(samples.begin(), samples.end(), [&](const BrickSamples& of) { return of.isPresent(i); });
@@ -132,7 +150,7 @@ struct DerivedBricks::Impl {
             else
                 setAbsent(out, i);
         }
-        return {std::move(out)};
+        return out;
     }
 
     Bricks make(const MagnitudeRecipe& recipe, const BrickKey& key) const {
@@ -287,14 +305,17 @@ struct DerivedBricks::Impl {
         if (const auto* difference = std::get_if<DifferenceRecipe>(&recipe_)) {
             return stays(channelOf(difference->channel), key, toTime) && times_.front().stays(key, toTime);
         }
-        if (!expression_) return false;
-        for (std::size_t n = 0; n < expression_->inputs().size(); ++n) {
-            const Expression::Input& used = expression_->inputs()[n];
+        return !formulas_.empty() &&
+               std::ranges::all_of(formulas_, [&](const Formula& formula) { return stays(formula, key, toTime); });
+    }
+    bool stays(const Formula& formula, const BrickKey& key, int toTime) const {
+        for (std::size_t n = 0; n < formula.expression.inputs().size(); ++n) {
+            const Expression::Input& used = formula.expression.inputs()[n];
             const int channel = names_.channel[std::size_t(used.name)];
             const bool fixed = used.at && isFixed(*used.at);
             if (channel == FormulaNames::kTime
                     ? !fixed
-                    : channel >= 0 && !(used.at ? times_[n].stays(key, toTime) : stays(channel, key, toTime)))
+                    : channel >= 0 && !(used.at ? formula.times[n].stays(key, toTime) : stays(channel, key, toTime)))
                 return false;
         }
         return true;
@@ -305,9 +326,9 @@ struct DerivedBricks::Impl {
     const BrickCache& inputs_;
     DerivedRecipe recipe_;
     FormulaNames names_;
-    std::optional<Expression> expression_;
-    UnitConversion toOwnUnit_;     ///< of the other data of a difference
-    std::vector<InputTime> times_; ///< of the inputs of the expression, or of the difference
+    std::vector<Formula> formulas_; ///< of an expression: one, or one for each component
+    UnitConversion toOwnUnit_;      ///< of the other data of a difference
+    std::vector<InputTime> times_;  ///< of the difference
     mutable LoadOnce<BrickKey, Bricks, BrickKeyHash> results_, means_;
 };
 

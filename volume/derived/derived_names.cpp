@@ -27,6 +27,13 @@ void FormulaNames::add(const std::string& name, int which) {
 }
 
 int componentsOf(const DerivedRecipe& recipe) {
+    if (const auto* formula = std::get_if<ExpressionRecipe>(&recipe)) {
+        try {
+            return int(formulaComponents(formula->formula).size());
+        } catch (const Error&) { // derivedProblem says so
+            return 1;
+        }
+    }
     const bool vector = std::holds_alternative<GradientRecipe>(recipe) ||
                         std::holds_alternative<VorticityRecipe>(recipe) ||
                         std::holds_alternative<PositionRecipe>(recipe);
@@ -50,13 +57,15 @@ struct Problem {
     std::string operator()(const ExpressionRecipe& recipe) const {
         try {
             const FormulaNames names(info);
-            const Expression check(recipe.formula, names.names, OtherTimes::Allowed);
-            for (const Expression::Input& input : check.inputs())
-                if (input.at)
-                    if (const std::string problem =
-                            timeProblem(*input.at, info, names.channel[std::size_t(input.name)]);
-                        !problem.empty())
-                        throw Error(problem, {}, "position " + std::to_string(input.position));
+            for (const std::string& formula : formulaComponents(recipe.formula)) {
+                const Expression check(formula, names.names, OtherTimes::Allowed);
+                for (const Expression::Input& input : check.inputs())
+                    if (input.at)
+                        if (const std::string problem =
+                                timeProblem(*input.at, info, names.channel[std::size_t(input.name)]);
+                            !problem.empty())
+                            throw Error(problem, {}, "position " + std::to_string(input.position));
+            }
             return {};
         } catch (const Error& error) {
             return error.what();
@@ -102,10 +111,12 @@ struct Inputs {
     const DatasetInfo& info;
     std::vector<std::string> operator()(const ExpressionRecipe& recipe) const {
         const FormulaNames names(info);
-        const Expression formula(recipe.formula, names.names, OtherTimes::Allowed);
         std::vector<std::string> out;
-        for (const Expression::Input& input : formula.inputs())
-            if (names.channel[std::size_t(input.name)] >= 0) out.push_back(names.names[std::size_t(input.name)]);
+        for (const std::string& text : formulaComponents(recipe.formula)) {
+            const Expression formula(text, names.names, OtherTimes::Allowed);
+            for (const Expression::Input& input : formula.inputs())
+                if (names.channel[std::size_t(input.name)] >= 0) out.push_back(names.names[std::size_t(input.name)]);
+        }
         return out;
     }
     std::vector<std::string> operator()(const MagnitudeRecipe& recipe) const { return {recipe.x, recipe.y, recipe.z}; }

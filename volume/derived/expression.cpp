@@ -20,6 +20,8 @@ bool isWord(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || static_cast<unsigned char>(c) > 127;
 }
 
+constexpr const char* kVector = "vector";
+
 std::string variable(std::size_t input) {
     return "v" + std::to_string(input) + "_";
 }
@@ -54,6 +56,7 @@ std::string reasonOf(const mu::Parser::exception_type& error) {
     case mu::ecTOO_FEW_PARAMS:
         return "the function takes more arguments";
     case mu::ecUNASSIGNABLE_TOKEN:
+        if (error.GetToken().starts_with(kVector)) return "vector(a, b, c) stands alone: it is no number";
         return "\"" + error.GetToken() + "\" is not known; the functions are " + listOf(formulaFunctions());
     case mu::ecMISSING_ELSE_CLAUSE:
         return "\"?\" needs a \":\"";
@@ -223,7 +226,38 @@ std::vector<std::string> formulaFunctions() {
     const mu::Parser parser;
     std::vector<std::string> names;
     for (const auto& [name, callback] : parser.GetFunDef()) names.push_back(name);
+    names.insert(std::ranges::upper_bound(names, kVector), kVector);
     return names;
+}
+
+std::vector<std::string> formulaComponents(const std::string& text) {
+    constexpr const char* kBlanks = " \t\n";
+    const std::size_t begin = std::min(text.find_first_not_of(kBlanks), text.size());
+    if (text.compare(begin, 6, kVector) != 0) return {text};
+    const std::size_t open = text.find_first_not_of(kBlanks, begin + 6);
+    if (open == std::string::npos || text[open] != '(') return {text};
+    std::vector<std::string> parts;
+    std::size_t from = open + 1;
+    int depth = 0;
+    bool quoted = false;
+    const auto close = [&](std::size_t end) {
+        parts.push_back(std::string(from, ' ') + text.substr(from, end - from));
+        from = end + 1;
+    };
+    std::size_t at = open;
+    for (; at < text.size(); ++at) {
+        const char c = text[at];
+        if (c == '`') quoted = !quoted;
+        if (quoted) continue;
+        if (c == '(') ++depth;
+        if (c == ')' && --depth == 0) break;
+        if (c == ',' && depth == 1) close(at);
+    }
+    if (at == text.size()) fail("a closing parenthesis is missing", text.size());
+    if (text.find_first_not_of(kBlanks, at + 1) != std::string::npos) return {text}; // more than a vector
+    close(at);
+    if (parts.size() != 3) fail("vector(a, b, c) takes three values", begin);
+    return parts;
 }
 
 Expression::Expression(const std::string& text, std::span<const std::string> names, OtherTimes otherTimes) {

@@ -15,8 +15,13 @@ namespace tessera::volume {
 /// Whether a formula may name values at another time: at(T, first), at(T, 0.3), with T a name.
 enum class OtherTimes { Refused, Allowed };
 
-/// The functions that formulas know, by name in alphabetical order: abs, acos, ...
+/// The functions that formulas know, by name in alphabetical order: abs, acos, ..., and vector.
 std::vector<std::string> formulaFunctions();
+
+/// The formulas of the components of a text "vector(a, b, c)", each behind as many blanks as there are characters
+/// before it, so that positions in messages are those of the text; any other formula alone. Throws Error if they are
+/// not three.
+std::vector<std::string> formulaComponents(const std::string& text);
 
 class Expression {
 public:

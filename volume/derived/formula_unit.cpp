@@ -132,18 +132,27 @@ private:
 
 } // namespace
 
-std::string formulaUnit(const std::string& formula, const DatasetInfo& info) {
+namespace {
+
+MaybeUnit unitOf(const std::string& formula, const DatasetInfo& info) {
     const FormulaNames names(info);
+    const Expression expression(formula, names.names, OtherTimes::Allowed);
+    std::map<std::string, std::string, std::less<>> units;
+    for (std::size_t i = 0; i < expression.inputs().size(); ++i) {
+        const int channel = names.channel[std::size_t(expression.inputs()[i].name)];
+        units[expression.variables()[i]] = channel >= 0                     ? info.channel(channel).unit
+                                           : channel == FormulaNames::kTime ? info.timeUnit
+                                                                            : info.lengthUnit;
+    }
+    return FormulaReader(expression.translated(), units).read();
+}
+
+} // namespace
+
+std::string formulaUnit(const std::string& formula, const DatasetInfo& info) {
     try {
-        const Expression expression(formula, names.names, OtherTimes::Allowed);
-        std::map<std::string, std::string, std::less<>> units;
-        for (std::size_t i = 0; i < expression.inputs().size(); ++i) {
-            const int channel = names.channel[std::size_t(expression.inputs()[i].name)];
-            units[expression.variables()[i]] = channel >= 0                     ? info.channel(channel).unit
-                                               : channel == FormulaNames::kTime ? info.timeUnit
-                                                                                : info.lengthUnit;
-        }
-        const MaybeUnit unit = FormulaReader(expression.translated(), units).read();
+        MaybeUnit unit = PartUnit{{}, true};
+        for (const std::string& component : formulaComponents(formula)) unit = sum(unit, unitOf(component, info));
         return unit ? unit->unit : std::string();
     } catch (const Error&) {
         return {};
