@@ -146,7 +146,6 @@ void saveImportMemory(const ImportMemory& memory, const std::string& path) {
 
 volume::ImportOptions withMemory(volume::ImportOptions options, const ImportMemory& memory,
                                  const volume::DatasetInfo& info) {
-    options.units.insert(memory.units.begin(), memory.units.end());
     const auto length = memory.lengths.find(info.name);
     if (options.lengthUnit.empty() && info.lengthUnit.empty() && length != memory.lengths.end())
         options.lengthUnit = length->second;
@@ -159,6 +158,9 @@ volume::ImportOptions withMemory(volume::ImportOptions options, const ImportMemo
                 names.erase(from);
                 names.insert(to);
             }
+    for (const volume::Quantity& quantity : info.quantities) names.insert(quantity.name);
+    for (const auto& [name, unit] : memory.units)
+        if (names.contains(name)) options.units.emplace(name, unit);
     if (const auto known = memory.absent.find(info.name); known != memory.absent.end())
         recallRules(options.absent, known->second, names, volume::parseAbsentRule);
     if (const auto known = memory.parts.find(info.name); known != memory.parts.end())
@@ -176,8 +178,15 @@ volume::ImportOptions recallOptions(const std::vector<std::string>& paths, const
         if (!memory.labels.empty()) options.labels = withMemory(stated, memory, codec::Archive(paths[0]).info()).labels;
         return options;
     }
-    if (memory == ImportMemory{}) return stated;
-    return withMemory(stated, memory, volume::previewFiles(paths, stated, progress).info);
+    const bool nothingStated = stated.units.empty() && stated.absent.empty() && stated.parts.empty() &&
+                               stated.lengthUnit.empty() && stated.timeUnit.empty();
+    volume::ImportOptions options = stated;
+    if (memory != ImportMemory{}) {
+        using volume::Misfits; // names may be remembered ones
+        options = withMemory(stated, memory, volume::previewFiles(paths, stated, progress, Misfits::Ignored).info);
+    }
+    if (!nothingStated) volume::previewFiles(paths, options, progress); // refuses what fits nothing
+    return options;
 }
 
 void rememberStated(const volume::ImportOptions& stated, const std::string& dataName, const std::string& path) {

@@ -1,6 +1,6 @@
 // What is said of files before, or without, their samples: names, formats, usual units.
 #include "volume/import/import.h"
-#include "volume/import/unit_guess.h"
+#include "volume/import/names/unit_guess.h"
 
 #include "tests/volume/fields.h"
 

@@ -10,9 +10,11 @@
 #include "volume/import/files/raw.h"
 #include "volume/import/find_parts.h"
 #include "volume/import/foreign.h"
+#include "volume/import/names/unit_guess.h"
+#include "volume/import/names/vectors.h"
 #include "volume/import/opened_series.h"
 #include "volume/import/over_time.h"
-#include "volume/import/unit_guess.h"
+#include "volume/import/stated_names.h"
 
 #include <algorithm>
 #include <cmath>
@@ -62,8 +64,7 @@ Dataset withParameters(Dataset dataset, const std::vector<std::string>& wanted) 
     for (const std::string& name : wanted) {
         const auto at = std::find_if(dataset.info.parameters.begin(), dataset.info.parameters.end(),
                                      [&](const Parameter& parameter) { return parameter.name == name; });
-        if (at == dataset.info.parameters.end())
-            throw Error("there is no parameter \"" + name + "\"", {}, "--parameters");
+        if (at == dataset.info.parameters.end()) throw Error(noSuchParameter(name, dataset.info), {}, "--parameters");
         kept.push_back(static_cast<int>(at - dataset.info.parameters.begin()));
     }
     // Parts need their label.
@@ -240,10 +241,25 @@ std::vector<AbsentRule> withSuggested(const std::vector<AbsentRule>& stated, con
     return rules;
 }
 
+/// Vectors in place of their components, but for what the sidecars of raw files state.
+void formVectors(Assembled& assembled, OpenedSeries& opened, const ImportOptions& options) {
+    if (opened.format == "raw") return;
+    WithVectors formed = withVectors(std::move(assembled.dataset), namesIn(options));
+    assembled.dataset = std::move(formed.dataset);
+    if (formed.notes.empty()) return;
+    opened.notes.insert(opened.notes.end(), formed.notes.begin(), formed.notes.end());
+    if (!assembled.ranges) return;
+    assembled.ranges = [from = std::move(formed.from),
+                        ranges = std::move(assembled.ranges)](int parameter, const Progress& by) -> std::vector<Range> {
+        const std::vector<int>& own = from[std::size_t(parameter)];
+        return own.size() == 1 ? ranges(own.front(), by) : std::vector<Range>{}; // that of the magnitude is not known
+    };
+}
+
 } // namespace
 
 OpenedSeries openSeries(const std::vector<SeriesFile>& entries, const ImportOptions& options, bool readSamples,
-                        const Progress& progress, bool meshRanges) {
+                        const Progress& progress, bool meshRanges, Misfits misfits) {
     std::vector<AbsentRule> rules;
     for (const std::string& rule : options.absent) rules.push_back(parseAbsentRule(rule));
     std::vector<PartsRule> parts;
@@ -256,8 +272,9 @@ OpenedSeries openSeries(const std::vector<SeriesFile>& entries, const ImportOpti
     opened.format = files.front().blocks.empty() ? "" : files.front().blocks.front().format;
     Assembled assembled = assemble(std::move(files), options.gridSize, readSamples, progress.part(0.3, 0.7));
     Dataset& dataset = opened.dataset;
-    dataset = std::move(assembled.dataset);
     opened.notes = std::move(assembled.notes);
+    formVectors(assembled, opened, options);
+    dataset = std::move(assembled.dataset);
     // Previews may read samples only if that is fast.
     constexpr double kQuickBytes = 64e6;
     const double times = double(dataset.info.times.size());
@@ -268,6 +285,7 @@ OpenedSeries openSeries(const std::vector<SeriesFile>& entries, const ImportOpti
                              std::ranges::any_of(dataset.info.parameters,
                                                  [](const Parameter& parameter) { return !parameter.unit.empty(); });
     nameParameters(dataset.info, options);
+    if (misfits == Misfits::Refused) checkStated(dataset.info, options, rules, parts);
     if (readSamples) findLabels(dataset);
     applyLabels(dataset.info, labels, readSamples);
     // A label made from blocks adds nothing: outside its block a field is absent anyway.
@@ -295,9 +313,9 @@ double bytesOf(const DatasetInfo& info) {
 }
 
 ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOptions& options,
-                           const Progress& progress) {
+                           const Progress& progress, Misfits misfits) {
     if (paths.empty()) throw Error("no file given");
-    OpenedSeries opened = openSeries(expandPaths(paths), options, false, progress, false);
+    OpenedSeries opened = openSeries(expandPaths(paths), options, false, progress, false, misfits);
     ImportPreview preview{opened.format, {}, 0, std::move(opened.notes)};
     preview.bytes = bytesOf(opened.dataset.info);
     preview.info = std::move(opened.dataset.info);
@@ -307,7 +325,7 @@ ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOp
 Dataset openFiles(const std::vector<std::string>& paths, const ImportOptions& options, const Progress& progress,
                   bool meshRanges) {
     if (paths.empty()) throw Error("no file given");
-    return openSeries(expandPaths(paths), options, true, progress, meshRanges).dataset;
+    return openSeries(expandPaths(paths), options, true, progress, meshRanges, Misfits::Ignored).dataset;
 }
 
 void scanRanges(Dataset& dataset, const Progress& progress) {

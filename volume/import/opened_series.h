@@ -4,6 +4,7 @@
 #include "volume/field/dataset.h"
 #include "volume/import/files/series.h"
 #include "volume/import/import_options.h"
+#include "volume/import/misfits.h"
 
 #include <string>
 #include <vector>
@@ -21,6 +22,6 @@ struct OpenedSeries {
 /// Opens what expandPaths lists. Without `readSamples` samples are read only if that is fast. `meshRanges`: see
 /// openFiles. Throws Error.
 OpenedSeries openSeries(const std::vector<SeriesFile>& entries, const ImportOptions& options, bool readSamples,
-                        const Progress& progress, bool meshRanges);
+                        const Progress& progress, bool meshRanges, Misfits misfits = Misfits::Refused);
 
 } // namespace tessera::volume

@@ -1,4 +1,4 @@
-#include "volume/import/unit_guess.h"
+#include "volume/import/names/unit_guess.h"
 
 #include <algorithm>
 #include <array>
