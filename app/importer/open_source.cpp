@@ -5,6 +5,7 @@
 #include "app/importer/readers/check_file.h"
 #include "app/importer/readers/vtk_messages.h"
 #include "app/importer/swept_names.h"
+#include "app/importer/tables/table_rows.h"
 #include "volume/import/files/formats.h"
 
 #include <algorithm>
@@ -91,6 +92,9 @@ Source openSource(const std::vector<std::string>& files) {
     if (!fs::exists(path)) throw std::runtime_error("no such file");
     const volume::FileFormat* format =
         fs::is_directory(path) ? volume::formatNamed("OpenFOAM") : volume::formatOfFile(path);
+    // Fluent's text exports have any ending, or none.
+    const bool anyEnding = format == nullptr || format->name == "Tecplot" || format->name == "PLOT3D";
+    if (anyEnding && !fs::is_directory(path) && beginsAsTable(path)) format = volume::formatNamed("CSV");
     if (format == nullptr)
         throw std::runtime_error("unknown ending \"" + fs::path(path).extension().string() +
                                  "\": " + volume::readableSuffixes() + " or .raw");

@@ -118,6 +118,11 @@ vtkSmartPointer<vtkDataObject> atTime(vtkDataObject* data, const SweptArrays& sw
 
 } // namespace
 
+const SweptName::Value* SweptName::find(const std::string& parameter) const {
+    const auto at = std::ranges::find(values, parameter, &std::pair<std::string, Value>::first);
+    return at == values.end() ? nullptr : &at->second;
+}
+
 std::optional<SweptName> sweptName(std::string_view name) {
     const std::size_t at = name.find('@');
     if (at == std::string_view::npos || at == 0) return std::nullopt;
@@ -133,7 +138,7 @@ std::optional<SweptName> sweptName(std::string_view name) {
         const std::string_view item = bare(rest.substr(0, comma));
         rest = bare(rest.substr(std::min(comma + 1, rest.size())));
         if (const auto condition = conditionIn(item))
-            out.values.insert(*condition);
+            out.values.push_back(*condition);
         else if (!item.empty())
             remarks += ", " + std::string(item);
     }
@@ -174,13 +179,13 @@ SweptArrays sortSwept(const std::vector<std::string>& names) {
         if (parameter == out.axis) continue;
         std::vector<double> values(std::max<std::size_t>(out.times.size(), 1), kUnknown);
         for (const auto& [name, parts] : swept) {
-            const auto own = parts.values.find(parameter), axis = parts.values.find(out.axis);
-            if (own == parts.values.end()) continue;
+            const SweptName::Value *own = parts.find(parameter), *axis = parts.find(out.axis);
+            if (own == nullptr) continue;
             std::size_t time = 0;
-            if (axis != parts.values.end())
-                time = std::size_t(std::ranges::lower_bound(out.times, axis->second.number) - out.times.begin());
-            if (!std::isnan(values[time]) && values[time] != own->second.number) inNames.insert(parameter);
-            values[time] = own->second.number;
+            if (axis != nullptr)
+                time = std::size_t(std::ranges::lower_bound(out.times, axis->number) - out.times.begin());
+            if (!std::isnan(values[time]) && values[time] != own->number) inNames.insert(parameter);
+            values[time] = own->number;
         }
         if (!inNames.contains(parameter)) out.quantities.push_back({parameter, units[parameter], std::move(values)});
     }
@@ -194,8 +199,8 @@ SweptArrays sortSwept(const std::vector<std::string>& names) {
             if (inNames.contains(parameter))
                 place.name +=
                     ", " + parameter + "=" + textOf(value.number) + (value.unit.empty() ? "" : " " + value.unit);
-        if (const auto axis = parts.values.find(out.axis); axis != parts.values.end())
-            place.time = std::size_t(std::ranges::lower_bound(out.times, axis->second.number) - out.times.begin());
+        if (const SweptName::Value* axis = parts.find(out.axis))
+            place.time = std::size_t(std::ranges::lower_bound(out.times, axis->number) - out.times.begin());
         if (taken.contains(place.name)) place.name += " @ " + (out.axis.empty() ? "one state" : out.axis);
         while (!used.insert({place.name, place.time}).second) place.name += "'"; // the same conditions twice
         out.places[name] = std::move(place);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 /// COMSOL writes one array for each time, or for each value of a parameter that a study sweeps: "T @ t=0.1",
@@ -19,7 +20,8 @@ struct SweptName {
         double number = 0;
         std::string unit;
     };
-    std::map<std::string, Value> values; ///< by parameter
+    std::vector<std::pair<std::string, Value>> values; ///< by parameter, in their order
+    const Value* find(const std::string& parameter) const;
 };
 
 /// Takes a name apart; nothing if it has no "@" with a parameter and its number.

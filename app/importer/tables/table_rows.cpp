@@ -1,5 +1,6 @@
 #include "app/importer/tables/table_rows.h"
 
+#include "app/importer/readers/check_file.h"
 #include "app/importer/tables/comsol_text.h"
 #include "app/importer/tables/table_text.h"
 #include "volume/base/trimmed.h"
@@ -60,6 +61,22 @@ std::vector<Heading> headingsIn(std::string_view line, char separator, std::size
     std::vector<Heading> headings;
     for (std::size_t i = 0; i < fields.size(); ++i) headings.push_back(parseHeading(fields[i]));
     return headings;
+}
+
+/// Whether a text has the words of Tecplot's files at the begin of a line.
+bool isTecplot(std::string_view text) {
+    TextLines lines(text);
+    while (const auto line = lines.next()) {
+        std::string word;
+        for (const char c : line->text.substr(0, 9)) word += char(std::toupper(static_cast<unsigned char>(c)));
+        if (word.starts_with("VARIABLES") || word.starts_with("ZONE ") || word.starts_with("TITLE")) return true;
+    }
+    return false;
+}
+
+/// Whether a last field without a line end goes on: "", "2.", "1e-".
+bool endsWithin(std::string_view field) {
+    return field.empty() || std::string_view(".,+-eE").find(field.back()) != std::string_view::npos;
 }
 
 class TableReader {
@@ -211,7 +228,7 @@ private:
         if (fields_.size() == columns + 1 && fields_[columns].empty()) fields_.dropLast();
         if (fields_.size() == columns && line.text == heading_) return; // the heading of a further zone
         if (table_.rows() == 0 && isBeforeRows(line)) return;
-        const bool cut = !line.whole && (fields_.size() < columns || (columns > 0 && fields_[columns - 1].empty()));
+        const bool cut = !line.whole && (fields_.size() < columns || endsWithin(fields_[columns - 1]));
         if (fields_.size() != columns || cut)
             throw std::runtime_error("line " + std::to_string(line.number) + " has " + std::to_string(fields_.size()) +
                                      " fields, its heading " + std::to_string(columns) +
@@ -258,6 +275,24 @@ private:
 
 std::vector<TextTable> readTables(std::string_view text, std::vector<std::string>& notes) {
     return TableReader(notes).read(text);
+}
+
+bool beginsAsTable(const std::string& path) {
+    constexpr std::size_t kEnough = std::size_t(1) << 16;
+    std::string head = asUtf8(readPart(path, 0, kEnough));
+    const bool text = std::ranges::all_of(head, [](char c) {
+        return static_cast<unsigned char>(c) >= 32 || std::isspace(static_cast<unsigned char>(c)) != 0;
+    });
+    if (!text || isTecplot(head)) return false;
+    if (isComsolText(head)) return true;
+    if (head.size() >= kEnough)
+        head.resize(head.find_last_of("\r\n") == std::string::npos ? 0 : head.find_last_of("\r\n"));
+    try {
+        std::vector<std::string> unused;
+        return !readTables(head, unused).empty();
+    } catch (const std::runtime_error&) {
+        return false;
+    }
 }
 
 } // namespace tessera::importer

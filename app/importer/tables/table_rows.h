@@ -13,4 +13,7 @@ namespace tessera::importer {
 /// left out is in `notes`. Throws std::runtime_error with one line of reason.
 std::vector<TextTable> readTables(std::string_view text, std::vector<std::string>& notes);
 
+/// Whether a file of any name begins like a table of points: text with columns of positions by their names.
+bool beginsAsTable(const std::string& path);
+
 } // namespace tessera::importer
