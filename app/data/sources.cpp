@@ -166,7 +166,7 @@ Sources openWhole(const DataRef& data, std::vector<std::string>& messages, const
     } else {
         std::vector<std::string> paths;
         for (const DataFile& file : data.files) paths.push_back(file.absolutePath);
-        dataset = volume::openFiles(paths, data.import, progress.part(0, 0.3), true, volume::Misfits::Ignored);
+        dataset = volume::openFiles(paths, data.import, progress.part(0, 0.3));
         checkMemory(dataset.info, paths.front());
         for (const std::string& note : dataset.info.notes) messages.push_back(dataset.info.name + ": " + note);
         const bool known = std::all_of(dataset.info.parameters.begin(), dataset.info.parameters.end(),

@@ -180,8 +180,13 @@ volume::ImportOptions recallOptions(const std::vector<std::string>& paths, const
     }
     const bool nothingStated = stated.units.empty() && stated.absent.empty() && stated.parts.empty() &&
                                stated.lengthUnit.empty() && stated.timeUnit.empty();
-    if (memory == ImportMemory{} && nothingStated) return stated;
-    return withMemory(stated, memory, volume::previewFiles(paths, stated, progress).info);
+    volume::ImportOptions options = stated;
+    if (memory != ImportMemory{}) {
+        using volume::Misfits; // names may be remembered ones
+        options = withMemory(stated, memory, volume::previewFiles(paths, stated, progress, Misfits::Ignored).info);
+    }
+    if (!nothingStated) volume::previewFiles(paths, options, progress); // refuses what fits nothing
+    return options;
 }
 
 void rememberStated(const volume::ImportOptions& stated, const std::string& dataName, const std::string& path) {

@@ -317,7 +317,12 @@ TEST_F(TableCases, OptionsThatFitNothingAreRefused) {
     const auto with = [&](const auto& state) {
         ImportOptions options;
         state(options);
-        return failure(path, options);
+        try {
+            previewFiles({path}, options);
+            return std::string();
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
     };
     EXPECT_THAT(with([](ImportOptions& o) { o.units["Tmp"] = "K"; }), testing::HasSubstr("\"Tmp\" (there are T, p)"));
     EXPECT_EQ(with([](ImportOptions& o) { o.units["T"] = "of my own"; }), "");
@@ -333,7 +338,7 @@ TEST_F(TableCases, OptionsThatFitNothingAreRefused) {
     EXPECT_NE(with([](ImportOptions& o) { o.parameters = {"Tmp"}; }), "");
     ImportOptions unit;
     unit.units["Tmp"] = "K";
-    EXPECT_NO_THROW(openFiles({path}, unit, {}, false, Misfits::Ignored)) << "of a session";
+    EXPECT_NO_THROW(openFiles({path}, unit)) << "as sessions may";
 }
 
 } // namespace

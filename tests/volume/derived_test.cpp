@@ -195,7 +195,7 @@ TEST(Derived, AFormulaOfAVectorHasItsComponentsAndIsOneForFlow) {
             ASSERT_EQ(value.has_value(), !below->absent(p) && (component == 4 || !(p.z < 9)));
             const double f = below->value[0](p, 1), g = std::min(below->value[1](p, 1), 3.0);
             const double wanted[] = {f, g, 0, std::hypot(f, g), 4};
-            if (value) EXPECT_NEAR(*value, wanted[component], 1e-3) << channel;
+            EXPECT_NEAR(value.value_or(wanted[component]), wanted[component], 1e-3) << channel;
         });
     }
     EXPECT_EQ(problemOf("vector(f, 1)"), "position 1: vector(a, b, c) takes three values");

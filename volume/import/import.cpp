@@ -317,9 +317,9 @@ double bytesOf(const DatasetInfo& info) {
 }
 
 ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOptions& options,
-                           const Progress& progress) {
+                           const Progress& progress, Misfits misfits) {
     if (paths.empty()) throw Error("no file given");
-    OpenedSeries opened = openSeries(expandPaths(paths), options, false, progress, false);
+    OpenedSeries opened = openSeries(expandPaths(paths), options, false, progress, false, misfits);
     ImportPreview preview{opened.format, {}, 0, std::move(opened.notes)};
     preview.bytes = bytesOf(opened.dataset.info);
     preview.info = std::move(opened.dataset.info);
@@ -327,9 +327,9 @@ ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOp
 }
 
 Dataset openFiles(const std::vector<std::string>& paths, const ImportOptions& options, const Progress& progress,
-                  bool meshRanges, Misfits misfits) {
+                  bool meshRanges) {
     if (paths.empty()) throw Error("no file given");
-    return openSeries(expandPaths(paths), options, true, progress, meshRanges, misfits).dataset;
+    return openSeries(expandPaths(paths), options, true, progress, meshRanges, Misfits::Ignored).dataset;
 }
 
 void scanRanges(Dataset& dataset, const Progress& progress) {

@@ -23,15 +23,17 @@ struct ImportPreview {
 /// Bytes of all samples of a data set.
 double bytesOf(const DatasetInfo& info);
 
-/// Previews files that belong together (several parameters, a series: see volume/import/files/series.h). Throws Error.
+/// Previews files that belong together (several parameters, a series: see volume/import/files/series.h), and whether
+/// the options fit them. Throws Error.
 ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOptions& options,
-                           const Progress& progress = {});
+                           const Progress& progress = {}, Misfits misfits = Misfits::Refused);
 
 /// Opens the files; frames are read on demand, in parts where the files allow it: raw files, and NRRD files without
 /// compression. `meshRanges`: Parameter::ranges of meshes are those of their own values at points or cells, for which
-/// every file is read; else unknown, as those of grids are. Throws Error.
+/// every file is read; else unknown, as those of grids are. Units of parameters that are not there are ignored:
+/// sessions may hold those of other data. Throws Error.
 Dataset openFiles(const std::vector<std::string>& paths, const ImportOptions& options, const Progress& progress = {},
-                  bool meshRanges = true, Misfits misfits = Misfits::Refused);
+                  bool meshRanges = true);
 
 /// Fills in Parameter::ranges (present samples, all times) by reading every frame once. Throws Error, Cancelled.
 void scanRanges(Dataset& dataset, const Progress& progress = {});
