@@ -34,8 +34,8 @@ if ! command -v apt-get >/dev/null; then
     echo "setup: no apt-get here. What the build needs has these names on Fedora (not tried):" >&2
     echo "    gcc-c++ cmake ninja-build pkgconf glm-devel json-devel cli11-devel tbb-devel libzstd-devel xz-devel" >&2
     echo "    xxhash-devel libpng-devel libcurl-devel muParser-devel imgui-devel stb-devel freetype-devel cairo-devel glfw-devel libepoxy-devel" >&2
-    echo "    mesa-libEGL-devel mesa-dri-drivers google-roboto-fonts fontawesome4-fonts vtk-devel libtiff-devel" >&2
-    echo "    zlib-devel; for tests: gtest-devel gmock-devel clang-tools-extra glslang xorg-x11-server-Xvfb xdotool xorg-x11-xauth" >&2
+    echo "    mesa-libEGL-devel mesa-dri-drivers google-roboto-fonts fontawesome4-fonts vtk-devel libtiff-devel pugixml-devel" >&2
+    echo "    blosc-devel lz4-devel bzip2-devel zlib-devel; for tests: gtest-devel gmock-devel clang-tools-extra glslang xorg-x11-server-Xvfb xdotool xorg-x11-xauth" >&2
     echo "    poppler-utils librsvg2-tools; for the Python package: pybind11-devel python3-devel python3-numpy python3-xarray" >&2
     exit 0
 fi

@@ -199,6 +199,7 @@ void finish(Source& source, BlockRef& ref) {
     if (!source.timeUnit.empty()) ref.block.timeUnit = source.timeUnit;
     if (!source.timeName.empty()) ref.block.timeName = source.timeName;
     for (const std::string& note : source.notes) addNote(ref, note);
+    for (const volume::Quantity& quantity : source.quantities) ref.block.quantities.push_back(quantity);
     for (ArrayRef& array : ref.arrays) {
         if (const auto form = source.stored.find(array.vtkName); form != source.stored.end())
             array.stored = form->second;

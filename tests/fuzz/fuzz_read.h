@@ -28,16 +28,13 @@ struct FuzzedFile {
     FuzzedFile& operator=(const FuzzedFile&) = delete;
 };
 
-/// Reads bytes as a file with this suffix, its header and up to three times of it. What is let through must have a
-/// value for each point or cell of its grid.
-inline void readAs(const std::uint8_t* data, std::size_t size, const std::string& suffix) {
+/// Reads a file or folder, its header and up to three times of it. What is let through must have a value for each point
+/// or cell of its grid.
+inline void readPath(const std::string& path) {
     static std::once_flag once;
     std::call_once(once, catchMessages);
-    const FuzzedFile file(suffix);
-    std::ofstream(file.path, std::ios::binary)
-        .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
     try {
-        Source source = openSource({file.path});
+        Source source = openSource({path});
         describeImageHeader(source);
         constexpr std::size_t kTimes = 3;
         const std::size_t times = std::max<std::size_t>(1, std::min(kTimes, source.times.size()));
@@ -55,6 +52,14 @@ inline void readAs(const std::uint8_t* data, std::size_t size, const std::string
         }
     } catch (const std::exception&) {
     }
+}
+
+/// Reads bytes as a file with this suffix.
+inline void readAs(const std::uint8_t* data, std::size_t size, const std::string& suffix) {
+    const FuzzedFile file(suffix);
+    std::ofstream(file.path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+    readPath(file.path);
 }
 
 } // namespace tessera::importer

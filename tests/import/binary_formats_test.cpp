@@ -378,7 +378,7 @@ TEST_F(BinaryFormats, FilesWithoutAReaderNameAnotherFormat) {
         EXPECT_THAT(line, testing::HasSubstr("a" + first));
         EXPECT_EQ(line.find("which is not read") == std::string::npos, format.advice.empty()) << line;
     }
-    EXPECT_THAT(failure(write("a.cas.h5", "x")), testing::HasSubstr("export as CGNS or EnSight Gold from Fluent"));
+    EXPECT_THAT(failure(write("a.cas.h5", "x")), testing::HasSubstr("is not an HDF5 file"));
 }
 
 /// The words between back ticks of the table of forms that the README has, those that begin with a dot.

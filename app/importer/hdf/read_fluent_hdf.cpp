@@ -275,7 +275,9 @@ void openFluentHdf(Source& source) {
     const bool isCase = given.isGroup("meshes/1");
     if (!isCase && !given.isGroup("results")) throw std::runtime_error("is no case or data of Fluent");
     const HdfFile mesh = isCase ? given : HdfFile(caseOf(source.path));
-    const std::vector<std::string> files = isCase ? dataOf(source.path) : std::vector<std::string>{source.path};
+    const bool both = isCase && given.isGroup("results/1");
+    const std::vector<std::string> files =
+        isCase && !both ? dataOf(source.path) : std::vector<std::string>{source.path};
     if (files.empty())
         throw std::runtime_error("holds a mesh without values: its file " +
                                  fs::path(withoutEnding(source.path)).filename().string() + ".dat.h5 is not beside it");

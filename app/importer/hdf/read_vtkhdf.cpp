@@ -125,6 +125,12 @@ void openVtkHdf(Source& source) {
         return other;
     });
     const std::vector<std::size_t> order = giveTimes(source, times);
+    if (order.size() > 1) // those of a single time are found in the data
+        for (volume::Quantity quantity : vtkHdfQuantities(file, leaves->front())) {
+            volume::Quantity sorted{quantity.name, "", {}};
+            for (const std::size_t step : order) sorted.values.push_back(quantity.values[step]);
+            source.quantities.push_back(std::move(sorted));
+        }
     if (moves) {
         source.shownAt.clear();
         for (std::size_t t = 0; t < order.size(); ++t) source.shownAt.push_back(t);

@@ -299,6 +299,27 @@ VtkHdfLeaf openVtkHdfLeaf(const HdfFile& file, const std::string& group, const s
     return leaf;
 }
 
+std::vector<volume::Quantity> vtkHdfQuantities(const HdfFile& file, const VtkHdfLeaf& leaf) {
+    std::vector<volume::Quantity> quantities;
+    for (const VtkHdfArray& array : leaf.arrays) {
+        const std::optional<HdfShape> shape = array.ofField ? file.shape(array.path) : std::nullopt;
+        if (!shape || !shape->numbers || shape->count() > std::size_t(kMostSteps)) continue;
+        const std::vector<double> stored = file.doubles(array.path);
+        const bool one = shape->dims.size() == 1 || (shape->dims.size() == 2 && shape->dims[1] == 1);
+        volume::Quantity quantity{array.name, "", {}};
+        for (std::size_t step = 0; one && step < leaf.times.size(); ++step) {
+            const bool several = atOr(array.sizes, 2 * step, 1) != 1 || atOr(array.sizes, 2 * step + 1, 1) != 1;
+            const std::int64_t begin =
+                atOr(array.begins, step, stored.size() == leaf.times.size() ? std::int64_t(step) : -1);
+            if (several || begin < 0 || std::size_t(begin) >= stored.size()) break;
+            quantity.values.push_back(stored[std::size_t(begin)]);
+        }
+        if (!leaf.times.empty() && quantity.values.size() == leaf.times.size())
+            quantities.push_back(std::move(quantity));
+    }
+    return quantities;
+}
+
 void addVtkHdfFields(const HdfFile& file, const VtkHdfLeaf& leaf, std::size_t step, vtkDataSet& data) {
     constexpr std::size_t kMostRows = 1000; // more are no quantities
     for (const VtkHdfArray& array : leaf.arrays) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/importer/hdf/hdf_file.h"
+#include "volume/field/dataset.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -50,6 +51,9 @@ vtkSmartPointer<vtkDataSet> readVtkHdfLeaf(const HdfFile& file, const VtkHdfLeaf
 VtkHdfLeaf openVtkHdfAmr(const HdfFile& file, const std::string& group, const std::string& name,
                          std::vector<std::string>& notes);
 vtkSmartPointer<vtkDataSet> readVtkHdfAmr(const HdfFile& file, const VtkHdfLeaf& leaf, std::size_t step);
+
+/// Field data with one number at each step.
+std::vector<volume::Quantity> vtkHdfQuantities(const HdfFile& file, const VtkHdfLeaf& leaf);
 
 /// Field data of one step: numbers, and words.
 void addVtkHdfFields(const HdfFile& file, const VtkHdfLeaf& leaf, std::size_t step, vtkDataSet& data);

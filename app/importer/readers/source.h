@@ -1,5 +1,7 @@
 #pragma once
 
+#include "volume/field/dataset.h"
+
 #include <array>
 #include <cstddef>
 #include <functional>
@@ -41,6 +43,7 @@ struct Source {
     std::vector<double> readerTimes;          ///< the same, as VTK's reader has them (float32 converted to double)
     std::map<std::string, std::string> units; ///< stated by the file, by array
     std::map<std::string, StoredForm> stored; ///< by array; others are values as they stand
+    std::vector<volume::Quantity> quantities; ///< one value for each time, or one
     std::string lengthUnit, timeUnit;         ///< stated by the file
     std::string timeName; ///< what the times count, where it is no time (a voltage); "" = not stated
     /// For the user: how the samples were obtained, what is guessed, what was left out, each in one sentence.

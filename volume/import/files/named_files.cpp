@@ -1,6 +1,7 @@
 #include "volume/import/files/named_files.h"
 
 #include "volume/base/error.h"
+#include "volume/import/files/formats.h"
 #include "volume/import/files/series.h"
 
 #include <algorithm>
@@ -68,6 +69,7 @@ std::set<std::string> possibleNames(const std::string& text) {
         const std::string_view line = all.substr(at, end - at);
         addPieces(line, " \t\r\"'");
         addPieces(line, "\"'");
+        addPieces(line, " \t\r<>:"); // a data set within a file, in XDMF: <DataItem>heavy.h5:/T</DataItem>
         if (const std::size_t mark = line.find_first_of(":="); mark != std::string_view::npos)
             add(line.substr(mark + 1));
         at = end + 1;
@@ -109,7 +111,12 @@ std::vector<fs::path> namedDirectly(const fs::path& path) {
                 named.push_back(at->path());
     };
     const std::string kind = ending(path);
-    if (kind == ".foam" || (fs::is_directory(path, problem) && fs::exists(path / "system" / "controlDict", problem))) {
+    if (isZarrFolder(path.string())) {
+        for (fs::recursive_directory_iterator at(path, problem), end;
+             !problem && at != end && named.size() < kMostNamed; at.increment(problem))
+            named.push_back(at->path());
+    } else if (kind == ".foam" ||
+               (fs::is_directory(path, problem) && fs::exists(path / "system" / "controlDict", problem))) {
         addCase(kind == ".foam" ? path.parent_path() : path);
     } else if (fs::is_directory(path, problem) || kind == ".pvd" || kind == ".series" || !fs::exists(path, problem)) {
         for (const SeriesFile& file : expandPaths({path.string()})) {
@@ -118,6 +125,8 @@ std::vector<fs::path> namedDirectly(const fs::path& path) {
         }
     } else if (kind == ".cas" || kind == ".msh") { // the values of Fluent, and those of PLOT3D
         named.push_back(fs::path(path).replace_extension(".dat"));
+    } else if (path.string().ends_with(".cas.h5")) {
+        named.push_back(path.string().substr(0, path.string().size() - 7) + ".dat.h5");
     } else if (kind == ".xyz" || kind == ".p3d" || kind == ".x") {
         for (const char* values : {".q", ".Q", ".qst", ".f", ".fun", ".F"})
             named.push_back(fs::path(path).replace_extension(values));

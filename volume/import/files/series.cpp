@@ -122,6 +122,8 @@ std::vector<std::string> expandFolder(const std::string& folder) {
     std::vector<std::string> best = byEnding[".raw"];
     for (const auto& [format, paths] : byFormat) // in the order of the table
         if (paths.size() > best.size()) best = paths;
+    const auto is = [](const char* kind) { return [kind](const std::string& path) { return path.ends_with(kind); }; };
+    if (std::ranges::any_of(best, is(".cas.h5"))) std::erase_if(best, is(".dat.h5")); // Fluent's cases open their data
     if (best.empty()) throw Error("holds no data file", folder);
     std::sort(best.begin(), best.end());
     return best;
