@@ -47,12 +47,12 @@ struct OmeLevel {
     }
 };
 
-std::string textOf(const json& object, const char* key) {
+std::string jsonText(const json& object, const char* key) {
     const auto at = object.is_object() ? object.find(key) : object.end();
     return object.is_object() && at != object.end() && at->is_string() ? at->get<std::string>() : std::string();
 }
 
-json listOf(const json& object, const char* key) {
+json jsonList(const json& object, const char* key) {
     const auto at = object.is_object() ? object.find(key) : object.end();
     return object.is_object() && at != object.end() && at->is_array() ? *at : json::array();
 }
@@ -69,10 +69,10 @@ AxisRole roleOf(const std::string& name, const std::string& type) {
 /// The axes that an image states; those of versions before 0.3 are t, c, z, y, x.
 std::vector<OmeAxis> axesOf(const json& image, std::size_t count) {
     std::vector<OmeAxis> axes;
-    for (const json& axis : listOf(image, "axes")) {
-        const std::string name = axis.is_string() ? axis.get<std::string>() : textOf(axis, "name");
-        axes.push_back({roleOf(name, textOf(axis, "type")), name, textOf(axis, "unit")});
-        if (textOf(axis, "type") == "space" && axes.back().role == AxisRole::Other) axes.back().role = AxisRole::Z;
+    for (const json& axis : jsonList(image, "axes")) {
+        const std::string name = axis.is_string() ? axis.get<std::string>() : jsonText(axis, "name");
+        axes.push_back({roleOf(name, jsonText(axis, "type")), name, jsonText(axis, "unit")});
+        if (jsonText(axis, "type") == "space" && axes.back().role == AxisRole::Other) axes.back().role = AxisRole::Z;
     }
     if (axes.empty())
         for (const char* name : {"t", "c", "z", "y", "x"}) axes.push_back({roleOf(name, ""), name, ""});
@@ -91,9 +91,9 @@ std::vector<OmeAxis> axesOf(const json& image, std::size_t count) {
 /// Applies scales and translations in their order.
 void place(std::vector<OmeAxis>& axes, const json& steps, std::vector<std::string>& notes) {
     for (const json& step : steps) {
-        const std::string type = textOf(step, "type");
+        const std::string type = jsonText(step, "type");
         if (type == "identity") continue;
-        const json numbers = type == "scale" || type == "translation" ? listOf(step, type.c_str()) : json::array();
+        const json numbers = type == "scale" || type == "translation" ? jsonList(step, type.c_str()) : json::array();
         if (numbers.size() != axes.size()) {
             notes.push_back("a coordinate transformation of the type \"" + type.substr(0, 40) +
                             "\" is not read and left out");
@@ -112,19 +112,19 @@ void place(std::vector<OmeAxis>& axes, const json& steps, std::vector<std::strin
 }
 
 OmeLevel openLevel(const std::string& folder, std::vector<std::string>& notes) {
-    const json images = listOf(zarrJson(folder, ".zattrs"), "multiscales");
+    const json images = jsonList(zarrJson(folder, ".zattrs"), "multiscales");
     if (images.empty()) throw std::runtime_error("is damaged: its multiscales are empty");
     if (images.size() > 1)
         notes.push_back("the first of " + std::to_string(images.size()) + " multiscales of the folder shown");
-    const json levels = listOf(images.front(), "datasets");
-    const std::string path = levels.empty() ? "" : textOf(levels.front(), "path");
+    const json levels = jsonList(images.front(), "datasets");
+    const std::string path = levels.empty() ? "" : jsonText(levels.front(), "path");
     const fs::path inside = fs::path(path).lexically_normal();
     if (path.empty() || inside.is_absolute() || inside.string().starts_with(".."))
         throw std::runtime_error("is damaged: its multiscales name no array");
     OmeLevel level{openZarrArray((fs::path(folder) / inside).string()), {}};
     level.axes = axesOf(images.front(), level.array.shape.size());
-    place(level.axes, listOf(levels.front(), "coordinateTransformations"), notes);
-    place(level.axes, listOf(images.front(), "coordinateTransformations"), notes);
+    place(level.axes, jsonList(levels.front(), "coordinateTransformations"), notes);
+    place(level.axes, jsonList(images.front(), "coordinateTransformations"), notes);
     for (std::size_t axis = 0; axis < level.axes.size(); ++axis)
         if (level.axes[axis].role == AxisRole::Other && level.array.shape[axis] > 1)
             notes.push_back("axis \"" + level.axes[axis].name + "\": the first of its " +
@@ -140,12 +140,12 @@ struct OmeChannel {
 std::vector<OmeChannel> channelsOf(const json& about, std::size_t count) {
     constexpr std::size_t kMost = 1000;
     if (count > kMost) throw std::runtime_error("has " + std::to_string(count) + " channels, more than are read");
-    if (count == 1 && listOf(about.value("omero", json::object()), "channels").empty()) return {{"value", 0}};
-    const json named = listOf(about.value("omero", json::object()), "channels");
+    if (count == 1 && jsonList(about.value("omero", json::object()), "channels").empty()) return {{"value", 0}};
+    const json named = jsonList(about.value("omero", json::object()), "channels");
     std::vector<OmeChannel> channels;
     std::set<std::string> used;
     for (std::size_t c = 0; c < count; ++c) {
-        std::string name = c < named.size() ? textOf(named[c], "label") : "";
+        std::string name = c < named.size() ? jsonText(named[c], "label") : "";
         if (name.empty() || used.contains(name)) name = "channel " + std::to_string(c);
         used.insert(name);
         channels.push_back({name, c});
@@ -253,7 +253,7 @@ struct OmeImage {
 
 /// Labels that belong to the image: arrays of whole numbers on its grid.
 void addLabels(const std::string& folder, OmeImage& image, std::vector<std::string>& notes) {
-    for (const json& item : listOf(zarrJson((fs::path(folder) / "labels").string(), ".zattrs"), "labels")) {
+    for (const json& item : jsonList(zarrJson((fs::path(folder) / "labels").string(), ".zattrs"), "labels")) {
         const std::string name = item.is_string() ? item.get<std::string>() : "";
         if (name.empty() || name.find("..") != std::string::npos || name.front() == '/') continue;
         try {

@@ -4,7 +4,6 @@
 #include "app/importer/zarr/zarr_array.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -37,46 +36,55 @@ void findArrays(const fs::path& folder, const std::string& name, int depth,
         findArrays(path, (name.empty() ? "" : name + "/") + path.filename().string(), depth + 1, found);
 }
 
-/// How xarray says what the stored numbers mean. Only there the fill value is no value.
-StoredForm formOf(const json& about, const ZarrArray& array) {
-    StoredForm form;
-    const auto number = [&](const char* key, double other) {
-        const auto at = about.find(key);
-        return at != about.end() && at->is_number() ? at->get<double>() : other;
-    };
-    form.scale = number("scale_factor", 1);
-    form.offset = number("add_offset", 0);
-    if (about.contains("_ARRAY_DIMENSIONS") && array.fill && !std::isnan(*array.fill)) form.fill = {*array.fill};
-    return form;
+/// Attributes of an array as those of NetCDF, which xarray writes to Zarr.
+Attributes attributesOf(const json& about) {
+    Attributes attributes;
+    for (const auto& [name, value] : about.items()) {
+        Attribute& attribute = attributes[name];
+        if (value.is_string()) attribute.text = value.get<std::string>();
+        if (value.is_number()) attribute.numbers = {value.get<double>()};
+        attribute.floating = value.is_number_float();
+    }
+    return attributes;
 }
 
-/// The axes that xarray names, as indices of the file's; none where it names none.
-std::vector<int> axesOf(const json& about, const ZarrArray& array, ArrayFile& file) {
+/// Numbers of the axes that xarray names, by name and length; an axis that has an array of its own name has its places.
+std::vector<int> axesByNames(const json& about, const ZarrArray& array, ArrayFile& file) {
     const auto names = about.find("_ARRAY_DIMENSIONS");
     if (names == about.end() || !names->is_array() || names->size() != array.shape.size()) return {};
     std::vector<int> axes;
-    for (std::size_t d = 0; d < array.shape.size(); ++d) {
-        if (!(*names)[d].is_string()) return {};
-        const auto name = (*names)[d].get<std::string>();
+    for (std::size_t n = 0; n < names->size(); ++n) {
+        const std::string name = (*names)[n].is_string() ? (*names)[n].get<std::string>() : std::string();
         const auto known = std::ranges::find_if(
-            file.axes, [&](const StoredAxis& axis) { return axis.name == name && axis.length == array.shape[d]; });
+            file.axes, [&](const StoredAxis& axis) { return axis.name == name && axis.length == array.shape[n]; });
         axes.push_back(int(known - file.axes.begin()));
-        if (known == file.axes.end()) file.axes.push_back({name, array.shape[d], kindByName(name)});
+        if (known == file.axes.end())
+            file.axes.push_back({.name = name, .length = array.shape[n], .kind = kindByName(name)});
     }
     return axes;
 }
 
-/// Arrays named like their only axis are its places.
-void placeAxes(ArrayFile& file) {
-    std::erase_if(file.arrays, [&](const StoredArray& array) {
-        if (array.axes.size() != 1) return false;
-        StoredAxis& axis = file.axes[std::size_t(array.axes.front())];
-        if (array.name != axis.name) return false;
-        refuseHollow(array);
-        axis.places = valuesBy(array.form, numbersOf(array));
-        axis.unit = array.unit;
-        return true;
-    });
+void addArray(const std::string& name, const std::string& path, ArrayFile& file) {
+    const ZarrArray array = openZarrArray(path);
+    const json about = zarrJson(path, ".zattrs");
+    Attributes attributes = attributesOf(about);
+    StoredArray stored{name, shownUnit(textOf(attributes, "units")), array.shape, axesByNames(about, array, file)};
+    stored.vtkType = array.vtkType();
+    if (!stored.axes.empty() && array.fill) attributes["_FillValue"].numbers = {*array.fill}; // as xarray means it
+    stored.form = formBy(attributes, stored.vtkType);
+    stored.statedBytes = array.statedBytes();
+    stored.storedBytes = array.stored;
+    stored.words = wordsOfFlags(attributes);
+    stored.read = [array](const Slab& part) { return readZarr(array, part.first, part.count); };
+    if (array.shape.size() == 1 && stored.axes.size() == 1 &&
+        file.axes[std::size_t(stored.axes[0])].name == leafOf(name)) {
+        StoredAxis& axis = file.axes[std::size_t(stored.axes[0])];
+        refuseHollow(stored);
+        describeAxis(axis, attributes);
+        axis.places = valuesBy(stored.form, numbersOf(stored));
+        return;
+    }
+    if (!array.shape.empty()) file.arrays.push_back(std::move(stored));
 }
 
 } // namespace
@@ -87,25 +95,13 @@ void openPlainZarr(Source& source, const std::string& folder) {
     ArrayFile file;
     for (const auto& [name, path] : found) {
         try {
-            const ZarrArray array = openZarrArray(path);
-            const json about = zarrJson(path, ".zattrs");
-            if (array.shape.empty()) continue;
-            StoredArray stored{.name = name, .unit = "", .dims = array.shape, .axes = axesOf(about, array, file)};
-            stored.vtkType = array.vtkType();
-            stored.form = formOf(about, array);
-            stored.statedBytes = array.statedBytes();
-            stored.storedBytes = array.stored;
-            if (const auto unit = about.find("units"); unit != about.end() && unit->is_string())
-                stored.unit = unit->get<std::string>();
-            stored.read = [array](const Slab& part) { return readZarr(array, part.first, part.count); };
-            file.arrays.push_back(std::move(stored));
+            addArray(name, path, file);
         } catch (const std::runtime_error& error) {
             if (found.size() == 1) throw;
             source.notes.push_back("array \"" + name + "\" left out: it " + error.what());
         }
     }
     if (file.arrays.empty()) throw std::runtime_error("holds no array of numbers");
-    placeAxes(file);
     openArrays(std::move(file), source);
 }
 

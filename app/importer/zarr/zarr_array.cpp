@@ -159,14 +159,14 @@ void put(const ZarrArray& array, const char* from, void* to, std::size_t at) {
     }
 }
 
-/// Bytes of the files of all chunks.
-double bytesOfChunks(const std::string& folder) {
-    double bytes = 0;
+void countChunks(ZarrArray& array) {
     std::error_code failed;
-    fs::recursive_directory_iterator files(folder, failed);
-    for (; !failed && files != fs::recursive_directory_iterator(); files.increment(failed))
-        if (files->is_regular_file(failed)) bytes += double(files->file_size(failed));
-    return bytes;
+    fs::recursive_directory_iterator at(array.folder, failed);
+    for (; !failed && at != fs::recursive_directory_iterator(); at.increment(failed)) {
+        if (!at->is_regular_file(failed)) continue;
+        array.stored += double(at->file_size(failed));
+        ++array.files;
+    }
 }
 
 /// Whether numbers are given as they are stored.
@@ -218,7 +218,7 @@ ZarrArray openZarrArray(const std::string& folder) {
         chunks *= std::ceil(double(array.shape[axis]) / double(array.chunks[axis]));
     if (chunks > double(kMostChunks)) throw std::runtime_error("states more chunks than are read");
     chunkBytes(array);
-    array.stored = bytesOfChunks(folder);
+    countChunks(array);
     return array;
 }
 
@@ -249,6 +249,12 @@ vtkSmartPointer<vtkDataArray> readZarr(const ZarrArray& array, const std::vector
         first[axis] = begin[axis] / array.chunks[axis];
         chunks[axis] = (begin[axis] + count[axis] - 1) / array.chunks[axis] - first[axis] + 1;
     }
+    double asked = 1;
+    for (const std::size_t n : chunks) asked *= double(n);
+    constexpr double kMostPerFile = 1000; // a damaged description may state chunks without end
+    if (asked > kMostPerFile * double(array.files + 10))
+        throw std::runtime_error("states " + std::to_string(std::size_t(asked)) + " chunks, of which fewer than " +
+                                 std::to_string(array.files) + " are stored");
     eachIndex(chunks, [&](std::vector<std::size_t> index) {
         for (std::size_t axis = 0; axis < axes; ++axis) index[axis] += first[axis];
         const std::vector<char> chunk = chunkAt(array, index, bytes);

@@ -22,7 +22,8 @@ struct ZarrArray {
     std::optional<double> fill;
     std::size_t shuffled = 0; ///< bytes of the elements of a shuffle filter; 0 = no filter
     char separator = '.';
-    double stored = 0; ///< bytes of the files of all chunks
+    double stored = 0;     ///< bytes of the files of all chunks
+    std::size_t files = 0; ///< their number
 
     int vtkType() const; ///< of what readZarr gives
     double statedBytes() const;

@@ -69,6 +69,7 @@ std::set<std::string> possibleNames(const std::string& text) {
         const std::string_view line = all.substr(at, end - at);
         addPieces(line, " \t\r\"'");
         addPieces(line, "\"'");
+        addPieces(line, " \t\r<>:"); // a data set within a file, in XDMF: <DataItem>heavy.h5:/T</DataItem>
         if (const std::size_t mark = line.find_first_of(":="); mark != std::string_view::npos)
             add(line.substr(mark + 1));
         at = end + 1;
@@ -118,7 +119,11 @@ std::vector<fs::path> namedDirectly(const fs::path& path) {
                 named.push_back(at->path());
     };
     const std::string kind = ending(path);
-    if (fs::is_directory(path, problem) && isFoamCase(path.string())) {
+    if (isZarrFolder(path.string())) {
+        for (fs::recursive_directory_iterator at(path, problem), end;
+             !problem && at != end && named.size() < kMostNamed; at.increment(problem))
+            named.push_back(at->path());
+    } else if (fs::is_directory(path, problem) && isFoamCase(path.string())) {
         addCase(path);
     } else if (namesFoamCase(path.string())) {
         const fs::path folder = fs::absolute(path).parent_path();
@@ -133,6 +138,8 @@ std::vector<fs::path> namedDirectly(const fs::path& path) {
     } else if (path.string().ends_with(".cas.gz") || path.string().ends_with(".msh.gz")) {
         for (const char* values : {".dat", ".dat.gz"})
             named.push_back(path.parent_path() / path.stem().replace_extension(values));
+    } else if (path.string().ends_with(".cas.h5")) {
+        named.push_back(path.string().substr(0, path.string().size() - 7) + ".dat.h5");
     } else if (kind == ".xyz" || kind == ".p3d" || kind == ".x") {
         for (const char* values : {".q", ".Q", ".qst", ".f", ".fun", ".F", ".nam"})
             named.push_back(fs::path(path).replace_extension(values));

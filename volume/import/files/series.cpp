@@ -136,6 +136,8 @@ std::vector<std::string> expandFolder(const std::string& folder) {
         const auto single = [&](const std::string& path) { return alike[numberedName(path).pattern] == 1; };
         if (!std::ranges::all_of(best, single)) std::erase_if(best, single);
     }
+    const auto is = [](const char* kind) { return [kind](const std::string& path) { return path.ends_with(kind); }; };
+    if (std::ranges::any_of(best, is(".cas.h5"))) std::erase_if(best, is(".dat.h5")); // Fluent's cases open their data
     if (best.empty()) throw Error("holds no data file", folder);
     std::sort(best.begin(), best.end());
     return best;
