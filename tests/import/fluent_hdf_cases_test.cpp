@@ -51,7 +51,9 @@ TEST_F(FluentHdfCases, ASeriesOfDataSharesItsCase) {
 }
 
 TEST_F(FluentHdfCases, AllKindsOfCells) {
-    const Dataset dataset = openFiles({fluentCase("kinds.cas.h5")}, {.gridSize = {40, 20, 40}});
+    ImportOptions fine;
+    fine.gridSize = {40, 20, 40};
+    const Dataset dataset = openFiles({fluentCase("kinds.cas.h5")}, fine);
     const Field field = fieldOf(dataset, "T", 0, 0);
     std::size_t present = 0;
     for (std::size_t i = 0; i < field.count(); ++i) present += field.present(i) ? 1 : 0;

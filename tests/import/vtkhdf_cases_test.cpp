@@ -50,16 +50,19 @@ TEST_F(VtkHdfCases, AnImageIsTurnedAndChangesInTime) {
     EXPECT_THAT(preview.notes, testing::Contains(testing::HasSubstr("\"words\" left out: it holds no numbers")));
 }
 
-TEST_F(VtkHdfCases, CellsOfAnImageReachItsFaces) {
+TEST_F(VtkHdfCases, CellsOfAnImageLieAtTheirCentres) {
     const DatasetInfo info = openFiles({vtkHdfCase("image_cells.vtkhdf")}, {}).info;
     EXPECT_EQ(info.lattice.size, glm::ivec3(4, 5, 6));
     EXPECT_EQ(info.lattice.origin, glm::dvec3(1.25, 2.5, 4));
-    EXPECT_EQ(info.bounds.lo, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(info.lattice.spacing, glm::dvec3(0.5, 1, 2));
+    EXPECT_EQ(info.bounds.lo, glm::dvec3(1, 2, 3)); // and reach its faces
     EXPECT_EQ(info.bounds.hi, glm::dvec3(3, 7, 15));
 }
 
 TEST_F(VtkHdfCases, PartsAreJoinedAndTheMeshMoves) {
-    const Dataset dataset = openFiles({vtkHdfCase("moving_parts.vtkhdf")}, {.gridSize = {8, 4, 4}});
+    ImportOptions unitCells;
+    unitCells.gridSize = {8, 4, 4};
+    const Dataset dataset = openFiles({vtkHdfCase("moving_parts.vtkhdf")}, unitCells);
     EXPECT_EQ(dataset.info.bounds.hi, glm::dvec3(8, 4, 4)); // of both times
     EXPECT_NEAR(at(dataset, "c", 0, 1, {0, 0, 0}), 100, 2);
     EXPECT_NEAR(at(dataset, "c", 0, 1, {7, 3, 3}), 117, 2);
