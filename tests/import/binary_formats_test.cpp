@@ -384,6 +384,16 @@ TEST_F(BinaryFormats, FilesWithoutAReaderNameAnotherFormat) {
 }
 
 /// The words between back ticks of the table of forms that the README has, those that begin with a dot.
+/// CHGCAR: files that have this name and no ending.
+bool isFileName(const std::string& part) {
+    return std::ranges::all_of(part, [](char c) { return c >= 'A' && c <= 'Z'; });
+}
+
+std::string lowered(std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
+}
+
 std::set<std::string> suffixesOfReadme() {
     std::ifstream in(fs::path(TESSERA_SOURCE_DIR) / "README.md");
     std::set<std::string> found;
@@ -394,14 +404,14 @@ std::set<std::string> suffixesOfReadme() {
         std::istringstream parts(line);
         std::string part;
         for (int i = 0; std::getline(parts, part, '`'); ++i)
-            if (i % 2 == 1 && part.starts_with(".")) found.insert(part);
+            if (i % 2 == 1 && (part.starts_with(".") || isFileName(part))) found.insert(lowered(part));
     }
     return found;
 }
 
 TEST(FileFormats, TheReadmeListsTheTableAndNothingElse) {
-    // Read by the program itself, and the values of PLOT3D.
-    std::set<std::string> wanted{".tsr", ".raw", ".pvd", ".series", ".q", ".f"};
+    // Read by the program itself, the values of PLOT3D, and what names the files of DICOM.
+    std::set<std::string> wanted{".tsr", ".raw", ".pvd", ".series", ".q", ".f", "dicomdir"};
     std::istringstream suffixes(readableSuffixes());
     for (std::string suffix; suffixes >> suffix;)
         EXPECT_TRUE(wanted.insert(suffix).second) << suffix << " stands twice";

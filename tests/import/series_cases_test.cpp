@@ -5,7 +5,7 @@ namespace tessera::volume {
 namespace {
 
 class SeriesCases : public Cases {};
-class GridCases : public Cases {};
+class ImageCases : public Cases {};
 
 TEST_F(SeriesCases, AnArrayThatBeginsLaterIsAbsentBefore) {
     const OpenedCase late = openCase("series_late/late.pvd");
@@ -31,14 +31,14 @@ TEST_F(SeriesCases, NumbersInNamesHaveTheirDecimals) {
     EXPECT_TRUE(run.isNoted("numbers in the names"));
 }
 
-TEST_F(GridCases, CellsOfAnImageReachItsFaces) {
+TEST_F(ImageCases, CellsOfAnImageReachItsFaces) {
     const OpenedCase cells = openCase("vtk/cellim.vti");
     EXPECT_EQ(cells.info().lattice.size, glm::ivec3(4, 3, 2));
     EXPECT_EQ(cells.info().bounds.size(), glm::dvec3(4, 3, 2));
     EXPECT_EQ(cells.info().lattice.origin, cells.info().bounds.lo + 0.5);
 }
 
-TEST_F(GridCases, GhostsAreNoData) {
+TEST_F(ImageCases, GhostsAreNoData) {
     const OpenedCase ghost = openCase("vtk/ghost.pvtu");
     EXPECT_EQ(ghost.info().lattice.size, glm::ivec3(10, 4, 4));
     EXPECT_NEAR(ghost.mean("T"), 305, 1e-4);
@@ -47,7 +47,7 @@ TEST_F(GridCases, GhostsAreNoData) {
     EXPECT_EQ(ghost.about("T").ranges[0].hi, 309.5);
 }
 
-TEST_F(GridCases, AnAxisThatRunsBackwardsIsTurnedRound) {
+TEST_F(ImageCases, AnAxisThatRunsBackwardsIsTurnedRound) {
     const OpenedCase flipped = openCase("vtk/vti_direction_flipx.vti");
     const Lattice& lattice = flipped.info().lattice;
     EXPECT_EQ(lattice.size, glm::ivec3(10, 11, 12));
