@@ -168,7 +168,6 @@ Sources openWhole(const DataRef& data, std::vector<std::string>& messages, const
         for (const DataFile& file : data.files) paths.push_back(file.absolutePath);
         dataset = volume::openFiles(paths, data.import, progress.part(0, 0.3));
         checkMemory(dataset.info, paths.front());
-        for (const std::string& note : dataset.info.notes) messages.push_back(dataset.info.name + ": " + note);
         const bool known = std::all_of(dataset.info.parameters.begin(), dataset.info.parameters.end(),
                                        [](const volume::Parameter& parameter) { return !parameter.ranges.empty(); });
         if (!known) volume::scanRanges(dataset, progress.part(0.3, 0.95));

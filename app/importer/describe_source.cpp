@@ -5,6 +5,7 @@
 #include "volume/import/files/upright.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <glm/common.hpp>
@@ -105,8 +106,15 @@ glm::dmat3 stepsOf(const double spacing[3], const double* direction) {
     return steps;
 }
 
-void addNote(BlockRef& ref, const std::string& note) {
-    if (!note.empty()) ref.block.notes.push_back(note);
+/// Notes stand in lists: a sentence loses its capital and its point.
+void addNote(BlockRef& ref, std::string note) {
+    if (note.empty()) return;
+    if (note.size() > 1 && note.ends_with('.')) {
+        note.pop_back();
+        if (std::islower(static_cast<unsigned char>(note[1])) != 0 || note[1] == ' ')
+            note[0] = char(std::tolower(static_cast<unsigned char>(note[0])));
+    }
+    ref.block.notes.push_back(std::move(note));
 }
 
 /// Says that an array of cells is left out of an image: it would need another grid than those of points.
@@ -291,6 +299,10 @@ void mergeBlocks(std::vector<BlockRef>& blocks, const std::vector<BlockRef>& mor
         for (const std::string& note : ref.block.notes)
             if (std::ranges::find(known->block.notes, note) == known->block.notes.end())
                 known->block.notes.push_back(note);
+        const double tolerance = 1e-6 * glm::length(ref.block.box.size());
+        const bool moves = glm::length(known->block.box.lo - ref.block.box.lo) > tolerance ||
+                           glm::length(known->block.box.hi - ref.block.box.hi) > tolerance;
+        if (known->block.mesh && moves) known->block.cellData = true; // then as many samples as cells at each time
         known->block.box.lo = glm::min(known->block.box.lo, ref.block.box.lo);
         known->block.box.hi = glm::max(known->block.box.hi, ref.block.box.hi);
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
 #include <stdexcept>
 #include <vtkTypeTraits.h>
 
@@ -48,7 +49,7 @@ std::shared_ptr<const Sampling> samplingOf(KnownSamplings& known, vtkDataSet* me
 }
 
 /// Copies the samples of an image on its own grid.
-template <class T> void copyArray(vtkDataArray* array, int component, const StoredForm& form, std::vector<T>& values) {
+template <class T> void copyArray(vtkDataArray* array, int component, const StoredForm& form, std::span<T> values) {
     const int components = array->GetNumberOfComponents();
     if (array->GetDataType() == vtkTypeTraits<T>::VTK_TYPE_ID && !form.scales() && array->HasStandardMemoryLayout()) {
         const T* from = static_cast<const T*>(array->GetVoidPointer(0)) + component;
@@ -92,9 +93,11 @@ Frame frameOf(const Block* block, const BlockRef& ref, int array, int component,
         if (from != nullptr && std::size_t(from->GetNumberOfTuples()) != count)
             throw std::runtime_error("array \"" + about->vtkName + "\" has another size than the grid");
         volume::dispatch(frame.type, [&]<class T>(T) {
-            std::vector<T> values(count, T{1});
-            if (from != nullptr) copyArray(from, component, about->stored, values);
-            std::memcpy(frame.samples.data(), values.data(), frame.samples.size());
+            const std::span<T> values(reinterpret_cast<T*>(frame.samples.data()), count);
+            if (from != nullptr)
+                copyArray(from, component, about->stored, values);
+            else
+                std::ranges::fill(values, T{1});
         });
         frame.mask = presentValues(data, from, about != nullptr ? *about : cover, component);
         if (frame.mask.size() != count) frame.mask.clear();

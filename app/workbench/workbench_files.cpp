@@ -99,7 +99,10 @@ void Workbench::install(Opened opened) {
         showWholeBox(session, opened.source->info(), look_.scale(), look_.scaleWith(session.appearance));
         opened.document.history.reset(session);
     }
-    const std::vector<std::string> said = std::move(opened.messages), warned = std::move(opened.warnings);
+    std::vector<std::string> said = std::move(opened.messages);
+    const std::vector<std::string> warned = std::move(opened.warnings);
+    if (opened.firstView && opened.source) // later they stand in the view Data
+        for (const std::string& note : opened.source->info().notes) said.push_back(note);
     document_.install(std::move(opened));
     data_.reset();
     if (const auto& files = session().data.files; !files.empty() && !codec::isRemote(files.front().absolutePath))

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
+#include <map>
 #include <set>
 
 namespace tessera::volume {
@@ -94,6 +96,11 @@ Box extentOf(const FileBlock& block) {
     return block.mesh || block.cellData ? block.box : Box{own.origin, own.position(own.size - 1)};
 }
 
+bool sameBox(const Box& a, const Box& b) {
+    const double tolerance = 1e-6 * glm::length(a.size());
+    return glm::length(a.lo - b.lo) <= tolerance && glm::length(a.hi - b.hi) <= tolerance;
+}
+
 /// Throws Error if a file whose samples cannot be interpolated lies on another grid than the others.
 void checkGrids(const std::vector<OpenedFile>& files) {
     const FileBlock* fixed = nullptr;
@@ -136,7 +143,9 @@ Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize,
     checkGrids(files);
     Meshes meshes;
     double cells = 0, blocks = 0;
+    bool moves = false; // a mesh of a series: then samples lie in cells, so that there are as many at each time
     std::set<std::string> groups;
+    std::map<std::string, Box> boxes;
     for (const OpenedFile& file : files) {
         const bool firstOfGroup = groups.insert(file.entry.group).second;
         for (const FileBlock& block : file.blocks) {
@@ -153,8 +162,12 @@ Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize,
             }
             meshes.cellData = meshes.cellData && block.cellData;
             meshes.blocks.push_back(&block);
+            const auto [known, isNew] = boxes.emplace(
+                file.entry.group + "\n" + std::to_string(&block - file.blocks.data()) + block.name, extent);
+            moves = moves || (!isNew && block.mesh && !sameBox(known->second, extent));
         }
     }
+    meshes.cellData = meshes.cellData || moves;
     const Lattice grid = gridForMesh(meshes, gridSize);
     const Box& box = meshes.box;
     bounds = box;

@@ -1,6 +1,7 @@
 #include "volume/import/files/series.h"
 
 #include "volume/base/error.h"
+#include "volume/import/files/folder.h"
 #include "volume/import/files/formats.h"
 
 #include <algorithm>
@@ -99,48 +100,6 @@ std::vector<std::pair<std::string, double>> furtherNumbers(std::string_view tag)
             numbers.emplace_back(name, value);
     }
     return numbers;
-}
-
-std::vector<std::string> expandFolder(const std::string& folder) {
-    std::map<std::string, std::vector<std::string>> byEnding;
-    std::map<const FileFormat*, std::vector<std::string>> byFormat;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-        const std::string name = entry.path().filename().string();
-        if (name.starts_with(".")) continue;
-        if (!entry.is_regular_file() && !isZarrFolder(entry.path().string())) continue;
-        byEnding[ending(name)].push_back(entry.path().string());
-        const FileFormat* format =
-            ending(name) == ".txt" ? nullptr : formatOfFile(entry.path().string()); // usually plain text
-        if (format != nullptr && format->advice.empty()) byFormat[format].push_back(entry.path().string());
-    }
-    if (isFoamCase(folder)) { // any .foam file stands for it
-        std::vector<std::string>& named = byEnding[".foam"];
-        std::ranges::sort(named);
-        return {named.empty() ? folder : named.front()};
-    }
-    for (const char* list : {".foam", ".pvd", ".series"})
-        if (const auto at = byEnding.find(list); at != byEnding.end()) {
-            if (at->second.size() > 1) throw Error("holds several " + std::string(list) + " files, name one", folder);
-            return at->second;
-        }
-    std::vector<std::string> best = byEnding[".raw"];
-    const auto choose = [&](bool pictures) {
-        for (const auto& [format, paths] : byFormat) // in the order of the table
-            if (isPicture(*format) == pictures && paths.size() > best.size()) best = paths;
-    };
-    choose(false);
-    if (best.empty()) { // pictures, which may also stand beside data, and beside the stack: a logo
-        choose(true);
-        std::map<std::string, std::size_t> alike;
-        for (const std::string& path : best) ++alike[numberedName(path).pattern];
-        const auto single = [&](const std::string& path) { return alike[numberedName(path).pattern] == 1; };
-        if (!std::ranges::all_of(best, single)) std::erase_if(best, single);
-    }
-    const auto is = [](const char* kind) { return [kind](const std::string& path) { return path.ends_with(kind); }; };
-    if (std::ranges::any_of(best, is(".cas.h5"))) std::erase_if(best, is(".dat.h5")); // Fluent's cases open their data
-    if (best.empty()) throw Error("holds no data file", folder);
-    std::sort(best.begin(), best.end());
-    return best;
 }
 
 /// Files with a single page are slices; they become one entry per volume: pictures by numbers in names, DICOM by
@@ -375,12 +334,12 @@ std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths) {
             continue;
         }
         if (fs::is_directory(path, ignored) && !isFoamCase(path)) {
-            const std::vector<std::string> inside = expandFolder(path);
+            const std::vector<std::string> inside = filesOfFolder(path);
             pending.insert(pending.end(), inside.rbegin(), inside.rend());
             continue;
         }
         if (fs::is_directory(path, ignored)) {
-            const std::vector<std::string> inside = expandFolder(path);
+            const std::vector<std::string> inside = filesOfFolder(path);
             files.push_back({inside.front(), {}, {}, inside.front(), {}});
             continue;
         }
