@@ -1,6 +1,6 @@
 # tessera-import, the only program that links VTK and GDCM. Without VTK the build goes on and says what is lost.
 find_package(VTK 9.1 QUIET COMPONENTS CommonCore CommonDataModel CommonExecutionModel FiltersCore IOCGNSReader
-             IOEnSight IOExodus IOGeometry IOHDF IOImage IOLegacy IOParallel IOXML hdf5 netcdf)
+             IOEnSight IOExodus IOGeometry IOImage IOLegacy IOParallel IOXML hdf5 netcdf)
 if(VTK_FOUND)
   file(GLOB_RECURSE import_sources CONFIGURE_DEPENDS app/importer/*.cpp)
   list(REMOVE_ITEM import_sources ${CMAKE_SOURCE_DIR}/app/importer/main.cpp)

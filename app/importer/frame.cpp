@@ -36,14 +36,15 @@ std::uint64_t meshHash(vtkDataSet* mesh) {
     return hash;
 }
 
-std::shared_ptr<const Sampling> samplingOf(KnownSamplings& known, vtkDataSet* mesh, const Lattice& lattice) {
+std::shared_ptr<const Sampling> samplingOf(KnownSamplings& known, vtkDataSet* mesh, const Lattice& lattice,
+                                           const volume::Box& box) {
     const std::uint64_t hash = meshHash(mesh);
     for (auto at = known.begin(); at != known.end(); ++at)
         if (at->mesh == hash && at->lattice == lattice) {
             known.splice(known.begin(), known, at);
             return known.front().sampling;
         }
-    known.push_front({hash, lattice, makeSampling(mesh, lattice)});
+    known.push_front({hash, lattice, makeSampling(mesh, lattice, box)});
     if (known.size() > kMostSamplings) known.pop_back();
     return known.front().sampling;
 }
@@ -103,7 +104,7 @@ Frame frameOf(const Block* block, const BlockRef& ref, int array, int component,
         if (frame.mask.size() != count) frame.mask.clear();
         return frame;
     }
-    const std::shared_ptr<const Sampling> sampling = samplingOf(known, data, lattice);
+    const std::shared_ptr<const Sampling> sampling = samplingOf(known, data, lattice, ref.block.box);
     frame.mask.resize(count);
     for (std::size_t i = 0; i < count; ++i) frame.mask[i] = sampling->cells[i] >= 0 ? 1 : 0;
     if (from == nullptr) {

@@ -35,7 +35,8 @@ void weightsAt(vtkGenericCell* cell, const double pcoords[3], double* weights) {
 
 } // namespace
 
-std::shared_ptr<const Sampling> makeSampling(vtkDataSet* mesh, const volume::Lattice& lattice) {
+std::shared_ptr<const Sampling> makeSampling(vtkDataSet* mesh, const volume::Lattice& lattice,
+                                             const volume::Box& border) {
     auto sampling = std::make_shared<Sampling>();
     sampling->lattice = lattice;
     sampling->cells.assign(lattice.count(), -1);
@@ -79,7 +80,9 @@ std::shared_ptr<const Sampling> makeSampling(vtkDataSet* mesh, const volume::Lat
                     const int index[3] = {i, j, k};
                     double x[3], closest[3], pcoords[3], distance2 = 0;
                     for (int axis = 0; axis < 3; ++axis) {
-                        const bool last = index[axis] == lattice.size[axis] - 1 && lattice.size[axis] > 1;
+                        const double place = lattice.origin[axis] + lattice.spacing[axis] * index[axis];
+                        const bool last = index[axis] == lattice.size[axis] - 1 && lattice.size[axis] > 1 &&
+                                          std::abs(place - border.hi[axis]) < 1e-3 * lattice.spacing[axis];
                         const bool flat = !(box[2 * axis + 1] - box[2 * axis] > 1e-9 * largest);
                         x[axis] = lattice.origin[axis] + lattice.spacing[axis] * (index[axis] + (flat   ? 0
                                                                                                  : last ? -1

@@ -19,8 +19,9 @@ struct Sampling {
 };
 
 /// Walks over the cells and finds the samples in each. Each sample is looked up slightly beside its position (by 1e-5
-/// of the spacing), so that one on a face belongs to exactly one cell, and to one mesh only where two meet.
-std::shared_ptr<const Sampling> makeSampling(vtkDataSet* mesh, const volume::Lattice& lattice);
+/// of the spacing), so that one on a face belongs to exactly one cell, and to one mesh only where two meet. The last
+/// along an axis, where it lies on the upper border of `box`, that of the mesh at all times, is looked up before it.
+std::shared_ptr<const Sampling> makeSampling(vtkDataSet* mesh, const volume::Lattice& lattice, const volume::Box& box);
 
 /// One component at every sample: point values are interpolated in the cell; cell values (`ofCells`) and integers are
 /// those of the cell or the nearest corner. NaN is no value: it takes no part in interpolation, and a sample whose
