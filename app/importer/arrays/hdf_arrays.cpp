@@ -22,31 +22,6 @@ int vtkTypeOf(hid_t type) {
     return isSigned ? VTK_LONG_LONG : VTK_UNSIGNED_LONG_LONG;
 }
 
-hid_t memoryType(int vtkType) {
-    switch (vtkType) {
-    case VTK_FLOAT:
-        return H5T_NATIVE_FLOAT;
-    case VTK_SIGNED_CHAR:
-        return H5T_NATIVE_SCHAR;
-    case VTK_UNSIGNED_CHAR:
-        return H5T_NATIVE_UCHAR;
-    case VTK_SHORT:
-        return H5T_NATIVE_SHORT;
-    case VTK_UNSIGNED_SHORT:
-        return H5T_NATIVE_USHORT;
-    case VTK_INT:
-        return H5T_NATIVE_INT;
-    case VTK_UNSIGNED_INT:
-        return H5T_NATIVE_UINT;
-    case VTK_LONG_LONG:
-        return H5T_NATIVE_LLONG;
-    case VTK_UNSIGNED_LONG_LONG:
-        return H5T_NATIVE_ULLONG;
-    default:
-        return H5T_NATIVE_DOUBLE;
-    }
-}
-
 std::string kindOf(hid_t type) {
     switch (H5Tget_class(type)) {
     case H5T_STRING:
@@ -100,8 +75,8 @@ std::vector<std::string> textsOf(hid_t attribute, hid_t type, std::size_t count)
 
 std::vector<std::string> textsOf(hid_t object, const char* name) {
     if (H5Aexists(object, name) <= 0) return {};
-    const HdfHandle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
-    const HdfHandle type(H5Aget_type(attribute.id()), H5Tclose), space(H5Aget_space(attribute.id()), H5Sclose);
+    const HdfId attribute(H5Aopen(object, name, H5P_DEFAULT));
+    const HdfId type(H5Aget_type(attribute.id())), space(H5Aget_space(attribute.id()));
     const hssize_t count = H5Sget_simple_extent_npoints(space.id());
     if (H5Tget_class(type.id()) != H5T_STRING || count < 1 || count > 1000) return {};
     return textsOf(attribute.id(), type.id(), std::size_t(count));
@@ -109,9 +84,9 @@ std::vector<std::string> textsOf(hid_t object, const char* name) {
 
 herr_t addHdfAttribute(hid_t object, const char* name, const H5A_info_t*, void* to) {
     auto& out = *static_cast<Attributes*>(to);
-    const HdfHandle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+    const HdfId attribute(H5Aopen(object, name, H5P_DEFAULT));
     if (attribute.id() < 0) return 0;
-    const HdfHandle type(H5Aget_type(attribute.id()), H5Tclose), space(H5Aget_space(attribute.id()), H5Sclose);
+    const HdfId type(H5Aget_type(attribute.id())), space(H5Aget_space(attribute.id()));
     const hssize_t count = H5Sget_simple_extent_npoints(space.id());
     if (count < 1 || count > 10000) return 0;
     Attribute own;
@@ -139,17 +114,17 @@ Attributes hdfAttributes(hid_t object) {
 /// Keys of the scales of a data set's axes, by the attribute DIMENSION_LIST.
 std::vector<std::string> scalesOf(hid_t dataset, std::size_t axes) {
     if (H5Aexists(dataset, "DIMENSION_LIST") <= 0) return {};
-    const HdfHandle attribute(H5Aopen(dataset, "DIMENSION_LIST", H5P_DEFAULT), H5Aclose);
-    const HdfHandle type(H5Aget_type(attribute.id()), H5Tclose), space(H5Aget_space(attribute.id()), H5Sclose);
+    const HdfId attribute(H5Aopen(dataset, "DIMENSION_LIST", H5P_DEFAULT));
+    const HdfId type(H5Aget_type(attribute.id())), space(H5Aget_space(attribute.id()));
     if (H5Tget_class(type.id()) != H5T_VLEN || H5Sget_simple_extent_npoints(space.id()) != hssize_t(axes)) return {};
-    const HdfHandle inner(H5Tget_super(type.id()), H5Tclose);
+    const HdfId inner(H5Tget_super(type.id()));
     if (H5Tequal(inner.id(), H5T_STD_REF_OBJ) <= 0) return {};
     std::vector<hvl_t> lists(axes, hvl_t{0, nullptr});
     if (H5Aread(attribute.id(), type.id(), lists.data()) < 0) return {};
     std::vector<std::string> out(axes);
     for (std::size_t a = 0; a < axes; ++a)
         if (lists[a].len > 0) {
-            const HdfHandle scale(H5Rdereference2(dataset, H5P_DEFAULT, H5R_OBJECT, lists[a].p), H5Oclose);
+            const HdfId scale(H5Rdereference2(dataset, H5P_DEFAULT, H5R_OBJECT, lists[a].p));
             if (scale.id() >= 0) out[a] = keyOf(scale.id());
         }
     H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, lists.data());
@@ -158,7 +133,7 @@ std::vector<std::string> scalesOf(hid_t dataset, std::size_t axes) {
 
 /// A data set whose files beside this one are found from its folder, not from where the program runs.
 hid_t openDataset(hid_t file, const std::string& path) {
-    const HdfHandle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+    const HdfId access(H5Pcreate(H5P_DATASET_ACCESS));
     H5Pset_efile_prefix(access.id(), "${ORIGIN}");
     H5Pset_virtual_prefix(access.id(), "${ORIGIN}");
     const hid_t dataset = H5Dopen2(file, path.c_str(), access.id());
@@ -188,19 +163,19 @@ std::string missingFile(hid_t made, const fs::path& folder) {
 }
 
 vtkSmartPointer<vtkDataArray> readSlab(hid_t file, const std::string& name, int vtkType, const Slab& part) {
-    const HdfHandle dataset(openDataset(file, name), H5Dclose);
-    const HdfHandle space(H5Dget_space(dataset.id()), H5Sclose);
+    const HdfId dataset(openDataset(file, name));
+    const HdfId space(H5Dget_space(dataset.id()));
     const std::vector<hsize_t> first(part.first.begin(), part.first.end()), count(part.count.begin(), part.count.end());
     vtkIdType numbers = 1;
     for (const hsize_t n : count) numbers *= vtkIdType(n);
     auto out = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(vtkType));
     out->SetNumberOfTuples(numbers);
-    const HdfHandle memory(
-        count.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(int(count.size()), count.data(), nullptr), H5Sclose);
+    const HdfId memory(count.empty() ? H5Screate(H5S_SCALAR)
+                                     : H5Screate_simple(int(count.size()), count.data(), nullptr));
     const bool chosen = count.empty() || H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, first.data(), nullptr,
                                                              count.data(), nullptr) >= 0;
-    if (!chosen ||
-        H5Dread(dataset.id(), memoryType(vtkType), memory.id(), space.id(), H5P_DEFAULT, out->GetVoidPointer(0)) < 0)
+    if (!chosen || H5Dread(dataset.id(), hdfTypeInMemory(vtkType), memory.id(), space.id(), H5P_DEFAULT,
+                           out->GetVoidPointer(0)) < 0)
         throw std::runtime_error("dataset \"" + name +
                                  "\" cannot be read: damaged, or compressed by a filter that is not installed");
     return out;
@@ -218,7 +193,7 @@ double storedBytesOf(hid_t file, hid_t dataset, hid_t made, double stated) {
 } // namespace
 
 HdfArrays::HdfArrays(const std::string& path) : folder_(fs::path(path).parent_path().string()) {
-    file_ = std::make_shared<const HdfHandle>(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    file_ = std::make_shared<const HdfId>(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
     if (file_->id() < 0)
         throw std::runtime_error(H5Fis_hdf5(path.c_str()) > 0 ? "is truncated or damaged" : "is not an HDF5 file");
     if (folder_.empty()) folder_ = ".";
@@ -230,7 +205,7 @@ HdfArrays::HdfArrays(const std::string& path) : folder_(fs::path(path).parent_pa
     if (visited < 0 || H5Lvisit(file_->id(), H5_INDEX_NAME, H5_ITER_INC, visitLink, this) < 0)
         throw std::runtime_error("is truncated or damaged");
     for (const std::string& link : external_) {
-        const HdfHandle object(H5Oopen(file_->id(), link.c_str(), H5P_DEFAULT), H5Oclose);
+        const HdfId object(H5Oopen(file_->id(), link.c_str(), H5P_DEFAULT));
         if (object.id() < 0)
             lost_.push_back(link);
         else if (H5Iget_type(object.id()) == H5I_DATASET)
@@ -257,10 +232,10 @@ herr_t HdfArrays::visitLink(hid_t, const char* name, const H5L_info_t* info, voi
 }
 
 void HdfArrays::addDataset(const std::string& path) {
-    const HdfHandle dataset(openDataset(file_->id(), path), H5Dclose);
+    const HdfId dataset(openDataset(file_->id(), path));
     if (dataset.id() < 0) throw std::runtime_error("is truncated or damaged");
-    const HdfHandle type(H5Dget_type(dataset.id()), H5Tclose), space(H5Dget_space(dataset.id()), H5Sclose);
-    const HdfHandle made(H5Dget_create_plist(dataset.id()), H5Pclose);
+    const HdfId type(H5Dget_type(dataset.id())), space(H5Dget_space(dataset.id()));
+    const HdfId made(H5Dget_create_plist(dataset.id()));
     HdfDataset out;
     out.path = path;
     out.key = keyOf(dataset.id());
@@ -287,7 +262,7 @@ const HdfDataset* HdfArrays::find(const std::string& path) const {
     const auto at = std::ranges::find(datasets_, path, &HdfDataset::path);
     if (at != datasets_.end()) return &*at;
     if (!has(path)) return nullptr; // another path to a data set that is known
-    const HdfHandle object(H5Oopen(file_->id(), path.c_str(), H5P_DEFAULT), H5Oclose);
+    const HdfId object(H5Oopen(file_->id(), path.c_str(), H5P_DEFAULT));
     return object.id() < 0 || H5Iget_type(object.id()) != H5I_DATASET ? nullptr : findKey(keyOf(object.id()));
 }
 
@@ -297,7 +272,7 @@ const HdfDataset* HdfArrays::findKey(const std::string& key) const {
 }
 
 Attributes HdfArrays::attributesOf(const std::string& object) const {
-    const HdfHandle opened(H5Oopen(file_->id(), object.empty() ? "/" : object.c_str(), H5P_DEFAULT), H5Oclose);
+    const HdfId opened(H5Oopen(file_->id(), object.empty() ? "/" : object.c_str(), H5P_DEFAULT));
     return opened.id() < 0 ? Attributes() : hdfAttributes(opened.id());
 }
 

@@ -2,6 +2,7 @@
 
 #include "app/importer/arrays/array_file.h"
 #include "app/importer/arrays/conventions.h"
+#include "app/importer/readers/hdf_id.h"
 
 #include <hdf5.h>
 #include <memory>
@@ -10,22 +11,6 @@
 
 /// What the HDF5 library says of a file: its data sets and their attributes.
 namespace tessera::importer {
-
-/// Owns an identifier of the library and closes it.
-class HdfHandle {
-public:
-    HdfHandle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-    ~HdfHandle() {
-        if (id_ >= 0) close_(id_);
-    }
-    HdfHandle(const HdfHandle&) = delete;
-    HdfHandle& operator=(const HdfHandle&) = delete;
-    hid_t id() const { return id_; }
-
-private:
-    hid_t id_;
-    herr_t (*close_)(hid_t);
-};
 
 struct HdfDataset {
     std::string path;
@@ -63,7 +48,7 @@ private:
     static herr_t visitObject(hid_t root, const char* name, const H5O_info_t* info, void* self);
     static herr_t visitLink(hid_t root, const char* name, const H5L_info_t* info, void* self);
 
-    std::shared_ptr<const HdfHandle> file_;
+    std::shared_ptr<const HdfId> file_;
     std::string folder_;
     std::vector<HdfDataset> datasets_;
     std::vector<std::string> groups_, external_, lost_;

@@ -1,6 +1,7 @@
 #include "app/importer/hdf/hdf_file.h"
 
 #include "app/importer/readers/check_file.h"
+#include "app/importer/readers/hdf_id.h"
 
 #include <algorithm>
 #include <hdf5.h>
@@ -10,22 +11,6 @@
 namespace tessera::importer {
 
 namespace {
-
-/// Owns an identifier of the library, of any kind.
-class HdfId {
-public:
-    explicit HdfId(hid_t id) : id_(id) {}
-    ~HdfId() {
-        if (id_ >= 0) H5Idec_ref(id_);
-    }
-    HdfId(const HdfId&) = delete;
-    HdfId& operator=(const HdfId&) = delete;
-    hid_t id() const { return id_; }
-    explicit operator bool() const { return id_ >= 0; }
-
-private:
-    hid_t id_;
-};
 
 hid_t opened(hid_t file, const std::string& path) {
     return path.empty() ? H5Gopen2(file, "/", H5P_DEFAULT) : H5Oopen(file, path.c_str(), H5P_DEFAULT);
@@ -39,7 +24,7 @@ std::vector<std::size_t> dimsOf(hid_t space) {
     return {dims.begin(), dims.end()};
 }
 
-/// VTK's type for stored numbers, and the library's type of that in memory.
+/// VTK's type for stored numbers.
 int vtkTypeFor(hid_t type) {
     const std::size_t bytes = H5Tget_size(type);
     if (H5Tget_class(type) == H5T_FLOAT) return bytes <= 4 ? VTK_FLOAT : VTK_DOUBLE;
@@ -47,25 +32,6 @@ int vtkTypeFor(hid_t type) {
     if (bytes == 1) return isSigned ? VTK_SIGNED_CHAR : VTK_UNSIGNED_CHAR;
     if (bytes == 2) return isSigned ? VTK_SHORT : VTK_UNSIGNED_SHORT;
     return bytes == 4 && isSigned ? VTK_INT : VTK_DOUBLE;
-}
-
-hid_t typeInMemory(int vtkType) {
-    switch (vtkType) {
-    case VTK_FLOAT:
-        return H5T_NATIVE_FLOAT;
-    case VTK_SIGNED_CHAR:
-        return H5T_NATIVE_SCHAR;
-    case VTK_UNSIGNED_CHAR:
-        return H5T_NATIVE_UCHAR;
-    case VTK_SHORT:
-        return H5T_NATIVE_SHORT;
-    case VTK_UNSIGNED_SHORT:
-        return H5T_NATIVE_USHORT;
-    case VTK_INT:
-        return H5T_NATIVE_INT;
-    default:
-        return H5T_NATIVE_DOUBLE;
-    }
 }
 
 /// Bytes of the file that hold a data set. Those that other files hold are not known: as if they were all there.
@@ -239,7 +205,7 @@ vtkSmartPointer<vtkDataArray> HdfFile::array(const std::string& path, const HdfS
     const int vtkType = vtkTypeFor(type.id());
     auto out = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(vtkType));
     out->SetNumberOfTuples(vtkIdType(part.count));
-    part.read(path, typeInMemory(vtkType), out->GetVoidPointer(0));
+    part.read(path, hdfTypeInMemory(vtkType), out->GetVoidPointer(0));
     return out;
 }
 

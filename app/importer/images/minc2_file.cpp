@@ -1,6 +1,7 @@
 // MINC 2: an HDF5 file with the groups /minc-2.0/dimensions and /minc-2.0/image/0, the full resolution.
 #include "app/importer/images/minc_file.h"
 #include "app/importer/readers/check_file.h"
+#include "app/importer/readers/hdf_id.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,27 +13,10 @@ namespace tessera::importer {
 
 namespace {
 
-/// Owns an identifier of HDF5.
-class MincHandle {
-public:
-    MincHandle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-    ~MincHandle() {
-        if (id_ >= 0) close_(id_);
-    }
-    MincHandle(const MincHandle&) = delete;
-    MincHandle& operator=(const MincHandle&) = delete;
-    hid_t id() const { return id_; }
-    explicit operator bool() const { return id_ >= 0; }
-
-private:
-    hid_t id_;
-    herr_t (*close_)(hid_t);
-};
-
 std::vector<double> numbersAt(hid_t object, const char* name) {
     if (H5Aexists(object, name) <= 0) return {};
-    const MincHandle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
-    const MincHandle type(H5Aget_type(attribute.id()), H5Tclose), space(H5Aget_space(attribute.id()), H5Sclose);
+    const HdfId attribute(H5Aopen(object, name, H5P_DEFAULT));
+    const HdfId type(H5Aget_type(attribute.id())), space(H5Aget_space(attribute.id()));
     const hssize_t count = H5Sget_simple_extent_npoints(space.id());
     const H5T_class_t kind = H5Tget_class(type.id());
     if (count < 1 || count > 4096 || (kind != H5T_INTEGER && kind != H5T_FLOAT)) return {};
@@ -43,8 +27,8 @@ std::vector<double> numbersAt(hid_t object, const char* name) {
 
 std::string textAt(hid_t object, const char* name) {
     if (H5Aexists(object, name) <= 0) return {};
-    const MincHandle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
-    const MincHandle type(H5Aget_type(attribute.id()), H5Tclose);
+    const HdfId attribute(H5Aopen(object, name, H5P_DEFAULT));
+    const HdfId type(H5Aget_type(attribute.id()));
     if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) > 0) return {};
     std::string text(std::min<std::size_t>(H5Tget_size(type.id()), 4096), '\0');
     if (H5Tget_size(type.id()) > text.size() || H5Aread(attribute.id(), type.id(), text.data()) < 0) return {};
@@ -63,7 +47,7 @@ std::vector<std::string> namesIn(const std::string& list) {
 }
 
 std::vector<hsize_t> sizesOf(hid_t dataset) {
-    const MincHandle space(H5Dget_space(dataset), H5Sclose);
+    const HdfId space(H5Dget_space(dataset));
     const int rank = H5Sget_simple_extent_ndims(space.id());
     std::vector<hsize_t> sizes(std::size_t(std::max(rank, 0)));
     if (rank > 0) H5Sget_simple_extent_dims(space.id(), sizes.data(), nullptr);
@@ -75,7 +59,7 @@ MincAxis axisNamed(hid_t file, const std::string& name, std::size_t size) {
     axis.name = name;
     axis.size = size;
     const std::string path = "/minc-2.0/dimensions/" + name;
-    const MincHandle dimension(H5Oopen(file, path.c_str(), H5P_DEFAULT), H5Oclose);
+    const HdfId dimension(H5Oopen(file, path.c_str(), H5P_DEFAULT));
     if (!dimension) return axis;
     const auto first = [&](const char* key, double otherwise) {
         const std::vector<double> stated = numbersAt(dimension.id(), key);
@@ -95,8 +79,8 @@ MincAxis axisNamed(hid_t file, const std::string& name, std::size_t size) {
 }
 
 void readScales2(hid_t file, MincImage& image) {
-    const MincHandle low(H5Dopen2(file, "/minc-2.0/image/0/image-min", H5P_DEFAULT), H5Dclose),
-        high(H5Dopen2(file, "/minc-2.0/image/0/image-max", H5P_DEFAULT), H5Dclose);
+    const HdfId low(H5Dopen2(file, "/minc-2.0/image/0/image-min", H5P_DEFAULT)),
+        high(H5Dopen2(file, "/minc-2.0/image/0/image-max", H5P_DEFAULT));
     if (!low || !high) return;
     const std::vector<hsize_t> sizes = sizesOf(high.id());
     std::size_t all = 1;
@@ -118,19 +102,18 @@ void readScales2(hid_t file, MincImage& image) {
 
 MincImage openMinc2(const std::string& path) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    const auto file = std::make_shared<const MincHandle>(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    const auto file = std::make_shared<const HdfId>(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
     if (!*file) throw std::runtime_error("ends early or is damaged");
     MincImage image;
     image.stored = double(bytesIn(path));
-    const auto samples =
-        std::make_shared<const MincHandle>(H5Dopen2(file->id(), "/minc-2.0/image/0/image", H5P_DEFAULT), H5Dclose);
+    const auto samples = std::make_shared<const HdfId>(H5Dopen2(file->id(), "/minc-2.0/image/0/image", H5P_DEFAULT));
     if (!*samples) throw std::runtime_error("holds no image: a MINC file has /minc-2.0/image/0/image");
     const std::vector<hsize_t> sizes = sizesOf(samples->id());
     const std::vector<std::string> names = namesIn(textAt(samples->id(), "dimorder"));
     if (names.size() != sizes.size()) throw std::runtime_error("does not state the order of its axes (dimorder)");
     for (std::size_t a = 0; a < sizes.size(); ++a)
         image.axes.push_back(axisNamed(file->id(), names[a], std::size_t(sizes[a])));
-    const MincHandle type(H5Dget_type(samples->id()), H5Tclose);
+    const HdfId type(H5Dget_type(samples->id()));
     const H5T_class_t kind = H5Tget_class(type.id());
     if (kind != H5T_INTEGER && kind != H5T_FLOAT)
         throw std::runtime_error("has samples that are no real numbers, which are not read");
@@ -148,8 +131,8 @@ MincImage openMinc2(const std::string& path) {
     if (!image.floats) readScales2(file->id(), image);
     image.read = [file, samples](const std::vector<std::size_t>& start, const std::vector<std::size_t>& size) {
         const std::vector<hsize_t> from(start.begin(), start.end()), count(size.begin(), size.end());
-        const MincHandle space(H5Dget_space(samples->id()), H5Sclose);
-        const MincHandle memory(H5Screate_simple(int(count.size()), count.data(), nullptr), H5Sclose);
+        const HdfId space(H5Dget_space(samples->id()));
+        const HdfId memory(H5Screate_simple(int(count.size()), count.data(), nullptr));
         std::size_t all = 1;
         for (const std::size_t n : size) all *= n;
         std::vector<double> numbers(all);
