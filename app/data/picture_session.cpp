@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <optional>
 
@@ -29,6 +31,13 @@ std::optional<std::string> sessionInPng(const std::string& path) {
     return found == texts.end() ? std::nullopt : std::optional(found->second);
 }
 
+/// Whether the key of a session stands in a file, also where the session is damaged.
+bool namesSession(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    return bytes.find(vis::kSessionTextKey) != std::string::npos;
+}
+
 } // namespace
 
 bool namesPicture(const std::string& path) {
@@ -45,7 +54,7 @@ bool holdsSession(const std::string& path) {
 
 bool opensAsPicture(const std::string& path) {
     const std::string suffix = pictureSuffix(path);
-    return !suffix.empty() && (suffix != ".png" || holdsSession(path));
+    return !suffix.empty() && (suffix != ".png" || namesSession(path));
 }
 
 std::string sessionTextOfPicture(const std::string& path) {

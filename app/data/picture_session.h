@@ -11,8 +11,8 @@ bool namesPicture(const std::string& path);
 /// Whether a file is such a picture with a session that can be read.
 bool holdsSession(const std::string& path);
 
-/// Whether a file is opened as a session: a figure (.svg, .pdf) always, a .png only with a session in it. Others of
-/// these are data: one slice.
+/// Whether a file is opened as a session: a figure (.svg, .pdf) always, a .png only with a session in it, be it
+/// damaged. Others of these are data: one slice.
 bool opensAsPicture(const std::string& path);
 
 /// The session's text. Throws Error where there is none or the picture is damaged.

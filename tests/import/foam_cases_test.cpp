@@ -180,8 +180,8 @@ TEST_F(FoamTexts, AFieldThatCannotBeReadSpoilsItselfAlone) {
     EXPECT_EQ(opened.mean("T", 1), 310);
     EXPECT_EQ(opened.at("fine", {0, 0, 0}), 7);
     EXPECT_EQ(opened.at("fine", {opened.info().lattice.size.x - 1, 0, 0}), 9);
-    EXPECT_TRUE(opened.isNoted("At time 0 these are left out: T (its values are given by #codeStream), k (its values "
-                               "are given by #calc), p ($unheard is not known), q (it has 3 values, not 2)."));
+    EXPECT_TRUE(opened.isNoted("at time 0 these are left out: T (its values are given by #codeStream), k (its values "
+                               "are given by #calc), p ($unheard is not known), q (it has 3 values, not 2)"));
     EXPECT_TRUE(opened.isNoted("on faces: phi"));
     EXPECT_TRUE(opened.isNoted("lagrangian"));
 }

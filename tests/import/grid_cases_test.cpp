@@ -39,7 +39,7 @@ TEST_F(GridCases, Amira) {
     EXPECT_EQ(labels.info.lattice.origin, glm::dvec3(1, 2, -3));
     EXPECT_EQ(labels.info.lengthUnit, "nm");
     EXPECT_EQ(wrong(labels, 0, 0, 0, [](int x, int y, int z) { return int(ramp(x, y, z)) / 440; }), 0);
-    EXPECT_THAT(notesOn(path), HasSubstr("Its array Odd (type HxBad) is not read."));
+    EXPECT_THAT(notesOn(path), HasSubstr("its array Odd (type HxBad) is not read"));
     // Turned by a quarter: x is the file's -y.
     const Dataset turned = openFiles({stored("grids/zipped.am")}, {});
     EXPECT_EQ(turned.info.lattice.size, glm::ivec3(11, 10, 12));
@@ -74,7 +74,7 @@ std::string cube(const std::string& atoms, const std::string& signs, const std::
 TEST_F(GridCases, Cube) {
     const std::string path = stored("grids/plain.cube");
     expectRamp(openFiles({path}, {}), {0.5, 0.5, 2}, "bohr");
-    EXPECT_THAT(notesOn(path), HasSubstr("Its 1 atom is left out."));
+    EXPECT_THAT(notesOn(path), HasSubstr("its 1 atom is left out"));
     // The first axis is z, the last runs along -x; a negative number of samples means angstrom.
     const Dataset turned =
         openFiles({write("a.cube", cube("1", "-", "0 1 2\n10 11 12\n100 101 102\n110 111 112"))}, {});

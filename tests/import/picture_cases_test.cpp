@@ -96,7 +96,7 @@ TEST_F(PictureCases, MissingSliceIsTold) {
     const Dataset dataset = openFiles({folder}, {});
     EXPECT_EQ(dataset.info.lattice.size, glm::ivec3(10, 11, 11));
     EXPECT_EQ(wrong(dataset, 0, 0, 0, [](int x, int y, int z) { return ramp(x, y, z < 5 ? z : z + 1); }), 0);
-    EXPECT_THAT(notesOn(folder), HasSubstr("The slice of number 5 is missing"));
+    EXPECT_THAT(notesOn(folder), HasSubstr("the slice of number 5 is missing"));
 }
 
 TEST_F(PictureCases, Png) {

@@ -3,7 +3,6 @@
 #include "volume/base/progress.h"
 #include "volume/field/dataset.h"
 #include "volume/import/import_options.h"
-#include "volume/import/misfits.h"
 
 #include <string>
 #include <vector>

@@ -9,6 +9,9 @@
 
 namespace tessera::volume {
 
+/// What becomes of options that fit nothing in the data. Sessions may hold units of other data.
+enum class Misfits { Refused, Ignored };
+
 /// What the user states about files that lack this information. Remembered per parameter name by the caller.
 struct ImportOptions {
     glm::ivec3 gridSize{0}; ///< meshes are resampled to this grid; 0 = chosen from the number of cells

@@ -4,7 +4,6 @@
 #include "volume/field/dataset.h"
 #include "volume/import/files/series.h"
 #include "volume/import/import_options.h"
-#include "volume/import/misfits.h"
 
 #include <string>
 #include <vector>

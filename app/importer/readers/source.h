@@ -45,7 +45,7 @@ struct Source {
     std::map<std::string, std::string> units; ///< stated by the file, by array
     std::map<std::string, StoredForm> stored; ///< by array; others are values as they stand
     std::map<std::string, std::vector<volume::Label>> labels; ///< stated by the file, by array
-    std::string lengthUnit, timeUnit;         ///< stated by the file
+    std::string lengthUnit, timeUnit;                         ///< stated by the file
     std::string timeName; ///< what the times count, where it is no time (a voltage); "" = not stated
     std::vector<volume::Quantity> quantities; ///< stated by the file: one number for each time
     /// For the user: how the samples were obtained, what is guessed, what was left out, each in one sentence.

@@ -1,7 +1,7 @@
 #include "volume/import/files/series.h"
 
 #include "volume/base/error.h"
-#include "volume/import/files/folder.h"
+#include "volume/import/files/file_names.h"
 #include "volume/import/files/formats.h"
 
 #include <algorithm>
@@ -154,71 +154,6 @@ std::vector<std::string> filesOfPattern(const std::string& pattern) {
     if (status == 0) paths.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
     globfree(&found);
     return paths;
-}
-
-namespace {
-
-bool isDigit(char c) {
-    return c >= '0' && c <= '9';
-}
-
-std::size_t digitsBefore(std::string_view text, std::size_t end) {
-    std::size_t begin = end;
-    while (begin > 0 && isDigit(text[begin - 1])) --begin;
-    return begin;
-}
-
-/// Begin of the number whose last digits are [begin, end), with its decimals, exponent and sign if it has them and
-/// stands by itself: "run_0.05", "t1e-05", "V_-0.7"; but not the 2 of "run2.0001" or of "v1.2".
-std::size_t beginOfNumber(std::string_view text, std::size_t begin) {
-    std::size_t start = begin;
-    const bool sign = start > 1 && (text[start - 1] == '-' || text[start - 1] == '+');
-    const std::size_t e = start - (sign ? 2 : 1);
-    if (start > 1 && e < text.size() && (text[e] == 'e' || text[e] == 'E') && e > 0 && isDigit(text[e - 1]))
-        start = digitsBefore(text, e);
-    if (start > 1 && text[start - 1] == '.') {
-        const std::size_t whole = digitsBefore(text, start - 1);
-        const bool padded = start - 1 - whole > 1 && text[whole] == '0';
-        if (whole < start - 1 && !padded) start = whole;
-    }
-    if (start == begin) return begin; // a plain number
-    const std::string_view before = text.substr(0, start);
-    static constexpr std::string_view kBefore[] = {"_", "-", "=", "@", "(", " ", "t", "time", "Time", "T", "U", "V"};
-    const auto standsAlone = [&](std::string_view word) {
-        if (!before.ends_with(word)) return false;
-        return word.size() == before.size() || !std::isalpha(static_cast<unsigned char>(word[0])) ||
-               !std::isalpha(static_cast<unsigned char>(before[before.size() - word.size() - 1]));
-    };
-    if (!before.empty() && std::ranges::none_of(kBefore, standsAlone)) return begin;
-    const bool negative = before.ends_with("_-") || before.ends_with("=-") || before == "-";
-    return start - (negative ? 1 : 0);
-}
-
-} // namespace
-
-NumberedName numberedName(const std::string& path) {
-    const fs::path file(path);
-    std::string stem = file.filename().string(), tail;
-    if (const std::size_t dot = stem.rfind('.'); dot != std::string::npos && dot > 0) {
-        tail = stem.substr(dot);
-        stem.resize(dot);
-        if (tail == ".gz" && stem.ends_with(".nii")) {
-            stem.resize(stem.size() - 4);
-            tail = ".nii.gz";
-        }
-    }
-    std::size_t end = stem.size();
-    while (end > 0 && !isDigit(stem[end - 1])) --end;
-    std::size_t begin = digitsBefore(stem, end);
-    NumberedName name;
-    if (begin == end || end - begin > 15) {
-        name.pattern = (file.parent_path() / (stem + tail)).string();
-        return name;
-    }
-    begin = beginOfNumber(stem, begin);
-    name.number = parseTime(std::string_view(stem).substr(begin, end - begin));
-    name.pattern = (file.parent_path() / (stem.substr(0, begin) + "#" + stem.substr(end) + tail)).string();
-    return name;
 }
 
 SliceName sliceName(const std::string& path) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "volume/import/files/file_names.h"
+
 #include <optional>
 #include <string>
 #include <utility>
@@ -40,14 +42,6 @@ std::vector<SeriesFile> parsePvd(const std::string& xml, const std::string& file
 
 /// Contents of a .series (ParaView's JSON: {"files": [{"name": .., "time": ..}]}).
 std::vector<SeriesFile> parseSeries(const std::string& json, const std::string& file);
-
-/// The last number in a file name without ending: "small_0010.vti" -> {"small_#.vti", 10}, "run_0.05.vtu" ->
-/// {"run_#.vtu", 0.05}. Decimals, an exponent and a sign belong to it where it stands by itself.
-struct NumberedName {
-    std::string pattern;
-    std::optional<double> number;
-};
-NumberedName numberedName(const std::string& path);
 
 /// The number of a slice in the name of its file, and that of its time where it has one: those that follow a letter z
 /// and a letter t of their own ("run_t03_z012_c1.tif"), else the last. `volume` is the name without the number of the
