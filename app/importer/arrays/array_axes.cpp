@@ -163,10 +163,6 @@ std::string quoted(const std::vector<std::string>& names) {
 
 } // namespace
 
-void refuseHollow(const StoredArray& array) {
-    refuseHollow(array.statedBytes, array.storedBytes, "array \"" + array.name + "\"");
-}
-
 void giveAxes(ArrayFile& file, GuessedAxes& guessed) {
     for (StoredArray& array : file.arrays)
         if (array.axes.empty() && takeAxesOfOther(file, array)) guessed.likeOthers.push_back(array.name);

@@ -1,5 +1,6 @@
 // NetCDF in all its forms, by libnetcdf and the conventions of CF and COARDS.
 #include "app/importer/arrays/netcdf_file.h"
+#include "app/importer/arrays/open_arrays.h"
 #include "app/importer/readers/check_file.h"
 #include "app/importer/readers/read_files.h"
 

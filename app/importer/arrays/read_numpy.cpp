@@ -1,5 +1,6 @@
 // NumPy: .npy, and .npz, a zip file of them.
 #include "app/importer/arrays/array_file.h"
+#include "app/importer/arrays/open_arrays.h"
 #include "app/importer/arrays/whole_numbers.h"
 #include "app/importer/readers/check_file.h"
 #include "app/importer/readers/read_files.h"

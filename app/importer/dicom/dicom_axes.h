@@ -1,6 +1,11 @@
 #pragma once
 
-#include "app/importer/dicom/dicom_frames.h"
+#include "app/importer/dicom/dicom_elements.h"
+#include "app/importer/dicom/dicom_image.h"
+
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace tessera::importer {
 

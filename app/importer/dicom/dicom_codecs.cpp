@@ -1,5 +1,7 @@
 #include "app/importer/dicom/dicom_codecs.h"
 
+#include "app/importer/dicom/dicom_elements.h"
+
 #include <algorithm>
 #include <gdcmByteValue.h>
 #include <gdcmFragment.h>

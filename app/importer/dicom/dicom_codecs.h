@@ -1,6 +1,11 @@
 #pragma once
 
-#include "app/importer/dicom/dicom_pixels.h"
+#include "app/importer/dicom/dicom_form.h"
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
 
 /// Compressed frames, by GDCM's codecs.
 namespace tessera::importer {

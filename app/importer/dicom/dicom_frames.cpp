@@ -1,6 +1,7 @@
 #include "app/importer/dicom/dicom_frames.h"
 
 #include "app/importer/dicom/dicom_axes.h"
+#include "app/importer/dicom/dicom_pixels.h"
 
 #include <algorithm>
 #include <cmath>

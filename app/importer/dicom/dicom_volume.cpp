@@ -1,5 +1,6 @@
 #include "app/importer/dicom/dicom_volume.h"
 
+#include "app/importer/dicom/dicom_pixels.h"
 #include "app/importer/readers/check_file.h"
 #include "volume/import/absent.h"
 #include "volume/import/files/upright.h"

@@ -1,5 +1,6 @@
 #include "app/importer/arrays/array_file.h"
 #include "app/importer/arrays/conventions.h"
+#include "app/importer/arrays/open_arrays.h"
 #include "app/importer/zarr/ome_zarr.h"
 #include "app/importer/zarr/zarr_array.h"
 
