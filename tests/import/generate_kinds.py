@@ -37,7 +37,7 @@ rows = []
 
 
 def row(name, reader, values, spacing, origin, *, unit="mm", times=(), time_unit="", parameter=None, first=None,
-        compare=True):
+        compare=True, tolerance=0):
     """`values` [t, z, y, x] as the independent reader gives them in the axes of space, absent ones NaN."""
     values = np.asarray(values, float)
     if values.ndim == 3:
@@ -52,7 +52,7 @@ def row(name, reader, values, spacing, origin, *, unit="mm", times=(), time_unit
     rows.append({"file": first or name, "reader": reader, "dims": [nx, ny, nz], "spacing": [float(v) for v in spacing],
                  "origin": [float(v) for v in origin], "lengthUnit": unit, "times": [float(t) for t in times],
                  "timeUnit": time_unit, "parameter": parameter, "absent": int(np.isnan(values[0]).sum()),
-                 "samples": samples, "sameField": compare})
+                 "samples": samples, "sameField": compare, "tolerance": tolerance})
 
 
 def at(name):
@@ -285,6 +285,33 @@ def by_zarr():
     row("zarr.zarr", "zarr " + zarr.__version__, zarr.open_group(at("zarr.zarr"), "r")["0"][:], SPACING, ORIGIN)
 
 
+def by_meshio():
+    """The field at the corners of 60 hexahedra: sampled on as many points as there are, within the rounding of that."""
+    import meshio
+
+    k, j, i = np.mgrid[0 : SIZE[2], 0 : SIZE[1], 0 : SIZE[0]]
+    points = np.stack([ORIGIN[a] + SPACING[a] * n.ravel() for a, n in enumerate((i, j, k))], axis=1)
+    corner = (k * SIZE[1] + j) * SIZE[0] + i
+    first = corner[:-1, :-1, :-1].ravel()
+    up, across = SIZE[0], SIZE[0] * SIZE[1]
+    cells = np.stack([first + n for n in (0, 1, 1 + up, up, across, across + 1, across + 1 + up, across + up)], axis=1)
+    mesh = meshio.Mesh(points, [("hexahedron", cells)], {"T": field(hole=None).ravel()})
+    os.makedirs(at("meshio"), exist_ok=True)
+    for name, options in (("mesh.vtu", {}), ("mesh.vtk", {}), ("mesh.xdmf", {}), ("mesh_gmsh.msh", {}),
+                          ("mesh_tecplot.dat", {})):
+        path = at("meshio/" + name)
+        kind = {"mesh_gmsh.msh": "gmsh", "mesh_tecplot.dat": "tecplot"}.get(name)
+        here = os.getcwd()
+        os.chdir(at("meshio"))  # its writer of XDMF puts the HDF5 file into the current folder
+        meshio.write(name, mesh, file_format=kind, **options)
+        os.chdir(here)
+        back = meshio.read(path, file_format=kind)
+        order = np.lexsort(tuple(np.round((back.points - points[0]) / SPACING).T))
+        values = np.asarray(back.point_data["T"]).ravel()[order].reshape(SIZE[::-1])
+        row("meshio/" + name, "meshio " + meshio.__version__, values, SPACING, ORIGIN, unit="", parameter="T",
+            compare=False, tolerance=0.3)
+
+
 def by_text():
     """A table of points, and the text of a Gaussian cube: no reader but the definition."""
     lines = ["x [mm],y [mm],z [mm],T [K]"]
@@ -304,7 +331,8 @@ def main():
     wanted = sys.argv[1:]
     shutil.rmtree(HERE, ignore_errors=True)
     os.makedirs(HERE)
-    for make in (by_vtk, by_nibabel, by_teem, by_tifffile, by_netcdf, by_h5py, by_pydicom, by_numpy, by_zarr, by_text):
+    for make in (by_vtk, by_nibabel, by_teem, by_tifffile, by_netcdf, by_h5py, by_pydicom, by_numpy, by_zarr, by_meshio,
+                 by_text):
         if not wanted or make.__name__[3:] in wanted:
             make()
     with open(at("kinds.json"), "w") as file:

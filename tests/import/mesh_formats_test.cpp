@@ -9,6 +9,7 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtk_netcdf.h>
 
 namespace tessera::volume {
 namespace {
@@ -130,8 +131,11 @@ void writeCgns(const std::string& path, const std::string& length = "") {
             {6, 4, 5}, H5T_NATIVE_DOUBLE, overGrid<double>([&](glm::dvec3 x) { return x[axis]; }).data());
     const hid_t solution = add(zone, "FlowSolution", "FlowSolution_t", "MT");
     put(add(solution, "GridLocation", "GridLocation_t", "C1"), " data", {6}, H5T_NATIVE_CHAR, "Vertex");
-    put(add(solution, "Temperature", "DataArray_t", "R8"), " data", {6, 4, 5}, H5T_NATIVE_DOUBLE,
-        overGrid<double>(value).data());
+    const hid_t temperature = add(solution, "Temperature", "DataArray_t", "R8");
+    put(temperature, " data", {6, 4, 5}, H5T_NATIVE_DOUBLE, overGrid<double>(value).data());
+    if (!length.empty())
+        put(add(temperature, "DimensionalExponents", "DimensionalExponents_t", "R4"), " data", {5}, H5T_NATIVE_FLOAT,
+            std::vector<float>{0, 0, 0, 1, 0}.data());
     for (const hid_t group : open) H5Gclose(group);
     H5Fclose(file);
 }
@@ -149,8 +153,29 @@ TEST_F(MeshFormats, Cgns) {
     for (const auto& [word, unit] :
          {std::pair{"Meter", "m"}, {"Millimeter", "mm"}, {"Inch", "in"}, {"UserDefined", ""}}) {
         writeCgns(path, word);
-        EXPECT_EQ(openFiles({path}, {}).info.lengthUnit, unit) << word;
+        const DatasetInfo info = openFiles({path}, {}).info;
+        EXPECT_EQ(info.lengthUnit, unit) << word;
+        EXPECT_EQ(info.parameters[0].unit, "K");
+        EXPECT_FALSE(info.parameters[0].unitGuessed) << "the file states it";
     }
+}
+
+// VTK's reader shows memory that nobody wrote for such a file.
+TEST_F(MeshFormats, ExodusOfTwoFormsIsRefused) {
+    int file = 0, dimension = 0, step = 0, variable = 0;
+    const std::string path = (folder_ / "mixed.e").string();
+    ASSERT_EQ(nc_create(path.c_str(), NC_CLOBBER, &file), NC_NOERR);
+    const int wordSize = 8;
+    nc_put_att_int(file, NC_GLOBAL, "floating_point_word_size", NC_INT, 1, &wordSize);
+    nc_def_dim(file, "time_step", 1, &step);
+    nc_def_dim(file, "num_nodes", 8, &dimension);
+    const int axes[2] = {step, dimension};
+    nc_def_var(file, "vals_nod_var1", NC_DOUBLE, 2, axes, &variable);
+    nc_enddef(file);
+    const std::vector<double> values(8, 1);
+    nc_put_var_double(file, variable, values.data());
+    nc_close(file);
+    EXPECT_THAT(failure(path), testing::HasSubstr("mixes the two forms of Exodus (vals_nod_var1)"));
 }
 
 TEST_F(MeshFormats, Exodus) {

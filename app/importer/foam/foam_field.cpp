@@ -1,6 +1,6 @@
 #include "app/importer/foam/foam_field.h"
 
-#include "app/importer/foam/foam_units.h"
+#include "app/importer/readers/dimension_units.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,53 +1,47 @@
 // Mesh formats read by VTK, with their solution files.
+#include "app/importer/meshes/cgns_units.h"
 #include "app/importer/readers/check_file.h"
 #include "app/importer/readers/read_files.h"
-#include "volume/base/unit_conversion.h"
 
-#include <algorithm>
-#include <array>
-#include <cctype>
-#include <hdf5.h>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vtkCGNSReader.h>
 #include <vtkDataArraySelection.h>
 #include <vtkExodusIIReader.h>
 #include <vtkNew.h>
+#include <vtk_netcdf.h>
 
 namespace tessera::importer {
 
 namespace {
 
-/// The length of a node DimensionalUnits_t below the first base that has one: five words of 32 letters, mass and length
-/// first. Files in HDF5 only, as all of CGNS 3 and later are by default.
-std::string lengthUnitOfCgns(const std::string& path) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-    if (file < 0) return {};
-    std::string unit;
-    const auto read = [](hid_t root, const char* name, const H5O_info_t* info, void* to) -> herr_t {
-        const std::string place = name;
-        if (info->type != H5O_TYPE_DATASET || !place.ends_with("/ data")) return 0;
-        const std::string group = place.substr(0, place.size() - 6);
-        if (std::ranges::count(group, '/') != 1 || group.substr(group.find('/') + 1) != "DimensionalUnits") return 0;
-        const hid_t dataset = H5Dopen2(root, name, H5P_DEFAULT);
-        std::array<char, 160> words{};
-        if (H5Dget_storage_size(dataset) == words.size() &&
-            H5Dread(dataset, H5T_NATIVE_CHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, words.data()) >= 0) {
-            std::string length(words.data() + 32, 32);
-            length.erase(length.find_last_not_of(std::string(" \0", 2)) + 1);
-            *static_cast<std::string*>(to) = volume::lengthUnitNamed(length);
-        }
-        H5Dclose(dataset);
-        return 1; // found
-    };
-#if H5_VERSION_GE(1, 12, 0) // takes the fields to query as a further argument
-    H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, read, &unit, H5O_INFO_BASIC);
-#else
-    H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, read, &unit);
-#endif
-    H5Fclose(file);
-    return unit;
+/// VTK's reader takes all numbers for as long as the file states of them once, and looks for values at points where the
+/// header says that they are: where that is wrong it shows memory that nobody wrote, without an error.
+void checkExodusForm(const std::string& path) {
+    int file = 0, stated = 0, byVariable = 0, variables = 0;
+    if (nc_open(path.c_str(), NC_NOWRITE, &file) != NC_NOERR) return;
+    const bool states = nc_get_att_int(file, NC_GLOBAL, "floating_point_word_size", &stated) == NC_NOERR;
+    if (nc_get_att_int(file, NC_GLOBAL, "file_size", &byVariable) != NC_NOERR) byVariable = 0;
+    std::string otherSize, otherPlace;
+    for (int v = 0; nc_inq_nvars(file, &variables) == NC_NOERR && v < variables; ++v) {
+        char text[NC_MAX_NAME + 1] = {};
+        nc_type type = NC_NAT;
+        if (nc_inq_varname(file, v, text) != NC_NOERR || nc_inq_vartype(file, v, &type) != NC_NOERR) continue;
+        const std::string_view name = text;
+        const int bytes = type == NC_FLOAT ? 4 : type == NC_DOUBLE ? 8 : stated;
+        if (states && bytes != stated && name.starts_with("vals_")) otherSize = name;
+        constexpr std::string_view kAtPoints = "vals_nod_var"; // one variable for each array, or one for all
+        if (name.starts_with(kAtPoints) && (name.size() > kAtPoints.size()) != (byVariable != 0)) otherPlace = name;
+    }
+    nc_close(file);
+    if (!otherPlace.empty())
+        throw std::runtime_error("mixes the two forms of Exodus (" + otherPlace +
+                                 "), as meshio writes it, which is not read: write it as VTK (.vtu)");
+    if (!otherSize.empty())
+        throw std::runtime_error("states numbers of " + std::to_string(stated) + " bytes, but those of " + otherSize +
+                                 " have another size: write all numbers in 64 bits");
 }
 
 } // namespace
@@ -62,11 +56,14 @@ void openCgns(Source& source) {
     reader->EnableAllPointArrays();
     reader->EnableAllCellArrays();
     source.reader = reader;
-    source.lengthUnit = lengthUnitOfCgns(source.path);
+    CgnsUnits units = cgnsUnits(source.path);
+    source.lengthUnit = std::move(units.length);
+    source.units = std::move(units.arrays);
 }
 
 void openExodus(Source& source) {
     checkNetCdf(source.path);
+    checkExodusForm(source.path);
     vtkNew<vtkExodusIIReader> reader;
     if (reader->CanReadFile(source.path.c_str()) == 0)
         throw std::runtime_error("is truncated, damaged or not an Exodus file");
@@ -74,6 +71,10 @@ void openExodus(Source& source) {
     reader->UpdateInformation();
     reader->SetAllArrayStatus(vtkExodusIIReader::NODAL, 1);
     reader->SetAllArrayStatus(vtkExodusIIReader::ELEM_BLOCK, 1);
+    std::string left;
+    for (int i = 0; i < reader->GetNumberOfGlobalResultArrays(); ++i)
+        left += (left.empty() ? "" : ", ") + std::string(reader->GetGlobalResultArrayName(i));
+    if (!left.empty()) source.notes.push_back("variables of the whole mesh are left out: " + left);
     reader->GenerateObjectIdCellArrayOff();
     reader->ApplyDisplacementsOff();
     source.reader = reader;

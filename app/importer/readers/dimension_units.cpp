@@ -1,4 +1,4 @@
-#include "app/importer/foam/foam_units.h"
+#include "app/importer/readers/dimension_units.h"
 
 #include <algorithm>
 #include <array>
