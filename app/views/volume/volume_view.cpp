@@ -18,6 +18,7 @@
 #include "app/ui/widgets.h"
 #include "app/views/volume/chain.h"
 #include "app/views/volume/space_beside.h"
+#include "volume/import/files/upright.h"
 
 #include <algorithm>
 #include <cmath>
@@ -283,9 +284,13 @@ private:
             taken_.push_back(drawScaleBar(*list_, {left, max().y - em() * 0.5f}, bar));
     }
 
-    /// Writes the stretch of the data, and the time shown in exported pictures and where it is the view's own.
+    /// Writes the stretch of the data, that axes are not shown as they lie, and the time shown in exported pictures and
+    /// where it is the view's own.
     void drawTexts() {
-        if (const std::string text = stretchText(session_.stretch); !text.empty()) {
+        std::string text = stretchText(session_.stretch);
+        if (volume::isStraightened(info_.notes))
+            text += (text.empty() ? "" : ", ") + std::string("oblique axes, shown straight");
+        if (!text.empty()) {
             const ImVec2 at{chain_.left() - em() * 0.5f, picture_.min.y + em() * 0.4f},
                 size = ImGui::CalcTextSize(text.c_str());
             addTextWithBackdrop(*list_, at, {1, 0}, plotColors().faint, text.c_str());

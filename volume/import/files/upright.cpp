@@ -11,7 +11,8 @@ namespace tessera::volume {
 
 namespace {
 
-constexpr double kStraight = 1e-4; // of a direction's length: what decimals in a header lose
+constexpr const char* kOblique = "the file's axes are"; // how the note begins
+constexpr double kStraight = 1e-4;                      // of a direction's length: what decimals in a header lose
 
 /// Directions of length 1, and lengths; those that are none are along their own axis.
 void splitSteps(const glm::dmat3& steps, glm::dmat3& directions, glm::dvec3& lengths) {
@@ -47,9 +48,9 @@ std::string obliqueNote(const UprightGrid& grid, const glm::dmat3& directions) {
     }
     char text[260];
     std::snprintf(text, sizeof text,
-                  "the file's axes are %s: up to %.4g degrees off x, y and z; they are shown straight, so that places "
+                  "%s %s: up to %.4g degrees off x, y and z; they are shown straight, so that places "
                   "and directions are right only along them",
-                  skew > kStraight ? "oblique to each other" : "turned", most * 180 / std::numbers::pi);
+                  kOblique, skew > kStraight ? "oblique to each other" : "turned", most * 180 / std::numbers::pi);
     return text;
 }
 
@@ -91,6 +92,10 @@ UprightGrid upright(const StoredGrid& grid) {
     for (int axis = 0; axis < 3; ++axis) out.lattice.origin[axis] = std::isfinite(origin[axis]) ? origin[axis] : 0;
     if (!straight) out.note = obliqueNote(out, directions);
     return out;
+}
+
+bool isStraightened(const std::vector<std::string>& notes) {
+    return std::ranges::any_of(notes, [](const std::string& note) { return note.starts_with(kOblique); });
 }
 
 std::vector<std::byte> inUprightOrder(std::span<const std::byte> samples, std::size_t bytes, const UprightGrid& grid) {

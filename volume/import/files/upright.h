@@ -37,6 +37,9 @@ struct UprightGrid {
 /// axis of space lie on it.
 UprightGrid upright(const StoredGrid& grid);
 
+/// Whether one of the notes on a data set is that its axes are oblique in the file, and shown straight.
+bool isStraightened(const std::vector<std::string>& notes);
+
 /// Samples of `bytes` bytes each, x fastest, from the stored order to that of the lattice.
 std::vector<std::byte> inUprightOrder(std::span<const std::byte> samples, std::size_t bytes, const UprightGrid& grid);
 
