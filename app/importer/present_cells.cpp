@@ -14,13 +14,20 @@ namespace tessera::importer {
 
 namespace {
 
+/// Without std::fill, of which gcc 14 believes that it may run beyond the vector.
+std::vector<std::uint8_t> allPresent(std::size_t count) {
+    std::vector<std::uint8_t> flags(count);
+    for (std::uint8_t& flag : flags) flag = 1;
+    return flags;
+}
+
 /// Clears the flags of points or cells that have one of the bits.
 void clearGhosts(vtkDataSetAttributes* attributes, int bits, std::size_t count, std::vector<std::uint8_t>& flags) {
     vtkDataArray* ghosts = attributes->GetArray("vtkGhostType");
     if (ghosts == nullptr || std::size_t(ghosts->GetNumberOfTuples()) != count) return;
     for (std::size_t i = 0; i < count; ++i) {
         if ((int(ghosts->GetComponent(vtkIdType(i), 0)) & bits) == 0) continue;
-        if (flags.empty()) flags.assign(count, 1);
+        if (flags.empty()) flags = allPresent(count);
         flags[i] = 0;
     }
 }
@@ -66,7 +73,7 @@ std::vector<std::uint8_t> presentCells(vtkDataSet* data) {
     const int most = dimensionOf(data);
     for (std::size_t c = 0; c < count; ++c) {
         if (dimensionOfCell(data->GetCellType(vtkIdType(c))) == most) continue;
-        if (flags.empty()) flags.assign(count, 1);
+        if (flags.empty()) flags = allPresent(count);
         flags[c] = 0;
     }
     return flags;

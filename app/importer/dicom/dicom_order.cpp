@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -53,9 +54,10 @@ std::vector<double> distinct(const Values& values) {
 }
 
 std::size_t mostAtOnePlace(const DicomPlaces& places) {
-    std::vector<std::size_t> count(places.at.size());
-    for (const std::size_t place : places.ofFrame) ++count[place];
-    return *std::ranges::max_element(count);
+    std::map<std::size_t, std::size_t> count;
+    std::size_t most = 0;
+    for (const std::size_t place : places.ofFrame) most = std::max(most, ++count[place]);
+    return most;
 }
 
 /// The position of each frame among those of its place and group, by a value, then by number.
