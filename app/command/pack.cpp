@@ -72,7 +72,7 @@ PackInput open(const PackRequest& request, const Progress& progress) {
         const bool asGrid = latticeOf(request) != codec::StoredLattice::BCC || archive->metadata().alternating;
         const bool asStored =
             !asGrid || (archive->info().lattice.kind == volume::LatticeKind::CC && !archive->metadata().alternating);
-        const codec::PackedBefore before = codec::packedBefore(*archive);
+        const codec::PackedBefore before = codec::packedBefore(archive);
         return {asStored ? codec::storedDataset(archive) : codec::gridDataset(archive, 0), before};
     }
     requireData(request.inputs);

@@ -51,14 +51,16 @@ std::string readFromText(const NumberOrigin& origin, const volume::DatasetInfo& 
                          const std::vector<volume::Channel>& channels) {
     std::string computed = origin.mesh ? "resampled" : "as computed";
     if (!origin.stored) return computed;
-    const std::string error = origin.exact ? std::string() : errorText(origin, info, channels);
-    const bool onGrid = origin.lattice == "CC";
+    const std::string error = errorText(origin, info, channels);
+    const bool onGrid = origin.lattice == "CC", exactParts = origin.unpacked && origin.corrected;
     std::string text = onGrid && error.empty() ? computed
                        : onGrid                ? "stored on CC, " + error
+                       : exactParts            ? "stored on " + origin.lattice + " and corrected" +
+                                          (error.empty() ? "" : ", " + error)
                        : error.empty()         ? "resampled to " + origin.lattice + ", stored losslessly"
                                                : "resampled to " + origin.lattice + ", stored with an " + error;
     if (origin.mesh && onGrid && text != computed) text = "resampled, " + text;
-    if (origin.unpacked) text += ", unpacked to the grid of the source";
+    if (origin.unpacked && !exactParts) text += ", unpacked to the grid of the source";
     if (origin.discarded) text += ", without bricks of little importance";
     return text;
 }
@@ -72,7 +74,7 @@ NumberOrigin computedOrigin(const volume::DatasetInfo& info) {
     return origin;
 }
 
-NumberOrigin storedOrigin(const codec::Metadata& metadata) {
+NumberOrigin storedOrigin(const codec::Metadata& metadata, bool unpacked) {
     NumberOrigin origin = computedOrigin(metadata.info);
     origin.stored = true;
     origin.lattice = metadata.alternating                                     ? "D4*"
@@ -82,19 +84,27 @@ NumberOrigin storedOrigin(const codec::Metadata& metadata) {
     origin.maxError = metadata.lossless ? 0 : metadata.maxError;
     origin.absError = metadata.lossless ? 0 : metadata.options.absError;
     origin.discarded = metadata.options.discard > 0;
+    origin.unpacked = unpacked;
+    origin.corrected = unpacked && !metadata.corrections.empty();
+    if (unpacked)
+        for (const auto& error : metadata.resampled) origin.resampleErrors.push_back(error ? error->largest : 0);
     return origin;
 }
 
 double errorBound(const NumberOrigin& origin, const volume::DatasetInfo& info, const volume::Channel& channel) {
     const volume::Parameter& parameter = info.parameters[std::size_t(channel.parameter)];
     const bool derived = origin.parameters >= 0 && channel.parameter >= origin.parameters;
-    if (origin.exact || parameter.categorical || derived || isOriginal(origin, info, channel)) return 0;
+    if (parameter.categorical || derived || isOriginal(origin, info, channel)) return 0;
+    const auto ofAll = [&](double bound) { return channel.magnitude ? bound * std::sqrt(double(channel.component)) : bound; };
+    if (std::size_t(channel.parameter) < origin.resampleErrors.size())
+        return ofAll(origin.resampleErrors[std::size_t(channel.parameter)]);
+    if (origin.exact) return 0;
     double extent = 0;
     for (int c = 0; c < std::min(parameter.components, int(parameter.ranges.size())); ++c)
         extent = std::max(extent, parameter.ranges[std::size_t(c)].hi - parameter.ranges[std::size_t(c)].lo);
     double bound = origin.maxError * extent;
     if (origin.absError > 0) bound = bound > 0 ? std::min(bound, origin.absError) : origin.absError;
-    return channel.magnitude ? bound * std::sqrt(double(channel.component)) : bound;
+    return ofAll(bound);
 }
 
 std::string originText(const NumberOrigin& origin, const volume::DatasetInfo& info, const std::vector<int>& channels) {

@@ -25,7 +25,10 @@ struct NumberOrigin {
     bool exact = true;      ///< every stored sample is what was packed
     double maxError = 0;    ///< else: bound on the error of a sample, relative to the largest range of its components
     double absError = 0;    ///< in the unit of the parameter; 0 = no such bound
-    bool unpacked = false;  ///< interpolated back to the grid that they were resampled from
+    bool unpacked = false;  ///< computed on the grid of the source from samples of the lattice
+    bool corrected = false; ///< then: with labels and absent samples as they were, and bounds that hold there
+    /// Then: largest errors at the samples of the source, by parameter, in its unit; empty: none is known.
+    std::vector<double> resampleErrors = {};
     bool discarded = false; ///< bricks of little importance are left out
     bool alongTime = false; ///< time takes the place of an axis: read between times
     std::shared_ptr<const volume::BrickSource> cutFrom = {}; ///< then: the data in space that the plane is of
@@ -38,8 +41,8 @@ struct NumberOrigin {
 
 /// Of data that are no archive.
 NumberOrigin computedOrigin(const volume::DatasetInfo& info);
-/// Of an archive.
-NumberOrigin storedOrigin(const codec::Metadata& metadata);
+/// Of an archive: of its stored samples, or `unpacked` to the grid of the source.
+NumberOrigin storedOrigin(const codec::Metadata& metadata, bool unpacked = false);
 
 /// Bound on the error of a sample of a channel, in its unit; 0 where it is exact.
 double errorBound(const NumberOrigin& origin, const volume::DatasetInfo& info, const volume::Channel& channel);

@@ -85,7 +85,7 @@ Sources openPacked(volume::Dataset dataset, const DataRef& data, const Progress&
     const NumberOrigin computed = computedOrigin(dataset.info);
     if (!data.originals) return {packed, volume::makeMemorySource(std::move(dataset), onGrid()), computed};
     const auto archive = std::make_shared<const codec::Archive>(name);
-    NumberOrigin origin = storedOrigin(archive->metadata());
+    NumberOrigin origin = storedOrigin(archive->metadata(), !archive->metadata().corrections.empty());
     origin.originals = true;
     origin.parameters = 2 * int(dataset.info.parameters.size());
     const auto original = volume::makeMemorySource(std::move(dataset), onGrid());
@@ -120,9 +120,13 @@ volume::OtherAxis axisOf(const volume::DatasetInfo& given, const DataRef& data, 
 Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
     const std::string& path = data.files[0].absolutePath;
     const auto archive = std::make_shared<const codec::Archive>(path, data.remote);
-    NumberOrigin origin = storedOrigin(archive->metadata());
-    std::shared_ptr<const volume::BrickSource> source = archive;
-    if (archive->metadata().alternating && data.grids != ShownGrids::Both) {
+    const bool unpacks = !archive->metadata().corrections.empty() && data.grids == ShownGrids::Both;
+    NumberOrigin origin = storedOrigin(archive->metadata(), unpacks);
+    std::shared_ptr<const volume::BrickSource> source = archive, unpacked;
+    if (unpacks) unpacked = volume::makeMemorySource(codec::gridDataset(archive, 0), onGrid());
+    if (unpacks && archive->metadata().alternating) {
+        source = drawnOn(unpacked, latticeOf(data.lattice)); // at the times of the source, as the numbers are
+    } else if (archive->metadata().alternating && data.grids != ShownGrids::Both) {
         source = volume::makeOneGridSource(archive, data.grids == ShownGrids::First ? 0 : 1);
         origin.lattice = "one grid of D4*";
     } else if (archive->metadata().alternating) {
@@ -131,8 +135,10 @@ Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
     volume::OtherAxis axis = axisOf(source->info(), data, messages);
     if (axis.info.times != source->info().times || axis.info.timeName != source->info().timeName ||
         axis.info.timeUnit != source->info().timeUnit || !data.import.overTime.empty() || !data.import.units.empty())
-        source = volume::onAxis(source, std::move(axis));
-    return {source, source, std::move(origin)};
+        for (std::shared_ptr<const volume::BrickSource>* const one : {&source, &unpacked})
+            if (*one) *one = volume::onAxis(*one, axis);
+    if (unpacks && data.lattice == PictureLattice::Grid) source = unpacked;
+    return {source, unpacked ? unpacked : source, std::move(origin)};
 }
 
 namespace {
@@ -155,7 +161,8 @@ Sources openWhole(const DataRef& data, std::vector<std::string>& messages, const
     if (isArchive(data)) {
         const Sources archive = openArchived(data, messages);
         const auto named = volume::withLabelNames(archive.pictures, data.import.labels);
-        return {named, named, archive.origin};
+        if (archive.numbers == archive.pictures) return {named, named, archive.origin};
+        return {named, volume::withLabelNames(archive.numbers, data.import.labels), archive.origin};
     }
     volume::Dataset dataset;
     if (data.files.empty()) {

@@ -71,17 +71,24 @@ Sources readAgain(const DataRef& data, const Sources& shown) {
     Both pictures(volume::underived(shown.pictures)), numbers(volume::underived(shown.numbers));
     NumberOrigin origin = shown.origin;
     const auto open = [&](const DataRef& archive, NumberOrigin& of) {
-        const Sources opened = openArchived(archive, known);
+        Sources opened = openArchived(archive, known);
         of = opened.origin;
-        return volume::withLabelNames(opened.pictures, archive.import.labels);
+        const bool one = opened.numbers == opened.pictures;
+        opened.pictures = volume::withLabelNames(opened.pictures, archive.import.labels);
+        opened.numbers = one ? opened.pictures : volume::withLabelNames(opened.numbers, archive.import.labels);
+        return opened;
     };
     if (isArchive(data)) {
-        pictures.own = numbers.own = open(data, origin);
+        const Sources opened = open(data, origin);
+        pictures.own = opened.pictures;
+        numbers.own = opened.numbers;
         origin.other = shown.origin.other;
     }
     if (pictures.other && isArchive(otherData(data))) {
         NumberOrigin same;
-        pictures.other = numbers.other = open(otherData(data), same);
+        const Sources opened = open(otherData(data), same);
+        pictures.other = opened.pictures;
+        numbers.other = opened.numbers;
     }
     const auto joined = pictures.joined();
     const bool one = pictures.own == numbers.own && pictures.other == numbers.other;

@@ -72,7 +72,13 @@ std::uint64_t appendFrames(const Archive& archive, const Archive& more, const Me
         frame.model += static_cast<std::int32_t>(state.models);
         page.frames.push_back(std::move(frame));
     }
-    commits.commit(file, page, now, now.info.times.size(), true);
+    Metadata together = now;
+    together.corrections = archive.metadata().corrections;
+    for (const FileRange& range : more.metadata().corrections) {
+        together.corrections.push_back({file.position(), range.length});
+        file.append(from.bytes->part(range).bytes());
+    }
+    commits.commit(file, page, together, now.info.times.size(), true);
     file.finish();
     return commits.header.fileSize;
 }

@@ -56,6 +56,9 @@ public:
     volume::BrickSamples read(const volume::BrickKey& key) const override;
 
     const Metadata& metadata() const;
+    /// The archives of corrections inside this one, on the grid of its source, each for some parameters and times
+    /// (codec/pack/corrections.h); opened by the first call. Throws Error.
+    std::vector<std::shared_ptr<const Archive>> corrections() const;
     const std::string& path() const;
     /// The format version.
     std::uint32_t version() const;
@@ -91,7 +94,9 @@ private:
     friend std::array<std::uint64_t, 2> maskHashOf(const Archive&, const struct FrameRecord&);
     friend bool codedAlike(const Archive&, const Archive&);
     friend std::uint64_t appendFrames(const Archive&, const Archive&, const Metadata&, std::span<const std::size_t>);
+    friend class ArchiveWriter;
     struct Impl;
+    explicit Archive(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
 };
 

@@ -10,6 +10,7 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -22,7 +23,7 @@ namespace tessera::codec {
 struct Archive::Impl {
     std::string path;
     RemoteOptions remote;
-    std::unique_ptr<FileBytes> bytes;
+    std::shared_ptr<const FileBytes> bytes;
     HeaderState header;
     Metadata metadata;
     Index index;
@@ -37,11 +38,23 @@ struct Archive::Impl {
     mutable std::mutex idleMutex;
     mutable KeptNumbers kept; ///< of archives with predicted frames
 
-    Impl(const std::string& name, const RemoteOptions& options)
-        : path(name), remote(options), bytes(openBytes(name, options)) {
+    /// The archives of corrections, once they were asked for.
+    mutable std::optional<std::vector<std::shared_ptr<const Archive>>> corrections;
+    mutable std::mutex correctionsMutex;
+
+    Impl(const std::string& name, const RemoteOptions& options) : Impl(name, options, openBytes(name, options)) {}
+    /// Of a file on this machine whose header is not written yet.
+    Impl(const std::string& name, const Header& so) : path(name), bytes(openBytes(name, {})), header{so, false} {}
+    Impl(const std::string& name, const RemoteOptions& options, std::shared_ptr<const FileBytes> from)
+        : path(name), remote(options), bytes(std::move(from)) {
         const std::uint64_t size = bytes->size();
         header = parseHeaders(bytes->part({0, std::min(size, kFirstChunk)}).bytes(), size, path);
     }
+
+    /// Reads metadata and index, which the header names. Throws Error.
+    void load();
+    /// Sets what follows from metadata and index, and checks that they agree. Throws Error.
+    void settle();
 
     const FrameRecord& frame(int parameter, int component, int time) const {
         return index

@@ -78,45 +78,69 @@ Archive::Archive(const std::string& path, const RemoteOptions& remote) {
             if (failed || attempt == kAttempts || std::filesystem::file_size(path, failed) == before) throw;
         }
     }
-    Impl& impl = *impl_;
-    const Header& header = impl.header.header;
-    const FileRange ahead[] = {{header.metadata.offset, header.metadata.length},
-                               {header.index.offset, header.index.length}};
-    impl.bytes->readAhead(ahead);
-    impl.metadata =
-        parseMetadata(checkedPart(*impl.bytes, header.metadata, path, "the metadata").bytes(), header.features, path);
-    impl.metadata.info.remote = isRemote(path);
-    if (impl.metadata.info.name.empty()) impl.metadata.info.name = std::filesystem::path(path).stem().string();
-    impl.channels = impl.metadata.info.channels();
-    impl.components = componentCount(impl.metadata.info);
-    const std::uint64_t bricks = checkedBrickCount(impl.metadata.grid, path);
-    impl.index = readIndex(*impl.bytes, header, {impl.components, bricks, impl.metadata.grid}, path);
-    impl.metadata.info.times = impl.index.times;
+    impl_->load();
+}
+
+Archive::Archive(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+void Archive::Impl::load() {
+    const Header& named = header.header;
+    const FileRange ahead[] = {{named.metadata.offset, named.metadata.length},
+                               {named.index.offset, named.index.length}};
+    bytes->readAhead(ahead);
+    metadata =
+        parseMetadata(checkedPart(*bytes, named.metadata, path, "the metadata").bytes(), named.features, path);
+    metadata.info.remote = isRemote(path);
+    if (metadata.info.name.empty()) metadata.info.name = std::filesystem::path(path).stem().string();
+    components = componentCount(metadata.info);
+    bricks = checkedBrickCount(metadata.grid, path);
+    index = readIndex(*bytes, named, {components, bricks, metadata.grid, metadata.corrections}, path);
+    metadata.info.times = index.times;
     // The numbers of times in metadata and index can differ in a growing archive.
     const auto fit = [](std::vector<volume::Quantity>& quantities, std::size_t times) {
         for (volume::Quantity& quantity : quantities)
             quantity.values.resize(times, std::numeric_limits<double>::quiet_NaN());
     };
-    Metadata& metadata = impl.metadata;
     fit(metadata.info.quantities, metadata.info.times.size());
     fit(metadata.sourceQuantities, metadata.sourceTimes.size());
     if (metadata.alternating)
         metadata.info.quantities =
             volume::atTimes(metadata.sourceQuantities, metadata.sourceTimes, metadata.info.times);
-    if (impl.metadata.alternating && impl.metadata.info.times.size() < 2)
-        throw Error("d4 needs two times", path, "index");
-    impl.bricks = bricks;
-    for (std::size_t f = 0; f < impl.index.frames.size(); ++f) {
-        const FrameRecord& frame = impl.index.frames[f];
-        std::size_t component = f % impl.components, number = 0;
-        while (component >= std::size_t(impl.metadata.info.parameters[number].components))
-            component -= std::size_t(impl.metadata.info.parameters[number++].components);
-        const bool isFloat = impl.metadata.info.parameters[number].type == volume::ScalarType::F32;
+    if (metadata.alternating && metadata.info.times.size() < 2) throw Error("d4 needs two times", path, "index");
+    settle();
+}
+
+void Archive::Impl::settle() {
+    channels = metadata.info.channels();
+    components = componentCount(metadata.info);
+    bricks = metadata.grid.brickCount();
+    for (std::size_t f = 0; f < index.frames.size(); ++f) {
+        const FrameRecord& frame = index.frames[f];
+        const volume::Parameter& parameter = metadata.info.parameters[parameterOf(metadata.info, f % components)];
+        const bool isFloat = parameter.type == volume::ScalarType::F32;
         if (isFloat == (frame.numbers.kind == NumberKind::Integer) || (frame.mask < 0 && frame.keepsAbsent))
             throw Error("a frame is coded in a way its type does not allow", path, "index");
-        if (!isFloat && frame.codeBits != codeBitsOf(impl.metadata.info.parameters[number].type))
+        if (!isFloat && frame.codeBits != codeBitsOf(parameter.type))
             throw Error("a frame states another width than its type has", path, "index");
     }
+}
+
+std::vector<std::shared_ptr<const Archive>> Archive::corrections() const {
+    const std::lock_guard lock(impl_->correctionsMutex);
+    if (impl_->corrections) return *impl_->corrections;
+    std::vector<std::shared_ptr<const Archive>> all;
+    for (const FileRange& range : impl_->metadata.corrections) {
+        auto window = std::make_shared<const FileWindow>(impl_->bytes, range);
+        std::unique_ptr<Impl> impl = std::make_unique<Impl>(impl_->path, impl_->remote, std::move(window));
+        impl->load();
+        const Metadata& inner = impl->metadata;
+        if (impl->header.header.fileSize != range.length || !inner.corrections.empty() || inner.alternating ||
+            inner.info.lattice.kind != volume::LatticeKind::CC || inner.info.lattice.size != impl_->metadata.source.size)
+            throw Error("the corrections do not fit the archive", impl_->path, "byte " + std::to_string(range.offset));
+        all.push_back(std::shared_ptr<const Archive>(new Archive(std::move(impl))));
+    }
+    impl_->corrections = std::move(all);
+    return *impl_->corrections;
 }
 
 Archive::~Archive() = default;

@@ -114,6 +114,17 @@ struct Verifier {
         report.damagedBricks += bad;
     }
 
+    /// The report on an archive inside this one.
+    void add(const VerifyReport& inner) {
+        report.bricks += inner.bricks;
+        report.samples += inner.samples;
+        report.bytes += inner.bytes;
+        report.damaged += inner.damaged;
+        report.damagedBricks += inner.damagedBricks;
+        for (const std::string& line : inner.damage)
+            if (report.damage.size() < 100) report.damage.push_back("corrections: " + line);
+    }
+
     void headers() {
         report.damagedHeader = impl.header.damaged;
         if (impl.header.damaged) note("header: byte 0: one of its two copies is damaged");
@@ -172,6 +183,9 @@ VerifyReport verifyArchive(const Archive& archive, const Progress& progress) {
         progress.advance(double(f) / double(frames));
         verifier.frame(f);
     }
+    verifier.guarded("corrections", [&] {
+        for (const auto& corrections : archive.corrections()) verifier.add(verifyArchive(*corrections));
+    });
     progress.advance(1);
     return std::move(verifier.report);
 }

@@ -1,5 +1,6 @@
 #include "codec/archive/archive_writer.h"
 
+#include "codec/archive/archive_impl.h"
 #include "codec/archive/archive_state.h"
 #include "codec/archive/brick_access.h"
 #include "codec/archive/brick_input.h"
@@ -14,6 +15,7 @@
 #include "codec/container/mask_hash.h"
 #include "volume/base/parallel.h"
 #include "volume/field/part_masks.h"
+#include "volume/system/mapped_file.h"
 
 #include <algorithm>
 #include <array>
@@ -28,6 +30,7 @@ struct ArchiveWriter::Impl {
     Commits commits;
     std::size_t models = 0, masks = 0; ///< written so far
     IndexPage page;                    ///< additions since the last commit
+    Index known;                       ///< what was committed
     std::map<MaskHash::Value, int> maskByHash;
     std::map<std::size_t, KnownModel> lastModel; ///< per component
     bool keepsFrames = true;
@@ -185,6 +188,7 @@ ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, b
     ArchiveState state = stateOf(archive, keepsFrames && laterTimes);
     impl_ = std::make_unique<Impl>(archive.path(), commitsOf(archive, state));
     impl_->metadata = metadata;
+    impl_->known = archive.impl_->index;
     impl_->keepsFrames = keepsFrames;
     impl_->models = state.models;
     impl_->masks = state.masks;
@@ -359,8 +363,30 @@ Archive::Repeats ArchiveWriter::repeats() const {
     return impl_->repeats;
 }
 
+std::shared_ptr<const Archive> ArchiveWriter::written(const Metadata& metadata) const {
+    const std::string& path = impl_->file.readablePath();
+    auto impl = std::make_unique<Archive::Impl>(path, impl_->commits.header);
+    Index index = impl_->known;
+    add(impl_->page, index);
+    std::ranges::sort(index.frames, {}, [](const FrameRecord& frame) { return std::pair(frame.time, frame.component); });
+    index.times = metadata.info.times;
+    impl->metadata = metadata;
+    impl->index = std::move(index);
+    impl->settle();
+    return std::shared_ptr<const Archive>(new Archive(std::move(impl)));
+}
+
+FileRange ArchiveWriter::addCorrections(const std::string& file) {
+    const MappedFile bytes(file);
+    const FileRange range{impl_->file.position(), bytes.size()};
+    impl_->file.append(bytes.part({0, bytes.size()}).bytes());
+    impl_->commits.header.features |= kCorrections;
+    return range;
+}
+
 void ArchiveWriter::commit(const Metadata& metadata, std::size_t times) {
-    impl_->commits.commit(impl_->file, impl_->page, metadata, times, false);
+    if (const auto page = impl_->commits.commit(impl_->file, impl_->page, metadata, times, false))
+        add(*page, impl_->known);
 }
 
 std::uint64_t ArchiveWriter::finish(const Metadata& metadata) {

@@ -3,15 +3,16 @@
 #include "codec/bytes/lzma.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tessera::codec {
 
-void Commits::commit(GrowingFile& file, IndexPage& page, const Metadata& now, std::size_t wholeTimes, bool always) {
+std::optional<IndexPage> Commits::commit(GrowingFile& file, IndexPage& page, const Metadata& now, std::size_t wholeTimes, bool always) {
     constexpr std::size_t kWorthwhile = 64, kPage = 256; // multiples of the bytes that a commit costs, including a page
     Bytes text = serialise(now, header.features);
     const std::uint64_t last = std::max(header.fileSize, kFirstChunk);
-    if (!always && file.position() - last < kWorthwhile * (text.size() + kPage)) return;
-    if (page.frames.empty() && text == metadata) return;
+    if (!always && file.position() - last < kWorthwhile * (text.size() + kPage)) return std::nullopt;
+    if (page.frames.empty() && text == metadata) return std::nullopt;
     const std::vector<double>& all = now.info.times;
     page.times.assign(all.begin() + std::ptrdiff_t(times), all.begin() + std::ptrdiff_t(wholeTimes));
     page.previousPage = header.index;
@@ -30,7 +31,7 @@ void Commits::commit(GrowingFile& file, IndexPage& page, const Metadata& now, st
     header.fileSize = file.position();
     file.commit(header);
     times = wholeTimes;
-    page = {};
+    return std::exchange(page, {});
 }
 
 Commits commitsOf(const Archive& archive, const ArchiveState& state) {

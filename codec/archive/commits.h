@@ -5,6 +5,8 @@
 #include "codec/container/index.h"
 #include "codec/container/metadata.h"
 
+#include <optional>
+
 namespace tessera::codec {
 
 /// What the last commit of an archive wrote, on which the next one depends.
@@ -16,9 +18,9 @@ struct Commits {
 
     /// Makes the additions in `page`, whose chunks have been appended to `file`, readable: appends the metadata if it
     /// has changed and the page, and writes the headers. `wholeTimes`: number of times of the metadata that are
-    /// complete. Unless `always`, it waits until the additions are 64 times as large as what a commit costs. `page` is
-    /// empty afterwards.
-    void commit(GrowingFile& file, IndexPage& page, const Metadata& now, std::size_t wholeTimes, bool always);
+    /// complete. Unless `always`, it waits until the additions are 64 times as large as what a commit costs. Returns the
+    /// page if it was written; `page` is empty then.
+    std::optional<IndexPage> commit(GrowingFile& file, IndexPage& page, const Metadata& now, std::size_t wholeTimes, bool always);
 };
 
 /// The last commit of an existing archive.

@@ -187,6 +187,7 @@ volume::Dataset Blocks::piece(std::size_t number) const {
 /// What is known of the source, for one piece: the blocks together have compared as many samples as the source.
 PackedBefore Blocks::beforeOf(std::size_t number, std::size_t times, PackedBefore before) const {
     if (pieces_ > 1 && !before.resampled.empty()) before.resampled = {before.resampled[number % pieces_]};
+    before.source.reset(); // of all times
     before.ofSeries = before.ofSeries || source_.info.times.size() > 1;
     for (std::optional<ResampleError>& error : before.resampled)
         if (error) error->samples *= double(times) / double(source_.info.times.size());

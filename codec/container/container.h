@@ -42,9 +42,11 @@ inline constexpr std::uint32_t kPredictedFrames = 64;
 inline constexpr std::uint32_t kFittedModels = 128;
 /// Feature: bricks can be mixed. Only set once one is.
 inline constexpr std::uint32_t kMixedBricks = 256;
+/// Feature: the metadata name archives of corrections inside the file. Only set once there is one.
+inline constexpr std::uint32_t kCorrections = 512;
 /// Features that are only set once they are used.
 inline constexpr std::uint32_t kSetWhenUsed =
-    kSteppedBricks | kSubsamples | kPredictedFrames | kFittedModels | kMixedBricks;
+    kSteppedBricks | kSubsamples | kPredictedFrames | kFittedModels | kMixedBricks | kCorrections;
 inline constexpr std::uint32_t kUsualFeatures = kBrickNotes | kCompact | kBandContexts | kBrickStatistics,
                                kKnownFeatures = kUsualFeatures | kSetWhenUsed;
 

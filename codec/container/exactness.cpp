@@ -22,37 +22,53 @@ bool isResampled(const Metadata& metadata) {
            (metadata.info.lattice.kind == volume::LatticeKind::BCC && metadata.source.kind == volume::LatticeKind::CC);
 }
 
-std::string exactnessText(const Metadata& metadata) {
-    const bool resampled = isResampled(metadata);
-    std::string out;
-    if (!metadata.lossless)
-        out = "error within " + text("%.3g", metadata.maxError) + " of range";
-    else if (!resampled)
-        out = "lossless: every sample is exact";
-    else
-        out = std::string("every sample of the ") +
-              (metadata.alternating                                     ? "D4*"
-               : metadata.info.lattice.kind == volume::LatticeKind::BCC ? "BCC"
-                                                                        : "CC") +
-              " grid is exact";
-    if (!resampled) return out;
-    out += metadata.lossless ? "; the source was resampled" : " in addition to resampling";
-    double least = std::numeric_limits<double>::infinity();
+namespace {
+
+const char* latticeName(const Metadata& metadata) {
+    if (metadata.alternating) return "D4*";
+    return metadata.info.lattice.kind == volume::LatticeKind::BCC ? "BCC" : "CC";
+}
+
+/// What resampling changed, over all numbers: "(largest error 0.4 % of range, PSNR 38.9 dB or more)".
+std::string resampledTogether(const Metadata& metadata) {
+    double least = std::numeric_limits<double>::infinity(), largest = 0;
     std::size_t known = 0;
     for (std::size_t p = 0; p < metadata.resampled.size() && p < metadata.info.parameters.size(); ++p) {
-        if (!metadata.resampled[p] || metadata.info.parameters[p].categorical) continue;
+        const volume::Parameter& about = metadata.info.parameters[p];
+        if (!metadata.resampled[p] || about.categorical) continue;
         ++known;
-        least = std::min(least, psnrOf(*metadata.resampled[p], extentOf(metadata.info.parameters[p])));
+        const double extent = extentOf(about);
+        least = std::min(least, psnrOf(*metadata.resampled[p], extent));
+        if (extent > 0) largest = std::max(largest, metadata.resampled[p]->largest / extent);
     }
-    if (known == 0) return out + " (with an unknown error)";
-    if (!std::isfinite(least)) return out + " (without error)";
-    return out + " (PSNR " + text("%.1f", least) + (known > 1 ? " dB or more)" : " dB)");
+    if (known == 0) return " (with an unknown error)";
+    if (!std::isfinite(least)) return " (without error)";
+    return " (largest error " + text("%.3g", 100 * largest) + " % of range, PSNR " + text("%.1f", least) +
+           (known > 1 ? " dB or more)" : " dB)");
+}
+
+} // namespace
+
+std::string exactnessText(const Metadata& metadata) {
+    const std::string bound = "error within " + text("%.3g", metadata.maxError) + " of range";
+    if (!isResampled(metadata)) return metadata.lossless ? "lossless: every sample is exact" : bound;
+    const std::string name = latticeName(metadata);
+    if (metadata.corrections.empty())
+        return (metadata.lossless ? "every sample of the " + name + " grid is exact; the source was resampled"
+                                  : bound + " at the samples of the " + name + " grid, in addition to resampling") +
+               resampledTogether(metadata) +
+               (name == "CC" ? "" : "; labels and absent samples are those of the " + name + " grid");
+    if (!metadata.lossless && metadata.resampled.empty())
+        return bound + " at every sample of the source, stored on " + name + " with corrections";
+    return "resampled to " + name + " and back to the samples of the source" + resampledTogether(metadata) +
+           "; labels and absent samples are exact";
 }
 
 std::string resampledText(const Metadata& metadata, std::size_t parameter) {
+    const volume::Parameter& about = metadata.info.parameters[parameter];
+    if (about.categorical && !metadata.corrections.empty()) return "exact";
     if (parameter >= metadata.resampled.size() || !metadata.resampled[parameter]) return {};
     const ResampleError& error = *metadata.resampled[parameter];
-    const volume::Parameter& about = metadata.info.parameters[parameter];
     std::string out = "resampled: ";
     if (error.samples == 0) return out + "no sample to compare";
     if (about.categorical) {
@@ -61,7 +77,8 @@ std::string resampledText(const Metadata& metadata, std::size_t parameter) {
         out += "without error";
     } else {
         out += "PSNR " + text("%.1f", psnrOf(error, extentOf(about))) + " dB, error at most " +
-               text("%.4g", error.largest) + (about.unit.empty() ? "" : " " + about.unit);
+               text("%.4g", error.largest) + (about.unit.empty() ? "" : " " + about.unit) +
+               " at the samples of the source";
     }
     if (error.share < 1) out += ", in " + text("%.2g", 100 * error.share) + " % of the slices";
     return out;

@@ -113,6 +113,11 @@ void GrowingFile::append(std::span<const std::byte> bytes) {
     position_ += bytes.size();
 }
 
+const std::string& GrowingFile::readablePath() const {
+    if (std::fflush(file_) != 0) fail();
+    return temporary_.empty() ? path_ : temporary_;
+}
+
 /// Writes the second copy first, since readers prefer the first: at any time one of the two is complete.
 void GrowingFile::writeHeaders(const Header& header) {
     sync();

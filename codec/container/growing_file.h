@@ -26,6 +26,8 @@ public:
     GrowingFile& operator=(const GrowingFile&) = delete;
 
     std::uint64_t position() const { return position_; }
+    /// Where the bytes appended so far can be read now. Throws MachineError.
+    const std::string& readablePath() const;
     /// Throws MachineError, as all functions below, when the disk is full or unavailable.
     void append(std::span<const std::byte> bytes);
     /// Flushes everything to disk, then writes a header whose fileSize is the current position.

@@ -242,7 +242,7 @@ void requireRepeats(const Index& index, const IndexShape& shape, const std::stri
 }
 
 /// Requires that chunks, pages and all metadata fill the file from the first chunk to its end without gaps.
-void requireFilled(const Index& index, const Header& header, const std::string& file) {
+void requireFilled(const Index& index, const IndexShape& shape, const Header& header, const std::string& file) {
     std::vector<std::pair<std::uint64_t, std::uint64_t>> parts;
     const auto add = [&](const auto& part) {
         const std::uint64_t end = header.fileSize;
@@ -253,6 +253,9 @@ void requireFilled(const Index& index, const Header& header, const std::string& 
         for (const Block& block : *blocks) add(block);
     for (const MaskRecord& mask : index.masks) add(mask);
     for (const FrameRecord& frame : index.frames) add(frame);
+    require(shape.corrections.empty() || (header.features & kCorrections) != 0,
+            "there are corrections that the archive does not declare", file);
+    for (const FileRange& range : shape.corrections) add(range);
     add(header.metadata);
     std::sort(parts.begin(), parts.end());
     std::uint64_t at = kFirstChunk;
@@ -264,6 +267,12 @@ void requireFilled(const Index& index, const Header& header, const std::string& 
 }
 
 } // namespace
+
+void add(const IndexPage& page, Index& index) {
+    index.models.insert(index.models.end(), page.models.begin(), page.models.end());
+    index.masks.insert(index.masks.end(), page.masks.begin(), page.masks.end());
+    index.frames.insert(index.frames.end(), page.frames.begin(), page.frames.end());
+}
 
 FrameBrick::Notes rounded(const FrameBrick::Notes& notes) {
     FrameBrick::Notes out = notes;
@@ -366,7 +375,7 @@ Index readIndex(const FileBytes& bytes, const Header& header, const IndexShape& 
         index.frames[number] = std::move(frame);
     }
     if ((header.features & kBrickNotes) != 0) requireRepeats(index, shape, file);
-    requireFilled(index, header, file);
+    requireFilled(index, shape, header, file);
     return index;
 }
 

@@ -89,10 +89,14 @@ struct Index {
     std::uint64_t pageBytes = 0;     ///< of all pages, decompressed
 };
 
+/// Adds models, masks and frames of a page to an index, frames in the order of the page.
+void add(const IndexPage& page, Index& index);
+
 /// The shape of an index, from the metadata.
 struct IndexShape {
     std::uint64_t components = 0, bricks = 0;
     volume::BrickGrid grid;
+    std::vector<FileRange> corrections = {}; ///< archives inside the file
 };
 
 /// Limit of the decompressed size of all pages of a compact archive, so that a small file cannot request much memory.

@@ -91,6 +91,10 @@ public:
         if (value < lo || value > hi) fail("not between " + std::to_string(lo) + " and " + std::to_string(hi));
         return static_cast<int>(value);
     }
+    std::uint64_t count() const {
+        if (!value_.is_number_unsigned()) fail("not a whole number");
+        return value_.get<std::uint64_t>();
+    }
     bool flag() const {
         if (!value_.is_boolean()) fail("not true or false");
         return value_.get<bool>();
@@ -225,6 +229,8 @@ std::string toJson(const Metadata& metadata) {
         document["data"]["quantities"].push_back(quantityJson(quantity));
     if (!metadata.resampled.empty()) document["resampled"] = resampledJson(metadata.resampled);
     if (metadata.alternating) document["sourceTimes"] = metadata.sourceTimes;
+    for (const FileRange& range : metadata.corrections)
+        document["corrections"].push_back({{"offset", range.offset}, {"length", range.length}});
     return jsonText(document);
 }
 
@@ -249,6 +255,9 @@ Metadata metadataFromJson(std::string_view text, const std::string& file) {
     info.times.clear();
     if (root.has("resampled")) metadata.resampled = readResampled(root["resampled"], info.parameters.size());
     if (metadata.alternating) metadata.sourceTimes = readTimes(root["sourceTimes"]);
+    if (root.has("corrections"))
+        for (const Node& range : root["corrections"].items(1 << 20))
+            metadata.corrections.push_back({range["offset"].count(), range["length"].count()});
     info.timeUnit = data["timeUnit"].text();
     if (data.has("timeName")) info.timeName = data["timeName"].text();
     if (data.has("quantities")) {

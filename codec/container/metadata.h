@@ -5,6 +5,7 @@
 #include "codec/container/resample_error.h"
 #include "volume/bricks/brick_grid.h"
 #include "volume/field/dataset.h"
+#include "volume/system/file_bytes.h"
 
 #include <cstdint>
 #include <optional>
@@ -29,6 +30,8 @@ struct Metadata {
     double maxError = 0;  ///< otherwise the error bound, relative to a parameter's range
     /// Resampling errors per parameter; an empty entry is unknown. Empty: nothing was resampled, or all are unknown.
     std::vector<std::optional<ResampleError>> resampled;
+    /// Archives inside the file, on the grid of the source, each for some parameters and times (codec/pack/corrections.h).
+    std::vector<FileRange> corrections = {};
     std::string program; ///< name and version of the program that wrote it
     PackOptions options; ///< packing options, also used when it grows
     bool operator==(const Metadata&) const = default;

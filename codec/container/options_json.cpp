@@ -57,6 +57,13 @@ json difference(const json& all, const json& defaults) {
     return out;
 }
 
+/// What options that an archive does not state are: its lattice was BCC when the first archives were written.
+PackOptions unstated() {
+    PackOptions options;
+    options.lattice = StoredLattice::BCC;
+    return options;
+}
+
 json everything(const PackOptions& options) {
     json all = json::object();
     PackOptions::describe(options, ToJson{all});
@@ -66,11 +73,11 @@ json everything(const PackOptions& options) {
 } // namespace
 
 json toJson(const PackOptions& options) {
-    return difference(everything(options), everything({}));
+    return difference(everything(options), everything(unstated()));
 }
 
 PackOptions optionsFromJson(const json& all) {
-    PackOptions options;
+    PackOptions options = unstated();
     PackOptions::describe(options, FromJson{all});
     return options;
 }

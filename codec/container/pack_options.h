@@ -33,7 +33,7 @@ inline constexpr std::string_view kStoredLatticeNames[] = {"cc", "bcc", "d4"};
 
 /// Packing options, described once for widgets, JSON and command line.
 struct PackOptions {
-    StoredLattice lattice = StoredLattice::BCC;
+    StoredLattice lattice = StoredLattice::CC;
     volume::ResampleOptions resample;
     bool lossless = true;
     double maxError = 0;
@@ -56,7 +56,7 @@ struct PackOptions {
     /// Presets for common purposes.
     static constexpr std::string_view kPresetNames[] = {"none", "lossless", "visual", "small", "thesis"};
     static constexpr std::string_view kPresetDoc =
-        "Preset, which other options override: lossless (every sample of the source, on CC), visual (error 0.001 of "
+        "Preset, which other options override: lossless (every sample of the source), visual (error 0.001 of "
         "range), small (error 0.01 of range, highest effort), thesis (BCC, bricks of 16, 3 levels, wavelet (2,2) on "
         "each sublattice, soft threshold by importance)";
     /// The options of one of kPresetNames; nullopt for other names.
@@ -66,8 +66,9 @@ struct PackOptions {
     static void describe(auto& self, auto&& visit) {
         visit(self.lattice, FieldInfo{.key = "lattice",
                                       .unit = "",
-                                      .doc = "Lattice of the stored samples: cc (all samples), bcc (70.7 % of them), "
-                                             "or d4 (50 %, in space and time, for two times or more)",
+                                      .doc = "Lattice of the stored samples: cc (the grid of the source), or resampled to bcc "
+                                             "(70.7 % of the samples) or d4 (50 %, in space and time, for eight evenly "
+                                             "spaced times or more)",
                                       .names = kStoredLatticeNames});
         visit(self.resample,
               FieldInfo{.key = "resample", .unit = "", .doc = "How samples of another lattice are computed"});

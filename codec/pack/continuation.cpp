@@ -1,5 +1,6 @@
 #include "codec/pack/continuation.h"
 
+#include "codec/pack/unpack.h"
 #include "volume/base/number_text.h"
 #include "volume/field/part_masks.h"
 #include "volume/field/quantities.h"
@@ -104,33 +105,39 @@ bool sameSamples(const volume::Field& a, const volume::Field& b) {
     return true;
 }
 
-/// Requires that the label, as it would be packed, equals that of the archive at all times.
-void requireSameLabel(const volume::Dataset& source, int label, const Archive& archive) {
+/// Requires that the label equals that of the archive at all times: on the grid of the source, or for archives without
+/// corrections as it would be packed.
+void requireSameLabel(const volume::Dataset& source, int label, const std::shared_ptr<const Archive>& owned) {
+    const Archive& archive = *owned;
     const Metadata& metadata = archive.metadata();
+    const bool corrected = !metadata.corrections.empty();
     const Parameter& added = source.info.parameters[std::size_t(label)];
     const Parameter* const old = find(metadata.info, added.name);
     requireSame(*old, added, archive.path());
+    const int number = int(old - metadata.info.parameters.data());
     const volume::Dataset stored =
-        metadata.alternating ? volume::framesOfD4(source, metadata.options.resample, {}).frames : source;
-    if (stored.info.times != metadata.info.times)
+        metadata.alternating && !corrected ? volume::toD4(source, metadata.options.resample) : source;
+    const volume::Dataset archived = corrected ? gridDataset(owned, 0) : storedDataset(owned);
+    if (stored.info.times != archived.info.times)
         throw Error("parameters can only be added at all times of the archive, " +
-                        std::to_string(metadata.info.times.size()) + " of them",
+                        std::to_string(archived.info.times.size()) + " of them",
                     archive.path());
-    const bool toBcc = !metadata.alternating && metadata.info.lattice.kind == volume::LatticeKind::BCC;
+    const bool toBcc = !corrected && !metadata.alternating && metadata.info.lattice.kind == volume::LatticeKind::BCC;
     for (int time = 0; time < int(stored.info.times.size()); ++time) {
         volume::Field field = stored.read(label, 0, time);
         if (toBcc) field = volume::toBcc(field, true);
-        if (!sameSamples(field, readField(archive, int(old - metadata.info.parameters.data()), 0, time)))
+        if (!sameSamples(field, archived.read(number, 0, time)))
             throw Error("the archive has another label " + added.name, archive.path());
     }
 }
 
 } // namespace
 
-std::optional<volume::Dataset> withoutKnownLabels(const volume::Dataset& source, const Archive& archive) {
+std::optional<volume::Dataset> withoutKnownLabels(const volume::Dataset& source,
+                                                  const std::shared_ptr<const Archive>& archive) {
     std::vector<int> known, further;
     for (std::size_t p = 0; p < source.info.parameters.size(); ++p)
-        (find(archive.info(), source.info.parameters[p].name) != nullptr ? known : further).push_back(int(p));
+        (find(archive->info(), source.info.parameters[p].name) != nullptr ? known : further).push_back(int(p));
     const auto isLabel = [&](int p) { return source.info.parameters[std::size_t(p)].categorical; };
     if (known.empty() || further.empty() || !std::ranges::all_of(known, isLabel)) return std::nullopt;
     for (const int label : known) requireSameLabel(source, label, archive);

@@ -3,6 +3,7 @@
 #include "codec/archive/archive.h"
 #include "volume/field/dataset.h"
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -33,7 +34,8 @@ bool bringsTimes(const Archive& archive, const volume::DatasetInfo& added);
 /// (volume/field/part_masks.h), if all other parameters are labels that the archive already has. Empty if the data set
 /// has no label of the archive, or has other parameters of the archive. Throws Error if the archive's label differs
 /// from that of the data.
-std::optional<volume::Dataset> withoutKnownLabels(const volume::Dataset& source, const Archive& archive);
+std::optional<volume::Dataset> withoutKnownLabels(const volume::Dataset& source,
+                                                  const std::shared_ptr<const Archive>& archive);
 
 /// Determines how a data set continues an archive. `metadata` describes the data set as for a new archive, and is
 /// changed to that of both together. Throws Error when lattice, bricks, parameters or times do not match.

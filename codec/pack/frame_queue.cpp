@@ -166,9 +166,6 @@ QueuedFrames FrameQueue::read(std::size_t number) const {
             stored = volume::resampled(frame, options_.grid.lattice,
                                        volume::optionsFor(parameter.categorical, options_.resample), options_.slices,
                                        progress);
-        if (options_.toBcc && options_.measures)
-            step.resampled.add(
-                resampleError(frame.lattice, frame.read, stored.lattice, stored.read, parameter.categorical));
         frame = {};
         step.frames.emplace_back(std::move(stored), options_.grid, store, progress);
     }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "codec/brick/frame_samples.h"
-#include "codec/container/resample_error.h"
 #include "volume/base/progress.h"
 #include "volume/field/dataset.h"
 #include "volume/resample/resample_slices.h"
@@ -17,7 +16,6 @@ struct QueuedFrames {
     int parameter = 0;
     std::size_t time = 0;
     std::vector<FrameSamples> frames; ///< per component
-    ResampleError resampled;          ///< over all components, if measured
     std::vector<Range> ranges;        ///< of the samples read: components, then magnitude; empty if known before
     std::uint64_t sourceSamples = 0, sourceBytes = 0;
     double loadSeconds = 0, resampleSeconds = 0;
@@ -35,7 +33,6 @@ struct FrameQueueOptions {
     int slabLayers = 0;         ///< brick layers of such frames in memory at a time
     bool ahead = false;         ///< read the next step while the current one is processed; needs memory for both
     bool rangesOnly = false;    ///< compute ranges only, without frames
-    bool measures = false;      ///< measure the error of resampling
     SlabTeam* team = nullptr;   ///< processes that share the work, frame by frame
 };
 

@@ -4,6 +4,7 @@
 #include "codec/archive/brick_access.h"
 #include "codec/bytes/stopwatch.h"
 #include "codec/pack/continuation.h"
+#include "codec/pack/corrections.h"
 #include "codec/pack/error_bound.h"
 #include "codec/pack/frame_queue.h"
 #include "codec/pack/lossy_field.h"
@@ -11,7 +12,7 @@
 #include "codec/pack/pack_grid.h"
 #include "codec/pack/pack_passes.h"
 #include "codec/pack/pack_size.h"
-#include "volume/field/quantities.h"
+#include "volume/field/part_masks.h"
 #include "volume/resample/resample.h"
 #include "volume/resample/series_dataset.h"
 #include "volume/system/part_file.h"
@@ -83,16 +84,6 @@ void leaveOut(FrameSamples& samples, const volume::BrickGrid& grid, const std::v
     });
 }
 
-/// Quantities at the source times of D4* frames: those of the archive, followed by those of the source.
-std::vector<volume::Quantity> quantitiesOf(const volume::DatasetInfo& source, const std::vector<double>& times,
-                                           const Archive* grown) {
-    const std::size_t old = grown ? grown->metadata().sourceTimes.size() : 0;
-    const std::vector<double> added(times.begin() + std::ptrdiff_t(std::min(old, times.size())), times.end());
-    const std::vector<volume::Quantity> own = volume::atTimes(source.quantities, source.times, added);
-    if (grown && added.empty()) return grown->metadata().sourceQuantities;
-    return grown ? volume::joined(grown->metadata().sourceQuantities, old, own, added.size()) : own;
-}
-
 /// Brick layers of the slabs that a team shares: one, but for so many that their open files would be too many. Those of
 /// the samples of all components are open, and of the result of a step, twice while samples change.
 int layersOfTeam(const volume::BrickGrid& grid, const volume::DatasetInfo& info) {
@@ -115,17 +106,12 @@ public:
         metadata_.source =
             before.grid && source.info.lattice.kind == LatticeKind::BCC ? *before.grid : source.info.lattice;
         metadata_.alternating = options.lattice == StoredLattice::D4;
-        const auto framesOfD4 = [&](const volume::SliceMemory& memory) {
-            return grown && bringsTimes(*grown, source.info)
-                       ? volume::continueD4(source, grown->metadata().sourceTimes, grown->info().times,
-                                            options.resample, memory)
-                       : volume::framesOfD4(source, options.resample, memory);
-        };
         if (metadata_.alternating) {
-            volume::D4Frames made = framesOfD4({});
-            metadata_.sourceTimes = std::move(made.times);
-            metadata_.sourceQuantities = quantitiesOf(source.info, metadata_.sourceTimes, grown);
-            dataset_ = std::move(made.frames);
+            if (grown && bringsTimes(*grown, source.info))
+                throw Error("later times cannot be appended to D4*, which is made of a series as a whole", path);
+            metadata_.sourceTimes = source.info.times;
+            metadata_.sourceQuantities = grown ? grown->metadata().sourceQuantities : source.info.quantities;
+            dataset_ = volume::toD4(source, options.resample);
         }
         const volume::DatasetInfo& info = dataset_.info;
         const bool toBcc = options.lattice == StoredLattice::BCC && info.lattice.kind == LatticeKind::CC;
@@ -137,6 +123,7 @@ public:
         metadata_.options = options;
         metadata_.options.memoryMb = 0; // depends on the machine, not on the archive
         place_ = grown ? continuationOf(*grown, metadata_) : Continuation(info);
+        if (grown) metadata_.corrections = grown->metadata().corrections;
         ranges_.resize(info.parameters.size());
         errors_.assign(info.parameters.size(), 0);
         for (const volume::Parameter& parameter : info.parameters)
@@ -149,9 +136,13 @@ public:
                     .slabLayers = memory_.slabLayers,
                     .ahead = memory_.readAhead,
                     .rangesOnly = false,
-                    .measures = false,
                     .team = team};
-        if (metadata_.alternating && memory_.slabLayers > 0) dataset_.read = framesOfD4(reading_.slices).frames.read;
+        if (metadata_.alternating && memory_.slabLayers > 0)
+            dataset_.read = volume::toD4(source, options.resample, reading_.slices).read;
+        if (toBcc || metadata_.alternating)
+            truth_ = source;
+        else if (info.lattice.kind == LatticeKind::BCC)
+            truth_ = before.source;
         resampledBefore_ = before.resampled;
         ofSeries_ = before.ofSeries;
     }
@@ -173,9 +164,12 @@ private:
     void addFrame(ArchiveWriter& writer, FrameSamples& samples, int parameter, int component, std::size_t time,
                   const Progress& progress);
     Metadata soFar(std::size_t wholeTimes) const;
+    bool corrects() const;
+    void correct(ArchiveWriter& writer, const Progress& progress);
 
     volume::Dataset& source_;
     volume::Dataset dataset_; ///< the data to be stored, before resampling to BCC
+    std::optional<volume::Dataset> truth_; ///< what they are made of on the grid of the source, if that is another one
     PackOptions options_;
     std::string path_;
     const Archive* grown_;
@@ -190,16 +184,19 @@ private:
     std::vector<double> errorsBefore_;                          ///< previous errors of the source
     std::vector<std::uint8_t> discarded_;                       ///< flag per brick
     std::vector<std::optional<ResampleError>> resampledBefore_; ///< of the source, by parameter
-    std::vector<ResampleError> resampled_;                      ///< measured so far, by parameter; empty: not measured
+    std::vector<ResampleError> resampled_;                      ///< of what has no bound, by parameter; empty: unknown
     PackSummary summary_;
 };
 
 /// Computes what must be known of all times before the first one is coded.
 void Packing::gather(const Progress& progress) {
-    if (isRelative(options_) && (times() > 1 || grown_)) {
+    if (metadata_.alternating) { // frames lie between the times of the source, and beyond
+        gatherAllRanges(source_, reading_, summary_, progress.part(0, 0.5));
+        dataset_.info.parameters = source_.info.parameters;
+    } else if (isRelative(options_) && (times() > 1 || grown_)) {
         gatherAllRanges(dataset_, reading_, summary_, progress);
-        if (grown_) place_.widen(dataset_.info, metadata_.info);
     }
+    if (grown_ && isRelative(options_)) place_.widen(dataset_.info, metadata_.info);
     if (options_.discard > 0)
         discarded_ = bricksToDiscard(dataset_, reading_, options_, summary_, progress.part(0.8, 1));
 }
@@ -275,7 +272,6 @@ void Packing::addStep(ArchiveWriter& writer, QueuedFrames fed, const Progress& p
     summary_.loadSeconds += fed.loadSeconds;
     summary_.resampleSeconds += fed.resampleSeconds;
     widenRanges(ranges_[p], fed.ranges);
-    if (reading_.measures) resampled_[p].add(fed.resampled);
     if (times() == 1) settleRanges(dataset_.info, ranges_);
     if (!metadata_.alternating) {
         summary_.sourceSamples += fed.sourceSamples;
@@ -314,18 +310,44 @@ void Packing::sayLimits() {
                                  std::to_string(memory_.slabLayers));
 }
 
+/// Whether the archive gets corrections. They need whole frames, of the same parts that a reader sees.
+bool Packing::corrects() const {
+    const auto knowsParts = [&](const volume::Parameter& parameter) {
+        return parameter.categorical || parameter.parts.count() < 2 ||
+               volume::labelOf(metadata_.info, parameter) >= 0;
+    };
+    return truth_ && !team_ && memory_.slabLayers == 0 && options_.discard == 0 &&
+           (!grown_ || isCorrected(*grown_)) && std::ranges::all_of(metadata_.info.parameters, knowsParts);
+}
+
+/// Adds the corrections of all that was added.
+void Packing::correct(ArchiveWriter& writer, const Progress& progress) {
+    Corrections made = correctionsOf(writer.written(soFar(metadata_.info.times.size())), *truth_,
+                                     {place_.parameterOf, int(place_.firstTime)}, options_);
+    struct Removed {
+        std::string path;
+        ~Removed() {
+            std::error_code ignored;
+            std::filesystem::remove(path, ignored);
+        }
+    } const file{partFileOf(path_) + ".tsr"};
+    (void)pack(made.data, made.options, file.path, progress);
+    metadata_.corrections.push_back(writer.addCorrections(file.path));
+    for (std::size_t p = 0; p < errors_.size(); ++p) errors_[p] = std::max(errors_[p], made.bounds[p]);
+    if (std::ranges::all_of(made.bounds, [](double bound) { return bound == 0; })) resampled_ = *made.errors;
+}
+
 PackSummary Packing::run(const Progress& progress) {
     {
         Stopwatch all(summary_.seconds);
-        const bool passes = isRelative(options_) && (times() > 1 || grown_ || options_.discard > 0);
+        const bool passes = metadata_.alternating ||
+                            (isRelative(options_) && (times() > 1 || grown_ || options_.discard > 0));
         const double begin = passes ? 0.3 : 0;
         gather(progress.part(0, begin));
-        const Progress work = progress.part(begin, 1);
+        const Progress work = progress.part(begin, corrects() ? 0.6 : 1);
         summary_.bricks = metadata_.grid.brickCount();
         const auto writer = grown_ ? std::make_unique<ArchiveWriter>(*grown_, metadata_, memory_.keepFrames)
                                    : std::make_unique<ArchiveWriter>(path_, metadata_, memory_.keepFrames);
-        reading_.measures = reading_.toBcc && writes(); // not in the preliminary passes
-        if (reading_.measures) resampled_.resize(dataset_.info.parameters.size());
         FrameQueue feed(dataset_, reading_, progress.stop);
         const std::vector<volume::Parameter>& parameters = dataset_.info.parameters;
         const std::size_t steps = times() * parameters.size();
@@ -344,6 +366,7 @@ PackSummary Packing::run(const Progress& progress) {
         settleRanges(dataset_.info, ranges_);
         source_.info.parameters = dataset_.info.parameters;
         if (!writes()) return summary_;
+        if (corrects()) correct(*writer, progress.part(0.6, 1));
         Stopwatch write(summary_.writeSeconds);
         sayLimits();
         summary_.repeatedBricks = writer->repeats().bricks;
@@ -385,12 +408,12 @@ std::vector<std::vector<Range>> unknownRanges(volume::Dataset& source, const Pac
 
 PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb, const Progress& progress,
                    const PackedBefore& before, int slabLayers) {
-    const Archive grown(path);
-    PackOptions options = grown.metadata().options;
+    const auto grown = std::make_shared<const Archive>(path);
+    PackOptions options = grown->metadata().options;
     options.memoryMb = memoryMb;
     std::optional<volume::Dataset> further = withoutKnownLabels(source, grown);
-    if (!further) return Packing(source, slabLayers, before, options, path, &grown).run(progress);
-    PackSummary summary = Packing(*further, slabLayers, before, options, path, &grown).run(progress);
+    if (!further) return Packing(source, slabLayers, before, options, path, grown.get()).run(progress);
+    PackSummary summary = Packing(*further, slabLayers, before, options, path, grown.get()).run(progress);
     for (volume::Parameter& parameter : source.info.parameters)
         for (const volume::Parameter& made : further->info.parameters)
             if (made.name == parameter.name) parameter.ranges = made.ranges;

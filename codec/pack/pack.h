@@ -22,6 +22,8 @@ struct PackedBefore {
     bool lossless = true;
     double maxError = 0;                                      ///< bound on |error|, relative to a parameter's range
     std::vector<std::optional<ResampleError>> resampled = {}; ///< Metadata::resampled of that archive
+    /// The samples on that grid, which corrections lead back to; empty: unknown, or the data lie on it.
+    std::optional<volume::Dataset> source = {};
     bool ofSeries = false; ///< the data are times of a series that others follow or precede
 };
 
@@ -50,8 +52,7 @@ std::vector<std::vector<Range>> unknownRanges(volume::Dataset& source, const Pac
                                               const std::string& path, const Progress& progress = {},
                                               SlabTeam* team = nullptr);
 
-/// Appends to an archive with its own options: later times of the same parameters (with d4 preceded by the last times
-/// again, volume::continueD4), or further parameters at the same times. In addition the source may have labels that
+/// Appends to an archive with its own options: later times of the same parameters (not with d4), or further parameters at the same times. In addition the source may have labels that
 /// equal those of the archive sample by sample. If it throws, complete appended times are kept; parameters are appended
 /// all or none. `memoryMb` as in the options. Throws Error when the data do not match the archive.
 PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb = 0, const Progress& progress = {},

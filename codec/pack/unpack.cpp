@@ -2,6 +2,8 @@
 
 #include "codec/archive/brick_access.h"
 #include "codec/container/exactness.h"
+#include "codec/pack/corrections.h"
+#include "codec/pack/prediction.h"
 #include "volume/base/parallel.h"
 #include "volume/field/part_masks.h"
 #include "volume/resample/resample.h"
@@ -9,7 +11,7 @@
 #include "volume/sources/alternating_source.h"
 
 #include <cmath>
-#include <map>
+#include <optional>
 
 namespace tessera::codec {
 
@@ -92,10 +94,13 @@ volume::Dataset storedDataset(std::shared_ptr<const Archive> archive) {
     return dataset;
 }
 
-PackedBefore packedBefore(const Archive& archive) {
-    const Metadata& metadata = archive.metadata();
+PackedBefore packedBefore(const std::shared_ptr<const Archive>& archive) {
+    const Metadata& metadata = archive->metadata();
     PackedBefore before{metadata.source, metadata.lossless, metadata.maxError, metadata.resampled};
-    if (isResampled(metadata)) before.resampled.resize(metadata.info.parameters.size());
+    const bool corrected = !metadata.corrections.empty();
+    if (isResampled(metadata) && (!corrected || !metadata.resampled.empty()))
+        before.resampled.resize(metadata.info.parameters.size());
+    if (corrected) before.source = gridDataset(archive, 0);
     return before;
 }
 
@@ -113,27 +118,22 @@ void atSourceTimes(volume::DatasetInfo& info, const Archive& archive) {
     info.quantities = archive.metadata().sourceQuantities;
 }
 
-/// Level 0 of D4* frames, interpolated at the source times.
-volume::Dataset steadyDataset(std::shared_ptr<const Archive> archive, const Lattice& target,
+/// Level 0 of a BCC or D4* archive at the samples and times of its source.
+volume::Dataset sourceDataset(std::shared_ptr<const Archive> archive, const Lattice& target,
                               volume::TimeFilter filter) {
+    const bool corrected = !archive->metadata().corrections.empty();
+    if (filter != volume::TimeFilter::Cubic && hasDifferences(*archive))
+        throw Error("its corrections belong to the cubic filter between times", archive->path(), "--time-filter");
     volume::Dataset dataset;
     dataset.info = archive->info();
     dataset.info.lattice = target;
-    atSourceTimes(dataset.info, *archive);
-    constexpr std::size_t kFrames =
-        6; // frames in the cache; cubic: four of one parity, and two of the other for linear interpolation
-    const auto series = std::make_shared<std::map<std::pair<int, int>, volume::Series>>();
-    const volume::Dataset stored = volume::withParts(storedDataset(archive));
-    for (int p = 0; p < int(dataset.info.parameters.size()); ++p)
-        for (int c = 0; c < dataset.info.parameters[std::size_t(p)].components; ++c)
-            (*series)[{p, c}] = volume::remembering(volume::d4SeriesOf(stored, p, c), kFrames);
-    dataset.read = [archive, series, target, filter](int parameter, int component, int time) {
-        const Metadata& metadata = archive->metadata();
-        const double frame = volume::frameAt(metadata.info.times, metadata.sourceTimes[std::size_t(time)]);
-        const volume::Parameter& about = metadata.info.parameters[std::size_t(parameter)];
-        const Field field = volume::atTime(series->at({parameter, component}), frame, filter);
-        const auto kernel = about.categorical ? volume::ResampleFilter::Nearest : volume::ResampleFilter::Cubic;
-        return volume::converted(volume::withoutParts(volume::resample(field, target, kernel)), about.type);
+    if (archive->metadata().alternating) atSourceTimes(dataset.info, *archive);
+    const Prediction predict = predictionOf(archive, filter);
+    const CorrectedReader corrections = corrected ? correctedReader(archive, predict) : CorrectedReader();
+    dataset.read = [predict, corrections](int parameter, int component, int time) {
+        if (corrections)
+            if (std::optional<Field> field = corrections(parameter, component, time)) return std::move(*field);
+        return predict(parameter, component, time, nullptr);
     };
     return dataset;
 }
@@ -154,27 +154,22 @@ volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level, v
     target.kind = LatticeKind::CC;
     target.size = levelSize(target.size, level);
     target.spacing *= double(1 << level);
-    if (level == 0 && metadata.alternating) return steadyDataset(std::move(archive), target, filter);
+    if (level == 0) return sourceDataset(std::move(archive), target, filter);
     std::shared_ptr<const volume::BrickSource> source = archive;
     if (metadata.alternating) source = volume::makeAlternatingSource(archive, filter);
     volume::Dataset dataset;
     dataset.info = archive->info();
     dataset.info.lattice = target;
     if (metadata.alternating) atSourceTimes(dataset.info, *archive);
-    if (level > 0)
-        for (volume::Parameter& parameter : dataset.info.parameters)
-            if (!parameter.categorical) parameter.type = ScalarType::F32;
-    dataset.read = [archive, source, stored = volume::withParts(storedDataset(archive)), target, level,
-                    bcc](int parameter, int component, int wanted) {
+    for (volume::Parameter& parameter : dataset.info.parameters)
+        if (!parameter.categorical) parameter.type = ScalarType::F32;
+    dataset.read = [archive, source, target, level, bcc](int parameter, int component, int wanted) {
         const volume::DatasetInfo& info = archive->info();
         // Coarse levels of D4* show the nearest frame.
         const int time = archive->metadata().alternating
                              ? info.nearestTime(archive->metadata().sourceTimes[std::size_t(wanted)])
                              : wanted;
         const bool categorical = info.parameters[std::size_t(parameter)].categorical;
-        const auto cubic = categorical ? volume::ResampleFilter::Nearest : volume::ResampleFilter::Cubic;
-        if (level == 0)
-            return volume::withoutParts(volume::resample(stored.read(parameter, component, time), target, cubic));
         const auto linear = categorical ? volume::ResampleFilter::Nearest : volume::ResampleFilter::Linear;
         const int channel = info.channelIndex(parameter, component);
         const int label = volume::labelOf(info, info.parameters[std::size_t(parameter)]);

@@ -13,7 +13,7 @@ namespace tessera::codec {
 /// contain them are decoded.
 volume::Dataset storedDataset(std::shared_ptr<const Archive> archive);
 /// The properties of such a data set that pack needs: its errors so far.
-PackedBefore packedBefore(const Archive& archive);
+PackedBefore packedBefore(const std::shared_ptr<const Archive>& archive);
 
 /// An archive as a data set on a CC grid, for other programs. Level 0 of a CC archive: the stored samples. Of a BCC
 /// archive: resampled to its original grid (labels: nearest). Of a D4* archive: the same at the original times,

@@ -20,7 +20,7 @@ const std::vector<MadeParameter> kParameters = {{"exact", ScalarType::F32, 1, Te
                                                 {"grey", ScalarType::U8, 1, Texture::Noise, true},
                                                 {"region", ScalarType::U8, 1, Texture::Sparse, false, true}};
 
-struct Box {
+struct GridCut {
     glm::ivec3 begin, end;
 };
 
@@ -38,8 +38,8 @@ void expectBoxesOfTheWhole(const PackOptions& options, bool exactFloats) {
         for (int p = exactFloats ? 0 : 1; p < int(kParameters.size()); ++p) {
             const int component = kParameters[std::size_t(p)].components - 1;
             const volume::Field whole = grid.read(p, component, 1);
-            for (const Box& box : {Box{{0, 0, 0}, size}, Box{size / 3, (size * 2 + 2) / 3}, Box{size - 1, size},
-                                   Box{{0, size.y / 2, 0}, {size.x, size.y / 2 + 1, size.z}}}) {
+            for (const GridCut& box : {GridCut{{0, 0, 0}, size}, GridCut{size / 3, (size * 2 + 2) / 3}, GridCut{size - 1, size},
+                                   GridCut{{0, size.y / 2, 0}, {size.x, size.y / 2 + 1, size.z}}}) {
                 const volume::Field part = boxes.read(p, component, 1, level, box.begin, box.end);
                 ASSERT_EQ(part.type, whole.type);
                 ASSERT_EQ(part.lattice.size, box.end - box.begin);

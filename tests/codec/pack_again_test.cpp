@@ -30,7 +30,7 @@ PackOptions within(StoredLattice lattice, double maxError) {
 void packAgain(const std::string& from, const PackOptions& options, const std::string& to) {
     const auto archive = std::make_shared<const Archive>(from);
     volume::Dataset stored = storedDataset(archive);
-    pack(stored, options, to, {}, packedBefore(*archive));
+    pack(stored, options, to, {}, packedBefore(archive));
 }
 
 TEST(PackAgain, SamplesOnBccKeepTheGridTheyCameFrom) {
@@ -94,7 +94,7 @@ TEST(PackAgain, ErrorsReferToTheRangeOfTheWhole) {
     pack(narrow, within(StoredLattice::BCC, 0.02), folder / "narrow.tsr");
     const auto archive = std::make_shared<const Archive>(folder / "narrow.tsr");
     volume::Dataset stored = storedDataset(archive);
-    append(stored, folder / "wide.tsr", 0, {}, packedBefore(*archive));
+    append(stored, folder / "wide.tsr", 0, {}, packedBefore(archive));
     const Archive grown(folder / "wide.tsr");
     EXPECT_FALSE(grown.metadata().lossless);
     EXPECT_NEAR(grown.metadata().maxError, 0.005, 1e-6);

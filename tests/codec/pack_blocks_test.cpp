@@ -142,7 +142,7 @@ TEST(PackBlocks, AnArchiveThatWasResampledIsSoAsBefore) {
     const auto source = std::make_shared<const Archive>(folder / "source.tsr");
     for (const bool byParameter : {false, true}) {
         packInBlocks(storedDataset(source), small(1e-3, StoredLattice::BCC), folder / "again.tsr",
-                     {2, {}, {}, byParameter}, {}, packedBefore(*source));
+                     {2, {}, {}, byParameter}, {}, packedBefore(source));
         const Archive again(folder / "again.tsr");
         ASSERT_EQ(again.metadata().resampled.size(), 3u);
         for (std::size_t p = 0; p < 3; ++p) {

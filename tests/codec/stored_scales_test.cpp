@@ -227,7 +227,7 @@ TEST(StoredScales, ConvertedArchivesKeepBothBounds) {
             const auto archive = std::make_shared<const Archive>(folder / "first.tsr");
             volume::Dataset again = storedDataset(archive);
             options.absError = 8 * unit;
-            const PackSummary summary = pack(again, options, folder / "second.tsr", {}, packedBefore(*archive));
+            const PackSummary summary = pack(again, options, folder / "second.tsr", {}, packedBefore(archive));
             const Archive second(folder / "second.tsr");
             const std::vector<Stored> readings{reading, {2 * reading.scale, reading.offset}};
             const ScaledErrors errors = scaledErrors(second, made, readings);

@@ -158,7 +158,7 @@ TEST(Regions, BetweenTimesEachSampleIsOfTheNearerOne) {
     moving.speed = 1.7;
     for (const double speed : {0.0, 1.7}) {
         moving.speed = speed;
-        const Dataset source = test::twoRegions(cc, test::constantIn, moving, 6);
+        const Dataset source = test::twoRegions(cc, test::constantIn, moving, 8);
         for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC}) {
             const auto memory = makeMemorySource(source, {.lattice = kind, .brickSize = 8});
             for (const double weight : {0.2, 0.5, 0.8}) {
@@ -168,9 +168,9 @@ TEST(Regions, BetweenTimesEachSampleIsOfTheNearerOne) {
         }
         // Frames of D4*, and the fields between them.
         for (const ResampleOptions& options : everyKernel()) {
-            const D4Frames d4 = framesOfD4(source, options);
-            for (int t = 0; t < int(d4.frames.info.times.size()); ++t) {
-                const Field values = d4.frames.read(0, 0, t), labels = d4.frames.read(1, 0, t);
+            const Dataset d4 = toD4(source, options);
+            for (int t = 0; t < int(d4.info.times.size()); ++t) {
+                const Field values = d4.read(0, 0, t), labels = d4.read(1, 0, t);
                 for (std::size_t i = 0; i < values.count(); ++i)
                     if (values.present(i)) {
                         ASSERT_NEAR(values.value(i), test::constantIn(int(labels.value(i)), {}), 1e-5)
@@ -178,12 +178,12 @@ TEST(Regions, BetweenTimesEachSampleIsOfTheNearerOne) {
                     }
             }
         }
-        const D4Frames d4 = framesOfD4(source, {});
+        const Dataset d4 = toD4(source, {});
         for (const TimeFilter filter : {TimeFilter::Linear, TimeFilter::Cubic}) {
-            const auto frames = makeMemorySource(d4.frames, {.brickSize = 8});
+            const auto frames = makeMemorySource(d4, {.brickSize = 8});
             const auto shown = makeAlternatingSource(frames, filter);
             for (int t = 0; t < int(shown->info().times.size()); ++t) expectPure(*shown, "alternating", t);
-            const Dataset parted = withParts(d4.frames);
+            const Dataset parted = withParts(d4);
             for (const double time : {0.0, 1.3, 2.5, 3.0}) {
                 const Field values = atTime(d4SeriesOf(parted, 0, 0), time, filter);
                 const Field labels = atTime(d4SeriesOf(parted, 1, 0), time, filter);

@@ -28,14 +28,14 @@ Lattice4 d4For(const Lattice4& cc) {
     Lattice4 d4;
     d4.kind = LatticeKind4::D4;
     d4.spacing = cc.spacing * kBccSpacing;
-    glm::dvec4 span; // from the first to the last sample, in cells
+    glm::dvec4 span{0}; // in space, from the first to the last sample, in cells
     for (int axis = 0; axis < 3; ++axis) {
         d4.size[axis] = std::max(int(cc.size[axis] / kBccSpacing), 1);
         span[axis] = d4.size[axis] - 0.5;
     }
-    d4.size.w = int(kBccSpacing * (cc.size.w - 1)) + 1;
-    span.w = (d4.size.w - 1) * 0.5;
+    d4.size.w = int(std::ceil(kBccSpacing * (cc.size.w - 1))) + 3;
     d4.origin = cc.origin + 0.5 * (cc.spacing * glm::dvec4(cc.size - 1) - d4.spacing * span);
+    d4.origin.w = cc.origin.w - 0.5 * d4.spacing.w;
     return d4;
 }
 

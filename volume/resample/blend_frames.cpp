@@ -113,8 +113,17 @@ std::vector<FrameWeight> frameWeights(double cells, int count, const ResampleOpt
     return frames;
 }
 
+std::vector<FrameWeight> weightsBeyond(double cells, int count, const ResampleOptions& options) {
+    const double last = count - 1;
+    if (count < 2 || options.filter == ResampleFilter::Nearest || (cells >= 0 && cells <= last))
+        return frameWeights(cells, count, options);
+    const int end = cells < 0 ? 0 : count - 1, inner = cells < 0 ? 1 : count - 2;
+    const double out = cells < 0 ? -cells : cells - last;
+    return {{end, 1 + out, 1, true}, {inner, -out, 0, true}};
+}
+
 bool overshoots(std::span<const FrameWeight> weights) {
-    return std::any_of(weights.begin(), weights.end(), [](const FrameWeight& frame) { return frame.weight < 0; });
+    return std::any_of(weights.begin(), weights.end(), [](const FrameWeight& frame) { return frame.weight < 0 && !frame.beyond; });
 }
 
 Field blendFrames(std::span<const WeightedFrame> frames, std::span<const StoredExtent> extents) {
@@ -128,7 +137,7 @@ Field blendFrames(std::span<const WeightedFrame> frames, std::span<const StoredE
         addWeighted(*frame.field, frame.weight.weight, sum);
         sameMask = sameMask && (frame.field->mask == first.mask ||
                                 (frame.field->mask && first.mask && *frame.field->mask == *first.mask));
-        held = held || frame.weight.weight < 0;
+        held = held || (frame.weight.weight < 0 && !frame.weight.beyond);
     }
     sum.mask = first.mask;
     if (!sameMask) {

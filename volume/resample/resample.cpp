@@ -49,6 +49,12 @@ Field resample(const Field& source, const Lattice& target, const ResampleOptions
     return out;
 }
 
+Field resampleOnto(const Field& bcc, const Lattice& target, std::shared_ptr<const Mask> own) {
+    Field out = resampleBcc(bcc, target, ResampleFilter::Cubic, {}, own.get());
+    out.mask = std::move(own);
+    return out;
+}
+
 Field toBcc(const Field& source, bool categorical, const ResampleOptions& options, const Progress& progress) {
     if (source.lattice.kind == LatticeKind::BCC) return source;
     return resample(source, bccFor(source.lattice), optionsFor(categorical, options), progress);

@@ -29,6 +29,12 @@ inline Field resample(const Field& source, const Lattice& target, ResampleFilter
     return resample(source, target, ResampleOptions{.filter = filter}, progress);
 }
 
+/// A BCC field on another lattice whose samples' parts are known: `own` has the number of each, 0 where it is absent
+/// (volume/field/part_masks.h). As resample() with the usual filter where the nearest sample of the source has that
+/// number; else from the nearest sample that has it, kLineReach samples away at most (volume/reconstruct/continued.h);
+/// else the mean of the part, or of all samples if the source has none of it. The mask of the result is `own`.
+Field resampleOnto(const Field& bcc, const Lattice& target, std::shared_ptr<const Mask> own);
+
 /// The field on bccFor(its lattice); nearest for categorical parameters.
 Field toBcc(const Field& source, bool categorical, const ResampleOptions& options, const Progress& progress = {});
 inline Field toBcc(const Field& source, bool categorical, const Progress& progress = {}) {

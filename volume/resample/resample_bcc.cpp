@@ -106,8 +106,48 @@ std::array<std::vector<PairTap>, 2> pairTaps(const Lattice& source, const Lattic
     return taps;
 }
 
-/// The average of the trilinear interpolations of both sublattices of prefiltered samples.
-template <class T> void fromBcc(const Field& source, Field& out, Mask* mask, const Progress& progress) {
+/// The sample with a part's number that is nearest to a position, of those up to kLineReach samples from `nearest`, the
+/// nearest of all; empty if there is none.
+std::optional<std::size_t> nearestOf(const Lattice& lattice, const PartNumbers& number, std::uint8_t own,
+                                     std::size_t nearest, const glm::dvec3& position) {
+    if (number(nearest) == own) return nearest;
+    const glm::ivec3 centre = storageIndex(lattice, nearest);
+    const glm::ivec3 reach(kLineReach, kLineReach, 2 * kLineReach);
+    const glm::ivec3 lo = glm::max(centre - reach, glm::ivec3(0)), hi = glm::min(centre + reach, lattice.size - 1);
+    std::optional<std::size_t> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (int z = lo.z; z <= hi.z; ++z)
+        for (int y = lo.y; y <= hi.y; ++y)
+            for (int x = lo.x; x <= hi.x; ++x) {
+                const std::size_t at = lattice.index({x, y, z});
+                if (number(at) != own) continue;
+                const glm::dvec3 apart = (lattice.position({x, y, z}) - position) / lattice.spacing;
+                const double distance = glm::dot(apart, apart);
+                if (distance < least) best = at, least = distance;
+            }
+    return best;
+}
+
+/// Means of the stored values of each part, where it has samples; in place of 0, of all samples.
+template <class T> std::array<std::optional<double>, StoredExtent::kNumbers> meansOf(const Field& source) {
+    std::array<double, StoredExtent::kNumbers> sum{}, count{};
+    const auto stored = source.as<T>();
+    const PartNumbers number{source.mask.get()};
+    for (std::size_t i = 0; i < stored.size(); ++i) {
+        const std::size_t n = number(i);
+        if (n == 0 || n >= sum.size() || !std::isfinite(double(stored[i]))) continue;
+        for (const std::size_t of : {std::size_t(0), n}) sum[of] += double(stored[i]), count[of] += 1;
+    }
+    std::array<std::optional<double>, StoredExtent::kNumbers> means;
+    for (std::size_t n = 0; n < means.size(); ++n)
+        if (count[n] > 0) means[n] = sum[n] / count[n];
+    return means;
+}
+
+/// The average of the trilinear interpolations of both sublattices of prefiltered samples. `given`: the parts of the
+/// target's samples, or null.
+template <class T>
+void fromBcc(const Field& source, Field& out, Mask* mask, const Mask* given, const Progress& progress) {
     const Lattice &from = source.lattice, &target = out.lattice;
     const std::vector<Filtered<T>> values = prefilteredValues<T>(source);
     const int sublattices = target.kind == LatticeKind::BCC ? 2 : 1;
@@ -118,6 +158,7 @@ template <class T> void fromBcc(const Field& source, Field& out, Mask* mask, con
     extent.add(source);
     const StoredRange<T> range(extent);
     const PartNumbers number{source.mask.get()};
+    const auto means = given != nullptr ? meansOf<T>(source) : decltype(meansOf<T>(source)){};
     T* const stored = out.as<T>().data();
     forSlices(target, progress, [&](int k) {
         const auto& [tx, ty, tz] = taps[k % sublattices];
@@ -126,7 +167,18 @@ template <class T> void fromBcc(const Field& source, Field& out, Mask* mask, con
             for (int i = 0; i < target.size.x; ++i, ++to) {
                 std::size_t nearest = 0;
                 std::uint8_t own = 1;
-                if (mask != nullptr) {
+                if (given != nullptr) {
+                    own = (*given)[to];
+                    if (own == 0) continue;
+                    const glm::dvec3 position = target.position({i, j, k});
+                    const auto found = nearestOf(from, number, own, from.index(from.nearest(position)), position);
+                    if (!found) {
+                        const std::optional<double>& mean = own < means.size() && means[own] ? means[own] : means[0];
+                        stored[to] = mean ? range.store(*mean, own) : T{};
+                        continue;
+                    }
+                    nearest = *found;
+                } else if (mask != nullptr) {
                     nearest = from.index(from.nearest(target.position({i, j, k})));
                     (*mask)[to] = own = number(nearest);
                     if (own == 0) continue;
@@ -163,17 +215,18 @@ template <class T> void fromBcc(const Field& source, Field& out, Mask* mask, con
 
 } // namespace
 
-Field resampleBcc(const Field& source, const Lattice& target, ResampleFilter filter, const Progress& progress) {
+Field resampleBcc(const Field& source, const Lattice& target, ResampleFilter filter, const Progress& progress,
+                  const Mask* own) {
     Field out = makeField(target, source.type);
     out.offset = source.offset;
     out.scale = source.scale;
     std::shared_ptr<Mask> mask;
-    if (source.mask) mask = std::make_shared<Mask>(target.count(), std::uint8_t(1));
+    if (source.mask && own == nullptr) mask = std::make_shared<Mask>(target.count(), std::uint8_t(1));
     dispatch(source.type, [&]<class T>(T) {
         if (filter == ResampleFilter::Nearest)
             fromNearest<T>(source, out, mask.get(), progress);
         else
-            fromBcc<T>(source, out, mask.get(), progress);
+            fromBcc<T>(source, out, mask.get(), own, progress);
     });
     out.mask = std::move(mask);
     return out;

@@ -18,10 +18,10 @@ using FramePtr = std::shared_ptr<const Field>;
 
 constexpr std::size_t kGrain = 1 << 14; // samples per task
 
-/// Frames `from + step * i` blended at `cells` of that sub-series of `count` frames.
-Field blendAt(const Series& series, double cells, int from, int step, int count, const ResampleOptions& options) {
+/// Frames `from + step * i`, blended with these weights.
+Field blended(const Series& series, const std::vector<FrameWeight>& weights, int from = 0, int step = 1) {
     std::vector<WeightedFrame> frames;
-    for (const FrameWeight& weight : frameWeights(cells, count, optionsFor(series.categorical, options)))
+    for (const FrameWeight& weight : weights)
         frames.push_back({series.frame(from + step * weight.frame), weight});
     return blendFrames(frames);
 }
@@ -126,20 +126,14 @@ int framesSpanned(const ResampleOptions& options) {
     return tapCount(optionsInTime(options), 1 << 20);
 }
 
-int firstFrameSpanned(double cells, int count, const ResampleOptions& options) {
-    const Tap tap = tapAt(cells, count, optionsInTime(options));
-    int first = 0;
-    while (first + 1 < tap.count && tap.weight[std::size_t(first)] == 0) ++first;
-    return tap.first + first;
-}
-
 Field toD4Frame(const Series& cc, const Lattice4& d4, int frame, const ResampleOptions& options) {
     const double cells = (d4.time(frame) - cc.lattice.origin.w) / cc.lattice.spacing.w;
     const ResampleOptions labels{.filter = ResampleFilter::Nearest};
-    const Field blended = blendAt(cc, cells, 0, 1, cc.lattice.size.w, optionsInTime(options));
+    const Field atOnce =
+        blended(cc, weightsBeyond(cells, cc.lattice.size.w, optionsFor(cc.categorical, optionsInTime(options))));
     const ScalarType type =
-        cc.categorical ? blended.type : cc.frame(std::clamp(int(cells), 0, cc.lattice.size.w - 1))->type;
-    return converted(resample(blended, d4.grid(frame), cc.categorical ? labels : options), type);
+        cc.categorical ? atOnce.type : cc.frame(std::clamp(int(cells), 0, cc.lattice.size.w - 1))->type;
+    return converted(resample(atOnce, d4.grid(frame), cc.categorical ? labels : options), type);
 }
 
 Field atTime(const Series& series, double time, TimeFilter filter) {
@@ -147,10 +141,12 @@ Field atTime(const Series& series, double time, TimeFilter filter) {
     const double cells = (time - lattice.origin.w) / lattice.spacing.w;
     const ResampleOptions options{.filter =
                                       filter == TimeFilter::Cubic ? ResampleFilter::Cubic : ResampleFilter::Linear};
-    if (lattice.kind == LatticeKind4::CC) return blendAt(series, cells, 0, 1, lattice.size.w, options);
+    const auto at = [&](double cell, int from, int step, int count) {
+        return blended(series, frameWeights(cell, count, optionsFor(series.categorical, options)), from, step);
+    };
+    if (lattice.kind == LatticeKind4::CC) return at(cells, 0, 1, lattice.size.w);
     if (lattice.size.w < 2) throw Error("a D4* lattice needs two times or more");
-    const Field even = blendAt(series, cells, 0, 2, lattice.framesOf(0), options);
-    const Field odd = blendAt(series, cells - 0.5, 1, 2, lattice.framesOf(1), options);
+    const Field even = at(cells, 0, 2, lattice.framesOf(0)), odd = at(cells - 0.5, 1, 2, lattice.framesOf(1));
     return interleaved(even, odd, lattice.atOneTime());
 }
 

@@ -26,9 +26,6 @@ Series remembering(Series series, std::size_t frames);
 /// Number of frames that `toD4Frame` spans in time: the cache size for `remembering`.
 int framesSpanned(const ResampleOptions& options);
 
-/// The first frame of a CC series of `count` frames that is needed for a D4* frame at position `cells`.
-int firstFrameSpanned(double cells, int count, const ResampleOptions& options);
-
 /// A float field in another type, rounded and held within it.
 Field converted(const Field& field, ScalarType type);
 
@@ -37,6 +34,7 @@ enum class TimeFilter : std::uint8_t { Linear, Cubic };
 inline constexpr std::string_view kTimeFilterNames[] = {"linear", "cubic"};
 
 /// Frame `frame` of a D4* lattice from a CC series: blended in time, then resampled. B-splines are Catmull-Rom in time.
+/// Beyond the first and the last time by the straight line through the two at that end (labels: the last).
 /// Result in the type of the source; 32-bit integers keep 24 bits.
 Field toD4Frame(const Series& cc, const Lattice4& d4, int frame, const ResampleOptions& options);
 

@@ -16,15 +16,15 @@ namespace {
 /// A data set being resampled to D4*.
 class SlicedD4 {
 public:
-    SlicedD4(const Dataset& series, const Lattice4& cc, const Lattice4& d4, int first, const ResampleOptions& options,
+    SlicedD4(const Dataset& series, const Lattice4& cc, const Lattice4& d4, const ResampleOptions& options,
              SliceMemory memory)
-        : series_(withParts(series)), cc_(cc), d4_(d4), first_(first), options_(options), memory_(std::move(memory)) {}
+        : series_(withParts(series)), cc_(cc), d4_(d4), options_(options), memory_(std::move(memory)) {}
 
     Field read(int parameter, int component, int time, SliceRange slices) {
         std::erase_if(frames_,
                       [&](const auto& kept) { return kept.first.first != parameter || kept.second.time != time; });
         const auto [found, isNew] = frames_.try_emplace({parameter, component});
-        if (isNew) found->second = {time, frame(parameter, component, first_ + time)};
+        if (isNew) found->second = {time, frame(parameter, component, time)};
         const SliceRange taken = slices.of(d4_.grid(0));
         return converted(withoutParts(found->second.frame.read(taken.first, taken.count)), about(parameter).type);
     }
@@ -55,7 +55,7 @@ private:
         const bool label = about(parameter).categorical;
         const double cells = (d4_.time(number) - cc_.origin.w) / cc_.spacing.w;
         const std::vector<FrameWeight> weights =
-            frameWeights(cells, cc_.size.w, optionsFor(label, optionsInTime(options_)));
+            weightsBeyond(cells, cc_.size.w, optionsFor(label, optionsInTime(options_)));
         std::vector<StoredExtent> extents;
         for (const FrameWeight& weight : weights)
             if (overshoots(weights)) extents.push_back(extent(parameter, component, weight.frame));
@@ -75,7 +75,6 @@ private:
 
     Dataset series_;
     Lattice4 cc_, d4_;
-    int first_;
     ResampleOptions options_;
     SliceMemory memory_;
     std::map<std::tuple<int, int, int>, StoredExtent> extents_;
@@ -84,9 +83,9 @@ private:
 
 } // namespace
 
-FrameReader d4Slices(const Dataset& series, const Lattice4& cc, const Lattice4& d4, int first,
+FrameReader d4Slices(const Dataset& series, const Lattice4& cc, const Lattice4& d4,
                      const ResampleOptions& options, const SliceMemory& memory) {
-    const auto made = std::make_shared<SlicedD4>(series, cc, d4, first, options, memory);
+    const auto made = std::make_shared<SlicedD4>(series, cc, d4, options, memory);
     return [made](int parameter, int component, int time, SliceRange slices) {
         return made->read(parameter, component, time, slices);
     };

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace tessera {
@@ -53,6 +54,26 @@ public:
     virtual void goesOn(std::uint64_t, std::uint64_t) const {}
     /// True if the file is known to have been replaced or appended to since it was opened, without asking again.
     virtual bool hasChanged() const { return false; }
+};
+
+/// A range of another file as a file of its own: positions count from its begin.
+class FileWindow final : public FileBytes {
+public:
+    FileWindow(std::shared_ptr<const FileBytes> file, FileRange range) : file_(std::move(file)), range_(range) {}
+    std::uint64_t size() const override { return range_.length; }
+    FilePart part(FileRange range) const override { return file_->part(outside(range)); }
+    std::optional<FilePart> freshPart(FileRange range) const override { return file_->freshPart(outside(range)); }
+    void readAhead(std::span<const FileRange> ranges) const override {
+        std::vector<FileRange> all;
+        for (const FileRange& range : ranges) all.push_back(outside(range));
+        file_->readAhead(all);
+    }
+    bool hasChanged() const override { return file_->hasChanged(); }
+
+private:
+    FileRange outside(FileRange range) const { return {range_.offset + range.offset, range.length}; }
+    std::shared_ptr<const FileBytes> file_;
+    FileRange range_;
 };
 
 } // namespace tessera

@@ -91,7 +91,7 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         const std::uint64_t end = in.number(8);
         Piece found[2];
         for (Piece& part : found) part = readPiece(in);
-        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 || features > 511) return false;
+        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 || features > 1023) return false;
         if (end > file_.size()) return false;
         if (end <= end_) return true; // the other copy is as good or better
         hasNotes_ = features % 2 == 1;
@@ -102,7 +102,8 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         knowsSubsamples_ = features / 32 % 2 == 1;
         knowsPredictions_ = features / 64 % 2 == 1;
         knowsFits_ = features / 128 % 2 == 1;
-        knowsMixed_ = features / 256 == 1;
+        knowsMixed_ = features / 256 % 2 == 1;
+        knowsCorrections_ = features / 512 == 1;
         end_ = end;
         std::copy(found, found + 2, parts);
         return true;
@@ -164,6 +165,21 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         need(number < frames.size() && !known[number], "frame number");
         known[number] = true;
         frames_[number] = std::move(frame);
+    }
+
+    // 1.7
+    if (metadata_.contains("corrections")) {
+        need(knowsCorrections_, "corrections");
+        for (const auto& range : metadata_["corrections"]) {
+            const std::size_t offset = range["offset"], length = range["length"];
+            need(offset <= end_ && length <= end_ - offset, "corrections");
+            covered.push_back({offset, length, 0});
+            const auto begin = file_.begin() + std::ptrdiff_t(offset);
+            corrections_.emplace_back(std::vector<char>(begin, begin + std::ptrdiff_t(length)));
+            const Decoder& inner = corrections_.back();
+            need(inner.end_ == length && inner.corrections_.empty() && !inner.bcc_, "corrections");
+            need(inner.size_ == metadata_["source"]["size"].get<Size>(), "corrections");
+        }
     }
 
     // There are no gaps.

@@ -36,6 +36,8 @@ public:
     explicit Decoder(std::vector<char> file);
 
     const nlohmann::json& metadata() const { return metadata_; }
+    /// 1.7
+    const std::vector<Decoder>& corrections() const { return corrections_; }
     int levels() const { return levels_; }
     Size bricks() const { return bricks_; }
     std::size_t frames() const { return frames_.size(); }
@@ -90,12 +92,13 @@ private:
 
     std::vector<std::uint8_t> file_;
     nlohmann::json metadata_;
+    std::vector<Decoder> corrections_;
     bool bcc_ = false;
     Size size_{}, bricks_{};
     int brickSize_ = 0, levels_ = 0;
     std::vector<std::string> types_; ///< of the component of each frame within a time
     bool hasNotes_ = false, compact_ = false, knowsBands_ = false, hasStatistics_ = false, knowsSteps_ = false,
-         knowsSubsamples_ = false, knowsPredictions_ = false, knowsFits_ = false, knowsMixed_ = false;
+         knowsSubsamples_ = false, knowsPredictions_ = false, knowsFits_ = false, knowsMixed_ = false, knowsCorrections_ = false;
     std::size_t end_ = 0; ///< of the archive in the file
     std::vector<Piece> models_;
     std::vector<Mask> masks_;
