@@ -2,7 +2,6 @@
 
 #include "codec/pack/error_bound.h"
 #include "codec/pack/lossy_field.h"
-#include "codec/pack/unpack.h"
 #include "volume/base/parallel.h"
 #include "volume/field/part_masks.h"
 
@@ -24,6 +23,9 @@ using volume::ScalarType;
 /// Corrections are packed with this bound, relative to ranges that are set to make it the bound of each parameter.
 constexpr double kInnerBound = 1.0 / 1024;
 
+/// What a correction says of a parameter: the unit of its numbers in the archive inside.
+constexpr const char *kPresence = "presence", *kDifference = "difference", *kSample = "sample";
+
 /// The bound of a parameter in its unit, as options state it; 0: none. That of a mean error bounds each error.
 double statedBound(const PackOptions& options, const volume::Parameter& about) {
     if (about.categorical) return 0;
@@ -35,12 +37,13 @@ double statedBound(const PackOptions& options, const volume::Parameter& about) {
     return std::isfinite(bound) ? bound : 0;
 }
 
-/// What of a bound, both in units of stored numbers, the difference may use: less the rounding of both sums, and for
-/// integers, which are rounded, up to the next one. `largest`: magnitude of a number.
-double boundOfDifference(double bound, const volume::Parameter& about, double largest) {
-    constexpr double kHalf = 0.4999, kRounding = 4 * double(std::numeric_limits<float>::epsilon());
-    const double rounding = kRounding * largest;
-    return (about.type == ScalarType::F32 ? bound : std::floor(bound) + kHalf) - rounding;
+/// What of a bound, both in units of stored numbers, a difference may use: less the rounding of differences to floats,
+/// for floats also that of the sums, and for integers, which are rounded, up to the next one. `largest`: magnitude of a
+/// number; `extent`: of its range.
+double boundOfDifference(double bound, const volume::Parameter& about, double largest, double extent) {
+    constexpr double kHalf = 0.4999, kRounding = 0.55 * double(std::numeric_limits<float>::epsilon());
+    if (about.type != ScalarType::F32) return std::floor(bound) + kHalf - kRounding * extent;
+    return bound - kRounding * (largest + 2 * extent);
 }
 
 /// The numbers of parts for every sample, 0 where it is absent.
@@ -119,8 +122,26 @@ ResampleError errorOf(const Field& source, const Field& back) {
     return error;
 }
 
-/// The description of corrections; `bounds` by parameter.
-volume::DatasetInfo describe(const volume::DatasetInfo& source, const std::vector<double>& inner) {
+/// How a parameter is corrected.
+struct Way {
+    const char* kind = kSample;
+    double bound = 0; ///< of the numbers of the correction, in the unit of the parameter
+};
+
+/// The way of a parameter of an archive whose stored bound is `bound`; `scale`: of its stored numbers.
+Way wayOf(const volume::Parameter& about, double bound, double scale) {
+    if (about.categorical) return {kSample, 0};
+    if (bound == 0) return {kPresence, 0};
+    double largest = 0;
+    for (const Range& range : about.ranges) largest = std::max({largest, std::abs(range.lo), std::abs(range.hi)});
+    const double left = scale * boundOfDifference(bound / scale, about, largest / scale, extentOf(about) / scale);
+    // Where differences of floats are too coarse the samples themselves are packed within the bound.
+    return left > 0.5 * bound || (left > 0 && about.type != ScalarType::F32) ? Way{kDifference, left}
+                                                                             : Way{kSample, bound};
+}
+
+/// The description of corrections; `ways` by parameter.
+volume::DatasetInfo describe(const volume::DatasetInfo& source, const std::vector<Way>& ways) {
     volume::DatasetInfo info;
     info.name = "corrections";
     info.lattice = source.lattice;
@@ -132,9 +153,10 @@ volume::DatasetInfo describe(const volume::DatasetInfo& source, const std::vecto
         about.name = given.name;
         about.components = given.components;
         about.categorical = given.categorical;
-        about.type = given.categorical ? given.type : inner[p] > 0 ? ScalarType::F32 : ScalarType::U8;
+        about.unit = ways[p].kind;
+        about.type = ways[p].kind == kSample ? given.type : ways[p].kind == kDifference ? ScalarType::F32 : ScalarType::U8;
         const std::size_t ranges = given.components == 1 ? 1 : std::size_t(given.components) + 1;
-        if (!given.categorical) about.ranges.assign(ranges, {0, inner[p] / kInnerBound});
+        if (!given.categorical) about.ranges.assign(ranges, {0, ways[p].bound / kInnerBound});
     }
     return info;
 }
@@ -144,37 +166,30 @@ volume::DatasetInfo describe(const volume::DatasetInfo& source, const std::vecto
 Corrections correctionsOf(std::shared_ptr<const Archive> written, const volume::Dataset& source,
                           const PlaceInArchive& place, const PackOptions& options) {
     Corrections out;
-    std::vector<double> inner;
+    std::vector<Way> ways;
     for (std::size_t p = 0; p < source.info.parameters.size(); ++p) {
         const volume::Parameter& about = written->info().parameters[std::size_t(place.parameterOf[p])];
         out.bounds.push_back(statedBound(options, about));
-        inner.push_back(out.bounds.back());
-        if (inner.back() == 0) continue;
-        double largest = 0, scale = 1;
-        for (const Range& range : about.ranges) largest = std::max({largest, std::abs(range.lo), std::abs(range.hi)});
-        if (about.type != ScalarType::F32) scale = std::abs(source.read(int(p), 0, 0, {0, 1}).scale);
-        inner.back() = scale * boundOfDifference(inner.back() / scale, about, largest / scale);
-        if (!(inner.back() > 0))
-            throw Error("a bound of " + std::to_string(out.bounds.back()) + " is too small to be kept on another "
-                            "lattice, for values of this size; pack it on cc",
-                        {}, about.name);
+        const bool scales = about.type != ScalarType::F32 && out.bounds.back() > 0;
+        const double scale = scales ? std::abs(source.read(int(p), 0, 0, {0, 1}).scale) : 1;
+        ways.push_back(wayOf(about, out.bounds.back(), scale));
     }
     out.options.effort = options.effort;
     out.options.zstdLevel = options.zstdLevel;
     out.options.memoryMb = options.memoryMb;
-    if (std::ranges::any_of(inner, [](double bound) { return bound > 0; })) {
+    if (std::ranges::any_of(ways, [](const Way& way) { return way.bound > 0; })) {
         out.options.maxError = kInnerBound;
         out.options.lossless = false;
     }
     out.errors = std::make_shared<std::vector<ResampleError>>(source.info.parameters.size());
-    out.data.info = describe(source.info, inner);
+    out.data.info = describe(source.info, ways);
     out.data.read = [written, read = volume::withParts(source).read, predict = predictionOf(written, volume::TimeFilter::Cubic),
-                     place, inner, errors = out.errors, info = source.info](int parameter, int component, int time) {
+                     place, ways, errors = out.errors](int parameter, int component, int time) {
         const auto p = std::size_t(parameter);
         const Field given = read(parameter, component, time);
-        if (info.parameters[p].categorical) return volume::withoutParts(given);
+        if (ways[p].kind == kSample) return volume::withoutParts(given);
         const Field predicted = predict(place.parameterOf[p], component, place.firstTime + time, numbersOf(given));
-        if (inner[p] > 0) return differenceOf(given, predicted);
+        if (ways[p].kind == kDifference) return differenceOf(given, predicted);
         Field correction = emptyCorrection(given, ScalarType::U8);
         (*errors)[p].add(errorOf(given, sumOf(predicted, correction)));
         return correction;
@@ -190,6 +205,13 @@ struct Place {
     int parameter = 0, time = 0;
 };
 
+/// Whether a correction has the type that its kind says.
+bool fits(const volume::Parameter& correction, const volume::Parameter& of) {
+    if (correction.unit == kSample) return correction.type == of.type;
+    return !of.categorical && ((correction.unit == kPresence && correction.type == ScalarType::U8) ||
+                               (correction.unit == kDifference && correction.type == ScalarType::F32));
+}
+
 /// [time of the source][parameter]
 std::vector<std::vector<Place>> placesOf(const Archive& archive) {
     const Metadata& metadata = archive.metadata();
@@ -200,7 +222,7 @@ std::vector<std::vector<Place>> placesOf(const Archive& archive) {
             const volume::Parameter& corrected = inner->info().parameters[q];
             const auto p = std::ranges::find(metadata.info.parameters, corrected.name, &volume::Parameter::name);
             if (p == metadata.info.parameters.end() || p->components != corrected.components ||
-                p->categorical != corrected.categorical || (p->categorical && p->type != corrected.type))
+                p->categorical != corrected.categorical || !fits(corrected, *p))
                 throw Error("there are corrections of no parameter", archive.path(), corrected.name);
             for (std::size_t t = 0; t < inner->info().times.size(); ++t) {
                 const auto at = std::ranges::find(times, inner->info().times[t]);
@@ -224,7 +246,7 @@ bool isCorrected(const Archive& archive) {
 bool hasDifferences(const Archive& archive) {
     for (const std::shared_ptr<const Archive>& inner : archive.corrections())
         for (const volume::Parameter& parameter : inner->info().parameters)
-            if (parameter.type == ScalarType::F32 && !parameter.categorical) return true;
+            if (parameter.unit == kDifference) return true;
     return false;
 }
 
@@ -244,7 +266,10 @@ CorrectedReader correctedReader(std::shared_ptr<const Archive> archive, Predicti
         };
         const volume::Parameter& about = archive->info().parameters[std::size_t(parameter)];
         std::optional<Field> correction = fieldAt(parameter, component);
-        if (!correction || about.categorical) return correction;
+        if (!correction) return std::nullopt;
+        const Place& own = places[std::size_t(time)][std::size_t(parameter)];
+        const bool isSample = own.archive->info().parameters[std::size_t(own.parameter)].unit == kSample;
+        if (isSample) return correction;
         Field parted = *correction;
         if (const int label = volume::labelOf(archive->info(), about); label >= 0) {
             if (kept->parameter != label || kept->time != time) {

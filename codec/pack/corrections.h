@@ -12,7 +12,8 @@
 
 /// Corrections of a BCC or D4* archive: an archive inside it, on the grid of its source, with what its own samples do
 /// not tell. (FORMAT.md "Corrections".) Of labels the labels; of numbers which samples are present, and, if the archive
-/// keeps a bound, the differences between the samples of the source and their prediction from the stored ones. So labels
+/// keeps a bound, the differences between the samples of the source and their prediction from the stored ones (or where
+/// floats cannot say these well enough, the samples). So labels
 /// and presence are those of the source, values of different parts are never mixed, and a bound holds at every sample of
 /// the source.
 namespace tessera::codec {
@@ -33,7 +34,7 @@ struct Corrections {
 };
 
 /// The corrections of an archive for the data set it was packed from, whose lattice is CC. `written` has all frames, and
-/// in its metadata the ranges that bounds refer to. Throws Error where a bound is too small for floats of this size.
+/// in its metadata the ranges that bounds refer to.
 Corrections correctionsOf(std::shared_ptr<const Archive> written, const volume::Dataset& source,
                           const PlaceInArchive& place, const PackOptions& options);
 

@@ -162,10 +162,17 @@ MemoryPlan planMemory(const Metadata& metadata, const volume::Dataset& dataset, 
     const double kept = d4 ? kTimesOfD4 * all : 0;
     const double least = kOwn + kept + std::max(step, coding);
     const double limit = options.memoryMb > 0 ? options.memoryMb * kMega : quarterOfRam();
-    if (dataset.read.inParts() && (slabLayers > 0 || least > limit))
-        return planSlabs(metadata, source, options, slabLayers, least, limit);
+    // Of a component: source, stored samples, these prefiltered, prediction, and difference, which is coded.
+    constexpr double kCorrecting = 40;
+    const bool corrects = kOwn + kCorrecting * samples <= limit;
+    if (dataset.read.inParts() && (slabLayers > 0 || least > limit)) {
+        MemoryPlan slabs = planSlabs(metadata, source, options, slabLayers, least, limit);
+        slabs.corrects = corrects;
+        return slabs;
+    }
     if (options.memoryMb > 0 && least > limit) refuse(least, limit);
     MemoryPlan plan;
+    plan.corrects = corrects;
     const double frames = source.times.size() > 1 ? (d4 ? 2 : 1) * last : 0;
     plan.keepFrames = least + frames <= limit;
     plan.readAhead = least + (plan.keepFrames ? frames : 0) + step <= limit;

@@ -12,6 +12,7 @@ struct MemoryPlan {
     bool readAhead = true;  ///< read the next frames while the current ones are coded
     int slabLayers = 0;     ///< brick layers in memory at a time; 0: whole frames
     int slabStep = 0;       ///< source slices in memory at a time when all are scanned
+    bool corrects = true;   ///< whole frames fit, which corrections need
 };
 
 /// The fastest plan within the memory limit, which includes the program itself. Whole frames need the larger of the

@@ -7,7 +7,7 @@
 #include "codec/pack/corrections.h"
 #include "codec/pack/error_bound.h"
 #include "codec/pack/frame_queue.h"
-#include "codec/pack/lossy_field.h"
+#include "codec/pack/given_up.h"
 #include "codec/pack/memory_plan.h"
 #include "codec/pack/pack_grid.h"
 #include "codec/pack/pack_passes.h"
@@ -50,38 +50,6 @@ void check(const volume::DatasetInfo& source, const PackOptions& options) {
         throw Error("without lossless, an error bound, a threshold or a limit of importance is needed");
     if (options.lattice == StoredLattice::CC && source.lattice.kind == LatticeKind::BCC)
         throw Error("the data lies on BCC; it cannot be packed as CC");
-}
-
-/// Thresholds the details of a frame, most strongly in the least important bricks.
-Thresholded giveUp(FrameSamples& samples, const volume::BrickGrid& grid, const FrameOptions& frame,
-                   const ThresholdOptions& options, double extent) {
-    std::vector<float> strength(grid.brickCount(), 1);
-    if (options.byImportance) {
-        const auto importance = importanceOfBricks(grid, samples, frame.range, frame.categorical, frame.importance);
-        float most = 0;
-        for (const volume::BrickImportance& brick : importance) most = std::max(most, brick.importance);
-        for (std::size_t b = 0; b < strength.size() && most > 0; ++b) strength[b] = 1 - importance[b].importance / most;
-    }
-    const auto kind = static_cast<Threshold>(static_cast<int>(options.kind) - 1);
-    const double value =
-        kind == Threshold::Quantile ? options.value : options.value * extent / std::abs(samples.scale());
-    return giveUpDetails(grid, samples, frame.wavelet.value_or(Wavelet::W22), kind, value, strength, frame.maxError);
-}
-
-/// Marks every sample of the omitted bricks as absent.
-void leaveOut(FrameSamples& samples, const volume::BrickGrid& grid, const std::vector<std::uint8_t>& discarded) {
-    if (std::find(discarded.begin(), discarded.end(), std::uint8_t(1)) == discarded.end()) return;
-    samples.change([&](Field& part, Slab slab) {
-        const volume::BrickGrid own = slab.grid(grid);
-        const auto [first, end] = slab.bricks(grid);
-        volume::Mask mask = part.mask ? *part.mask : volume::Mask(part.count(), 1);
-        for (std::size_t b = first; b < end; ++b)
-            if (discarded[b] != 0)
-                forBrickRows(own, own.indexOf(b - first), [&](std::size_t from, std::size_t, std::size_t n) {
-                    std::fill_n(mask.begin() + std::ptrdiff_t(from), n, std::uint8_t(0));
-                });
-        part.mask = std::make_shared<const volume::Mask>(std::move(mask));
-    });
 }
 
 /// Brick layers of the slabs that a team shares: one, but for so many that their open files would be too many. Those of
@@ -305,6 +273,8 @@ void Packing::sayLimits() {
         summary_.notes.push_back(
             std::string(team_ ? "slabs are packed apart" : "too little memory to keep the previous time") +
             ": changes of bricks between times are not stored");
+    if (truth_ && !memory_.corrects)
+        summary_.notes.push_back("too little memory for corrections: bounds and labels are those of the stored lattice");
     if (memory_.slabLayers > 0 && !team_)
         summary_.notes.push_back("too little memory for a whole time; slabs in memory at once: " +
                                  std::to_string(memory_.slabLayers));
@@ -316,7 +286,7 @@ bool Packing::corrects() const {
         return parameter.categorical || parameter.parts.count() < 2 ||
                volume::labelOf(metadata_.info, parameter) >= 0;
     };
-    return truth_ && !team_ && memory_.slabLayers == 0 && options_.discard == 0 &&
+    return truth_ && memory_.corrects && options_.discard == 0 &&
            (!grown_ || isCorrected(*grown_)) && std::ranges::all_of(metadata_.info.parameters, knowsParts);
 }
 

@@ -2,30 +2,16 @@
 
 #include "codec/brick/slab_team.h"
 #include "codec/container/pack_options.h"
-#include "codec/container/resample_error.h"
 #include "codec/pack/pack_summary.h"
+#include "codec/pack/packed_before.h"
 #include "volume/base/progress.h"
 #include "volume/field/dataset.h"
 
-#include <optional>
 #include <string>
 #include <vector>
 
 /// The pipeline from a data set to an archive.
 namespace tessera::codec {
-
-/// What is known of data that come from an archive (the errors of their samples so far) or belong to others; empty for
-/// other data.
-struct PackedBefore {
-    /// Original grid of the samples, which is not known from their lattice if that is BCC.
-    std::optional<volume::Lattice> grid = {};
-    bool lossless = true;
-    double maxError = 0;                                      ///< bound on |error|, relative to a parameter's range
-    std::vector<std::optional<ResampleError>> resampled = {}; ///< Metadata::resampled of that archive
-    /// The samples on that grid, which corrections lead back to; empty: unknown, or the data lie on it.
-    std::optional<volume::Dataset> source = {};
-    bool ofSeries = false; ///< the data are times of a series that others follow or precede
-};
 
 /// Packs a data set into `path`, which is readable from the first complete time on (with d4, from the second frame).
 ///

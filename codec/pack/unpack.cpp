@@ -4,6 +4,7 @@
 #include "codec/container/exactness.h"
 #include "codec/pack/corrections.h"
 #include "codec/pack/prediction.h"
+#include "codec/pack/stored_dataset.h"
 #include "volume/base/parallel.h"
 #include "volume/field/part_masks.h"
 #include "volume/resample/resample.h"
@@ -78,31 +79,6 @@ Field meanOf(const Field& a, const Field& b) {
 }
 
 } // namespace
-
-volume::Dataset storedDataset(std::shared_ptr<const Archive> archive) {
-    volume::Dataset dataset;
-    dataset.info = archive->info();
-    dataset.read = [archive](int parameter, int component, int time, volume::SliceRange slices) {
-        const volume::BrickGrid& grid = archive->grid();
-        if (slices.isAllOf(grid.lattice)) return readField(*archive, parameter, component, time);
-        const auto [first, count] = slices.of(grid.lattice);
-        const int perLayer = grid.end(glm::ivec3(0)).z; // slices per brick layer
-        const int layer = first / perLayer, end = (first + count + perLayer - 1) / perLayer;
-        const Field layers = readLayers(*archive, parameter, component, time, layer, end);
-        return volume::slicesOf(layers, first - grid.begin({0, 0, layer}).z, count);
-    };
-    return dataset;
-}
-
-PackedBefore packedBefore(const std::shared_ptr<const Archive>& archive) {
-    const Metadata& metadata = archive->metadata();
-    PackedBefore before{metadata.source, metadata.lossless, metadata.maxError, metadata.resampled};
-    const bool corrected = !metadata.corrections.empty();
-    if (isResampled(metadata) && (!corrected || !metadata.resampled.empty()))
-        before.resampled.resize(metadata.info.parameters.size());
-    if (corrected) before.source = gridDataset(archive, 0);
-    return before;
-}
 
 volume::Series storedSeries(std::shared_ptr<const Archive> archive, int parameter, int component) {
     if (archive->metadata().alternating)

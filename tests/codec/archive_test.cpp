@@ -14,6 +14,13 @@
 namespace tessera::codec {
 namespace {
 
+PackOptions onBcc() {
+    PackOptions options;
+    options.lattice = StoredLattice::BCC;
+    return options;
+}
+
+
 using namespace testing;
 using volume::BrickKey;
 using volume::Field;
@@ -49,7 +56,7 @@ TEST(Archive, GivesBackEverySampleBitForBit) {
 TEST(Archive, KeepsWhatIsKnownOfTheData) {
     const TemporaryFolder folder;
     volume::Dataset made = makeDataset({20, 20, 20}, everyKind(), 3);
-    pack(made, {}, folder / "a.tsr");
+    pack(made, onBcc(), folder / "a.tsr");
     const Archive archive(folder / "a.tsr");
     volume::DatasetInfo expected = made.info;
     expected.lattice = volume::bccFor(made.info.lattice);
@@ -69,7 +76,7 @@ TEST(Archive, BccBricksAreTheResampledFieldAtEveryPlace) {
     const std::vector<MadeParameter> parameters{{"T", ScalarType::F32, 1, Texture::Smooth, true, false},
                                                 {"n", ScalarType::I16, 1, Texture::Smooth, false, false}};
     volume::Dataset made = makeDataset({30, 25, 47}, parameters, 1);
-    PackOptions options;
+    PackOptions options = onBcc();
     options.brickSize = 8;
     pack(made, options, folder / "a.tsr");
     const Archive archive(folder / "a.tsr");
@@ -112,7 +119,7 @@ TEST(Archive, CoarseLevelsHaveTheSizesOfTheGridAndApproximateTheField) {
     volume::Dataset made = makeDataset({64, 50, 70}, parameters, 1);
     for (const WaveletChoice wavelet : {WaveletChoice::W11, WaveletChoice::W22})
         for (const double maxError : {0.0, 1e-4}) {
-            PackOptions options;
+            PackOptions options = onBcc();
             options.brickSize = 16;
             options.wavelet = wavelet;
             options.maxError = maxError;
@@ -370,7 +377,7 @@ TEST(Archive, OnBccNoVolumeIsOneLargeBrick) {
         field.lattice = lattice;
         return field;
     };
-    pack(made, {}, folder / "a.tsr");
+    pack(made, onBcc(), folder / "a.tsr");
     EXPECT_EQ(Archive(folder / "a.tsr").grid().brickSize, 64);
 }
 

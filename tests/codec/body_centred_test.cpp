@@ -110,6 +110,7 @@ TEST(BodyCentred, ArchivesAreExactAndTheSecondReaderAgrees) {
             volume::Dataset made = makeDataset(size, kinds(), 1);
             PackOptions options;
             options.brickSize = 8;
+            options.lattice = StoredLattice::BCC;
             options.bccTransform = BccTransform::BodyCentred;
             options.maxError = maxError;
             pack(made, options, folder / "a.tsr");
@@ -162,6 +163,7 @@ TEST(BodyCentred, IsShorterWhereSamplesAreLikeTheirNeighbours) {
     };
     const auto bytes = [&](BccTransform transform) {
         PackOptions options;
+        options.lattice = StoredLattice::BCC;
         options.bccTransform = transform;
         volume::Dataset copy = made;
         return pack(copy, options, folder / "a.tsr").archiveBytes;

@@ -76,7 +76,7 @@ TEST(BrickDistribution, ArchivesSayWhatIsInTheirBricks) {
     const TemporaryFolder folder;
     for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC, StoredLattice::D4})
         for (const double maxError : {0.0, 1e-3}) {
-            volume::Dataset made = makeDataset({35, 18, 37}, everyKind(), lattice == StoredLattice::D4 ? 3 : 1);
+            volume::Dataset made = makeDataset({35, 18, 37}, everyKind(), lattice == StoredLattice::D4 ? 8 : 1);
             pack(made, statisticsOptions(lattice, maxError), folder / "a.tsr");
             const Archive archive(folder / "a.tsr");
             expectTrueDistributions(archive);
@@ -228,10 +228,11 @@ TEST(BrickDistribution, AHistogramOfAllNeedsNoSamples) {
     volume::StatisticsQuery query;
     query.channels = {0, 1};
     query.bins = 20;
-    pack(made, {}, folder / "whole.tsr");
+    PackOptions options;
+    options.lattice = StoredLattice::BCC;
+    pack(made, options, folder / "whole.tsr");
     EXPECT_FALSE(volume::notedStatistics(Archive(folder / "whole.tsr"), query)) << "nothing is noted of one brick";
 
-    PackOptions options;
     options.brickSize = 32;
     pack(made, options, folder / "a.tsr");
     const Archive archive(folder / "a.tsr");

@@ -91,7 +91,7 @@ TEST(BrickNotes, BoundWhatIsReadOnEveryLattice) {
     const TemporaryFolder folder;
     for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC, StoredLattice::D4})
         for (const double bound : {0.0, 0.5}) {
-            volume::Dataset made = movingSlabs(4, true);
+            volume::Dataset made = movingSlabs(8, true);
             pack(made, smallBricks(lattice, bound), folder / "a.tsr");
             expectTrueNotes(Archive(folder / "a.tsr"));
         }

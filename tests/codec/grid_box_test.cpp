@@ -27,7 +27,8 @@ struct GridCut {
 /// Every sample of boxes is that of the whole frame at the same place, in every parameter, type and level.
 void expectBoxesOfTheWhole(const PackOptions& options, bool exactFloats) {
     const testing::TemporaryFolder folder;
-    volume::Dataset made = testing::makeDataset({37, 21, 45}, kParameters, 3);
+    volume::Dataset made =
+        testing::makeDataset({37, 21, 45}, kParameters, options.lattice == StoredLattice::D4 ? 8 : 3);
     pack(made, options, folder / "a.tsr");
     const auto archive = std::make_shared<const Archive>(folder / "a.tsr");
     const GridBoxes boxes(archive);
@@ -81,6 +82,7 @@ TEST(GridBoxes, AreThoseOfTheWholeFrameWithinABound) {
 
 TEST(GridBoxes, AreThoseOfTheWholeFrameOnOtherLattices) {
     PackOptions options;
+    options.lattice = StoredLattice::BCC;
     options.brickSize = 16;
     expectBoxesOfTheWhole(options, false);
     options.lattice = StoredLattice::D4;

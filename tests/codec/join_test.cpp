@@ -198,7 +198,7 @@ TEST(Join, DamageIsNotCopied) {
 TEST(Join, RefusesWhatDoesNotFollowAndChangesNothing) {
     const TemporaryFolder folder;
     const volume::Dataset made =
-        makeDataset({17, 12, 19}, {{"T", ScalarType::F32, 1, Texture::Smooth, false, false}}, 4);
+        makeDataset({17, 12, 19}, {{"T", ScalarType::F32, 1, Texture::Smooth, false, false}}, 8);
     const std::string path = packed(made, {0, 1}, bricksOf8(), folder / "run.tsr");
     const std::vector<char> before = readFile(path);
     const volume::Dataset other =
@@ -212,7 +212,7 @@ TEST(Join, RefusesWhatDoesNotFollowAndChangesNothing) {
                  {packed(made, {2, 3}, bricksOf8(StoredLattice::CC, 0.1), folder / "lossy.tsr"), "other options"},
                  {packed(other, {2, 3}, bricksOf8(), folder / "grid.tsr"), "another grid"},
                  {packed(named, {2, 3}, bricksOf8(), folder / "name.tsr"), "only be added at all times"},
-                 {packed(made, {2, 3}, bricksOf8(StoredLattice::D4), folder / "d4.tsr"), "D4*"}};
+                 {packed(made, {0, 1, 2, 3, 4, 5, 6, 7}, bricksOf8(StoredLattice::D4), folder / "d4.tsr"), "D4*"}};
     for (const auto& [more, reason] : cases) {
         try {
             join(path, more);

@@ -137,7 +137,7 @@ TEST(Thresholds, BoundsAndReportedErrorsHoldInASeries) {
             options.lattice = lattice;
             options.brickSize = 8;
             options.lossless = true;
-            volume::Dataset made = driftingSeries(4, drift);
+            volume::Dataset made = driftingSeries(lattice == StoredLattice::D4 ? 8 : 4, drift);
             pack(made, options, folder / "exact.tsr");
             const Archive exact(folder / "exact.tsr");
             options.lossless = false;

@@ -36,8 +36,8 @@ void packAgain(const std::string& from, const PackOptions& options, const std::s
 TEST(PackAgain, SamplesOnBccKeepTheGridTheyCameFrom) {
     const TemporaryFolder folder;
     volume::Dataset made = madeOf(2);
-    pack(made, {}, folder / "a.tsr");
-    packAgain(folder / "a.tsr", {}, folder / "b.tsr");
+    pack(made, within(StoredLattice::BCC, 0), folder / "a.tsr");
+    packAgain(folder / "a.tsr", within(StoredLattice::BCC, 0), folder / "b.tsr");
     const auto a = std::make_shared<const Archive>(folder / "a.tsr");
     const auto b = std::make_shared<const Archive>(folder / "b.tsr");
     EXPECT_EQ(b->metadata().source, made.info.lattice);
@@ -90,7 +90,7 @@ TEST(PackAgain, ErrorsReferToTheRangeOfTheWhole) {
         return made;
     };
     volume::Dataset wide = oneOf(4, 0), narrow = oneOf(1, 1);
-    pack(wide, {}, folder / "wide.tsr");
+    pack(wide, within(StoredLattice::BCC, 0), folder / "wide.tsr");
     pack(narrow, within(StoredLattice::BCC, 0.02), folder / "narrow.tsr");
     const auto archive = std::make_shared<const Archive>(folder / "narrow.tsr");
     volume::Dataset stored = storedDataset(archive);

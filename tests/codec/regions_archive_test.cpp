@@ -63,7 +63,7 @@ TEST(RegionsInArchives, StayApartOnEveryLatticeAndLevel) {
                     SCOPED_TRACE(std::string(kStoredLatticeNames[std::size_t(lattice)]) + " " +
                                  std::string(kWaveletChoiceNames[std::size_t(wavelet)]) + " brick " +
                                  std::to_string(brick));
-                    Dataset made = regionsData(4);
+                    Dataset made = regionsData(lattice == StoredLattice::D4 ? 8 : 3);
                     PackOptions options;
                     options.lattice = lattice;
                     options.wavelet = wavelet;
@@ -83,7 +83,7 @@ TEST(RegionsInArchives, StayApartOnEveryLatticeAndLevel) {
 TEST(RegionsInArchives, WholeFramesAndSlabsAreTheSame) {
     const TemporaryFolder folder;
     for (const StoredLattice lattice : {StoredLattice::BCC, StoredLattice::D4}) {
-        Dataset made = volume::test::twoRegions(volume::test::ccLattice({19, 18, 40}), volume::test::linearIn, {}, 3);
+        Dataset made = volume::test::twoRegions(volume::test::ccLattice({19, 18, 40}), volume::test::linearIn, {}, 8);
         PackOptions options;
         options.lattice = lattice;
         options.brickSize = 8;
@@ -115,7 +115,7 @@ TEST(RegionsInArchives, AFurtherParameterFindsTheLabelInTheArchive) {
     };
     for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC, StoredLattice::D4})
         for (const int layers : {0, 1}) {
-            Dataset made = regionsData(2), label = labelOf(made);
+            Dataset made = regionsData(lattice == StoredLattice::D4 ? 8 : 2), label = labelOf(made);
             PackOptions options;
             options.lattice = lattice;
             options.brickSize = 8;

@@ -61,7 +61,8 @@ struct OpenIndex {
     OpenIndex(const std::string& path, const Archive& archive) : bytes(openBytes(path, {})) {
         header = parseHeaders(bytes->part({0, kFirstChunk}).bytes(), bytes->size(), path).header;
         const auto components = std::uint64_t(componentCount(archive.info()));
-        index = readIndex(*bytes, header, {components, archive.grid().brickCount(), archive.grid()}, path);
+        index = readIndex(*bytes, header, {components, archive.grid().brickCount(), archive.grid(), archive.metadata().corrections},
+                          path);
     }
 };
 
@@ -88,7 +89,7 @@ TEST(Subsamples, CoarsestPartsAndLabelsAreSamplesOfLevelZero) {
     for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC, StoredLattice::D4})
         for (const double maxError : {0.0, 1e-3}) {
             SCOPED_TRACE(std::string(kStoredLatticeNames[std::size_t(lattice)]) + " " + std::to_string(maxError));
-            Dataset made = regionsWithGaps(3);
+            Dataset made = regionsWithGaps(lattice == StoredLattice::D4 ? 8 : 3);
             pack(made, bricksOf16(lattice, maxError), folder / "a.tsr");
             EXPECT_EQ(readFile(folder / "a.tsr")[12] & 32, 32) << "features of the header";
             const Archive archive(folder / "a.tsr");
@@ -143,7 +144,7 @@ TEST(Subsamples, AreReadByTheSecondDecoder) {
     const TemporaryFolder folder;
     for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC, StoredLattice::D4})
         for (const double maxError : {0.0, 1e-3}) {
-            Dataset made = regionsWithGaps(3);
+            Dataset made = regionsWithGaps(lattice == StoredLattice::D4 ? 8 : 3);
             pack(made, bricksOf16(lattice, maxError), folder / "a.tsr");
             const Archive archive(folder / "a.tsr");
             const plain::Decoder decoder(readFile(folder / "a.tsr"));

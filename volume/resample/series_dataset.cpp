@@ -65,6 +65,8 @@ namespace {
 /// Throws Error unless a series is one that D4* can be made of.
 void requireEven(const DatasetInfo& info) {
     constexpr double kUneven = 0.01; // of a step
+    if (info.timeName == "operating point")
+        throw Error("D4* is a lattice in space and time; between operating points there is nothing", info.name);
     if (info.times.size() < kLeastD4Times)
         throw Error("D4* is a lattice in space and time and needs " + std::to_string(kLeastD4Times) +
                         " times or more, not " + std::to_string(info.times.size()),

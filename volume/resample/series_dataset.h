@@ -28,8 +28,8 @@ inline constexpr std::size_t kLeastD4Times = 8;
 /// A data set on CC as frames of d4For(it), each on its own grid, at times between those of the series, the first and
 /// the last ones beyond them. The lattice of the info is that of the even frames. Frames are best asked for in order;
 /// some of the source are kept, or with `memory.step` they are read in slices of it (volume/resample/series_slices.h).
-/// Throws Error when the source is not CC, has fewer times than kLeastD4Times, or ones that are not evenly spaced
-/// within 1 % of their step.
+/// Throws Error when the source is not CC, has fewer times than kLeastD4Times, operating points, or times that
+/// are not evenly spaced within 1 % of their step.
 Dataset toD4(const Dataset& source, const ResampleOptions& options, const SliceMemory& memory = {});
 
 } // namespace tessera::volume
