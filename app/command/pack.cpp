@@ -10,8 +10,8 @@
 #include "codec/blocks/pack_blocks.h"
 #include "codec/container/exactness.h"
 #include "codec/container/json_text.h"
-#include "codec/pack/unpack.h"
 #include "codec/remote/address.h"
+#include "codec/unpack/unpack.h"
 #include "volume/base/byte_text.h"
 #include "volume/import/files/series.h"
 #include "volume/system/free_memory.h"
@@ -36,7 +36,7 @@ struct PackRequest {
     volume::ImportOptions import;
     codec::PackOptions options;
     bool append = false, json = false, progressJson = false;
-    bool keepsLattice = false; ///< convert without --lattice: keep the archive's
+    bool keepsLattice = false; ///< of an archive, where none is stated
     bool follows = false;
     ArrivalTimes arrival;
     std::optional<double> untilIdle;
@@ -267,6 +267,13 @@ void refuseContradiction(const CLI::App& command, const codec::PackOptions& opti
                     {}, "--lossless");
 }
 
+/// Whether the lattice of the archive is stated, by itself or by a preset.
+bool statesLattice(const CLI::App& command) {
+    const CLI::Option& preset = *command.get_option("--preset");
+    return command.count("--lattice") > 0 ||
+           (preset.count() > 0 && codec::PackOptions::presetHasLattice(preset.results().back()));
+}
+
 void addFollowOptions(CLI::App& command, PackRequest& request) {
     CLI::Option* const follow =
         command
@@ -340,7 +347,7 @@ void addStreamOptions(CLI::App& command, PackRequest& request) {
 } // namespace
 
 void addPackCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("pack", "Import, resample, brick and compress data into one archive");
+    CLI::App* command = app.add_subcommand("pack", "Import, brick and compress data into one archive");
     const auto request = std::make_shared<PackRequest>();
     command
         ->add_option(
@@ -361,6 +368,8 @@ void addPackCommand(CLI::App& app) {
     addImportOptions(*command, request->import);
     command->callback([request, command] {
         refuseContradiction(*command, request->options);
+        const bool again = request->inputs.size() == 1 && codec::namesArchive(request->inputs[0]);
+        request->keepsLattice = again && !request->append && !statesLattice(*command);
         run(*request);
     });
 }
@@ -380,9 +389,7 @@ void addConvertCommand(CLI::App& app) {
     command->callback([request, command] {
         if (!codec::namesArchive(request->inputs[0])) throw Error("not an archive (.tsr)", request->inputs[0]);
         refuseContradiction(*command, request->options);
-        const CLI::Option& preset = *command->get_option("--preset");
-        request->keepsLattice = command->count("--lattice") == 0 &&
-                                (preset.count() == 0 || !codec::PackOptions::presetHasLattice(preset.results().back()));
+        request->keepsLattice = !statesLattice(*command);
         run(*request);
     });
 }

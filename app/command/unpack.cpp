@@ -1,4 +1,4 @@
-#include "codec/pack/unpack.h"
+#include "codec/unpack/unpack.h"
 #include "app/command/command.h"
 #include "app/command/derive_option.h"
 #include "app/data/format.h"

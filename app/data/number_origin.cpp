@@ -55,10 +55,10 @@ std::string readFromText(const NumberOrigin& origin, const volume::DatasetInfo& 
     const bool onGrid = origin.lattice == "CC", exactParts = origin.unpacked && origin.corrected;
     std::string text = onGrid && error.empty() ? computed
                        : onGrid                ? "stored on CC, " + error
-                       : exactParts            ? "stored on " + origin.lattice + " and corrected" +
-                                          (error.empty() ? "" : ", " + error)
-                       : error.empty()         ? "resampled to " + origin.lattice + ", stored losslessly"
-                                               : "resampled to " + origin.lattice + ", stored with an " + error;
+                       : exactParts
+                           ? "stored on " + origin.lattice + " and corrected" + (error.empty() ? "" : ", " + error)
+                       : error.empty() ? "resampled to " + origin.lattice + ", stored losslessly"
+                                       : "resampled to " + origin.lattice + ", stored with an " + error;
     if (origin.mesh && onGrid && text != computed) text = "resampled, " + text;
     if (origin.unpacked && !exactParts) text += ", unpacked to the grid of the source";
     if (origin.discarded) text += ", without bricks of little importance";
@@ -95,7 +95,9 @@ double errorBound(const NumberOrigin& origin, const volume::DatasetInfo& info, c
     const volume::Parameter& parameter = info.parameters[std::size_t(channel.parameter)];
     const bool derived = origin.parameters >= 0 && channel.parameter >= origin.parameters;
     if (parameter.categorical || derived || isOriginal(origin, info, channel)) return 0;
-    const auto ofAll = [&](double bound) { return channel.magnitude ? bound * std::sqrt(double(channel.component)) : bound; };
+    const auto ofAll = [&](double bound) {
+        return channel.magnitude ? bound * std::sqrt(double(channel.component)) : bound;
+    };
     if (std::size_t(channel.parameter) < origin.resampleErrors.size())
         return ofAll(origin.resampleErrors[std::size_t(channel.parameter)]);
     if (origin.exact) return 0;

@@ -57,7 +57,7 @@ public:
 
     const Metadata& metadata() const;
     /// The archives of corrections inside this one, on the grid of its source, each for some parameters and times
-    /// (codec/pack/corrections.h); opened by the first call. Throws Error.
+    /// (codec/unpack/corrections.h); opened by the first call. Throws Error.
     std::vector<std::shared_ptr<const Archive>> corrections() const;
     const std::string& path() const;
     /// The format version.

@@ -88,8 +88,7 @@ void Archive::Impl::load() {
     const FileRange ahead[] = {{named.metadata.offset, named.metadata.length},
                                {named.index.offset, named.index.length}};
     bytes->readAhead(ahead);
-    metadata =
-        parseMetadata(checkedPart(*bytes, named.metadata, path, "the metadata").bytes(), named.features, path);
+    metadata = parseMetadata(checkedPart(*bytes, named.metadata, path, "the metadata").bytes(), named.features, path);
     metadata.info.remote = isRemote(path);
     if (metadata.info.name.empty()) metadata.info.name = std::filesystem::path(path).stem().string();
     components = componentCount(metadata.info);
@@ -135,7 +134,8 @@ std::vector<std::shared_ptr<const Archive>> Archive::corrections() const {
         impl->load();
         const Metadata& inner = impl->metadata;
         if (impl->header.header.fileSize != range.length || !inner.corrections.empty() || inner.alternating ||
-            inner.info.lattice.kind != volume::LatticeKind::CC || inner.info.lattice.size != impl_->metadata.source.size)
+            inner.info.lattice.kind != volume::LatticeKind::CC ||
+            inner.info.lattice.size != impl_->metadata.source.size)
             throw Error("the corrections do not fit the archive", impl_->path, "byte " + std::to_string(range.offset));
         all.push_back(std::shared_ptr<const Archive>(new Archive(std::move(impl))));
     }

@@ -368,7 +368,8 @@ std::shared_ptr<const Archive> ArchiveWriter::written(const Metadata& metadata) 
     auto impl = std::make_unique<Archive::Impl>(path, impl_->commits.header);
     Index index = impl_->known;
     add(impl_->page, index);
-    std::ranges::sort(index.frames, {}, [](const FrameRecord& frame) { return std::pair(frame.time, frame.component); });
+    std::ranges::sort(index.frames, {},
+                      [](const FrameRecord& frame) { return std::pair(frame.time, frame.component); });
     index.times = metadata.info.times;
     impl->metadata = metadata;
     impl->index = std::move(index);

@@ -48,9 +48,10 @@ public:
     /// the metadata (with the ranges known so far), so it is delayed until the additions are 64 times as large.
     void commit(const Metadata& metadata, std::size_t times);
 
-    /// The archive as it would be if it were committed now, described by `metadata`; all its frames must have been added.
+    /// The archive as it would be if it were committed now, described by `metadata`; all its frames must have been
+    /// added.
     std::shared_ptr<const Archive> written(const Metadata& metadata) const;
-    /// Appends an archive of corrections, all bytes of a file (codec/pack/corrections.h). Returns where it is, which
+    /// Appends an archive of corrections, all bytes of a file (codec/unpack/corrections.h). Returns where it is, which
     /// the metadata of the next commit must name.
     FileRange addCorrections(const std::string& file);
 

@@ -7,7 +7,8 @@
 
 namespace tessera::codec {
 
-std::optional<IndexPage> Commits::commit(GrowingFile& file, IndexPage& page, const Metadata& now, std::size_t wholeTimes, bool always) {
+std::optional<IndexPage> Commits::commit(GrowingFile& file, IndexPage& page, const Metadata& now,
+                                         std::size_t wholeTimes, bool always) {
     constexpr std::size_t kWorthwhile = 64, kPage = 256; // multiples of the bytes that a commit costs, including a page
     Bytes text = serialise(now, header.features);
     const std::uint64_t last = std::max(header.fileSize, kFirstChunk);

@@ -18,9 +18,10 @@ struct Commits {
 
     /// Makes the additions in `page`, whose chunks have been appended to `file`, readable: appends the metadata if it
     /// has changed and the page, and writes the headers. `wholeTimes`: number of times of the metadata that are
-    /// complete. Unless `always`, it waits until the additions are 64 times as large as what a commit costs. Returns the
-    /// page if it was written; `page` is empty then.
-    std::optional<IndexPage> commit(GrowingFile& file, IndexPage& page, const Metadata& now, std::size_t wholeTimes, bool always);
+    /// complete. Unless `always`, it waits until the additions are 64 times as large as what a commit costs. Returns
+    /// the page if it was written; `page` is empty then.
+    std::optional<IndexPage> commit(GrowingFile& file, IndexPage& page, const Metadata& now, std::size_t wholeTimes,
+                                    bool always);
 };
 
 /// The last commit of an existing archive.

@@ -30,7 +30,8 @@ struct Metadata {
     double maxError = 0;  ///< otherwise the error bound, relative to a parameter's range
     /// Resampling errors per parameter; an empty entry is unknown. Empty: nothing was resampled, or all are unknown.
     std::vector<std::optional<ResampleError>> resampled;
-    /// Archives inside the file, on the grid of the source, each for some parameters and times (codec/pack/corrections.h).
+    /// Archives inside the file, on the grid of the source, each for some parameters and times
+    /// (codec/unpack/corrections.h).
     std::vector<FileRange> corrections = {};
     std::string program; ///< name and version of the program that wrote it
     PackOptions options; ///< packing options, also used when it grows

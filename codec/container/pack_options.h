@@ -64,12 +64,13 @@ struct PackOptions {
     /// Whether a preset sets the lattice; others can be combined with any.
     static bool presetHasLattice(std::string_view name);
     static void describe(auto& self, auto&& visit) {
-        visit(self.lattice, FieldInfo{.key = "lattice",
-                                      .unit = "",
-                                      .doc = "Lattice of the stored samples: cc (the grid of the source), or resampled to bcc "
-                                             "(70.7 % of the samples) or d4 (50 %, in space and time, for eight evenly "
-                                             "spaced times or more)",
-                                      .names = kStoredLatticeNames});
+        visit(self.lattice,
+              FieldInfo{.key = "lattice",
+                        .unit = "",
+                        .doc = "Lattice of the stored samples: cc (the grid of the source), or resampled to bcc "
+                               "(70.7 % of the samples) or d4 (50 %, in space and time, for eight evenly "
+                               "spaced times or more)",
+                        .names = kStoredLatticeNames});
         visit(self.resample,
               FieldInfo{.key = "resample", .unit = "", .doc = "How samples of another lattice are computed"});
         visit(self.lossless,

@@ -1,6 +1,6 @@
 #include "codec/pack/continuation.h"
 
-#include "codec/pack/unpack.h"
+#include "codec/unpack/unpack.h"
 #include "volume/base/number_text.h"
 #include "volume/field/part_masks.h"
 #include "volume/field/quantities.h"

@@ -4,7 +4,6 @@
 #include "codec/archive/brick_access.h"
 #include "codec/bytes/stopwatch.h"
 #include "codec/pack/continuation.h"
-#include "codec/pack/corrections.h"
 #include "codec/pack/error_bound.h"
 #include "codec/pack/frame_queue.h"
 #include "codec/pack/given_up.h"
@@ -12,6 +11,7 @@
 #include "codec/pack/pack_grid.h"
 #include "codec/pack/pack_passes.h"
 #include "codec/pack/pack_size.h"
+#include "codec/unpack/corrections.h"
 #include "volume/field/part_masks.h"
 #include "volume/resample/resample.h"
 #include "volume/resample/series_dataset.h"
@@ -136,7 +136,7 @@ private:
     void correct(ArchiveWriter& writer, const Progress& progress);
 
     volume::Dataset& source_;
-    volume::Dataset dataset_; ///< the data to be stored, before resampling to BCC
+    volume::Dataset dataset_;              ///< the data to be stored, before resampling to BCC
     std::optional<volume::Dataset> truth_; ///< what they are made of on the grid of the source, if that is another one
     PackOptions options_;
     std::string path_;
@@ -274,7 +274,8 @@ void Packing::sayLimits() {
             std::string(team_ ? "slabs are packed apart" : "too little memory to keep the previous time") +
             ": changes of bricks between times are not stored");
     if (truth_ && !memory_.corrects)
-        summary_.notes.push_back("too little memory for corrections: bounds and labels are those of the stored lattice");
+        summary_.notes.push_back(
+            "too little memory for corrections: bounds and labels are those of the stored lattice");
     if (memory_.slabLayers > 0 && !team_)
         summary_.notes.push_back("too little memory for a whole time; slabs in memory at once: " +
                                  std::to_string(memory_.slabLayers));
@@ -283,11 +284,10 @@ void Packing::sayLimits() {
 /// Whether the archive gets corrections. They need whole frames, of the same parts that a reader sees.
 bool Packing::corrects() const {
     const auto knowsParts = [&](const volume::Parameter& parameter) {
-        return parameter.categorical || parameter.parts.count() < 2 ||
-               volume::labelOf(metadata_.info, parameter) >= 0;
+        return parameter.categorical || parameter.parts.count() < 2 || volume::labelOf(metadata_.info, parameter) >= 0;
     };
-    return truth_ && memory_.corrects && options_.discard == 0 &&
-           (!grown_ || isCorrected(*grown_)) && std::ranges::all_of(metadata_.info.parameters, knowsParts);
+    return truth_ && memory_.corrects && options_.discard == 0 && (!grown_ || isCorrected(*grown_)) &&
+           std::ranges::all_of(metadata_.info.parameters, knowsParts);
 }
 
 /// Adds the corrections of all that was added.
@@ -310,8 +310,8 @@ void Packing::correct(ArchiveWriter& writer, const Progress& progress) {
 PackSummary Packing::run(const Progress& progress) {
     {
         Stopwatch all(summary_.seconds);
-        const bool passes = metadata_.alternating ||
-                            (isRelative(options_) && (times() > 1 || grown_ || options_.discard > 0));
+        const bool passes =
+            metadata_.alternating || (isRelative(options_) && (times() > 1 || grown_ || options_.discard > 0));
         const double begin = passes ? 0.3 : 0;
         gather(progress.part(0, begin));
         const Progress work = progress.part(begin, corrects() ? 0.6 : 1);

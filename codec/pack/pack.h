@@ -3,7 +3,7 @@
 #include "codec/brick/slab_team.h"
 #include "codec/container/pack_options.h"
 #include "codec/pack/pack_summary.h"
-#include "codec/pack/packed_before.h"
+#include "codec/unpack/packed_before.h"
 #include "volume/base/progress.h"
 #include "volume/field/dataset.h"
 
@@ -38,9 +38,10 @@ std::vector<std::vector<Range>> unknownRanges(volume::Dataset& source, const Pac
                                               const std::string& path, const Progress& progress = {},
                                               SlabTeam* team = nullptr);
 
-/// Appends to an archive with its own options: later times of the same parameters (not with d4), or further parameters at the same times. In addition the source may have labels that
-/// equal those of the archive sample by sample. If it throws, complete appended times are kept; parameters are appended
-/// all or none. `memoryMb` as in the options. Throws Error when the data do not match the archive.
+/// Appends to an archive with its own options: later times of the same parameters (not with d4), or further parameters
+/// at the same times. In addition the source may have labels that equal those of the archive sample by sample. If it
+/// throws, complete appended times are kept; parameters are appended all or none. `memoryMb` as in the options. Throws
+/// Error when the data do not match the archive.
 PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb = 0, const Progress& progress = {},
                    const PackedBefore& before = {}, int slabLayers = 0);
 

@@ -1,6 +1,6 @@
 #include "codec/container/options_json.h"
-#include "codec/pack/grid_box.h"
 #include "codec/pack/pack.h"
+#include "codec/unpack/grid_box.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

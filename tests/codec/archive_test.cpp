@@ -20,7 +20,6 @@ PackOptions onBcc() {
     return options;
 }
 
-
 using namespace testing;
 using volume::BrickKey;
 using volume::Field;

@@ -1,8 +1,8 @@
-#include "codec/pack/corrections.h"
+#include "codec/unpack/corrections.h"
 
 #include "codec/container/exactness.h"
 #include "codec/pack/pack.h"
-#include "codec/pack/unpack.h"
+#include "codec/unpack/unpack.h"
 #include "tests/codec/make_dataset.h"
 #include "volume/field/part_masks.h"
 

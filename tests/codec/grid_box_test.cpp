@@ -1,7 +1,7 @@
-#include "codec/pack/grid_box.h"
+#include "codec/unpack/grid_box.h"
 
 #include "codec/pack/pack.h"
-#include "codec/pack/unpack.h"
+#include "codec/unpack/unpack.h"
 #include "tests/codec/make_dataset.h"
 
 #include <gtest/gtest.h>
@@ -39,8 +39,9 @@ void expectBoxesOfTheWhole(const PackOptions& options, bool exactFloats) {
         for (int p = exactFloats ? 0 : 1; p < int(kParameters.size()); ++p) {
             const int component = kParameters[std::size_t(p)].components - 1;
             const volume::Field whole = grid.read(p, component, 1);
-            for (const GridCut& box : {GridCut{{0, 0, 0}, size}, GridCut{size / 3, (size * 2 + 2) / 3}, GridCut{size - 1, size},
-                                   GridCut{{0, size.y / 2, 0}, {size.x, size.y / 2 + 1, size.z}}}) {
+            for (const GridCut& box :
+                 {GridCut{{0, 0, 0}, size}, GridCut{size / 3, (size * 2 + 2) / 3}, GridCut{size - 1, size},
+                  GridCut{{0, size.y / 2, 0}, {size.x, size.y / 2 + 1, size.z}}}) {
                 const volume::Field part = boxes.read(p, component, 1, level, box.begin, box.end);
                 ASSERT_EQ(part.type, whole.type);
                 ASSERT_EQ(part.lattice.size, box.end - box.begin);

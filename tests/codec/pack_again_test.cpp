@@ -1,5 +1,5 @@
 #include "codec/pack/pack.h"
-#include "codec/pack/unpack.h"
+#include "codec/unpack/unpack.h"
 #include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"
 

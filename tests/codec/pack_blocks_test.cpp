@@ -3,7 +3,7 @@
 #include "codec/archive/archive.h"
 #include "codec/blocks/shared_job.h"
 #include "codec/container/resample_error.h"
-#include "codec/pack/unpack.h"
+#include "codec/unpack/unpack.h"
 #include "tests/codec/child_process.h"
 #include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"

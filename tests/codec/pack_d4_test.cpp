@@ -1,4 +1,4 @@
-#include "codec/pack/unpack.h"
+#include "codec/unpack/unpack.h"
 
 #include "codec/pack/pack.h"
 #include "volume/resample/series_dataset.h"
@@ -207,7 +207,8 @@ TEST(PackD4Errors, FewOrUnevenTimesAreRefusedWithTheReason) {
         return "";
     };
     EXPECT_NE(reasonFor({200, 227}).find("needs 8 times or more, not 2"), std::string::npos);
-    EXPECT_NE(reasonFor({0, 1, 2, 10, 11, 30, 31, 32}).find("from 0 to 1 is not one of 7 equal steps"), std::string::npos);
+    EXPECT_NE(reasonFor({0, 1, 2, 10, 11, 30, 31, 32}).find("from 0 to 1 is not one of 7 equal steps"),
+              std::string::npos);
     EXPECT_FALSE(std::filesystem::exists(path));
     EXPECT_EQ(reasonFor({0, 1.005, 2, 3, 4, 5, 6, 7}), ""); // within 1 %
     std::filesystem::remove(path);

@@ -1,6 +1,6 @@
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
-#include "codec/pack/unpack.h"
+#include "codec/unpack/unpack.h"
 #include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"
 #include "volume/base/error.h"
@@ -85,9 +85,9 @@ TEST(PackSlabs, GiveTheArchiveThatWholeFramesGive) {
         const PackSummary expected = pack(whole, options, folder / "whole.tsr");
         const int layers = 1 + number++ % 3;
         const PackSummary summary = pack(parts, options, folder / "parts.tsr", {}, {}, layers);
-        if (way.lattice == StoredLattice::D4) // in slabs, what repeats an earlier time is not found
-            expectSameFrames(Archive(folder / "whole.tsr"), Archive(folder / "parts.tsr"));
-        else
+        if (way.lattice == StoredLattice::D4) { // in slabs, what repeats an earlier time is not found
+            if (isExact(options)) expectSameFrames(Archive(folder / "whole.tsr"), Archive(folder / "parts.tsr"));
+        } else
             EXPECT_TRUE(readFile(folder / "whole.tsr") == readFile(folder / "parts.tsr"))
                 << number << " layers " << layers;
         EXPECT_EQ(summary.maxError, expected.maxError);
@@ -143,7 +143,9 @@ TEST(PackSlabs, MeetASize) {
                                                           lattice == StoredLattice::D4 ? 8 : 2));
         PackOptions options = slabOptions(lattice);
         options.brickSize = 16;
-        const std::uint64_t size = lattice == StoredLattice::D4 ? 400000 : lattice == StoredLattice::BCC ? 200000 : 100000;
+        const std::uint64_t size = lattice == StoredLattice::D4    ? 400000
+                                   : lattice == StoredLattice::BCC ? 200000
+                                                                   : 100000;
         options.sizeMb = double(size) * 1e-6;
         const PackSummary summary = pack(made, options, folder / "a.tsr", {}, {}, 1);
         EXPECT_LE(summary.archiveBytes, size);

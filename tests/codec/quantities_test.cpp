@@ -1,7 +1,7 @@
 // Quantities over time in archives: as packed, appended, unpacked, and with D4*.
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
-#include "codec/pack/unpack.h"
+#include "codec/unpack/unpack.h"
 
 #include <cmath>
 #include <filesystem>
@@ -94,8 +94,7 @@ TEST_F(QuantitiesOnD4, AreThoseOfTheSourceAndBetween) {
     EXPECT_THROW(pack(made, options, path_), Error);
 }
 
-INSTANTIATE_TEST_SUITE_P(Lattices, QuantitiesInArchives,
-                         ::testing::Values(StoredLattice::CC, StoredLattice::BCC));
+INSTANTIATE_TEST_SUITE_P(Lattices, QuantitiesInArchives, ::testing::Values(StoredLattice::CC, StoredLattice::BCC));
 
 } // namespace
 } // namespace tessera::codec

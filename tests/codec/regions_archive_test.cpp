@@ -1,6 +1,6 @@
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
-#include "codec/pack/unpack.h"
+#include "codec/unpack/unpack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/volume/regions.h"
 #include "volume/field/part_masks.h"

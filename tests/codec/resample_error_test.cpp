@@ -3,7 +3,7 @@
 
 #include "codec/archive/archive.h"
 #include "codec/pack/error_bound.h"
-#include "codec/pack/unpack.h"
+#include "codec/unpack/unpack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain/decoder.h"
 #include "volume/resample/resample.h"
@@ -79,9 +79,10 @@ TEST(ResampleErrors, AreThoseOfWhatUnpackingGives) {
         expectNear(*metadata.resampled[std::size_t(p)], expected);
     }
     EXPECT_TRUE(metadata.lossless);
-    EXPECT_THAT(exactnessText(metadata),
-                MatchesRegex("resampled to BCC and back to the samples of the source \\(largest error [0-9.]+ % of range, "
-                             "PSNR [0-9.]+ dB or more\\); labels and absent samples are exact"));
+    EXPECT_THAT(
+        exactnessText(metadata),
+        MatchesRegex("resampled to BCC and back to the samples of the source \\(largest error [0-9.]+ % of range, "
+                     "PSNR [0-9.]+ dB or more\\); labels and absent samples are exact"));
     const ResampleError& noise = *metadata.resampled[1];
     char words[128];
     std::snprintf(words, sizeof words, "PSNR %.1f dB, error at most %.4g K at the samples of the source",

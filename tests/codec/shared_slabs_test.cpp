@@ -1,6 +1,6 @@
 #include "codec/archive/archive.h"
 #include "codec/blocks/pack_blocks.h"
-#include "codec/pack/unpack.h"
+#include "codec/unpack/unpack.h"
 #include "tests/codec/child_process.h"
 #include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"

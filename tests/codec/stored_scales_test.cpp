@@ -2,7 +2,7 @@
 // negative ones, offsets, and others at every time.
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
-#include "codec/pack/unpack.h"
+#include "codec/unpack/unpack.h"
 #include "tests/codec/make_dataset.h"
 
 #include <algorithm>

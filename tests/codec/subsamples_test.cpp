@@ -61,8 +61,9 @@ struct OpenIndex {
     OpenIndex(const std::string& path, const Archive& archive) : bytes(openBytes(path, {})) {
         header = parseHeaders(bytes->part({0, kFirstChunk}).bytes(), bytes->size(), path).header;
         const auto components = std::uint64_t(componentCount(archive.info()));
-        index = readIndex(*bytes, header, {components, archive.grid().brickCount(), archive.grid(), archive.metadata().corrections},
-                          path);
+        index =
+            readIndex(*bytes, header,
+                      {components, archive.grid().brickCount(), archive.grid(), archive.metadata().corrections}, path);
     }
 };
 

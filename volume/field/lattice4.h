@@ -39,9 +39,9 @@ struct Lattice4 {
 };
 
 /// The D4* lattice that takes the place of a CC one at 50 % of its samples, with T = sqrt 2: sizes floor(X / T),
-/// floor(Y / T), floor(Z / T), at least 1, centred, and ceil(T (N - 1)) + 3 frames, the second one at the first time, so
-/// that both the even and the odd ones begin at or before the first time and end at or after the last.
-/// (90 x 90 x 80 at 64 times: 63 x 63 x 56 at 93.)
+/// floor(Y / T), floor(Z / T), at least 1, centred, and ceil(T (N - 1)) + 3 frames, the second one at the first time,
+/// so that both the even and the odd ones begin at or before the first time and end at or after the last. (90 x 90 x 80
+/// at 64 times: 63 x 63 x 56 at 93.)
 Lattice4 d4For(const Lattice4& cc);
 
 } // namespace tessera::volume

@@ -123,7 +123,8 @@ std::vector<FrameWeight> weightsBeyond(double cells, int count, const ResampleOp
 }
 
 bool overshoots(std::span<const FrameWeight> weights) {
-    return std::any_of(weights.begin(), weights.end(), [](const FrameWeight& frame) { return frame.weight < 0 && !frame.beyond; });
+    return std::any_of(weights.begin(), weights.end(),
+                       [](const FrameWeight& frame) { return frame.weight < 0 && !frame.beyond; });
 }
 
 Field blendFrames(std::span<const WeightedFrame> frames, std::span<const StoredExtent> extents) {

@@ -15,7 +15,7 @@ namespace tessera::volume {
 struct FrameWeight {
     int frame = 0;
     double weight = 0;
-    double linear = 0; ///< where a frame lacks the sample: never negative
+    double linear = 0;   ///< where a frame lacks the sample: never negative
     bool beyond = false; ///< the frames are continued beyond the first or the last one
 };
 

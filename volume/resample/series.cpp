@@ -21,8 +21,7 @@ constexpr std::size_t kGrain = 1 << 14; // samples per task
 /// Frames `from + step * i`, blended with these weights.
 Field blended(const Series& series, const std::vector<FrameWeight>& weights, int from = 0, int step = 1) {
     std::vector<WeightedFrame> frames;
-    for (const FrameWeight& weight : weights)
-        frames.push_back({series.frame(from + step * weight.frame), weight});
+    for (const FrameWeight& weight : weights) frames.push_back({series.frame(from + step * weight.frame), weight});
     return blendFrames(frames);
 }
 

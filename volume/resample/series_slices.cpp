@@ -83,8 +83,8 @@ private:
 
 } // namespace
 
-FrameReader d4Slices(const Dataset& series, const Lattice4& cc, const Lattice4& d4,
-                     const ResampleOptions& options, const SliceMemory& memory) {
+FrameReader d4Slices(const Dataset& series, const Lattice4& cc, const Lattice4& d4, const ResampleOptions& options,
+                     const SliceMemory& memory) {
     const auto made = std::make_shared<SlicedD4>(series, cc, d4, options, memory);
     return [made](int parameter, int component, int time, SliceRange slices) {
         return made->read(parameter, component, time, slices);

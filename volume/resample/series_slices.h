@@ -12,7 +12,7 @@ namespace tessera::volume {
 /// for its range; then for each frame of D4* those it spans, once for the range of their sum and again for the slices.
 /// About `memory.step` slices are in memory at a time, of every frame spanned. What is returned keeps the last frame of
 /// each component asked for; it throws Error, MachineError.
-FrameReader d4Slices(const Dataset& series, const Lattice4& cc, const Lattice4& d4,
-                     const ResampleOptions& options, const SliceMemory& memory);
+FrameReader d4Slices(const Dataset& series, const Lattice4& cc, const Lattice4& d4, const ResampleOptions& options,
+                     const SliceMemory& memory);
 
 } // namespace tessera::volume

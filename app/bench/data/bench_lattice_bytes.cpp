@@ -3,7 +3,7 @@
 
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
-#include "codec/pack/unpack.h"
+#include "codec/unpack/unpack.h"
 #include "volume/resample/resample.h"
 
 #include <cmath>

@@ -1,7 +1,5 @@
-#include "codec/pack/corrections.h"
+#include "codec/unpack/corrections.h"
 
-#include "codec/pack/error_bound.h"
-#include "codec/pack/lossy_field.h"
 #include "volume/base/parallel.h"
 #include "volume/field/part_masks.h"
 
@@ -154,7 +152,9 @@ volume::DatasetInfo describe(const volume::DatasetInfo& source, const std::vecto
         about.components = given.components;
         about.categorical = given.categorical;
         about.unit = ways[p].kind;
-        about.type = ways[p].kind == kSample ? given.type : ways[p].kind == kDifference ? ScalarType::F32 : ScalarType::U8;
+        about.type = ways[p].kind == kSample       ? given.type
+                     : ways[p].kind == kDifference ? ScalarType::F32
+                                                   : ScalarType::U8;
         const std::size_t ranges = given.components == 1 ? 1 : std::size_t(given.components) + 1;
         if (!given.categorical) about.ranges.assign(ranges, {0, ways[p].bound / kInnerBound});
     }
@@ -183,8 +183,9 @@ Corrections correctionsOf(std::shared_ptr<const Archive> written, const volume::
     }
     out.errors = std::make_shared<std::vector<ResampleError>>(source.info.parameters.size());
     out.data.info = describe(source.info, ways);
-    out.data.read = [written, read = volume::withParts(source).read, predict = predictionOf(written, volume::TimeFilter::Cubic),
-                     place, ways, errors = out.errors](int parameter, int component, int time) {
+    out.data.read = [written, read = volume::withParts(source).read,
+                     predict = predictionOf(written, volume::TimeFilter::Cubic), place, ways,
+                     errors = out.errors](int parameter, int component, int time) {
         const auto p = std::size_t(parameter);
         const Field given = read(parameter, component, time);
         if (ways[p].kind == kSample) return volume::withoutParts(given);

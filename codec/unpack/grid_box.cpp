@@ -1,6 +1,6 @@
-#include "codec/pack/grid_box.h"
+#include "codec/unpack/grid_box.h"
 
-#include "codec/pack/unpack.h"
+#include "codec/unpack/unpack.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>

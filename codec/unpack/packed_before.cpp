@@ -1,7 +1,7 @@
-#include "codec/pack/packed_before.h"
+#include "codec/unpack/packed_before.h"
 
 #include "codec/container/exactness.h"
-#include "codec/pack/unpack.h"
+#include "codec/unpack/unpack.h"
 
 namespace tessera::codec {
 

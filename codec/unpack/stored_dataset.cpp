@@ -1,4 +1,4 @@
-#include "codec/pack/stored_dataset.h"
+#include "codec/unpack/stored_dataset.h"
 
 #include "volume/field/slices.h"
 
@@ -13,7 +13,7 @@ volume::Dataset storedDataset(std::shared_ptr<const Archive> archive) {
         const auto [first, count] = slices.of(grid.lattice);
         const int perLayer = grid.end(glm::ivec3(0)).z; // slices per brick layer
         const int layer = first / perLayer, end = (first + count + perLayer - 1) / perLayer;
-        const Field layers = readLayers(*archive, parameter, component, time, layer, end);
+        const volume::Field layers = readLayers(*archive, parameter, component, time, layer, end);
         return volume::slicesOf(layers, first - grid.begin({0, 0, layer}).z, count);
     };
     return dataset;

@@ -3,7 +3,7 @@
 #include "codec/archive/archive.h"
 #include "codec/container/pack_options.h"
 #include "codec/container/resample_error.h"
-#include "codec/pack/prediction.h"
+#include "codec/unpack/prediction.h"
 #include "volume/field/dataset.h"
 
 #include <memory>
@@ -14,8 +14,8 @@
 /// not tell. (FORMAT.md "Corrections".) Of labels the labels; of numbers which samples are present, and, if the archive
 /// keeps a bound, the differences between the samples of the source and their prediction from the stored ones (or where
 /// floats cannot say these well enough, the samples). So labels
-/// and presence are those of the source, values of different parts are never mixed, and a bound holds at every sample of
-/// the source.
+/// and presence are those of the source, values of different parts are never mixed, and a bound holds at every sample
+/// of the source.
 namespace tessera::codec {
 
 /// What a part of a data set becomes in an archive.
@@ -33,8 +33,8 @@ struct Corrections {
     std::vector<double> bounds; ///< by parameter, in its unit; 0: none, or a label
 };
 
-/// The corrections of an archive for the data set it was packed from, whose lattice is CC. `written` has all frames, and
-/// in its metadata the ranges that bounds refer to.
+/// The corrections of an archive for the data set it was packed from, whose lattice is CC. `written` has all frames,
+/// and in its metadata the ranges that bounds refer to.
 Corrections correctionsOf(std::shared_ptr<const Archive> written, const volume::Dataset& source,
                           const PlaceInArchive& place, const PackOptions& options);
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "codec/archive/archive.h"
-#include "codec/pack/stored_dataset.h"
+#include "codec/unpack/stored_dataset.h"
 #include "volume/field/dataset.h"
 #include "volume/resample/series.h"
 
@@ -10,10 +10,10 @@
 namespace tessera::codec {
 
 /// An archive as a data set on a CC grid, for other programs. Level 0 of a CC archive: the stored samples. Of a BCC
-/// archive: the samples of its source as its corrections lead back to them (codec/pack/corrections.h); without such,
+/// archive: the samples of its source as its corrections lead back to them (codec/unpack/corrections.h); without such,
 /// resampled to the grid (labels: nearest). Of a D4* archive: the same at the original times, interpolated between
-/// frames by `filter`, which must be cubic where corrections are differences. Coarser levels: that grid with every 2^level-th sample, as floats, with the
-/// values that a reader displays. Masks of absent samples are kept.
+/// frames by `filter`, which must be cubic where corrections are differences. Coarser levels: that grid with every
+/// 2^level-th sample, as floats, with the values that a reader displays. Masks of absent samples are kept.
 volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level,
                             volume::TimeFilter filter = volume::TimeFilter::Cubic);
 

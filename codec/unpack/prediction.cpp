@@ -1,6 +1,6 @@
-#include "codec/pack/prediction.h"
+#include "codec/unpack/prediction.h"
 
-#include "codec/pack/stored_dataset.h"
+#include "codec/unpack/stored_dataset.h"
 #include "volume/field/part_masks.h"
 #include "volume/resample/resample.h"
 #include "volume/resample/series_dataset.h"
