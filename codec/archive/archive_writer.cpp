@@ -333,6 +333,7 @@ std::optional<double> ArchiveWriter::addFrame(int parameter, int component, int 
     const bool idle = allWhole || frame.numbers.kind == NumberKind::Stepped;
     if (frame.model < 0) impl_->writeModel(coding.model, idle, ofTime, frame);
     impl_->lastModel[ofTime].quantum = quantumOf(frame, frame.steps);
+    impl_->lastModel[ofTime].bodyCentred = frame.bodyCentred; // steps are shared by both transforms
     if (samples.team() && !samples.team()->writes()) return measured(); // models are known alike, for later times
     GrowingFile& file = impl_->file;
     frame.offset = file.position();

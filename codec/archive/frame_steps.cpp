@@ -36,7 +36,13 @@ struct StepsBefore {
     std::optional<StepChoice> steps; ///< with these, which are the only ones to be tried
     bool rounded = false;            ///< with rounded samples: trials end earlier
     double quantum = 0;              ///< in stored units
+    bool bodyCentred = false;        ///< with `steps`
 };
+
+/// Whether both transforms of BCC are to be tried: the one that suits rounded samples often is the worse one here.
+bool triesTransforms(const volume::BrickGrid& grid, const FrameOptions& options, const StepsBefore& before) {
+    return grid.lattice.kind == volume::LatticeKind::BCC && grid.levels > 1 && !options.bodyCentred && !before.steps;
+}
 
 /// Tries the best way so far, or `how`, with differences from the time before.
 void tryPrediction(StepSearch& search, const SteppedFrame& how, const FrameSamples& samples, const SeenFrame& before,
@@ -51,20 +57,28 @@ void tryPrediction(StepSearch& search, const SteppedFrame& how, const FrameSampl
     search.improveQuantum();
 }
 
-/// The same without; at the end as at the beginning nothing may be worth a trial.
-void tryOwn(StepSearch& search, const SteppedFrame& how, const StepsBefore& before, double limit) {
+/// The same without; at the end as at the beginning nothing may be worth a trial. `both`: transforms of BCC.
+void tryOwn(StepSearch& search, const SteppedFrame& how, const StepsBefore& before, double limit, bool both) {
     SteppedFrame unsplit = how;
     unsplit.steps.split.axes = 0;
     if (before.rounded) {
         search.attempt(unsplit);
+        if (both) search.attemptOtherTransform();
         if (search.least() > kHopelessUnsplit * limit) return;
     }
-    search.attempt(how);
+    SteppedFrame usual = how;
+    if (before.rounded) usual.bodyCentred = search.best().bodyCentred;
+    search.attempt(usual);
+    if (both) search.attemptOtherTransform();
     if (before.steps || search.least() > kHopeless * limit) return;
-    if (!before.rounded && search.least() > limit) search.attempt(unsplit);
+    if (!before.rounded && search.least() > limit) {
+        unsplit.bodyCentred = search.best().bodyCentred;
+        search.attempt(unsplit);
+    }
     if (search.least() > kHopelessUnsplit * limit) return;
     search.improveSplit(1);
     search.improveQuantum();
+    if (both) search.attemptOtherTransform();
 }
 
 std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, SampleNumbers& of, const FrameRecord& frame,
@@ -76,6 +90,7 @@ std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, SampleNumber
     SteppedFrame how;
     how.numbers = *numbers;
     how.wavelet = options.wavelet.value_or(Wavelet::W44);
+    how.bodyCentred = before.steps ? before.bodyCentred : frame.bodyCentred;
     how.steps = before.steps.value_or(usualSteps());
     how.maxError = boundOf(frame, options);
     how.codeBits = codeBitsOf(of, how.numbers) + 1;
@@ -85,7 +100,7 @@ std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, SampleNumber
     const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
     const double limit = search.trials().ofSamples(model, taken.serves(frame, model) ? &taken : nullptr).bytes +
                          ofModel * search.trials().share();
-    tryOwn(search, how, before, limit);
+    tryOwn(search, how, before, limit, triesTransforms(grid, options, before));
     if (seen && search.trials().predicts()) tryPrediction(search, how, samples, *seen, !before.steps);
     if (search.least() >= limit) return std::nullopt;
     SteppedFrame best = search.best();
@@ -94,7 +109,8 @@ std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, SampleNumber
 }
 
 /// Tries steps for a bound of the mean error. False: none can meet it.
-bool tryOwnMean(StepSearch& search, SteppedFrame how, const StepsBefore& before, double limit, double squares) {
+bool tryOwnMean(StepSearch& search, SteppedFrame how, const StepsBefore& before, double limit, double squares,
+                bool both) {
     constexpr double kApart = 1.4; // factor between quanta in units of the bound
     constexpr int kRounds = 2;     // of axes: with one, a small gain early can keep it from a large one
     if (before.steps) {
@@ -104,6 +120,7 @@ bool tryOwnMean(StepSearch& search, SteppedFrame how, const StepsBefore& before,
     }
     if (before.rounded) how.steps.split.axes = 0;
     if (!search.findQuantum(how, squares)) return false;
+    if (both) search.attemptOtherTransform();
     if (search.least() > (before.rounded ? kHopelessUnsplit : kHopeless) * limit) return true;
     if (before.rounded) search.attemptWith([](StepChoice& steps) { steps.split = usualSteps().split; });
     search.improveSplit(kRounds);
@@ -114,6 +131,7 @@ bool tryOwnMean(StepSearch& search, SteppedFrame how, const StepsBefore& before,
     };
     const double fineness = how.mean->fineness;
     scale(fineness * kApart) ? scale(fineness * kApart * kApart) : scale(fineness / kApart);
+    if (both) search.attemptOtherTransform();
     return true;
 }
 
@@ -135,6 +153,7 @@ std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, SampleNu
     constexpr double kLeastShare = 1. / 16; // of the allowed squares, below which boxes are background
     SteppedFrame how;
     how.wavelet = options.wavelet.value_or(Wavelet::W44);
+    how.bodyCentred = before.steps ? before.bodyCentred : frame.bodyCentred;
     how.steps = before.steps.value_or(usualSteps());
     const double quantum = before.steps ? before.quantum : kFirstQuantum * options.rms;
     const RoundingErrors all = roundingErrors(samples, frame.numbers);
@@ -151,7 +170,7 @@ std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, SampleNu
     // Errors are not the same everywhere: the boxes get the part of them that they have by rounding samples.
     const double part = all.squares > 0 ? how.mean->allowed / all.squares * rounded.squares : 0;
     const double squares = part > kLeastShare * mean ? part : mean;
-    if (!tryOwnMean(search, how, before, limit, squares)) return std::nullopt;
+    if (!tryOwnMean(search, how, before, limit, squares, triesTransforms(grid, options, before))) return std::nullopt;
     if (seen && trials.predicts()) tryMeanPrediction(search, *seen);
     if (search.least() >= limit) return std::nullopt;
     SteppedFrame best = search.best();
@@ -176,8 +195,9 @@ std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, SampleNum
     if (!last || before.number % kAgain == 0) return attempt({});
     if (last->kind != NumberKind::Stepped) return attempt({.steps = {}, .rounded = true});
     const double quantum = last->quantum / std::abs(of.samples().scale());
+    const bool bodyCentred = options.bodyCentred.value_or(last->bodyCentred);
     if (!mean || quantum > 0)
-        if (auto again = attempt({.steps = last->steps, .rounded = false, .quantum = quantum})) return again;
+        if (auto again = attempt({last->steps, false, quantum, bodyCentred})) return again;
     return attempt({});
 }
 

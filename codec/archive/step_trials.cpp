@@ -70,6 +70,7 @@ bool setQuantum(double quantum, SteppedFrame& steps) {
 void useSteps(const SteppedFrame& steps, FrameRecord& frame) {
     frame.numbers = steps.numbers;
     frame.wavelet = steps.wavelet;
+    frame.bodyCentred = steps.bodyCentred;
     frame.predicted = steps.predicted;
     frame.codeBits = steps.codeBits;
     frame.steps = steps.steps;
@@ -136,6 +137,7 @@ TrialOfSteps StepTrials::of(const SteppedFrame& how) {
         BrickFormat format = box.format;
         format.numbers = how.numbers;
         format.wavelet = how.wavelet;
+        format.bodyCentred = how.bodyCentred;
         format.codeBits = how.codeBits;
         format.steps = how.steps;
         std::vector<std::uint32_t> from;

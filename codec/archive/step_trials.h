@@ -32,6 +32,7 @@ struct MeanBound {
 struct SteppedFrame {
     NumberCoding numbers;
     Wavelet wavelet{};
+    bool bodyCentred = false;
     bool predicted = false;
     int codeBits = 32;
     StepChoice steps;
@@ -128,6 +129,13 @@ public:
         return attempt(how);
     }
 
+    /// Tries the other transform of BCC with the best so far.
+    void attemptOtherTransform() {
+        if (!std::isfinite(least_)) return;
+        SteppedFrame how = best_;
+        how.bodyCentred = !how.bodyCentred;
+        attempt(how);
+    }
     /// Tries to split along other axes, `rounds` times each unless nothing changes, and shorter or longer lines.
     void improveSplit(int rounds);
     /// Tries a factor on the usual quantum, and its square if that is better, else its inverse.
