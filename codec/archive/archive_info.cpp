@@ -112,9 +112,12 @@ Archive::Archive(const std::string& path, const RemoteOptions& remote) {
         while (component >= std::size_t(impl.metadata.info.parameters[number].components))
             component -= std::size_t(impl.metadata.info.parameters[number++].components);
         const bool isFloat = impl.metadata.info.parameters[number].type == volume::ScalarType::F32;
-        if (isFloat == (frame.numbers.kind == NumberKind::Integer) || (frame.mask < 0 && frame.keepsAbsent))
+        const bool isInteger = frame.numbers.kind == NumberKind::Integer;
+        const bool mayStep = frame.numbers.kind == NumberKind::Stepped && (header.features & kSteppedIntegers) != 0 &&
+                             std::isfinite(frame.numbers.origin) && std::isfinite(frame.numbers.step);
+        if ((isFloat ? isInteger : !isInteger && !mayStep) || (frame.mask < 0 && frame.keepsAbsent))
             throw Error("a frame is coded in a way its type does not allow", path, "index");
-        if (!isFloat && frame.codeBits != codeBitsOf(impl.metadata.info.parameters[number].type))
+        if (isInteger && frame.codeBits != codeBitsOf(impl.metadata.info.parameters[number].type))
             throw Error("a frame states another width than its type has", path, "index");
     }
 }
@@ -184,7 +187,7 @@ std::optional<volume::BrickDistribution> Archive::distribution(const volume::Bri
     if (!impl_->hasStatistics() || channel.magnitude) return std::nullopt;
     const std::size_t brick = impl_->metadata.grid.numberOf(key.index);
     const FrameRecord& frame = impl_->holding(impl_->frame(channel.parameter, channel.component, key.time), brick);
-    const bool isFloat = frame.numbers.kind != NumberKind::Integer;
+    const bool isFloat = impl_->parameter(channel.parameter).type == volume::ScalarType::F32;
     const FrameBrick& about = frame.bricks[brick];
     return distributionOf(about.min, about.max, isFloat ? 0 : std::abs(frame.valueScale), about.histogram);
 }

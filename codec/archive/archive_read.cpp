@@ -185,7 +185,7 @@ void Archive::Impl::decode(const FrameRecord& frame, const BrickFormat& format, 
     for (std::size_t i = chain.size(); i-- > 0;) {
         const FrameRecord& one = *chain[i];
         decodeOwn(one, i == 0 ? format : brickFormat(format, one), brick, level, present, out);
-        if (numbers) addPrediction(predictionFrom(one.numbers, *numbers), out);
+        if (numbers) addPrediction(predictionFrom(one.numbers, format.type, *numbers), out);
         if (i == 0 && !continues(frame)) return;
         numbers = std::make_shared<const Bytes>(numbersOf(one, format.type, out));
         kept.keep(keyOf(one), numbers);
@@ -240,7 +240,7 @@ volume::BrickSamples Archive::Impl::readComponent(int number, int component, con
     };
     decoded->forRows([&](std::size_t first, auto row) {
         float* const values = out.values.data() + first;
-        toValues(record.numbers, record.valueOffset, record.valueScale, row, values);
+        toValues(record.numbers, format.type, record.valueOffset, record.valueScale, row, values);
         if (isHeld && isFinite) hold({values, row.size()});
     });
     for (const ExactSample& exact : decoded->exact) // at full resolution

@@ -29,8 +29,8 @@ struct BrickInput {
 void putSamples(const volume::BrickGrid& grid, glm::ivec3 brick, std::span<const std::byte> samples,
                 volume::Field& field);
 
-/// Replaces samples by the values they decode to: for floats with an error bound, the values of their codes, or of
-/// `decoded` if coefficients are quantised.
+/// Replaces samples by the values they decode to: with an error bound, the values of their codes, or of `decoded` if
+/// coefficients are quantised.
 void roundAsDecoded(const BrickFormat& format, double maxError, std::span<const std::uint32_t> decoded,
                     BrickInput& input);
 
@@ -50,7 +50,7 @@ struct SeenFrame {
 };
 
 /// Whether `decoded`, a brick of an earlier frame, can replace `input`: the same samples are present, and all are
-/// bitwise equal or, for floats, differ by at most `maxError`. `absentToo`: absent samples must be equal as well.
+/// bitwise equal or differ by at most `maxError`. `absentToo`: absent samples must be equal as well.
 bool mayStandFor(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input, double maxError,
                  bool absentToo);
 /// Differences of samples, in stored units.

@@ -10,7 +10,7 @@ std::vector<std::uint32_t> FrameCoding::prediction(std::size_t b) const {
     if (!frame.predicted || before->depth[b] >= mostPredicted) return {};
     BrickInput was;
     was.take(grid, grid.indexOf(b), before->field, false);
-    return predictionFrom(frame.numbers, was.samples);
+    return predictionFrom(frame.numbers, before->field.type, was.samples);
 }
 
 std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, const volume::BrickGrid& own,
@@ -75,10 +75,14 @@ bool FrameCoding::restart(double quantum) {
 
 void FrameCoding::restartRounded(double bound) {
     steps.reset();
-    repeated = repeatedRounded;
+    samples = rounded.samples;
+    before = rounded.before;
+    repeated = rounded.repeated;
+    seen.field.offset = samples->offset();
+    seen.field.scale = samples->scale();
     std::vector<FrameBrick> bricks = std::move(frame.bricks);
     std::vector<Segment> segments = std::move(frame.segments);
-    frame = rounded;
+    frame = rounded.frame;
     frame.bricks = std::move(bricks);
     frame.segments = std::move(segments);
     maxError = bound;

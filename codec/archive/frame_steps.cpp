@@ -17,12 +17,16 @@ constexpr double kMeanQuantum = 1.2; // as kUsualQuantum, under a bound of the m
 /// Width in bits of the differences between the codes of a frame and those of the decoded frame before.
 int differenceBits(const volume::Field& now, const volume::Field& before, const NumberCoding& numbers) {
     constexpr std::size_t kRow = 512;
+    const std::size_t bytes = volume::byteSize(now.type);
     std::array<std::uint32_t, kRow> codes, from;
     std::uint32_t all = 0;
     for (std::size_t first = 0; first < now.count(); first += kRow) {
         const std::size_t count = std::min(kRow, now.count() - first);
-        codesOf(numbers, std::as_bytes(now.as<float>().subspan(first, count)), codes.data());
-        codesOf(numbers, std::as_bytes(before.as<float>().subspan(first, count)), from.data());
+        const auto row = [&](const volume::Field& of) {
+            return std::as_bytes(std::span(of.samples)).subspan(first * bytes, count * bytes);
+        };
+        codesOf(numbers, now.type, row(now), codes.data());
+        codesOf(numbers, now.type, row(before), from.data());
         for (std::size_t i = 0; i < count; ++i) {
             const auto apart = now.present(first + i) ? static_cast<std::int32_t>(codes[i] - from[i]) : 0;
             all |= static_cast<std::uint32_t>(apart ^ (apart >> 31));
@@ -36,13 +40,8 @@ struct StepsBefore {
     std::optional<StepChoice> steps; ///< with these, which are the only ones to be tried
     bool rounded = false;            ///< with rounded samples: trials end earlier
     double quantum = 0;              ///< in stored units
-    bool bodyCentred = false;        ///< with `steps`
+    bool bodyCentred = false;        ///< transform of BCC to be tried, whatever the time before had
 };
-
-/// Whether both transforms of BCC are to be tried: the one that suits rounded samples often is the worse one here.
-bool triesTransforms(const volume::BrickGrid& grid, const FrameOptions& options, const StepsBefore& before) {
-    return grid.lattice.kind == volume::LatticeKind::BCC && grid.levels > 1 && !options.bodyCentred && !before.steps;
-}
 
 /// Tries the best way so far, or `how`, with differences from the time before.
 void tryPrediction(StepSearch& search, const SteppedFrame& how, const FrameSamples& samples, const SeenFrame& before,
@@ -57,60 +56,58 @@ void tryPrediction(StepSearch& search, const SteppedFrame& how, const FrameSampl
     search.improveQuantum();
 }
 
-/// The same without; at the end as at the beginning nothing may be worth a trial. `both`: transforms of BCC.
-void tryOwn(StepSearch& search, const SteppedFrame& how, const StepsBefore& before, double limit, bool both) {
+/// The same without; at the end as at the beginning nothing may be worth a trial.
+void tryOwn(StepSearch& search, const SteppedFrame& how, const StepsBefore& before, double limit) {
     SteppedFrame unsplit = how;
     unsplit.steps.split.axes = 0;
     if (before.rounded) {
         search.attempt(unsplit);
-        if (both) search.attemptOtherTransform();
         if (search.least() > kHopelessUnsplit * limit) return;
     }
-    SteppedFrame usual = how;
-    if (before.rounded) usual.bodyCentred = search.best().bodyCentred;
-    search.attempt(usual);
-    if (both) search.attemptOtherTransform();
+    search.attempt(how);
     if (before.steps || search.least() > kHopeless * limit) return;
-    if (!before.rounded && search.least() > limit) {
-        unsplit.bodyCentred = search.best().bodyCentred;
-        search.attempt(unsplit);
-    }
+    if (!before.rounded && search.least() > limit) search.attempt(unsplit);
     if (search.least() > kHopelessUnsplit * limit) return;
     search.improveSplit(1);
     search.improveQuantum();
-    if (both) search.attemptOtherTransform();
 }
 
-std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, SampleNumbers& of, const FrameRecord& frame,
-                                     const Model& model, const FrameOptions& options, const StepsBefore& before,
-                                     const SeenFrame* seen, const Taken& taken) {
-    const FrameSamples& samples = of.samples();
-    const std::optional<NumberCoding> numbers = steppedCoding(of, boundOf(frame, options));
-    if (!numbers) return std::nullopt;
-    SteppedFrame how;
-    how.numbers = *numbers;
-    how.wavelet = options.wavelet.value_or(Wavelet::W44);
-    how.bodyCentred = before.steps ? before.bodyCentred : frame.bodyCentred;
-    how.steps = before.steps.value_or(usualSteps());
-    how.maxError = boundOf(frame, options);
-    how.codeBits = codeBitsOf(of, how.numbers) + 1;
-    if (how.codeBits > kMostBits) return std::nullopt;
-    if (seen && seen->mask != frame.mask) seen = nullptr;
-    StepSearch search(StepTrials(grid, samples, frame, options, seen));
-    const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
-    const double limit = search.trials().ofSamples(model, taken.serves(frame, model) ? &taken : nullptr).bytes +
-                         ofModel * search.trials().share();
-    tryOwn(search, how, before, limit, triesTransforms(grid, options, before));
-    if (seen && search.trials().predicts()) tryPrediction(search, how, samples, *seen, !before.steps);
-    if (search.least() >= limit) return std::nullopt;
+/// The best steps found, with the bricks coded in the trials.
+SteppedFrame bestOf(StepSearch& search) {
     SteppedFrame best = search.best();
+    best.bytes = search.least();
     best.bricks = search.trials().takeBest();
     return best;
 }
 
+std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, SampleNumbers& of, const FrameRecord& frame,
+                                     const Model& model, const FrameOptions& options, const StepsBefore& before,
+                                     const SeenFrame* seen, const Taken& taken, const FrameSamples* rounded) {
+    const FrameSamples& samples = of.samples();
+    const double maxError = std::max(options.maxError - options.spent, 0.0);
+    const std::optional<NumberCoding> numbers = steppedCoding(of, maxError);
+    if (!numbers) return std::nullopt;
+    SteppedFrame how;
+    how.numbers = *numbers;
+    how.wavelet = options.wavelet.value_or(Wavelet::W44);
+    how.bodyCentred = before.bodyCentred;
+    how.steps = before.steps.value_or(usualSteps());
+    how.maxError = maxError;
+    how.codeBits = codeBitsOf(of, how.numbers) + 1;
+    if (how.codeBits > kMostBits) return std::nullopt;
+    if (seen && seen->mask != frame.mask) seen = nullptr;
+    StepSearch search(StepTrials(grid, samples, frame, options, seen, rounded));
+    const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
+    const double limit = search.trials().ofSamples(model, taken.serves(frame, model) ? &taken : nullptr).bytes +
+                         ofModel * search.trials().share();
+    tryOwn(search, how, before, limit);
+    if (seen && search.trials().predicts()) tryPrediction(search, how, samples, *seen, !before.steps);
+    if (search.least() >= limit) return std::nullopt;
+    return bestOf(search);
+}
+
 /// Tries steps for a bound of the mean error. False: none can meet it.
-bool tryOwnMean(StepSearch& search, SteppedFrame how, const StepsBefore& before, double limit, double squares,
-                bool both) {
+bool tryOwnMean(StepSearch& search, SteppedFrame how, const StepsBefore& before, double limit, double squares) {
     constexpr double kApart = 1.4; // factor between quanta in units of the bound
     constexpr int kRounds = 2;     // of axes: with one, a small gain early can keep it from a large one
     if (before.steps) {
@@ -120,7 +117,6 @@ bool tryOwnMean(StepSearch& search, SteppedFrame how, const StepsBefore& before,
     }
     if (before.rounded) how.steps.split.axes = 0;
     if (!search.findQuantum(how, squares)) return false;
-    if (both) search.attemptOtherTransform();
     if (search.least() > (before.rounded ? kHopelessUnsplit : kHopeless) * limit) return true;
     if (before.rounded) search.attemptWith([](StepChoice& steps) { steps.split = usualSteps().split; });
     search.improveSplit(kRounds);
@@ -131,73 +127,85 @@ bool tryOwnMean(StepSearch& search, SteppedFrame how, const StepsBefore& before,
     };
     const double fineness = how.mean->fineness;
     scale(fineness * kApart) ? scale(fineness * kApart * kApart) : scale(fineness / kApart);
-    if (both) search.attemptOtherTransform();
     return true;
 }
 
 /// Tries the best way so far with differences from the time before.
 void tryMeanPrediction(StepSearch& search, const SeenFrame& before) {
     SteppedFrame differences = search.best();
-    const FloatRange own = differences.mean->range, was = floatRangeOf(before.field);
+    const NumberRange own = differences.mean->range, was = rangeOf(before.field);
     differences.predicted = true;
-    differences.mean->apart = double(std::max(own.hi, was.hi)) - double(std::min(own.lo, was.lo));
+    differences.mean->apart = std::max(own.hi, was.hi) - std::min(own.lo, was.lo);
     if (setQuantum(differences.mean->quantum, differences)) search.attempt(differences);
 }
 
 /// Steps for a bound of the mean error.
 std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, SampleNumbers& of, const FrameRecord& frame,
                                          const Model& model, const FrameOptions& options, const StepsBefore& before,
-                                         const SeenFrame* seen, const Taken& taken) {
+                                         const SeenFrame* seen, const Taken& taken, const FrameSamples* rounded) {
     const FrameSamples& samples = of.samples();
-    constexpr double kFirstQuantum = 4;     // in units of the mean error
+    constexpr double kTie = 1e-4;       // a number that far from the middle of two integers rounds to the nearer one
+    constexpr double kFirstQuantum = 4; // in units of the mean error
     constexpr double kLeastShare = 1. / 16; // of the allowed squares, below which boxes are background
     SteppedFrame how;
     how.wavelet = options.wavelet.value_or(Wavelet::W44);
-    how.bodyCentred = before.steps ? before.bodyCentred : frame.bodyCentred;
+    how.bodyCentred = before.bodyCentred;
     how.steps = before.steps.value_or(usualSteps());
     const double quantum = before.steps ? before.quantum : kFirstQuantum * options.rms;
-    const RoundingErrors all = roundingErrors(samples, frame.numbers);
-    how.mean = {of.range(), options.rms * options.rms * all.count, options.mostError,
-                before.steps ? boundsOf(before.steps->quantum) : kMeanQuantum, quantum};
+    const RoundingErrors all = rounded ? roundingErrors(samples, *rounded) : roundingErrors(samples, frame.numbers);
+    const double mostError = rounded ? reachOfIntegers(options.mostError) - kTie : options.mostError;
+    how.mean = {samples.type(),
+                of.range(),
+                options.rms * options.rms * all.count,
+                mostError,
+                before.steps ? boundsOf(before.steps->quantum) : kMeanQuantum,
+                quantum};
     if (seen && seen->mask != frame.mask) seen = nullptr;
     if (!setQuantum(quantum, how)) return std::nullopt;
 
-    StepSearch search(StepTrials(grid, samples, frame, options, seen));
+    StepSearch search(StepTrials(grid, samples, frame, options, seen, rounded));
     StepTrials& trials = search.trials();
     const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
-    const TrialOfSteps rounded = trials.ofSamples(model, taken.serves(frame, model) ? &taken : nullptr);
-    const double limit = rounded.bytes + ofModel * trials.share(), mean = how.mean->allowed * trials.share();
+    const TrialOfSteps ofRounded = trials.ofSamples(model, taken.serves(frame, model) ? &taken : nullptr);
+    const double limit = ofRounded.bytes + ofModel * trials.share(), mean = how.mean->allowed * trials.share();
     // Errors are not the same everywhere: the boxes get the part of them that they have by rounding samples.
-    const double part = all.squares > 0 ? how.mean->allowed / all.squares * rounded.squares : 0;
+    const double part = all.squares > 0 ? how.mean->allowed / all.squares * ofRounded.squares : 0;
     const double squares = part > kLeastShare * mean ? part : mean;
-    if (!tryOwnMean(search, how, before, limit, squares, triesTransforms(grid, options, before))) return std::nullopt;
+    if (!tryOwnMean(search, how, before, limit, squares)) return std::nullopt;
     if (seen && trials.predicts()) tryMeanPrediction(search, *seen);
     if (search.least() >= limit) return std::nullopt;
-    SteppedFrame best = search.best();
-    best.bricks = trials.takeBest();
-    return best;
+    return bestOf(search);
 }
 
 } // namespace
 
 std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, SampleNumbers& of, const FrameRecord& frame,
                                         const Model& model, const FrameOptions& options, const TimeBefore& before,
-                                        const Taken& taken) {
+                                        const Taken& taken, const FrameSamples* rounded) {
     constexpr int kAgain = 16; // times between those at which all is tried
     const bool mean = options.rms > 0;
     // Samples may be exact under a bound of their mean error, if rounding them does not pay.
-    if ((frame.numbers.kind != NumberKind::Quantised && !mean) || options.numbers) return std::nullopt;
+    const bool bounded = rounded || frame.numbers.kind == NumberKind::Quantised;
+    const bool exact = frame.numbers.kind == NumberKind::Integer && !rounded;
+    if ((!bounded && !mean) || exact || options.numbers) return std::nullopt;
     const KnownModel* const last = before.coding;
-    const auto attempt = [&](const StepsBefore& steps) {
-        return mean ? tryMeanSteps(grid, of, frame, model, options, steps, before.seen, taken)
-                    : trySteps(grid, of, frame, model, options, steps, before.seen, taken);
+    // The transform of BCC that suits rounded samples often is the worse one here.
+    const bool both = grid.lattice.kind == volume::LatticeKind::BCC && grid.levels > 1 && !options.bodyCentred;
+    const auto attempt = [&](StepsBefore steps) {
+        std::optional<SteppedFrame> best;
+        for (int transform = 0; transform < (both ? 2 : 1); ++transform) {
+            steps.bodyCentred = (transform == 0) == frame.bodyCentred;
+            auto found = mean ? tryMeanSteps(grid, of, frame, model, options, steps, before.seen, taken, rounded)
+                              : trySteps(grid, of, frame, model, options, steps, before.seen, taken, rounded);
+            if (found && (!best || found->bytes < best->bytes)) best = std::move(found);
+        }
+        return best;
     };
     if (!last || before.number % kAgain == 0) return attempt({});
     if (last->kind != NumberKind::Stepped) return attempt({.steps = {}, .rounded = true});
     const double quantum = last->quantum / std::abs(of.samples().scale());
-    const bool bodyCentred = options.bodyCentred.value_or(last->bodyCentred);
     if (!mean || quantum > 0)
-        if (auto again = attempt({last->steps, false, quantum, bodyCentred})) return again;
+        if (auto again = attempt({.steps = last->steps, .rounded = false, .quantum = quantum})) return again;
     return attempt({});
 }
 

@@ -42,9 +42,11 @@ inline constexpr std::uint32_t kPredictedFrames = 64;
 inline constexpr std::uint32_t kFittedModels = 128;
 /// Feature: bricks can be mixed. Only set once one is.
 inline constexpr std::uint32_t kMixedBricks = 256;
+/// Feature: frames of integers can be of kind Stepped. Only set once one is.
+inline constexpr std::uint32_t kSteppedIntegers = 4096;
 /// Features that are only set once they are used.
 inline constexpr std::uint32_t kSetWhenUsed =
-    kSteppedBricks | kSubsamples | kPredictedFrames | kFittedModels | kMixedBricks;
+    kSteppedBricks | kSubsamples | kPredictedFrames | kFittedModels | kMixedBricks | kSteppedIntegers;
 inline constexpr std::uint32_t kUsualFeatures = kBrickNotes | kCompact | kBandContexts | kBrickStatistics,
                                kKnownFeatures = kUsualFeatures | kSetWhenUsed;
 

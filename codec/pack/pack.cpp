@@ -248,6 +248,7 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
     frame.rms = bound.rms;
     frame.mostError = bound.mostError;
     double error = frame.maxError * std::abs(samples.scale());
+    std::optional<FrameSamples> rounded; // integers
     if (hasThreshold(options_) && !about.categorical) {
         const double scale = std::abs(samples.scale());
         const Thresholded left = giveUp(samples, metadata_.grid, frame, options_.threshold, extentOf(whole));
@@ -258,13 +259,16 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
         // Bricks of floats may repeat earlier ones within the remaining part of the bound.
         const bool mayRepeat = left.numbers.kind == NumberKind::Quantised && place_.firstTime + time > 0;
         error = (mayRepeat ? frame.maxError : left.maxError) * scale;
-    } else if (frame.maxError > 0 && samples.type() != ScalarType::F32) {
-        samples.change([&](Field& part, Slab) { part = countedIn(std::move(part), bound.step); });
-        frame.maxError = 0;
+    } else if (samples.type() != ScalarType::F32) {
+        if (bound.step > 1 || bound.error >= 1 || bound.rms > 0)
+            rounded =
+                samples.changed("rounded", [&](Field part, Slab) { return countedIn(std::move(part), bound.step); });
+        frame.maxError = std::floor(bound.error);
     }
     Stopwatch code(summary_.codeSeconds);
     const std::optional<double> measured =
-        writer.addFrame(place_.parameterOf[p], component, int(place_.firstTime + time), samples, frame, progress);
+        writer.addFrame(place_.parameterOf[p], component, int(place_.firstTime + time), rounded ? *rounded : samples,
+                        frame, progress, rounded ? &samples : nullptr);
     if (measured) error = *measured * std::abs(samples.scale());
     errors_[p] = std::max(errors_[p], error);
 }

@@ -81,7 +81,7 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
             for (const bool flag : flags) absent += flag ? 0 : 1;
             absentBits = stream(in, absent);
         }
-        if (frame.numbers == 1 || frame.numbers >= 3) {
+        if (type == "float32" && frame.numbers != 2) {
             const std::size_t exact = in.u32();
             exactIndex = stream(in, exact);
             exactBits = stream(in, exact);
@@ -269,7 +269,9 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
             if (sample == at) code += std::uint32_t(33 * times);
         double stored = double(asSigned(code));
         if (before) {
-            const double quotient = (double(std::bit_cast<float>(before->bits[at])) - frame.origin) / frame.step;
+            const double stepped =
+                type == "float32" ? double(std::bit_cast<float>(before->bits[at])) : double(asSigned(before->bits[at]));
+            const double quotient = (stepped - frame.origin) / frame.step;
             if (std::abs(quotient) <= 536870912.0) code += std::uint32_t(std::int32_t(std::nearbyint(quotient)));
             stored = double(asSigned(code));
         }
@@ -284,6 +286,15 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
                     if (exactIndex[e] == at) value = std::bit_cast<float>(exactBits[e]);
             stored = double(value);
             bits = std::bit_cast<std::uint32_t>(value);
+        }
+        if (type != "float32" && frame.numbers == 4) {
+            const double lowest = type == "int16" ? -32768.0 : type == "int32" ? -2147483648.0 : 0.0;
+            const double most = type == "uint8"    ? 255.0
+                                : type == "uint16" ? 65535.0
+                                : type == "int16"  ? 32767.0
+                                                   : 2147483647.0;
+            stored = std::clamp(std::nearbyint(frame.origin + frame.step * stored), lowest, most);
+            bits = std::uint32_t(std::int32_t(stored));
         }
         if (!cell && level == 0 && frame.keepsAbsent) bits = absentBits[nextAbsent++];
         out.values.push_back(cell ? frame.valueOffset + frame.valueScale * stored : 0);

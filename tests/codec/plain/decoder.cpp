@@ -91,7 +91,8 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         const std::uint64_t end = in.number(8);
         Piece found[2];
         for (Piece& part : found) part = readPiece(in);
-        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 || features > 511) return false;
+        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 || (features & ~(511u | 4096u)) != 0)
+            return false;
         if (end > file_.size()) return false;
         if (end <= end_) return true; // the other copy is as good or better
         hasNotes_ = features % 2 == 1;
@@ -102,7 +103,8 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         knowsSubsamples_ = features / 32 % 2 == 1;
         knowsPredictions_ = features / 64 % 2 == 1;
         knowsFits_ = features / 128 % 2 == 1;
-        knowsMixed_ = features / 256 == 1;
+        knowsMixed_ = features / 256 % 2 == 1;
+        knowsSteppedIntegers_ = features / 4096 % 2 == 1;
         end_ = end;
         std::copy(found, found + 2, parts);
         return true;
@@ -228,11 +230,15 @@ void Decoder::readPage(const Octets& page, std::vector<double>& times,
         need(kept < 16, "frame");
         frame.codeBits = int(table.number(1));
         need(frame.numbers < (knowsSteps_ ? 5 : 4) && frame.wavelet < 12, "frame");
+        const bool isInteger = types_[number % types_.size()] != "float32";
+        need(isInteger ? frame.numbers == 0 || (frame.numbers == 4 && knowsSteppedIntegers_) : frame.numbers > 0,
+             "frame");
         frame.mask = int(table.u32());
         frame.model = table.u32();
         need(frame.mask < int(masks_.size()) && frame.model < models_.size(), "frame");
         frame.origin = table.f64();
         frame.step = table.f64();
+        need(!isInteger || frame.numbers == 0 || (std::isfinite(frame.origin) && std::isfinite(frame.step)), "frame");
         frame.valueOffset = table.f64();
         frame.valueScale = table.f64();
         for (std::size_t b = 0; b < bricks; ++b) {
