@@ -1,6 +1,7 @@
 #include "codec/archive/archive.h"
 
 #include "codec/archive/archive_impl.h"
+#include "volume/field/part_masks.h"
 #include "volume/field/quantities.h"
 #include "volume/sources/alternating_source.h"
 #include "volume/sources/memory_source.h"
@@ -117,6 +118,11 @@ Archive::Archive(const std::string& path, const RemoteOptions& remote) {
                              std::isfinite(frame.numbers.origin) && std::isfinite(frame.numbers.step);
         if ((isFloat ? isInteger : !isInteger && !mayStep) || (frame.mask < 0 && frame.keepsAbsent))
             throw Error("a frame is coded in a way its type does not allow", path, "index");
+        const volume::Parameter& parameter = metadata.info.parameters[number];
+        if (frame.parted &&
+            (volume::labelOf(metadata.info, parameter) < 0 || parameter.parts.count() > volume::kMostParts ||
+             metadata.info.lattice.kind != volume::LatticeKind::CC || metadata.alternating))
+            throw Error("parts of a frame are coded that it has not", path, "index");
         if (isInteger && frame.codeBits != codeBitsOf(impl.metadata.info.parameters[number].type))
             throw Error("a frame states another width than its type has", path, "index");
     }

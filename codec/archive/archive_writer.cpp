@@ -52,7 +52,7 @@ struct ArchiveWriter::Impl {
                                        const FrameOptions& options, const SteppedFrame* steps) const;
     /// Determines all coding parameters of a frame. `unrounded`: as of addFrame.
     FrameCoding prepare(int time, std::size_t component, const FrameSamples& samples, const FrameOptions& options,
-                        const FrameSamples* unrounded);
+                        const FrameSamples* unrounded, const FrameSamples* parts);
     /// Codes coefficients that are quantised.
     void useSteps(FrameCoding& coding, SteppedFrame steps, const FrameOptions& options,
                   const FrameSamples* unrounded) const;
@@ -159,7 +159,8 @@ std::vector<std::uint8_t> ArchiveWriter::Impl::repeated(const SeenFrame* before,
             if (flags[b] == 0 || !(options.rms > 0)) continue;
             coded = is;
             const BrickFormat format = brickFormat(metadata.grid, brick, samples.type(), frame);
-            if (steps) prepared = prepareBrick(format, is.samples, is.present, ofCodes, {}, memory);
+            if (steps)
+                prepared = prepareBrick(format, is.samples, is.present, ofCodes, {}, memory); // as if of one part
             roundAsDecoded(format, ofCodes, prepared.decoded, coded);
             const double squares = errorsOf(samples.type(), coded, is).squares;
             flags[b] = errorsOf(samples.type(), was, is).squares <= (steps ? kWorse : 1) * squares ? 1 : 0;
@@ -224,10 +225,12 @@ void ArchiveWriter::Impl::useSteps(FrameCoding& coding, SteppedFrame steps, cons
 }
 
 FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const FrameSamples& samples,
-                                         const FrameOptions& options, const FrameSamples* unrounded) {
+                                         const FrameOptions& options, const FrameSamples* unrounded,
+                                         const FrameSamples* parts) {
     const volume::BrickGrid& grid = metadata.grid;
     FrameCoding coding(grid);
     coding.samples = &samples;
+    coding.parts = parts;
     FrameRecord& frame = coding.frame;
     frame.time = static_cast<std::uint32_t>(time);
     frame.component = static_cast<std::uint32_t>(component);
@@ -256,7 +259,7 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     const TimeBefore earlier{last, unrounded ? frameBefore(frame, *unrounded) : coding.before, time / step()};
     SampleNumbers ofUnrounded(unrounded ? *unrounded : samples);
     if (auto steps = chooseSteps(grid, unrounded ? ofUnrounded : numbers, frame, coding.model, options, earlier,
-                                 coding.taken, unrounded ? &samples : nullptr)) {
+                                 coding.taken, unrounded ? &samples : nullptr, parts)) {
         useSteps(coding, std::move(*steps), options, unrounded);
     } else if (!coding.taken.serves(frame, coding.model)) {
         coding.taken.bricks.clear();
@@ -327,7 +330,7 @@ bool ArchiveWriter::Impl::codeFrame(FrameCoding& coding, const FrameOptions& opt
 
 std::optional<double> ArchiveWriter::addFrame(int parameter, int component, int time, const FrameSamples& samples,
                                               const FrameOptions& options, const Progress& progress,
-                                              const FrameSamples* unrounded) {
+                                              const FrameSamples* unrounded, const FrameSamples* parts) {
     const volume::BrickGrid& grid = impl_->metadata.grid;
     const volume::DatasetInfo& info = impl_->metadata.info;
     const std::size_t ofTime = firstComponent(info, parameter) + std::size_t(component);
@@ -335,7 +338,7 @@ std::optional<double> ArchiveWriter::addFrame(int parameter, int component, int 
     assert(samples.type() == info.parameters[std::size_t(parameter)].type);
     assert(samples.whole() || !impl_->keepsFrames);
 
-    FrameCoding coding = impl_->prepare(time, ofTime, samples, options, unrounded);
+    FrameCoding coding = impl_->prepare(time, ofTime, samples, options, unrounded, parts);
     FrameRecord& frame = coding.frame;
     const std::size_t bricks = grid.brickCount(), levels = std::size_t(grid.levels);
     CodedBricks coded(bricks, levels, samples.store() ? &samples.store()->folder : nullptr);
@@ -349,12 +352,14 @@ std::optional<double> ArchiveWriter::addFrame(int parameter, int component, int 
     if (coding.steps) impl_->commits.header.features |= kSteppedBricks;
     if (coding.steps && unrounded) impl_->commits.header.features |= kSteppedIntegers;
     if (frame.predicted) impl_->commits.header.features |= kPredictedFrames;
+    if (frame.parted) impl_->commits.header.features |= kPartedFrames;
     if (std::ranges::any_of(coding.mixed, [](std::uint8_t flag) { return flag != 0; }))
         impl_->commits.header.features |= kMixedBricks;
     // Without bands the frame needs no tables.
     const bool idle = allWhole || frame.numbers.kind == NumberKind::Stepped;
     if (frame.model < 0) impl_->writeModel(coding.model, idle, ofTime, frame);
     impl_->lastModel[ofTime].quantum = quantumOf(frame, frame.steps);
+    impl_->lastModel[ofTime].parted = frame.parted;
     if (samples.team() && !samples.team()->writes()) return measured(); // models are known alike, for later times
     GrowingFile& file = impl_->file;
     frame.offset = file.position();

@@ -62,6 +62,16 @@ void BrickInput::take(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec
     if (std::find(present.begin(), present.end(), std::uint8_t(0)) == present.end()) present.clear();
 }
 
+void BrickInput::takeParts(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec3 size,
+                           const FrameSamples& frame) {
+    const std::size_t n = std::size_t(size.x);
+    parts.resize(countOf(size));
+    std::uint8_t* to = parts.data();
+    for (int row = 0; row < size.y * size.z; ++row, to += n)
+        frame.read(grid.lattice.index(begin + glm::ivec3(0, row % size.y, row / size.y)), n,
+                   reinterpret_cast<std::byte*>(to), nullptr);
+}
+
 void putSamples(const volume::BrickGrid& grid, glm::ivec3 brick, std::span<const std::byte> samples,
                 volume::Field& field) {
     const std::size_t sampleBytes = volume::byteSize(field.type);

@@ -19,10 +19,13 @@ namespace tessera::codec {
 struct BrickInput {
     Bytes samples;
     std::vector<std::uint8_t> present; ///< empty: all
+    std::vector<std::uint8_t> parts;   ///< part of each sample, if it was taken
 
     void take(const volume::BrickGrid& grid, glm::ivec3 brick, const FrameSamples& frame, bool masked);
     /// Copies a box of the lattice.
     void take(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec3 size, const FrameSamples& frame, bool masked);
+    /// Takes the parts of a box from a frame of their numbers, of 8 bits.
+    void takeParts(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec3 size, const FrameSamples& frame);
 };
 
 /// Writes the samples of a brick into a field.

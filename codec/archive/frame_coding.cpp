@@ -31,10 +31,12 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
     } else {
         const BrickFormat format = brickFormat(grid, brick, part.type, frame);
         input.take(own, own.indexOf(ownNumber), part, frame.mask >= 0);
+        if (frame.parted) input.takeParts(grid, grid.begin(brick), format.size, *parts);
         const std::vector<std::uint32_t> from = prediction(b);
         if (!taken.bricks[b])
             taken.bricks[b] = prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory, from,
-                                           format.isStepped() ? nullptr : &model.fitted);
+                                           format.isStepped() ? nullptr : &model.fitted,
+                                           frame.parted ? input.parts : std::vector<std::uint8_t>());
         segments = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
         whole[b] = !segments[0].empty() && isWhole(segments[0][0]) ? 1 : 0;
         mixed[b] = whole[b] != 0 && isMixed(segments[0][0]) ? 1 : 0;

@@ -25,6 +25,7 @@ struct FrameCoding {
     Taken taken;
     Model model;
     const FrameSamples* samples = nullptr; ///< that are coded
+    const FrameSamples* parts = nullptr;   ///< numbers of their parts; null: there is one
     std::optional<SteppedFrame> steps;     ///< if coefficients are quantised
     /// The frame as it would be with rounded samples.
     struct Rounded {

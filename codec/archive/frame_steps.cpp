@@ -40,6 +40,7 @@ struct StepsBefore {
     std::optional<StepChoice> steps; ///< with these, which are the only ones to be tried
     bool rounded = false;            ///< with rounded samples: trials end earlier
     double quantum = 0;              ///< in stored units
+    bool parted = false;             ///< whether parts are transformed apart, to be tried, whatever the time before had
     bool bodyCentred = false;        ///< transform of BCC to be tried, whatever the time before had
 };
 
@@ -82,7 +83,8 @@ SteppedFrame bestOf(StepSearch& search) {
 
 std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, SampleNumbers& of, const FrameRecord& frame,
                                      const Model& model, const FrameOptions& options, const StepsBefore& before,
-                                     const SeenFrame* seen, const Taken& taken, const FrameSamples* rounded) {
+                                     const SeenFrame* seen, const Taken& taken, const FrameSamples* rounded,
+                                     const FrameSamples* parts) {
     const FrameSamples& samples = of.samples();
     const double maxError = std::max(options.maxError - options.spent, 0.0);
     const std::optional<NumberCoding> numbers = steppedCoding(of, maxError);
@@ -91,12 +93,13 @@ std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, SampleNumber
     how.numbers = *numbers;
     how.wavelet = options.wavelet.value_or(Wavelet::W44);
     how.bodyCentred = before.bodyCentred;
+    how.parted = before.parted;
     how.steps = before.steps.value_or(usualSteps());
     how.maxError = maxError;
     how.codeBits = codeBitsOf(of, how.numbers) + 1;
     if (how.codeBits > kMostBits) return std::nullopt;
     if (seen && seen->mask != frame.mask) seen = nullptr;
-    StepSearch search(StepTrials(grid, samples, frame, options, seen, rounded));
+    StepSearch search(StepTrials(grid, samples, frame, options, seen, rounded, parts));
     const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
     const double limit = search.trials().ofSamples(model, taken.serves(frame, model) ? &taken : nullptr).bytes +
                          ofModel * search.trials().share();
@@ -142,7 +145,8 @@ void tryMeanPrediction(StepSearch& search, const SeenFrame& before) {
 /// Steps for a bound of the mean error.
 std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, SampleNumbers& of, const FrameRecord& frame,
                                          const Model& model, const FrameOptions& options, const StepsBefore& before,
-                                         const SeenFrame* seen, const Taken& taken, const FrameSamples* rounded) {
+                                         const SeenFrame* seen, const Taken& taken, const FrameSamples* rounded,
+                                         const FrameSamples* parts) {
     const FrameSamples& samples = of.samples();
     constexpr double kTie = 1e-4;       // a number that far from the middle of two integers rounds to the nearer one
     constexpr double kFirstQuantum = 4; // in units of the mean error
@@ -150,6 +154,7 @@ std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, SampleNu
     SteppedFrame how;
     how.wavelet = options.wavelet.value_or(Wavelet::W44);
     how.bodyCentred = before.bodyCentred;
+    how.parted = before.parted;
     how.steps = before.steps.value_or(usualSteps());
     const double quantum = before.steps ? before.quantum : kFirstQuantum * options.rms;
     const RoundingErrors all = rounded ? roundingErrors(samples, *rounded) : roundingErrors(samples, frame.numbers);
@@ -163,7 +168,7 @@ std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, SampleNu
     if (seen && seen->mask != frame.mask) seen = nullptr;
     if (!setQuantum(quantum, how)) return std::nullopt;
 
-    StepSearch search(StepTrials(grid, samples, frame, options, seen, rounded));
+    StepSearch search(StepTrials(grid, samples, frame, options, seen, rounded, parts));
     StepTrials& trials = search.trials();
     const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
     const TrialOfSteps ofRounded = trials.ofSamples(model, taken.serves(frame, model) ? &taken : nullptr);
@@ -181,7 +186,7 @@ std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, SampleNu
 
 std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, SampleNumbers& of, const FrameRecord& frame,
                                         const Model& model, const FrameOptions& options, const TimeBefore& before,
-                                        const Taken& taken, const FrameSamples* rounded) {
+                                        const Taken& taken, const FrameSamples* rounded, const FrameSamples* parts) {
     constexpr int kAgain = 16; // times between those at which all is tried
     const bool mean = options.rms > 0;
     // Samples may be exact under a bound of their mean error, if rounding them does not pay.
@@ -191,12 +196,18 @@ std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, SampleNum
     const KnownModel* const last = before.coding;
     // The transform of BCC that suits rounded samples often is the worse one here.
     const bool both = grid.lattice.kind == volume::LatticeKind::BCC && grid.levels > 1 && !options.bodyCentred;
+    const auto attemptOne = [&](const StepsBefore& steps) {
+        return mean ? tryMeanSteps(grid, of, frame, model, options, steps, before.seen, taken, rounded, parts)
+                    : trySteps(grid, of, frame, model, options, steps, before.seen, taken, rounded, parts);
+    };
     const auto attempt = [&](StepsBefore steps) {
         std::optional<SteppedFrame> best;
-        for (int transform = 0; transform < (both ? 2 : 1); ++transform) {
-            steps.bodyCentred = (transform == 0) == frame.bodyCentred;
-            auto found = mean ? tryMeanSteps(grid, of, frame, model, options, steps, before.seen, taken, rounded)
-                              : trySteps(grid, of, frame, model, options, steps, before.seen, taken, rounded);
+        for (int way = 0; way < 4; ++way) {
+            const bool otherTransform = way % 2 == 1, together = way / 2 == 1;
+            if ((otherTransform && !both) || (together && (!parts || steps.steps))) continue;
+            steps.bodyCentred = otherTransform != frame.bodyCentred;
+            steps.parted = parts && (steps.steps ? last->parted : !together);
+            std::optional<SteppedFrame> found = attemptOne(steps);
             if (found && (!best || found->bytes < best->bytes)) best = std::move(found);
         }
         return best;

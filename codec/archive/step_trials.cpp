@@ -72,13 +72,15 @@ void useSteps(const SteppedFrame& steps, FrameRecord& frame) {
     frame.numbers = steps.numbers;
     frame.wavelet = steps.wavelet;
     frame.bodyCentred = steps.bodyCentred;
+    frame.parted = steps.parted;
     frame.predicted = steps.predicted;
     frame.codeBits = steps.codeBits;
     frame.steps = steps.steps;
 }
 
 StepTrials::StepTrials(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
-                       const FrameOptions& options, const SeenFrame* before, const FrameSamples* rounded)
+                       const FrameOptions& options, const SeenFrame* before, const FrameSamples* rounded,
+                       const FrameSamples* parts)
     : type_(samples.type()), times_(rounded ? rounded->scale() / samples.scale() : 0),
       maxError_(boundOf(frame, options)), measures_(options.rms > 0),
       zstdLevel_(measures_ || rounded ? zstdLevelFor(samples, options.zstdLevel, options.effort) : kUsualZstdLevel) {
@@ -97,6 +99,7 @@ StepTrials::StepTrials(const volume::BrickGrid& grid, const FrameSamples& sample
             box.format.size = size;
         }
         box.input.take(grid, grid.begin(brick) + begin, box.format.size, samples, frame.mask >= 0);
+        if (parts) box.input.takeParts(grid, grid.begin(brick) + begin, box.format.size, *parts);
         if (rounded) box.rounded.take(grid, grid.begin(brick) + begin, box.format.size, *rounded, frame.mask >= 0);
         if (before && before->depth[number] < options.mostPredicted)
             box.before.take(grid, grid.begin(brick) + begin, box.format.size, before->field, false);
@@ -145,7 +148,8 @@ TrialOfSteps StepTrials::of(const SteppedFrame& how) {
         format.steps = how.steps;
         std::vector<std::uint32_t> from;
         if (how.predicted) from = predictionFrom(how.numbers, type_, box.before.samples);
-        box.latest = prepareBrick(format, box.input.samples, box.input.present, how.maxError, {}, box.memory, from);
+        box.latest = prepareBrick(format, box.input.samples, box.input.present, how.maxError, {}, box.memory, from,
+                                  nullptr, how.parted ? box.input.parts : std::vector<std::uint8_t>());
         if (measures_) measure(box, format, how.maxError, box.latest.decoded);
         return encodeBrick(format, box.latest, box.input.samples, box.input.present, compressor, idle);
     });

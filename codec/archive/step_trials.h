@@ -35,6 +35,7 @@ struct SteppedFrame {
     Wavelet wavelet{};
     bool bodyCentred = false;
     bool predicted = false;
+    bool parted = false;
     int codeBits = 32;
     StepChoice steps;
     double maxError = 0; ///< samples further away are corrected
@@ -70,9 +71,10 @@ struct TrialOfSteps {
 class StepTrials {
 public:
     /// `before`: the frame before, or null if nothing is to be predicted from it. `rounded`: of integers, what they
-    /// are stored as if coefficients are not quantised.
+    /// are stored as if coefficients are not quantised. `parts`: numbers of the parts of its samples, or null.
     StepTrials(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
-               const FrameOptions& options, const SeenFrame* before, const FrameSamples* rounded);
+               const FrameOptions& options, const SeenFrame* before, const FrameSamples* rounded,
+               const FrameSamples* parts);
 
     /// The part of the frame that is tried.
     double share() const { return share_; }

@@ -238,8 +238,8 @@ void tryMixed(const BrickFormat& format, std::span<const std::byte> samples, std
 
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
                            std::span<const std::uint8_t> present, double maxError, Contexts contexts,
-                           SplitMemory& memory, std::span<const std::uint32_t> prediction,
-                           const FittedWeights* fitted) {
+                           SplitMemory& memory, std::span<const std::uint32_t> prediction, const FittedWeights* fitted,
+                           std::span<const std::uint8_t> parts) {
     assert(samples.size() == countOf(format.size) * volume::byteSize(format.type));
     assert(present.empty() || present.size() == countOf(format.size));
     PreparedBrick brick;
@@ -250,7 +250,7 @@ PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte>
         for (std::size_t i = 0; i < prediction.size(); ++i) numbers.codes[i] -= prediction[i];
         for (std::size_t i = 0; !prediction.empty() && i < present.size(); ++i)
             if (present[i] == 0) numbers.codes[i] = 0;
-        SteppedBrick stepped = encodeStepped(format, numbers.codes, present, memory.boxes32);
+        SteppedBrick stepped = encodeStepped(format, numbers.codes, present, parts, memory.boxes32);
         for (std::size_t i = 0; i < prediction.size(); ++i) stepped.codes[i] += prediction[i];
         if (format.canHaveExact()) addInexact(format, samples, present, maxError, stepped.codes, numbers);
         brick = {std::move(stepped.segments), std::move(stepped.codes), {}, {}, {}, {}};

@@ -93,16 +93,6 @@ std::vector<volume::Quantity> quantitiesOf(const volume::DatasetInfo& source, co
     return grown ? volume::joined(grown->metadata().sourceQuantities, old, own, added.size()) : own;
 }
 
-/// Brick layers of the slabs that a team shares: one, but for so many that their open files would be too many. Those of
-/// the samples of all components are open, and of the result of a step, twice while samples change.
-int layersOfTeam(const volume::BrickGrid& grid, const volume::DatasetInfo& info) {
-    constexpr int kMostFiles = 512;
-    int components = 1;
-    for (const volume::Parameter& parameter : info.parameters) components = std::max(components, parameter.components);
-    const int slabs = std::max(1, kMostFiles / (components + 2));
-    return (grid.count().z + slabs - 1) / slabs;
-}
-
 /// One run of pack or append.
 class Packing {
 public:
@@ -148,6 +138,8 @@ public:
                     .slices = {memory_.slabStep, std::filesystem::path(path).parent_path().string()},
                     .slabLayers = memory_.slabLayers,
                     .ahead = memory_.readAhead,
+                    .parts = metadata_.info.lattice.kind == LatticeKind::CC && !metadata_.alternating &&
+                             !isExact(options) && !hasThreshold(options),
                     .rangesOnly = false,
                     .measures = false,
                     .team = team};
@@ -171,7 +163,7 @@ private:
     void gather(const Progress& progress);
     void addStep(ArchiveWriter& writer, QueuedFrames fed, const Progress& progress);
     void addFrame(ArchiveWriter& writer, FrameSamples& samples, int parameter, int component, std::size_t time,
-                  const Progress& progress);
+                  const FrameSamples* parts, const Progress& progress);
     Metadata soFar(std::size_t wholeTimes) const;
 
     volume::Dataset& source_;
@@ -221,7 +213,7 @@ Metadata Packing::soFar(std::size_t wholeTimes) const {
 }
 
 void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int parameter, int component, std::size_t time,
-                       const Progress& progress) {
+                       const FrameSamples* parts, const Progress& progress) {
     const auto p = std::size_t(parameter), c = std::size_t(component);
     const volume::Parameter& about = dataset_.info.parameters[p];
     const bool exact = isExact(options_), resamples = reading_.toBcc || metadata_.alternating;
@@ -268,7 +260,7 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
     Stopwatch code(summary_.codeSeconds);
     const std::optional<double> measured =
         writer.addFrame(place_.parameterOf[p], component, int(place_.firstTime + time), rounded ? *rounded : samples,
-                        frame, progress, rounded ? &samples : nullptr);
+                        frame, progress, rounded ? &samples : nullptr, parts);
     if (measured) error = *measured * std::abs(samples.scale());
     errors_[p] = std::max(errors_[p], error);
 }
@@ -293,7 +285,7 @@ void Packing::addStep(ArchiveWriter& writer, QueuedFrames fed, const Progress& p
     for (std::size_t c = 0; c < fed.frames.size(); ++c) {
         summary_.storedSamples += fed.frames[c].count();
         summary_.storedBytes += fed.frames[c].count() * volume::byteSize(parameter.type);
-        addFrame(writer, fed.frames[c], fed.parameter, int(c), fed.time,
+        addFrame(writer, fed.frames[c], fed.parameter, int(c), fed.time, fed.parts ? &*fed.parts : nullptr,
                  progress.part(double(c) / frames, double(c + 1) / frames));
     }
     const std::size_t wholeTimes = place_.firstTime + fed.time + 1, least = metadata_.alternating ? 2 : 1;

@@ -68,4 +68,12 @@ volume::BrickGrid gridFor(const volume::Lattice& lattice, const volume::DatasetI
     return grid;
 }
 
+int layersOfTeam(const volume::BrickGrid& grid, const volume::DatasetInfo& info) {
+    constexpr int kMostFiles = 512;
+    int components = 1;
+    for (const volume::Parameter& parameter : info.parameters) components = std::max(components, parameter.components);
+    const int slabs = std::max(1, kMostFiles / (components + 2));
+    return (grid.count().z + slabs - 1) / slabs;
+}
+
 } // namespace tessera::codec

@@ -91,7 +91,8 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         const std::uint64_t end = in.number(8);
         Piece found[2];
         for (Piece& part : found) part = readPiece(in);
-        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 || (features & ~(511u | 4096u)) != 0)
+        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 ||
+            (features & ~(511u | 2048u | 4096u)) != 0)
             return false;
         if (end > file_.size()) return false;
         if (end <= end_) return true; // the other copy is as good or better
@@ -104,6 +105,7 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         knowsPredictions_ = features / 64 % 2 == 1;
         knowsFits_ = features / 128 % 2 == 1;
         knowsMixed_ = features / 256 % 2 == 1;
+        knowsParts_ = features / 2048 % 2 == 1;
         knowsSteppedIntegers_ = features / 4096 % 2 == 1;
         end_ = end;
         std::copy(found, found + 2, parts);
@@ -223,11 +225,14 @@ void Decoder::readPage(const Octets& page, std::vector<double>& times,
         frame.keepsAbsent = kept % 2 == 1;
         frame.bodyCentred = kept / 2 % 2 == 1;
         frame.subsampled = kept / 4 % 2 == 1;
-        frame.predicted = kept / 8 == 1;
+        frame.predicted = kept / 8 % 2 == 1;
+        frame.parted = kept / 32 == 1;
         need(hasNotes_ || !frame.bodyCentred, "frame");
         need((knowsSubsamples_ && levels_ > 1) || !frame.subsampled, "frame");
         need(!frame.predicted || (knowsPredictions_ && frame.numbers == 4 && time > 0), "frame");
-        need(kept < 16, "frame");
+        need(!frame.parted || (knowsParts_ && frame.numbers == 4 && metadata_["data"]["lattice"]["kind"] == "cc"),
+             "frame");
+        need(kept < 64 && kept / 16 % 2 == 0, "frame");
         frame.codeBits = int(table.number(1));
         need(frame.numbers < (knowsSteps_ ? 5 : 4) && frame.wavelet < 12, "frame");
         const bool isInteger = types_[number % types_.size()] != "float32";
