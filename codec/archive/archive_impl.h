@@ -107,6 +107,8 @@ struct Archive::Impl {
     /// The same; the codes of a predicted brick are the differences.
     void decodeOwn(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
                    std::span<const std::uint8_t> present, DecodedBrick& out) const;
+    /// The part of each sample of a brick of a frame whose parts are transformed apart; empty: they are all of one.
+    std::vector<std::uint8_t> partsOf(const FrameRecord& frame, std::size_t brick) const;
     /// Converts a brick decoded at full resolution to stored numbers; undefined for absent samples.
     Bytes numbersOf(const FrameRecord& frame, volume::ScalarType type, const DecodedBrick& decoded) const;
     volume::BrickSamples readComponent(int parameter, int component, const volume::BrickKey& key) const;

@@ -1,6 +1,7 @@
 #include "codec/archive/archive.h"
 
 #include "codec/archive/archive_impl.h"
+#include "volume/field/part_masks.h"
 #include "volume/field/quantities.h"
 #include "volume/sources/alternating_source.h"
 #include "volume/sources/memory_source.h"
@@ -117,9 +118,17 @@ void Archive::Impl::settle() {
         const FrameRecord& frame = index.frames[f];
         const volume::Parameter& parameter = metadata.info.parameters[parameterOf(metadata.info, f % components)];
         const bool isFloat = parameter.type == volume::ScalarType::F32;
-        if (isFloat == (frame.numbers.kind == NumberKind::Integer) || (frame.mask < 0 && frame.keepsAbsent))
+        const bool isInteger = frame.numbers.kind == NumberKind::Integer;
+        const bool mayStep = frame.numbers.kind == NumberKind::Stepped &&
+                             (header.header.features & kSteppedIntegers) != 0 &&
+                             std::isfinite(frame.numbers.origin) && std::isfinite(frame.numbers.step);
+        if ((isFloat ? isInteger : !isInteger && !mayStep) || (frame.mask < 0 && frame.keepsAbsent))
             throw Error("a frame is coded in a way its type does not allow", path, "index");
-        if (!isFloat && frame.codeBits != codeBitsOf(parameter.type))
+        if (frame.parted &&
+            (volume::labelOf(metadata.info, parameter) < 0 || parameter.parts.count() > volume::kMostParts ||
+             metadata.info.lattice.kind != volume::LatticeKind::CC || metadata.alternating))
+            throw Error("parts of a frame are coded that it has not", path, "index");
+        if (isInteger && frame.codeBits != codeBitsOf(parameter.type))
             throw Error("a frame states another width than its type has", path, "index");
     }
 }
@@ -208,7 +217,7 @@ std::optional<volume::BrickDistribution> Archive::distribution(const volume::Bri
     if (!impl_->hasStatistics() || channel.magnitude) return std::nullopt;
     const std::size_t brick = impl_->metadata.grid.numberOf(key.index);
     const FrameRecord& frame = impl_->holding(impl_->frame(channel.parameter, channel.component, key.time), brick);
-    const bool isFloat = frame.numbers.kind != NumberKind::Integer;
+    const bool isFloat = impl_->parameter(channel.parameter).type == volume::ScalarType::F32;
     const FrameBrick& about = frame.bricks[brick];
     return distributionOf(about.min, about.max, isFloat ? 0 : std::abs(frame.valueScale), about.histogram);
 }

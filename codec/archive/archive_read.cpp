@@ -2,8 +2,6 @@
 #include "codec/brick/coded_mask.h"
 #include "codec/brick/subsamples.h"
 #include "volume/base/parallel.h"
-#include "volume/bricks/parts_bricks.h"
-#include "volume/field/part_masks.h"
 #include "volume/field/slices.h"
 #include "volume/sources/memory_source.h"
 
@@ -11,7 +9,6 @@
 #include <bit>
 #include <cmath>
 #include <concepts>
-#include <functional>
 
 namespace tessera::codec {
 
@@ -185,7 +182,7 @@ void Archive::Impl::decode(const FrameRecord& frame, const BrickFormat& format, 
     for (std::size_t i = chain.size(); i-- > 0;) {
         const FrameRecord& one = *chain[i];
         decodeOwn(one, i == 0 ? format : brickFormat(format, one), brick, level, present, out);
-        if (numbers) addPrediction(predictionFrom(one.numbers, *numbers), out);
+        if (numbers) addPrediction(predictionFrom(one.numbers, format.type, *numbers), out);
         if (i == 0 && !continues(frame)) return;
         numbers = std::make_shared<const Bytes>(numbersOf(one, format.type, out));
         kept.keep(keyOf(one), numbers);
@@ -203,7 +200,8 @@ void Archive::Impl::decodeOwn(const FrameRecord& frame, const BrickFormat& forma
     if (frame.predicted && !segments[0].empty()) segments[0] = segments[0].subspan(1); // its depth
     BrickFormat whole = format;
     if (format.isStepped()) whole.steps = steps(frame);
-    const DecodeStatus status = decodeBrick(whole, segments, level, present, *decoder(frame), out);
+    const DecodeStatus status = decodeBrick(whole, segments, level, present, *decoder(frame), out,
+                                            frame.parted ? partsOf(frame, brick) : std::vector<std::uint8_t>());
     if (status != DecodeStatus::Ok)
         damaged(path, frame.segments[(segments.size() - 1) * bricks + brick].offset, reason(status));
 }
@@ -240,7 +238,7 @@ volume::BrickSamples Archive::Impl::readComponent(int number, int component, con
     };
     decoded->forRows([&](std::size_t first, auto row) {
         float* const values = out.values.data() + first;
-        toValues(record.numbers, record.valueOffset, record.valueScale, row, values);
+        toValues(record.numbers, format.type, record.valueOffset, record.valueScale, row, values);
         if (isHeld && isFinite) hold({values, row.size()});
     });
     for (const ExactSample& exact : decoded->exact) // at full resolution
@@ -277,27 +275,6 @@ volume::BrickSamples Archive::Impl::readSubsamples(int number, int component, co
     }
     leaveOutInfinite(out);
     return out;
-}
-
-volume::BrickSamples Archive::Impl::readOfParts(int number, int component, const volume::BrickKey& key) const {
-    const bool isLabel = parameter(number).categorical && parameter(number).components == 1;
-    const int label = isLabel ? number : volume::labelOf(metadata.info, parameter(number));
-    if (key.level == 0 || label < 0) return readComponent(number, component, key);
-    if (const volume::BrickStats stats = statsOf(label, 0, key); stats.min == stats.max && stats.presentFraction == 1)
-        return readComponent(number, component, key);
-    const std::size_t brick = metadata.grid.numberOf(key.index);
-    if (key.level + 1 == metadata.grid.levels && holding(frame(number, component, key.time), brick).subsampled)
-        return readSubsamples(number, component, key);
-    volume::BrickKey fine = key;
-    fine.level = 0;
-    const volume::BrickSamples labels = readComponent(label, 0, fine);
-    if (isLabel) return volume::coarserLabels(metadata.grid, key, labels);
-    const volume::Parts& parts = parameter(number).parts;
-    const std::vector<std::uint8_t> own = volume::partsOfSamples(labels, parts);
-    if (std::adjacent_find(own.begin(), own.end(), std::not_equal_to<>()) == own.end())
-        return readComponent(number, component, key);
-    return volume::coarserOfParts(metadata.grid, key.level, readComponent(number, component, fine), labels,
-                                  volume::coarserLabels(metadata.grid, key, labels), parts);
 }
 
 volume::BrickSamples Archive::read(const volume::BrickKey& key) const {

@@ -55,6 +55,7 @@ ArchiveState stateOf(const Archive& archive, bool withFrames) {
                                     frame.numbers.kind == NumberKind::Stepped ? impl.steps(frame) : StepChoice(), 0});
         const FrameRecord& last = impl.index.frames[(state.times - 1) * impl.components + c];
         state.lastModels.back().quantum = quantumOf(last, state.lastModels.back().steps);
+        state.lastModels.back().parted = last.parted;
         const auto sameMask = [&](const auto& entry) { return entry.first == last.mask; };
         if (last.mask < 0 || std::any_of(state.lastMasks.begin(), state.lastMasks.end(), sameMask)) continue;
         state.lastMasks.emplace_back(last.mask, maskHashOf(archive, last));

@@ -22,8 +22,9 @@ struct KnownModel {
     NumberKind kind{};
     int codeBits = 0;
     bool bodyCentred = false;
-    StepChoice steps;   ///< for Stepped, whose model is idle
-    double quantum = 0; ///< quantumOf the component's latest frame
+    StepChoice steps;    ///< for Stepped, whose model is idle
+    double quantum = 0;  ///< quantumOf the component's latest frame
+    bool parted = false; ///< it
 
     bool resembles(const FrameRecord& frame) const {
         return kind == frame.numbers.kind && codeBits - frame.codeBits <= 1 && frame.codeBits - codeBits <= 1;

@@ -9,7 +9,7 @@
 #include "codec/archive/frame_coding.h"
 #include "codec/archive/frame_model.h"
 #include "codec/archive/frame_steps.h"
-#include "codec/brick/coded_mask.h"
+#include "codec/archive/mask_frames.h"
 #include "codec/brick/quantum_search.h"
 #include "codec/container/growing_file.h"
 #include "codec/container/mask_hash.h"
@@ -53,13 +53,16 @@ struct ArchiveWriter::Impl {
     /// `steps`: of the frame, or null.
     std::vector<std::uint8_t> repeated(const SeenFrame* before, const FrameSamples& samples, const FrameRecord& frame,
                                        const FrameOptions& options, const SteppedFrame* steps) const;
-    /// Determines all coding parameters of a frame.
-    FrameCoding prepare(int time, std::size_t component, const FrameSamples& samples, const FrameOptions& options);
+    /// Determines all coding parameters of a frame. `unrounded`: as of addFrame.
+    FrameCoding prepare(int time, std::size_t component, const FrameSamples& samples, const FrameOptions& options,
+                        const FrameSamples* unrounded, const FrameSamples* parts);
+    /// Codes coefficients that are quantised.
+    void useSteps(FrameCoding& coding, SteppedFrame steps, const FrameOptions& options,
+                  const FrameSamples* unrounded) const;
     /// Index of the steps of a frame; -1: they are not written yet.
     std::int32_t modelOfSteps(const FrameRecord& frame) const;
     /// Codes a frame, as often as it takes to meet a bound of its mean error; true if no token was coded.
-    bool codeFrame(FrameCoding& coding, const FrameSamples& samples, const FrameOptions& options, CodedBricks& coded,
-                   const Progress& progress);
+    bool codeFrame(FrameCoding& coding, const FrameOptions& options, CodedBricks& coded, const Progress& progress);
 };
 
 bool ArchiveWriter::Impl::mixesParts(std::size_t component) const {
@@ -82,31 +85,7 @@ int ArchiveWriter::Impl::maskFor(const FrameSamples& samples, int zstdLevel) {
     if (!isNew) return found->second;
 
     ++masks;
-    MaskRecord& record = page.masks.emplace_back();
-    record.offset = file.position();
-    samples.forSlabs([&](const volume::Field& part, Slab slab) {
-        const volume::BrickGrid own = slab.grid(metadata.grid);
-        std::vector<CodedMaskBrick> coded(own.brickCount());
-        parallelRanges(coded.size(), [&](std::size_t begin, std::size_t end) {
-            Compressor compressor(zstdLevel);
-            std::vector<std::uint8_t> flags;
-            for (std::size_t b = begin; b < end; ++b) {
-                flags.clear();
-                forBrickRows(own, own.indexOf(b), [&](std::size_t from, std::size_t, std::size_t n) {
-                    for (std::size_t i = from; i < from + n; ++i) flags.push_back(part.present(i) ? 1 : 0);
-                });
-                coded[b] = encodeMask(flags, compressor);
-            }
-        });
-        for (const CodedMaskBrick& brick : coded) {
-            record.bricks.push_back(
-                {{file.position(), static_cast<std::uint32_t>(brick.bytes.size()), checksum(brick.bytes)},
-                 brick.present});
-            file.append(brick.bytes);
-        }
-        return true;
-    });
-    record.length = file.position() - record.offset;
+    page.masks.push_back(writeMask(samples, metadata.grid, zstdLevel, file));
     return found->second;
 }
 
@@ -159,7 +138,8 @@ std::vector<std::uint8_t> ArchiveWriter::Impl::repeated(const SeenFrame* before,
             if (flags[b] == 0 || !(options.rms > 0)) continue;
             coded = is;
             const BrickFormat format = brickFormat(metadata.grid, brick, samples.type(), frame);
-            if (steps) prepared = prepareBrick(format, is.samples, is.present, ofCodes, {}, memory);
+            if (steps)
+                prepared = prepareBrick(format, is.samples, is.present, ofCodes, {}, memory); // as if of one part
             roundAsDecoded(format, ofCodes, prepared.decoded, coded);
             const double squares = errorsOf(samples.type(), coded, is).squares;
             flags[b] = errorsOf(samples.type(), was, is).squares <= (steps ? kWorse : 1) * squares ? 1 : 0;
@@ -201,10 +181,36 @@ ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, b
 
 ArchiveWriter::~ArchiveWriter() = default;
 
+void ArchiveWriter::Impl::useSteps(FrameCoding& coding, SteppedFrame steps, const FrameOptions& options,
+                                   const FrameSamples* unrounded) const {
+    FrameRecord& frame = coding.frame;
+    coding.rounded = {frame, coding.samples, coding.before, coding.repeated};
+    codec::useSteps(steps, frame);
+    coding.maxError = steps.maxError;
+    if (unrounded) {
+        coding.samples = unrounded;
+        coding.before = frameBefore(frame, *unrounded);
+        frame.valueOffset = unrounded->offset();
+        frame.valueScale = unrounded->scale();
+        frame.mixed = false;
+    }
+    if (steps.mean || unrounded)
+        coding.repeated = repeated(coding.before, *coding.samples, frame, options, steps.mean ? &steps : nullptr);
+    coding.taken.bricks.clear();
+    coding.taken.bricks.resize(coding.grid.brickCount());
+    for (auto& [number, brick] : steps.bricks) coding.taken.bricks[number] = std::move(brick);
+    frame.model = modelOfSteps(frame);
+    coding.steps = std::move(steps);
+    coding.errors.resize(coding.grid.brickCount());
+}
+
 FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const FrameSamples& samples,
-                                         const FrameOptions& options) {
+                                         const FrameOptions& options, const FrameSamples* unrounded,
+                                         const FrameSamples* parts) {
     const volume::BrickGrid& grid = metadata.grid;
     FrameCoding coding(grid);
+    coding.samples = &samples;
+    coding.parts = parts;
     FrameRecord& frame = coding.frame;
     frame.time = static_cast<std::uint32_t>(time);
     frame.component = static_cast<std::uint32_t>(component);
@@ -230,19 +236,11 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     coding.importance = importanceOfBricks(grid, samples, options.range, options.categorical, options.importance);
     const bool byBand = (commits.header.features & kBandContexts) != 0;
     coding.model = chooseModel(grid, samples, last, byBand, frame, options, coding.taken);
-    const TimeBefore earlier{last, coding.before, time / step()};
-    if (auto steps = chooseSteps(grid, numbers, frame, coding.model, options, earlier, coding.taken)) {
-        coding.rounded = frame;
-        useSteps(*steps, frame);
-        coding.maxError = steps->maxError;
-        coding.repeatedRounded = coding.repeated;
-        if (steps->mean) coding.repeated = repeated(coding.before, samples, frame, options, &*steps);
-        coding.taken.bricks.clear();
-        coding.taken.bricks.resize(grid.brickCount());
-        for (auto& [number, brick] : steps->bricks) coding.taken.bricks[number] = std::move(brick);
-        frame.model = modelOfSteps(frame);
-        coding.steps = std::move(*steps);
-        coding.errors.resize(grid.brickCount());
+    const TimeBefore earlier{last, unrounded ? frameBefore(frame, *unrounded) : coding.before, time / step()};
+    SampleNumbers ofUnrounded(unrounded ? *unrounded : samples);
+    if (auto steps = chooseSteps(grid, unrounded ? ofUnrounded : numbers, frame, coding.model, options, earlier,
+                                 coding.taken, unrounded ? &samples : nullptr, parts)) {
+        useSteps(coding, std::move(*steps), options, unrounded);
     } else if (!coding.taken.serves(frame, coding.model)) {
         coding.taken.bricks.clear();
     }
@@ -252,7 +250,8 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     // The last frame only needs its change, not to be kept.
     const bool isLast = std::size_t(time + step()) >= metadata.info.times.size();
     coding.keeps = keepsFrames && (coding.before || !isLast);
-    coding.seen = {time, frame.keepsAbsent, frame.mask, coding.keeps ? *samples.whole() : volume::Field(), {}, {}, {}};
+    coding.seen = {
+        time, frame.keepsAbsent, frame.mask, coding.keeps ? *coding.samples->whole() : volume::Field(), {}, {}, {}};
     const std::size_t bricks = grid.brickCount();
     coding.taken.bricks.resize(bricks);
     coding.seen.bytes.resize(bricks);
@@ -264,17 +263,17 @@ FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const 
     return coding;
 }
 
-bool ArchiveWriter::Impl::codeFrame(FrameCoding& coding, const FrameSamples& samples, const FrameOptions& options,
-                                    CodedBricks& coded, const Progress& progress) {
+bool ArchiveWriter::Impl::codeFrame(FrameCoding& coding, const FrameOptions& options, CodedBricks& coded,
+                                    const Progress& progress) {
     constexpr int kTrials = 8;
-    const ZstdUse zstd{zstdLevelFor(samples, options.zstdLevel, options.effort),
+    const ZstdUse zstd{zstdLevelFor(*coding.samples, options.zstdLevel, options.effort),
                        (commits.header.features & kCompact) != 0};
-    if (!coding.measures()) return codeBricks(coding, samples, zstd, coded, progress);
+    if (!coding.measures()) return codeBricks(coding, *coding.samples, zstd, coded, progress);
     double done = 0;
     const auto code = [&] {
         const double half = (1 + done) / 2; // of what is left, since nobody knows how often it takes
         coded.clear();
-        const bool allWhole = codeBricks(coding, samples, zstd, coded, progress.part(done, half));
+        const bool allWhole = codeBricks(coding, *coding.samples, zstd, coded, progress.part(done, half));
         done = half;
         return allWhole;
     };
@@ -302,7 +301,7 @@ bool ArchiveWriter::Impl::codeFrame(FrameCoding& coding, const FrameSamples& sam
         met = meets(mean.quantum);
     }
     if (!met) {
-        coding.restartRounded(boundOf(coding.rounded, options));
+        coding.restartRounded(boundOf(coding.rounded.frame, options));
         return code();
     }
     coding.frame.model = modelOfSteps(coding.frame);
@@ -310,7 +309,8 @@ bool ArchiveWriter::Impl::codeFrame(FrameCoding& coding, const FrameSamples& sam
 }
 
 std::optional<double> ArchiveWriter::addFrame(int parameter, int component, int time, const FrameSamples& samples,
-                                              const FrameOptions& options, const Progress& progress) {
+                                              const FrameOptions& options, const Progress& progress,
+                                              const FrameSamples* unrounded, const FrameSamples* parts) {
     const volume::BrickGrid& grid = impl_->metadata.grid;
     const volume::DatasetInfo& info = impl_->metadata.info;
     const std::size_t ofTime = firstComponent(info, parameter) + std::size_t(component);
@@ -318,11 +318,11 @@ std::optional<double> ArchiveWriter::addFrame(int parameter, int component, int 
     assert(samples.type() == info.parameters[std::size_t(parameter)].type);
     assert(samples.whole() || !impl_->keepsFrames);
 
-    FrameCoding coding = impl_->prepare(time, ofTime, samples, options);
+    FrameCoding coding = impl_->prepare(time, ofTime, samples, options, unrounded, parts);
     FrameRecord& frame = coding.frame;
     const std::size_t bricks = grid.brickCount(), levels = std::size_t(grid.levels);
     CodedBricks coded(bricks, levels, samples.store() ? &samples.store()->folder : nullptr);
-    const bool allWhole = impl_->codeFrame(coding, samples, options, coded, progress);
+    const bool allWhole = impl_->codeFrame(coding, options, coded, progress);
     const auto measured = [&]() -> std::optional<double> {
         if (!coding.measures()) return std::nullopt;
         double largest = 0;
@@ -330,13 +330,16 @@ std::optional<double> ArchiveWriter::addFrame(int parameter, int component, int 
         return largest;
     };
     if (coding.steps) impl_->commits.header.features |= kSteppedBricks;
+    if (coding.steps && unrounded) impl_->commits.header.features |= kSteppedIntegers;
     if (frame.predicted) impl_->commits.header.features |= kPredictedFrames;
+    if (frame.parted) impl_->commits.header.features |= kPartedFrames;
     if (std::ranges::any_of(coding.mixed, [](std::uint8_t flag) { return flag != 0; }))
         impl_->commits.header.features |= kMixedBricks;
     // Without bands the frame needs no tables.
     const bool idle = allWhole || frame.numbers.kind == NumberKind::Stepped;
     if (frame.model < 0) impl_->writeModel(coding.model, idle, ofTime, frame);
     impl_->lastModel[ofTime].quantum = quantumOf(frame, frame.steps);
+    impl_->lastModel[ofTime].parted = frame.parted;
     if (samples.team() && !samples.team()->writes()) return measured(); // models are known alike, for later times
     GrowingFile& file = impl_->file;
     frame.offset = file.position();

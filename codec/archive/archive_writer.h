@@ -40,9 +40,14 @@ public:
     /// the lattice of the metadata and have the type of the parameter; frames in scratch files require keepsFrames =
     /// false. Bricks are coded on all cores; the bytes do not depend on their number. Returns the largest error of the
     /// frame in stored units if only its mean was bounded and it was measured. Of a frame that a team shares, the
-    /// processes that do not write only code some slabs; they must not commit.
+    /// processes that do not write only code some slabs; they must not commit. `unrounded`: integers that `samples` are
+    /// rounded from, at a coarser scale, within the bound of the options: they are coded with quantised coefficients
+    /// instead if that is shorter; stored units are theirs. `parts`: numbers of the parts that the samples belong to by
+    /// the label that the metadata name, of 8 bits; quantised coefficients are then of one part each if that is
+    /// shorter.
     std::optional<double> addFrame(int parameter, int component, int time, const FrameSamples& samples,
-                                   const FrameOptions& options, const Progress& progress = {});
+                                   const FrameOptions& options, const Progress& progress = {},
+                                   const FrameSamples* unrounded = nullptr, const FrameSamples* parts = nullptr);
 
     /// Makes the first `times` times of the metadata readable; all their frames must have been added. A commit rewrites
     /// the metadata (with the ranges known so far), so it is delayed until the additions are 64 times as large.

@@ -18,6 +18,17 @@ template <class T> T sampleAt(const Bytes& samples, std::size_t i) {
     return sample;
 }
 
+/// roundAsDecoded for integers of quantised coefficients.
+void roundIntegers(const BrickFormat& format, std::span<const std::uint32_t> decoded, BrickInput& input) {
+    volume::dispatch(format.type, [&]<class T>(T) {
+        for (std::size_t i = 0; i < decoded.size(); ++i) {
+            if (!volume::isPresent(input.present, i)) continue;
+            const T sample = sampleOf<T>(format.numbers, decoded[i]);
+            std::memcpy(input.samples.data() + i * sizeof(T), &sample, sizeof(T));
+        }
+    });
+}
+
 } // namespace
 
 void BrickInput::take(const volume::BrickGrid& grid, glm::ivec3 brick, const FrameSamples& frame, bool masked) {
@@ -51,6 +62,16 @@ void BrickInput::take(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec
     if (std::find(present.begin(), present.end(), std::uint8_t(0)) == present.end()) present.clear();
 }
 
+void BrickInput::takeParts(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec3 size,
+                           const FrameSamples& frame) {
+    const std::size_t n = std::size_t(size.x);
+    parts.resize(countOf(size));
+    std::uint8_t* to = parts.data();
+    for (int row = 0; row < size.y * size.z; ++row, to += n)
+        frame.read(grid.lattice.index(begin + glm::ivec3(0, row % size.y, row / size.y)), n,
+                   reinterpret_cast<std::byte*>(to), nullptr);
+}
+
 void putSamples(const volume::BrickGrid& grid, glm::ivec3 brick, std::span<const std::byte> samples,
                 volume::Field& field) {
     const std::size_t sampleBytes = volume::byteSize(field.type);
@@ -62,6 +83,7 @@ void putSamples(const volume::BrickGrid& grid, glm::ivec3 brick, std::span<const
 void roundAsDecoded(const BrickFormat& format, double maxError, std::span<const std::uint32_t> decoded,
                     BrickInput& input) {
     if (!isBounded(format.numbers)) return;
+    if (format.type != volume::ScalarType::F32) return roundIntegers(format, decoded, input);
     constexpr std::size_t kRow = 512;
     std::array<float, kRow> samples, rounded;
     std::array<std::uint32_t, kRow> own;
@@ -98,13 +120,8 @@ bool mayStandFor(volume::ScalarType type, const BrickInput& decoded, const Brick
             const bool there = volume::isPresent(input.present, i);
             if (!there && !absentToo) continue;
             const T was = sampleAt<T>(decoded.samples, i), is = sampleAt<T>(input.samples, i);
-            if constexpr (std::same_as<T, float>) {
-                if (std::bit_cast<std::uint32_t>(was) == std::bit_cast<std::uint32_t>(is)) continue;
-                if (there && std::abs(double(was) - double(is)) <= maxError) continue;
-                return false;
-            } else if (was != is) {
-                return false;
-            }
+            if (std::memcmp(&was, &is, sizeof(T)) == 0) continue;
+            if (!there || !(std::abs(double(was) - double(is)) <= maxError)) return false;
         }
         return true;
     });

@@ -19,18 +19,21 @@ namespace tessera::codec {
 struct BrickInput {
     Bytes samples;
     std::vector<std::uint8_t> present; ///< empty: all
+    std::vector<std::uint8_t> parts;   ///< part of each sample, if it was taken
 
     void take(const volume::BrickGrid& grid, glm::ivec3 brick, const FrameSamples& frame, bool masked);
     /// Copies a box of the lattice.
     void take(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec3 size, const FrameSamples& frame, bool masked);
+    /// Takes the parts of a box from a frame of their numbers, of 8 bits.
+    void takeParts(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec3 size, const FrameSamples& frame);
 };
 
 /// Writes the samples of a brick into a field.
 void putSamples(const volume::BrickGrid& grid, glm::ivec3 brick, std::span<const std::byte> samples,
                 volume::Field& field);
 
-/// Replaces samples by the values they decode to: for floats with an error bound, the values of their codes, or of
-/// `decoded` if coefficients are quantised.
+/// Replaces samples by the values they decode to: with an error bound, the values of their codes, or of `decoded` if
+/// coefficients are quantised.
 void roundAsDecoded(const BrickFormat& format, double maxError, std::span<const std::uint32_t> decoded,
                     BrickInput& input);
 
@@ -50,7 +53,7 @@ struct SeenFrame {
 };
 
 /// Whether `decoded`, a brick of an earlier frame, can replace `input`: the same samples are present, and all are
-/// bitwise equal or, for floats, differ by at most `maxError`. `absentToo`: absent samples must be equal as well.
+/// bitwise equal or differ by at most `maxError`. `absentToo`: absent samples must be equal as well.
 bool mayStandFor(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input, double maxError,
                  bool absentToo);
 /// Differences of samples, in stored units.

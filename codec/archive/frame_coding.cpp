@@ -10,7 +10,7 @@ std::vector<std::uint32_t> FrameCoding::prediction(std::size_t b) const {
     if (!frame.predicted || before->depth[b] >= mostPredicted) return {};
     BrickInput was;
     was.take(grid, grid.indexOf(b), before->field, false);
-    return predictionFrom(frame.numbers, was.samples);
+    return predictionFrom(frame.numbers, before->field.type, was.samples);
 }
 
 std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, const volume::BrickGrid& own,
@@ -31,10 +31,12 @@ std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, c
     } else {
         const BrickFormat format = brickFormat(grid, brick, part.type, frame);
         input.take(own, own.indexOf(ownNumber), part, frame.mask >= 0);
+        if (frame.parted) input.takeParts(grid, grid.begin(brick), format.size, *parts);
         const std::vector<std::uint32_t> from = prediction(b);
         if (!taken.bricks[b])
             taken.bricks[b] = prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory, from,
-                                           format.isStepped() ? nullptr : &model.fitted);
+                                           format.isStepped() ? nullptr : &model.fitted,
+                                           frame.parted ? input.parts : std::vector<std::uint8_t>());
         segments = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
         whole[b] = !segments[0].empty() && isWhole(segments[0][0]) ? 1 : 0;
         mixed[b] = whole[b] != 0 && isMixed(segments[0][0]) ? 1 : 0;
@@ -75,10 +77,14 @@ bool FrameCoding::restart(double quantum) {
 
 void FrameCoding::restartRounded(double bound) {
     steps.reset();
-    repeated = repeatedRounded;
+    samples = rounded.samples;
+    before = rounded.before;
+    repeated = rounded.repeated;
+    seen.field.offset = samples->offset();
+    seen.field.scale = samples->scale();
     std::vector<FrameBrick> bricks = std::move(frame.bricks);
     std::vector<Segment> segments = std::move(frame.segments);
-    frame = rounded;
+    frame = rounded.frame;
     frame.bricks = std::move(bricks);
     frame.segments = std::move(segments);
     maxError = bound;

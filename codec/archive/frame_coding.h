@@ -24,9 +24,16 @@ struct FrameCoding {
     std::vector<volume::BrickImportance> importance;
     Taken taken;
     Model model;
-    std::optional<SteppedFrame> steps;         ///< if coefficients are quantised
-    FrameRecord rounded;                       ///< the frame as it would be with rounded samples
-    std::vector<std::uint8_t> repeatedRounded; ///< and its repeated bricks
+    const FrameSamples* samples = nullptr; ///< that are coded
+    const FrameSamples* parts = nullptr;   ///< numbers of their parts; null: there is one
+    std::optional<SteppedFrame> steps;     ///< if coefficients are quantised
+    /// The frame as it would be with rounded samples.
+    struct Rounded {
+        FrameRecord frame;
+        const FrameSamples* samples = nullptr;
+        const SeenFrame* before = nullptr;
+        std::vector<std::uint8_t> repeated;
+    } rounded;
     std::vector<SampleErrors> errors; ///< by brick, if the mean error is bounded and coefficients are quantised
     int step = 1;                     ///< times since `before`
     bool statistics = false;          ///< store statistics of bricks

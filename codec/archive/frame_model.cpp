@@ -194,9 +194,9 @@ void tryFitted(const volume::BrickGrid& grid, const FrameSamples& samples, const
 
 int codeBitsOf(SampleNumbers& of, const NumberCoding& numbers) {
     const FrameSamples& samples = of.samples();
+    if (isBounded(numbers)) return codeBitsOf(of.range(), numbers); // larger samples have larger codes
     if (samples.type() != volume::ScalarType::F32) return codec::codeBitsOf(samples.type());
     if (numbers.kind == NumberKind::Float) return 32;
-    if (isBounded(numbers)) return codeBitsOf(of.range(), numbers); // larger samples have larger codes
     const auto ofPart = [&](const volume::Field& part, Slab) {
         constexpr std::size_t kRow = 512;
         std::array<std::uint32_t, kRow> codes;

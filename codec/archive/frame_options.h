@@ -23,7 +23,8 @@ struct FrameOptions {
     std::optional<Wavelet> wavelet = Wavelet::W22; ///< none: selected by trial
     std::optional<bool> bodyCentred;               ///< of BCC (codec/wavelet/body_centred.h); none: selected by trial
     std::optional<NumberCoding> numbers;           ///< none: selected for the error bound
-    double maxError = 0;                           ///< absolute, in stored units; 0: lossless
+    double maxError = 0; ///< absolute, in stored units; 0: lossless. Integers are exact unless addFrame gets what they
+                         ///< are rounded from, of which it is the bound
     double spent =
         0; ///< part of maxError used by previous processing of the samples; the rest is for codes and repeats
     /// Largest root of the mean square of errors, in stored units; 0: no such bound. maxError is then that of rounding

@@ -17,12 +17,16 @@ constexpr double kMeanQuantum = 1.2; // as kUsualQuantum, under a bound of the m
 /// Width in bits of the differences between the codes of a frame and those of the decoded frame before.
 int differenceBits(const volume::Field& now, const volume::Field& before, const NumberCoding& numbers) {
     constexpr std::size_t kRow = 512;
+    const std::size_t bytes = volume::byteSize(now.type);
     std::array<std::uint32_t, kRow> codes, from;
     std::uint32_t all = 0;
     for (std::size_t first = 0; first < now.count(); first += kRow) {
         const std::size_t count = std::min(kRow, now.count() - first);
-        codesOf(numbers, std::as_bytes(now.as<float>().subspan(first, count)), codes.data());
-        codesOf(numbers, std::as_bytes(before.as<float>().subspan(first, count)), from.data());
+        const auto row = [&](const volume::Field& of) {
+            return std::as_bytes(std::span(of.samples)).subspan(first * bytes, count * bytes);
+        };
+        codesOf(numbers, now.type, row(now), codes.data());
+        codesOf(numbers, now.type, row(before), from.data());
         for (std::size_t i = 0; i < count; ++i) {
             const auto apart = now.present(first + i) ? static_cast<std::int32_t>(codes[i] - from[i]) : 0;
             all |= static_cast<std::uint32_t>(apart ^ (apart >> 31));
@@ -36,6 +40,8 @@ struct StepsBefore {
     std::optional<StepChoice> steps; ///< with these, which are the only ones to be tried
     bool rounded = false;            ///< with rounded samples: trials end earlier
     double quantum = 0;              ///< in stored units
+    bool parted = false;             ///< whether parts are transformed apart, to be tried, whatever the time before had
+    bool bodyCentred = false;        ///< transform of BCC to be tried, whatever the time before had
 };
 
 /// Tries the best way so far, or `how`, with differences from the time before.
@@ -67,30 +73,40 @@ void tryOwn(StepSearch& search, const SteppedFrame& how, const StepsBefore& befo
     search.improveQuantum();
 }
 
+/// The best steps found, with the bricks coded in the trials.
+SteppedFrame bestOf(StepSearch& search) {
+    SteppedFrame best = search.best();
+    best.bytes = search.least();
+    best.bricks = search.trials().takeBest();
+    return best;
+}
+
 std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, SampleNumbers& of, const FrameRecord& frame,
                                      const Model& model, const FrameOptions& options, const StepsBefore& before,
-                                     const SeenFrame* seen, const Taken& taken) {
+                                     const SeenFrame* seen, const Taken& taken, const FrameSamples* rounded,
+                                     const FrameSamples* parts) {
     const FrameSamples& samples = of.samples();
-    const std::optional<NumberCoding> numbers = steppedCoding(of, boundOf(frame, options));
+    const double maxError = std::max(options.maxError - options.spent, 0.0);
+    const std::optional<NumberCoding> numbers = steppedCoding(of, maxError);
     if (!numbers) return std::nullopt;
     SteppedFrame how;
     how.numbers = *numbers;
     how.wavelet = options.wavelet.value_or(Wavelet::W44);
+    how.bodyCentred = before.bodyCentred;
+    how.parted = before.parted;
     how.steps = before.steps.value_or(usualSteps());
-    how.maxError = boundOf(frame, options);
+    how.maxError = maxError;
     how.codeBits = codeBitsOf(of, how.numbers) + 1;
     if (how.codeBits > kMostBits) return std::nullopt;
     if (seen && seen->mask != frame.mask) seen = nullptr;
-    StepSearch search(StepTrials(grid, samples, frame, options, seen));
+    StepSearch search(StepTrials(grid, samples, frame, options, seen, rounded, parts));
     const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
     const double limit = search.trials().ofSamples(model, taken.serves(frame, model) ? &taken : nullptr).bytes +
                          ofModel * search.trials().share();
     tryOwn(search, how, before, limit);
     if (seen && search.trials().predicts()) tryPrediction(search, how, samples, *seen, !before.steps);
     if (search.least() >= limit) return std::nullopt;
-    SteppedFrame best = search.best();
-    best.bricks = search.trials().takeBest();
-    return best;
+    return bestOf(search);
 }
 
 /// Tries steps for a bound of the mean error. False: none can meet it.
@@ -120,58 +136,81 @@ bool tryOwnMean(StepSearch& search, SteppedFrame how, const StepsBefore& before,
 /// Tries the best way so far with differences from the time before.
 void tryMeanPrediction(StepSearch& search, const SeenFrame& before) {
     SteppedFrame differences = search.best();
-    const FloatRange own = differences.mean->range, was = floatRangeOf(before.field);
+    const NumberRange own = differences.mean->range, was = rangeOf(before.field);
     differences.predicted = true;
-    differences.mean->apart = double(std::max(own.hi, was.hi)) - double(std::min(own.lo, was.lo));
+    differences.mean->apart = std::max(own.hi, was.hi) - std::min(own.lo, was.lo);
     if (setQuantum(differences.mean->quantum, differences)) search.attempt(differences);
 }
 
 /// Steps for a bound of the mean error.
 std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, SampleNumbers& of, const FrameRecord& frame,
                                          const Model& model, const FrameOptions& options, const StepsBefore& before,
-                                         const SeenFrame* seen, const Taken& taken) {
+                                         const SeenFrame* seen, const Taken& taken, const FrameSamples* rounded,
+                                         const FrameSamples* parts) {
     const FrameSamples& samples = of.samples();
-    constexpr double kFirstQuantum = 4;     // in units of the mean error
+    constexpr double kTie = 1e-4;       // a number that far from the middle of two integers rounds to the nearer one
+    constexpr double kFirstQuantum = 4; // in units of the mean error
     constexpr double kLeastShare = 1. / 16; // of the allowed squares, below which boxes are background
     SteppedFrame how;
     how.wavelet = options.wavelet.value_or(Wavelet::W44);
+    how.bodyCentred = before.bodyCentred;
+    how.parted = before.parted;
     how.steps = before.steps.value_or(usualSteps());
     const double quantum = before.steps ? before.quantum : kFirstQuantum * options.rms;
-    const RoundingErrors all = roundingErrors(samples, frame.numbers);
-    how.mean = {of.range(), options.rms * options.rms * all.count, options.mostError,
-                before.steps ? boundsOf(before.steps->quantum) : kMeanQuantum, quantum};
+    const RoundingErrors all = rounded ? roundingErrors(samples, *rounded) : roundingErrors(samples, frame.numbers);
+    const double mostError = rounded ? reachOfIntegers(options.mostError) - kTie : options.mostError;
+    how.mean = {samples.type(),
+                of.range(),
+                options.rms * options.rms * all.count,
+                mostError,
+                before.steps ? boundsOf(before.steps->quantum) : kMeanQuantum,
+                quantum};
     if (seen && seen->mask != frame.mask) seen = nullptr;
     if (!setQuantum(quantum, how)) return std::nullopt;
 
-    StepSearch search(StepTrials(grid, samples, frame, options, seen));
+    StepSearch search(StepTrials(grid, samples, frame, options, seen, rounded, parts));
     StepTrials& trials = search.trials();
     const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
-    const TrialOfSteps rounded = trials.ofSamples(model, taken.serves(frame, model) ? &taken : nullptr);
-    const double limit = rounded.bytes + ofModel * trials.share(), mean = how.mean->allowed * trials.share();
+    const TrialOfSteps ofRounded = trials.ofSamples(model, taken.serves(frame, model) ? &taken : nullptr);
+    const double limit = ofRounded.bytes + ofModel * trials.share(), mean = how.mean->allowed * trials.share();
     // Errors are not the same everywhere: the boxes get the part of them that they have by rounding samples.
-    const double part = all.squares > 0 ? how.mean->allowed / all.squares * rounded.squares : 0;
+    const double part = all.squares > 0 ? how.mean->allowed / all.squares * ofRounded.squares : 0;
     const double squares = part > kLeastShare * mean ? part : mean;
     if (!tryOwnMean(search, how, before, limit, squares)) return std::nullopt;
     if (seen && trials.predicts()) tryMeanPrediction(search, *seen);
     if (search.least() >= limit) return std::nullopt;
-    SteppedFrame best = search.best();
-    best.bricks = trials.takeBest();
-    return best;
+    return bestOf(search);
 }
 
 } // namespace
 
 std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, SampleNumbers& of, const FrameRecord& frame,
                                         const Model& model, const FrameOptions& options, const TimeBefore& before,
-                                        const Taken& taken) {
+                                        const Taken& taken, const FrameSamples* rounded, const FrameSamples* parts) {
     constexpr int kAgain = 16; // times between those at which all is tried
     const bool mean = options.rms > 0;
     // Samples may be exact under a bound of their mean error, if rounding them does not pay.
-    if ((frame.numbers.kind != NumberKind::Quantised && !mean) || options.numbers) return std::nullopt;
+    const bool bounded = rounded || frame.numbers.kind == NumberKind::Quantised;
+    const bool exact = frame.numbers.kind == NumberKind::Integer && !rounded;
+    if ((!bounded && !mean) || exact || options.numbers) return std::nullopt;
     const KnownModel* const last = before.coding;
-    const auto attempt = [&](const StepsBefore& steps) {
-        return mean ? tryMeanSteps(grid, of, frame, model, options, steps, before.seen, taken)
-                    : trySteps(grid, of, frame, model, options, steps, before.seen, taken);
+    // The transform of BCC that suits rounded samples often is the worse one here.
+    const bool both = grid.lattice.kind == volume::LatticeKind::BCC && grid.levels > 1 && !options.bodyCentred;
+    const auto attemptOne = [&](const StepsBefore& steps) {
+        return mean ? tryMeanSteps(grid, of, frame, model, options, steps, before.seen, taken, rounded, parts)
+                    : trySteps(grid, of, frame, model, options, steps, before.seen, taken, rounded, parts);
+    };
+    const auto attempt = [&](StepsBefore steps) {
+        std::optional<SteppedFrame> best;
+        for (int way = 0; way < 4; ++way) {
+            const bool otherTransform = way % 2 == 1, together = way / 2 == 1;
+            if ((otherTransform && !both) || (together && (!parts || steps.steps))) continue;
+            steps.bodyCentred = otherTransform != frame.bodyCentred;
+            steps.parted = parts && (steps.steps ? last->parted : !together);
+            std::optional<SteppedFrame> found = attemptOne(steps);
+            if (found && (!best || found->bytes < best->bytes)) best = std::move(found);
+        }
+        return best;
     };
     if (!last || before.number % kAgain == 0) return attempt({});
     if (last->kind != NumberKind::Stepped) return attempt({.steps = {}, .rounded = true});

@@ -5,6 +5,7 @@
 #include "codec/brick/quantum_search.h"
 #include "volume/base/parallel.h"
 
+#include <cstring>
 #include <glm/common.hpp>
 
 namespace tessera::codec {
@@ -57,7 +58,7 @@ bool setQuantum(double quantum, SteppedFrame& steps) {
     MeanBound& mean = *steps.mean;
     mean.quantum = std::min(quantum, mean.largestQuantum());
     steps.maxError = std::min(mean.quantum / mean.fineness, mean.mostError);
-    const std::optional<NumberCoding> numbers = steppedCoding(mean.range, steps.maxError);
+    const std::optional<NumberCoding> numbers = steppedCoding(mean.type, mean.range, steps.maxError);
     if (!numbers) return false;
     steps.numbers = *numbers;
     steps.codeBits = codeBitsOf(mean.range, *numbers) + 1;
@@ -70,15 +71,19 @@ bool setQuantum(double quantum, SteppedFrame& steps) {
 void useSteps(const SteppedFrame& steps, FrameRecord& frame) {
     frame.numbers = steps.numbers;
     frame.wavelet = steps.wavelet;
+    frame.bodyCentred = steps.bodyCentred;
+    frame.parted = steps.parted;
     frame.predicted = steps.predicted;
     frame.codeBits = steps.codeBits;
     frame.steps = steps.steps;
 }
 
 StepTrials::StepTrials(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
-                       const FrameOptions& options, const SeenFrame* before)
-    : type_(samples.type()), maxError_(boundOf(frame, options)), measures_(options.rms > 0),
-      zstdLevel_(measures_ ? zstdLevelFor(samples, options.zstdLevel, options.effort) : kUsualZstdLevel) {
+                       const FrameOptions& options, const SeenFrame* before, const FrameSamples* rounded,
+                       const FrameSamples* parts)
+    : type_(samples.type()), times_(rounded ? rounded->scale() / samples.scale() : 0),
+      maxError_(boundOf(frame, options)), measures_(options.rms > 0),
+      zstdLevel_(measures_ || rounded ? zstdLevelFor(samples, options.zstdLevel, options.effort) : kUsualZstdLevel) {
     for (const std::size_t number : bricksToTry(grid, measures_)) {
         const glm::ivec3 brick = grid.indexOf(number);
         Box box;
@@ -94,6 +99,8 @@ StepTrials::StepTrials(const volume::BrickGrid& grid, const FrameSamples& sample
             box.format.size = size;
         }
         box.input.take(grid, grid.begin(brick) + begin, box.format.size, samples, frame.mask >= 0);
+        if (parts) box.input.takeParts(grid, grid.begin(brick) + begin, box.format.size, *parts);
+        if (rounded) box.rounded.take(grid, grid.begin(brick) + begin, box.format.size, *rounded, frame.mask >= 0);
         if (before && before->depth[number] < options.mostPredicted)
             box.before.take(grid, grid.begin(brick) + begin, box.format.size, before->field, false);
         share_ += double(countOf(box.format.size));
@@ -120,8 +127,8 @@ TrialOfSteps StepTrials::ofSamples(const Model& model, const Taken* taken) {
     const BandEncoder encoder(model);
     return sum([&](Box& box) {
         Compressor compressor(zstdLevel_, zstdLevel_ != kUsualZstdLevel);
-        if (measures_) measure(box, box.format, maxError_, {});
-        const BrickInput& input = box.input;
+        if (measures_) times_ > 0 ? measureRounded(box) : measure(box, box.format, maxError_, {});
+        const BrickInput& input = times_ > 0 ? box.rounded : box.input;
         if (taken && box.whole && taken->bricks[box.number])
             return encodeBrick(box.format, *taken->bricks[box.number], input.samples, input.present, compressor,
                                encoder);
@@ -136,11 +143,13 @@ TrialOfSteps StepTrials::of(const SteppedFrame& how) {
         BrickFormat format = box.format;
         format.numbers = how.numbers;
         format.wavelet = how.wavelet;
+        format.bodyCentred = how.bodyCentred;
         format.codeBits = how.codeBits;
         format.steps = how.steps;
         std::vector<std::uint32_t> from;
-        if (how.predicted) from = predictionFrom(how.numbers, box.before.samples);
-        box.latest = prepareBrick(format, box.input.samples, box.input.present, how.maxError, {}, box.memory, from);
+        if (how.predicted) from = predictionFrom(how.numbers, type_, box.before.samples);
+        box.latest = prepareBrick(format, box.input.samples, box.input.present, how.maxError, {}, box.memory, from,
+                                  nullptr, how.parted ? box.input.parts : std::vector<std::uint8_t>());
         if (measures_) measure(box, format, how.maxError, box.latest.decoded);
         return encodeBrick(format, box.latest, box.input.samples, box.input.present, compressor, idle);
     });
@@ -162,6 +171,20 @@ void StepTrials::measure(Box& box, const BrickFormat& format, double maxError,
     BrickInput decoded = box.input;
     roundAsDecoded(format, maxError, codes, decoded);
     box.squares = errorsOf(type_, decoded, box.input).squares;
+}
+
+void StepTrials::measureRounded(Box& box) const {
+    box.squares = 0;
+    volume::dispatch(type_, [&]<class T>(T) {
+        for (std::size_t i = 0; i < box.input.samples.size() / sizeof(T); ++i) {
+            if (!volume::isPresent(box.input.present, i)) continue;
+            T sample, rounded;
+            std::memcpy(&sample, box.input.samples.data() + i * sizeof(T), sizeof(T));
+            std::memcpy(&rounded, box.rounded.samples.data() + i * sizeof(T), sizeof(T));
+            const double apart = double(rounded) * times_ - double(sample);
+            box.squares += apart * apart;
+        }
+    });
 }
 
 void StepSearch::improveSplit(int rounds) {
@@ -188,17 +211,23 @@ bool StepSearch::findQuantum(SteppedFrame how, double squares) {
     squares_ = squares;
     QuantumSearch search(squares, kTrials, how.mean->largestQuantum());
     TrialOfSteps first, latest;
-    for (std::optional<double> next = how.mean->quantum; next;) {
-        if (!setQuantum(*next, how)) return false;
-        const bool isFirst = latest.bytes == 0;
+    const auto attemptWith = [&](double quantum) {
+        if (!setQuantum(quantum, how)) return false;
         latest = trials_.of(how);
-        if (isFirst) first = latest;
+        if (first.squares == 0) first = latest; // integers may all be exact at first
         const double apart = first.squares > 0 && latest.squares > 0 ? std::log(latest.squares / first.squares) : 0;
         if (std::abs(apart) > kApart && latest.bytes > 0)
             power_ = std::clamp(-std::log(latest.bytes / first.bytes) / apart, kLeast, kMost);
+        return true;
+    };
+    bool isFirst = true;
+    for (std::optional<double> next = how.mean->quantum; next; isFirst = false) {
+        if (!attemptWith(*next)) return false;
         next = search.next(how.mean->quantum, latest.squares);
         if (!next && isFirst) next = kFurther * how.mean->quantum; // shows how bytes depend on errors
     }
+    // The others are compared with the one that comes nearest.
+    if (search.best() > 0 && search.best() != how.mean->quantum && !attemptWith(search.best())) return false;
     how.mean->power = search.power();
     take(how, bytesAtMean(latest));
     return true;

@@ -17,7 +17,8 @@ namespace tessera::codec {
 
 /// What is known of a frame whose mean error is bounded: its quantum is found by coding.
 struct MeanBound {
-    FloatRange range;
+    volume::ScalarType type{};
+    NumberRange range;
     double allowed = 0;                        ///< largest sum of squared errors, in stored units
     double mostError = 0;                      ///< bound that is stated for every sample; infinite: none
     double fineness = 0;                       ///< quantum in units of the error bound, if that is not the stated one
@@ -32,10 +33,13 @@ struct MeanBound {
 struct SteppedFrame {
     NumberCoding numbers;
     Wavelet wavelet{};
+    bool bodyCentred = false;
     bool predicted = false;
+    bool parted = false;
     int codeBits = 32;
     StepChoice steps;
     double maxError = 0; ///< samples further away are corrected
+    double bytes = 0;    ///< of the bricks tried
     std::optional<MeanBound> mean;
     std::vector<std::pair<std::size_t, PreparedBrick>> bricks; ///< coded in the trials, by brick index
 };
@@ -66,9 +70,11 @@ struct TrialOfSteps {
 /// Boxes of a frame, coded in different ways.
 class StepTrials {
 public:
-    /// `before`: the frame before, or null if nothing is to be predicted from it.
+    /// `before`: the frame before, or null if nothing is to be predicted from it. `rounded`: of integers, what they
+    /// are stored as if coefficients are not quantised. `parts`: numbers of the parts of its samples, or null.
     StepTrials(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
-               const FrameOptions& options, const SeenFrame* before);
+               const FrameOptions& options, const SeenFrame* before, const FrameSamples* rounded,
+               const FrameSamples* parts);
 
     /// The part of the frame that is tried.
     double share() const { return share_; }
@@ -89,6 +95,7 @@ private:
         std::size_t number = 0;
         bool whole = true;        ///< rather than a part of the brick
         BrickInput input, before; ///< before: empty if it is not to be predicted
+        BrickInput rounded;       ///< of integers
         SplitMemory memory;
         PreparedBrick latest, best;
         double squares = 0; ///< of the latest trial
@@ -96,10 +103,13 @@ private:
     template <class Encode> TrialOfSteps sum(const Encode& encode);
     void measure(Box& box, const BrickFormat& format, double maxError, std::span<const std::uint32_t> codes) const;
 
+    void measureRounded(Box& box) const;
+
     volume::ScalarType type_;
+    double times_ = 0; ///< samples per rounded integer; 0: of floats
     double maxError_, share_ = 0;
     bool measures_;
-    int zstdLevel_; ///< of rounded samples
+    int zstdLevel_; ///< of rounded samples; integers often are few, which thorough compression finds
     std::vector<Box> boxes_;
 };
 
@@ -142,7 +152,7 @@ private:
     /// The bytes that a trial would take with the sum of squares at which all are compared.
     double bytesAtMean(const TrialOfSteps& trial) const {
         constexpr double kFurthest = 16;
-        if (squares_ == 0) return trial.bytes;
+        if (squares_ == 0 || trial.squares == 0) return trial.bytes; // errors of integers may begin with a jump
         return trial.bytes * std::pow(std::clamp(trial.squares / squares_, 1 / kFurthest, kFurthest), power_);
     }
 

@@ -169,7 +169,8 @@ DecodeStatus decodeWhole(const BrickFormat& format, std::span<const std::byte> i
 } // namespace
 
 DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
-                         std::span<const std::uint8_t> present, const BandDecoder& bands, DecodedBrick& out) {
+                         std::span<const std::uint8_t> present, const BandDecoder& bands, DecodedBrick& out,
+                         std::span<const std::uint8_t> parts) {
     assert(level >= 0 && level < format.levels && int(segments.size()) == format.levels - level);
     assert(present.empty() || present.size() == countOf(format.size));
     out.begin(format, level);
@@ -182,7 +183,7 @@ DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<co
             return status;
         segments = coefficients;
     }
-    if (format.isStepped()) return decodeStepped(format, segments, level, present, out);
+    if (format.isStepped()) return decodeStepped(format, segments, level, present, parts, out);
     const bool narrow = out.narrow = fitsInt16(format, !present.empty());
     // Skip the extra streams to find the mode byte of a brick with one level.
     std::span<const std::byte> first = segments[0];

@@ -30,11 +30,11 @@ struct SplitMemory {
 /// Transforms a brick. `samples` are numbers of format.type, x fastest; `present` has one flag per sample, or is empty:
 /// all present. Quantised numbers with an error above `maxError` are stored exactly in addition. `prediction`: codes
 /// that those of a stepped brick are coded as differences from (codec/brick/predicted_brick.h), or empty. `fitted`: the
-/// weights of the model, or null for none.
+/// weights of the model, or null for none. `parts`: of a stepped brick, as of encodeStepped.
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
                            std::span<const std::uint8_t> present, double maxError, Contexts contexts,
                            SplitMemory& memory, std::span<const std::uint32_t> prediction = {},
-                           const FittedWeights* fitted = nullptr);
+                           const FittedWeights* fitted = nullptr, std::span<const std::uint8_t> parts = {});
 /// Adds samples of a brick that can be fitted to a fit of its weights: every `every`-th row.
 void addToFit(const BrickFormat& format, std::span<const std::byte> samples, int shift, int every, SplitMemory& memory,
               WeightFit& fit);
@@ -53,8 +53,9 @@ std::vector<Bytes> encodeBrick(const BrickFormat& format, std::span<const std::b
                                const BandEncoder& bands);
 
 /// Decodes `level` from the segments up to it (levels - level segments, coarsest first). Never throws because of the
-/// contents of the bytes and never reads beyond them.
+/// contents of the bytes and never reads beyond them. `parts`: with which a stepped brick was coded.
 DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
-                         std::span<const std::uint8_t> present, const BandDecoder& bands, DecodedBrick& out);
+                         std::span<const std::uint8_t> present, const BandDecoder& bands, DecodedBrick& out,
+                         std::span<const std::uint8_t> parts = {});
 
 } // namespace tessera::codec

@@ -79,9 +79,11 @@ Numbers numbersOf(const BrickFormat& format, std::span<const std::byte> samples,
             if (format.canHaveExact() && !format.isStepped())
                 addInexact(format, samples, present, maxError, numbers.codes, numbers);
         } else {
-            for (std::size_t i = 0; i < numbers.codes.size(); ++i) {
-                numbers.codes[i] = codeOf(format.numbers, sampleAt(i));
-                if (!volume::isPresent(present, i)) numbers.absentBits.push_back(numbers.codes[i]);
+            codesOf(format.numbers, format.type, samples, numbers.codes.data());
+            for (std::size_t i = 0; i < present.size(); ++i) {
+                if (present[i] != 0) continue;
+                numbers.absentBits.push_back(static_cast<std::uint32_t>(static_cast<std::int32_t>(sampleAt(i))));
+                if (format.isStepped()) numbers.codes[i] = 0;
             }
         }
     });
@@ -236,21 +238,21 @@ void tryMixed(const BrickFormat& format, std::span<const std::byte> samples, std
 
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
                            std::span<const std::uint8_t> present, double maxError, Contexts contexts,
-                           SplitMemory& memory, std::span<const std::uint32_t> prediction,
-                           const FittedWeights* fitted) {
+                           SplitMemory& memory, std::span<const std::uint32_t> prediction, const FittedWeights* fitted,
+                           std::span<const std::uint8_t> parts) {
     assert(samples.size() == countOf(format.size) * volume::byteSize(format.type));
     assert(present.empty() || present.size() == countOf(format.size));
     PreparedBrick brick;
     Numbers numbers;
-    const bool plain = format.type != volume::ScalarType::F32 && present.empty();
+    const bool plain = format.type != volume::ScalarType::F32 && present.empty() && !format.isStepped();
     if (!plain) numbers = numbersOf(format, samples, present, maxError);
     if (format.isStepped()) {
         for (std::size_t i = 0; i < prediction.size(); ++i) numbers.codes[i] -= prediction[i];
         for (std::size_t i = 0; !prediction.empty() && i < present.size(); ++i)
             if (present[i] == 0) numbers.codes[i] = 0;
-        SteppedBrick stepped = encodeStepped(format, numbers.codes, present, memory.boxes32);
+        SteppedBrick stepped = encodeStepped(format, numbers.codes, present, parts, memory.boxes32);
         for (std::size_t i = 0; i < prediction.size(); ++i) stepped.codes[i] += prediction[i];
-        addInexact(format, samples, present, maxError, stepped.codes, numbers);
+        if (format.canHaveExact()) addInexact(format, samples, present, maxError, stepped.codes, numbers);
         brick = {std::move(stepped.segments), std::move(stepped.codes), {}, {}, {}, {}};
     }
     const bool predicts = fitted && !fitted->empty();

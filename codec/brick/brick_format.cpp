@@ -20,7 +20,7 @@ bool BrickFormat::predictsOdd(bool masked) const {
 }
 
 bool BrickFormat::canHaveExact() const {
-    return numbers.kind == NumberKind::Scaled || numbers.kind == NumberKind::Quantised || isStepped();
+    return type == ScalarType::F32 && numbers.kind != NumberKind::Integer && numbers.kind != NumberKind::Float;
 }
 
 bool canBeFitted(const BrickFormat& format, bool masked) {

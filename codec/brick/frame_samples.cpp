@@ -157,6 +157,18 @@ void FrameSamples::change(const std::function<void(Field&, Slab)>& visit) {
     });
 }
 
+FrameSamples FrameSamples::changed(const char* step, const std::function<Field(Field, Slab)>& of) const {
+    if (whole()) return FrameSamples(of(*whole(), slab(0)));
+    FrameSamples other;
+    other.stored_ = std::make_unique<Stored>();
+    other.stored_->lattice = stored_->lattice;
+    other.stored_->store = stored_->store;
+    other.stored_->slices = stored_->slices;
+    if (!team()) other.stored_->file = std::make_unique<volume::ScratchFile>(stored_->store.folder);
+    other.stored_->fill(step, [&](Slab slab) { return of(slices(slab.first, slab.count), slab); });
+    return other;
+}
+
 Field FrameSamples::slices(int first, int count) const {
     Field part;
     take(first, count, part);

@@ -79,6 +79,9 @@ public:
     /// Modifies samples, flags, offset and scale slab by slab; offset and scale must be equal in all slabs. Of a team,
     /// one process visits a slab.
     void change(const std::function<void(volume::Field& part, Slab slab)>& visit);
+    /// A copy with other samples, offset and scale: what `of` gives for each slab, offset and scale alike in all of
+    /// them. Of a team, one process makes a slab; `step` says what.
+    FrameSamples changed(const char* step, const std::function<volume::Field(volume::Field part, Slab slab)>& of) const;
     /// A range of slices as a field.
     volume::Field slices(int first, int count) const;
     /// The same in place of another field, whose memory is used again.
@@ -87,6 +90,8 @@ public:
     void read(std::size_t at, std::size_t n, std::byte* samples, std::uint8_t* present) const;
 
 private:
+    FrameSamples() = default;
+
     struct Stored {
         volume::Lattice lattice;
         volume::ScalarType type{};

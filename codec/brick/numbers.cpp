@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <concepts>
 #include <cstring>
 #include <limits>
 #include <optional>
@@ -25,17 +26,29 @@ double boundOf(const NumberCoding& stepped) {
     return stepped.step * (2 * kReach + 1) / 2;
 }
 
-std::uint32_t codeOf(const NumberCoding&, std::uint8_t sample) {
-    return sample;
-}
-std::uint32_t codeOf(const NumberCoding&, std::int16_t sample) {
+namespace {
+
+template <class T> std::uint32_t codeOfInteger(const NumberCoding& coding, T sample) {
+    if (coding.kind == NumberKind::Stepped) return codeOf(coding, double(sample));
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(sample));
 }
-std::uint32_t codeOf(const NumberCoding&, std::uint16_t sample) {
-    return sample;
+
+} // namespace
+
+std::uint32_t codeOf(const NumberCoding& coding, std::uint8_t sample) {
+    return codeOfInteger(coding, sample);
 }
-std::uint32_t codeOf(const NumberCoding&, std::int32_t sample) {
-    return static_cast<std::uint32_t>(sample);
+std::uint32_t codeOf(const NumberCoding& coding, std::int16_t sample) {
+    return codeOfInteger(coding, sample);
+}
+std::uint32_t codeOf(const NumberCoding& coding, std::uint16_t sample) {
+    return codeOfInteger(coding, sample);
+}
+std::uint32_t codeOf(const NumberCoding& coding, std::int32_t sample) {
+    return codeOfInteger(coding, sample);
+}
+std::uint32_t codeOf(const NumberCoding& coding, double number) {
+    return clampedCode((number - coding.origin) / coding.step);
 }
 std::uint32_t codeOf(const NumberCoding& coding, float sample) {
     switch (coding.kind) {
@@ -46,7 +59,7 @@ std::uint32_t codeOf(const NumberCoding& coding, float sample) {
         return clampedCode(double(sample) * coding.step);
     case NumberKind::Quantised:
     case NumberKind::Stepped:
-        return clampedCode((double(sample) - coding.origin) / coding.step);
+        return codeOf(coding, double(sample));
     }
     return codeOfFloat(sample);
 }
@@ -54,12 +67,12 @@ std::uint32_t codeOf(const NumberCoding& coding, float sample) {
 namespace {
 
 /// clampedCode(number(sample)) of a row, in a loop that compilers vectorise.
-template <class Number>
-TESSERA_INLINE void roundRow(const std::byte* floats, std::size_t count, std::uint32_t* codes, Number number) {
+template <class T = float, class Number>
+TESSERA_INLINE void roundRow(const std::byte* samples, std::size_t count, std::uint32_t* codes, Number number) {
     constexpr double kRound = 3.0 * (std::int64_t(1) << 51); // adding it leaves no binary places: as std::rint
     for (std::size_t i = 0; i < count; ++i) {
-        float sample = 0;
-        std::memcpy(&sample, floats + i * sizeof(float), sizeof(float));
+        T sample{};
+        std::memcpy(&sample, samples + i * sizeof(T), sizeof(T));
         const double k = number(double(sample)), rounded = (k + kRound) - kRound;
         codes[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(std::abs(k) <= kLargestCode ? rounded : 0.0));
     }
@@ -96,6 +109,26 @@ void codesOf(const NumberCoding& coding, std::span<const std::byte> floats, std:
         std::memcpy(&sample, floats.data() + i * sizeof(float), sizeof(float));
         codes[i] = codeOf(coding, sample);
     }
+}
+
+void codesOf(const NumberCoding& coding, volume::ScalarType type, std::span<const std::byte> numbers,
+             std::uint32_t* codes) {
+    volume::dispatch(type, [&]<class T>(T) {
+        const std::size_t count = numbers.size() / sizeof(T);
+        if constexpr (std::same_as<T, float>) {
+            codesOf(coding, numbers, codes);
+        } else if (coding.kind == NumberKind::Stepped) {
+            roundRow<T>(numbers.data(), count, codes, [origin = coding.origin, step = coding.step](double sample) {
+                return (sample - origin) / step;
+            });
+        } else {
+            for (std::size_t i = 0; i < count; ++i) {
+                T sample;
+                std::memcpy(&sample, numbers.data() + i * sizeof(T), sizeof(T));
+                codes[i] = codeOf(coding, sample);
+            }
+        }
+    });
 }
 
 double valueOf(const NumberCoding& coding, std::uint32_t code) {
@@ -141,7 +174,12 @@ template <class Visit> void withValues(const NumberCoding& coding, Visit&& visit
 
 template <class T, class Word> void toSamples(const NumberCoding& coding, std::span<const Word> codes, T* samples) {
     if constexpr (!std::same_as<T, float>) {
-        for (std::size_t i = 0; i < codes.size(); ++i) samples[i] = static_cast<T>(codes[i]);
+        const double origin = coding.origin, step = coding.step;
+        if (coding.kind == NumberKind::Stepped)
+            for (std::size_t i = 0; i < codes.size(); ++i)
+                samples[i] = nearestInteger<T>(origin + step * double(codes[i]));
+        else
+            for (std::size_t i = 0; i < codes.size(); ++i) samples[i] = static_cast<T>(codes[i]);
     } else if (coding.kind == NumberKind::Float) { // bitwise, including NaNs
         for (std::size_t i = 0; i < codes.size(); ++i) samples[i] = floatOfCode(static_cast<std::uint32_t>(codes[i]));
     } else {
@@ -152,7 +190,18 @@ template <class T, class Word> void toSamples(const NumberCoding& coding, std::s
 }
 
 template <class Word>
-void toValues(const NumberCoding& coding, double offset, double scale, std::span<const Word> codes, float* values) {
+void toValues(const NumberCoding& coding, volume::ScalarType type, double offset, double scale,
+              std::span<const Word> codes, float* values) {
+    if (coding.kind == NumberKind::Stepped && type != volume::ScalarType::F32) {
+        const double origin = coding.origin, step = coding.step;
+        volume::dispatch(type, [&]<class T>(T) {
+            if constexpr (!std::same_as<T, float>)
+                for (std::size_t i = 0; i < codes.size(); ++i)
+                    values[i] = static_cast<float>(offset +
+                                                   scale * double(nearestInteger<T>(origin + step * double(codes[i]))));
+        });
+        return;
+    }
     if (coding.kind == NumberKind::Integer && offset == 0 && scale == 1) {
         for (std::size_t i = 0; i < codes.size(); ++i) values[i] = static_cast<float>(codes[i]);
         return;
@@ -172,7 +221,7 @@ template void toSamples(const NumberCoding&, std::span<const std::int32_t>, std:
 template void toSamples(const NumberCoding&, std::span<const std::int32_t>, std::uint16_t*);
 template void toSamples(const NumberCoding&, std::span<const std::int32_t>, std::int32_t*);
 template void toSamples(const NumberCoding&, std::span<const std::int32_t>, float*);
-template void toValues(const NumberCoding&, double, double, std::span<const std::int16_t>, float*);
-template void toValues(const NumberCoding&, double, double, std::span<const std::int32_t>, float*);
+template void toValues(const NumberCoding&, volume::ScalarType, double, double, std::span<const std::int16_t>, float*);
+template void toValues(const NumberCoding&, volume::ScalarType, double, double, std::span<const std::int32_t>, float*);
 
 } // namespace tessera::codec

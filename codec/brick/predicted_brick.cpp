@@ -2,9 +2,10 @@
 
 namespace tessera::codec {
 
-std::vector<std::uint32_t> predictionFrom(const NumberCoding& numbers, std::span<const std::byte> before) {
-    std::vector<std::uint32_t> codes(before.size() / sizeof(float));
-    codesOf(numbers, before, codes.data());
+std::vector<std::uint32_t> predictionFrom(const NumberCoding& numbers, volume::ScalarType type,
+                                          std::span<const std::byte> before) {
+    std::vector<std::uint32_t> codes(before.size() / volume::byteSize(type));
+    codesOf(numbers, type, before, codes.data());
     return codes;
 }
 

@@ -20,8 +20,9 @@ namespace tessera::codec {
 /// Longest run of such bricks after one that is coded by itself.
 inline constexpr int kMostPredicted = 15;
 
-/// The codes of a brick's floats, or of those of one of its levels, before `numbers` rounds them.
-std::vector<std::uint32_t> predictionFrom(const NumberCoding& numbers, std::span<const std::byte> before);
+/// The codes of a brick's numbers, or of those of one of its levels, before `numbers` rounds them.
+std::vector<std::uint32_t> predictionFrom(const NumberCoding& numbers, volume::ScalarType type,
+                                          std::span<const std::byte> before);
 
 /// Adds it to the decoded codes of a stepped brick at the same level.
 void addPrediction(std::span<const std::uint32_t> prediction, DecodedBrick& out);

@@ -4,7 +4,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <concepts>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace tessera::codec {
@@ -118,7 +120,7 @@ NumberCoding chooseLossless(const FrameSamples& samples, const BitExtent& bits) 
     return best.value_or(NumberCoding{NumberKind::Float, 0, 1});
 }
 
-std::optional<NumberCoding> chooseQuantised(const FloatRange& range, double maxError) {
+std::optional<NumberCoding> chooseQuantised(const NumberRange& range, double maxError) {
     const double lo = range.lo, hi = range.hi;
     if (!(lo <= hi)) return std::nullopt;
     const double largest = std::max(std::abs(lo), std::abs(hi));
@@ -148,10 +150,29 @@ double multipleWithin(double spacing, double maxError, double safeError) {
 
 } // namespace
 
-FloatRange floatRangeOf(const volume::Field& part) {
+namespace {
+
+template <class T> NumberRange rangeOfIntegers(const volume::Field& part) {
+    T lo = std::numeric_limits<T>::max(), hi = std::numeric_limits<T>::lowest();
+    const auto samples = part.as<T>();
+    if (part.mask && std::ranges::none_of(*part.mask, [](std::uint8_t flag) { return flag != 0; })) return {};
+    if (samples.empty()) return {};
+    if (!part.mask)
+        for (const T sample : samples) lo = std::min(lo, sample), hi = std::max(hi, sample);
+    else
+        for (std::size_t i = 0; i < samples.size(); ++i)
+            if (part.present(i)) lo = std::min(lo, samples[i]), hi = std::max(hi, samples[i]);
+    return {double(lo), double(hi), 0};
+}
+
+NumberRange rangeOfFloats(const volume::Field& part) {
+    struct {
+        float lo = std::numeric_limits<float>::infinity(), hi = -std::numeric_limits<float>::infinity(),
+              least = std::numeric_limits<float>::infinity();
+    } const none;
     constexpr std::size_t kLanes = 16; // so that the loop is vectorised
     std::array<float, kLanes> lo, hi, least;
-    lo.fill(FloatRange().lo), hi.fill(FloatRange().hi), least.fill(FloatRange().least);
+    lo.fill(none.lo), hi.fill(none.hi), least.fill(none.least);
     const auto add = [&](std::size_t lane, float sample) {
         const float size = std::abs(sample);
         const bool finite = size <= std::numeric_limits<float>::max();
@@ -166,24 +187,37 @@ FloatRange floatRangeOf(const volume::Field& part) {
             for (std::size_t lane = 0; lane < kLanes; ++lane) add(lane, samples[i + lane]);
     for (; i < samples.size(); ++i)
         if (part.present(i)) add(0, samples[i]);
-    return {*std::ranges::min_element(lo), *std::ranges::max_element(hi), *std::ranges::min_element(least)};
+    return {double(*std::ranges::min_element(lo)), double(*std::ranges::max_element(hi)),
+            double(*std::ranges::min_element(least))};
+}
+
+} // namespace
+
+NumberRange rangeOf(const volume::Field& part) {
+    return volume::dispatch(part.type, [&]<class T>(T) {
+        if constexpr (std::same_as<T, float>)
+            return rangeOfFloats(part);
+        else
+            return rangeOfIntegers<T>(part);
+    });
 }
 
 void SampleNumbers::survey() {
     struct Both {
-        FloatRange range;
+        NumberRange range;
         BitExtent bits;
     };
+    const bool isFloat = samples_.type() == volume::ScalarType::F32;
     range_.emplace(), bits_.emplace();
-    for (const auto& [range, bits] : samples_.ofSlabs<Both>("numbers", [](const volume::Field&part, Slab) {
-             return Both{floatRangeOf(part), bitsOf(part)};
+    for (const auto& [range, bits] : samples_.ofSlabs<Both>("numbers", [&](const volume::Field&part, Slab) {
+             return Both{rangeOf(part), isFloat ? bitsOf(part) : BitExtent()};
          })) {
         range_ = {std::min(range_->lo, range.lo), std::max(range_->hi, range.hi), std::min(range_->least, range.least)};
         bits_ = {std::min(bits_->lowest, bits.lowest), std::max(bits_->highest, bits.highest)};
     }
 }
 
-const FloatRange& SampleNumbers::range() {
+const NumberRange& SampleNumbers::range() {
     if (!range_) survey();
     return *range_;
 }
@@ -214,28 +248,49 @@ NumberCoding chooseCoding(SampleNumbers& of, double maxError) {
     return of.lossless();
 }
 
+double reachOfIntegers(double maxError) {
+    return std::floor(maxError) + 0.5;
+}
+
+namespace {
+
+/// The origin is an integer, so that with a reach of n + 1/2 the code of an integer is never half a step from it, since
+/// a step is an odd number of 33rds: what is decoded stays 1/66 nearer than the reach.
+std::optional<NumberCoding> steppedIntegers(const NumberRange& range, double reach) {
+    if (!(range.lo <= range.hi)) return std::nullopt;
+    const double origin = range.lo <= 0 && range.hi >= 0 ? 0.0 : std::floor((range.lo + range.hi) / 2);
+    const NumberCoding coding{NumberKind::Stepped, origin, 2 * reach / (2 * kReach + 1)};
+    if (!(coding.step > 0) || !std::isfinite(coding.step)) return std::nullopt;
+    if (std::max(range.hi - origin, origin - range.lo) / coding.step > kLargestCode) return std::nullopt;
+    return coding;
+}
+
+} // namespace
+
 std::optional<NumberCoding> steppedCoding(SampleNumbers& of, double maxError) {
-    const FloatRange& range = of.range();
+    const NumberRange& range = of.range();
+    if (of.samples().type() != volume::ScalarType::F32) return steppedIntegers(range, reachOfIntegers(maxError));
     const std::optional<NumberCoding> quantised = chooseQuantised(range, maxError);
     if (!quantised) return std::nullopt;
     double step = quantised->step;
     // Where floats are no denser than the samples, rounding to floats takes off up to half of their distance.
     const double spacing = spacingOf(of, maxError);
-    const float least = range.least;
+    const auto least = static_cast<float>(range.least);
     const double apart = double(std::nextafter(least, std::numeric_limits<float>::infinity())) - double(least);
     if (spacing > 0 && spacing <= apart) step = std::max(step, multipleWithin(spacing, maxError, quantised->step / 2));
     return NumberCoding{NumberKind::Stepped, quantised->origin, step / (2 * kReach + 1)};
 }
 
-std::optional<NumberCoding> steppedCoding(const FloatRange& range, double maxError) {
+std::optional<NumberCoding> steppedCoding(volume::ScalarType type, const NumberRange& range, double maxError) {
+    if (type != volume::ScalarType::F32) return steppedIntegers(range, maxError);
     const std::optional<NumberCoding> quantised = chooseQuantised(range, maxError);
     if (!quantised) return std::nullopt;
     return NumberCoding{NumberKind::Stepped, quantised->origin, quantised->step / (2 * kReach + 1)};
 }
 
-int codeBitsOf(const FloatRange& range, const NumberCoding& coding) {
+int codeBitsOf(const NumberRange& range, const NumberCoding& coding) {
     std::uint32_t all = 0;
-    for (const float end : {range.lo, range.hi}) {
+    for (const double end : {range.lo, range.hi}) {
         const std::uint32_t code = codeOf(coding, end);
         all |= code ^ static_cast<std::uint32_t>(static_cast<std::int32_t>(code) >> 31);
     }
@@ -252,6 +307,26 @@ RoundingErrors roundingErrors(const FrameSamples& samples, const NumberCoding& c
             const double apart = double(sampleOf<float>(coding, codeOf(coding, sample))) - double(sample);
             sum.squares += apart * apart;
             return true;
+        });
+        return true;
+    });
+    return sum;
+}
+
+RoundingErrors roundingErrors(const FrameSamples& samples, const FrameSamples& rounded) {
+    RoundingErrors sum;
+    const double times = rounded.scale() / samples.scale();
+    volume::Field after;
+    samples.forSlabs([&](const volume::Field& part, Slab slab) {
+        rounded.take(slab.first, slab.count, after);
+        volume::dispatch(part.type, [&]<class T>(T) {
+            const auto from = part.as<T>(), to = std::as_const(after).as<T>();
+            for (std::size_t i = 0; i < from.size(); ++i) {
+                if (!part.present(i)) continue;
+                const double apart = double(to[i]) * times - double(from[i]);
+                ++sum.count;
+                sum.squares += apart * apart;
+            }
         });
         return true;
     });

@@ -4,6 +4,7 @@
 #include "volume/field/field.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -120,6 +121,57 @@ struct Joining {
     }
 };
 
+/// Flags of the present samples of each part that has any; empty if that is one part.
+std::vector<std::vector<std::uint8_t>> flagsOfParts(std::span<const std::uint8_t> parts,
+                                                    std::span<const std::uint8_t> present) {
+    std::array<int, 256> place; // of a part among those that have samples
+    place.fill(-1);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        if (volume::isPresent(present, i)) place[parts[i]] = 0;
+    int count = 0;
+    for (int& one : place)
+        if (one == 0) one = count++;
+    if (count < 2) return {};
+    std::vector<std::vector<std::uint8_t>> flags(std::size_t(count), std::vector<std::uint8_t>(parts.size()));
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        if (volume::isPresent(present, i)) flags[std::size_t(place[parts[i]])][i] = 1;
+    return flags;
+}
+
+/// What is transformed by itself: a brick, or the samples of one of its parts.
+struct Lane {
+    DecodedBrick::Boxes<std::int32_t>& boxes;
+    Joining joining;
+    std::span<const std::uint8_t> present;
+};
+std::vector<Lane> lanesOf(const BrickFormat& format, std::span<const std::uint8_t> present,
+                          const std::vector<std::vector<std::uint8_t>>& parts, DecodedBrick::Boxes<std::int32_t>& first,
+                          std::vector<DecodedBrick::Boxes<std::int32_t>>& others) {
+    std::vector<Lane> lanes;
+    others.resize(parts.empty() ? 0 : parts.size() - 1);
+    for (std::size_t n = 0; n <= others.size(); ++n) {
+        auto& boxes = n == 0 ? first : others[n - 1];
+        lanes.push_back({boxes, Joining{format, boxes, format.predictsOdd(!present.empty()) && parts.empty()},
+                         parts.empty() ? present : std::span<const std::uint8_t>(parts[n])});
+    }
+    return lanes;
+}
+
+/// Moves the samples of all lanes to the first one's box.
+void merge(const BrickFormat& format, int level, std::vector<Lane>& lanes) {
+    const glm::ivec3 size = samplesAt(format, level);
+    const Box<std::int32_t> to = lanes[0].boxes.samples[0].box();
+    for (std::size_t n = 1; n < lanes.size(); ++n) {
+        const auto from = std::as_const(lanes[n].boxes.samples[0]).box();
+        int i = 0;
+        forLevel(format, level, [&](std::size_t at) {
+            const int x = i % size.x, y = i / size.x % size.y, z = i / (size.x * size.y);
+            if (lanes[n].present[at] != 0) to.row(y, z)[x] = from.row(y, z)[x];
+            ++i;
+        });
+    }
+}
+
 void correct(std::span<const Correction> corrections, DecodedBrick& out) {
     const std::size_t nx = std::size_t(out.size.x), ny = std::size_t(out.size.y);
     for (const Correction& one : corrections) {
@@ -177,11 +229,12 @@ DecodeStatus parseSteps(std::span<const std::byte> bytes, StepChoice& steps) {
 }
 
 DecodeStatus decodeStepped(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
-                           std::span<const std::uint8_t> present, DecodedBrick& out) {
-    const bool masked = !present.empty();
+                           std::span<const std::uint8_t> present, std::span<const std::uint8_t> parts,
+                           DecodedBrick& out) {
     const auto step = static_cast<std::size_t>(format.sublattices());
-    auto& boxes = out.boxes32;
-    Joining joining{format, boxes, format.predictsOdd(masked)};
+    const std::vector<std::vector<std::uint8_t>> flags = flagsOfParts(parts, present);
+    std::vector<DecodedBrick::Boxes<std::int32_t>> others;
+    std::vector<Lane> lanes = lanesOf(format, present, flags, out.boxes32, others);
     AdaptiveBands model;
     out.corrections.clear();
     for (int l = format.levels - 1; l >= level; --l) {
@@ -191,19 +244,22 @@ DecodeStatus decodeStepped(const BrickFormat& format, std::span<const std::span<
             if (const DecodeStatus status = decodeExtras(format, present, in, out); status != DecodeStatus::Ok)
                 return status;
         std::vector<StepBand> bands;
-        auto& coded = coarsest ? boxes.samples : boxes.details;
-        for (std::size_t s = 0; s < step; ++s) {
-            const bool residual = s == 1 && joining.predicted;
-            coded[s].reset(residual ? (l == 0 ? format.sublatticeSize(1) : glm::ivec3(0))
-                                    : levelSize(format.sublatticeSize(int(s)), l),
-                           masked && !residual);
-            if (residual) coded[s].setUndivided();
-            if (coded[s].masked()) {
-                placeFlags<std::int32_t>(format, present, l, int(s), !coarsest, coded[s]);
-                coded[s].clear();
-                if (!coarsest) splitDetails(coded[s], format.wavelet, false, format.steps.split, true); // moves flags
+        for (Lane& lane : lanes) {
+            auto& coded = coarsest ? lane.boxes.samples : lane.boxes.details;
+            for (std::size_t s = 0; s < step; ++s) {
+                const bool residual = s == 1 && lane.joining.predicted;
+                coded[s].reset(residual ? (l == 0 ? format.sublatticeSize(1) : glm::ivec3(0))
+                                        : levelSize(format.sublatticeSize(int(s)), l),
+                               !lane.present.empty() && !residual);
+                if (residual) coded[s].setUndivided();
+                if (coded[s].masked()) {
+                    placeFlags<std::int32_t>(format, lane.present, l, int(s), !coarsest, coded[s]);
+                    coded[s].clear();
+                    if (!coarsest)
+                        splitDetails(coded[s], format.wavelet, false, format.steps.split, true); // moves flags
+                }
+                addBands(coded[s], l, coarsest, format.steps, bands);
             }
-            addBands(coded[s], l, coarsest, format.steps, bands);
         }
         if (in.empty()) {
             for (const StepBand& one : bands)
@@ -223,45 +279,58 @@ DecodeStatus decodeStepped(const BrickFormat& format, std::span<const std::span<
             if (const DecodeStatus status = coder.end(); status != DecodeStatus::Ok) return status;
         }
         multiply(bands);
-        if (!coarsest) joining.level();
+        for (Lane& lane : lanes)
+            if (!coarsest) lane.joining.level();
     }
-    joining.odd(level);
+    for (Lane& lane : lanes) lane.joining.odd(level);
+    merge(format, level, lanes);
     correct(out.corrections, out);
     return DecodeStatus::Ok;
 }
 
 SteppedBrick encodeStepped(const BrickFormat& format, std::span<const std::uint32_t> codes,
-                           std::span<const std::uint8_t> present, BrickLevels<std::int32_t>& levels) {
-    const bool masked = !present.empty();
+                           std::span<const std::uint8_t> present, std::span<const std::uint8_t> parts,
+                           BrickLevels<std::int32_t>& memory) {
     const int step = format.sublattices(), count = format.levels;
+    const std::vector<std::vector<std::uint8_t>> flags = flagsOfParts(parts, present);
     SteppedBrick out;
     out.segments.resize(std::size_t(count));
     DecodedBrick decoded;
     decoded.begin(format, 0);
-    Joining joining{format, decoded.boxes32, format.predictsOdd(masked)};
+    std::vector<DecodedBrick::Boxes<std::int32_t>> others;
+    std::vector<Lane> lanes = lanesOf(format, present, flags, decoded.boxes32, others);
+    std::vector<BrickLevels<std::int32_t>> memories(others.size());
     std::vector<bool> nothing(static_cast<std::size_t>(count), true);
     std::vector<std::vector<StepBand>> bands(static_cast<std::size_t>(count));
 
-    splitBrick<std::int32_t>(format, codes, present, count, levels);
+    const auto levelsOf = [&](std::size_t lane) -> BrickLevels<std::int32_t>& {
+        return lane == 0 ? memory : memories[lane - 1];
+    };
+    for (std::size_t n = 0; n < lanes.size(); ++n)
+        splitBrick<std::int32_t>(format, codes, lanes[n].present, count, levelsOf(n));
     for (int l = count - 1; l >= 0; --l) {
         const bool coarsest = l == count - 1;
         const auto at = static_cast<std::size_t>(l);
-        for (int s = 0; s < step; ++s) {
-            LevelBox<std::int32_t>& box = levels[std::size_t(l * step + s)];
-            const bool residual = s == 1 && joining.predicted;
-            if (!coarsest && !residual) splitDetails(box, format.wavelet, isWide(format), format.steps.split, true);
-            addBands(box, l, coarsest, format.steps, bands[at]);
-        }
+        for (std::size_t n = 0; n < lanes.size(); ++n)
+            for (int s = 0; s < step; ++s) {
+                LevelBox<std::int32_t>& box = levelsOf(n)[std::size_t(l * step + s)];
+                const bool residual = s == 1 && lanes[n].joining.predicted;
+                if (!coarsest && !residual) splitDetails(box, format.wavelet, isWide(format), format.steps.split, true);
+                addBands(box, l, coarsest, format.steps, bands[at]);
+            }
         nothing[at] = divide(bands[at]);
         // What a reader will get.
-        auto& coded = coarsest ? decoded.boxes32.samples : decoded.boxes32.details;
-        for (int s = 0; s < step; ++s) coded[std::size_t(s)] = levels[std::size_t(l * step + s)];
-        std::vector<StepBand> again;
-        for (int s = 0; s < step; ++s) addBands(coded[std::size_t(s)], l, coarsest, format.steps, again);
-        multiply(again);
-        if (!coarsest) joining.level();
+        for (std::size_t n = 0; n < lanes.size(); ++n) {
+            auto& coded = coarsest ? lanes[n].boxes.samples : lanes[n].boxes.details;
+            for (int s = 0; s < step; ++s) coded[std::size_t(s)] = levelsOf(n)[std::size_t(l * step + s)];
+            std::vector<StepBand> again;
+            for (int s = 0; s < step; ++s) addBands(coded[std::size_t(s)], l, coarsest, format.steps, again);
+            multiply(again);
+            if (!coarsest) lanes[n].joining.level();
+        }
     }
-    joining.odd(0);
+    for (Lane& lane : lanes) lane.joining.odd(0);
+    merge(format, 0, lanes);
 
     out.codes = decoded.codes();
     const std::vector<Correction> corrections = correctCodes(codes, present, out.codes);

@@ -20,9 +20,11 @@ struct SteppedBrick {
     std::vector<std::uint32_t> codes; ///< as decoded, storage order; undefined where absent
 };
 
-/// Codes a brick such that no code of a present sample changes by more than kReach.
+/// Codes a brick such that no code of a present sample changes by more than kReach. `parts`: the part of each sample,
+/// or empty; those of a part are transformed by themselves. Only for CC.
 SteppedBrick encodeStepped(const BrickFormat& format, std::span<const std::uint32_t> codes,
-                           std::span<const std::uint8_t> present, BrickLevels<std::int32_t>& memory);
+                           std::span<const std::uint8_t> present, std::span<const std::uint8_t> parts,
+                           BrickLevels<std::int32_t>& memory);
 
 Bytes serialise(const StepChoice& steps);
 /// Parses steps; the bytes must end with them.
@@ -30,6 +32,7 @@ DecodeStatus parseSteps(std::span<const std::byte> bytes, StepChoice& steps);
 
 /// decodeBrick for such bricks.
 DecodeStatus decodeStepped(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
-                           std::span<const std::uint8_t> present, DecodedBrick& out);
+                           std::span<const std::uint8_t> present, std::span<const std::uint8_t> parts,
+                           DecodedBrick& out);
 
 } // namespace tessera::codec

@@ -44,9 +44,13 @@ inline constexpr std::uint32_t kFittedModels = 128;
 inline constexpr std::uint32_t kMixedBricks = 256;
 /// Feature: the metadata name archives of corrections inside the file. Only set once there is one.
 inline constexpr std::uint32_t kCorrections = 512;
+/// Feature: parts of a frame can be transformed apart. Only set once they are.
+inline constexpr std::uint32_t kPartedFrames = 2048;
+/// Feature: frames of integers can be of kind Stepped. Only set once one is.
+inline constexpr std::uint32_t kSteppedIntegers = 4096;
 /// Features that are only set once they are used.
-inline constexpr std::uint32_t kSetWhenUsed =
-    kSteppedBricks | kSubsamples | kPredictedFrames | kFittedModels | kMixedBricks | kCorrections;
+inline constexpr std::uint32_t kSetWhenUsed = kSteppedBricks | kSubsamples | kPredictedFrames | kFittedModels |
+                                              kMixedBricks | kCorrections | kPartedFrames | kSteppedIntegers;
 inline constexpr std::uint32_t kUsualFeatures = kBrickNotes | kCompact | kBandContexts | kBrickStatistics,
                                kKnownFeatures = kUsualFeatures | kSetWhenUsed;
 

@@ -45,7 +45,8 @@ public:
         : in_(bytes), notes_((header.features & kBrickNotes) != 0),
           statistics_((header.features & kBrickStatistics) != 0), stepped_((header.features & kSteppedBricks) != 0),
           subsamples_((header.features & kSubsamples) != 0), predicted_((header.features & kPredictedFrames) != 0),
-          mixed_((header.features & kMixedBricks) != 0), end_(header.index.offset), shape_(shape), file_(file) {}
+          parted_((header.features & kPartedFrames) != 0), mixed_((header.features & kMixedBricks) != 0),
+          end_(header.index.offset), shape_(shape), file_(file) {}
 
     IndexPage page() {
         IndexPage page;
@@ -133,7 +134,9 @@ private:
                 "an unknown coding of numbers", file_);
         require(wavelet < std::size(kWaveletNames), "an unknown wavelet", file_);
         const bool mayPredict = predicted_ && kind == static_cast<std::uint8_t>(NumberKind::Stepped) && frame.time > 0;
-        const int flags = 1 | (notes_ ? 2 : 0) | (subsamples_ && shape_.grid.levels > 1 ? 4 : 0) | (mayPredict ? 8 : 0);
+        const int flags = 1 | (notes_ ? 2 : 0) | (subsamples_ && shape_.grid.levels > 1 ? 4 : 0) |
+                          (mayPredict ? 8 : 0) |
+                          (parted_ && kind == static_cast<std::uint8_t>(NumberKind::Stepped) ? 32 : 0);
         require((keeps & ~flags) == 0, "an unknown flag of a frame", file_);
         require(codeBits >= 1 && codeBits <= 32, "an invalid width of codes", file_);
         frame.numbers.kind = static_cast<NumberKind>(kind);
@@ -142,6 +145,7 @@ private:
         frame.bodyCentred = (keeps & 2) != 0;
         frame.subsampled = (keeps & 4) != 0;
         frame.predicted = (keeps & 8) != 0;
+        frame.parted = (keeps & 32) != 0;
         frame.mixed = mixed_;
         frame.codeBits = codeBits;
         frame.mask = in_.get<std::int32_t>();
@@ -168,7 +172,7 @@ private:
     }
 
     ByteReader in_;
-    bool notes_, statistics_, stepped_, subsamples_, predicted_, mixed_;
+    bool notes_, statistics_, stepped_, subsamples_, predicted_, parted_, mixed_;
     std::uint64_t end_; ///< of the part of the file that may contain chunks
     const IndexShape& shape_;
     const std::string& file_;
@@ -310,7 +314,8 @@ Bytes serialise(const IndexPage& page, std::uint32_t features) {
         out.put(static_cast<std::uint8_t>(frame.numbers.kind));
         out.put(static_cast<std::uint8_t>(frame.wavelet));
         out.put(static_cast<std::uint8_t>((frame.keepsAbsent ? 1 : 0) | (frame.bodyCentred ? 2 : 0) |
-                                          (frame.subsampled ? 4 : 0) | (frame.predicted ? 8 : 0)));
+                                          (frame.subsampled ? 4 : 0) | (frame.predicted ? 8 : 0) |
+                                          (frame.parted ? 32 : 0)));
         out.put(static_cast<std::uint8_t>(frame.codeBits));
         out.put(frame.mask);
         out.put(frame.model);

@@ -59,6 +59,7 @@ struct FrameRecord {
     bool bodyCentred = false; ///< with kBrickNotes only
     bool subsampled = false;  ///< with kSubsamples only: samples of level 0 in segment 0
     bool predicted = false;   ///< with kPredictedFrames only: its bricks may be differences (predicted_brick.h)
+    bool parted = false;      ///< with kPartedFrames only: its parts are transformed apart (stepped_brick.h)
     bool mixed = false;       ///< with kMixedBricks only: its bricks may be mixed (codec/bytes/mixed_symbols.h)
     std::int32_t mask = -1;   ///< index of a MaskRecord; -1: all present
     std::int32_t model = -1;  ///< index of a model of the coefficient coder, or of steps; -1: none yet

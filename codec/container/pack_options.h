@@ -114,12 +114,12 @@ struct PackOptions {
                                                   "predict one from the other (bodyCentred); auto: chosen by trial",
                                            .names = kBccTransformNames});
         visit(self.brickSize,
-              FieldInfo{.key = "brickSize",
-                        .unit = "texel",
-                        .doc =
-                            "Edge of a brick, a power of two; 0 = automatic: 64; 128 for floats with an error bound in "
-                            "volumes of at most 128^3 samples, and for a small integer volume",
-                        .range = Range{0, 128}});
+              FieldInfo{
+                  .key = "brickSize",
+                  .unit = "texel",
+                  .doc = "Edge of a brick, a power of two; 0 = automatic: 64; 128 for numbers with an error bound in "
+                         "volumes of at most 128^3 samples, and for a small integer volume",
+                  .range = Range{0, 128}});
         visit(self.levels, FieldInfo{.key = "levels",
                                      .unit = "",
                                      .doc = "Number of levels of detail; 0 = until a brick is 4 samples wide",
@@ -139,7 +139,7 @@ struct PackOptions {
         visit(self.mostPredicted,
               FieldInfo{.key = "mostPredicted",
                         .unit = "times",
-                        .doc = "Floats with an error bound: longest run of times that are stored as differences from "
+                        .doc = "Numbers with an error bound: longest run of times that are stored as differences from "
                                "the time before, where that is shorter; to read one, those before it in the run are "
                                "decoded, too. 0 = each time by itself",
                         .range = Range{0, 15}});

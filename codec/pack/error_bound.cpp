@@ -157,7 +157,8 @@ FrameBound boundFor(const PackOptions& options, const volume::Parameter& paramet
     const bool stricter = isFloat ? stated.error < bound.error : stated.step < bound.step;
     const double rms = extent / scale * std::pow(10.0, -options.psnr / 20);
     if (std::isfinite(error) && stricter) bound = stated;
-    if (isFloat && error > rms) bound.rms = rms, bound.mostError = error; // a smaller error keeps the mean by itself
+    const double furthest = isFloat ? error : std::floor(error);
+    if (furthest > rms) bound.rms = rms, bound.mostError = furthest; // a smaller error keeps the mean by itself
     return bound;
 }
 

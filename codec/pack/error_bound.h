@@ -17,8 +17,8 @@ namespace tessera::codec {
 /// The rounding of a frame.
 struct FrameBound {
     double error = 0;      ///< largest absolute error of a sample in stored numbers; 0: exact
-    std::int64_t step = 1; ///< for integers: they become multiples of it
-    double rms = 0;        ///< for floats: largest root of the mean square error that is allowed; 0: no such bound
+    std::int64_t step = 1; ///< for integers: they become multiples of it, unless coefficients are quantised
+    double rms = 0;        ///< largest root of the mean square error that is allowed; 0: no such bound
     double mostError = std::numeric_limits<double>::infinity(); ///< with `rms`: the bound stated for all samples
 };
 

@@ -169,6 +169,21 @@ QueuedFrames FrameQueue::read(std::size_t number) const {
         frame = {};
         step.frames.emplace_back(std::move(stored), options_.grid, store, progress);
     }
+    const int label = options_.parts ? volume::labelOf(dataset_.info, parameter) : -1;
+    if (label < 0 || parameter.parts.count() > volume::kMostParts) return step;
+    const volume::Lattice& lattice = dataset_.info.lattice;
+    const auto read = [&](int first, int count) {
+        if (stop_.stop_requested()) throw Cancelled();
+        Field field = volume::makeField(volume::slicesOf(lattice, first, count), volume::ScalarType::U8);
+        const Field labels = checked(dataset_.read(label, 0, int(step.time), {first, count}),
+                                     dataset_.info.parameters[std::size_t(label)], field.lattice.size, step.time);
+        const std::vector<std::uint8_t> parts = volume::partsOf(labels, parameter.parts);
+        std::ranges::copy(parts, field.as<std::uint8_t>().begin());
+        return field;
+    };
+    step.parts.emplace(options_.slices.step == 0 ? volume::inMemory(read(0, lattice.size.z))
+                                                 : volume::SlicedFrame{lattice, read, {}},
+                       options_.grid, store, progress);
     return step;
 }
 

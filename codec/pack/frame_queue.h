@@ -15,8 +15,9 @@ namespace tessera::codec {
 struct QueuedFrames {
     int parameter = 0;
     std::size_t time = 0;
-    std::vector<FrameSamples> frames; ///< per component
-    std::vector<Range> ranges;        ///< of the samples read: components, then magnitude; empty if known before
+    std::vector<FrameSamples> frames;  ///< per component
+    std::optional<FrameSamples> parts; ///< of 8 bits: numbers of the parts of their samples, if asked for
+    std::vector<Range> ranges;         ///< of the samples read: components, then magnitude; empty if known before
     std::uint64_t sourceSamples = 0, sourceBytes = 0;
     double loadSeconds = 0, resampleSeconds = 0;
 };
@@ -32,6 +33,7 @@ struct FrameQueueOptions {
     volume::SliceMemory slices; ///< slices read at a time from frames larger than memory; step 0: frames are read whole
     int slabLayers = 0;         ///< brick layers of such frames in memory at a time
     bool ahead = false;         ///< read the next step while the current one is processed; needs memory for both
+    bool parts = false;         ///< also give parts
     bool rangesOnly = false;    ///< compute ranges only, without frames
     SlabTeam* team = nullptr;   ///< processes that share the work, frame by frame
 };

@@ -38,7 +38,7 @@ double workingBytes(const volume::ResampleOptions& options) {
 /// Whether the coefficients of a parameter may be quantised, for which bricks need more memory.
 bool isBounded(const volume::Parameter& parameter, const PackOptions& options) {
     const bool bounded = options.maxError > 0 || options.absError > 0 || options.psnr > 0 || options.sizeMb > 0;
-    return parameter.type == volume::ScalarType::F32 && bounded;
+    return !parameter.categorical && bounded;
 }
 
 /// Memory of the bricks being coded, in bytes: samples, flags, codes and coefficients on every thread. Where
@@ -152,7 +152,8 @@ MemoryPlan planMemory(const Metadata& metadata, const volume::Dataset& dataset, 
     for (const volume::Parameter& parameter : source.parameters) {
         const double bytes = double(volume::byteSize(parameter.type)) + 1; // plus a flag
         step = std::max(step, parameter.components * samples * bytes + stored * bytes + working);
-        coding = std::max(coding, parameter.components * stored * bytes + 2 * stored * bytes +
+        const bool rounds = isBounded(parameter, options) && parameter.type != volume::ScalarType::F32;
+        coding = std::max(coding, (parameter.components + (rounds ? 3 : 2)) * stored * bytes +
                                       bytesOfBricks(metadata.grid, parameter, options));
         all += parameter.components * samples * bytes;
         last += parameter.components * stored * bytes;

@@ -103,6 +103,8 @@ public:
                     .slices = {memory_.slabStep, std::filesystem::path(path).parent_path().string()},
                     .slabLayers = memory_.slabLayers,
                     .ahead = memory_.readAhead,
+                    .parts = metadata_.info.lattice.kind == LatticeKind::CC && !metadata_.alternating &&
+                             !isExact(options) && !hasThreshold(options),
                     .rangesOnly = false,
                     .team = team};
         if (metadata_.alternating && memory_.slabLayers > 0)
@@ -130,7 +132,7 @@ private:
     void gather(const Progress& progress);
     void addStep(ArchiveWriter& writer, QueuedFrames fed, const Progress& progress);
     void addFrame(ArchiveWriter& writer, FrameSamples& samples, int parameter, int component, std::size_t time,
-                  const Progress& progress);
+                  const FrameSamples* parts, const Progress& progress);
     Metadata soFar(std::size_t wholeTimes) const;
     bool corrects() const;
     void correct(ArchiveWriter& writer, const Progress& progress);
@@ -186,7 +188,7 @@ Metadata Packing::soFar(std::size_t wholeTimes) const {
 }
 
 void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int parameter, int component, std::size_t time,
-                       const Progress& progress) {
+                       const FrameSamples* parts, const Progress& progress) {
     const auto p = std::size_t(parameter), c = std::size_t(component);
     const volume::Parameter& about = dataset_.info.parameters[p];
     const bool exact = isExact(options_), resamples = reading_.toBcc || metadata_.alternating;
@@ -213,6 +215,7 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
     frame.rms = bound.rms;
     frame.mostError = bound.mostError;
     double error = frame.maxError * std::abs(samples.scale());
+    std::optional<FrameSamples> rounded; // integers
     if (hasThreshold(options_) && !about.categorical) {
         const double scale = std::abs(samples.scale());
         const Thresholded left = giveUp(samples, metadata_.grid, frame, options_.threshold, extentOf(whole));
@@ -223,13 +226,16 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
         // Bricks of floats may repeat earlier ones within the remaining part of the bound.
         const bool mayRepeat = left.numbers.kind == NumberKind::Quantised && place_.firstTime + time > 0;
         error = (mayRepeat ? frame.maxError : left.maxError) * scale;
-    } else if (frame.maxError > 0 && samples.type() != ScalarType::F32) {
-        samples.change([&](Field& part, Slab) { part = countedIn(std::move(part), bound.step); });
-        frame.maxError = 0;
+    } else if (samples.type() != ScalarType::F32) {
+        if (bound.step > 1 || bound.error >= 1 || bound.rms > 0)
+            rounded =
+                samples.changed("rounded", [&](Field part, Slab) { return countedIn(std::move(part), bound.step); });
+        frame.maxError = std::floor(bound.error);
     }
     Stopwatch code(summary_.codeSeconds);
     const std::optional<double> measured =
-        writer.addFrame(place_.parameterOf[p], component, int(place_.firstTime + time), samples, frame, progress);
+        writer.addFrame(place_.parameterOf[p], component, int(place_.firstTime + time), rounded ? *rounded : samples,
+                        frame, progress, rounded ? &samples : nullptr, parts);
     if (measured) error = *measured * std::abs(samples.scale());
     errors_[p] = std::max(errors_[p], error);
 }
@@ -253,7 +259,7 @@ void Packing::addStep(ArchiveWriter& writer, QueuedFrames fed, const Progress& p
     for (std::size_t c = 0; c < fed.frames.size(); ++c) {
         summary_.storedSamples += fed.frames[c].count();
         summary_.storedBytes += fed.frames[c].count() * volume::byteSize(parameter.type);
-        addFrame(writer, fed.frames[c], fed.parameter, int(c), fed.time,
+        addFrame(writer, fed.frames[c], fed.parameter, int(c), fed.time, fed.parts ? &*fed.parts : nullptr,
                  progress.part(double(c) / frames, double(c + 1) / frames));
     }
     const std::size_t wholeTimes = place_.firstTime + fed.time + 1, least = metadata_.alternating ? 2 : 1;

@@ -24,9 +24,9 @@ int defaultLevels(const volume::Lattice& lattice, int brickSize) {
 
 /// The automatic brick size. Three kinds of data get bricks that are larger than usual, if a usual one does not hold
 /// them:
-///  - Floats within an error bound, since every face of a brick costs bytes: volumes so small that a view reads them
-///  whole
-///    anyway. Thresholds and omitted bricks depend on the importance of each brick, for which small ones are better.
+///  - Numbers within an error bound, since every face of a brick costs bytes: volumes so small that a view reads them
+///    whole anyway. Thresholds and omitted bricks depend on the importance of each brick, for which small ones are
+///    better.
 ///  - Integers packed with the most effort, as fitted predictions need their neighbours as well.
 ///  - Repetition, which only integers that were not resampled have, is only found within a brick, so small data of that
 ///    kind get one large brick.
@@ -42,7 +42,8 @@ int brickSizeFor(const volume::Lattice& lattice, const volume::DatasetInfo& sour
     const auto isFloat = [](const volume::Parameter& parameter) { return parameter.type == ScalarType::F32; };
     const bool bounded = (options.maxError > 0 || options.absError > 0 || options.psnr > 0 || options.sizeMb > 0) &&
                          !hasThreshold(options) && options.discard == 0;
-    if (bounded && lattice.count() <= kReadWhole && std::ranges::any_of(source.parameters, isFloat)) return kLargest;
+    const auto isLabel = [](const volume::Parameter& parameter) { return parameter.categorical; };
+    if (bounded && lattice.count() <= kReadWhole && !std::ranges::all_of(source.parameters, isLabel)) return kLargest;
     const bool isInteger = std::ranges::none_of(source.parameters, isFloat);
     if (options.effort >= kLongestEffort && isInteger && !hasThreshold(options) && options.discard == 0)
         return kLargest;
@@ -65,6 +66,14 @@ volume::BrickGrid gridFor(const volume::Lattice& lattice, const volume::DatasetI
     if (grid.levels < 1 || grid.levels > int(std::bit_width(unsigned(grid.brickSize))))
         throw Error(std::to_string(grid.levels) + " levels do not fit bricks of " + std::to_string(grid.brickSize));
     return grid;
+}
+
+int layersOfTeam(const volume::BrickGrid& grid, const volume::DatasetInfo& info) {
+    constexpr int kMostFiles = 512;
+    int components = 1;
+    for (const volume::Parameter& parameter : info.parameters) components = std::max(components, parameter.components);
+    const int slabs = std::max(1, kMostFiles / (components + 2));
+    return (grid.count().z + slabs - 1) / slabs;
 }
 
 } // namespace tessera::codec

@@ -12,4 +12,8 @@ namespace tessera::codec {
 volume::BrickGrid gridFor(const volume::Lattice& lattice, const volume::DatasetInfo& source, const PackOptions& options,
                           const Archive* grown = nullptr);
 
+/// Brick layers of the slabs that a team shares: one, but for so many that their open files would be too many. Those of
+/// the samples of all components are open, and of the result of a step, twice while samples change.
+int layersOfTeam(const volume::BrickGrid& grid, const volume::DatasetInfo& info);
+
 } // namespace tessera::codec

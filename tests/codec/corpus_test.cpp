@@ -123,6 +123,42 @@ TEST(Corpus, AStoredArchiveOfMixedBricksHasItsSamples) {
     EXPECT_EQ(readField(archive, 0, 0, 0).samples, mixedDataset().read(0, 0, 0).samples);
 }
 
+/// Waves of 16 bits with gaps, at two times.
+volume::Dataset roughDataset() {
+    volume::Dataset made = makeDataset({18, 15, 14}, {{"a", ScalarType::I16}}, 2);
+    made.read = [lattice = made.info.lattice](int, int, int time) {
+        volume::Field field = volume::makeField(lattice, ScalarType::I16);
+        volume::Mask mask(field.count(), 1);
+        std::mt19937 random(3);
+        for (std::size_t i = 0; i < field.count(); ++i) {
+            const int x = int(i) % 18, y = int(i) / 18 % 15, z = int(i) / (18 * 15);
+            field.as<std::int16_t>()[i] = static_cast<std::int16_t>(
+                int(9000 * std::sin(0.3 * x + 0.2 * y) * std::cos(0.25 * z)) + int(random() % 60) + 7 * time);
+            mask[i] = y > 10 && x > 12 ? 0 : 1;
+        }
+        field.mask = std::make_shared<const volume::Mask>(std::move(mask));
+        return field;
+    };
+    return made;
+}
+
+TEST(Corpus, AStoredArchiveOfIntegersWithinABoundKeepsIt) {
+    const std::string path = corpus() + "fuzz_archive/integers-3.tsr";
+    const Archive archive(path);
+    EXPECT_EQ(verifyArchive(archive).damaged, 0u);
+    ASSERT_NE(stateOf(archive, false).header.features & kSteppedIntegers, 0u);
+    EXPECT_EQ(plain::Decoder(readFile(path)).depth(1, 0), 1) << "predicted from the time before";
+    for (int time = 0; time < 2; ++time) {
+        const volume::Field is = readField(archive, 0, 0, time), was = roughDataset().read(0, 0, time);
+        for (std::size_t i = 0; i < was.count(); ++i) {
+            ASSERT_EQ(is.present(i), was.present(i));
+            if (was.present(i)) {
+                ASSERT_LE(std::abs(is.as<std::int16_t>()[i] - was.as<std::int16_t>()[i]), 20);
+            }
+        }
+    }
+}
+
 /// Not a check: writes the seeds of fuzz_brick and fuzz_archive when the format changes
 /// (--gtest_also_run_disabled_tests).
 TEST(Corpus, DISABLED_WriteSeeds) {
@@ -159,6 +195,12 @@ TEST(Corpus, DISABLED_WriteSeeds) {
     mixes.lattice = StoredLattice::CC;
     mixes.brickSize = 16;
     pack(mixed, mixes, corpus() + "fuzz_archive/mixed-3.tsr");
+    volume::Dataset rough = roughDataset();
+    PackOptions rounds;
+    rounds.lattice = StoredLattice::CC;
+    rounds.absError = 20;
+    rounds.brickSize = 16;
+    pack(rough, rounds, corpus() + "fuzz_archive/integers-3.tsr");
     const std::string grown = corpus() + "fuzz_archive/grown-3-statistics.tsr";
     for (int step = 0; step < 3; ++step) {
         const char* const name = step == 1 ? "p" : "T";
@@ -241,6 +283,17 @@ TEST(Corpus, DISABLED_WriteSeeds) {
         for (const std::uint8_t sample : field.as<std::uint8_t>()) codes.push_back(sample);
         for (const std::byte byte : encodeWholeMixed(codes, {{16, 15, 14}, 1 + lattice}, compressor))
             head.push_back(char(byte));
+        writeFile(corpus() + "fuzz_brick/" + std::to_string(number++), head);
+    }
+    for (const ScalarType type : {ScalarType::U8, ScalarType::I32}) { // integers by quantised coefficients
+        std::vector<char> head{0, 15, 14, 13, 0, 10, char(type), 0, char(128 + 8 * 2 + 6), 0, 0, 1};
+        const BrickFormat format{
+            LatticeKind::CC, {16, 15, 14}, 1,     static_cast<Wavelet>(10), type, {NumberKind::Stepped, 3, 0.25},
+            false,           32,           false, {{6, 4}, 1u << int(type)}};
+        volume::Dataset made = makeDataset(format.size, {{"x", type}}, 1);
+        for (const Bytes& segment : encodeBrick(format, made.read(0, 0, 0).samples, {}, 4, compressor,
+                                                BandEncoder(makeModel(Histogram(1, {}), 1))))
+            for (const std::byte byte : segment) head.push_back(char(byte));
         writeFile(corpus() + "fuzz_brick/" + std::to_string(number++), head);
     }
     for (int seed = 0; seed < 5; ++seed) {

@@ -77,7 +77,8 @@ TEST(PackSize, IsUsedAsFarAsStepsOfIntegersAllow) {
         options.lattice = StoredLattice::CC;
         options.sizeMb = (bytes[i] + 50) / 1e6;
         const PackSummary summary = pack(data, options, folder / "a.tsr");
-        EXPECT_NEAR(double(summary.archiveBytes), bytes[i], 50) << "step " << i + 2 << ", trials " << summary.trials;
+        EXPECT_LE(double(summary.archiveBytes), bytes[i] + 50);
+        EXPECT_GE(double(summary.archiveBytes), 0.99 * bytes[i]) << "step " << i + 2 << ", trials " << summary.trials;
     }
 }
 

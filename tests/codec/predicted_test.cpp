@@ -237,10 +237,16 @@ TEST_F(Predicted, TimesUnderABoundOfTheMeanErrorArePredictedToo) {
 // Where no quantum meets a mean error, samples are rounded, which are not predicted: readers refuse such frames.
 TEST(FrameCoding, BeginsAgainWithRoundedSamplesAsIfNothingElseHadBeenTried) {
     const volume::BrickGrid grid{{LatticeKind::CC, {8, 8, 8}, {1, 1, 1}, {0, 0, 0}}, 8, 1, 0};
+    volume::Field field = volume::makeField(grid.lattice, ScalarType::F32);
+    field.scale = 3;
+    const FrameSamples samples(field), finer(volume::makeField(grid.lattice, ScalarType::F32));
+    const SeenFrame before, other;
     FrameCoding coding(grid);
-    coding.frame.numbers = coding.rounded.numbers = {NumberKind::Quantised, 1, 0.5};
-    coding.rounded.codeBits = 9;
-    coding.repeatedRounded = {1};
+    coding.samples = &finer;
+    coding.before = &other;
+    coding.rounded = {{}, &samples, &before, {1}};
+    coding.frame.numbers = coding.rounded.frame.numbers = {NumberKind::Quantised, 1, 0.5};
+    coding.rounded.frame.codeBits = 9;
     coding.steps.emplace();
     coding.steps->numbers = {NumberKind::Stepped, 1, 0.01};
     coding.steps->predicted = true;
@@ -250,7 +256,10 @@ TEST(FrameCoding, BeginsAgainWithRoundedSamplesAsIfNothingElseHadBeenTried) {
     coding.frame.segments.resize(1);
     coding.restartRounded(0.25);
     EXPECT_FALSE(coding.frame.predicted);
-    EXPECT_EQ(coding.frame.numbers, coding.rounded.numbers);
+    EXPECT_EQ(coding.samples, &samples);
+    EXPECT_EQ(coding.before, &before);
+    EXPECT_EQ(coding.seen.field.scale, 3);
+    EXPECT_EQ(coding.frame.numbers, coding.rounded.frame.numbers);
     EXPECT_EQ(coding.frame.codeBits, 9);
     EXPECT_EQ(coding.frame.bricks.size(), 1u);
     EXPECT_EQ(coding.frame.segments.size(), 1u);

@@ -62,10 +62,10 @@ TEST(SteppedBrick, DecodesToWhatTheWriterSaysWithinTheReach) {
     BrickLevels<std::int32_t> memory;
     for (int trial = 0; trial < 600; ++trial) {
         const SteppedInput made = randomInput(random);
-        const SteppedBrick brick = encodeStepped(made.format, made.codes, made.present, memory);
+        const SteppedBrick brick = encodeStepped(made.format, made.codes, made.present, {}, memory);
         const std::vector<Bytes> segments = withoutExact(brick.segments);
         DecodedBrick decoded;
-        ASSERT_EQ(decodeStepped(made.format, viewsOf(segments, segments.size()), 0, made.present,
+        ASSERT_EQ(decodeStepped(made.format, viewsOf(segments, segments.size()), 0, made.present, {},
                                 (decoded.begin(made.format, 0), decoded)),
                   DecodeStatus::Ok)
             << trial;
@@ -91,11 +91,11 @@ TEST(SteppedBrick, HasCoarseLevelsNearTheMeans) {
         made.codes.push_back(static_cast<std::uint32_t>(i % 32 * 100));
     made.format.steps = usualSteps();
     BrickLevels<std::int32_t> memory;
-    const std::vector<Bytes> segments = withoutExact(encodeStepped(made.format, made.codes, {}, memory).segments);
+    const std::vector<Bytes> segments = withoutExact(encodeStepped(made.format, made.codes, {}, {}, memory).segments);
     for (int level = 1; level < 4; ++level) {
         DecodedBrick decoded;
         decoded.begin(made.format, level);
-        ASSERT_EQ(decodeStepped(made.format, viewsOf(segments, std::size_t(4 - level)), level, {}, decoded),
+        ASSERT_EQ(decodeStepped(made.format, viewsOf(segments, std::size_t(4 - level)), level, {}, {}, decoded),
                   DecodeStatus::Ok);
         const std::vector<std::uint32_t> codes = decoded.codes();
         ASSERT_EQ(codes.size(), countOf(levelSize(made.format.size, level)));
@@ -112,11 +112,11 @@ TEST(SteppedBrick, RefusesWhatIsTooShortOrTooLong) {
     for (int trial = 0; trial < 100; ++trial) {
         const SteppedInput made = randomInput(random);
         const std::vector<Bytes> whole =
-            withoutExact(encodeStepped(made.format, made.codes, made.present, memory).segments);
+            withoutExact(encodeStepped(made.format, made.codes, made.present, {}, memory).segments);
         const auto statusOf = [&](const std::vector<Bytes>& segments) {
             DecodedBrick decoded;
             decoded.begin(made.format, 0);
-            return decodeStepped(made.format, viewsOf(segments, segments.size()), 0, made.present, decoded);
+            return decodeStepped(made.format, viewsOf(segments, segments.size()), 0, made.present, {}, decoded);
         };
         ASSERT_EQ(statusOf(whole), DecodeStatus::Ok);
         for (std::size_t s = 0; s < whole.size(); ++s) {
@@ -157,7 +157,7 @@ TEST(SteppedBrick, DecodesDamagedBytesToSomethingOrRefusesThem) {
     for (int trial = 0; trial < 300; ++trial) {
         const SteppedInput made = randomInput(random);
         std::vector<Bytes> segments =
-            withoutExact(encodeStepped(made.format, made.codes, made.present, memory).segments);
+            withoutExact(encodeStepped(made.format, made.codes, made.present, {}, memory).segments);
         for (Bytes& segment : segments) {
             for (std::uint32_t change = random() % 4; change > 0 && !segment.empty(); --change)
                 segment[random() % segment.size()] = static_cast<std::byte>(random());
@@ -166,8 +166,9 @@ TEST(SteppedBrick, DecodesDamagedBytesToSomethingOrRefusesThem) {
         for (int level = 0; level < made.format.levels; ++level) {
             DecodedBrick decoded;
             decoded.begin(made.format, level);
-            const DecodeStatus status = decodeStepped(
-                made.format, viewsOf(segments, std::size_t(made.format.levels - level)), level, made.present, decoded);
+            const DecodeStatus status =
+                decodeStepped(made.format, viewsOf(segments, std::size_t(made.format.levels - level)), level,
+                              made.present, {}, decoded);
             ++(status == DecodeStatus::Ok ? accepted : refused);
             if (status == DecodeStatus::Ok) {
                 ASSERT_EQ(decoded.codes().size(), countOf(decoded.size));

@@ -20,6 +20,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (format.type == volume::ScalarType::F32)
         format.numbers = {data[8] < 128 ? static_cast<codec::NumberKind>(1 + data[8] % 3) : codec::NumberKind::Stepped,
                           1, 0.5};
+    else if (data[8] >= 128)
+        format.numbers = {codec::NumberKind::Stepped, data[8] % 2 == 0 ? 3.0 : 1e300, data[7] % 2 == 0 ? 0.25 : 1e308};
     format.subsampled = format.levels > 1 && data[7] / 4 % 4 == 1;
     format.mixed = data[7] / 16 == 2;
     format.steps = {{data[8] % 8, 2 + data[8] / 8 % 8}, 1u << data[6] % 29};
@@ -50,7 +52,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         }
         segments.emplace_back(bytes.begin() + std::ptrdiff_t(begin), bytes.begin() + std::ptrdiff_t(end));
     }
-    if (format.type != volume::ScalarType::F32) format.codeBits = codec::codeBitsOf(format.type);
+    if (format.numbers.kind == codec::NumberKind::Integer) format.codeBits = codec::codeBitsOf(format.type);
     const codec::BandDecoder decoder(fitted ? codec::fuzzFittedModel(format.levels)
                                             : codec::fuzzModel(format.levels, data[7] / 2 % 2 != 0));
     for (int level = 0; level < format.levels; ++level) {
@@ -58,6 +60,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         codec::DecodedBrick decoded;
         const codec::DecodeStatus status = codec::decodeBrick(format, parts, level, present, decoder, decoded);
         if (status == codec::DecodeStatus::Ok && level == 0 && decoded.codes().size() != count) std::abort();
+        if (status != codec::DecodeStatus::Ok) continue;
+        std::vector<float> values(codec::countOf(decoded.size));
+        decoded.forRows([&](std::size_t first, auto row) {
+            codec::toValues(format.numbers, format.type, 0.5, 2, row, values.data() + first);
+        });
     }
     return 0;
 }

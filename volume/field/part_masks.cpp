@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -19,23 +20,31 @@ int labelOf(const DatasetInfo& info, const Parameter& parameter) {
     return -1;
 }
 
-Field withParts(Field field, const Field& label, const Parts& parts) {
+std::vector<std::uint8_t> partsOf(const Field& label, const Parts& parts) {
     if (parts.count() > kMostParts) throw Error("more than " + std::to_string(kMostParts) + " parts");
-    if (label.count() != field.count()) throw Error("a label has another number of samples");
-    auto mask = std::make_shared<Mask>(field.count());
+    std::vector<std::uint8_t> out(label.count());
     dispatch(label.type, [&]<class T>(T) {
         const auto stored = label.as<T>();
         T known{};
-        std::uint8_t code = 0;
+        std::optional<std::uint8_t> part;
         for (std::size_t i = 0; i < stored.size(); ++i) {
-            if (code == 0 || stored[i] != known) {
+            if (!part || stored[i] != known) {
                 known = stored[i];
                 const double value = label.offset + label.scale * double(known);
-                code = std::uint8_t(1 + (std::abs(value) < 2e9 ? parts.partOf(int(std::lround(value))) : 0));
+                part = std::uint8_t(std::abs(value) < 2e9 ? parts.partOf(int(std::lround(value))) : 0);
             }
-            (*mask)[i] = !field.present(i) ? std::uint8_t(0) : label.present(i) ? code : std::uint8_t(1);
+            out[i] = label.present(i) ? *part : std::uint8_t(0);
         }
     });
+    return out;
+}
+
+Field withParts(Field field, const Field& label, const Parts& parts) {
+    if (label.count() != field.count()) throw Error("a label has another number of samples");
+    const std::vector<std::uint8_t> part = partsOf(label, parts);
+    auto mask = std::make_shared<Mask>(field.count());
+    for (std::size_t i = 0; i < part.size(); ++i)
+        (*mask)[i] = field.present(i) ? std::uint8_t(1 + part[i]) : std::uint8_t(0);
     field.mask = std::move(mask);
     return field;
 }

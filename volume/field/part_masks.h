@@ -16,6 +16,9 @@ inline constexpr std::size_t kMostParts = 7;
 /// Index of the label parameter of a parameter's parts; -1 if it has one part.
 int labelOf(const DatasetInfo& info, const Parameter& parameter);
 
+/// The part of each sample by a label; of an absent label sample the first. Throws Error for more than kMostParts.
+std::vector<std::uint8_t> partsOf(const Field& label, const Parts& parts);
+
 /// The field with the parts of its samples in its mask. `label`: of the same samples.
 Field withParts(Field field, const Field& label, const Parts& parts);
 

@@ -34,6 +34,40 @@ std::vector<bool> Decoder::fineFlags(const Frame& frame, int number, const Size&
     return flags;
 }
 
+std::vector<std::size_t> Decoder::partsOf(std::size_t frame, int number) const {
+    std::size_t component = frame % types_.size(), first = 0;
+    const auto& parameters = metadata_["data"]["parameters"];
+    const nlohmann::json* own = nullptr;
+    for (const auto& parameter : parameters) {
+        const std::size_t count = parameter["components"];
+        if (component < count) {
+            own = &parameter;
+            break;
+        }
+        component -= count;
+    }
+    need(own && own->contains("parts"), "parts");
+    const auto& regions = (*own)["parts"]["regions"];
+    need(regions.size() >= 2 && regions.size() <= 7, "parts");
+    for (const auto& parameter : parameters) {
+        if (parameter["name"] == (*own)["parts"]["label"] && parameter["categorical"] && parameter["components"] == 1) {
+            const Brick labels = brick(frame - frame % types_.size() + first, number, 0);
+            std::vector<std::size_t> parts;
+            for (std::size_t i = 0; i < labels.values.size(); ++i) {
+                std::size_t part = 0;
+                for (std::size_t r = regions.size(); labels.present[i] && r-- > 0;)
+                    for (const auto& value : regions[r])
+                        if (value == std::lround(labels.values[i])) part = r;
+                parts.push_back(part);
+            }
+            return parts;
+        }
+        first += parameter["components"].get<std::size_t>();
+    }
+    need(false, "label");
+    return {};
+}
+
 int Decoder::depth(std::size_t frame, int number) const {
     const std::size_t repeats = hasNotes_ ? frames_[frame].repeats[std::size_t(number)] * types_.size() : 0;
     const Frame& held = frames_[frame - repeats];
@@ -57,7 +91,18 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
 
     // The boxes of both sublattices at the wanted level, with flags where they are present.
     std::vector<Box> boxes;
-    for (int s = 0; s < sublattices; ++s) {
+    const std::vector<std::size_t> partOf(frame.parted ? partsOf(frameNumber - repeats, number)
+                                                       : std::vector<std::size_t>());
+    std::vector<std::size_t> own; // 4.13: those that have samples here
+    for (std::size_t part = 0; part < 7 && frame.parted; ++part)
+        for (std::size_t i = 0; i < flags.size(); ++i)
+            if (flags[i] && partOf[i] == part) {
+                own.push_back(part);
+                break;
+            }
+    const int lanes = own.size() < 2 ? sublattices : int(own.size());
+    for (int lane = 0; lane < lanes; ++lane) {
+        const int s = own.size() < 2 ? lane : 0;
         const Size whole{fine[0], fine[1], (fine[2] + sublattices - 1 - s) / sublattices};
         Size size = whole;
         for (int l = 0; l < level; ++l) size = half(size);
@@ -67,7 +112,7 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
             const std::size_t at =
                 (std::size_t(z) * std::size_t(fine[1]) + std::size_t(p[1] << level)) * std::size_t(fine[0]) +
                 std::size_t(p[0] << level);
-            if (flags[at]) box.at(p) = 0u;
+            if (flags[at] && (own.size() < 2 || partOf[at] == own[std::size_t(lane)])) box.at(p) = 0u;
         });
         split(box, levels_ - 1 - level);
         boxes.push_back(std::move(box));
@@ -81,7 +126,7 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
             for (const bool flag : flags) absent += flag ? 0 : 1;
             absentBits = stream(in, absent);
         }
-        if (frame.numbers == 1 || frame.numbers >= 3) {
+        if (type == "float32" && frame.numbers != 2) {
             const std::size_t exact = in.u32();
             exactIndex = stream(in, exact);
             exactBits = stream(in, exact);
@@ -108,7 +153,7 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
         }
         if (segment == 0 && frame.subsampled) {
             std::size_t count = 0;
-            for (std::size_t s = 0; s < boxes.size(); ++s) {
+            for (std::size_t s = 0; s < std::size_t(sublattices); ++s) {
                 Size size = {fine[0], fine[1], (fine[2] + sublattices - 1 - int(s)) / sublattices};
                 for (int l = 1; l < levels_; ++l) size = half(size);
                 places({0, 0, 0}, size, [&](const Size& p) {
@@ -261,7 +306,9 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
     if (bcc_) out.size[2] += boxes[1].size[2];
     std::size_t nextAbsent = 0;
     places({0, 0, 0}, out.size, [&](const Size& p) {
-        const Cell cell = boxes[std::size_t(p[2] % sublattices)].at(p[0], p[1], p[2] / sublattices);
+        Cell cell = boxes[std::size_t(p[2] % sublattices)].at(p[0], p[1], p[2] / sublattices);
+        for (Box& box : boxes)
+            if (own.size() > 1 && box.at(p)) cell = box.at(p);
         const std::size_t at = out.values.size();
         out.present.push_back(cell.has_value());
         std::uint32_t code = cell.value_or(0);
@@ -269,7 +316,9 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
             if (sample == at) code += std::uint32_t(33 * times);
         double stored = double(asSigned(code));
         if (before) {
-            const double quotient = (double(std::bit_cast<float>(before->bits[at])) - frame.origin) / frame.step;
+            const double stepped =
+                type == "float32" ? double(std::bit_cast<float>(before->bits[at])) : double(asSigned(before->bits[at]));
+            const double quotient = (stepped - frame.origin) / frame.step;
             if (std::abs(quotient) <= 536870912.0) code += std::uint32_t(std::int32_t(std::nearbyint(quotient)));
             stored = double(asSigned(code));
         }
@@ -284,6 +333,15 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
                     if (exactIndex[e] == at) value = std::bit_cast<float>(exactBits[e]);
             stored = double(value);
             bits = std::bit_cast<std::uint32_t>(value);
+        }
+        if (type != "float32" && frame.numbers == 4) {
+            const double lowest = type == "int16" ? -32768.0 : type == "int32" ? -2147483648.0 : 0.0;
+            const double most = type == "uint8"    ? 255.0
+                                : type == "uint16" ? 65535.0
+                                : type == "int16"  ? 32767.0
+                                                   : 2147483647.0;
+            stored = std::clamp(std::nearbyint(frame.origin + frame.step * stored), lowest, most);
+            bits = std::uint32_t(std::int32_t(stored));
         }
         if (!cell && level == 0 && frame.keepsAbsent) bits = absentBits[nextAbsent++];
         out.values.push_back(cell ? frame.valueOffset + frame.valueScale * stored : 0);

@@ -91,7 +91,9 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         const std::uint64_t end = in.number(8);
         Piece found[2];
         for (Piece& part : found) part = readPiece(in);
-        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 || features > 1023) return false;
+        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 ||
+            (features & ~(1023u | 2048u | 4096u)) != 0)
+            return false;
         if (end > file_.size()) return false;
         if (end <= end_) return true; // the other copy is as good or better
         hasNotes_ = features % 2 == 1;
@@ -103,7 +105,9 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         knowsPredictions_ = features / 64 % 2 == 1;
         knowsFits_ = features / 128 % 2 == 1;
         knowsMixed_ = features / 256 % 2 == 1;
-        knowsCorrections_ = features / 512 == 1;
+        knowsCorrections_ = features / 512 % 2 == 1;
+        knowsParts_ = features / 2048 % 2 == 1;
+        knowsSteppedIntegers_ = features / 4096 % 2 == 1;
         end_ = end;
         std::copy(found, found + 2, parts);
         return true;
@@ -237,18 +241,25 @@ void Decoder::readPage(const Octets& page, std::vector<double>& times,
         frame.keepsAbsent = kept % 2 == 1;
         frame.bodyCentred = kept / 2 % 2 == 1;
         frame.subsampled = kept / 4 % 2 == 1;
-        frame.predicted = kept / 8 == 1;
+        frame.predicted = kept / 8 % 2 == 1;
+        frame.parted = kept / 32 == 1;
         need(hasNotes_ || !frame.bodyCentred, "frame");
         need((knowsSubsamples_ && levels_ > 1) || !frame.subsampled, "frame");
         need(!frame.predicted || (knowsPredictions_ && frame.numbers == 4 && time > 0), "frame");
-        need(kept < 16, "frame");
+        need(!frame.parted || (knowsParts_ && frame.numbers == 4 && metadata_["data"]["lattice"]["kind"] == "cc"),
+             "frame");
+        need(kept < 64 && kept / 16 % 2 == 0, "frame");
         frame.codeBits = int(table.number(1));
         need(frame.numbers < (knowsSteps_ ? 5 : 4) && frame.wavelet < 12, "frame");
+        const bool isInteger = types_[number % types_.size()] != "float32";
+        need(isInteger ? frame.numbers == 0 || (frame.numbers == 4 && knowsSteppedIntegers_) : frame.numbers > 0,
+             "frame");
         frame.mask = int(table.u32());
         frame.model = table.u32();
         need(frame.mask < int(masks_.size()) && frame.model < models_.size(), "frame");
         frame.origin = table.f64();
         frame.step = table.f64();
+        need(!isInteger || frame.numbers == 0 || (std::isfinite(frame.origin) && std::isfinite(frame.step)), "frame");
         frame.valueOffset = table.f64();
         frame.valueScale = table.f64();
         for (std::size_t b = 0; b < bricks; ++b) {

@@ -71,7 +71,7 @@ private:
     struct Frame {
         int numbers = 0, wavelet = 0, mask = -1, codeBits = 32;
         std::size_t model = 0;
-        bool keepsAbsent = false, bodyCentred = false, subsampled = false, predicted = false;
+        bool keepsAbsent = false, bodyCentred = false, subsampled = false, predicted = false, parted = false;
         double origin = 0, step = 1, valueOffset = 0, valueScale = 1;
         std::vector<std::size_t> repeats; ///< by brick: the frame so many times before holds it
         std::vector<Piece> pieces;        ///< [segment * bricks + brick]
@@ -87,6 +87,8 @@ private:
     void readStatistics(const std::vector<std::uint8_t>& bits, Frame& frame, std::size_t& at) const;
     Model parseModel(const Piece& piece) const;
     std::vector<std::uint8_t> checked(const Piece& piece) const;
+    /// 4.13: the part of each sample at full resolution.
+    std::vector<std::size_t> partsOf(std::size_t frame, int number) const;
     std::vector<bool> fineFlags(const Frame& frame, int number, const Size& size) const;
     Size fineSize(int number) const;
 
@@ -99,7 +101,7 @@ private:
     std::vector<std::string> types_; ///< of the component of each frame within a time
     bool hasNotes_ = false, compact_ = false, knowsBands_ = false, hasStatistics_ = false, knowsSteps_ = false,
          knowsSubsamples_ = false, knowsPredictions_ = false, knowsFits_ = false, knowsMixed_ = false,
-         knowsCorrections_ = false;
+         knowsCorrections_ = false, knowsParts_ = false, knowsSteppedIntegers_ = false;
     std::size_t end_ = 0; ///< of the archive in the file
     std::vector<Piece> models_;
     std::vector<Mask> masks_;
