@@ -13,6 +13,7 @@
 #include "volume/import/over_time.h"
 #include "volume/sources/alternating_source.h"
 #include "volume/sources/axis_source.h"
+#include "volume/sources/centred_source.h"
 #include "volume/sources/labelled_source.h"
 #include "volume/sources/memory_source.h"
 #include "volume/sources/originals.h"
@@ -39,31 +40,17 @@ bool isArchive(const DataRef& data) {
 
 namespace {
 
-volume::LatticeKind latticeOf(PictureLattice lattice) {
-    return lattice == PictureLattice::Grid ? volume::LatticeKind::CC : volume::LatticeKind::BCC;
-}
-
-constexpr std::size_t kFramesLoaded = std::size_t(1) << 30, kFramesMade = std::size_t(1) << 29; // bytes kept
+constexpr std::size_t kFramesLoaded = std::size_t(1) << 30, kBricksMade = std::size_t(1) << 29; // bytes kept
 
 volume::MemorySourceOptions onGrid(int brickSize = volume::MemorySourceOptions{}.brickSize) {
     return {.lattice = volume::LatticeKind::CC, .brickSize = brickSize, .budget = kFramesLoaded};
 }
 
-/// Unpacked data on the lattice of pictures.
+/// Samples as pictures draw them; as they are where they lie on no regular grid.
 std::shared_ptr<const volume::BrickSource> drawnOn(const std::shared_ptr<const volume::BrickSource>& numbers,
-                                                   volume::LatticeKind lattice) {
-    return volume::onLattice(numbers,
-                             {.lattice = lattice, .brickSize = numbers->grid().brickSize, .budget = kFramesMade});
-}
-
-/// The same for data files; archives keep their own lattice.
-std::shared_ptr<const volume::BrickSource> drawnAlike(const std::shared_ptr<const volume::BrickSource>& numbers,
-                                                      volume::LatticeKind lattice) {
-    try {
-        return drawnOn(numbers, lattice);
-    } catch (const Error&) {
-        return numbers;
-    }
+                                                   PictureLattice lattice) {
+    if (lattice == PictureLattice::Grid || !volume::canBeCentred(*numbers)) return numbers;
+    return volume::makeCentredSource(numbers, kBricksMade);
 }
 
 /// Packs a data set with these options into a temporary archive, to show the effect of packing.
@@ -83,7 +70,11 @@ Sources openPacked(volume::Dataset dataset, const DataRef& data, const Progress&
     codec::pack(dataset, *data.packed, name, progress);
     const auto packed = codec::openArchive(name);
     const NumberOrigin computed = computedOrigin(dataset.info);
-    if (!data.originals) return {packed, volume::makeMemorySource(std::move(dataset), onGrid()), computed};
+    if (!data.originals) {
+        Sources out{drawnOn(packed, data.lattice), volume::makeMemorySource(std::move(dataset), onGrid()), computed};
+        out.packed = packed;
+        return out;
+    }
     const auto archive = std::make_shared<const codec::Archive>(name);
     NumberOrigin origin = storedOrigin(archive->metadata());
     origin.originals = true;
@@ -132,7 +123,8 @@ Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
     if (axis.info.times != source->info().times || axis.info.timeName != source->info().timeName ||
         axis.info.timeUnit != source->info().timeUnit || !data.import.overTime.empty() || !data.import.units.empty())
         source = volume::onAxis(source, std::move(axis));
-    return {source, source, std::move(origin)};
+    source = volume::withLabelNames(source, data.import.labels);
+    return {archive->metadata().alternating ? source : drawnOn(source, data.lattice), source, std::move(origin)};
 }
 
 namespace {
@@ -152,11 +144,7 @@ void checkMemory(const volume::DatasetInfo& info, const std::string& path) {
 
 Sources openWhole(const DataRef& data, std::vector<std::string>& messages, const Progress& progress) {
     if (!hasData(data)) throw Error("contains no data: open data first, or give a data file", {}, "/data");
-    if (isArchive(data)) {
-        const Sources archive = openArchived(data, messages);
-        const auto named = volume::withLabelNames(archive.pictures, data.import.labels);
-        return {named, named, archive.origin};
-    }
+    if (isArchive(data)) return openArchived(data, messages);
     volume::Dataset dataset;
     if (data.files.empty()) {
         dataset = volume::makeModel(data.model, data.settings, progress.part(0, 0.9));
@@ -183,7 +171,7 @@ Sources openWhole(const DataRef& data, std::vector<std::string>& messages, const
     if (data.packed) return openPacked(std::move(dataset), data, progress.part(0.95, 1));
     NumberOrigin origin = computedOrigin(dataset.info);
     const auto numbers = volume::makeMemorySource(std::move(dataset), onGrid());
-    return {drawnOn(numbers, latticeOf(data.lattice)), numbers, std::move(origin)};
+    return {drawnOn(numbers, data.lattice), numbers, std::move(origin)};
 }
 
 /// An archive that was resampled, on the grid of its source, as `tessera unpack` gives it, if that has samples where
@@ -269,31 +257,47 @@ Sources openStored(const DataRef& data, std::vector<std::string>& messages, cons
     origin.alongTime = true;
     origin.cutFrom = whole.numbers;
     origin.parameters = int(numbers->info().parameters.size());
-    return {drawnOn(data.packed ? along(whole.pictures) : numbers, whole.pictures->info().lattice.kind), numbers,
-            std::move(origin)};
+    return {drawnOn(whole.packed ? along(whole.packed) : numbers, data.lattice), numbers, std::move(origin)};
 }
 
 } // namespace
 
 Sources deriveBoth(const Sources& sources, const std::vector<volume::DerivedParameter>& wanted,
                    std::vector<std::string>& messages, const Progress& progress) {
-    const auto numbers = volume::deriveAll(sources.numbers, wanted, messages, progress);
-    if (sources.pictures == sources.numbers) return {numbers, numbers, sources.origin};
-    return {volume::deriveLike(*numbers, sources.pictures, wanted), numbers, sources.origin};
+    Sources out = sources;
+    out.numbers = volume::deriveAll(sources.numbers, wanted, messages, progress);
+    const auto alike = [&](const std::shared_ptr<const volume::BrickSource>& source) {
+        if (!source || source == sources.numbers) return source ? out.numbers : source;
+        return volume::deriveLike(*out.numbers, source, wanted);
+    };
+    out.pictures = alike(sources.pictures);
+    out.packed = alike(sources.packed);
+    return out;
+}
+
+Sources underived(const Sources& sources) {
+    Sources out = sources;
+    for (auto* source : {&out.pictures, &out.numbers, &out.packed})
+        if (*source) *source = volume::underived(*source);
+    return out;
 }
 
 Sources drawnOn(PictureLattice lattice, const Sources& sources, const std::vector<volume::DerivedParameter>& derived) {
-    const auto below = volume::underived(sources.numbers);
-    if (const auto other = volume::otherOf(*below)) {
-        const auto own = volume::besideOther(*below);
-        const Sources both = withOther({drawnOn(own, latticeOf(lattice)), own, sources.origin},
-                                       {drawnAlike(other, latticeOf(lattice)), other, {}});
-        if (both.pictures == both.numbers) return {sources.numbers, sources.numbers, sources.origin};
-        return {volume::deriveLike(*sources.numbers, both.pictures, derived), sources.numbers, sources.origin};
+    Sources below = underived(sources);
+    const auto& stored = below.packed ? below.packed : below.numbers;
+    if (const auto other = volume::otherOf(*stored)) {
+        const auto own = volume::besideOther(*stored);
+        const Sources both =
+            withOther({drawnOn(own, lattice), own, sources.origin}, {drawnOn(other, lattice), other, {}});
+        below.pictures = both.pictures == both.numbers ? stored : both.pictures;
+    } else {
+        below.pictures = drawnOn(stored, lattice);
     }
-    const auto drawn = drawnOn(below, latticeOf(lattice));
-    if (drawn == volume::underived(sources.numbers)) return {sources.numbers, sources.numbers, sources.origin};
-    return {volume::deriveLike(*sources.numbers, drawn, derived), sources.numbers, sources.origin};
+    Sources out = sources; // numbers are not derived again
+    out.pictures = below.pictures == below.numbers  ? sources.numbers
+                   : below.pictures == below.packed ? sources.packed
+                                                    : volume::deriveLike(*sources.numbers, below.pictures, derived);
+    return out;
 }
 
 Sources openSources(const DataRef& data, std::vector<std::string>& messages, const Progress& progress) {

@@ -20,6 +20,9 @@ struct Sources {
     /// on their own grid, built-in models), else those of the archive. May be `pictures`.
     std::shared_ptr<const volume::BrickSource> numbers;
     NumberOrigin origin = {}; ///< of the numbers
+    /// What an archive packed from data that are shown so holds (DataRef::packed); null for others, and where it is
+    /// shown beside the originals.
+    std::shared_ptr<const volume::BrickSource> packed = {};
 
     Sources() = default;
     /// Numbers come from what is drawn.
@@ -34,14 +37,17 @@ struct Sources {
 /// What a session names, as it is drawn and as numbers are read from it; ranges known. Throws Error.
 Sources openSources(const DataRef& data, std::vector<std::string>& messages, const Progress& progress = {});
 
-/// An archive, without derived parameters. Throws Error.
+/// An archive, with the names of regions that the session states, without derived parameters. Throws Error.
 Sources openArchived(const DataRef& data, std::vector<std::string>& messages);
 
 /// The same data with other derived parameters: `sources` have none. Ranges of derived parameters are of the numbers.
 Sources deriveBoth(const Sources& sources, const std::vector<volume::DerivedParameter>& wanted,
                    std::vector<std::string>& messages, const Progress& progress = {});
 
-/// The same unpacked data drawn on another lattice; nothing is read again. `derived`: the parameters they have.
+/// The same without derived parameters.
+Sources underived(const Sources& sources);
+
+/// The same data drawn on another lattice; nothing is read again. `derived`: the parameters they have.
 Sources drawnOn(PictureLattice lattice, const Sources& sources, const std::vector<volume::DerivedParameter>& derived);
 
 /// Data beside other data.

@@ -5,7 +5,6 @@
 #include "volume/base/error.h"
 #include "volume/derived/derived.h"
 #include "volume/derived/other_source.h"
-#include "volume/sources/labelled_source.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -16,12 +15,13 @@ namespace {
 
 /// The samples of a grown archive that are unchanged: all of them, except where D4* frames are shown as BCC: the last
 /// times change, since they are interpolated with the three frames after them.
-vis::SameSamples sameSamples(const volume::BrickSource& was, const volume::BrickSource& is) {
-    const std::vector<volume::Channel> before = was.info().channels(), now = is.info().channels();
-    if (now.size() < before.size() || !std::equal(before.begin(), before.end(), now.begin())) return {};
+vis::SameSamples sameSamples(const volume::BrickSource& was, const Sources& now) {
+    const volume::BrickSource& is = *now.pictures;
+    const std::vector<volume::Channel> before = was.info().channels(), after = is.info().channels();
+    if (after.size() < before.size() || !std::equal(before.begin(), before.end(), after.begin())) return {};
     constexpr int kMadeOfOthers = 4;
     const int times = int(was.info().times.size());
-    const bool stored = dynamic_cast<const codec::Archive*>(&is) != nullptr;
+    const bool stored = dynamic_cast<const codec::Archive*>(now.numbers.get()) != nullptr;
     return {int(before.size()), stored ? times : std::max(times - kMadeOfOthers, 0)};
 }
 
@@ -52,6 +52,7 @@ struct Both {
 DataRef otherData(const DataRef& data) {
     DataRef other;
     other.remote = data.remote;
+    other.lattice = data.lattice;
     if (data.other) {
         other.files = data.other->files;
         other.import = data.other->import;
@@ -70,18 +71,19 @@ Sources readAgain(const DataRef& data, const Sources& shown) {
     std::vector<std::string> known; // messages already shown at opening
     Both pictures(volume::underived(shown.pictures)), numbers(volume::underived(shown.numbers));
     NumberOrigin origin = shown.origin;
-    const auto open = [&](const DataRef& archive, NumberOrigin& of) {
+    const auto open = [&](const DataRef& archive, NumberOrigin& of, auto& drawn, auto& read) {
         const Sources opened = openArchived(archive, known);
         of = opened.origin;
-        return volume::withLabelNames(opened.pictures, archive.import.labels);
+        drawn = opened.pictures;
+        read = opened.numbers;
     };
     if (isArchive(data)) {
-        pictures.own = numbers.own = open(data, origin);
+        open(data, origin, pictures.own, numbers.own);
         origin.other = shown.origin.other;
     }
     if (pictures.other && isArchive(otherData(data))) {
         NumberOrigin same;
-        pictures.other = numbers.other = open(otherData(data), same);
+        open(otherData(data), same, pictures.other, numbers.other);
     }
     const auto joined = pictures.joined();
     const bool one = pictures.own == numbers.own && pictures.other == numbers.other;
@@ -127,7 +129,7 @@ std::optional<Grown> readGrown(const DataRef& data, const Sources& shown,
     for (const std::string& text : {own, other})
         if (!text.empty()) grown.news.push_back(text);
     if (grown.news.empty()) return {};
-    grown.same = sameSamples(*before, *now.pictures);
+    grown.same = sameSamples(*before, now);
     if (!other.empty()) grown.same.channels = std::min(grown.same.channels, int(was.own->info().channels().size()));
     grown.sources = deriveBoth(now, derived, grown.problems, progress);
     return grown;

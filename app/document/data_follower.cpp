@@ -167,8 +167,8 @@ void DataFollower::followLattice() {
     if (step == Tracked<PictureLattice>::Step::Cancel) jobs_.cancel("lattice");
     if (step != Tracked<PictureLattice>::Step::Make) return;
     rememberChoice(options_.stateFolder, kLatticeChoice, std::string(kPictureLatticeNames[std::size_t(wanted)]));
-    if (isArchive(data) || data.packed) {
-        lattice_.shown = wanted; // an archive has a fixed lattice
+    if (data.packed && data.originals) { // both are drawn on the grid
+        lattice_.shown = wanted;
         return;
     }
     jobs_.start("lattice", "Resampling for pictures",
@@ -233,8 +233,7 @@ void DataFollower::followDerived() {
     if (step != decltype(derived_)::Step::Make) return;
     const Sources& now = document_.sources();
     jobs_.start("derive", "Deriving parameters",
-                [this, below = Sources(volume::underived(now.pictures), volume::underived(now.numbers), now.origin),
-                 wanted, from = now.pictures](const Progress& progress) -> Jobs::Finish {
+                [this, below = underived(now), wanted, from = now.pictures](const Progress& progress) -> Jobs::Finish {
                     auto messages = std::make_shared<std::vector<std::string>>();
                     const Sources made = deriveBoth(below, wanted, *messages, progress);
                     return [this, messages, made, wanted, from] {

@@ -71,7 +71,9 @@ std::shared_ptr<CompareData> ComparePictures::dataFor(ViewContext& context, cons
     if (!opened) return found;
     found->source = opened->sources.pictures;
     // The variant is what an archive holds, not what it was packed from.
-    found->numbers = data.packed ? opened->sources.pictures : opened->sources.numbers;
+    found->numbers = opened->sources.packed ? opened->sources.packed
+                     : data.packed          ? opened->sources.pictures
+                                            : opened->sources.numbers;
     if (!data.packed) found->origin = opened->sources.origin;
     found->failure = opened->failure;
     found->messages = opened->messages;
