@@ -73,6 +73,10 @@ Sources openPacked(volume::Dataset dataset, const DataRef& data, const Progress&
     if (!data.originals) {
         Sources out{drawnOn(packed, data.lattice), volume::makeMemorySource(std::move(dataset), onGrid()), computed};
         out.packed = packed;
+        if (data.packed->lattice != codec::StoredLattice::CC) {
+            const auto archive = std::make_shared<const codec::Archive>(name);
+            out.packed = volume::makeMemorySource(codec::gridDataset(archive, 0), onGrid());
+        }
         return out;
     }
     const auto archive = std::make_shared<const codec::Archive>(name);
@@ -273,6 +277,11 @@ Sources deriveBoth(const Sources& sources, const std::vector<volume::DerivedPara
     out.pictures = alike(sources.pictures);
     out.packed = alike(sources.packed);
     return out;
+}
+
+bool canChooseLattice(const DataRef& data, const volume::BrickSource& numbers, const NumberOrigin& origin) {
+    if (data.packed) return !data.originals && data.packed->lattice == codec::StoredLattice::CC;
+    return !origin.lattice.ends_with("D4*") && volume::canBeCentred(numbers);
 }
 
 Sources underived(const Sources& sources) {

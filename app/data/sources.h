@@ -20,8 +20,8 @@ struct Sources {
     /// on their own grid, built-in models), else those of the archive. May be `pictures`.
     std::shared_ptr<const volume::BrickSource> numbers;
     NumberOrigin origin = {}; ///< of the numbers
-    /// What an archive packed from data that are shown so holds (DataRef::packed); null for others, and where it is
-    /// shown beside the originals.
+    /// Of data shown as an archive would store them (DataRef::packed): what the archive gives at the points of the
+    /// file. Null for others, and where they are shown beside the originals.
     std::shared_ptr<const volume::BrickSource> packed = {};
 
     Sources() = default;
@@ -46,6 +46,10 @@ Sources deriveBoth(const Sources& sources, const std::vector<volume::DerivedPara
 
 /// The same without derived parameters.
 Sources underived(const Sources& sources);
+
+/// Whether pictures of data can be drawn on either lattice (DataRef::lattice): of a regular grid, also one that an
+/// archive stores.
+bool canChooseLattice(const DataRef& data, const volume::BrickSource& numbers, const NumberOrigin& origin);
 
 /// The same data drawn on another lattice; nothing is read again. `derived`: the parameters they have.
 Sources drawnOn(PictureLattice lattice, const Sources& sources, const std::vector<volume::DerivedParameter>& derived);

@@ -167,7 +167,7 @@ void DataFollower::followLattice() {
     if (step == Tracked<PictureLattice>::Step::Cancel) jobs_.cancel("lattice");
     if (step != Tracked<PictureLattice>::Step::Make) return;
     rememberChoice(options_.stateFolder, kLatticeChoice, std::string(kPictureLatticeNames[std::size_t(wanted)]));
-    if (data.packed && data.originals) { // both are drawn on the grid
+    if (!canChooseLattice(data, *document_.sources().numbers, document_.sources().origin)) {
         lattice_.shown = wanted;
         return;
     }

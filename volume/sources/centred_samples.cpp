@@ -90,7 +90,8 @@ double ownSum(const SampledBox& grid, const std::vector<float>& values, const st
     return ofOwnPart(box, grid.numbers, {&x, &y, &z}, values, beyond);
 }
 
-/// Whether a value lies within the range of the samples at the corners of its cell, where they are all of one part.
+/// Whether a value lies within the range of the samples at the corners of its cell, widened, where all are of one part:
+/// then it lies within that of all samples that the kernel reads, too.
 bool isBetween(const SampledBox& grid, const std::array<const Tap*, 3>& taps, double value) {
     if (!grid.numbers.empty()) return false;
     const std::size_t first = grid.box.place({taps[0]->cell[0], taps[1]->cell[0], taps[2]->cell[0]});
@@ -106,7 +107,8 @@ bool isBetween(const SampledBox& grid, const std::array<const Tap*, 3>& taps, do
                 lo = std::min(lo, corner);
                 hi = std::max(hi, corner);
             }
-    return double(lo) <= value && value <= double(hi);
+    const double beyond = kCentredHeadroom * (double(hi) - double(lo));
+    return double(lo) - beyond <= value && value <= double(hi) + beyond;
 }
 
 /// Range of the samples of a part that a kernel reads, widened.
