@@ -1,5 +1,6 @@
 #include "volume/base/error.h"
 #include "volume/field/part_masks.h"
+#include "volume/sources/centred_field.h"
 #include "volume/sources/centred_samples.h"
 #include "volume/sources/centred_source.h"
 #include "volume/sources/memory_source.h"

@@ -1,5 +1,6 @@
 #include "volume/reconstruct/reconstruct.h"
 #include "volume/resample/resample.h"
+#include "volume/sources/centred_field.h"
 #include "volume/sources/centred_samples.h"
 #include "volume/synthetic/marschner_lobb.h"
 

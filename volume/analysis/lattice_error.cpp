@@ -4,7 +4,7 @@
 #include "volume/reconstruct/reconstruct.h"
 #include "volume/resample/resample.h"
 #include "volume/resample/series.h"
-#include "volume/sources/centred_samples.h"
+#include "volume/sources/centred_field.h"
 
 #include <algorithm>
 #include <cmath>

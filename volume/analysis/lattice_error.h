@@ -12,7 +12,7 @@ namespace tessera::volume {
 /// Filters of volume/reconstruct/reconstruct.h: `linear` on unfiltered samples, and on prefiltered ones (quasi); for
 /// BCC also `tetrahedral`, `cosineWeighted`, and `quinticBox` on prefiltered samples. Resampled, Corrected: quasi, of
 /// samples that come from those of the CC grid with a cell shorter by sqrt 2, as toBcc() resamples them
-/// (volume/resample/resample.h), and as pictures are made of them (toCentred(), volume/sources/centred_samples.h).
+/// (volume/resample/resample.h), and as pictures are made of them (toCentred(), volume/sources/centred_field.h).
 enum class LatticeFilter { Linear, Quasi, Tetrahedral, Cosine, Quintic, Resampled, Corrected };
 inline constexpr std::string_view kLatticeFilterNames[] = {"linear",  "quasi",     "tetrahedral", "cosine",
                                                            "quintic", "resampled", "corrected"};

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "volume/sources/centred_samples.h"
+#include "volume/resample/resample_taps.h"
+#include "volume/sources/sampled_box.h"
 
 #include <algorithm>
 

@@ -1,15 +1,13 @@
 #include "volume/sources/centred_samples.h"
 
-#include "volume/base/parallel.h"
 #include "volume/reconstruct/present_coverage.h"
 #include "volume/resample/slice_filter.h"
 #include "volume/sources/box_filter.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <glm/common.hpp>
-#include <glm/vector_relational.hpp>
+#include <limits>
 
 namespace tessera::volume {
 
@@ -33,42 +31,6 @@ Tap between(double index) {
     tap.weight[0] = 1 - tap.fraction;
     tap.weight[1] = tap.fraction;
     return tap;
-}
-
-template <class Visit> void forEach(const IndexBox& box, const Visit& visit) {
-    std::size_t place = 0;
-    for (int z = box.begin.z; z < box.end.z; ++z)
-        for (int y = box.begin.y; y < box.end.y; ++y)
-            for (int x = box.begin.x; x < box.end.x; ++x, ++place) visit(glm::ivec3(x, y, z), place);
-}
-
-/// One number for all where it is the same.
-void simplify(SampledBox& box) {
-    if (box.numbers.empty()) return;
-    const std::uint8_t first = box.numbers.front();
-    if (!std::ranges::all_of(box.numbers, [&](std::uint8_t number) { return number == first; })) return;
-    box.number = first;
-    box.numbers.clear();
-}
-
-/// Absent samples, and such as are not finite, get number and value 0.
-void clean(SampledBox& box) {
-    if (!std::ranges::all_of(box.values, [](float value) { return std::isfinite(value); })) {
-        if (box.numbers.empty()) box.numbers.assign(box.values.size(), box.number);
-        for (std::size_t i = 0; i < box.values.size(); ++i)
-            if (!std::isfinite(box.values[i])) box.numbers[i] = 0;
-    }
-    simplify(box);
-    if (box.numbers.empty() && box.number != 0) return;
-    for (std::size_t i = 0; i < box.values.size(); ++i)
-        if (box.numberAt(i) == 0) box.values[i] = 0;
-}
-
-/// An empty box like another, with numbers where that has some.
-SampledBox boxLike(const IndexBox& box, const SampledBox& other) {
-    SampledBox out{box, std::vector<float>(box.count()), {}, other.number};
-    if (!other.numbers.empty()) out.numbers.resize(out.values.size());
-    return out;
 }
 
 /// A tap in a box that begins at `begin`.
@@ -270,7 +232,7 @@ bool CentredGrid::inGap(int sublattice, glm::ivec3 at, const SampledBox& grid) c
 
 SampledBox CentredGrid::labels(int sublattice, const SampledBox& grid, const IndexBox& texels) const {
     SampledBox out = boxLike(texels, grid);
-    forEach(texels, [&](glm::ivec3 at, std::size_t place) {
+    forEachIndex(texels, [&](glm::ivec3 at, std::size_t place) {
         const std::size_t from = grid.box.place({tapOf(sublattice, 0, at.x).nearest, tapOf(sublattice, 1, at.y).nearest,
                                                  tapOf(sublattice, 2, at.z).nearest});
         const bool here =
@@ -327,7 +289,7 @@ SampledBox CentredGrid::residual(const SampledBox& grid, const std::array<Sample
                 met[place++] |= bits;
             });
     }
-    forEach(of, [&](glm::ivec3 at, std::size_t place) {
+    forEachIndex(of, [&](glm::ivec3 at, std::size_t place) {
         const std::size_t from = grid.box.place(at);
         const std::uint8_t number = grid.numberAt(from);
         if (!out.numbers.empty()) out.numbers[place] = number;
@@ -400,73 +362,6 @@ std::array<SampledBox, 2> CentredGrid::make(SampledBox grid, const IndexBox& tex
     for (int s = 0; s < 2; ++s) first[std::size_t(s)] = resampled(s, grid, all);
     const SampledBox left = residual(grid, first, read);
     for (int s = 0; s < 2; ++s) out[std::size_t(s)] = corrected(s, grid, left, first[std::size_t(s)], texels);
-    return out;
-}
-
-namespace {
-
-/// Samples of a field in a box.
-SampledBox cut(const Field& field, const IndexBox& box) {
-    SampledBox out{box, std::vector<float>(box.count()), {}, 1};
-    if (field.mask) out.numbers.resize(out.values.size());
-    const auto width = std::size_t(box.size().x);
-    dispatch(field.type, [&]<class T>(T) {
-        const auto stored = field.as<T>();
-        std::size_t to = 0;
-        for (int z = box.begin.z; z < box.end.z; ++z)
-            for (int y = box.begin.y; y < box.end.y; ++y, to += width) {
-                const std::size_t row = field.lattice.index({box.begin.x, y, z});
-                for (std::size_t x = 0; x < width; ++x)
-                    out.values[to + x] = float(field.offset + field.scale * double(stored[row + x]));
-                if (field.mask) std::copy_n(&(*field.mask)[row], width, &out.numbers[to]);
-            }
-    });
-    return out;
-}
-
-/// The field with samples that are not finite made absent.
-Field onlyFinite(Field field) {
-    if (field.type != ScalarType::F32) return field;
-    const auto isFinite = [](float value) { return std::isfinite(value); };
-    if (std::ranges::all_of(field.as<float>(), isFinite)) return field;
-    auto mask =
-        field.mask ? std::make_shared<Mask>(*field.mask) : std::make_shared<Mask>(field.count(), std::uint8_t(1));
-    for (std::size_t i = 0; i < mask->size(); ++i)
-        if (!isFinite(field.as<float>()[i])) (*mask)[i] = 0;
-    field.mask = std::move(mask);
-    return field;
-}
-
-} // namespace
-
-Field toCentred(const Field& given, bool categorical, const Progress& progress) {
-    const Field source = onlyFinite(given);
-    constexpr int kEdge = 32; // texels: what is made at a time
-    const Lattice target = bccFor(source.lattice);
-    const CentredGrid grid(finestCentred(source.lattice), categorical);
-    Field out = makeField(target, ScalarType::F32);
-    std::vector<std::uint8_t> mask(source.mask ? target.count() : 0);
-    const glm::ivec3 texels = target.texels(), blocks = (texels + kEdge - 1) / kEdge;
-    const int perLayer = blocks.x * blocks.y;
-    for (int layer = 0; layer < blocks.z; ++layer) {
-        progress.advance(double(layer) / blocks.z, "resample");
-        parallelFor(std::size_t(perLayer), [&](std::size_t i) {
-            const glm::ivec3 begin = glm::ivec3(int(i) % blocks.x, int(i) / blocks.x, layer) * kEdge;
-            const IndexBox box{begin, glm::min(begin + kEdge, texels)};
-            const auto made = grid.make(cut(source, grid.needed(box, source.mask != nullptr)), box);
-            forEach(box, [&](glm::ivec3 at, std::size_t place) {
-                for (int s = 0; s < 2; ++s) {
-                    if (2 * at.z + s >= target.size.z) continue;
-                    const std::size_t to = target.index({at.x, at.y, 2 * at.z + s});
-                    out.as<float>()[to] = made[std::size_t(s)].values[place];
-                    if (!mask.empty()) mask[to] = made[std::size_t(s)].numberAt(place);
-                }
-            });
-        });
-    }
-    progress.advance(1, "resample");
-    if (!std::ranges::all_of(mask, [](std::uint8_t number) { return number == 1; }))
-        out.mask = std::make_shared<const Mask>(std::move(mask));
     return out;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "volume/base/progress.h"
-#include "volume/field/field.h"
+#include "volume/field/lattice.h"
 #include "volume/resample/resample_taps.h"
+#include "volume/sources/sampled_box.h"
 
 #include <array>
 #include <cstdint>
@@ -30,27 +30,6 @@ inline constexpr double kCentredHeadroom = 0.25;
 
 /// How much further apart two corrected samples of whole parts can be than the samples they are made of.
 inline constexpr double kCentredGain = 4;
-
-/// A box [begin, end) of indices.
-struct IndexBox {
-    glm::ivec3 begin{0}, end{0};
-    glm::ivec3 size() const { return end - begin; }
-    std::size_t count() const { return std::size_t(size().x) * std::size_t(size().y) * std::size_t(size().z); }
-    /// Place of an index of the box in memory, x fastest.
-    std::size_t place(glm::ivec3 at) const {
-        const glm::ivec3 in = at - begin, all = size();
-        return (std::size_t(in.z) * std::size_t(all.y) + std::size_t(in.y)) * std::size_t(all.x) + std::size_t(in.x);
-    }
-};
-
-/// Samples in a box, x fastest: of a regular grid, or of one sublattice in texels.
-struct SampledBox {
-    IndexBox box;
-    std::vector<float> values;
-    std::vector<std::uint8_t> numbers; ///< of parts (volume/field/part_masks.h), 0 absent; empty: all have `number`
-    std::uint8_t number = 1;
-    std::uint8_t numberAt(std::size_t place) const { return numbers.empty() ? number : numbers[place]; }
-};
 
 /// Samples along an axis: sample i lies at first + i * step, in cells of the grid.
 struct LevelAxis {
@@ -97,9 +76,5 @@ private:
     std::array<Taps, 2> kernel_;  ///< K, of each sublattice
     std::array<Taps, 2> between_; ///< R: the two texels of each sublattice around samples of the grid
 };
-
-/// A field of a regular grid on bccFor(its lattice) as above, as 32-bit floats; labels take the nearest sample. Its
-/// mask, and that of the result, may hold parts. Deterministic on any number of threads. Throws Cancelled.
-Field toCentred(const Field& source, bool categorical, const Progress& progress = {});
 
 } // namespace tessera::volume
