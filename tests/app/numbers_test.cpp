@@ -300,6 +300,80 @@ TEST(Numbers, OfAnArchiveAreItsOwn) {
     std::filesystem::remove(path);
 }
 
+class PicturesOfArchives : public testing::Test {
+protected:
+    std::string folder =
+        (std::filesystem::temp_directory_path() / "tessera_pictures_").string() + std::to_string(::getpid());
+    PicturesOfArchives() { std::filesystem::create_directories(folder); }
+    ~PicturesOfArchives() override { std::filesystem::remove_all(folder); }
+
+    DataRef archived(StoredLattice lattice) const {
+        const std::string path = folder + "/cell.tsr";
+        const DataRef data = smallCell();
+        volume::Dataset cell = volume::makeModel(data.model, data.settings);
+        codec::pack(cell, packing(lattice), path);
+        DataRef of = dataOf({path}, {});
+        of.derived = data.derived;
+        return of;
+    }
+    static void expectSamePictures(const Sources& a, const Sources& b) {
+        ASSERT_EQ(a.pictures->grid(), b.pictures->grid());
+        const auto channels = a.pictures->info().channels();
+        for (int c = 0; c < int(channels.size()); ++c)
+            for (std::size_t i = 0; i < a.pictures->grid().brickCount(); ++i) {
+                const volume::BrickKey key{c, kTime, 0, a.pictures->grid().indexOf(i)};
+                const volume::BrickSamples one = a.pictures->read(key), other = b.pictures->read(key);
+                ASSERT_EQ(one.present, other.present) << channels[std::size_t(c)].name;
+                for (std::size_t s = 0; s < one.values.size(); ++s) {
+                    if (one.isPresent(s)) ASSERT_EQ(one.values[s], other.values[s]) << channels[std::size_t(c)].name;
+                }
+            }
+    }
+};
+
+TEST_F(PicturesOfArchives, AreThoseOfTheFile) {
+    const Sources archive = opened(archived(StoredLattice::CC)), file = opened(smallCell());
+    EXPECT_EQ(archive.pictures->info().lattice, volume::bccFor(archive.numbers->info().lattice));
+    EXPECT_EQ(archive.pictures->info().parameters[0].ranges, archive.numbers->info().parameters[0].ranges);
+    expectSamePictures(archive, file);
+}
+
+TEST_F(PicturesOfArchives, AreDrawnOnTheGridAsStoredIfAsked) {
+    DataRef data = archived(StoredLattice::CC);
+    data.lattice = PictureLattice::Grid;
+    const Sources grid = opened(data);
+    EXPECT_EQ(grid.pictures, grid.numbers);
+    EXPECT_EQ(grid.pictures->info().lattice.kind, volume::LatticeKind::CC);
+    EXPECT_TRUE(canChooseLattice(data, *grid.numbers, grid.origin));
+    data.lattice = PictureLattice::BodyCentred;
+    const Sources centred = opened(data), moved = drawnOn(PictureLattice::BodyCentred, grid, data.derived);
+    EXPECT_EQ(moved.numbers, grid.numbers);
+    expectSamePictures(centred, moved);
+    EXPECT_EQ(drawnOn(PictureLattice::Grid, centred, data.derived).pictures, centred.numbers);
+}
+
+TEST_F(PicturesOfArchives, OnAnotherLatticeAreDrawnAsStored) {
+    for (const StoredLattice lattice : {StoredLattice::BCC, StoredLattice::D4}) {
+        const DataRef data = archived(lattice);
+        const Sources sources = opened(data);
+        EXPECT_EQ(sources.pictures, sources.numbers);
+        EXPECT_FALSE(canChooseLattice(data, *sources.numbers, sources.origin));
+    }
+}
+
+TEST_F(PicturesOfArchives, OfAPackedCopyAreDrawnAlike) {
+    const DataRef data = with([](DataRef& changed) { changed.packed = packing(StoredLattice::CC); });
+    const Sources packed = opened(data), file = opened(smallCell());
+    expectSamePictures(packed, file);
+    ASSERT_TRUE(packed.packed);
+    EXPECT_EQ(packed.packed->info().lattice, packed.numbers->info().lattice);
+    EXPECT_TRUE(packed.packed->info().findChannel("ratio"));
+    const Sources grid = drawnOn(PictureLattice::Grid, packed, data.derived);
+    EXPECT_EQ(grid.pictures, packed.packed) << "what the archive holds, not the file";
+    const Sources onBcc = opened(with([](DataRef& changed) { changed.packed = packing(StoredLattice::BCC); }));
+    EXPECT_EQ(onBcc.packed->info().lattice, onBcc.numbers->info().lattice) << "unpacked";
+}
+
 TEST(Numbers, WhatIsDrawnOnAnotherLatticeHasTheSameNumbers) {
     const DataRef data = smallCell();
     const Sources first = opened(data);

@@ -52,26 +52,46 @@ double ownSum(const SampledBox& grid, const std::vector<float>& values, const st
     return ofOwnPart(box, grid.numbers, {&x, &y, &z}, values, beyond);
 }
 
-/// Whether a value lies within the range of the samples at the corners of its cell, widened, where all are of one part:
-/// then it lies within that of all samples that the kernel reads, too.
-bool isBetween(const SampledBox& grid, const std::array<const Tap*, 3>& taps, double value) {
-    if (!grid.numbers.empty()) return false;
-    const std::size_t first = grid.box.place({taps[0]->cell[0], taps[1]->cell[0], taps[2]->cell[0]});
-    const glm::ivec3 size = grid.box.size();
-    const std::size_t stepX = std::size_t(taps[0]->cell[1] - taps[0]->cell[0]),
-                      stepY = std::size_t((taps[1]->cell[1] - taps[1]->cell[0]) * size.x),
-                      stepZ = std::size_t((taps[2]->cell[1] - taps[2]->cell[0]) * size.x * size.y);
-    float lo = grid.values[first], hi = lo;
-    for (const std::size_t z : {std::size_t(0), stepZ})
-        for (const std::size_t y : {std::size_t(0), stepY})
-            for (const std::size_t x : {std::size_t(0), stepX}) {
-                const float corner = grid.values[first + z + y + x];
-                lo = std::min(lo, corner);
-                hi = std::max(hi, corner);
+/// The cells of a grid around samples, as places in memory.
+class Cells {
+public:
+    /// `tapOf(axis, index)`: of the samples in a box.
+    template <class TapOf>
+    Cells(const SampledBox& grid, const IndexBox& samples, const TapOf& tapOf) : grid_(grid), samples_(samples) {
+        const glm::ivec3 size = grid.box.size(), steps(1, size.x, size.x * size.y);
+        for (int axis = 0; axis < 3; ++axis)
+            for (int i = samples.begin[axis]; i < samples.end[axis]; ++i) {
+                const Tap& tap = tapOf(axis, i);
+                along_[std::size_t(axis)].push_back({std::size_t((tap.cell[0] - grid.box.begin[axis]) * steps[axis]),
+                                                     std::size_t((tap.cell[1] - tap.cell[0]) * steps[axis])});
             }
-    const double beyond = kCentredHeadroom * (double(hi) - double(lo));
-    return double(lo) - beyond <= value && value <= double(hi) + beyond;
-}
+    }
+    /// Whether a value at a sample lies within the range of the corners of its cell, widened, where all samples of the
+    /// grid are of one part: then it lies within that of all samples that the kernel reads, too.
+    bool hold(glm::ivec3 at, double value) const {
+        if (!grid_.numbers.empty()) return false;
+        const Side &x = along_[0][std::size_t(at.x - samples_.begin.x)],
+                   &y = along_[1][std::size_t(at.y - samples_.begin.y)],
+                   &z = along_[2][std::size_t(at.z - samples_.begin.z)];
+        const float* first = grid_.values.data() + (x.place + y.place + z.place);
+        float lo = first[0], hi = lo;
+        for (const std::size_t step :
+             {x.step, y.step, x.step + y.step, z.step, z.step + x.step, z.step + y.step, z.step + x.step + y.step}) {
+            lo = std::min(lo, first[step]);
+            hi = std::max(hi, first[step]);
+        }
+        const double beyond = kCentredHeadroom * (double(hi) - double(lo));
+        return double(lo) - beyond <= value && value <= double(hi) + beyond;
+    }
+
+private:
+    struct Side {
+        std::size_t place, step;
+    };
+    const SampledBox& grid_;
+    const IndexBox& samples_;
+    std::array<std::vector<Side>, 3> along_;
+};
 
 /// Range of the samples of a part that a kernel reads, widened.
 Range allowed(const SampledBox& grid, const std::array<const Tap*, 3>& taps, std::uint8_t number) {
@@ -273,75 +293,85 @@ SampledBox CentredGrid::resampled(int sublattice, const SampledBox& grid, const 
     return out;
 }
 
+std::optional<double> CentredGrid::ofPart(const std::array<SampledBox, 2>& filtered, glm::ivec3 at,
+                                          std::uint8_t number) const {
+    double sum = 0, coverage = 0;
+    for (std::size_t s = 0; s < 2; ++s)
+        for (int n = 0; n < 8; ++n) {
+            const glm::ivec3 side(n & 1, n >> 1 & 1, n >> 2);
+            double weight = 0.5;
+            glm::ivec3 texel;
+            for (int axis = 0; axis < 3; ++axis) {
+                const Tap& tap = between_[s][std::size_t(axis)][std::size_t(at[axis])];
+                weight *= tap.weight[std::size_t(side[axis])];
+                texel[axis] = tap.first + side[axis];
+            }
+            const std::size_t place = filtered[s].box.place(texel);
+            if (weight == 0 || filtered[s].numberAt(place) != number) continue;
+            sum += weight * double(filtered[s].values[place]);
+            coverage += weight;
+        }
+    if (coverage < kPresentCoverage) return std::nullopt;
+    return sum / coverage;
+}
+
 SampledBox CentredGrid::residual(const SampledBox& grid, const std::array<SampledBox, 2>& centred,
                                  const IndexBox& of) const {
     const std::array<SampledBox, 2> filtered = prefiltered(centred);
     SampledBox out = boxLike(of, grid);
     std::vector<double> sums(out.values.size());
-    std::vector<std::uint8_t> met(out.values.size());
+    std::vector<std::uint8_t> met(grid.numbers.empty() ? 0 : sums.size());
     for (std::size_t s = 0; s < 2; ++s) {
         std::size_t place = 0;
         filterBox<2>(
             filtered[s], of,
             [&](int axis, int i) -> const Tap& { return between_[s][std::size_t(axis)][std::size_t(i)]; },
             [&](glm::ivec3, double sum, std::uint8_t bits) {
-                sums[place] += 0.5 * sum;
-                met[place++] |= bits;
+                if (!met.empty()) met[place] |= bits;
+                sums[place++] += 0.5 * sum;
             });
     }
-    forEachIndex(of, [&](glm::ivec3 at, std::size_t place) {
-        const std::size_t from = grid.box.place(at);
-        const std::uint8_t number = grid.numberAt(from);
-        if (!out.numbers.empty()) out.numbers[place] = number;
-        if (number == 0) return;
-        double value = sums[place];
-        if (met[place] != bitOf(number)) {
-            double sum = 0, coverage = 0;
-            for (std::size_t s = 0; s < 2; ++s)
-                for (int n = 0; n < 8; ++n) {
-                    const glm::ivec3 side(n & 1, n >> 1 & 1, n >> 2);
-                    double weight = 0.5;
-                    glm::ivec3 texel;
-                    for (int axis = 0; axis < 3; ++axis) {
-                        const Tap& tap = between_[s][std::size_t(axis)][std::size_t(at[axis])];
-                        weight *= tap.weight[std::size_t(side[axis])];
-                        texel[axis] = tap.first + side[axis];
-                    }
-                    const std::size_t place2 = filtered[s].box.place(texel);
-                    if (weight == 0 || filtered[s].numberAt(place2) != number) continue;
-                    sum += weight * double(filtered[s].values[place2]);
-                    coverage += weight;
+    if (met.empty() && grid.number == 0) return out;
+    for (int z = of.begin.z; z < of.end.z; ++z)
+        for (int y = of.begin.y; y < of.end.y; ++y) {
+            const std::size_t from = grid.box.place({of.begin.x, y, z}), to = of.place({of.begin.x, y, z});
+            for (int x = of.begin.x; x < of.end.x; ++x) {
+                const std::size_t i = std::size_t(x - of.begin.x);
+                std::optional<double> value = sums[to + i];
+                if (!met.empty()) {
+                    const std::uint8_t number = out.numbers[to + i] = grid.numbers[from + i];
+                    if (number == 0) continue;
+                    if (met[to + i] != bitOf(number)) value = ofPart(filtered, {x, y, z}, number);
                 }
-            if (coverage < kPresentCoverage) return;
-            value = sum / coverage;
+                if (value) out.values[to + i] = float(double(grid.values[from + i]) - *value);
+            }
         }
-        out.values[place] = float(double(grid.values[from]) - value);
-    });
     return out;
 }
 
 SampledBox CentredGrid::corrected(int sublattice, const SampledBox& grid, const SampledBox& residual,
                                   const SampledBox& centred, const IndexBox& texels) const {
     SampledBox out = boxLike(texels, grid);
+    if (out.numbers.empty() && out.number == 0) return out;
+    const auto own = [&](int axis, int i) -> const Tap& { return tapOf(sublattice, axis, i); };
+    const Cells cells(grid, texels, own);
     std::size_t place = 0;
-    filterBox<kReach>(
-        residual, texels, [&](int axis, int i) -> const Tap& { return tapOf(sublattice, axis, i); },
-        [&](glm::ivec3 at, double sum, std::uint8_t met) {
-            const std::size_t to = place++, from = centred.box.place(at);
-            const std::uint8_t number = centred.numberAt(from);
-            if (!out.numbers.empty()) out.numbers[to] = number;
-            if (number == 0) return;
-            const std::array<const Tap*, 3> taps{&tapOf(sublattice, 0, at.x), &tapOf(sublattice, 1, at.y),
-                                                 &tapOf(sublattice, 2, at.z)};
-            if (met != bitOf(number))
-                sum = ownSum(residual, residual.values, taps, [](glm::ivec3, const auto&) { return 0.0; });
-            double value = double(centred.values[from]) + sum;
-            if (!isBetween(grid, taps, value)) {
-                const Range range = allowed(grid, taps, number);
-                value = std::clamp(value, range.lo, range.hi);
-            }
+    filterBox<kReach>(residual, texels, own, [&](glm::ivec3 at, double sum, std::uint8_t met) {
+        const std::size_t to = place++, from = centred.box.place(at);
+        const std::uint8_t number = centred.numberAt(from);
+        if (!out.numbers.empty()) out.numbers[to] = number;
+        if (number == 0) return;
+        if (met == bitOf(number)) {
+            const double value = double(centred.values[from]) + sum;
             out.values[to] = float(value);
-        });
+            if (cells.hold(at, value)) return;
+        }
+        const std::array<const Tap*, 3> taps{&own(0, at.x), &own(1, at.y), &own(2, at.z)};
+        if (met != bitOf(number))
+            sum = ownSum(residual, residual.values, taps, [](glm::ivec3, const auto&) { return 0.0; });
+        const Range range = allowed(grid, taps, number);
+        out.values[to] = float(std::clamp(double(centred.values[from]) + sum, range.lo, range.hi));
+    });
     return out;
 }
 

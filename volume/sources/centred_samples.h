@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 /// Samples that pictures are made of: those of a regular grid on the body-centred lattice, corrected once by what the
@@ -67,6 +68,7 @@ private:
     bool inGap(int sublattice, glm::ivec3 at, const SampledBox& grid) const;
     SampledBox labels(int sublattice, const SampledBox& grid, const IndexBox& texels) const;
     SampledBox resampled(int sublattice, const SampledBox& grid, const IndexBox& texels) const;
+    std::optional<double> ofPart(const std::array<SampledBox, 2>& filtered, glm::ivec3 at, std::uint8_t number) const;
     SampledBox residual(const SampledBox& grid, const std::array<SampledBox, 2>& centred, const IndexBox& of) const;
     SampledBox corrected(int sublattice, const SampledBox& grid, const SampledBox& residual, const SampledBox& centred,
                          const IndexBox& texels) const;
