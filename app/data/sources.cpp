@@ -48,9 +48,10 @@ volume::MemorySourceOptions onGrid(int brickSize = volume::MemorySourceOptions{}
 
 /// Samples as pictures draw them; as they are where they lie on no regular grid.
 std::shared_ptr<const volume::BrickSource> drawnOn(const std::shared_ptr<const volume::BrickSource>& numbers,
-                                                   PictureLattice lattice) {
+                                                   PictureLattice lattice,
+                                                   const volume::BrickSource* former = nullptr) {
     if (lattice == PictureLattice::Grid || !volume::canBeCentred(*numbers)) return numbers;
-    return volume::makeCentredSource(numbers, kBricksMade);
+    return volume::makeCentredSource(numbers, kBricksMade, former);
 }
 
 /// Packs a data set with these options into a temporary archive, to show the effect of packing.
@@ -195,16 +196,32 @@ std::shared_ptr<const volume::BrickSource> unpackedOnto(const volume::BrickSourc
     return volume::withLabelNames(std::move(source), data.import.labels);
 }
 
-/// Adds the parameters of the second data set. Pictures use the second data on the lattice of pictures if its grid is
-/// that of the first, else as computed.
+/// The sources after a change of each, made once: pictures of numbers, or of a packed copy, are drawn of these anew, so
+/// that nothing is computed from samples that are made for pictures alone.
+template <class Change> Sources changed(const Sources& before, const Change& change) {
+    Sources out = before;
+    out.numbers = change(before.numbers);
+    if (before.packed) out.packed = change(before.packed);
+    const auto drawnFrom = volume::centredFrom(*before.pictures);
+    if (drawnFrom && (drawnFrom == before.numbers || drawnFrom == before.packed))
+        out.pictures = drawnOn(drawnFrom == before.numbers ? out.numbers : out.packed, PictureLattice::BodyCentred,
+                               before.pictures.get());
+    else
+        out.pictures = before.pictures == before.numbers  ? out.numbers
+                       : before.pictures == before.packed ? out.packed
+                                                          : change(before.pictures);
+    return out;
+}
+
+/// Adds the parameters of the second data set.
 Sources withOther(const Sources& whole, const Sources& other) {
-    NumberOrigin origin = whole.origin;
-    origin.other =
+    Sources out = changed(whole, [&](const std::shared_ptr<const volume::BrickSource>& source) {
+        const bool alike = volume::SampledOnto(other.pictures, *source).sameGrid();
+        return volume::withOther(source, source != whole.numbers && alike ? other.pictures : other.numbers);
+    });
+    out.origin.other =
         originText(other.origin, other.numbers->info(), {}) + ", " + volume::otherText(*whole.numbers, *other.numbers);
-    const auto numbers = volume::withOther(whole.numbers, other.numbers);
-    if (whole.pictures == whole.numbers) return {numbers, numbers, std::move(origin)};
-    const bool alike = volume::SampledOnto(other.pictures, *whole.pictures).sameGrid();
-    return {volume::withOther(whole.pictures, alike ? other.pictures : other.numbers), numbers, std::move(origin)};
+    return out;
 }
 
 /// DataRef::other as the data alone.
@@ -268,15 +285,15 @@ Sources openStored(const DataRef& data, std::vector<std::string>& messages, cons
 
 Sources deriveBoth(const Sources& sources, const std::vector<volume::DerivedParameter>& wanted,
                    std::vector<std::string>& messages, const Progress& progress) {
-    Sources out = sources;
-    out.numbers = volume::deriveAll(sources.numbers, wanted, messages, progress);
-    const auto alike = [&](const std::shared_ptr<const volume::BrickSource>& source) {
-        if (!source || source == sources.numbers) return source ? out.numbers : source;
-        return volume::deriveLike(*out.numbers, source, wanted);
-    };
-    out.pictures = alike(sources.pictures);
-    out.packed = alike(sources.packed);
-    return out;
+    std::shared_ptr<const volume::BrickSource> numbers;
+    return changed(sources, [&](const std::shared_ptr<const volume::BrickSource>& source) {
+        if (numbers) return volume::deriveLike(*numbers, source, wanted);
+        return numbers = volume::deriveAll(source, wanted, messages, progress); // they come first
+    });
+}
+
+Sources underived(const Sources& sources) {
+    return changed(sources, [](const auto& source) { return volume::underived(source); });
 }
 
 bool canChooseLattice(const DataRef& data, const volume::BrickSource& numbers, const NumberOrigin& origin) {
@@ -284,28 +301,9 @@ bool canChooseLattice(const DataRef& data, const volume::BrickSource& numbers, c
     return !origin.lattice.ends_with("D4*") && volume::canBeCentred(numbers);
 }
 
-Sources underived(const Sources& sources) {
+Sources drawnOn(PictureLattice lattice, const Sources& sources) {
     Sources out = sources;
-    for (auto* source : {&out.pictures, &out.numbers, &out.packed})
-        if (*source) *source = volume::underived(*source);
-    return out;
-}
-
-Sources drawnOn(PictureLattice lattice, const Sources& sources, const std::vector<volume::DerivedParameter>& derived) {
-    Sources below = underived(sources);
-    const auto& stored = below.packed ? below.packed : below.numbers;
-    if (const auto other = volume::otherOf(*stored)) {
-        const auto own = volume::besideOther(*stored);
-        const Sources both =
-            withOther({drawnOn(own, lattice), own, sources.origin}, {drawnOn(other, lattice), other, {}});
-        below.pictures = both.pictures == both.numbers ? stored : both.pictures;
-    } else {
-        below.pictures = drawnOn(stored, lattice);
-    }
-    Sources out = sources; // numbers are not derived again
-    out.pictures = below.pictures == below.numbers  ? sources.numbers
-                   : below.pictures == below.packed ? sources.packed
-                                                    : volume::deriveLike(*sources.numbers, below.pictures, derived);
+    out.pictures = drawnOn(sources.packed ? sources.packed : sources.numbers, lattice);
     return out;
 }
 

@@ -40,7 +40,8 @@ Sources openSources(const DataRef& data, std::vector<std::string>& messages, con
 /// An archive, with the names of regions that the session states, without derived parameters. Throws Error.
 Sources openArchived(const DataRef& data, std::vector<std::string>& messages);
 
-/// The same data with other derived parameters: `sources` have none. Ranges of derived parameters are of the numbers.
+/// The same data with other derived parameters: `sources` have none. They are computed from the numbers, and drawn as
+/// all others are; where pictures are no pictures of the numbers, from these as well, with the ranges of the numbers.
 Sources deriveBoth(const Sources& sources, const std::vector<volume::DerivedParameter>& wanted,
                    std::vector<std::string>& messages, const Progress& progress = {});
 
@@ -51,8 +52,8 @@ Sources underived(const Sources& sources);
 /// archive stores.
 bool canChooseLattice(const DataRef& data, const volume::BrickSource& numbers, const NumberOrigin& origin);
 
-/// The same data drawn on another lattice; nothing is read again. `derived`: the parameters they have.
-Sources drawnOn(PictureLattice lattice, const Sources& sources, const std::vector<volume::DerivedParameter>& derived);
+/// The same data drawn on another lattice; nothing is read again.
+Sources drawnOn(PictureLattice lattice, const Sources& sources);
 
 /// Data beside other data.
 struct ComparedData {

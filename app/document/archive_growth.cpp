@@ -15,13 +15,12 @@ namespace {
 
 /// The samples of a grown archive that are unchanged: all of them, except where D4* frames are shown as BCC: the last
 /// times change, since they are interpolated with the three frames after them.
-vis::SameSamples sameSamples(const volume::BrickSource& was, const Sources& now) {
-    const volume::BrickSource& is = *now.pictures;
-    const std::vector<volume::Channel> before = was.info().channels(), after = is.info().channels();
-    if (after.size() < before.size() || !std::equal(before.begin(), before.end(), after.begin())) return {};
+vis::SameSamples sameSamples(const volume::BrickSource& was, const volume::BrickSource& is) {
+    const std::vector<volume::Channel> before = was.info().channels(), now = is.info().channels();
+    if (now.size() < before.size() || !std::equal(before.begin(), before.end(), now.begin())) return {};
     constexpr int kMadeOfOthers = 4;
     const int times = int(was.info().times.size());
-    const bool stored = dynamic_cast<const codec::Archive*>(now.numbers.get()) != nullptr;
+    const bool stored = dynamic_cast<const codec::Archive*>(&is) != nullptr;
     return {int(before.size()), stored ? times : std::max(times - kMadeOfOthers, 0)};
 }
 
@@ -52,7 +51,6 @@ struct Both {
 DataRef otherData(const DataRef& data) {
     DataRef other;
     other.remote = data.remote;
-    other.lattice = data.lattice;
     if (data.other) {
         other.files = data.other->files;
         other.import = data.other->import;
@@ -69,25 +67,24 @@ std::string archivePath(const DataRef& data) {
 /// Error.
 Sources readAgain(const DataRef& data, const Sources& shown) {
     std::vector<std::string> known; // messages already shown at opening
-    Both pictures(volume::underived(shown.pictures)), numbers(volume::underived(shown.numbers));
+    Both numbers(volume::underived(shown.numbers));
     NumberOrigin origin = shown.origin;
-    const auto open = [&](const DataRef& archive, NumberOrigin& of, auto& drawn, auto& read) {
-        const Sources opened = openArchived(archive, known);
-        of = opened.origin;
-        drawn = opened.pictures;
-        read = opened.numbers;
+    const auto open = [&](const DataRef& archive, NumberOrigin& of) {
+        Sources opened = openArchived(archive, known);
+        of = std::move(opened.origin);
+        return opened.numbers;
     };
     if (isArchive(data)) {
-        open(data, origin, pictures.own, numbers.own);
+        numbers.own = open(data, origin);
         origin.other = shown.origin.other;
     }
-    if (pictures.other && isArchive(otherData(data))) {
+    if (numbers.other && isArchive(otherData(data))) {
         NumberOrigin same;
-        open(otherData(data), same, pictures.other, numbers.other);
+        numbers.other = open(otherData(data), same);
     }
-    const auto joined = pictures.joined();
-    const bool one = pictures.own == numbers.own && pictures.other == numbers.other;
-    return {joined, one ? joined : numbers.joined(), origin};
+    const auto joined = numbers.joined();
+    const Sources again{joined, joined, std::move(origin)};
+    return shown.pictures == shown.numbers ? again : drawnOn(PictureLattice::BodyCentred, again);
 }
 
 /// Describes what a grown archive has gained; "" = nothing.
@@ -117,11 +114,11 @@ bool ArchiveGrowth::changed(const DataRef* data, const std::function<void()>& wa
 
 std::optional<Grown> readGrown(const DataRef& data, const Sources& shown,
                                const std::vector<volume::DerivedParameter>& derived, const Progress& progress) {
-    const auto before = volume::underived(shown.pictures);
+    const auto before = volume::underived(shown.numbers);
     const Both was(before);
     if (data.other.has_value() != (was.other != nullptr)) return {}; // the second data set is being changed
     const Sources now = readAgain(data, shown);
-    const Both is(now.pictures);
+    const Both is(now.numbers);
     if (!goesOn(*was.own, *is.own) || (was.other && !goesOn(*was.other, *is.other))) return {};
     Grown grown;
     const std::string own = grownText(archivePath(data), *was.own, *is.own),
@@ -129,7 +126,7 @@ std::optional<Grown> readGrown(const DataRef& data, const Sources& shown,
     for (const std::string& text : {own, other})
         if (!text.empty()) grown.news.push_back(text);
     if (grown.news.empty()) return {};
-    grown.same = sameSamples(*before, now);
+    grown.same = sameSamples(*before, *now.numbers);
     if (!other.empty()) grown.same.channels = std::min(grown.same.channels, int(was.own->info().channels().size()));
     grown.sources = deriveBoth(now, derived, grown.problems, progress);
     return grown;

@@ -172,8 +172,8 @@ void DataFollower::followLattice() {
         return;
     }
     jobs_.start("lattice", "Resampling for pictures",
-                [this, wanted, from = document_.sources(), derived = derived_.shown](const Progress&) -> Jobs::Finish {
-                    const Sources made = drawnOn(wanted, from, derived);
+                [this, wanted, from = document_.sources()](const Progress&) -> Jobs::Finish {
+                    const Sources made = drawnOn(wanted, from);
                     return [this, made, wanted, from] {
                         // The data have grown or changed meanwhile: start again.
                         if (document_.sources().pictures != from.pictures) return lattice_.giveUp();

@@ -155,7 +155,7 @@ TEST(Differences, OtherDataStandBesideInPicturesAndNumbers) {
             // The lattice of pictures changes, the numbers do not.
             const PictureLattice to =
                 lattice == PictureLattice::Grid ? PictureLattice::BodyCentred : PictureLattice::Grid;
-            const Sources moved = drawnOn(to, sources, data.derived);
+            const Sources moved = drawnOn(to, sources);
             EXPECT_NE(moved.pictures->grid().lattice.kind, sources.pictures->grid().lattice.kind);
             EXPECT_EQ(moved.numbers, sources.numbers);
             expectDifference(samplesOf(*moved.pictures, "d", 2), samplesOf(*moved.pictures, "T", 2),

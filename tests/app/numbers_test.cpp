@@ -5,6 +5,7 @@
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
 #include "volume/reconstruct/probe.h"
+#include "volume/sources/centred_source.h"
 #include "volume/synthetic/models.h"
 
 #include <cmath>
@@ -336,6 +337,9 @@ TEST_F(PicturesOfArchives, AreThoseOfTheFile) {
     EXPECT_EQ(archive.pictures->info().lattice, volume::bccFor(archive.numbers->info().lattice));
     EXPECT_EQ(archive.pictures->info().parameters[0].ranges, archive.numbers->info().parameters[0].ranges);
     expectSamePictures(archive, file);
+    // What is derived is computed from the samples of the grid, not from those that are made for pictures.
+    EXPECT_EQ(volume::centredFrom(*archive.pictures), archive.numbers);
+    EXPECT_EQ(volume::centredFrom(*underived(archive).pictures), underived(archive).numbers);
 }
 
 TEST_F(PicturesOfArchives, AreDrawnOnTheGridAsStoredIfAsked) {
@@ -346,10 +350,10 @@ TEST_F(PicturesOfArchives, AreDrawnOnTheGridAsStoredIfAsked) {
     EXPECT_EQ(grid.pictures->info().lattice.kind, volume::LatticeKind::CC);
     EXPECT_TRUE(canChooseLattice(data, *grid.numbers, grid.origin));
     data.lattice = PictureLattice::BodyCentred;
-    const Sources centred = opened(data), moved = drawnOn(PictureLattice::BodyCentred, grid, data.derived);
+    const Sources centred = opened(data), moved = drawnOn(PictureLattice::BodyCentred, grid);
     EXPECT_EQ(moved.numbers, grid.numbers);
     expectSamePictures(centred, moved);
-    EXPECT_EQ(drawnOn(PictureLattice::Grid, centred, data.derived).pictures, centred.numbers);
+    EXPECT_EQ(drawnOn(PictureLattice::Grid, centred).pictures, centred.numbers);
 }
 
 TEST_F(PicturesOfArchives, OnAnotherLatticeAreDrawnAsStored) {
@@ -368,7 +372,7 @@ TEST_F(PicturesOfArchives, OfAPackedCopyAreDrawnAlike) {
     ASSERT_TRUE(packed.packed);
     EXPECT_EQ(packed.packed->info().lattice, packed.numbers->info().lattice);
     EXPECT_TRUE(packed.packed->info().findChannel("ratio"));
-    const Sources grid = drawnOn(PictureLattice::Grid, packed, data.derived);
+    const Sources grid = drawnOn(PictureLattice::Grid, packed);
     EXPECT_EQ(grid.pictures, packed.packed) << "what the archive holds, not the file";
     const Sources onBcc = opened(with([](DataRef& changed) { changed.packed = packing(StoredLattice::BCC); }));
     EXPECT_EQ(onBcc.packed->info().lattice, onBcc.numbers->info().lattice) << "unpacked";
@@ -377,10 +381,10 @@ TEST_F(PicturesOfArchives, OfAPackedCopyAreDrawnAlike) {
 TEST(Numbers, WhatIsDrawnOnAnotherLatticeHasTheSameNumbers) {
     const DataRef data = smallCell();
     const Sources first = opened(data);
-    const Sources other = drawnOn(PictureLattice::Grid, first, data.derived);
+    const Sources other = drawnOn(PictureLattice::Grid, first);
     EXPECT_EQ(other.numbers, first.numbers);
     EXPECT_EQ(other.pictures->info().lattice, first.numbers->info().lattice);
-    const Sources back = drawnOn(PictureLattice::BodyCentred, other, data.derived);
+    const Sources back = drawnOn(PictureLattice::BodyCentred, other);
     EXPECT_EQ(back.pictures->info(), first.pictures->info());
     const volume::BrickKey key{first.pictures->info().findChannel("slope.z").value(), kTime, 0, {0, 0, 0}};
     EXPECT_EQ(back.pictures->read(key).values, first.pictures->read(key).values);

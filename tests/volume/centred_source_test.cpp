@@ -172,7 +172,7 @@ TEST(CentredSource, CoarseSamplesLieWhereTheirLevelSays) {
     for (int level = 0; level < 3; ++level) {
         const glm::ivec3 brick(1, 1, 1), begin = source->grid().levelBegin(brick, level);
         const BrickSamples samples = source->read({2, 0, level, brick});
-        std::size_t at = 0;
+        std::size_t at = 0, compared = 0;
         for (int z = 0; z < samples.size.z; ++z)
             for (int y = 0; y < samples.size.y; ++y)
                 for (int x = 0; x < samples.size.x; ++x, ++at) {
@@ -183,7 +183,9 @@ TEST(CentredSource, CoarseSamplesLieWhereTheirLevelSays) {
                     const glm::dvec3 there = grid.toCells(source->grid().lattice.fromCells(cells));
                     if (glm::clamp(there, glm::dvec3(6), glm::dvec3(grid.size) - 8.0) != there) continue;
                     ASSERT_NEAR(samples.values[at], there.x + 2 * there.y - there.z, 1e-3) << level;
+                    ++compared;
                 }
+        EXPECT_GT(compared, 20u) << level;
     }
 }
 
@@ -227,6 +229,44 @@ TEST(CentredSource, ChangesOfBricksAreBounded) {
         });
     EXPECT_GT(changed, 0);
     EXPECT_GT(unchanged, changed);
+}
+
+/// Counts what is read of a source.
+class Counted final : public BrickSource {
+public:
+    explicit Counted(std::shared_ptr<const BrickSource> source) : source_(std::move(source)) {}
+    const DatasetInfo& info() const override { return source_->info(); }
+    const BrickGrid& grid() const override { return source_->grid(); }
+    BrickStats stats(const BrickKey& key) const override { return source_->stats(key); }
+    BrickSamples read(const BrickKey& key) const override {
+        ++reads;
+        return source_->read(key);
+    }
+    mutable int reads = 0;
+
+private:
+    std::shared_ptr<const BrickSource> source_;
+};
+
+TEST(CentredSource, BricksAreKeptAndTakenOver) {
+    const auto counted = std::make_shared<const Counted>(gridOf({23, 30, 37}, 8));
+    const auto source = makeCentredSource(counted, kBudget);
+    EXPECT_EQ(centredFrom(*source), counted);
+    EXPECT_FALSE(centredFrom(*counted));
+    const BrickKey whole{2, 0, 0, {1, 1, 1}}, scan{6, 0, 0, {1, 1, 1}};
+    const BrickSamples first = source->read(whole);
+    const int reads = counted->reads;
+    EXPECT_GT(reads, 0);
+    EXPECT_EQ(source->read(whole).values, first.values);
+    EXPECT_EQ(counted->reads, reads) << "made once";
+    Dataset other = cell({23, 30, 37});
+    other.info.parameters[4].name = "another scan";
+    const auto grown = std::make_shared<const Counted>(makeMemorySource(other, {.brickSize = 8}));
+    const auto next = makeCentredSource(grown, kBudget, source.get());
+    EXPECT_EQ(next->read(whole).values, first.values);
+    EXPECT_EQ(grown->reads, 0) << "taken over";
+    (void)next->read(scan);
+    EXPECT_GT(grown->reads, 0) << "of what differs nothing is";
 }
 
 TEST(CentredSource, WhatCannotBeCentredIsRefused) {

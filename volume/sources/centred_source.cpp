@@ -1,6 +1,7 @@
 #include "volume/sources/centred_source.h"
 
 #include "volume/base/error.h"
+#include "volume/base/load_once.h"
 #include "volume/bricks/brick_cache.h"
 #include "volume/bricks/parts_bricks.h"
 #include "volume/field/part_masks.h"
@@ -51,8 +52,11 @@ BrickGrid centredGrid(const BrickGrid& source) {
 class CentredSource final : public BrickSource {
 public:
     CentredSource(std::shared_ptr<const BrickSource> source, std::size_t budget)
-        : source_(std::make_shared<const BrickCache>(std::move(source), budget)), info_(source_->info()),
-          grid_(centredGrid(source_->grid())), channels_(info_.channels()) {
+        : shown_(source), source_(std::make_shared<BrickCache>(std::move(source), budget / 4)), info_(source_->info()),
+          grid_(centredGrid(source_->grid())), channels_(info_.channels()),
+          made_(
+              budget, [this](const BrickKey& key) { return std::make_shared<const BrickSamples>(make(key)); },
+              [](const BrickSamples& brick) { return brick.values.size() * sizeof(float) + brick.present.size(); }) {
         info_.lattice = grid_.lattice;
         for (int level = 0; level < grid_.levels; ++level)
             for (const bool categorical : {false, true})
@@ -138,6 +142,26 @@ public:
     }
 
     BrickSamples read(const BrickKey& key) const override {
+        (void)channelOf(key);
+        return *made_.get(key);
+    }
+
+    const std::shared_ptr<const BrickSource>& shown() const { return shown_; }
+
+    /// Takes over what the two have in common.
+    void adopt(const CentredSource& former) {
+        if (former.grid_ != grid_ || former.info_.times != info_.times) return;
+        const auto [own, other] = std::ranges::mismatch(info_.parameters, former.info_.parameters);
+        int same = 0;
+        while (same < int(channels_.size()) && channels_[std::size_t(same)].parameter < own - info_.parameters.begin())
+            ++same;
+        const auto isSame = [&](const BrickKey& key) { return key.channel < same; };
+        made_.adopt(former.made_, isSame);
+        source_->adopt(*former.source_, isSame);
+    }
+
+private:
+    BrickSamples make(const BrickKey& key) const {
         if (isMagnitude(key))
             return magnitude(read(component(key, 0)), read(component(key, 1)), read(component(key, 2)));
         const IndexBox texels = texelsOf(key, key.level);
@@ -146,7 +170,6 @@ public:
         return interleaved(key, level.make(gathered(key, level.needed(texels, mixed), mixed), texels));
     }
 
-private:
     const Channel& channelOf(const BrickKey& key) const {
         const glm::ivec3 count = grid_.count();
         const bool inside = key.channel >= 0 && std::size_t(key.channel) < channels_.size() && key.time >= 0 &&
@@ -254,12 +277,14 @@ private:
         return out;
     }
 
-    std::shared_ptr<const BrickCache> source_; ///< each brick is also read for those around it
+    std::shared_ptr<const BrickSource> shown_;
+    std::shared_ptr<BrickCache> source_; ///< each brick is also read for those around it
     DatasetInfo info_;
     BrickGrid grid_;
     std::vector<Channel> channels_;
     std::vector<std::optional<int>> labels_;         ///< by channel: that of the parts of its parameter
     std::array<std::vector<CentredGrid>, 2> levels_; ///< of numbers, of labels
+    mutable LoadOnce<BrickKey, BrickSamples, BrickKeyHash> made_;
 };
 
 } // namespace
@@ -272,10 +297,17 @@ bool canBeCentred(const BrickSource& source) {
     });
 }
 
-std::shared_ptr<const BrickSource> makeCentredSource(std::shared_ptr<const BrickSource> source, std::size_t budget) {
+std::shared_ptr<const BrickSource> makeCentredSource(std::shared_ptr<const BrickSource> source, std::size_t budget,
+                                                     const BrickSource* former) {
     if (!canBeCentred(*source)) throw Error("it cannot be shown on the body-centred lattice", source->info().name);
-    return std::make_shared<const BrickCache>(std::make_shared<const CentredSource>(std::move(source), budget / 4),
-                                              budget);
+    auto made = std::make_shared<CentredSource>(std::move(source), budget);
+    if (const auto* known = dynamic_cast<const CentredSource*>(former)) made->adopt(*known);
+    return made;
+}
+
+std::shared_ptr<const BrickSource> centredFrom(const BrickSource& source) {
+    const auto* centred = dynamic_cast<const CentredSource*>(&source);
+    return centred ? centred->shown() : nullptr;
 }
 
 } // namespace tessera::volume
