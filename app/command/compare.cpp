@@ -78,9 +78,7 @@ void openBeside(Opened& opened, const std::string& path, const Progress& progres
     ComparedData compared = openCompared(data, session, messages, progress);
     for (const std::string& text : messages) std::fprintf(stderr, "tessera: %s\n", text.c_str());
     if (compared.channel.empty()) throw Error("the two data sets have no parameter in common", path);
-    opened.source = std::move(compared.sources.pictures);
-    opened.numbers = std::move(compared.sources.numbers);
-    opened.origin = std::move(compared.sources.origin);
+    opened.take(std::move(compared.sources));
     session.data = data;
     showOtherDifference(session, opened.source->info(), compared.channel);
 }

@@ -123,6 +123,19 @@ void carryTime(Session& session, const volume::DatasetInfo& from, const volume::
 
 } // namespace
 
+void Opened::take(Sources sources) {
+    source = std::move(sources.pictures);
+    numbers = std::move(sources.numbers);
+    packed = std::move(sources.packed);
+    origin = std::move(sources.origin);
+}
+
+Sources Opened::sources() const {
+    Sources out{source, numbers, origin};
+    out.packed = packed;
+    return out;
+}
+
 Opened openWith(Opened opened, const DataRef& data, const Progress& progress) {
     opened.missing.clear();
     Sources now = openSources(data, opened.messages, progress);
@@ -224,9 +237,7 @@ Opened openData(DataRef data, std::optional<SessionDocument> layout, const Progr
         showErrors(*layout, data, sources, opened.messages);
     else if (layout && layout->session.data.originals && !data.originals)
         opened.messages.emplace_back(kNoOriginals);
-    opened.source = std::move(sources.pictures);
-    opened.numbers = std::move(sources.numbers);
-    opened.origin = std::move(sources.origin);
+    opened.take(std::move(sources));
     const volume::DatasetInfo& info = opened.source->info();
     Session& session = opened.document.session;
     if (layout) {
@@ -235,9 +246,9 @@ Opened openData(DataRef data, std::optional<SessionDocument> layout, const Progr
     } else {
         session = defaultSession(info, data);
     }
-    if (layout && !sameData(layout->session.data, data)) showLastIfEmpty(session, *opened.source, opened.messages);
-    if (!layout || !sameData(layout->session.data, data)) aimFirstView(session, *opened.source, firstAspect(info));
-    if (layout) fitSurfaces(session, *opened.source, layout->session, opened.messages);
+    if (layout && !sameData(layout->session.data, data)) showLastIfEmpty(session, *opened.numbers, opened.messages);
+    if (!layout || !sameData(layout->session.data, data)) aimFirstView(session, *opened.numbers, firstAspect(info));
+    if (layout) fitSurfaces(session, *opened.numbers, layout->session, opened.messages);
     opened.document.history.reset(session);
     opened.firstView = true;
     return opened;

@@ -27,6 +27,7 @@ struct Opened {
     std::shared_ptr<const volume::BrickSource> source;  ///< of pictures; null if data are missing
     std::shared_ptr<const volume::BrickSource> numbers; ///< what numbers are read from; null: `source`
     NumberOrigin origin = {};                           ///< of the numbers
+    std::shared_ptr<const volume::BrickSource> packed;  ///< Sources::packed
     std::vector<MissingData> missing;
     std::string sessionPath; ///< where Save writes; "" for data, layouts and pictures
     std::string folder;      ///< that data paths are relative to
@@ -34,7 +35,8 @@ struct Opened {
     bool firstView = false;            ///< its cameras are of a layout or of nobody, not of a saved session
     std::vector<std::string> warnings; ///< data have changed since the session was saved
 
-    Sources sources() const { return {source, numbers, origin}; }
+    void take(Sources sources);
+    Sources sources() const;
 };
 
 /// Opens a request. Nothing at all means the overview layout with the built-in fuel cell. Files that a session names

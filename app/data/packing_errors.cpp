@@ -95,8 +95,7 @@ void showErrors(SessionDocument& layout, DataRef& data, Sources& sources, std::v
         (grid ? "." : "; it has another lattice, whose errors at the points of the data are shown too."));
     layout = std::move(*own);
     for (const volume::DerivedParameter& error : layout.session.data.derived) data.derived.push_back(error);
-    sources = deriveBoth({volume::underived(sources.pictures), volume::underived(sources.numbers), sources.origin},
-                         data.derived, messages);
+    sources = deriveBoth(underived(sources), data.derived, messages);
 }
 
 } // namespace tessera::app

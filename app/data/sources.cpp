@@ -13,6 +13,7 @@
 #include "volume/import/over_time.h"
 #include "volume/sources/alternating_source.h"
 #include "volume/sources/axis_source.h"
+#include "volume/sources/centred_source.h"
 #include "volume/sources/labelled_source.h"
 #include "volume/sources/memory_source.h"
 #include "volume/sources/originals.h"
@@ -39,31 +40,18 @@ bool isArchive(const DataRef& data) {
 
 namespace {
 
-volume::LatticeKind latticeOf(PictureLattice lattice) {
-    return lattice == PictureLattice::Grid ? volume::LatticeKind::CC : volume::LatticeKind::BCC;
-}
-
-constexpr std::size_t kFramesLoaded = std::size_t(1) << 30, kFramesMade = std::size_t(1) << 29; // bytes kept
+constexpr std::size_t kFramesLoaded = std::size_t(1) << 30, kBricksMade = std::size_t(1) << 29; // bytes kept
 
 volume::MemorySourceOptions onGrid(int brickSize = volume::MemorySourceOptions{}.brickSize) {
     return {.lattice = volume::LatticeKind::CC, .brickSize = brickSize, .budget = kFramesLoaded};
 }
 
-/// Unpacked data on the lattice of pictures.
+/// Samples as pictures draw them; as they are where they lie on no regular grid.
 std::shared_ptr<const volume::BrickSource> drawnOn(const std::shared_ptr<const volume::BrickSource>& numbers,
-                                                   volume::LatticeKind lattice) {
-    return volume::onLattice(numbers,
-                             {.lattice = lattice, .brickSize = numbers->grid().brickSize, .budget = kFramesMade});
-}
-
-/// The same for data files; archives keep their own lattice.
-std::shared_ptr<const volume::BrickSource> drawnAlike(const std::shared_ptr<const volume::BrickSource>& numbers,
-                                                      volume::LatticeKind lattice) {
-    try {
-        return drawnOn(numbers, lattice);
-    } catch (const Error&) {
-        return numbers;
-    }
+                                                   PictureLattice lattice,
+                                                   const volume::BrickSource* former = nullptr) {
+    if (lattice == PictureLattice::Grid || !volume::canBeCentred(*numbers)) return numbers;
+    return volume::makeCentredSource(numbers, kBricksMade, former);
 }
 
 /// Packs a data set with these options into a temporary archive, to show the effect of packing.
@@ -83,7 +71,15 @@ Sources openPacked(volume::Dataset dataset, const DataRef& data, const Progress&
     codec::pack(dataset, *data.packed, name, progress);
     const auto packed = codec::openArchive(name);
     const NumberOrigin computed = computedOrigin(dataset.info);
-    if (!data.originals) return {packed, volume::makeMemorySource(std::move(dataset), onGrid()), computed};
+    if (!data.originals) {
+        Sources out{drawnOn(packed, data.lattice), volume::makeMemorySource(std::move(dataset), onGrid()), computed};
+        out.packed = packed;
+        if (data.packed->lattice != codec::StoredLattice::CC) {
+            const auto archive = std::make_shared<const codec::Archive>(name);
+            out.packed = volume::makeMemorySource(codec::gridDataset(archive, 0), onGrid());
+        }
+        return out;
+    }
     const auto archive = std::make_shared<const codec::Archive>(name);
     NumberOrigin origin = storedOrigin(archive->metadata(), !archive->metadata().corrections.empty());
     origin.originals = true;
@@ -115,17 +111,23 @@ volume::OtherAxis axisOf(const volume::DatasetInfo& given, const DataRef& data, 
     return axis;
 }
 
+/// Whether an archive is shown on the grid of its source, as its corrections lead back to it: frame by frame in memory.
+bool canUnpack(const codec::Archive& archive) {
+    constexpr double kBytes = 16; // of a sample, while it is unpacked
+    return !archive.metadata().corrections.empty() && !codec::isRemote(archive.path()) &&
+           kBytes * double(archive.metadata().source.count()) <= volume::availableMemory();
+}
+
 } // namespace
 
 Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
     const std::string& path = data.files[0].absolutePath;
     const auto archive = std::make_shared<const codec::Archive>(path, data.remote);
-    const bool unpacks = !archive->metadata().corrections.empty() && data.grids == ShownGrids::Both;
+    const bool unpacks = data.grids == ShownGrids::Both && canUnpack(*archive);
     NumberOrigin origin = storedOrigin(archive->metadata(), unpacks);
-    std::shared_ptr<const volume::BrickSource> source = archive, unpacked;
-    if (unpacks) unpacked = volume::makeMemorySource(codec::gridDataset(archive, 0), onGrid());
-    if (unpacks && archive->metadata().alternating) {
-        source = drawnOn(unpacked, latticeOf(data.lattice)); // at the times of the source, as the numbers are
+    std::shared_ptr<const volume::BrickSource> source = archive;
+    if (unpacks) {
+        source = volume::makeMemorySource(codec::gridDataset(archive, 0), onGrid());
     } else if (archive->metadata().alternating && data.grids != ShownGrids::Both) {
         source = volume::makeOneGridSource(archive, data.grids == ShownGrids::First ? 0 : 1);
         origin.lattice = "one grid of D4*";
@@ -135,10 +137,10 @@ Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
     volume::OtherAxis axis = axisOf(source->info(), data, messages);
     if (axis.info.times != source->info().times || axis.info.timeName != source->info().timeName ||
         axis.info.timeUnit != source->info().timeUnit || !data.import.overTime.empty() || !data.import.units.empty())
-        for (std::shared_ptr<const volume::BrickSource>* const one : {&source, &unpacked})
-            if (*one) *one = volume::onAxis(*one, axis);
-    if (unpacks && data.lattice == PictureLattice::Grid) source = unpacked;
-    return {source, unpacked ? unpacked : source, std::move(origin)};
+        source = volume::onAxis(source, std::move(axis));
+    source = volume::withLabelNames(source, data.import.labels);
+    const bool asStored = archive->metadata().alternating && !unpacks;
+    return {asStored ? source : drawnOn(source, data.lattice), source, std::move(origin)};
 }
 
 namespace {
@@ -158,12 +160,7 @@ void checkMemory(const volume::DatasetInfo& info, const std::string& path) {
 
 Sources openWhole(const DataRef& data, std::vector<std::string>& messages, const Progress& progress) {
     if (!hasData(data)) throw Error("contains no data: open data first, or give a data file", {}, "/data");
-    if (isArchive(data)) {
-        const Sources archive = openArchived(data, messages);
-        const auto named = volume::withLabelNames(archive.pictures, data.import.labels);
-        if (archive.numbers == archive.pictures) return {named, named, archive.origin};
-        return {named, volume::withLabelNames(archive.numbers, data.import.labels), archive.origin};
-    }
+    if (isArchive(data)) return openArchived(data, messages);
     volume::Dataset dataset;
     if (data.files.empty()) {
         dataset = volume::makeModel(data.model, data.settings, progress.part(0, 0.9));
@@ -190,7 +187,7 @@ Sources openWhole(const DataRef& data, std::vector<std::string>& messages, const
     if (data.packed) return openPacked(std::move(dataset), data, progress.part(0.95, 1));
     NumberOrigin origin = computedOrigin(dataset.info);
     const auto numbers = volume::makeMemorySource(std::move(dataset), onGrid());
-    return {drawnOn(numbers, latticeOf(data.lattice)), numbers, std::move(origin)};
+    return {drawnOn(numbers, data.lattice), numbers, std::move(origin)};
 }
 
 /// An archive that was resampled, on the grid of its source, as `tessera unpack` gives it, if that has samples where
@@ -210,16 +207,32 @@ std::shared_ptr<const volume::BrickSource> unpackedOnto(const volume::BrickSourc
     return volume::withLabelNames(std::move(source), data.import.labels);
 }
 
-/// Adds the parameters of the second data set. Pictures use the second data on the lattice of pictures if its grid is
-/// that of the first, else as computed.
+/// The sources after a change of each, made once: pictures of numbers, or of a packed copy, are drawn of these anew, so
+/// that nothing is computed from samples that are made for pictures alone.
+template <class Change> Sources changed(const Sources& before, const Change& change) {
+    Sources out = before;
+    out.numbers = change(before.numbers);
+    if (before.packed) out.packed = change(before.packed);
+    const auto drawnFrom = volume::centredFrom(*before.pictures);
+    if (drawnFrom && (drawnFrom == before.numbers || drawnFrom == before.packed))
+        out.pictures = drawnOn(drawnFrom == before.numbers ? out.numbers : out.packed, PictureLattice::BodyCentred,
+                               before.pictures.get());
+    else
+        out.pictures = before.pictures == before.numbers  ? out.numbers
+                       : before.pictures == before.packed ? out.packed
+                                                          : change(before.pictures);
+    return out;
+}
+
+/// Adds the parameters of the second data set.
 Sources withOther(const Sources& whole, const Sources& other) {
-    NumberOrigin origin = whole.origin;
-    origin.other =
+    Sources out = changed(whole, [&](const std::shared_ptr<const volume::BrickSource>& source) {
+        const bool alike = volume::SampledOnto(other.pictures, *source).sameGrid();
+        return volume::withOther(source, source != whole.numbers && alike ? other.pictures : other.numbers);
+    });
+    out.origin.other =
         originText(other.origin, other.numbers->info(), {}) + ", " + volume::otherText(*whole.numbers, *other.numbers);
-    const auto numbers = volume::withOther(whole.numbers, other.numbers);
-    if (whole.pictures == whole.numbers) return {numbers, numbers, std::move(origin)};
-    const bool alike = volume::SampledOnto(other.pictures, *whole.pictures).sameGrid();
-    return {volume::withOther(whole.pictures, alike ? other.pictures : other.numbers), numbers, std::move(origin)};
+    return out;
 }
 
 /// DataRef::other as the data alone.
@@ -276,31 +289,33 @@ Sources openStored(const DataRef& data, std::vector<std::string>& messages, cons
     origin.alongTime = true;
     origin.cutFrom = whole.numbers;
     origin.parameters = int(numbers->info().parameters.size());
-    return {drawnOn(data.packed ? along(whole.pictures) : numbers, whole.pictures->info().lattice.kind), numbers,
-            std::move(origin)};
+    return {drawnOn(whole.packed ? along(whole.packed) : numbers, data.lattice), numbers, std::move(origin)};
 }
 
 } // namespace
 
 Sources deriveBoth(const Sources& sources, const std::vector<volume::DerivedParameter>& wanted,
                    std::vector<std::string>& messages, const Progress& progress) {
-    const auto numbers = volume::deriveAll(sources.numbers, wanted, messages, progress);
-    if (sources.pictures == sources.numbers) return {numbers, numbers, sources.origin};
-    return {volume::deriveLike(*numbers, sources.pictures, wanted), numbers, sources.origin};
+    std::shared_ptr<const volume::BrickSource> numbers;
+    return changed(sources, [&](const std::shared_ptr<const volume::BrickSource>& source) {
+        if (numbers) return volume::deriveLike(*numbers, source, wanted);
+        return numbers = volume::deriveAll(source, wanted, messages, progress); // they come first
+    });
 }
 
-Sources drawnOn(PictureLattice lattice, const Sources& sources, const std::vector<volume::DerivedParameter>& derived) {
-    const auto below = volume::underived(sources.numbers);
-    if (const auto other = volume::otherOf(*below)) {
-        const auto own = volume::besideOther(*below);
-        const Sources both = withOther({drawnOn(own, latticeOf(lattice)), own, sources.origin},
-                                       {drawnAlike(other, latticeOf(lattice)), other, {}});
-        if (both.pictures == both.numbers) return {sources.numbers, sources.numbers, sources.origin};
-        return {volume::deriveLike(*sources.numbers, both.pictures, derived), sources.numbers, sources.origin};
-    }
-    const auto drawn = drawnOn(below, latticeOf(lattice));
-    if (drawn == volume::underived(sources.numbers)) return {sources.numbers, sources.numbers, sources.origin};
-    return {volume::deriveLike(*sources.numbers, drawn, derived), sources.numbers, sources.origin};
+Sources underived(const Sources& sources) {
+    return changed(sources, [](const auto& source) { return volume::underived(source); });
+}
+
+bool canChooseLattice(const DataRef& data, const volume::BrickSource& numbers, const NumberOrigin& origin) {
+    if (data.packed) return !data.originals && data.packed->lattice == codec::StoredLattice::CC;
+    return !origin.lattice.ends_with("D4*") && volume::canBeCentred(numbers);
+}
+
+Sources drawnOn(PictureLattice lattice, const Sources& sources) {
+    Sources out = sources;
+    out.pictures = drawnOn(sources.packed ? sources.packed : sources.numbers, lattice);
+    return out;
 }
 
 Sources openSources(const DataRef& data, std::vector<std::string>& messages, const Progress& progress) {

@@ -20,6 +20,9 @@ struct Sources {
     /// on their own grid, built-in models), else those of the archive. May be `pictures`.
     std::shared_ptr<const volume::BrickSource> numbers;
     NumberOrigin origin = {}; ///< of the numbers
+    /// Of data shown as an archive would store them (DataRef::packed): what the archive gives at the points of the
+    /// file. Null for others, and where they are shown beside the originals.
+    std::shared_ptr<const volume::BrickSource> packed = {};
 
     Sources() = default;
     /// Numbers come from what is drawn.
@@ -34,15 +37,23 @@ struct Sources {
 /// What a session names, as it is drawn and as numbers are read from it; ranges known. Throws Error.
 Sources openSources(const DataRef& data, std::vector<std::string>& messages, const Progress& progress = {});
 
-/// An archive, without derived parameters. Throws Error.
+/// An archive, with the names of regions that the session states, without derived parameters. Throws Error.
 Sources openArchived(const DataRef& data, std::vector<std::string>& messages);
 
-/// The same data with other derived parameters: `sources` have none. Ranges of derived parameters are of the numbers.
+/// The same data with other derived parameters: `sources` have none. They are computed from the numbers, and drawn as
+/// all others are; where pictures are no pictures of the numbers, from these as well, with the ranges of the numbers.
 Sources deriveBoth(const Sources& sources, const std::vector<volume::DerivedParameter>& wanted,
                    std::vector<std::string>& messages, const Progress& progress = {});
 
-/// The same unpacked data drawn on another lattice; nothing is read again. `derived`: the parameters they have.
-Sources drawnOn(PictureLattice lattice, const Sources& sources, const std::vector<volume::DerivedParameter>& derived);
+/// The same without derived parameters.
+Sources underived(const Sources& sources);
+
+/// Whether pictures of data can be drawn on either lattice (DataRef::lattice): of a regular grid, also one that an
+/// archive stores.
+bool canChooseLattice(const DataRef& data, const volume::BrickSource& numbers, const NumberOrigin& origin);
+
+/// The same data drawn on another lattice; nothing is read again.
+Sources drawnOn(PictureLattice lattice, const Sources& sources);
 
 /// Data beside other data.
 struct ComparedData {

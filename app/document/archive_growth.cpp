@@ -5,7 +5,6 @@
 #include "volume/base/error.h"
 #include "volume/derived/derived.h"
 #include "volume/derived/other_source.h"
-#include "volume/sources/labelled_source.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -68,31 +67,24 @@ std::string archivePath(const DataRef& data) {
 /// Error.
 Sources readAgain(const DataRef& data, const Sources& shown) {
     std::vector<std::string> known; // messages already shown at opening
-    Both pictures(volume::underived(shown.pictures)), numbers(volume::underived(shown.numbers));
+    Both numbers(volume::underived(shown.numbers));
     NumberOrigin origin = shown.origin;
     const auto open = [&](const DataRef& archive, NumberOrigin& of) {
         Sources opened = openArchived(archive, known);
-        of = opened.origin;
-        const bool one = opened.numbers == opened.pictures;
-        opened.pictures = volume::withLabelNames(opened.pictures, archive.import.labels);
-        opened.numbers = one ? opened.pictures : volume::withLabelNames(opened.numbers, archive.import.labels);
-        return opened;
+        of = std::move(opened.origin);
+        return opened.numbers;
     };
     if (isArchive(data)) {
-        const Sources opened = open(data, origin);
-        pictures.own = opened.pictures;
-        numbers.own = opened.numbers;
+        numbers.own = open(data, origin);
         origin.other = shown.origin.other;
     }
-    if (pictures.other && isArchive(otherData(data))) {
+    if (numbers.other && isArchive(otherData(data))) {
         NumberOrigin same;
-        const Sources opened = open(otherData(data), same);
-        pictures.other = opened.pictures;
-        numbers.other = opened.numbers;
+        numbers.other = open(otherData(data), same);
     }
-    const auto joined = pictures.joined();
-    const bool one = pictures.own == numbers.own && pictures.other == numbers.other;
-    return {joined, one ? joined : numbers.joined(), origin};
+    const auto joined = numbers.joined();
+    const Sources again{joined, joined, std::move(origin)};
+    return shown.pictures == shown.numbers ? again : drawnOn(PictureLattice::BodyCentred, again);
 }
 
 /// Describes what a grown archive has gained; "" = nothing.
@@ -122,11 +114,11 @@ bool ArchiveGrowth::changed(const DataRef* data, const std::function<void()>& wa
 
 std::optional<Grown> readGrown(const DataRef& data, const Sources& shown,
                                const std::vector<volume::DerivedParameter>& derived, const Progress& progress) {
-    const auto before = volume::underived(shown.pictures);
+    const auto before = volume::underived(shown.numbers);
     const Both was(before);
     if (data.other.has_value() != (was.other != nullptr)) return {}; // the second data set is being changed
     const Sources now = readAgain(data, shown);
-    const Both is(now.pictures);
+    const Both is(now.numbers);
     if (!goesOn(*was.own, *is.own) || (was.other && !goesOn(*was.other, *is.other))) return {};
     Grown grown;
     const std::string own = grownText(archivePath(data), *was.own, *is.own),
@@ -134,7 +126,7 @@ std::optional<Grown> readGrown(const DataRef& data, const Sources& shown,
     for (const std::string& text : {own, other})
         if (!text.empty()) grown.news.push_back(text);
     if (grown.news.empty()) return {};
-    grown.same = sameSamples(*before, *now.pictures);
+    grown.same = sameSamples(*before, *now.numbers);
     if (!other.empty()) grown.same.channels = std::min(grown.same.channels, int(was.own->info().channels().size()));
     grown.sources = deriveBoth(now, derived, grown.problems, progress);
     return grown;

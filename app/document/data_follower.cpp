@@ -167,13 +167,13 @@ void DataFollower::followLattice() {
     if (step == Tracked<PictureLattice>::Step::Cancel) jobs_.cancel("lattice");
     if (step != Tracked<PictureLattice>::Step::Make) return;
     rememberChoice(options_.stateFolder, kLatticeChoice, std::string(kPictureLatticeNames[std::size_t(wanted)]));
-    if (isArchive(data) || data.packed) {
-        lattice_.shown = wanted; // an archive has a fixed lattice
+    if (!canChooseLattice(data, *document_.sources().numbers, document_.sources().origin)) {
+        lattice_.shown = wanted;
         return;
     }
     jobs_.start("lattice", "Resampling for pictures",
-                [this, wanted, from = document_.sources(), derived = derived_.shown](const Progress&) -> Jobs::Finish {
-                    const Sources made = drawnOn(wanted, from, derived);
+                [this, wanted, from = document_.sources()](const Progress&) -> Jobs::Finish {
+                    const Sources made = drawnOn(wanted, from);
                     return [this, made, wanted, from] {
                         // The data have grown or changed meanwhile: start again.
                         if (document_.sources().pictures != from.pictures) return lattice_.giveUp();
@@ -233,8 +233,7 @@ void DataFollower::followDerived() {
     if (step != decltype(derived_)::Step::Make) return;
     const Sources& now = document_.sources();
     jobs_.start("derive", "Deriving parameters",
-                [this, below = Sources(volume::underived(now.pictures), volume::underived(now.numbers), now.origin),
-                 wanted, from = now.pictures](const Progress& progress) -> Jobs::Finish {
+                [this, below = underived(now), wanted, from = now.pictures](const Progress& progress) -> Jobs::Finish {
                     auto messages = std::make_shared<std::vector<std::string>>();
                     const Sources made = deriveBoth(below, wanted, *messages, progress);
                     return [this, messages, made, wanted, from] {

@@ -32,7 +32,7 @@ void exportSurface(const Document& document, std::string path, Jobs& jobs, Messa
     const volume::TimePair time = volume::timesAround(document.info().times, session.time);
     jobs.start(
         "export surface", "Writing " + std::filesystem::path(path).filename().string(),
-        [&messages, source = document.sources().pictures, layer, time, path](const Progress& progress) -> Jobs::Finish {
+        [&messages, source = document.sources().numbers, layer, time, path](const Progress& progress) -> Jobs::Finish {
             const auto geometry = extractLayer(source, layer, time, 0, progress.part(0, 0.7));
             if (!geometry) throw Error("there is no parameter \"" + layer.channel + "\"");
             volume::writeMesh(geometry->mesh, path, layer.colorBy, progress.part(0.7, 1));

@@ -1,7 +1,6 @@
 #include "app/history/parameter_path.h"
 
 #include "app/session/session_types.h"
-#include "codec/remote/address.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -102,8 +101,7 @@ std::vector<std::string> parameterPaths(const Session& session) {
             continue;
         out.push_back(path);
     }
-    if (session.data.files.empty() || !codec::namesArchive(session.data.files[0].path))
-        out.emplace_back("/data/lattice");
+    out.emplace_back("/data/lattice");
     return out;
 }
 

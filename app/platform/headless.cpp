@@ -39,9 +39,7 @@ auto withWorkbench(const SessionDocument& document, const Sources& sources, std:
         drawn.appearance.theme = Theme::Light;
         drawn.paper = vis::Paper{.color = glm::vec3(1), .tooth = 0};
     }
-    opened.source = sources.pictures;
-    opened.numbers = sources.numbers;
-    opened.origin = sources.origin;
+    opened.take(sources);
     workbench.install(std::move(opened));
     return draw(workbench);
 }

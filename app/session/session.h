@@ -39,7 +39,7 @@ struct DataFile {
     }
 };
 
-/// Lattice of pictures of data files. Numbers always come from the samples as computed.
+/// Lattice of pictures of regular grids, of files and archives. Numbers always come from the samples of the grid.
 enum class PictureLattice { Grid, BodyCentred };
 inline constexpr std::string_view kPictureLatticeNames[] = {"grid", "bodyCentred"};
 
@@ -89,8 +89,9 @@ struct DataRef {
         visit(self.lattice,
               FieldInfo{.key = "lattice",
                         .unit = "",
-                        .doc = "Lattice that pictures of data files are drawn from: the grid of the file, or "
-                               "body-centred with 70.7 % of the samples; numbers always come from the file",
+                        .doc = "Lattice that pictures are drawn from: the grid of the data as it is, or body-centred "
+                               "with 70.7 % of the samples, corrected by what they leave of those of the grid; "
+                               "numbers always come from the grid",
                         .names = kPictureLatticeNames});
         visit(self.grids,
               FieldInfo{.key = "grids",

@@ -161,9 +161,9 @@ std::vector<Command> latticeCommands(Workbench& workbench) {
              .run = [&workbench, lattice] { workbench.session().data.lattice = lattice; },
              .enabled =
                  [&workbench] {
-                     const DataRef& data = workbench.session().data;
-                     return workbench.document().loaded() && !data.packed &&
-                            (data.files.empty() || showsDataFiles(workbench.document()));
+                     const Document& document = workbench.document();
+                     return document.loaded() && canChooseLattice(document.session().data, *document.sources().numbers,
+                                                                  document.sources().origin);
                  },
              .checked = [&workbench, lattice] { return workbench.session().data.lattice == lattice; }});
     struct Grids {

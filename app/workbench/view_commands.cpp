@@ -209,7 +209,7 @@ void showLayout(Workbench& workbench, const std::string& name, const std::string
             if (!shown.files.empty() || shown.model != layout.session.data.model) request.data = shown;
             return workbench.open(std::move(request));
         }
-        Session next = changeLayout(layout, *workbench.source(), workbench.session(), messages);
+        Session next = changeLayout(layout, *workbench.numbers(), workbench.session(), messages);
         const WindowLook& look = workbench.look();
         showWholeBox(next, workbench.document().info(), look.scale(), look.scaleWith(next.appearance));
         workbench.document().replace(std::move(next), "Layout: " + title);

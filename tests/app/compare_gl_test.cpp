@@ -67,16 +67,17 @@ TEST(CompareView, MeasuresVariantsAgainstTheReference) {
 
 TEST(CompareView, OtherDataAreOpenedForTheirVariant) {
     Compared compared;
-    compared.view.variants = {{"BCC", {}},
-                              {"CC", {{"/data/lattice", "grid"}}},
-                              {"packed", {{"/data/packed", "{\"lossless\": true}"}}},
-                              {"lossy", {{"/data/packed", "{\"lossless\": false, \"maxError\": 0.05}"}}},
-                              {"no such model", {{"/data/model", "nothing"}}}};
+    compared.view.variants = {
+        {"BCC", {}},
+        {"CC", {{"/data/lattice", "grid"}}},
+        {"packed", {{"/data/packed", "{\"lattice\": \"cc\", \"lossless\": true}"}}},
+        {"lossy", {{"/data/packed", "{\"lattice\": \"cc\", \"lossless\": false, \"maxError\": 0.05}"}}},
+        {"no such model", {{"/data/model", "nothing"}}}};
     compared.draw({640, 480});
     ASSERT_EQ(compared.rows.size(), 5u);
     EXPECT_GT(compared.rows[1].samples, compared.rows[0].samples);
     EXPECT_GT(compared.rows[1].rmse, 0);
-    // The default model in memory and from a lossless archive of the same lattice: the same picture.
+    // The default model in memory and from a lossless archive of its grid: the same picture.
     EXPECT_EQ(compared.rows[2].samples, compared.rows[0].samples);
     EXPECT_LE(compared.rows[2].maximum, 1);
     EXPECT_GT(compared.rows[2].storedBytes, compared.rows[3].storedBytes);

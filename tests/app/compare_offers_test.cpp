@@ -140,8 +140,26 @@ TEST(CompareOffers, AnArchiveIsNotPackedAgain) {
     session.data.files = {{.path = "run.tsr", .absolutePath = "/data/run.tsr", .bytes = 0, .hash = ""}};
     const auto groups = compareOffers(session, offeredInfo());
     EXPECT_FALSE(find(groups, "Exact or compressed"));
-    EXPECT_FALSE(find(groups, "The other lattice"));
-    for (const std::string& path : variantPaths(session)) EXPECT_FALSE(path.starts_with("/data/")) << path;
+    for (const std::string& path : variantPaths(session))
+        EXPECT_TRUE(!path.starts_with("/data/") || path == "/data/lattice") << path;
+}
+
+TEST(CompareOffers, ArchivesOfARegularGridAreDrawnOnTheOtherLattice) {
+    Session session = offeredSession();
+    session.data = {};
+    session.data.files = {{.path = "run.tsr", .absolutePath = "/data/run.tsr", .bytes = 0, .hash = ""}};
+    volume::DatasetInfo info = offeredInfo();
+    for (const PictureLattice lattice : {PictureLattice::BodyCentred, PictureLattice::Grid}) {
+        session.data.lattice = lattice;
+        info.lattice.kind =
+            lattice == PictureLattice::Grid ? volume::LatticeKind::CC : volume::LatticeKind::BCC; // as it is drawn
+        const auto groups = compareOffers(session, info);
+        const CompareOffers* other = find(groups, "The other lattice");
+        ASSERT_TRUE(other);
+        EXPECT_NE(variantSession(session, other->offers.at(0).variants.at(0)).data.lattice, lattice);
+    }
+    info.lattice.kind = volume::LatticeKind::BCC; // drawn as stored, though the grid is wanted
+    EXPECT_FALSE(find(compareOffers(session, info), "The other lattice"));
 }
 
 TEST(CompareOffers, AnEmptyComparisonShowsTheOtherEndOfTime) {

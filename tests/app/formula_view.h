@@ -4,6 +4,7 @@
 #include "app/workbench/workbench.h"
 #include "tests/app/formula_cell.h"
 #include "vis/gl/headless.h"
+#include "volume/sources/centred_source.h"
 #include "volume/sources/memory_source.h"
 
 #include <functional>
@@ -32,7 +33,7 @@ protected:
                  const std::function<void(Session&)>& change) {
         Opened opened;
         opened.numbers = volume::makeMemorySource(make(), {});
-        opened.source = volume::makeMemorySource(make(), {.lattice = volume::LatticeKind::BCC});
+        opened.source = volume::makeCentredSource(opened.numbers, std::size_t(1) << 26);
         DataRef data;
         data.model = "fuel-cell"; // has no file
         opened.document.session = defaultSession(opened.source->info(), data);

@@ -234,12 +234,12 @@ TEST_F(DataHands, ADerivedParameterIsAddedAndRemoved) {
     EXPECT_FALSE(workbench.numbers()->info().findChannel("grad T"));
 }
 
-TEST_F(DataHands, TheLatticeOfPicturesIsChosen) {
-    show(DataView{}, {460, 1000});
+TEST_F(ListHands, TheLatticeOfPicturesIsChosen) {
+    showLists(SceneTask::Picture, {460, 2400});
     ASSERT_EQ(session().data.lattice, PictureLattice::BodyCentred);
-    click(at({"summary", "##lattice"}));
+    click(at({"/data/lattice", "##lattice"}));
     ASSERT_TRUE(popup());
-    moveTo(item(popup(), {"the grid of the file"}).GetCenter());
+    moveTo(item(popup(), {"grid"}).GetCenter());
     button(0, true);
     button(0, false); // no frame more: the workbench would compute them
     EXPECT_EQ(session().data.lattice, PictureLattice::Grid);

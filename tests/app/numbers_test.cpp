@@ -5,6 +5,8 @@
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
 #include "volume/reconstruct/probe.h"
+#include "volume/reconstruct/sample_grid.h"
+#include "volume/sources/centred_source.h"
 #include "volume/synthetic/models.h"
 
 #include <cmath>
@@ -300,13 +302,92 @@ TEST(Numbers, OfAnArchiveAreItsOwn) {
     std::filesystem::remove(path);
 }
 
+class PicturesOfArchives : public testing::Test {
+protected:
+    std::string folder =
+        (std::filesystem::temp_directory_path() / "tessera_pictures_").string() + std::to_string(::getpid());
+    PicturesOfArchives() { std::filesystem::create_directories(folder); }
+    ~PicturesOfArchives() override { std::filesystem::remove_all(folder); }
+
+    DataRef archived(StoredLattice lattice) const {
+        const std::string path = folder + "/cell.tsr";
+        const DataRef data = smallCell();
+        volume::Dataset cell = volume::makeModel(data.model, data.settings);
+        codec::pack(cell, packing(lattice), path);
+        DataRef of = dataOf({path}, {});
+        of.derived = data.derived;
+        return of;
+    }
+    static void expectSamePictures(const Sources& a, const Sources& b) {
+        ASSERT_EQ(a.pictures->grid().lattice, b.pictures->grid().lattice); // bricks may have other sizes
+        const auto channels = a.pictures->info().channels();
+        for (int c = 0; c < int(channels.size()); ++c) {
+            const volume::SampleGrid one = volume::readSamples(*a.pictures, c, kTime, 0),
+                                     other = volume::readSamples(*b.pictures, c, kTime, 0);
+            ASSERT_EQ(one.values.size(), other.values.size());
+            for (std::size_t i = 0; i < one.values.size(); ++i) {
+                const bool there = one.present.empty() || one.present[i] != 0;
+                ASSERT_EQ(there, other.present.empty() || other.present[i] != 0) << channels[std::size_t(c)].name;
+                if (!there) continue;
+                ASSERT_EQ(one.values[i], other.values[i]) << channels[std::size_t(c)].name;
+            }
+        }
+    }
+};
+
+TEST_F(PicturesOfArchives, AreThoseOfTheFile) {
+    const Sources archive = opened(archived(StoredLattice::CC)), file = opened(smallCell());
+    EXPECT_EQ(archive.pictures->info().lattice, volume::bccFor(archive.numbers->info().lattice));
+    EXPECT_EQ(archive.pictures->info().parameters[0].ranges, archive.numbers->info().parameters[0].ranges);
+    expectSamePictures(archive, file);
+    // What is derived is computed from the samples of the grid, not from those that are made for pictures.
+    EXPECT_EQ(volume::centredFrom(*archive.pictures), archive.numbers);
+    EXPECT_EQ(volume::centredFrom(*underived(archive).pictures), underived(archive).numbers);
+}
+
+TEST_F(PicturesOfArchives, AreDrawnOnTheGridAsStoredIfAsked) {
+    DataRef data = archived(StoredLattice::CC);
+    data.lattice = PictureLattice::Grid;
+    const Sources grid = opened(data);
+    EXPECT_EQ(grid.pictures, grid.numbers);
+    EXPECT_EQ(grid.pictures->info().lattice.kind, volume::LatticeKind::CC);
+    EXPECT_TRUE(canChooseLattice(data, *grid.numbers, grid.origin));
+    data.lattice = PictureLattice::BodyCentred;
+    const Sources centred = opened(data), moved = drawnOn(PictureLattice::BodyCentred, grid);
+    EXPECT_EQ(moved.numbers, grid.numbers);
+    expectSamePictures(centred, moved);
+    EXPECT_EQ(drawnOn(PictureLattice::Grid, centred).pictures, centred.numbers);
+}
+
+TEST_F(PicturesOfArchives, OnAnotherLatticeAreDrawnAsStored) {
+    for (const StoredLattice lattice : {StoredLattice::BCC, StoredLattice::D4}) {
+        const DataRef data = archived(lattice);
+        const Sources sources = opened(data);
+        EXPECT_EQ(sources.pictures, sources.numbers);
+        EXPECT_FALSE(canChooseLattice(data, *sources.numbers, sources.origin));
+    }
+}
+
+TEST_F(PicturesOfArchives, OfAPackedCopyAreDrawnAlike) {
+    const DataRef data = with([](DataRef& changed) { changed.packed = packing(StoredLattice::CC); });
+    const Sources packed = opened(data), file = opened(smallCell());
+    expectSamePictures(packed, file);
+    ASSERT_TRUE(packed.packed);
+    EXPECT_EQ(packed.packed->info().lattice, packed.numbers->info().lattice);
+    EXPECT_TRUE(packed.packed->info().findChannel("ratio"));
+    const Sources grid = drawnOn(PictureLattice::Grid, packed);
+    EXPECT_EQ(grid.pictures, packed.packed) << "what the archive holds, not the file";
+    const Sources onBcc = opened(with([](DataRef& changed) { changed.packed = packing(StoredLattice::BCC); }));
+    EXPECT_EQ(onBcc.packed->info().lattice, onBcc.numbers->info().lattice) << "unpacked";
+}
+
 TEST(Numbers, WhatIsDrawnOnAnotherLatticeHasTheSameNumbers) {
     const DataRef data = smallCell();
     const Sources first = opened(data);
-    const Sources other = drawnOn(PictureLattice::Grid, first, data.derived);
+    const Sources other = drawnOn(PictureLattice::Grid, first);
     EXPECT_EQ(other.numbers, first.numbers);
     EXPECT_EQ(other.pictures->info().lattice, first.numbers->info().lattice);
-    const Sources back = drawnOn(PictureLattice::BodyCentred, other, data.derived);
+    const Sources back = drawnOn(PictureLattice::BodyCentred, other);
     EXPECT_EQ(back.pictures->info(), first.pictures->info());
     const volume::BrickKey key{first.pictures->info().findChannel("slope.z").value(), kTime, 0, {0, 0, 0}};
     EXPECT_EQ(back.pictures->read(key).values, first.pictures->read(key).values);

@@ -86,7 +86,7 @@ protected:
         }
         return errors;
     }
-    /// Of what a session draws whose `data.packed` is this.
+    /// Of what the archive holds that a session shows whose `data.packed` is this.
     WorstErrors ofSession(const std::string& packed) const {
         DataRef data;
         std::vector<JsonIssue> issues;
@@ -96,7 +96,8 @@ protected:
         data.files[0].absolutePath = in("whole.json");
         std::vector<std::string> messages;
         const Sources sources = openSources(data, messages);
-        const volume::DatasetInfo& info = sources.pictures->info();
+        EXPECT_EQ(sources.pictures->info().lattice.kind, volume::LatticeKind::BCC) << packed;
+        const volume::DatasetInfo& info = sources.packed->info();
         EXPECT_EQ(info.lattice.kind, volume::LatticeKind::CC) << packed;
         WorstErrors errors;
         std::vector<glm::dvec3> places;
@@ -105,7 +106,7 @@ protected:
                 info.lattice.position({i % kMadeWide, i / kMadeWide % kMadeDeep, i / kMadeWide / kMadeDeep}));
         for (std::size_t a = 0; a < kScaledArrays.size(); ++a)
             for (int t = 0; t < kMadeTimes; ++t) {
-                const auto values = volume::probeAlong(*sources.pictures, int(a), places, t);
+                const auto values = volume::probeAlong(*sources.packed, int(a), places, t);
                 for (int i = 0; i < kMadeCount; ++i)
                     errors.add(a, values[std::size_t(i)].nearest.value(), value(t, a, i));
             }

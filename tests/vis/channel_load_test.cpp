@@ -73,6 +73,27 @@ TEST(ChannelLoad, LabelsAreReadAsSuchInAnyParameter) {
     EXPECT_NE(values.encoding, makeEncoding(values.summary->all, true, false, values.key.prefiltered));
 }
 
+// Samples that were corrected for pictures lie beyond the range of the data: texels have room for them and for the
+// overshoot of the prefilter, alike at all times.
+TEST(ChannelLoad, CorrectedSamplesHaveRoomAlikeAtAllTimes) {
+    const Range all{10, 20};
+    const ChannelStats within = commonStats({.min = 11, .max = 19}, all);
+    EXPECT_EQ(within.min, 10);
+    EXPECT_EQ(within.max, 20);
+    for (const auto& [lo, hi] : {std::pair{7.5, 22.5}, std::pair{9.0, 15.0}, std::pair{10.0, 20.5}}) {
+        const ChannelStats common = commonStats({.min = lo, .max = hi}, all);
+        EXPECT_EQ(common.min, 7.5);
+        EXPECT_EQ(common.max, 22.5);
+        const TexelEncoding encoding = makeEncoding(common, false, false, true);
+        const double overshoot = 2.0 / 3 * 15; // of samples of the whole range
+        EXPECT_LE(encoding.offset, 7.5 - overshoot + 1e-9);
+        EXPECT_GE(encoding.offset + encoding.scale, 22.5 + overshoot - 1e-9);
+    }
+    const ChannelStats far = commonStats({.min = 6, .max = 20}, all);
+    EXPECT_EQ(far.min, 6);
+    EXPECT_EQ(far.max, 20);
+}
+
 // A network that fails makes no holes: what is drawn stays.
 TEST(ChannelLoad, ABrickThatCannotBeReadNowStaysCoarser) {
     const Outcome outcome = outcomeOf(false);

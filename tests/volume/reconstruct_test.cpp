@@ -282,7 +282,11 @@ TEST(LatticeError, FiguresOfMarschnerLobb) {
                         {3, LatticeKind::BCC, LatticeFilter::Tetrahedral, 0.00967},
                         {6, LatticeKind::CC, LatticeFilter::Linear, 0.0317},
                         {6, LatticeKind::BCC, LatticeFilter::Linear, 0.0450},
-                        {6, LatticeKind::BCC, LatticeFilter::Quasi, 0.0328}};
+                        {6, LatticeKind::BCC, LatticeFilter::Quasi, 0.0328},
+                        {3, LatticeKind::BCC, LatticeFilter::Resampled, 0.00601},
+                        {3, LatticeKind::BCC, LatticeFilter::Corrected, 0.00233},
+                        {6, LatticeKind::BCC, LatticeFilter::Resampled, 0.0402},
+                        {6, LatticeKind::BCC, LatticeFilter::Corrected, 0.0303}};
     for (const Row& row : rows) {
         const MarschnerLobb signal{0.25, row.fM};
         const LatticeError error = latticeError([&](glm::dvec3 p) { return signal(p); }, row.kind,
@@ -291,6 +295,27 @@ TEST(LatticeError, FiguresOfMarschnerLobb) {
             << row.fM << " " << kLatticeNames[int(row.kind)] << " " << kLatticeFilterNames[int(row.filter)];
         EXPECT_GT(error.max, error.rms);
     }
+}
+
+// Beside a border across which the signal jumps, nothing of the other region comes in, and one step is worth it there
+// too.
+TEST(LatticeError, BesideABorderOfRegions) {
+    const double cc = 2.0 / 40;
+    const MarschnerLobb signal{0.25, 3};
+    const glm::dvec3 normal = glm::normalize(glm::dvec3(1, 0.6, 0.35));
+    const auto error = [&](LatticeKind kind, LatticeFilter filter) {
+        return latticeErrorOfRegions([&](glm::dvec3 p, int region) { return region == 0 ? signal(p) : 3 + signal(-p); },
+                                     [&](glm::dvec3 p) { return glm::dot(normal, p) - 0.1; }, kind,
+                                     kind == LatticeKind::CC ? cc : kBccSpacing * cc, filter,
+                                     {glm::dvec3(-0.8), glm::dvec3(0.8)}, 2 * cc);
+    };
+    const LatticeError grid = error(LatticeKind::CC, LatticeFilter::Linear),
+                       resampled = error(LatticeKind::BCC, LatticeFilter::Resampled),
+                       corrected = error(LatticeKind::BCC, LatticeFilter::Corrected);
+    EXPECT_LT(corrected.rms, 0.53 * grid.rms);
+    EXPECT_LT(corrected.rms, 0.67 * resampled.rms);
+    EXPECT_LT(corrected.max, 0.1); // the jump is 3
+    EXPECT_GT(corrected.samples, 0.97 * grid.samples);
 }
 
 // Directions of gradients of the same signal: differences between the nearest neighbours bring them nearer to its own

@@ -2,6 +2,7 @@
 
 #include "volume/base/parallel.h"
 #include "volume/reconstruct/reconstruct.h"
+#include "volume/sources/centred_samples.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,12 +32,16 @@ ChannelStats channelStats(std::span<const volume::BrickStats> bricks) {
 
 ChannelStats commonStats(const ChannelStats& own, Range allTimes) {
     constexpr double kFairShare = 1.0 / 16, kRounding = 1e-6;
-    const double width = allTimes.hi - allTimes.lo, beyond = kRounding * width;
-    const bool within = own.min >= allTimes.lo - beyond && own.max <= allTimes.hi + beyond;
-    if (own.allAbsent || !within || !(own.max - own.min >= kFairShare * width)) return own;
+    const double width = allTimes.hi - allTimes.lo;
+    const auto within = [&](double share) {
+        return own.min >= allTimes.lo - (share + kRounding) * width &&
+               own.max <= allTimes.hi + (share + kRounding) * width;
+    };
+    if (own.allAbsent || !(own.max - own.min >= kFairShare * width) || !within(volume::kCentredHeadroom)) return own;
+    const double beyond = within(0) ? 0 : volume::kCentredHeadroom * width;
     ChannelStats common = own;
-    common.min = allTimes.lo;
-    common.max = allTimes.hi;
+    common.min = allTimes.lo - beyond;
+    common.max = allTimes.hi + beyond;
     return common;
 }
 

@@ -31,7 +31,8 @@ struct ChannelStats {
 ChannelStats channelStats(std::span<const volume::BrickStats> bricks);
 
 /// The range used for encoding: that of all times, so that unchanged bricks can share texels, if this time covers at
-/// least a sixteenth of it; else its own range.
+/// least a sixteenth of it; else its own range. Beyond that of all times lie samples that were corrected for pictures,
+/// by up to kCentredHeadroom of its width (volume/sources/centred_samples.h): then all times have that much more.
 ChannelStats commonStats(const ChannelStats& own, Range allTimes);
 
 /// The encoding of a channel: unfiltered values in [0, 1], 16 bits with headroom of 2/3 of the range on either side for

@@ -2,7 +2,9 @@
 
 #include "volume/base/parallel.h"
 #include "volume/reconstruct/reconstruct.h"
+#include "volume/resample/resample.h"
 #include "volume/resample/series.h"
+#include "volume/sources/centred_field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,13 +23,36 @@ constexpr int kMargin = 4; // cells beyond the box: two for the filter, one for 
 
 /// Samples on a part of an endless lattice: the box and a margin around it.
 struct SampledPart {
-    Lattice lattice; ///< starts kMargin cells before the box
+    Lattice lattice;
     std::vector<double> values;
+    std::vector<std::uint8_t> present = {}; ///< empty: all
 
     Sample operator()(glm::ivec3 at) const {
-        return {values[lattice.index(clampToLattice(lattice.kind, lattice.size, at))], true};
+        const std::size_t index = lattice.index(clampToLattice(lattice.kind, lattice.size, at));
+        return {values[index], isPresent(present, index)};
     }
 };
+
+bool isOfGrid(LatticeFilter filter) {
+    return filter == LatticeFilter::Resampled || filter == LatticeFilter::Corrected;
+}
+
+/// The CC grid that a filter's samples come from, else the lattice itself, with a margin around the box.
+Lattice latticeAround(const Box& box, LatticeKind kind, double spacing, LatticeFilter filter) {
+    constexpr int kMarginOfGrid = 12; // what corrected samples are made of lies up to eight cells away
+    Lattice lattice;
+    lattice.kind = isOfGrid(filter) ? LatticeKind::CC : kind;
+    lattice.spacing = glm::dvec3(isOfGrid(filter) ? spacing / kBccSpacing : spacing);
+    const int margin = isOfGrid(filter) ? kMarginOfGrid : kMargin;
+    lattice.origin = box.lo - double(margin) * lattice.spacing;
+    lattice.size = glm::ivec3(glm::ceil(box.size() / lattice.spacing)) + 2 * margin + 1;
+    lattice.size.z *= lattice.kind == LatticeKind::BCC ? 2 : 1;
+    return lattice;
+}
+
+Field onPictures(const Field& grid, LatticeFilter filter) {
+    return filter == LatticeFilter::Corrected ? toCentred(grid, false) : toBcc(grid, false);
+}
 
 template <class Value> std::vector<double> everySample(const Lattice& lattice, const Value& value) {
     std::vector<double> values(lattice.count());
@@ -41,21 +66,27 @@ template <class Value> std::vector<double> everySample(const Lattice& lattice, c
     return values;
 }
 
+bool isPrefiltered(LatticeFilter filter) {
+    return filter == LatticeFilter::Quasi || filter == LatticeFilter::Quintic || isOfGrid(filter);
+}
+
+void prefilter(SampledPart& part) {
+    const Prefiltered filtered(part, LevelGeometry{part.lattice.kind, 1, 0});
+    part.values = everySample(part.lattice, [&](glm::ivec3 at) { return filtered(at).value; });
+}
+
 /// The samples of a signal, prefiltered if the filter requires it.
 SampledPart samplesOf(const std::function<double(glm::dvec3)>& signal, LatticeKind kind, double spacing,
                       LatticeFilter filter, const Box& box) {
-    SampledPart part;
-    part.lattice.kind = kind;
-    part.lattice.spacing = glm::dvec3(spacing);
-    part.lattice.origin = box.lo - double(kMargin) * spacing;
-    part.lattice.size = glm::ivec3(glm::ceil(box.size() / spacing)) + 2 * kMargin + 1;
-    part.lattice.size.z *= kind == LatticeKind::BCC ? 2 : 1;
-    const Lattice& lattice = part.lattice;
-    part.values = everySample(lattice, [&](glm::ivec3 at) { return signal(lattice.position(at)); });
-    if (filter == LatticeFilter::Quasi || filter == LatticeFilter::Quintic) {
-        const Prefiltered filtered(part, LevelGeometry{kind, 1, 0});
-        part.values = everySample(lattice, [&](glm::ivec3 at) { return filtered(at).value; });
+    SampledPart part{latticeAround(box, kind, spacing, filter), {}};
+    part.values = everySample(part.lattice, [&](glm::ivec3 at) { return signal(part.lattice.position(at)); });
+    if (isOfGrid(filter)) {
+        Field grid = makeField(part.lattice, ScalarType::F32);
+        std::copy(part.values.begin(), part.values.end(), grid.as<float>().begin());
+        const Field made = onPictures(grid, filter);
+        part = {made.lattice, physicalValues(made)};
     }
+    if (isPrefiltered(filter)) prefilter(part);
     return part;
 }
 
@@ -99,6 +130,45 @@ LatticeError latticeError(const std::function<double(glm::dvec3)>& signal, Latti
     out.rms = std::sqrt(out.rms / double(points));
     const glm::dvec3 size = box.size();
     out.samples = size.x * size.y * size.z / (spacing * spacing * spacing) * (kind == LatticeKind::BCC ? 2 : 1);
+    return out;
+}
+
+LatticeError latticeErrorOfRegions(const std::function<double(glm::dvec3, int)>& signal,
+                                   const std::function<double(glm::dvec3)>& border, LatticeKind kind, double spacing,
+                                   LatticeFilter filter, const Box& box, double reach, std::size_t points,
+                                   unsigned seed) {
+    const auto regionAt = [&](glm::dvec3 p) { return border(p) > 0 ? 1 : 0; };
+    Field field = makeField(latticeAround(box, kind, spacing, filter), ScalarType::F32);
+    auto numbers = std::make_shared<Mask>(field.count());
+    const std::vector<double> values = everySample(field.lattice, [&](glm::ivec3 at) {
+        const glm::dvec3 p = field.lattice.position(at);
+        (*numbers)[field.lattice.index(at)] = std::uint8_t(1 + regionAt(p));
+        return signal(p, regionAt(p));
+    });
+    std::copy(values.begin(), values.end(), field.as<float>().begin());
+    field.mask = std::move(numbers);
+    if (isOfGrid(filter)) field = onPictures(field, filter);
+    std::array<SampledPart, 2> parts;
+    for (std::size_t region = 0; region < 2; ++region) {
+        SampledPart& part = parts[region];
+        part = {field.lattice, physicalValues(field)};
+        for (const std::uint8_t number : *field.mask) part.present.push_back(number == 1 + region ? 1 : 0);
+        if (isPrefiltered(filter)) prefilter(part);
+    }
+    LatticeError out;
+    for (const glm::dvec3 p : randomPoints(box, points, seed)) {
+        if (std::abs(border(p)) > reach) continue;
+        const int region = regionAt(p);
+        const SampledPart& part = parts[std::size_t(region)];
+        const Blend blend = linear({part.lattice.kind, 1, 0}, part, part.lattice.toCells(p));
+        const std::optional<double> value = blend.value();
+        if (!value) continue;
+        const double error = std::abs(*value - signal(p, region));
+        out.rms += error * error;
+        out.max = std::max(out.max, error);
+        ++out.samples;
+    }
+    out.rms = std::sqrt(out.rms / out.samples);
     return out;
 }
 

@@ -10,9 +10,12 @@
 namespace tessera::volume {
 
 /// Filters of volume/reconstruct/reconstruct.h: `linear` on unfiltered samples, and on prefiltered ones (quasi); for
-/// BCC also `tetrahedral`, `cosineWeighted`, and `quinticBox` on prefiltered samples.
-enum class LatticeFilter { Linear, Quasi, Tetrahedral, Cosine, Quintic };
-inline constexpr std::string_view kLatticeFilterNames[] = {"linear", "quasi", "tetrahedral", "cosine", "quintic"};
+/// BCC also `tetrahedral`, `cosineWeighted`, and `quinticBox` on prefiltered samples. Resampled, Corrected: quasi, of
+/// samples that come from those of the CC grid with a cell shorter by sqrt 2, as toBcc() resamples them
+/// (volume/resample/resample.h), and as pictures are made of them (toCentred(), volume/sources/centred_field.h).
+enum class LatticeFilter { Linear, Quasi, Tetrahedral, Cosine, Quintic, Resampled, Corrected };
+inline constexpr std::string_view kLatticeFilterNames[] = {"linear",  "quasi",     "tetrahedral", "cosine",
+                                                           "quintic", "resampled", "corrected"};
 
 struct LatticeError {
     double rms = 0, max = 0;
@@ -24,6 +27,15 @@ struct LatticeError {
 /// continues beyond the box, so borders have no influence. `spacing` is the cell edge (of one sublattice on BCC).
 LatticeError latticeError(const std::function<double(glm::dvec3)>& signal, LatticeKind kind, double spacing,
                           LatticeFilter filter, const Box& box, std::size_t points = 60000, unsigned seed = 1);
+
+/// The same for a signal of two regions, one value of which is never mixed with the other's: signal(p, region), region
+/// 1 where border(p), the distance to the border, is above 0, else 0. Over points up to `reach` from the border where
+/// samples of the point's own region have at least half of the weight, as pictures show it. LatticeError::samples is
+/// the number of these points.
+LatticeError latticeErrorOfRegions(const std::function<double(glm::dvec3, int)>& signal,
+                                   const std::function<double(glm::dvec3)>& border, LatticeKind kind, double spacing,
+                                   LatticeFilter filter, const Box& box, double reach, std::size_t points = 60000,
+                                   unsigned seed = 1);
 
 /// Mean angle, in degrees, between reconstructed gradients and `slope`, the gradient of the signal, over the same
 /// points, each weighted by the length of its slope.

@@ -59,6 +59,38 @@ private:
     std::array<State, std::size_t(kEdge) * kEdge * kEdge> known_{};
 };
 
+/// Weights of Catmull-Rom for the samples around a cell, the one before it first; of the linear filter for its two.
+inline std::array<double, 4> aroundCell(const Tap& tap) {
+    const double f = tap.fraction;
+    if (tap.count <= 2) return {0, 1 - f, f, 0};
+    return {f * (-0.5 + f * (1 - 0.5 * f)), 1 + f * f * (-2.5 + 1.5 * f), f * (0.5 + f * (2 - 1.5 * f)),
+            f * f * (-0.5 + 0.5 * f)};
+}
+
+/// Catmull-Rom, of the linear filter trilinear, over the samples of the nearest one's part; `beyond(index, own)` gives
+/// the values in place of others, where own(index) returns those of the part. `taps`: along x, y and z.
+template <class Values, class Beyond>
+double ofOwnPart(const Lattice& lattice, const Mask& mask, const std::array<const Tap*, 3>& taps, const Values& values,
+                 const Beyond& beyond) {
+    const auto& [x, y, z] = taps;
+    const glm::ivec3 cell(x->cell[0], y->cell[0], z->cell[0]);
+    OwnWindow window(lattice, mask, cell, {x->nearest, y->nearest, z->nearest});
+    const auto own = [&](glm::ivec3 at) {
+        return window.has(at) ? std::optional(double(values[lattice.index(at)])) : std::nullopt;
+    };
+    const std::array<std::array<double, 4>, 3> weights{aroundCell(*x), aroundCell(*y), aroundCell(*z)};
+    double sum = 0;
+    for (int n = 0; n < 64; ++n) {
+        const int i = n & 3, j = n >> 2 & 3, k = n >> 4;
+        const double w = weights[0][std::size_t(i)] * weights[1][std::size_t(j)] * weights[2][std::size_t(k)];
+        if (w == 0) continue;
+        const glm::ivec3 at = cell + glm::ivec3(i, j, k) - 1;
+        const std::optional<double> value = own(at);
+        sum += w * (value ? *value : beyond(at, own));
+    }
+    return sum;
+}
+
 /// One target slice of a CC source. `Value`: what the kernel weighs, the stored numbers or coefficients made from them.
 template <class T, class Value> class SliceFilter {
 public:
@@ -166,35 +198,11 @@ private:
         }
     }
 
-    /// Catmull-Rom, of the linear filter trilinear, over the samples of the nearest one's part, continued to the places
-    /// of others.
     double ownOnly(const Tap& x, const Tap& y, const Tap& z, glm::ivec3 nearest) const {
-        const glm::ivec3 cell(x.cell[0], y.cell[0], z.cell[0]);
-        OwnWindow window(source_.lattice, *source_.mask, cell, nearest);
-        const auto own = [&](glm::ivec3 at) {
-            return window.has(at) ? std::optional(double(stored_[source_.lattice.index(at)])) : std::nullopt;
-        };
-        const std::array<std::array<double, 4>, 3> weights{aroundCell(x), aroundCell(y), aroundCell(z)};
         const double here = double(stored_[source_.lattice.index(nearest)]);
-        double sum = 0;
-        for (int n = 0; n < 64; ++n) {
-            const int i = n & 3, j = n >> 2 & 3, k = n >> 4;
-            const double w = weights[0][std::size_t(i)] * weights[1][std::size_t(j)] * weights[2][std::size_t(k)];
-            if (w == 0) continue;
-            const glm::ivec3 at = cell + glm::ivec3(i, j, k) - 1;
-            std::optional<double> value = own(at);
-            if (!value) value = continued(LatticeKind::CC, at, own, [](glm::ivec3) { return true; });
-            sum += w * value.value_or(here);
-        }
-        return sum;
-    }
-
-    /// Weights of the samples around a cell, the one before it first.
-    static std::array<double, 4> aroundCell(const Tap& tap) {
-        const double f = tap.fraction;
-        if (tap.count <= 2) return {0, 1 - f, f, 0};
-        return {f * (-0.5 + f * (1 - 0.5 * f)), 1 + f * f * (-2.5 + 1.5 * f), f * (0.5 + f * (2 - 1.5 * f)),
-                f * f * (-0.5 + 0.5 * f)};
+        return ofOwnPart(source_.lattice, *source_.mask, {&x, &y, &z}, stored_, [&](glm::ivec3 at, const auto& own) {
+            return continued(LatticeKind::CC, at, own, [](glm::ivec3) { return true; }).value_or(here);
+        });
     }
 
     const Field& source_;

@@ -89,9 +89,8 @@ bool isResampled(const DatasetInfo& info, const MemorySourceOptions& options) {
 
 class MemorySource final : public BrickSource {
 public:
-    MemorySource(Dataset dataset, const MemorySourceOptions& options, std::shared_ptr<const MemorySource> loads = {})
-        : dataset_(isResampled(dataset.info, options) ? withParts(dataset) : dataset), loads_(std::move(loads)),
-          info_(dataset_.info),
+    MemorySource(const Dataset& dataset, const MemorySourceOptions& options)
+        : dataset_(isResampled(dataset.info, options) ? withParts(dataset) : dataset), info_(dataset_.info),
           frames_(
               options.budget, [this](const FrameKey& key) { return loadFrame(key); }, fieldBytes) {
         if (options.brickSize < 1 || (options.brickSize & (options.brickSize - 1)) != 0)
@@ -106,7 +105,6 @@ public:
 
     const DatasetInfo& info() const override { return info_; }
     const BrickGrid& grid() const override { return grid_; }
-    const Dataset& dataset() const { return dataset_; }
 
     BrickStats stats(const BrickKey& key) const override {
         const Channel& channel = channelOf(key);
@@ -165,15 +163,6 @@ private:
     }
 
     FramePtr loadFrame(const FrameKey& key) const {
-        if (loads_) {
-            FramePtr frame = loads_->frames_.get(key);
-            if (frame->lattice.kind == grid_.lattice.kind) return frame;
-            const Parameter& about = parameter(key.parameter);
-            Field field = *frame;
-            if (const int label = labelOf(info_, about); label >= 0)
-                field = withParts(std::move(field), *loads_->frames_.get({label, 0, key.time}), about.parts);
-            return std::make_shared<const Field>(withoutParts(toBcc(field, about.categorical)));
-        }
         Field field;
         {
             const std::lock_guard lock(loading_);
@@ -240,7 +229,6 @@ private:
     }
 
     Dataset dataset_;
-    std::shared_ptr<const MemorySource> loads_; ///< the source that loads the frames; null: this one does
     DatasetInfo info_;
     BrickGrid grid_;
     std::vector<Channel> channels_;
@@ -255,16 +243,6 @@ private:
 
 std::shared_ptr<const BrickSource> makeMemorySource(Dataset dataset, const MemorySourceOptions& options) {
     return std::make_shared<const MemorySource>(std::move(dataset), options);
-}
-
-std::shared_ptr<const BrickSource> onLattice(const std::shared_ptr<const BrickSource>& source,
-                                             const MemorySourceOptions& options) {
-    const auto of = std::dynamic_pointer_cast<const MemorySource>(source);
-    if (!of) throw Error("archives cannot be shown on another lattice", source->info().name);
-    if (of->grid().lattice.kind == options.lattice && of->grid().brickSize == options.brickSize) return source;
-    if (of->grid().lattice.kind != of->dataset().info.lattice.kind)
-        throw Error("it is already resampled", source->info().name);
-    return std::make_shared<const MemorySource>(of->dataset(), options, of);
 }
 
 BrickSamples magnitude(const BrickSamples& x, const BrickSamples& y, const BrickSamples& z) {

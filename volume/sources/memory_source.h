@@ -22,12 +22,6 @@ struct MemorySourceOptions {
 };
 std::shared_ptr<const BrickSource> makeMemorySource(Dataset dataset, const MemorySourceOptions& options);
 
-/// A source made by makeMemorySource, on BCC or CC as `options` say: of the same data set, using the frames that are
-/// already loaded. `options.budget` is for frames computed from them. Returns the source itself if nothing differs.
-/// Throws Error for other sources.
-std::shared_ptr<const BrickSource> onLattice(const std::shared_ptr<const BrickSource>& source,
-                                             const MemorySourceOptions& options);
-
 /// Magnitude of a vector in one brick, sqrt(x^2 + y^2 + z^2), present where all three components are. The bricks have
 /// the same size. For sources that store components but serve DatasetInfo::channels().
 BrickSamples magnitude(const BrickSamples& x, const BrickSamples& y, const BrickSamples& z);

@@ -24,6 +24,35 @@ double movingBlob(glm::dvec4 p) {
     return std::exp(-glm::dot(apart, apart) / (2 * 0.14 * 0.14));
 }
 
+/// Two regions beside a slanted plane, of Marschner-Lobb signals that jump there by three ranges: errors up to two
+/// cells of CC from the plane, of what each region's own samples give.
+void addRowsOfRegions(BenchTable& table) {
+    using volume::LatticeFilter;
+    using volume::LatticeKind;
+    const LatticeRow rows[] = {
+        {"CC trilinear", LatticeKind::CC, 1, LatticeFilter::Linear},
+        {"CC quasi", LatticeKind::CC, 1, LatticeFilter::Quasi},
+        {"BCC quasi", LatticeKind::BCC, volume::kBccSpacing, LatticeFilter::Quasi},
+        {"BCC quasi, resampled from CC", LatticeKind::BCC, volume::kBccSpacing, LatticeFilter::Resampled},
+        {"BCC quasi, of CC with one step (pictures)", LatticeKind::BCC, volume::kBccSpacing, LatticeFilter::Corrected},
+    };
+    const volume::MarschnerLobb signal{0.25, 3};
+    const auto inRegion = [&](glm::dvec3 p, int region) { return region == 0 ? signal(p) : 3 + signal(-p); };
+    const glm::dvec3 normal = glm::normalize(glm::dvec3(1, 0.6, 0.35));
+    const auto border = [&](glm::dvec3 p) { return glm::dot(normal, p) - 0.1; };
+    const volume::Box box{glm::dvec3(-0.8), glm::dvec3(0.8)};
+    const double cell = 2.0 / 40;
+    volume::LatticeError trilinear;
+    for (const LatticeRow& row : rows) {
+        const auto error = volume::latticeErrorOfRegions(inRegion, border, row.kind, row.spacing * cell, row.filter,
+                                                         box, 2 * cell, 400000);
+        if (row.kind == LatticeKind::CC && row.filter == LatticeFilter::Linear) trilinear = error;
+        table.rows.push_back({"border of regions", row.name, row.kind == LatticeKind::CC ? "100.0" : "70.7",
+                              decimals(error.rms, 5), decimals(error.max, 4), decimals(error.rms / trilinear.rms, 2),
+                              "", ""});
+    }
+}
+
 struct LatticeRow4 {
     const char* name;
     volume::LatticeKind4 kind;
@@ -65,6 +94,8 @@ BenchTable benchLattice() {
         {"BCC tetrahedral", LatticeKind::BCC, sparse, LatticeFilter::Tetrahedral},
         {"BCC cosine", LatticeKind::BCC, sparse, LatticeFilter::Cosine},
         {"BCC quintic box", LatticeKind::BCC, sparse, LatticeFilter::Quintic},
+        {"BCC quasi, resampled from CC", LatticeKind::BCC, sparse, LatticeFilter::Resampled},
+        {"BCC quasi, of CC with one step (pictures)", LatticeKind::BCC, sparse, LatticeFilter::Corrected},
         {"BCC average", LatticeKind::BCC, equal, LatticeFilter::Linear},
         {"BCC quasi", LatticeKind::BCC, equal, LatticeFilter::Quasi},
         {"BCC tetrahedral", LatticeKind::BCC, equal, LatticeFilter::Tetrahedral},
@@ -95,6 +126,7 @@ BenchTable benchLattice() {
                                   angle(volume::GradientSpan::Neighbours), angle(volume::GradientSpan::Wide)});
         }
     }
+    addRowsOfRegions(table);
     addRows4(table);
     return table;
 }

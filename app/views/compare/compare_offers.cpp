@@ -162,8 +162,8 @@ std::vector<CompareOffers> compareOffers(const Session& session, const volume::D
         technique(oneByOne("Another proxy geometry", "Every proxy geometry",
                            ofNames("/render/proxy", vis::kProxyNames, std::size_t(session.render.proxy)))));
     const DataRef& data = session.data;
-    if (data.files.size() != 1 || !codec::namesArchive(data.files[0].absolutePath)) {
-        const bool grid = data.lattice == PictureLattice::Grid;
+    const bool grid = data.lattice == PictureLattice::Grid;
+    if (!grid || info.lattice.kind == volume::LatticeKind::CC) {
         const char* name = grid ? "BCC" : "CC";
         groups.push_back(
             technique(oneByOne("The other lattice", name,

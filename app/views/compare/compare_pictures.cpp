@@ -71,7 +71,9 @@ std::shared_ptr<CompareData> ComparePictures::dataFor(ViewContext& context, cons
     if (!opened) return found;
     found->source = opened->sources.pictures;
     // The variant is what an archive holds, not what it was packed from.
-    found->numbers = data.packed ? opened->sources.pictures : opened->sources.numbers;
+    found->numbers = opened->sources.packed ? opened->sources.packed
+                     : data.packed          ? opened->sources.pictures
+                                            : opened->sources.numbers;
     if (!data.packed) found->origin = opened->sources.origin;
     found->failure = opened->failure;
     found->messages = opened->messages;
@@ -176,11 +178,25 @@ void ComparePictures::measure(ViewContext& context, const std::string& pane, std
         std::equal_to<>());
 }
 
+namespace {
+
+/// What the values of two variants are read from: their numbers, or where these are of the same data, their pictures,
+/// which may lie on two lattices.
+std::pair<std::shared_ptr<const volume::BrickSource>, std::shared_ptr<const volume::BrickSource>>
+comparedSources(const ViewContext& context, const CompareCell& cell, const CompareCell& against) {
+    DataRef own = cell.session.data;
+    own.lattice = against.session.data.lattice;
+    if (own == against.session.data) return {cell.source(context), against.source(context)};
+    return {cell.numbers(context), against.numbers(context)};
+}
+
+} // namespace
+
 void ComparePictures::measureSamples(ViewContext& context, const std::string& pane, std::size_t index,
                                      std::size_t reference) {
     CompareCell& cell = *cells_[index];
     const CompareCell& against = *cells_[reference];
-    const auto source = cell.source(context), wanted = against.source(context);
+    const auto [source, wanted] = comparedSources(context, cell, against);
     if (index == reference || !cell.failure.empty() || !source || !wanted) return;
     const CompareQuery query = compareQuery({cell.session, source}, {against.session, wanted});
     if (source == wanted && query.channel == query.referenceChannel && query.time == query.referenceTime) {
@@ -346,9 +362,8 @@ std::vector<CompareRow> ComparePictures::rows(const ViewContext& context, std::s
             row.ssim = of.ssim;
         }
         if (comparable) {
-            const auto& wanted = cells_[reference]->source(context);
-            if (cell.samplesOf.own == cell.source(context) && cell.samplesOf.reference == wanted && wanted)
-                row.data = cell.samples;
+            const auto [own, wanted] = comparedSources(context, cell, *cells_[reference]);
+            if (cell.samplesOf.own == own && cell.samplesOf.reference == wanted && wanted) row.data = cell.samples;
         }
         out.push_back(row);
     }
@@ -359,7 +374,7 @@ double ComparePictures::findValues(ViewContext& context, const std::string& pane
     const CompareCell& against = *cells_[reference];
     for (std::size_t i = 0; i < cells_.size(); ++i) {
         CompareCell& cell = *cells_[i];
-        const auto &source = cell.source(context), &wanted = against.source(context);
+        const auto [source, wanted] = comparedSources(context, cell, against);
         if (i == reference || !cell.failure.empty() || !against.failure.empty() || !source || !wanted) continue;
         cell.values.find(context, pane + ":values" + std::to_string(i), {cell.session, source},
                          {against.session, wanted});

@@ -26,7 +26,7 @@ struct CompareData {
     DataRef data;
     AsyncQuery<DataRef, Opened> opening;
     std::shared_ptr<const volume::BrickSource> source; ///< null while it opens
-    /// Of numbers: the samples as computed, of packed data those that the archive holds.
+    /// Of numbers: the samples as computed, of packed data what the archive gives.
     std::shared_ptr<const volume::BrickSource> numbers;
     NumberOrigin origin;
     std::unique_ptr<vis::Renderer> renderer;
@@ -90,6 +90,9 @@ struct CompareCell {
     }
     const std::shared_ptr<const volume::BrickSource>& source(const ViewContext& context) const {
         return data ? data->source : context.source;
+    }
+    const std::shared_ptr<const volume::BrickSource>& numbers(const ViewContext& context) const {
+        return data ? data->numbers : context.numbers;
     }
     /// Whether its data, which are not the session's, are still being opened.
     bool isOpening() const { return failure.empty() && !(session.data == of.data) && !(data && data->source); }

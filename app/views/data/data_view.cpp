@@ -61,24 +61,6 @@ std::string sizeText(const volume::DatasetInfo& info) {
     return text + (info.lengthUnit.empty() ? ", no unit stated" : "");
 }
 
-/// Chooses the lattice of pictures, if there is a choice.
-void chooseLattice(DataRef& data) {
-    static constexpr const char* kShown[] = {"the grid of the file", "body-centred, 70.7 % of the samples"};
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    ImGui::TextDisabled("Drawn from");
-    ImGui::TableNextColumn();
-    const auto now = static_cast<std::size_t>(data.lattice);
-    ImGui::SetNextItemWidth(-1);
-    if (beginFittedCombo("##lattice", kShown[now])) {
-        for (std::size_t i = 0; i < std::size(kShown); ++i)
-            if (ImGui::Selectable(kShown[i], i == now)) data.lattice = static_cast<PictureLattice>(i);
-        ImGui::EndCombo();
-    } else if (ImGui::IsItemHovered()) {
-        tooltip("Lattice that pictures are drawn from; numbers always come from the samples of the file");
-    }
-}
-
 void drawSummary(const ViewContext& context) {
     const volume::DatasetInfo& info = context.numbers->info();
     // In a narrow pane texts stand below their names: the next column of a table of one is the next row.
@@ -91,10 +73,7 @@ void drawSummary(const ViewContext& context) {
     row("Numbers", originText(context));
     if (const auto* archive = dynamic_cast<const codec::Archive*>(volume::underived(context.numbers).get()))
         row("Archive", codec::exactnessText(archive->metadata()));
-    if (!isArchive(context.session.data) && !context.session.data.packed)
-        chooseLattice(context.session.data);
-    else if (context.source != context.numbers)
-        row("Drawn from", latticeText(context.source->info()));
+    if (context.source != context.numbers) row("Drawn from", latticeText(context.source->info()));
     row("Size", sizeText(info));
     std::string times = formatCount(static_cast<double>(info.times.size()));
     if (info.times.size() > 1)

@@ -1,5 +1,7 @@
 #include "app/views/data/task_settings.h"
 
+#include "app/data/sources.h"
+
 #include "app/edits/context_style.h"
 #include "app/pane/view_parts.h"
 #include "app/session/shown_scene.h"
@@ -94,8 +96,11 @@ void drawPictureSettings(ViewContext& context, const WidgetContext& widgets, con
     if (ImGui::CollapsingHeader("Tone curve", ImGuiTreeNodeFlags_DefaultOpen))
         drawDescribed(session.tone, widgets.at("/tone"));
     if (ImGui::CollapsingHeader("Proportions", ImGuiTreeNodeFlags_DefaultOpen)) drawProportions(session, widgets);
-    if (ImGui::CollapsingHeader("Quality", ImGuiTreeNodeFlags_DefaultOpen))
+    if (ImGui::CollapsingHeader("Quality", ImGuiTreeNodeFlags_DefaultOpen)) {
+        if (canChooseLattice(session.data, *context.numbers, context.origin))
+            drawParameter(session, "/data/lattice", widgets);
         drawDescribed(session.render, widgets.at("/render"));
+    }
 }
 
 } // namespace tessera::app
