@@ -120,8 +120,8 @@ void Archive::Impl::settle() {
         const bool isFloat = parameter.type == volume::ScalarType::F32;
         const bool isInteger = frame.numbers.kind == NumberKind::Integer;
         const bool mayStep = frame.numbers.kind == NumberKind::Stepped &&
-                             (header.header.features & kSteppedIntegers) != 0 &&
-                             std::isfinite(frame.numbers.origin) && std::isfinite(frame.numbers.step);
+                             (header.header.features & kSteppedIntegers) != 0 && std::isfinite(frame.numbers.origin) &&
+                             std::isfinite(frame.numbers.step);
         if ((isFloat ? isInteger : !isInteger && !mayStep) || (frame.mask < 0 && frame.keepsAbsent))
             throw Error("a frame is coded in a way its type does not allow", path, "index");
         if (frame.parted &&

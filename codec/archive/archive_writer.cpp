@@ -18,7 +18,6 @@
 #include "volume/system/mapped_file.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <map>
 
@@ -389,8 +388,8 @@ FileRange ArchiveWriter::addCorrections(const std::string& file) {
 }
 
 void ArchiveWriter::commit(const Metadata& metadata, std::size_t times) {
-    if (const auto page = impl_->commits.commit(impl_->file, impl_->page, metadata, times, false))
-        add(*page, impl_->known);
+    const auto page = impl_->commits.commit(impl_->file, impl_->page, metadata, times, false);
+    if (page) add(*page, impl_->known);
 }
 
 std::uint64_t ArchiveWriter::finish(const Metadata& metadata) {
