@@ -2,10 +2,10 @@
 #include "codec/brick/coded_mask.h"
 #include "codec/brick/subsamples.h"
 #include "volume/base/parallel.h"
+#include "volume/bricks/magnitude.h"
 #include "volume/bricks/parts_bricks.h"
 #include "volume/field/part_masks.h"
 #include "volume/field/slices.h"
-#include "volume/sources/memory_source.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,11 +1,11 @@
 #include "volume/sources/alternating_source.h"
 
 #include "volume/bricks/brick_cache.h"
+#include "volume/bricks/magnitude.h"
 #include "volume/bricks/parts_bricks.h"
 #include "volume/reconstruct/reconstruct.h"
 #include "volume/resample/resample_taps.h"
 #include "volume/sources/axis_source.h"
-#include "volume/sources/memory_source.h"
 
 #include <algorithm>
 #include <array>
