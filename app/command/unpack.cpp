@@ -40,7 +40,8 @@ volume::ExportSelection select(const UnpackRequest& request, const volume::Datas
         if (std::find(selection.parameters.begin(), selection.parameters.end(), parameter) ==
             selection.parameters.end())
             selection.parameters.push_back(parameter);
-        if (request.parameters.size() == 1 && hasEnding(request.output, ".nrrd")) selection.channel = *found;
+        const bool whole = info.parameters[std::size_t(parameter)].name == wanted; // a vector, not its length
+        if (request.parameters.size() == 1 && !whole && hasEnding(request.output, ".nrrd")) selection.channel = *found;
     }
     for (const double time : request.times) selection.times.push_back(info.nearestTime(time));
     std::sort(selection.times.begin(), selection.times.end());
