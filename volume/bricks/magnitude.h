@@ -18,8 +18,7 @@ inline BrickSamples magnitude(std::span<const BrickSamples> components) {
     out.values.resize(components.front().values.size());
     for (std::size_t i = 0; i < out.values.size(); ++i) {
         double square = 0;
-        for (const BrickSamples& component : components)
-            square += double(component.values[i]) * double(component.values[i]);
+        for (const BrickSamples& component : components) square += component.exact(i) * component.exact(i);
         out.values[i] = float(std::sqrt(square));
     }
     for (const BrickSamples& component : components) {

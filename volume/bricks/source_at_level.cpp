@@ -57,6 +57,7 @@ private:
             values.resize(std::size_t(samples.size.z) * slice);
         };
         keep(samples.values);
+        keep(samples.rest);
         keep(samples.present);
     }
 

@@ -85,7 +85,8 @@ private:
             if (!near.isPresent(i)) continue;
             if (!far.isPresent(i)) continue;
             if (!nearParts.empty() && nearParts[i] != farParts[i]) continue;
-            near.values[i] = float((1 - weight) * double(near.values[i]) + weight * double(far.values[i]));
+            near.values[i] = float((1 - weight) * near.exact(i) + weight * far.exact(i));
+            if (!near.rest.empty()) near.rest[i] = 0;
         }
         return near;
     }

@@ -42,6 +42,7 @@ void setAbsent(BrickSamples& samples, std::size_t i) {
 }
 /// Makes results that are not finite absent.
 void set(BrickSamples& samples, std::size_t i, double value) {
+    if (!samples.rest.empty()) samples.rest[i] = 0;
     const auto narrow = float(value);
     if (std::isfinite(narrow))
         samples.values[i] = narrow;
@@ -138,7 +139,7 @@ struct DerivedBricks::Impl {
                 samples.push_back(nothing(key));
             } else if (channel >= 0) {
                 samples.push_back(used.at ? input(at, key) : input(channel, key));
-                std::copy(samples.back().values.begin(), samples.back().values.end(), of.begin());
+                for (std::size_t i = 0; i < count; ++i) of[i] = samples.back().exact(i);
             } else if (channel == FormulaNames::kTime) {
                 std::fill(of.begin(), of.end(), used.at ? at.time(key.time) : timeOf(key));
             } else {
@@ -238,7 +239,7 @@ struct DerivedBricks::Impl {
             for (std::size_t i = 0; i < count; ++i) {
                 if (!samples.isPresent(i)) continue;
                 // Welford: close values keep their digits.
-                const double value = double(samples.values[i]), before = value - mean[i];
+                const double value = samples.exact(i), before = value - mean[i];
                 n[i] += 1;
                 mean[i] += before / n[i];
                 squares[i] += before * (value - mean[i]);
@@ -259,7 +260,7 @@ struct DerivedBricks::Impl {
         for (std::size_t i = 0; i < out.values.size(); ++i) {
             if (!out.isPresent(i)) continue;
             if (recipe.measure == TimeMeasure::FromMean)
-                set(out, i, double(out.values[i]) - double((*both)[0].values[i]));
+                set(out, i, out.exact(i) - double((*both)[0].values[i]));
             else
                 set(out, i, double((*both)[1].values[i]));
         }
@@ -280,7 +281,7 @@ struct DerivedBricks::Impl {
         const BrickSamples other = input(times_.front(), key);
         for (std::size_t i = 0; i < out.values.size(); ++i) {
             if (out.isPresent(i) && other.isPresent(i))
-                set(out, i, double(out.values[i]) - toOwnUnit_(double(other.values[i])));
+                set(out, i, out.exact(i) - toOwnUnit_(other.exact(i)));
             else
                 setAbsent(out, i);
         }

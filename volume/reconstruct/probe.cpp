@@ -32,7 +32,7 @@ public:
             (std::size_t(in.z) * std::size_t(samples.size.y) + std::size_t(in.y)) * std::size_t(samples.size.x) +
             std::size_t(in.x);
         const bool present = samples.isPresent(n);
-        return {present ? double(samples.values[n]) : 0.0, present};
+        return {present ? samples.exact(n) : 0.0, present};
     }
 
 private:

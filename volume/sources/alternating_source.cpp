@@ -52,6 +52,7 @@ void blendValues(const std::vector<std::shared_ptr<const BrickSamples>>& bricks,
 BrickSamples blendBricks(const std::vector<std::shared_ptr<const BrickSamples>>& bricks,
                          const std::vector<WeightedTime>& times, const BrickStats& range) {
     BrickSamples out = *bricks.front();
+    out.rest.clear();
     blendValues(bricks, times, range, out.values);
     const auto isWhole = [](const auto& brick) { return brick->present.empty(); };
     if (std::all_of(bricks.begin(), bricks.end(), isWhole)) return out;
