@@ -28,11 +28,14 @@ struct DiffRequest {
     volume::ImportOptions import;
 };
 
-/// One channel of the first data set minus that of the second at one time, over the samples of the first.
+/// One channel of the first data set minus that of the second at one time, over the samples of the first; of a label
+/// only counts.
 struct DiffRow {
     volume::Channel channel;
+    bool label = false;
     double time = 0;
     std::size_t samples = 0, alone = 0; ///< present in both data sets, in only one of them
+    std::size_t differing = 0;          ///< of those in both: another value, or another label
     double least = std::numeric_limits<double>::infinity(), most = -least, sum = 0, squares = 0;
 
     void add(const volume::BrickSamples& a, const volume::BrickSamples& b, const volume::UnitConversion& convert) {
@@ -40,8 +43,9 @@ struct DiffRow {
             const bool inA = a.isPresent(i), inB = b.isPresent(i);
             if (inA != inB) ++alone;
             if (!inA || !inB) continue;
-            const double apart = double(a.values[i]) - convert(double(b.values[i]));
+            const double apart = a.exact(i) - convert(b.exact(i));
             ++samples;
+            if (apart != 0) ++differing;
             least = std::min(least, apart);
             most = std::max(most, apart);
             sum += apart;
@@ -51,6 +55,7 @@ struct DiffRow {
     void add(const DiffRow& other) {
         samples += other.samples;
         alone += other.alone;
+        differing += other.differing;
         least = std::min(least, other.least);
         most = std::max(most, other.most);
         sum += other.sum;
@@ -77,7 +82,11 @@ std::string namesOfFirst(const volume::DatasetInfo& info) {
     return names;
 }
 
-/// Parameters of both data sets with convertible units, without labels. Throws if a requested one is not among them.
+bool isLabel(const volume::DatasetInfo& info, int channel) {
+    return info.parameters[std::size_t(info.channel(channel).parameter)].categorical;
+}
+
+/// Parameters of both data sets with convertible units, and labels. Throws if a requested one is not among them.
 std::vector<int> comparable(const volume::DatasetInfo& info, const DiffRequest& request) {
     std::vector<int> out;
     std::string left;
@@ -91,10 +100,10 @@ std::vector<int> comparable(const volume::DatasetInfo& info, const DiffRequest& 
         if (!named && !wanted.empty()) continue;
         const std::string problem = volume::derivedProblem(
             {"d", "", volume::DifferenceRecipe{channels[i].name, volume::OtherTime::Other}}, info);
-        if (problem.empty() && !parameter.categorical) {
+        if (problem.empty()) {
             out.push_back(int(i));
         } else if (named) {
-            throw Error(parameter.categorical ? "labels have no difference" : problem, request.first, channels[i].name);
+            throw Error(problem, request.first, channels[i].name);
         } else if (channels[i].component == 0) {
             left += (left.empty() ? "" : ", ") + parameter.name;
         }
@@ -120,6 +129,7 @@ std::vector<DiffRow> compare(const volume::BrickSource& source, const std::vecto
         for (int time = 0; time < times; ++time) {
             DiffRow& row = rows.emplace_back();
             row.channel = info.channel(channel);
+            row.label = isLabel(info, channel);
             row.time = info.times[std::size_t(time)];
             for (std::size_t n = 0; n < bricks; ++n) {
                 const glm::ivec3 at = source.grid().indexOf(n);
@@ -134,17 +144,20 @@ std::vector<DiffRow> compare(const volume::BrickSource& source, const std::vecto
 
 void print(const std::vector<DiffRow>& rows, const DiffRequest& request, const std::string& how) {
     std::printf("%s minus %s, %s, over all times\n", request.first.c_str(), request.second.c_str(), how.c_str());
-    std::printf("  %-16s %-8s %12s %12s %12s %12s %10s %10s\n", "parameter", "unit", "min", "mean", "RMS", "max",
-                "samples", "in one");
+    std::printf("  %-16s %-8s %12s %12s %12s %12s %10s %10s %10s\n", "parameter", "unit", "min", "mean", "RMS", "max",
+                "samples", "differ", "in one");
     bool equal = true;
     for (std::size_t i = 0; i < rows.size();) {
         DiffRow all = rows[i];
         for (++i; i < rows.size() && rows[i].channel == all.channel; ++i) all.add(rows[i]);
-        const auto number = [&](double value) { return all.samples > 0 ? numberText(value) : std::string("-"); };
-        std::printf("  %-16s %-8s %12s %12s %12s %12s %10zu %10zu\n", all.channel.name.c_str(),
-                    all.channel.unit.c_str(), number(all.least).c_str(), number(all.mean()).c_str(),
-                    number(all.rms()).c_str(), number(all.most).c_str(), all.samples, all.alone);
-        equal = equal && all.samples > 0 && all.alone == 0 && all.least == 0 && all.most == 0;
+        const auto number = [&](double value) {
+            return all.samples > 0 && !all.label ? numberText(value) : std::string("-");
+        };
+        std::printf("  %-16s %-8s %12s %12s %12s %12s %10zu %10zu %10zu\n", all.channel.name.c_str(),
+                    all.label ? "label" : all.channel.unit.c_str(), number(all.least).c_str(),
+                    number(all.mean()).c_str(), number(all.rms()).c_str(), number(all.most).c_str(), all.samples,
+                    all.differing, all.alone);
+        equal = equal && all.samples > 0 && all.alone == 0 && all.differing == 0;
     }
     if (equal) std::printf("  no sample differs\n");
 }
@@ -152,12 +165,13 @@ void print(const std::vector<DiffRow>& rows, const DiffRequest& request, const s
 std::string csv(const std::vector<DiffRow>& rows, const volume::DatasetInfo& info, const NumberOrigin& origin) {
     std::string text = originLine(origin, info) + "parameter,unit," + info.timeName +
                        (info.timeUnit.empty() ? "" : " [" + info.timeUnit + "]") +
-                       ",min,mean,RMS,max,samples,in one only\n";
+                       ",min,mean,RMS,max,samples,in one only,differing\n";
     for (const DiffRow& row : rows) {
         text += row.channel.name + "," + row.channel.unit + "," + toJson(row.time).dump();
         for (const double value : {row.least, row.mean(), row.rms(), row.most})
-            text += "," + (row.samples > 0 ? toJson(value).dump() : std::string());
-        text += "," + std::to_string(row.samples) + "," + std::to_string(row.alone) + "\n";
+            text += "," + (row.samples > 0 && !row.label ? toJson(value).dump() : std::string());
+        text += "," + std::to_string(row.samples) + "," + std::to_string(row.alone) + "," +
+                std::to_string(row.differing) + "\n";
     }
     return text;
 }
@@ -205,6 +219,7 @@ void run(const DiffRequest& request) {
     const std::vector<DiffRow> rows = compare(*source, channels, progress.part(0.3, 0.6));
     print(rows, request, originText(sources.origin, source->info()));
     for (const int channel : channels) {
+        if (isLabel(source->info(), channel)) continue;
         const volume::Channel of = source->info().channel(channel);
         data.derived.push_back(
             {of.name + " minus other", of.unit, volume::DifferenceRecipe{of.name, volume::OtherTime::Other}});
@@ -215,6 +230,8 @@ void run(const DiffRequest& request) {
         AtomicFile file(request.output);
         file.write(csv(rows, source->info(), sources.origin));
         file.commit();
+    } else if (data.derived.empty()) {
+        throw Error("labels have no difference: write a table (.csv)", request.output);
     } else if (hasEnding(request.output, ".png")) {
         writePicture(request, data, rest);
     } else if (volume::Dataset made = differences(source, data.derived); hasEnding(request.output, ".tsr")) {
@@ -228,10 +245,10 @@ void run(const DiffRequest& request) {
 } // namespace
 
 void addDiffCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "diff",
-        "Compare the values of two data sets, on the same grid or interpolated onto the grid of the first; an archive "
-        "that was resampled from the grid of the other is unpacked to it");
+    CLI::App* command =
+        app.add_subcommand("diff", "Compare the values of two data sets, and count samples with another label, on the "
+                                   "same grid or interpolated onto the grid of the first; an archive "
+                                   "that was resampled from the grid of the other is unpacked to it");
     const auto request = std::make_shared<DiffRequest>();
     command->add_option("A", request->first, "Archive or data file")->required();
     command->add_option("B", request->second, "Archive or data file to subtract from it")->required();

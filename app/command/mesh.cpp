@@ -107,6 +107,11 @@ std::string countsOf(std::size_t vertices, std::size_t triangles) {
     return std::to_string(vertices) + " vertices, " + std::to_string(triangles) + " triangles";
 }
 
+std::string textOf(const volume::SurfaceMesh& mesh, const std::string& file) {
+    const std::string shift = volume::meshShift(mesh, file);
+    return countsOf(mesh.positions.size(), mesh.triangles.size()) + (shift.empty() ? "" : "; " + shift);
+}
+
 using SurfaceAt = std::function<std::shared_ptr<const vis::Geometry>(double time, const Progress& progress)>;
 
 /// A file for every time, empty where there is no surface, unless there is none at any time.
@@ -119,7 +124,7 @@ void writeAllTimes(const MeshRequest& request, const DataRef& data, const volume
         const auto surface = surfaceAt(info.times[t], part.part(0, 0.7));
         if (surface->mesh.triangles.empty()) return none;
         volume::writeMesh(surface->mesh, files[t], request.mesh.colorBy, part.part(0.7, 1));
-        return countsOf(surface->mesh.positions.size(), surface->mesh.triangles.size());
+        return textOf(surface->mesh, files[t]);
     };
     const auto isMade = [&](std::size_t t, const std::string& counts) {
         return counts == none || std::filesystem::exists(files[t]);
@@ -164,8 +169,7 @@ void run(MeshRequest request) {
         const auto surface = surfaceAt(mesh.time.value_or(info.times.front()), rest.part(0, 0.7));
         if (surface->mesh.triangles.empty()) throwEmpty(request, info);
         volume::writeMesh(surface->mesh, request.output, mesh.colorBy, rest.part(0.7, 1));
-        std::printf("%s: %s\n", request.output.c_str(),
-                    countsOf(surface->mesh.positions.size(), surface->mesh.triangles.size()).c_str());
+        std::printf("%s: %s\n", request.output.c_str(), textOf(surface->mesh, request.output).c_str());
         return;
     }
     writeAllTimes(request, data, info, surfaceAt, rest);

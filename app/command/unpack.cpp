@@ -40,7 +40,8 @@ volume::ExportSelection select(const UnpackRequest& request, const volume::Datas
         if (std::find(selection.parameters.begin(), selection.parameters.end(), parameter) ==
             selection.parameters.end())
             selection.parameters.push_back(parameter);
-        if (request.parameters.size() == 1 && hasEnding(request.output, ".nrrd")) selection.channel = *found;
+        const bool whole = info.parameters[std::size_t(parameter)].name == wanted; // a vector, not its length
+        if (request.parameters.size() == 1 && !whole && hasEnding(request.output, ".nrrd")) selection.channel = *found;
     }
     for (const double time : request.times) selection.times.push_back(info.nearestTime(time));
     std::sort(selection.times.begin(), selection.times.end());
@@ -48,18 +49,16 @@ volume::ExportSelection select(const UnpackRequest& request, const volume::Datas
     return selection;
 }
 
-/// Every scalar of the archive on the plane a x + b y + c z + d t + e = 0, t in the archive's times (evenly spaced).
+/// Every scalar of the archive on the plane a x + b y + c z + d t + e = 0, t in the archive's times.
 volume::Dataset planeDataset(const std::shared_ptr<const codec::Archive>& archive, const std::vector<double>& plane) {
     const volume::DatasetInfo& stored = archive->info();
     if (stored.times.size() < 2) throw Error("a plane through space and time needs two times or more", archive->path());
-    // Convert times to frame numbers: t = first + frame * step.
-    const double first = stored.times.front(), step = (stored.times.back() - first) / double(stored.times.size() - 1);
-    const volume::Hyperplane inFrames{{plane[0], plane[1], plane[2], plane[3] * step}, plane[4] + plane[3] * first};
-    const auto slice = [archive, inFrames](int parameter, int component) {
+    const volume::Hyperplane cut{{plane[0], plane[1], plane[2], plane[3]}, plane[4]};
+    const auto slice = [archive, cut](int parameter, int component) {
         volume::Series series = codec::storedSeries(archive, parameter, component);
         if (series.lattice.kind == volume::LatticeKind4::D4 && !series.categorical)
             series = volume::prefiltered(series);
-        return volume::sliceBy(series, inFrames);
+        return volume::sliceBy(series, cut, archive->info().times);
     };
     const volume::HyperplaneSlice shape = slice(0, 0);
     volume::Dataset dataset;
@@ -76,9 +75,6 @@ volume::Dataset planeDataset(const std::shared_ptr<const codec::Archive>& archiv
         axes += (i > 0 ? ", " : "") + (axis == 3 ? stored.timeName : std::string(1, "xyz"[axis])) + " [" +
                 unitText(unit) + "]";
         units += (i > 0 ? ", " : "") + unitText(unit);
-        if (axis != 3) continue;
-        dataset.info.lattice.origin[i] = first + step * shape.field.lattice.origin[i]; // to times
-        dataset.info.lattice.spacing[i] *= step;
     }
     if (shape.solved != 3) dataset.info.lengthUnit = units;
     dataset.info.provenance += (dataset.info.provenance.empty() ? "axes: " : "; axes: ") + axes;

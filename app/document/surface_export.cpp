@@ -37,8 +37,10 @@ void exportSurface(const Document& document, std::string path, Jobs& jobs, Messa
             if (!geometry) throw Error("there is no parameter \"" + layer.channel + "\"");
             volume::writeMesh(geometry->mesh, path, layer.colorBy, progress.part(0.7, 1));
             const std::size_t triangles = geometry->mesh.triangles.size();
-            return [&messages, path, triangles] {
-                messages.add("Wrote " + std::to_string(triangles) + " triangles to " + path);
+            const std::string shift = volume::meshShift(geometry->mesh, path);
+            return [&messages, path, triangles, shift] {
+                messages.add("Wrote " + std::to_string(triangles) + " triangles to " + path +
+                             (shift.empty() ? "" : ": " + shift));
             };
         });
 }

@@ -1,10 +1,10 @@
 #include "codec/archive/archive.h"
 
 #include "codec/archive/archive_impl.h"
+#include "volume/bricks/magnitude.h"
 #include "volume/field/part_masks.h"
 #include "volume/field/quantities.h"
 #include "volume/sources/alternating_source.h"
-#include "volume/sources/memory_source.h"
 
 #include <algorithm>
 #include <cmath>

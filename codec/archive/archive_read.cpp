@@ -2,8 +2,8 @@
 #include "codec/brick/coded_mask.h"
 #include "codec/brick/subsamples.h"
 #include "volume/base/parallel.h"
+#include "volume/bricks/magnitude.h"
 #include "volume/field/slices.h"
-#include "volume/sources/memory_source.h"
 
 #include <algorithm>
 #include <bit>
@@ -244,6 +244,12 @@ volume::BrickSamples Archive::Impl::readComponent(int number, int component, con
     for (const ExactSample& exact : decoded->exact) // at full resolution
         out.values[exact.index] =
             static_cast<float>(record.valueOffset + record.valueScale * double(std::bit_cast<float>(exact.bits)));
+    if (parameter(number).type == volume::ScalarType::I32 && key.level == 0) {
+        const Bytes numbers = numbersOf(record, volume::ScalarType::I32, *decoded);
+        const auto* const stored = reinterpret_cast<const std::int32_t*>(numbers.data());
+        volume::keepRest(out,
+                         [&](std::size_t i) { return record.valueOffset + record.valueScale * double(stored[i]); });
+    }
     if (isFinite && decoded->exact.empty()) return out;
     leaveOutInfinite(out);
     if (isHeld) hold(out.values);

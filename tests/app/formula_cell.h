@@ -46,8 +46,17 @@ inline std::optional<float> value(std::string_view name, Place at, int time) {
     return std::nullopt;
 }
 
-/// The same between the stored times around `time`, both weighted; where either is absent, so is it.
+/// The same between the stored times around `time`, both weighted; where either is absent, so is it. The length of U is
+/// that of such a vector.
 inline std::optional<double> valueAt(std::string_view name, Place at, double time) {
+    if (name == "|U|") {
+        double sum = 0;
+        for (const char* component : {"U.x", "U.y", "U.z"}) {
+            const double own = valueAt(component, at, time).value();
+            sum += own * own;
+        }
+        return std::sqrt(sum);
+    }
     int later = 0;
     while (later < 2 && kTimes[later] < time) ++later;
     const int earlier = later > 0 ? later - 1 : 0;

@@ -7,6 +7,7 @@
 #include "volume/import/foreign.h"
 #include "volume/sources/memory_source.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -174,6 +175,8 @@ TEST(RegionData, BalancesAreInMolesPerSecond) {
         EXPECT_NEAR(total->relative, region.residual() / region.total().in, 1e-12);
         EXPECT_NEAR(total->inside, region.amount, 1e-15);
     }
+    EXPECT_EQ(std::ranges::count(table.rows, "border to where it is absent", &BalanceRow::surface), 3);
+    EXPECT_EQ(std::ranges::count(table.rows, "border to no region", &BalanceRow::surface), 3);
     const auto csv = rowsOf(balanceCsv(table, "", ""));
     EXPECT_EQ(csv[0][3], "in [mol/s]");
     EXPECT_EQ(csv.size(), table.rows.size() + 1);

@@ -1,8 +1,8 @@
 #include "codec/unpack/unpack.h"
 
 #include "codec/pack/pack.h"
+#include "volume/bricks/magnitude.h"
 #include "volume/resample/series_dataset.h"
-#include "volume/sources/memory_source.h"
 
 #include <cmath>
 #include <filesystem>

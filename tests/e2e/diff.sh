@@ -19,7 +19,7 @@ python3 write.py || die "no python3"
 check "two files on unlike grids" 0 "$tessera" diff coarse.raw fine.raw -o table.csv
 say "interpolated onto the grid of coarse" out.txt
 say "# numbers: as computed; other data: as computed, interpolated onto the grid of coarse" table.csv
-[ "$(sed -n 3p table.csv)" = "T,K,0.0,1.5,1.5,1.5,1.5,60,0" ] || fail "not 1.5 K everywhere: $(cat table.csv)"
+[ "$(sed -n 3p table.csv)" = "T,K,0.0,1.5,1.5,1.5,1.5,60,0,60" ] || fail "not 1.5 K everywhere: $(cat table.csv)"
 check "the field" 0 "$tessera" diff coarse.raw fine.raw -o field.raw
 python3 - <<'PYTHON' || fail "the field is another"
 import struct
@@ -32,6 +32,29 @@ say "T minus other" out.txt
 check "a file and itself" 0 "$tessera" diff fine.raw fine.raw
 say "on the same grid" out.txt
 say "no sample differs" out.txt
+# Labels are counted, and units of large integers are not lost.
+cat >labels.py <<'PYTHON'
+import json, struct
+def write(name, labels, n):
+    open(name + ".raw", "wb").write(struct.pack("<12i", *labels) + struct.pack("<12i", *n))
+    json.dump({"dims": [3, 2, 2], "dtype": "int32", "spacing": [1, 1, 1],
+               "components": [{"name": "region", "unit": "", "categorical": True}, {"name": "n", "unit": ""}]},
+              open(name + ".json", "w"))
+write("before", [0, 1, 2] * 4, [2000000000 + i for i in range(12)])
+write("after", [0, 1, 2] * 3 + [0, 2, 1], [2000000000 + i + (i == 4) for i in range(12)])
+PYTHON
+python3 labels.py || die "no python3"
+check "labels" 0 "$tessera" diff before.raw after.raw -o labels.csv
+grep -q '^  region *label *- *- *- *- *12 *2 *0$' out.txt || fail "not two other labels: $(cat out.txt)"
+grep -q '^  n .* 12 *1 *0$' out.txt || fail "not one other number: $(cat out.txt)"
+say "region,,0.0,,,,,12,0,2" labels.csv
+grep -q "no sample differs" out.txt && fail "other labels are said to be none"
+check "labels alone" 0 "$tessera" diff before.raw after.raw -p region
+check "labels as data" 2 "$tessera" diff before.raw after.raw -p region -o labels.vti
+say "labels have no difference" err.txt
+check "the same labels" 0 "$tessera" diff before.raw before.raw -p region
+say "no sample differs" out.txt
+
 check "nothing in common" 2 "$tessera" diff coarse.raw a.vti
 check "an unknown parameter" 2 "$tessera" diff coarse.raw fine.raw -p nothing
 say "nothing" err.txt
@@ -42,7 +65,7 @@ check "no such file" 2 "$tessera" diff coarse.raw none.raw
 check "a cell" 0 "$tessera" generate fuel-cell -o cell.vti --size 9x11x23 --times 1
 check "on BCC" 0 "$tessera" pack cell.vti -o bcc.tsr
 check "unpacked" 0 "$tessera" unpack bcc.tsr -o unpacked.vti
-rows() { sed -n '/^  [A-Z]/p' out.txt; } # numbers by parameter
+rows() { sed -n '/^  [A-Za-z]/p' out.txt | grep -v '^  parameter'; } # numbers by parameter
 check "with what is unpacked" 0 "$tessera" diff cell.vti unpacked.vti
 rows >expected.txt
 grep -q "^  T " expected.txt || fail "no T in: $(cat out.txt)"
@@ -59,6 +82,8 @@ said = {p["name"]: p["resampled"]["largest"] for p in json.load(open("out.txt"))
 for file in ("expected.txt", "turned.txt"):
     rows = {line.split()[0]: line.split() for line in open(file)}
     assert rows["T"][-1] == "0", rows["T"]  # no sample in one only
+    label = rows["region"]
+    assert label[1] == "label" and label[2:6] == ["-"] * 4, label
     for name in ("T", "O2", "H2O"):
         row = rows[name]
         assert abs(max(abs(float(row[2])), abs(float(row[5]))) / said[name] - 1) < 1e-3, (row, said[name])

@@ -43,6 +43,28 @@ printf 'operating point,pump [W]\n1,5\n2,7\n' > pump.csv
 "$tessera" unpack cell.tsr -o plane.raw --plane 1,0,0,0,-1 > /dev/null || die "a plane through space and time"
 grep -q 'operating point \[-\]' plane.json || die "the axis of times is named"
 
+# Uneven times, and a vector.
+python3 - <<'PYTHON' || die "no python3"
+import json, struct
+times, count = [0, 1, 10], 3 * 3 * 2
+values = [v for t in times for v in [t] * count + [1] * count + [2] * count + [3] * count]
+open("uneven.raw", "wb").write(struct.pack("<%df" % len(values), *values))
+json.dump({"dims": [3, 3, 2], "dtype": "float32", "spacing": [1, 1, 1], "times": times,
+           "components": [{"name": name, "unit": ""} for name in ("v", "U.x", "U.y", "U.z")]}, open("uneven.json", "w"))
+PYTHON
+"$tessera" pack uneven.raw -o uneven.tsr --lattice cc > /dev/null || die "pack with uneven times"
+for time in 1 4; do
+    "$tessera" unpack uneven.tsr -p v -o at.raw --plane 0,0,0,1,-$time > /dev/null || die "a plane at one time"
+    python3 -c "import struct; v = struct.unpack('<18f', open('at.raw', 'rb').read()); assert set(v) == {$time}, v" ||
+        die "v = t at t = $time"
+done
+"$tessera" unpack uneven.tsr -p U -t 1 -o U.nrrd > /dev/null || die "a vector as NRRD"
+grep -aq '^sizes: 3 3 3 2$' U.nrrd && grep -aq '^kinds: vector domain domain domain$' U.nrrd || die "it is whole"
+python3 -c "import struct; b = open('U.nrrd', 'rb').read().split(b'\n\n', 1)[1]; assert struct.unpack('<54f', b) == (1, 2, 3) * 18" ||
+    die "its components"
+"$tessera" unpack uneven.tsr -p '|U|' -t 1 -o length.nrrd > /dev/null && grep -aq '^sizes: 3 3 2$' length.nrrd ||
+    die "its length where that is asked for"
+
 printf 'operating point,U\n1,x\n' > broken.csv
 bad info run_*.raw --over-time broken.csv
 grep -q 'broken.csv.*line 2' err || die "file and line of a broken table: $(cat err)"

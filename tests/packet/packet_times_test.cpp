@@ -1,5 +1,6 @@
 #include "tests/packet/packet_pictures.h"
 #include "vis/packed/packet_blend.h"
+#include "volume/derived/derived.h"
 
 /// Times between the stored ones by the packet ray caster.
 namespace tessera::vis::packet {
@@ -85,6 +86,36 @@ TEST(PacketTimesMore, BoundsHoldTheSamples) {
         EXPECT_GT(some, 3000);
         EXPECT_EQ(partly > 100, masked);
     }
+}
+
+/// Formulas are computed from interpolated parameters: as the picture of data that have such values, not as a mix of
+/// two pictures' samples, unless mixing is allowed.
+TEST(PacketTimesMore, FormulasAreComputedAtTheTimeItself) {
+    constexpr double kTime = 1.8;
+    const auto squared = volume::derive(series(LatticeKind::BCC, false), {"sq", "", volume::ExpressionRecipe{"b * b"}});
+    const auto square = [](glm::dvec3 p) -> std::optional<double> {
+        const double weight = (kTime - 1) / 2,
+                     b = (1 - weight) * *wavyB(false).function(p) + weight * *laterB().function(p);
+        return b * b;
+    };
+    Scene scene = wavyScene(true);
+    scene.transfer["sq"].autoRange = false;
+    scene.transfer["sq"].range = {0, 2};
+    scene.layers = {layerOf(VolumeLayer{.channel = "sq", .density = 4})};
+    scene.time = kTime;
+    const reference::Image wanted =
+        reference::render(scene, *wavySource(LatticeKind::BCC, {{"sq", square, {0, 3}}}), kSize, {});
+    PacketRenderer renderer;
+    renderer.setSource(squared);
+    const auto away = [&] { return reference::compare(asImage(renderer.render(scene, kSize)), wanted, kOutlier).rmse; };
+    EXPECT_LT(away(), 1e-3);
+    EXPECT_FALSE(renderer.mixed());
+    renderer.release();
+    renderer.setMixes(true);
+    EXPECT_GT(away(), 1e-2) << "the test tells both apart";
+    EXPECT_TRUE(renderer.mixed());
+    renderer.setMixes(false);
+    EXPECT_LT(away(), 1e-3) << "what is mixed does not stay";
 }
 
 /// While a time between two runs on, the stored samples are read once.

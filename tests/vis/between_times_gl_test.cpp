@@ -1,7 +1,10 @@
 #include "tests/vis/raycast_compare.h"
+#include "volume/derived/derived.h"
 #include "volume/field/time_pair.h"
 
+#include <chrono>
 #include <gtest/gtest.h>
+#include <thread>
 
 namespace tessera::vis {
 namespace {
@@ -77,6 +80,61 @@ TEST(BetweenTimesMore, LabelsAreThoseOfTheNearerTime) {
     EXPECT_EQ(at(1.7), at(1));
     EXPECT_EQ(at(2.9), at(3));
     EXPECT_NE(at(1), at(3));
+}
+
+/// The value of "b" at a time between 1 and 3, and its square.
+double bAt(glm::dvec3 p, double time) {
+    const double weight = (time - 1) / 2;
+    return (1 - weight) * *wavyB(false).function(p) + weight * *laterB().function(p);
+}
+
+// The square of the mean, beside data that have it as they are; the mean of the squares is another picture. Dragged
+// time shows that until it rests.
+TEST(BetweenTimesMore, FormulasAreComputedAtTheTimeItself) {
+    for (const bool bricked : {false, true}) {
+        constexpr double kTime = 1.8;
+        Between between(LatticeKind::BCC, false, bricked);
+        const auto squared = volume::derive(between.data, {"sq", "", volume::ExpressionRecipe{"b * b"}});
+        between.renderer.setSource(squared);
+        Scene scene = baseScene(true);
+        scene.transfer["sq"].autoRange = false;
+        scene.transfer["sq"].range = {0, 2};
+        scene.transfer["sq"].opacity = {{0, 0}, {1, 0.5f}};
+        scene.layers = {{"sq", true, VolumeLayer{.channel = "sq"}}};
+        scene.time = kTime;
+        const auto direct = wavySource(LatticeKind::BCC, {{"sq",
+                                                           [](glm::dvec3 p) -> std::optional<double> {
+                                                               const double b = bAt(p, kTime);
+                                                               return b * b;
+                                                           },
+                                                           {0, 3}}});
+        const Linear got = between.draw(scene), wanted = reference::render(scene, *direct, kSize, {});
+        const reference::Difference difference = reference::compare(got, wanted, kOutlier);
+        EXPECT_TRUE(agrees(difference)) << words(difference) << " " << evidence("computed between", got, wanted);
+
+        FrameRequest moving;
+        moving.size = kSize;
+        moving.moving = true;
+        const auto drawn = [&](const FrameRequest& request) {
+            for (int i = 0; i < 2000; ++i) {
+                if (between.renderer.render(*between.target, scene, request).complete && i > 20) break;
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            }
+            Linear image;
+            image.size = kSize;
+            for (const glm::vec4& pixel : between.renderer.readLinear(*between.target))
+                image.pixels.emplace_back(pixel);
+            return image;
+        };
+        scene.time = 2.2;
+        drawn(moving);
+        scene.time = kTime; // what is computed there is resident
+        drawn(moving);
+        moving.moving = false;
+        const Linear rested = drawn(moving);
+        EXPECT_TRUE(agrees(reference::compare(rested, wanted, kOutlier)))
+            << words(reference::compare(rested, wanted, kOutlier));
+    }
 }
 
 TEST(BetweenTimesMore, ATimeLiesBetweenItsNeighbours) {

@@ -181,6 +181,33 @@ TEST_F(GeometryPassTest, DrawsLinesAsWideAsWanted) {
     for (const glm::vec4& pixel : picture(scene)) EXPECT_LT(pixel.r, 0.01f);
 }
 
+// Meshes and lines lie where their origin says.
+TEST_F(GeometryPassTest, PlacesAreCountedFromTheOrigin) {
+    show([](glm::dvec3) { return 0.5; });
+    const auto drawn = [&](glm::dvec3 origin) {
+        Scene scene = unlit();
+        auto geometry = std::make_shared<Geometry>();
+        geometry->mesh.origin = origin;
+        geometry->lines.origin = -origin;
+        for (const glm::dvec3 p : {glm::dvec3(2, 3, 8), {9, 3, 8}, {5, 9, 6}})
+            geometry->mesh.positions.emplace_back(p - geometry->mesh.origin);
+        geometry->mesh.triangles = {{0, 1, 2}};
+        for (const glm::dvec3 p : {glm::dvec3(2, 12, 8), {14, 13, 8}})
+            geometry->lines.positions.emplace_back(p - geometry->lines.origin);
+        geometry->lines.ends = {2};
+        scene.geometry.push_back({.geometry = geometry, .style = {.color = {1, 1, 1}, .lineWidth = 4}});
+        return picture(scene);
+    };
+    const auto plain = drawn(glm::dvec3(0)), moved = drawn({64, -32, 16});
+    double sum = 0, difference = 0;
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+        sum += double(plain[i].a);
+        difference += std::abs(double(plain[i].a) - double(moved[i].a));
+    }
+    EXPECT_GT(sum, 500);
+    EXPECT_LT(difference, 0.005 * sum);
+}
+
 // Each combination of settings has a program, of which OpenGL on the processor takes megabytes.
 TEST_F(GeometryPassTest, KeepsOnlySomePrograms) {
     show([](glm::dvec3) { return 0.5; });

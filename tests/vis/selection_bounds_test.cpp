@@ -58,7 +58,7 @@ TEST(InterestBounds, OfRegionsInSpaceTellNothing) {
     EXPECT_EQ(interestBounds(selection, {{"T", {0, 1}}}), (Range{0, 0})) << "both must hold";
     selection.brushes.back().inverted = true;
     EXPECT_EQ(interestBounds(selection, {{"T", {0, 1}}}), (Range{0, 1}));
-    EXPECT_EQ(interestBounds(selection, {{"T", {1, 0}}}), (Range{0, 1})) << "what is absent lies outside";
+    EXPECT_EQ(interestBounds(selection, {{"T", {1, 0}}}), (Range{0, 0})) << "what is absent lies neither way";
     EXPECT_EQ(interestBounds({}, {}), (Range{1, 1}));
 }
 

@@ -67,6 +67,30 @@ TEST(Selection, AbsentValuesAreNeverBrushed) {
     selection.brushes = {rangeBrush({{"O2", -1e30, 1e30, 0}})};
     EXPECT_EQ(doi(selection, 1, kNaN), 0);
     EXPECT_EQ(doi(selection, kNaN, 1), 1);
+    // Nor do they lie outside of what is brushed.
+    for (const BrushCombine combine : {BrushCombine::And, BrushCombine::Or}) {
+        Brush& brush = selection.brushes[0];
+        brush = rangeBrush({{"O2", 2, 3, 0}});
+        brush.inverted = true;
+        brush.combine = combine;
+        EXPECT_EQ(doi(selection, 1, kNaN), 0);
+        EXPECT_EQ(doi(selection, kNaN, 1), 1) << "T is not asked for";
+        EXPECT_EQ(doi(selection, kNaN, 2.5), 0);
+        brush.region = EllipseRegion{"T", "O2", {300, 0.5}, {20, 0.1}, 0, 0};
+        EXPECT_EQ(doi(selection, 1, 1), 1);
+        EXPECT_EQ(doi(selection, kNaN, 1), 0);
+        EXPECT_EQ(doi(selection, 1, kNaN), 0);
+        brush.region = LassoRegion{"T", "O2", {{0, 0}, {1, 0}, {0, 1}}, 0};
+        EXPECT_EQ(doi(selection, 7, 7), 1);
+        EXPECT_EQ(doi(selection, 7, kNaN), 0);
+    }
+    // What a brush takes away is still only what it holds.
+    selection.brushes[0] = rangeBrush({{"O2", 2, 3, 0}});
+    selection.brushes[0].combine = BrushCombine::Minus;
+    EXPECT_EQ(doi(selection, 1, kNaN), 1);
+    selection.brushes[0].inverted = true;
+    EXPECT_EQ(doi(selection, 1, kNaN), 0);
+    EXPECT_EQ(doi(selection, 1, 2.5), 1);
 }
 
 TEST(Selection, EllipseIsItsEquation) {

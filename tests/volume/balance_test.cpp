@@ -40,6 +40,7 @@ TEST(Balance, AgreesWithBruteForceOnEveryFaceAndBorder) {
             double in = 0, out = 0, area = 0, flow = 0;
         };
         std::map<int, std::map<int, Sum>> faces, borders; // by region, then face or other region
+        std::map<int, Sum> absent, unlabelled;
         std::map<int, double> amount;
         const auto put = [](Sum& sum, double carried, double flow, double area) {
             if (carried > 0) sum.out += carried;
@@ -66,11 +67,14 @@ TEST(Balance, AgreesWithBruteForceOnEveryFaceAndBorder) {
                         continue;
                     }
                     const std::size_t j = lattice.index(next);
-                    if (!label.present(j) || int(label.value(j)) == own) continue;
-                    const double mean =
-                        0.5 * (valueAt(c, i) * speed + valueAt(c, j) * valueAt(u[std::size_t(axis)], j));
-                    if (std::isnan(mean)) continue;
-                    put(borders[own][int(label.value(j))], mean * side * area,
+                    const double beyond = valueAt(c, j) * valueAt(u[std::size_t(axis)], j);
+                    if (std::isnan(beyond)) {
+                        put(absent[own], valueAt(c, i) * speed * side * area, speed * side * area, area);
+                        continue;
+                    }
+                    if (label.present(j) && int(label.value(j)) == own) continue;
+                    put(label.present(j) ? borders[own][int(label.value(j))] : unlabelled[own],
+                        0.5 * (valueAt(c, i) * speed + beyond) * side * area,
                         0.5 * (speed + valueAt(u[std::size_t(axis)], j)) * side * area, area);
                 }
         });
@@ -89,6 +93,13 @@ TEST(Balance, AgreesWithBruteForceOnEveryFaceAndBorder) {
                 expectCrossing(balance.faces[std::size_t(f)], faces[balance.region][f]);
                 in += faces[balance.region][f].in;
                 out += faces[balance.region][f].out;
+            }
+            for (const auto& [crossing, want] : {std::pair{balance.absent, absent[balance.region]},
+                                                 std::pair{balance.unlabelled, unlabelled[balance.region]}}) {
+                expectCrossing(crossing, want);
+                EXPECT_GT(want.area, 0);
+                in += want.in;
+                out += want.out;
             }
             ASSERT_EQ(balance.borders.size(), borders[balance.region].size());
             for (const BorderCrossing& border : balance.borders) {
@@ -165,6 +176,27 @@ TEST(Balance, OfACrossFlowLeavesThroughTheBorder) {
     EXPECT_EQ(both[0].borders[0].region, 2);
     EXPECT_NEAR(both[1].borders.at(0).crossing.in, carried, 1e-9);
     EXPECT_NEAR(both[1].residual(), 0, 1e-9);
+}
+
+// A pipe whose end lies inside the box: what flows out there has not reacted.
+TEST(Balance, OfAPipeThatEndsInsideTheBoxIsZero) {
+    const auto inside = [](glm::dvec3 p) { return p.z < 20; };
+    for (const bool alsoVelocity : {false, true}) {
+        std::vector<Field> fields{test::sampled<float>(kCc, [](glm::dvec3) { return 2.0; })};
+        for (int axis = 0; axis < 3; ++axis)
+            fields.push_back(test::sampled<float>(kCc, [&](glm::dvec3) { return axis == 2 ? 0.5 : 0.0; }));
+        for (std::size_t i = 0; i < fields.size(); ++i)
+            if (i == 0 || alsoVelocity) test::removeWhere(fields[i], [&](glm::dvec3 p) { return !inside(p); });
+        BalanceQuery query;
+        query.velocity = {1, 2, 3};
+        const RegionBalance whole = computeBalance(*cellSource(test::datasetOf(std::move(fields))), query).at(0);
+        const double carried = 2 * 0.5 * 4 * 2.5;
+        EXPECT_NEAR(whole.faces[4].in, carried, 1e-9);
+        EXPECT_EQ(whole.faces[5].out, 0);
+        EXPECT_NEAR(whole.absent.out, carried, 1e-9);
+        EXPECT_NEAR(whole.absent.flow, 0.5 * 4 * 2.5, 1e-9);
+        EXPECT_NEAR(whole.residual(), 0, 1e-9) << "without the surface: all of it reacts";
+    }
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "volume/analysis/curves.h"
 
 #include "volume/base/error.h"
+#include "volume/derived/formula_unit.h"
 #include "volume/field/quantities.h"
 #include "volume/import/foreign.h"
 #include "volume/import/import.h"
@@ -128,10 +129,26 @@ TEST(Curves, IntegralsAreInAUnitThatIsTheirs) {
     };
     expectStatistics(dataset, "O2", "region", 1, 1e-9);
     CurvesQuery query;
-    query.y = {"integral(O2)", "integral(O2)/volume(O2)"};
+    query.y = {"integral(O2)",
+               "integral(O2)/volume(O2)",
+               "volume(O2)",
+               "integral(O2) / volume(O2) - mean(O2)",
+               "2 * max(integral(O2)/volume(O2), mean(O2))",
+               "volume(O2)^2/volume(O2) > volume(O2) * 0.999 ? 1 : 0"};
     const Curves curves = computeCurves(*makeMemorySource(dataset, {.lattice = LatticeKind::CC}), query);
     EXPECT_EQ(curves.y[0].unit, "mol");
-    EXPECT_EQ(curves.y[1].unit, "") << "mol per mm3: the numbers would have to change";
+    const double ratio = curves.y[0].values[1] / (1e-9 * curves.y[2].values[1]); // mol by m3, not by mm3
+    EXPECT_EQ(curves.y[1].unit, "mol/m3");
+    EXPECT_NEAR(curves.y[1].values[1], ratio, 1e-9 * ratio);
+    EXPECT_GT(ratio, 5);
+    EXPECT_LT(ratio, 46) << "within the range of O2";
+    EXPECT_EQ(curves.y[2].unit, "mm3") << "alone it stays in the unit of the data";
+    EXPECT_EQ(curves.y[3].unit, "mol/m3");
+    EXPECT_LT(std::abs(curves.y[3].values[1]), 0.1 * ratio);
+    EXPECT_EQ(curves.y[4].unit, "mol/m3");
+    EXPECT_GT(curves.y[4].values[1], 2 * 0.9 * ratio);
+    EXPECT_LT(curves.y[4].values[1], 2 * 1.1 * ratio);
+    EXPECT_EQ(curves.y[5].values[1], 1) << "m3 are compared with mm3";
     dataset.info.lengthUnit.clear();
     const Curves unstated = computeCurves(*makeMemorySource(dataset, {.lattice = LatticeKind::CC}), query);
     EXPECT_EQ(unstated.y[0].unit, "mol length3/m3") << "no unit of length is made up";
@@ -141,6 +158,60 @@ TEST(Curves, IntegralsAreInAUnitThatIsTheirs) {
     half.doi = [](std::span<const float>, glm::dvec3) { return 0.5; };
     const Curves halved = computeCurves(*makeMemorySource(dataset, {.lattice = LatticeKind::CC}), half);
     EXPECT_NEAR(halved.y[0].values[1], curves.y[0].values[1] / 2, 1e-9 * curves.y[0].values[1]);
+}
+
+TEST(Curves, UnitsAreCarriedOrRefused) {
+    const std::vector<std::string> names = {"a", "b", "c", "d", "T"};
+    const std::vector<std::string> units = {"mm", "m", "mol/l", "", "degC"}; // d: not known
+    const std::vector<double> values = {5, 2, 3, 7, 20};
+    const auto carried = [&](const std::string& formula) {
+        const Expression expression(formula, names);
+        std::vector<std::optional<std::string>> own;
+        std::vector<std::vector<double>> inputs;
+        for (const int name : expression.used()) {
+            const std::string& unit = units[std::size_t(name)];
+            own.push_back(unit.empty() ? std::nullopt : std::optional(unit));
+            inputs.push_back({values[std::size_t(name)]});
+        }
+        const CarriedUnits all = carriedUnits(expression, own);
+        std::vector<double> out(1);
+        all.expression.evaluate(inputs, out);
+        return std::pair(out[0], all.unit);
+    };
+    struct Case {
+        const char* formula;
+        double value;
+        const char* unit;
+    };
+    for (const Case& each : {Case{"a", 5, "mm"},
+                             {"2*a - 1", 9, "mm"},
+                             {"a + b", 2005, "mm"},
+                             {"b + a", 2.005, "m"},
+                             {"b - a*2 - a", 1.985, "m"},
+                             {"a/b", 2.5e-3, ""},
+                             {"b/a/a*1", 2 / 25e-6, "1/m"},
+                             {"b/a^2", 2 / 25e-6, "1/m"},
+                             {"(a*b)^2", 1e-4, "m4"},
+                             {"-a*-b", 1e-2, "m2"},
+                             {"max(b, a, 1.5)", 2, "m"},
+                             {"a < b ? a : b", 5, "mm"},
+                             {"a > b ? 1 : 0", 0, ""},
+                             {"a > 1 && b < a ? 1 : 2", 2, ""},
+                             {"1 + a/b", 1.0025, ""},
+                             {"T", 20, "degC"},
+                             {"a*d", 35, ""},
+                             {"sqrt(a*b)", 0.1, ""}}) {
+        const auto [value, unit] = carried(each.formula);
+        EXPECT_NEAR(value, each.value, 1e-12 * std::abs(each.value)) << each.formula;
+        EXPECT_EQ(unit, each.unit) << each.formula;
+    }
+    for (const char* formula : {"a + c", "1 + (b*a - b)", "b > c ? 1 : 0", "max(a, c)", "a > 1 ? a : T"})
+        EXPECT_THROW(carried(formula), Error) << formula;
+    try {
+        carried("a + c");
+    } catch (const Error& error) {
+        EXPECT_EQ(error.reason(), "mm and mol/l cannot be added");
+    }
 }
 
 /// Three times of one scalar, with quantities.

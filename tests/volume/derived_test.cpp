@@ -299,21 +299,38 @@ TEST(Derived, SmoothingKeepsWhatIsLinearAndMixesOnlyWhatIsPresent) {
 }
 
 TEST(Derived, SmoothingIsAGaussianOfThreeDeviations) {
-    const auto below = functions(LatticeKind::CC);
-    const glm::dvec3 spacing = below->grid().lattice.spacing, peak = below->grid().lattice.position({6, 5, 6});
-    below->value[0] = [=](glm::dvec3 p, double) { return glm::distance(p, peak) < 1e-9 ? 1e6 : 0; };
     constexpr double kWidth = 0.8; // three of it end before the third sample, which takes part
     const auto weight = [](double samples) {
         return std::abs(samples) > 3.5 ? 0 : std::exp(-samples * samples / (2 * kWidth * kWidth));
     };
-    double all = 0;
-    for (int i = -3; i <= 3; ++i) all += weight(i);
-    const auto source = derive(below, {"s", "K", SmoothRecipe{"f", kWidth}});
-    forSamples(*source, *source->info().findChannel("s"), 0, 0, [&](glm::dvec3 p, std::optional<double> value) {
-        const glm::dvec3 away = (p - peak) / spacing;
-        const double want = 1e6 * weight(away.x) * weight(away.y) * weight(away.z) / (all * all * all);
-        EXPECT_NEAR(value.value_or(-1), want, 1e-6 * want + 1e-9) << away.x << " " << away.y << " " << away.z;
-    });
+    for (const LatticeKind kind : kKinds)
+        for (const glm::ivec3 at : {glm::ivec3(6, 5, 6), {0, 10, 12}, {12, 0, 1}}) {
+            const auto below = functions(kind);
+            const Lattice& lattice = below->grid().lattice;
+            const glm::dvec3 peak = lattice.position(at);
+            below->value[0] = [=](glm::dvec3 p, double) { return glm::distance(p, peak) < 1e-9 ? 1e6 : 0; };
+            const int slices = kind == LatticeKind::BCC ? 2 : 1;
+            // Of all samples that there are, none of which repeats beyond the faces of the box.
+            const auto all = [&](int axis, double index) {
+                double sum = 0;
+                for (int i = 0; i < lattice.size[axis] / (axis == 2 ? slices : 1); ++i) sum += weight(i - index);
+                return sum;
+            };
+            const auto source = derive(below, {"s", "K", SmoothRecipe{"f", kWidth}});
+            double sum = 0;
+            forSamples(*source, *source->info().findChannel("s"), 0, 0, [&](glm::dvec3 p, std::optional<double> value) {
+                const glm::dvec3 away = (p - peak) / lattice.spacing;
+                const bool own = std::abs(away.x - std::round(away.x)) < 0.25; // on the sublattice of the peak
+                double want = own ? 1e6 : 0;
+                for (int axis = 0; own && axis < 3; ++axis) {
+                    const int among = at[axis] / (axis == 2 ? slices : 1);
+                    want *= weight(away[axis]) / all(axis, among + std::round(away[axis]));
+                }
+                EXPECT_NEAR(value.value_or(-1), want, 1e-6 * want + 1e-9) << away.x << " " << away.y << " " << away.z;
+                sum += want;
+            });
+            EXPECT_GT(sum, 1e5);
+        }
 }
 
 TEST(Derived, CoordinatesAreParameters) {

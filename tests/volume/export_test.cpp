@@ -127,6 +127,37 @@ TEST_F(Export, NrrdHoldsOneChannel) {
               std::string(reinterpret_cast<const char*>(field.samples.data()), field.samples.size()));
 }
 
+// A vector is written whole; its length only where that is asked for. Every reader that we know of has it back.
+TEST_F(Export, NrrdHoldsVectors) {
+    const Dataset dataset = sample({3, 4, 2});
+    const std::string path = (folder_ / "out.nrrd").string();
+    ExportSelection selection;
+    selection.parameters = {1};
+    selection.times = {1};
+    exportDataset(dataset, selection, path);
+    std::ifstream in(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_THAT(bytes, testing::HasSubstr("\ndimension: 4\nsizes: 3 3 4 2\n"));
+    EXPECT_THAT(bytes, testing::HasSubstr("\nspace directions: none (0.1,0,0) "));
+    EXPECT_THAT(bytes, testing::HasSubstr("\nkinds: vector domain domain domain\n"));
+    const std::string samples = bytes.substr(bytes.find("\n\n") + 2);
+    std::vector<float> values(3 * 24);
+    ASSERT_EQ(samples.size(), values.size() * sizeof(float));
+    std::memcpy(values.data(), samples.data(), samples.size());
+    for (std::size_t i = 0; i < values.size(); ++i)
+        EXPECT_EQ(double(values[i]), dataset.read(1, int(i % 3), 1).value(i / 3));
+    const Dataset back = openFiles({path}, {});
+    ASSERT_EQ(back.info.parameters.size(), 1u);
+    EXPECT_EQ(back.info.lattice, dataset.info.lattice);
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(back.read(0, c, 0).value(17), dataset.read(1, c, 1).value(17));
+    selection.channel = dataset.info.findChannel("|U|");
+    exportDataset(dataset, selection, path);
+    const Dataset length = openFiles({path}, {});
+    ASSERT_EQ(length.info.parameters[0].components, 1);
+    const auto u = [&](int c) { return dataset.read(1, c, 1).value(5); };
+    EXPECT_NEAR(length.read(0, 0, 0).value(5), std::hypot(u(0), u(1), u(2)), 1e-4);
+}
+
 /// An int16 vector at two times; `change` makes a frame of it special.
 Dataset integerVector(std::function<void(Field& field, int component, int time)> change) {
     Dataset dataset;

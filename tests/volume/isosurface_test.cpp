@@ -47,6 +47,10 @@ Topology topologyOf(const SurfaceMesh& mesh) {
     return out;
 }
 
+glm::dvec3 placeOf(const SurfaceMesh& mesh, std::size_t vertex) {
+    return mesh.origin + glm::dvec3(mesh.positions[vertex]);
+}
+
 template <class Function> SampleGrid gridOf(const Lattice& lattice, const Function& value) {
     SampleGrid grid{lattice, {}, {}};
     for (int k = 0; k < lattice.size.z; ++k)
@@ -268,6 +272,40 @@ TEST(CubeCases, UseEachCrossedEdgeAndNoOther) {
                 EXPECT_EQ(used.contains(edge), (inside >> a & 1) != (inside >> b & 1)) << inside << ' ' << edge;
             }
         }
+}
+
+// A sphere of 1.5 m in geographic coordinates, where 32 bits hold half metres, beside the same one at 0.
+TEST(MeshOrigin, FarFromZeroASurfaceIsTheSame) {
+    const glm::dvec3 far(500000.3, 5000000.7, 120.1);
+    for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC})
+        for (const bool cut : {false, true}) {
+            const auto sphereAt = [&](glm::dvec3 centre) {
+                const Lattice lattice = latticeOf(kind, {17, 17, 17}, glm::dvec3(0.25), centre - 2.0);
+                const SampleGrid grid = gridOf(lattice, [&](glm::dvec3 p) { return 1.5 - glm::distance(p, centre); });
+                const Box box{centre - glm::dvec3(1.3, 2, 2), centre + 2.0};
+                return extractIsosurface(grid, 0, cut ? std::optional(box) : std::nullopt);
+            };
+            const SurfaceMesh near = sphereAt(glm::dvec3(0)), away = sphereAt(far);
+            EXPECT_EQ(near.origin, glm::dvec3(0));
+            EXPECT_EQ(away.origin, glm::dvec3(cut ? 500001 : 500000, 5000001, 120)) << "a round number near the middle";
+            ASSERT_EQ(near.positions.size(), away.positions.size());
+            double worst = 0;
+            for (std::size_t i = 0; i < near.positions.size(); ++i)
+                worst = std::max(worst, glm::distance(placeOf(away, i) - far, placeOf(near, i)));
+            EXPECT_LT(worst, 1e-5) << "metres; of 32 bits 0.25";
+            EXPECT_NEAR(topologyOf(away).area, topologyOf(near).area, 1e-5);
+            if (!cut) {
+                EXPECT_NEAR(topologyOf(away).volume, topologyOf(near).volume, 1e-4);
+            }
+        }
+}
+
+TEST(MeshOrigin, IsOnlyUsedFarAway) {
+    EXPECT_EQ(originFor({{1, 2, 3}, {4, 5, 6}}), glm::dvec3(0));
+    EXPECT_EQ(originFor({{-100, 0, 40}, {-93, 0, 40}}), glm::dvec3(0));
+    EXPECT_EQ(originFor({{-1000, 0, 40}, {-993, 0, 40}}), glm::dvec3(-997, 0, 40));
+    EXPECT_EQ(originFor({{4e6, 0, 0}, {4e6 + 2500, 0, 0}}), glm::dvec3(4001000, 0, 0));
+    EXPECT_EQ(originFor({{5, 5, 5}, {5, 5, 5}}), glm::dvec3(0)) << "of no extent";
 }
 
 } // namespace

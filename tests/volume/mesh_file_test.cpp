@@ -158,5 +158,51 @@ TEST_F(MeshFile, AppearsWholeOrNotAtAll) {
     EXPECT_EQ(empty.size(), 84u);
 }
 
+// A mesh with an origin keeps its digits where a format has them.
+TEST_F(MeshFile, FarFromZeroPositionsHave64Bits) {
+    SurfaceMesh mesh = tetrahedron();
+    mesh.origin = {500000, -5000000.25, 0};
+    const auto placeOf = [&](std::size_t i) { return mesh.origin + glm::dvec3(mesh.positions[i]); };
+    const std::string ply = bytesOf(mesh, ".ply"), vtp = bytesOf(mesh, ".vtp"), obj = bytesOf(mesh, ".obj"),
+                      stl = bytesOf(mesh, ".stl");
+    const auto vector = [](Bytes& bytes) {
+        const double x = bytes.take<double>(), y = bytes.take<double>(), z = bytes.take<double>();
+        return glm::dvec3(x, y, z);
+    };
+    EXPECT_NE(ply.find("property double x\nproperty double y\nproperty double z\nproperty float nx"),
+              std::string::npos);
+    Bytes ofPly{ply, ply.find("end_header\n") + 11};
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(vector(ofPly), placeOf(i));
+        EXPECT_EQ(ofPly.vector(), mesh.normals[i]);
+        EXPECT_EQ(ofPly.take<float>(), mesh.scalars[i]);
+    }
+    EXPECT_EQ(ofPly.take<std::uint8_t>(), 3) << "triangles follow";
+
+    const std::string head = "type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\" format=\"appended\" offset=\"";
+    ASSERT_NE(vtp.find(head), std::string::npos);
+    Bytes ofVtp{vtp,
+                vtp.find("_", vtp.find("AppendedData")) + 1 + std::stoul(vtp.substr(vtp.find(head) + head.size()))};
+    EXPECT_EQ(ofVtp.take<std::uint64_t>(), 4 * 24u);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(vector(ofVtp), placeOf(i));
+    EXPECT_EQ(ofVtp.take<std::uint64_t>(), 4 * 12u) << "triangles follow";
+
+    std::istringstream lines(obj);
+    for (std::size_t i = 0; i < 4; ++i) {
+        std::string key;
+        glm::dvec3 v;
+        lines >> key >> v.x >> v.y >> v.z;
+        EXPECT_EQ(key, "v");
+        EXPECT_EQ(v, placeOf(i));
+    }
+
+    EXPECT_EQ(meshShift(mesh, "a.stl"), "32-bit coordinates, less (500000, -5000000.25, 0)");
+    EXPECT_EQ(meshShift(mesh, "a.ply"), "");
+    EXPECT_EQ(meshShift(tetrahedron(), "a.stl"), "");
+    EXPECT_NE(stl.substr(0, 80).find("less (500000, -5000000.25, 0)"), std::string::npos);
+    Bytes ofStl{stl, 84 + 12};
+    EXPECT_EQ(ofStl.vector(), mesh.positions[mesh.triangles[0].x]);
+}
+
 } // namespace
 } // namespace tessera::volume

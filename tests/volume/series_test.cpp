@@ -270,5 +270,51 @@ TEST(Hyperplane, SlicesLinearFunctionsInAnyDirection) {
     EXPECT_THROW(sliceBy(seriesOf<float>(cc, value), {{0, 0, 0, 1}, 50}), Error);
 }
 
+// Frames at uneven times: a plane in times cuts between those around, on CC and on D4*, whose frames lie between.
+TEST(Hyperplane, HeedsUnevenTimes) {
+    const std::vector<double> uneven = {0, 1, 10, 11, 30, 32};
+    const Lattice4 cc = ccLattice4({4, 3, 5, int(uneven.size())});
+    const auto atFrame = [&](glm::dvec4 p) { return timeAt(uneven, p.w) + 100 * p.x; };
+    const Series series = seriesOf<float>(cc, atFrame);
+    for (const double time : {0.0, 0.3, 1.0, 4.0, 10.5, 29.0, 32.0}) {
+        const HyperplaneSlice slice = sliceBy(series, {{0, 0, 0, 1}, -time}, uneven);
+        ASSERT_EQ(slice.solved, 3);
+        for (int x = 0; x < 4; ++x)
+            EXPECT_NEAR(slice.field.value(slice.field.lattice.index({x, 1, 2})), time + 100 * x, 1e-4) << time;
+    }
+    // Along t: even steps from the first to the last time.
+    const HyperplaneSlice along = sliceBy(series, {{1, 0, 0, 0}, -1.5}, uneven);
+    EXPECT_EQ(along.axes, (std::array{1, 2, 3}));
+    const Lattice& grid = along.field.lattice;
+    EXPECT_EQ(grid.size.z, 6);
+    EXPECT_NEAR(grid.origin.z, 0, 1e-12);
+    EXPECT_NEAR(grid.spacing.z, 6.4, 1e-12);
+    for (int k = 0; k < 6; ++k) EXPECT_NEAR(along.field.value(grid.index({1, 1, k})), 6.4 * k + 150, 1e-4);
+    // A plane that moves 2 along x in a unit of time.
+    const HyperplaneSlice moving = sliceBy(series, {{-1, 0, 0, 2}, 1}, uneven);
+    for (int x = 0; x < 4; ++x)
+        if (moving.solved == 3) {
+            EXPECT_EQ(moving.field.present(moving.field.lattice.index({x, 0, 0})), x >= 1);
+            if (x >= 1) {
+                EXPECT_NEAR(moving.field.value(moving.field.lattice.index({x, 0, 0})), 0.5 * (x - 1) + 100 * x, 1e-4);
+            }
+        }
+    EXPECT_EQ(moving.solved, 3);
+    EXPECT_THROW(sliceBy(series, {{0, 0, 0, 1}, -33}, uneven), Error);
+
+    const Lattice4 d4 = d4For(ccLattice4({12, 12, 12, 12}));
+    std::vector<double> frames;
+    for (int frame = 0; frame < d4.size.w; ++frame) frames.push_back(std::pow(1.2, frame));
+    const Series both = seriesOf<float>(
+        d4, [&](glm::dvec4 p) { return timeAt(frames, (p.w - d4.time(0)) / (d4.time(1) - d4.time(0))); });
+    for (int frame = 2; frame + 2 < d4.size.w; ++frame) {
+        const HyperplaneSlice slice = sliceBy(both, {{0, 0, 0, 1}, -frames[std::size_t(frame)]}, frames);
+        const double neighbours = 0.5 * (frames[std::size_t(frame) - 1] + frames[std::size_t(frame) + 1]);
+        EXPECT_NEAR(slice.field.value(slice.field.lattice.index({5, 5, 5})),
+                    0.5 * (frames[std::size_t(frame)] + neighbours), 1e-4)
+            << "the frame itself, and those of the other grid around it";
+    }
+}
+
 } // namespace
 } // namespace tessera::volume

@@ -40,5 +40,22 @@ TEST(SourceDifference, CountsTheSamplesThatDiffer) {
     EXPECT_FALSE(sourceDifference({*plain}, {*sourceOf(8, LatticeKind::BCC, 0, false)})) << "other lattices";
 }
 
+// Integers that 32-bit floats do not hold.
+TEST(SourceDifference, CountsUnitsOfLargeIntegers) {
+    const auto integers = [](int more) {
+        Field field = makeField(test::ccLattice({9, 8, 7}), ScalarType::I32);
+        for (std::size_t i = 0; i < field.count(); ++i) field.as<std::int32_t>()[i] = 2000000000 + int(i % 5);
+        field.as<std::int32_t>()[17] += more;
+        std::vector<Field> fields;
+        fields.push_back(std::move(field));
+        return makeMemorySource(test::datasetOf(std::move(fields)), {.brickSize = 8});
+    };
+    const auto same = sourceDifference({*integers(0)}, {*integers(0)}),
+               one = sourceDifference({*integers(0)}, {*integers(1)});
+    EXPECT_EQ(same->differing, 0u);
+    EXPECT_EQ(one->differing, 1u);
+    EXPECT_EQ(one->largest, 1);
+}
+
 } // namespace
 } // namespace tessera::volume

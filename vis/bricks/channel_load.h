@@ -14,7 +14,7 @@
 namespace tessera::vis {
 
 struct ChannelKey {
-    int channel = 0, time = 0;
+    int channel = 0, time = 0; ///< a stored time, or one of WithComputedTimes
     bool prefiltered = true;
     int part = -1; ///< only the samples of this part (volume/field/parts.h); -1: all samples
     auto operator<=>(const ChannelKey&) const = default;

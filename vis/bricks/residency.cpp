@@ -34,10 +34,10 @@ void Residency::setSource(std::shared_ptr<const volume::BrickSource> source, Sam
     const std::shared_ptr<LoadExchange> former = std::exchange(exchange_, nullptr);
     if (source) {
         exchange_ = std::make_shared<LoadExchange>();
-        exchange_->source = source;
+        exchange_->source = times_ = std::make_shared<const WithComputedTimes>(source);
         constexpr int kUnderway = 6; // bricks whose bytes are waited for
         if (source->info().remote) jobs_.grow(std::max(options_.decodeThreads, kUnderway));
-        exchange_->bricks = std::make_unique<volume::BrickCache>(source, options_.memoryBudget);
+        exchange_->bricks = std::make_unique<volume::BrickCache>(exchange_->source, options_.memoryBudget);
     }
     if (former && source && same.channels > 0 && same.times > 0 && source->grid() == former->source->grid()) {
         keepSame(*former, same);
@@ -132,6 +132,11 @@ void Residency::wantWhole(const ChannelKey& key, ResidentChannel& channel, doubl
                                                 .summary = channel.summary,
                                                 .encoding = channels_.encodingOfParts(key),
                                                 .coverage = channel.coverage});
+}
+
+std::optional<int> Residency::computedTime(int channel, const volume::TimePair& time) const {
+    if (!exchange_ || !time.between() || !times_->isComputed(channel)) return std::nullopt;
+    return times_->indexOf(time);
 }
 
 void Residency::keep(const ChannelKey& key) {

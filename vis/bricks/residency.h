@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/bricks/computed_times.h"
 #include "vis/bricks/resident_channels.h"
 #include "vis/gl/job_queue.h"
 
@@ -29,6 +30,9 @@ public:
     /// Requests a channel for this frame and queues missing data. `coarseFirst`: load a coarse level first for an early
     /// picture. `demand`: the bricks of a bricked channel; null: the coarsest level only.
     void want(const ChannelKey& key, double priority, bool coarseFirst, std::shared_ptr<const BrickDemand> demand);
+    /// The time of keys for a channel that is computed between two stored times (volume/bricks/source_at_time.h), none
+    /// for others: theirs are mixed when drawn.
+    std::optional<int> computedTime(int channel, const volume::TimePair& time) const;
     /// Whether channels of this data set are divided into bricks.
     bool bricked() const { return exchange_ && textureLevel() > 0; }
     /// The entry of a channel, drawable or not; null if unknown.
@@ -50,7 +54,9 @@ public:
     void update(std::size_t bytes);
     /// Blocks until everything wanted in this frame is resident, exceeding the budget if necessary.
     void finish();
-    /// Changes whenever the result of find() changes.
+    /// Lets pictures be drawn anew that show other resident data than before.
+    void announce() { ++revision_; }
+    /// Changes whenever the result of find() changes, and with announce().
     std::uint64_t revision() const { return revision_ + channels_.drops(); }
 
     ResidencyInfo info() const;
@@ -90,7 +96,8 @@ private:
 
     RendererOptions options_;
     Driver driver_;
-    std::shared_ptr<LoadExchange> exchange_; ///< null while there is no source
+    std::shared_ptr<LoadExchange> exchange_;         ///< null while there is no source
+    std::shared_ptr<const WithComputedTimes> times_; ///< the source of exchange_
     ResidentChannels channels_;
     std::deque<Upload> uploads_;
     ChannelTexture nothing_;

@@ -33,7 +33,8 @@ public:
         out.tests[first].flags |= BrushTest::First;
         const bool inverted = brush.inverted != (brush.combine == BrushCombine::Minus);
         out.tests.back().flags |= BrushTest::Last | (inverted ? BrushTest::Inverted : 0) |
-                                  (brush.combine == BrushCombine::Or ? BrushTest::Or : 0);
+                                  (brush.combine == BrushCombine::Or ? BrushTest::Or : 0) |
+                                  (inverted && brush.inverted ? BrushTest::Present : 0);
     }
 
 private:

@@ -23,8 +23,9 @@ struct BrushTest {
         First = 1,
         Last = 2,
         Inverted = 4,
-        Or = 8
-    }; ///< position within its brush, and properties of the brush
+        Or = 8,
+        Present = 16, ///< inverted, and selects nothing where a value is absent
+    };                ///< position within its brush, and properties of the brush
     BrushTestKind kind = BrushTestKind::Always;
     int flags = 0;
     /// Indices of the brush fields tested; -1: the data set lacks the channel, so the test fails everywhere. For a

@@ -3,6 +3,7 @@
 #include "vis/packed/padded_samples.h"
 #include "volume/base/parallel.h"
 #include "volume/bricks/parts_bricks.h"
+#include "volume/bricks/source_at_time.h"
 #include "volume/reconstruct/reconstruct.h"
 
 #include <algorithm>
@@ -292,6 +293,12 @@ void joinParts(PacketVolume& volume) {
 }
 
 PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketChannel& what, std::stop_token stop) {
+    if (what.time.between()) {
+        const std::shared_ptr<const volume::BrickSource> borrowed(std::shared_ptr<const volume::BrickSource>(),
+                                                                  &source);
+        const volume::SourceAtTime now = volume::sourceAt(borrowed, what.time);
+        return readPacketVolume(*now.source, what.at(now.time), std::move(stop));
+    }
     const volume::DatasetInfo& info = source.info();
     const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(what.channel).parameter)];
     VolumeMaker maker(source, what, std::move(stop));

@@ -59,6 +59,7 @@ struct PacketChannel {
     volume::TimePair time = {};
     Filter filter = Filter::AverageQuasi;
     bool exact = false; ///< 32-bit floats, else 15 bits over the range of the data
+    bool mixed = false; ///< between two stored times both are mixed even where values there are to be computed
     bool operator==(const PacketChannel&) const = default;
 
     /// The same at one of the stored times around.
@@ -68,7 +69,8 @@ struct PacketChannel {
 /// Sets the bounds of blocks from those of the parts.
 void joinParts(PacketVolume& volume);
 
-/// Samples at a stored time. Throws Error when the source does, Cancelled once a stop is requested.
+/// Samples at a stored time, or computed for a time between two (volume::sourceAt). Throws Error when the source does,
+/// Cancelled once a stop is requested.
 PacketVolume readPacketVolume(const volume::BrickSource& source, const PacketChannel& what, std::stop_token stop = {});
 
 } // namespace tessera::vis::packet

@@ -35,6 +35,15 @@ inline Floats lassoDoi(const float* table, Floats u, Floats v, Mask lanes) {
     return choose(inside, mix(row(0), row(kLassoTable), fy), Floats(0));
 }
 
+/// Where the values that a test asks for are present.
+inline Mask canPass(const BrushView& test, const Found* values) {
+    const bool asks =
+        test.kind == BrushTestKind::Range || test.kind == BrushTestKind::Ellipse || test.kind == BrushTestKind::Lasso;
+    if (!asks) return Floats(0) <= Floats(0);
+    if (test.x < 0 || test.y < 0) return Floats(0) > Floats(0);
+    return values[test.x].present & values[test.y].present;
+}
+
 /// How far samples with these values of the brushed channels pass one test, 0..1.
 inline Floats passBrush(const FocusView& focus, const BrushView& test, const Found* values, const Vec& cells,
                         const Vec& world, Mask lanes) {
@@ -80,9 +89,10 @@ inline Interest interestOf(const FocusView& focus, const Found* values, const Ve
                            Mask lanes) {
     Interest out;
     if (focus.brushes.empty()) return out;
-    Floats doi(focus.start), own(1);
+    Floats doi(focus.start), own(1), there(1);
     for (const BrushView& test : focus.brushes) {
-        if (test.flags & BrushTest::First) own = Floats(1);
+        if (test.flags & BrushTest::First) own = there = Floats(1);
+        there = choose(canPass(test, values), there, Floats(0));
         own = smaller(own, passBrush(focus, test, values, cells, world, lanes));
         if (!(test.flags & BrushTest::Last)) continue;
         if (focus.brushColor > 0 && test.holds) {
@@ -91,6 +101,7 @@ inline Interest interestOf(const FocusView& focus, const Found* values, const Ve
             out.color = choose(more, spreadOut<Floats>(test.color), out.color);
         }
         if (test.flags & BrushTest::Inverted) own = Floats(1) - own;
+        if (test.flags & BrushTest::Present) own = smaller(own, there);
         doi = test.flags & BrushTest::Or ? larger(doi, own) : smaller(doi, own);
     }
     out.doi = confine<Floats>(focus.lenses, doi, world);

@@ -7,6 +7,7 @@
 #include "vis/shapes/mesh_medium.h"
 #include "volume/base/background.h"
 #include "volume/base/parallel.h"
+#include "volume/bricks/source_at_time.h"
 
 #include <algorithm>
 #include <exception>
@@ -121,8 +122,13 @@ SharedVolume PacketVolumes::blend(const PacketChannel& channel) {
     return volume;
 }
 
+/// Whether samples between two stored times are those of both, blended; else they are computed as bricks.
+bool PacketVolumes::blends(const PacketChannel& channel) const {
+    return channel.time.between() && (channel.mixed || !volume::isComputedBetween(*source_, channel.channel));
+}
+
 SharedVolume PacketVolumes::get(const PacketChannel& channel) {
-    if (channel.time.between()) return blend(channel);
+    if (blends(channel)) return blend(channel);
     Held& own = entry(channel);
     SharedVolume volume = own.volume.lock();
     if (volume) return use(volume);
@@ -136,7 +142,7 @@ SharedVolume PacketVolumes::get(const PacketChannel& channel) {
 
 bool PacketVolumes::has(const PacketChannel& channel) const {
     const volume::TimePair& time = channel.time;
-    if (time.between()) return has(channel.at(time.earlier)) && has(channel.at(time.later));
+    if (blends(channel)) return has(channel.at(time.earlier)) && has(channel.at(time.later));
     const auto found = std::ranges::find_if(held_, [&](const Held& each) { return each.channel == channel; });
     return found != held_.end() && (!found->volume.expired() || (found->coming.valid() && isReady(found->coming)));
 }
@@ -146,7 +152,7 @@ bool PacketVolumes::reading() const {
 }
 
 bool PacketVolumes::request(const PacketChannel& channel) {
-    if (channel.time.between()) {
+    if (blends(channel)) {
         const bool earlier = request(channel.at(channel.time.earlier)), later = request(channel.at(channel.time.later));
         return earlier && later;
     }
@@ -186,27 +192,42 @@ void PacketRenderer::release() {
     scene_.reset();
 }
 
+bool PacketRenderer::isPrepared(const Scene& scene) const {
+    return scene_ && sameTables(scene, prepared_) && (mixes_ || !mixed_);
+}
+
+/// All samples that a scene needs.
+std::vector<PacketChannel> PacketRenderer::channels(const Scene& scene) const {
+    std::vector<PacketChannel> out = packetChannels(scene, source().info());
+    for (PacketChannel& channel : out)
+        channel.mixed = mixes_ && channel.time.between() && volume::isComputedBetween(source(), channel.channel);
+    return out;
+}
+
 bool PacketRenderer::has(const Scene& scene) const {
-    return (scene_ && sameTables(scene, prepared_)) ||
-           std::ranges::all_of(packetChannels(scene, source().info()),
-                               [&](const PacketChannel& channel) { return volumes_->has(channel); });
+    return isPrepared(scene) ||
+           std::ranges::all_of(channels(scene), [&](const PacketChannel& channel) { return volumes_->has(channel); });
 }
 
 bool PacketRenderer::request(const Scene& scene) {
-    return (scene_ && sameTables(scene, prepared_)) || prefetch(scene);
+    return isPrepared(scene) || prefetch(scene);
 }
 
 bool PacketRenderer::prefetch(const Scene& scene) {
     bool all = true;
-    for (const PacketChannel& channel : packetChannels(scene, source().info())) all = volumes_->request(channel) && all;
+    for (const PacketChannel& channel : channels(scene)) all = volumes_->request(channel) && all;
     return all;
 }
 
 void PacketRenderer::prepare(const Scene& scene) {
-    if (scene_ && sameTables(scene, prepared_)) return;
+    if (isPrepared(scene)) return;
     const volume::DatasetInfo& info = source().info();
     std::vector<SharedVolume> volumes;
-    for (const PacketChannel& channel : packetChannels(scene, info)) volumes.push_back(volumes_->get(channel));
+    mixed_ = false;
+    for (const PacketChannel& channel : channels(scene)) {
+        volumes.push_back(volumes_->get(channel));
+        mixed_ = mixed_ || channel.mixed;
+    }
     held_ = volumes;
     scene_ = std::make_unique<PacketScene>(scene, info, std::move(volumes));
     prepared_ = scene;

@@ -78,6 +78,7 @@ private:
         std::uint64_t asked = 0;               ///< value of asked_ when it was last asked for
     };
     Held& entry(const PacketChannel& channel);
+    bool blends(const PacketChannel& channel) const;
     SharedVolume blend(const PacketChannel& channel);
     SharedVolume use(const SharedVolume& volume);
 
@@ -101,6 +102,11 @@ public:
     bool setVolumes(std::shared_ptr<PacketVolumes> volumes);
     /// Lets go of samples and tables.
     void release();
+    /// Between stored times, values that are to be computed there may be mixed, which is quicker: while time is
+    /// dragged.
+    void setMixes(bool yes) { mixes_ = yes; }
+    /// Whether some of the last scene are.
+    bool mixed() const { return mixed_; }
     /// Whether prepare() need not wait for samples.
     bool has(const Scene& scene) const;
     /// The same; begins to read them in the background otherwise.
@@ -130,11 +136,15 @@ public:
     void countSamples(bool yes) { counts_ = yes, samples_ = 0; }
 
 private:
+    bool isPrepared(const Scene& scene) const;
+    std::vector<PacketChannel> channels(const Scene& scene) const;
+
     InstructionSet with_;
     std::shared_ptr<PacketVolumes> volumes_;
     std::vector<SharedVolume> held_; ///< of the last scene
     std::unique_ptr<PacketScene> scene_;
     Scene prepared_; ///< the scene of scene_
+    bool mixes_ = false, mixed_ = false;
     SceneLight light_;
     PackedLight packedLight_; ///< of light_
     bool counts_ = false;

@@ -41,6 +41,8 @@ void useSamples(ViewTarget& target, bool coarse) {
 /// Chooses the samples that a call is drawn from, coarse ones until all are read; false if neither are there yet.
 bool findSamples(RendererState& shared, ViewTarget& target, const RenderCall& call) {
     PacketView& packets = target.packets;
+    for (packet::PacketRenderer* renderer : {&packets.full, &packets.coarse})
+        renderer->setMixes(call.request.moving && !call.request.wait);
     bool all = call.request.wait || packets.full.has(call.scene), some = false;
     if (!all) {
         if (!packets.lackingSince) packets.lackingSince = Clock::now();
@@ -56,6 +58,16 @@ bool findSamples(RendererState& shared, ViewTarget& target, const RenderCall& ca
     if (all) packets.lackingSince.reset();
     if (all || some) useSamples(target, !all);
     return all || some;
+}
+
+/// Whoever drags time sees both stored times mixed; at rest what is computed between them replaces that.
+void prepareSamples(ViewTarget& target, const RenderCall& call) {
+    packet::PacketRenderer& renderer = target.packets.renderer();
+    const bool mixed = renderer.mixed();
+    renderer.prepare(call.scene);
+    if (!mixed || renderer.mixed()) return;
+    ++target.packets.revision;
+    target.redraw(target.buffers.everything());
 }
 
 /// While an animation runs, the samples of the next stored time are read in the background.
@@ -141,7 +153,7 @@ bool drawByPackets(RendererState& shared, ViewTarget& target, const RenderCall& 
     PacketView& packets = target.packets;
     try {
         const bool here = findSamples(shared, target, call);
-        if (here) packets.renderer().prepare(call.scene);
+        if (here) prepareSamples(target, call);
         showScene(shared, target, call.scene, 0);
         target.shown.compiling = false;
         status.complete = here && !packets.isCoarse;

@@ -33,7 +33,7 @@ public:
     Placement(const Camera& camera, const WorldFrame& frame, glm::ivec2 size)
         : frame_(frame), size_(size), toClip_(projectionMatrix(camera, double(size.x) / size.y) * viewMatrix(camera)) {}
 
-    glm::dvec3 world(glm::vec3 physical) const { return glm::dvec3(physical) * frame_.scale + frame_.offset; }
+    glm::dvec3 world(glm::dvec3 physical) const { return frame_.toWorld(physical); }
     glm::dvec4 clip(glm::dvec3 world) const { return toClip_ * glm::dvec4(world, 1); }
     /// A position of clip space with x and y in pixels, times w.
     glm::dvec4 pixels(glm::dvec4 clip) const {
@@ -65,7 +65,7 @@ void addMesh(const Placement& placement, const volume::SurfaceMesh& mesh, const 
         for (int i = 0; i < 3; ++i) {
             const std::size_t v = triangle[i], to = std::size_t(i);
             const glm::dvec3 normal = mesh.normals.empty() ? glm::dvec3(0) : glm::dvec3(mesh.normals[v]);
-            corners[to] = {.world = placement.world(mesh.positions[v]),
+            corners[to] = {.world = placement.world(mesh.origin + glm::dvec3(mesh.positions[v])),
                            .direction = normal / placement.frame().scale,
                            .value = mesh.scalars.empty() ? 0 : double(mesh.scalars[v])};
             clip[to] = placement.clip(corners[to].world);
@@ -101,7 +101,7 @@ void addLines(const Placement& placement, const LineSet& lines, const SurfaceLay
         for (std::size_t i = first; i + 1 < std::min<std::size_t>(end, lines.positions.size()); ++i) {
             std::array<SurfacePoint, 2> ends;
             for (std::size_t k = 0; k < 2; ++k)
-                ends[k] = {.world = placement.world(lines.positions[i + k]),
+                ends[k] = {.world = placement.world(lines.origin + glm::dvec3(lines.positions[i + k])),
                            .value = lines.scalars.empty() ? 0 : double(lines.scalars[i + k])};
             ends[0].direction = ends[1].direction = ends[1].world - ends[0].world;
             addSegment(placement, ends, layer, pieces);

@@ -2,6 +2,7 @@
 
 #include "volume/base/parallel.h"
 #include "volume/bricks/parts_bricks.h"
+#include "volume/bricks/source_at_time.h"
 
 #include <algorithm>
 #include <cassert>
@@ -88,10 +89,16 @@ Samples::Samples(const volume::BrickSource& source, int channel, volume::TimePai
                  const Flaws& flaws)
     : Samples(source, channel, time, filter, flaws, std::nullopt) {}
 
-Samples::Samples(const volume::BrickSource& source, int channel, volume::TimePair time, Filter filter,
+Samples::Samples(const volume::BrickSource& given, int channel, volume::TimePair time, Filter filter,
                  const Flaws& flaws, std::optional<OnePart> only)
-    : geometry_(volume::levelGeometry(source.grid(), 0)), filter_(filter), flaws_(flaws),
-      brickSize_(source.grid().brickSize) {
+    : geometry_(volume::levelGeometry(given.grid(), 0)), filter_(filter), flaws_(flaws),
+      brickSize_(given.grid().brickSize) {
+    const std::shared_ptr<const volume::BrickSource> borrowed(std::shared_ptr<const volume::BrickSource>(), &given);
+    const volume::SourceAtTime now = time.between() && volume::isComputedBetween(given, channel)
+                                         ? volume::sourceAt(borrowed, time)
+                                         : volume::SourceAtTime{borrowed, 0};
+    if (now.source != borrowed) time = {now.time, now.time, 0};
+    const volume::BrickSource& source = *now.source;
     const volume::DatasetInfo& info = source.info();
     const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(channel).parameter)];
     categorical_ = parameter.categorical;

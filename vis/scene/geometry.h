@@ -25,9 +25,10 @@ namespace tessera::vis {
 
 /// Open polylines.
 struct LineSet {
-    std::vector<glm::vec3> positions; ///< physical
+    std::vector<glm::vec3> positions; ///< physical, less the origin
     std::vector<float> scalars;       ///< one per vertex, or empty
     std::vector<std::uint32_t> ends;  ///< per line: one past its last vertex
+    glm::dvec3 origin{0};             ///< as that of volume::SurfaceMesh
     bool operator==(const LineSet&) const = default;
 };
 

@@ -189,7 +189,12 @@ double DoiFunction::operator()(std::span<const double> values, glm::dvec3 positi
     double doi = parts_.front().brush.combine == BrushCombine::Or ? 0 : 1;
     for (const Part& part : parts_) {
         double own = regionDoi(part, values, position);
-        if (part.brush.inverted) own = 1 - own;
+        const bool absent =
+            std::ranges::any_of(part.channel, [&](int channel) { return std::isnan(values[std::size_t(channel)]); });
+        if (part.brush.inverted && absent && part.brush.combine != BrushCombine::Minus)
+            own = 0;
+        else if (part.brush.inverted)
+            own = 1 - own;
         switch (part.brush.combine) {
         case BrushCombine::And:
             doi = std::min(doi, own);

@@ -153,7 +153,8 @@ struct Brush {
 
 /// The selection shared by all views. The degree of interest (DOI) of a sample is 1 if no brush is enabled. Otherwise
 /// the enabled brushes are combined in order: and = min, or = max, minus = min with 1 - d, starting with 1, or with 0
-/// if the first brush is an "or".
+/// if the first brush is an "or". A sample that lacks a value that a brush asks for lies neither inside nor outside of
+/// it: d is 0, also if the brush is inverted.
 struct Selection {
     std::vector<Brush> brushes;
     float contextOpacity = 0.04f;   ///< opacity factor of samples with DOI 0

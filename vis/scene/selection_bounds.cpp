@@ -29,6 +29,15 @@ Range boundsOf(const Region& region, const std::map<std::string, Range>& ranges)
     return all;
 }
 
+/// Whether a value that a region asks for is known to be absent everywhere.
+bool isAbsent(const Region& region, const std::map<std::string, Range>& ranges) {
+    const auto* range = std::get_if<RangeRegion>(&region);
+    return range && std::ranges::any_of(range->intervals, [&](const BrushInterval& interval) {
+               const auto found = ranges.find(interval.channel);
+               return found != ranges.end() && !(found->second.lo <= found->second.hi);
+           });
+}
+
 } // namespace
 
 Range interestBounds(const Selection& selection, const std::map<std::string, Range>& ranges) {
@@ -39,7 +48,11 @@ Range interestBounds(const Selection& selection, const std::map<std::string, Ran
         if (first && brush.combine == BrushCombine::Or) all = {0, 0};
         first = false;
         Range one = boundsOf(brush.region, ranges);
-        if (brush.inverted != (brush.combine == BrushCombine::Minus)) one = {1 - one.hi, 1 - one.lo};
+        const bool minus = brush.combine == BrushCombine::Minus;
+        if (brush.inverted && !minus)
+            one = {0, isAbsent(brush.region, ranges) ? 0.0 : 1 - one.lo}; // absent values match neither
+        else if (brush.inverted != minus)
+            one = {1 - one.hi, 1 - one.lo};
         all = brush.combine == BrushCombine::Or ? Range{std::max(all.lo, one.lo), std::max(all.hi, one.hi)}
                                                 : Range{std::min(all.lo, one.lo), std::min(all.hi, one.hi)};
     }

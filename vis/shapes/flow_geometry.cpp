@@ -140,11 +140,12 @@ volume::SurfaceMesh glyphMesh(std::span<const Glyph> glyphs, glm::dvec3 stretch,
     return std::move(rings.mesh);
 }
 
-/// Values of the layer's channel at positions; NaN if absent.
+/// Values of the layer's channel at positions less the origin of the data; NaN if absent.
 std::vector<float> valuesAt(const volume::BrickSource& source, const std::string& channel, int time, int level,
                             std::vector<glm::vec3> places, const Progress& progress) {
     volume::SurfaceMesh points;
     points.positions = std::move(places);
+    points.origin = volume::originFor(source.info().bounds);
     const std::optional<int> index = source.info().findChannel(channel);
     if (!index) return std::vector<float>(points.positions.size(), std::numeric_limits<float>::quiet_NaN());
     volume::sampleAtVertices(points, source, *index, time, level, progress);
@@ -249,12 +250,12 @@ LineSet particleWays(const volume::BrickSource& source, const FlowLayer& layer, 
         if (!vector) return std::nullopt;
         return *vector * double(layer.speed);
     };
-    LineSet lines;
+    LineSet lines{.positions = {}, .scalars = {}, .ends = {}, .origin = volume::originFor(source.info().bounds)};
     std::vector<double> moments;
     for (const volume::Pathline& line : volume::pathlines(field, seeds, times[std::size_t(time)], times.front(),
                                                           times.back(), settings, progress.part(0, 0.8))) {
         if (line.places.size() < 2) continue;
-        lines.positions.insert(lines.positions.end(), line.places.begin(), line.places.end());
+        for (const glm::dvec3& place : line.places) lines.positions.emplace_back(place - lines.origin);
         moments.insert(moments.end(), line.times.begin(), line.times.end());
         lines.ends.push_back(std::uint32_t(lines.positions.size()));
     }
@@ -290,6 +291,7 @@ volume::SurfaceMesh tubes(const LineSet& lines, double radius, glm::dvec3 stretc
     const auto [least, most] = std::minmax_element(lines.scalars.begin(), lines.scalars.end());
     const double step = lines.scalars.empty() ? 0 : double(*most - *least) / kColorSteps;
     Rings rings(stretch);
+    rings.mesh.origin = lines.origin;
     std::uint32_t begin = 0;
     for (const std::uint32_t end : lines.ends) {
         const Course course = simplified(courseOf(lines, begin, end, radius * 0.05, stretch), radius * 0.05, step);
@@ -338,19 +340,19 @@ std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, cons
     if (!data) return nullptr;
     const int level = data->level, index = data->parameter;
     const volume::VectorField field = data->field();
-    const double slowest = data->slowest;
     const glm::dvec3 size = source.info().bounds.size();
     const double longest = std::max({size.x, size.y, size.z});
     const glm::dvec3 drawn = size * stretch;
     const double longestDrawn = std::max({drawn.x, drawn.y, drawn.z});
     const std::vector<glm::dvec3> seeds =
         seedsOf(source, *data, layer, time, stretch, progress.part(0.3, 0.4), interest);
+    const glm::dvec3 origin = volume::originFor(source.info().bounds);
     auto out = std::make_shared<Geometry>();
     if (followsFlow(layer.kind)) {
-        LineSet lines;
+        LineSet lines{.positions = {}, .scalars = {}, .ends = {}, .origin = origin};
         const volume::StreamlineSettings settings{.cell = glm::abs(data->grid.x.lattice.spacing),
                                                   .longest = double(layer.length) * longest,
-                                                  .slowest = slowest};
+                                                  .slowest = data->slowest};
         if (layer.kind == FlowKind::Pathlines) {
             volume::StreamlineSettings particles = settings;
             particles.slowest *= double(layer.speed);
@@ -360,7 +362,7 @@ std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, cons
         }
         for (const auto& line : volume::streamlines(field, seeds, settings, progress.part(0.4, 0.8))) {
             if (line.size() < 2) continue;
-            lines.positions.insert(lines.positions.end(), line.begin(), line.end());
+            for (const glm::dvec3& place : line) lines.positions.emplace_back(place - origin);
             lines.ends.push_back(std::uint32_t(lines.positions.size()));
         }
         lines.scalars = valuesAt(source, layer.channel, time, level, lines.positions, progress.part(0.8, 1));
@@ -370,23 +372,25 @@ std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, cons
             out->lines = std::move(lines);
         return out;
     }
-    const std::vector<float> scalars =
-        valuesAt(source, layer.channel, time, level, {seeds.begin(), seeds.end()}, progress.part(0.4, 1));
+    std::vector<glm::vec3> places;
+    for (const glm::dvec3& seed : seeds) places.emplace_back(seed - origin);
+    const std::vector<float> scalars = valuesAt(source, layer.channel, time, level, places, progress.part(0.4, 1));
     double greatest = 0; // largest of those drawn, which gets the wanted length
     for (const glm::dvec3& seed : seeds) greatest = std::max(greatest, glm::length(*field(seed)));
     std::vector<Glyph> glyphs;
     for (std::size_t i = 0; i < seeds.size(); ++i) {
         const glm::dvec3 vector = *field(seeds[i]); // not zero: seeds lie where it flows
         const double share = layer.scaled ? glm::length(vector) / greatest : 1;
-        glyphs.push_back(
-            {seeds[i], glm::normalize(vector * stretch) * (share * double(layer.size) * longestDrawn), scalars[i]});
+        glyphs.push_back({seeds[i] - origin,
+                          glm::normalize(vector * stretch) * (share * double(layer.size) * longestDrawn), scalars[i]});
     }
     if (layer.kind == FlowKind::Arrows) out->mesh = arrows(glyphs, stretch);
     if (layer.kind == FlowKind::Cones) out->mesh = cones(glyphs, stretch);
+    out->mesh.origin = out->lines.origin = origin;
     if (layer.kind == FlowKind::Hedgehogs)
         for (const Glyph& glyph : glyphs) {
-            out->lines.positions.emplace_back(glyph.place);
-            out->lines.positions.emplace_back(glyph.place + glyph.vector / stretch);
+            for (const glm::dvec3 end : {glyph.place, glyph.place + glyph.vector / stretch})
+                out->lines.positions.emplace_back(end);
             out->lines.scalars.insert(out->lines.scalars.end(), 2, glyph.scalar);
             out->lines.ends.push_back(std::uint32_t(out->lines.positions.size()));
         }

@@ -180,7 +180,6 @@ void setCommon(const Program& program, const GeometryJob& job) {
     const glm::dmat4 moved = glm::translate(glm::dmat4(1), glm::dvec3(-2.0 * job.jitter / glm::dvec2(size), 0));
     const glm::mat4 worldToClip(moved * projectionMatrix(scene.camera, aspect) * viewMatrix(scene.camera));
     program.set("worldScale", glm::vec3(frame.scale));
-    program.set("worldOffset", glm::vec3(frame.offset));
     glProgramUniformMatrix4fv(program.name(), glGetUniformLocation(program.name(), "worldToClip"), 1, GL_FALSE,
                               &worldToClip[0][0]);
     program.set("rayOrigin", glm::vec3(middle.origin));
@@ -250,6 +249,8 @@ void GeometryPass::drawOne(const Draw& each, const GeometryJob& job, int peel) c
     const GeometryLayer& layer = job.scene.geometry[each.layer];
     const Program& own = *each.program;
     const WorldFrame frame = worldFrame(job.info.bounds, job.scene.stretch);
+    const glm::dvec3 origin = each.lines ? layer.geometry->lines.origin : layer.geometry->mesh.origin;
+    own.set("worldOffset", glm::vec3(frame.toWorld(origin)));
     own.set("peel", peel);
     own.set("row", (float(each.layer) + 0.5f) / float(tableRows_));
     own.set("map", maps_[each.layer]);

@@ -27,7 +27,8 @@ void addCost(FrameStatus& status, const volume::BrickGrid& grid, const ChannelTe
     status.bytes += bricks * (channel->atlas->bytes() / std::max<std::size_t>(channel->atlas->capacity(), 1));
 }
 
-PlanFrames framesAt(const RenderCall& call, double time) {
+/// `mixed`: channels that are computed between stored times are mixed, too, which needs no other samples.
+PlanFrames framesAt(const Residency& residency, const RenderCall& call, double time, bool mixed) {
     const RayPlan& plan = call.plan;
     const volume::DatasetInfo& info = call.info();
     const bool prefiltered = call.scene.render.filter == Filter::AverageQuasi;
@@ -35,20 +36,22 @@ PlanFrames framesAt(const RenderCall& call, double time) {
     const bool fits = 2 * count <= std::size_t(plan.mostFields);
     PlanFrames frames;
     std::vector<volume::TimePair> pairs;
+    std::vector<std::optional<int>> computed;
     bool between = false;
     for (std::size_t i = 0; i < count; ++i) {
         volume::TimePair pair = volume::timesAround(info.times, time + plan.fields[i].timeShift);
         if (plan.fields[i].nearest || !fits) pair = {pair.nearest(), pair.nearest(), 0};
-        between = between || pair.between();
+        computed.push_back(mixed ? std::nullopt : residency.computedTime(plan.fields[i].channel, pair));
+        between = between || pair.between(); // one program, whether mixed or computed
         pairs.push_back(pair);
     }
     const auto add = [&](std::size_t i, int index) {
         const BoundField& field = plan.fields[i];
         frames.keys.push_back({field.channel, index, prefiltered && !field.nearest && !field.raw, field.part});
     };
-    for (std::size_t i = 0; i < count; ++i) add(i, pairs[i].earlier);
+    for (std::size_t i = 0; i < count; ++i) add(i, computed[i].value_or(pairs[i].earlier));
     for (std::size_t i = 0; between && i < count; ++i) {
-        add(i, pairs[i].later);
+        add(i, computed[i].value_or(pairs[i].later));
         frames.weights.push_back(pairs[i].weight);
     }
     return frames;
@@ -266,7 +269,7 @@ bool ViewDemand::choose(const Residency& residency, const RenderCall& call, cons
 /// Requests the channels at the scene's time.
 PlanFrames ViewDemand::wantFrames(Residency& residency, const RenderCall& call, const HiddenInView* hidden) {
     const bool waits = call.request.wait;
-    PlanFrames wanted = framesAt(call, call.scene.time);
+    PlanFrames wanted = framesAt(residency, call, call.scene.time, call.request.moving && !waits);
     setFrames(call.plan, wanted);
     const glm::ivec3 texels = call.grid().lattice.texels();
     const bool large = std::size_t(texels.x) * std::size_t(texels.y) * std::size_t(texels.z) > kSmallTexels;
@@ -281,13 +284,15 @@ PlanFrames ViewDemand::wantFrames(Residency& residency, const RenderCall& call, 
 
 /// Decides which time is shown: all channels of a picture show the same time, the wanted one if all are resident, else
 /// the former one.
-PlanFrames ViewDemand::showFrames(Residency& residency, const RenderCall& call, const PlanFrames& wanted,
-                                  double& time) const {
+PlanFrames ViewDemand::showFrames(Residency& residency, const RenderCall& call, const PlanFrames& wanted, double& time,
+                                  bool& mixed) const {
     time = call.scene.time;
+    mixed = call.request.moving && !call.request.wait;
     if (allHere(residency, wanted) || !time_) return wanted;
-    PlanFrames former = framesAt(call, *time_);
+    PlanFrames former = framesAt(residency, call, *time_, mixed_);
     if (!allHere(residency, former)) return wanted;
     time = *time_;
+    mixed = mixed_;
     setFrames(call.plan, former);
     for (const ChannelKey& key : former.keys) residency.keep(key);
     return former;
@@ -301,7 +306,7 @@ void ViewDemand::wantNext(Residency& residency, const RenderCall& call, bool set
     wantedTime_ = now.earlier;
     const int next = (timeStep_ > 0 ? now.later : now.earlier) + timeStep_;
     if (!settled || call.request.wait || timeStep_ == 0 || next < 0 || next >= int(times.size())) return;
-    const PlanFrames coming = framesAt(call, times[std::size_t(next)]);
+    const PlanFrames coming = framesAt(residency, call, times[std::size_t(next)], true);
     for (std::size_t i = 0; i < coming.keys.size(); ++i)
         residency.want(coming.keys[i], kAfterTheRest + double(i), false, demands_[i % demands_.size()]);
 }
@@ -312,7 +317,8 @@ bool ViewDemand::bind(Residency& residency, const RenderCall& call, const Hidden
     status.bricksMissing = 0;
     const PlanFrames wanted = wantFrames(residency, call, hidden);
     double time = 0;
-    const PlanFrames shown = showFrames(residency, call, wanted, time);
+    bool mixed = false;
+    const PlanFrames shown = showFrames(residency, call, wanted, time, mixed);
     bool any = false, settled = true;
     for (const ChannelKey& key : wanted.keys) {
         settled = settled && residency.settled(key);
@@ -326,7 +332,9 @@ bool ViewDemand::bind(Residency& residency, const RenderCall& call, const Hidden
     // Drawing only some channels would need another program for a short time.
     if (!allHere(residency, shown)) any = false;
     if (any) {
+        if (mixed_ && !mixed) residency.announce();
         time_ = time;
+        mixed_ = mixed;
         frames_ = shown.keys;
     }
     wantNext(residency, call, settled);

@@ -9,7 +9,7 @@
 namespace tessera::vis {
 
 /// The channels of a plan's fields at a time: one stored time each or, between two stored times, all at the earlier one
-/// followed by all at the later one.
+/// followed by all at the later one. A channel that is computed between stored times is at that time in both.
 struct PlanFrames {
     std::vector<ChannelKey> keys;
     std::vector<double> weights; ///< weight of the later time per field; empty: all at stored times
@@ -56,7 +56,8 @@ private:
     bool choose(const Residency& residency, const RenderCall& call, const HiddenInView* hidden,
                 const std::vector<ChannelKey>& frames);
     PlanFrames wantFrames(Residency& residency, const RenderCall& call, const HiddenInView* hidden);
-    PlanFrames showFrames(Residency& residency, const RenderCall& call, const PlanFrames& wanted, double& time) const;
+    PlanFrames showFrames(Residency& residency, const RenderCall& call, const PlanFrames& wanted, double& time,
+                          bool& mixed) const;
     void wantNext(Residency& residency, const RenderCall& call, bool settled);
     void bindRanges(const Residency& residency, RayPlan& plan, const std::vector<ChannelKey>& frames);
 
@@ -64,6 +65,7 @@ private:
     Demands demands_; ///< last choice; equal demands keep their address
     double cell_ = 1, share_ = 1;
     std::optional<double> time_;
+    bool mixed_ = false; ///< what is computed between stored times was mixed instead
     std::vector<ChannelKey> frames_;
     int wantedTime_ = -1, timeStep_ = 0; ///< direction of an animation, in stored times
     /// United over parts and both times, per field.

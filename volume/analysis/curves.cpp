@@ -3,6 +3,7 @@
 #include "volume/base/error.h"
 #include "volume/base/unit_product.h"
 #include "volume/derived/expression.h"
+#include "volume/derived/formula_unit.h"
 #include "volume/field/quantities.h"
 
 #include <algorithm>
@@ -55,53 +56,37 @@ ComposedUnit integralUnit(const DatasetInfo& info, int channel) {
     return composedUnit(factors);
 }
 
-std::string unitOf(const DatasetInfo& info, const Term& term) {
-    if (term.what == Term::What::Time) return info.timeUnit;
-    if (term.what == Term::What::Quantity) return info.quantities[std::size_t(term.index)].unit;
-    if (term.kind == Kind::Share) return {};
-    if (term.kind == Kind::Volume) return info.lengthUnit.empty() ? std::string() : info.lengthUnit + "3";
-    if (term.kind == Kind::Integral) return integralUnit(info, term.index).unit;
-    return info.channel(term.index).unit;
+/// "" of a pure number, nothing where no unit is stated.
+std::optional<std::string> unitOf(const DatasetInfo& info, const Term& term) {
+    const auto stated = [](std::string unit) { return unit.empty() ? std::nullopt : std::optional(std::move(unit)); };
+    if (term.what == Term::What::Time) return stated(info.timeUnit);
+    if (term.what == Term::What::Quantity) return stated(info.quantities[std::size_t(term.index)].unit);
+    if (term.kind == Kind::Share) return std::string();
+    if (term.kind == Kind::Volume) return stated(info.lengthUnit.empty() ? std::string() : info.lengthUnit + "3");
+    if (term.kind == Kind::Integral) return stated(integralUnit(info, term.index).unit);
+    return stated(info.channel(term.index).unit);
 }
 
-std::string withoutBlanks(const std::string& text) {
-    std::string out;
-    for (const char c : text)
-        if (std::isspace(static_cast<unsigned char>(c)) == 0 && c != '`') out += c;
-    return out;
-}
-
-/// A formula with its inputs and its unit, which is known for a single name, or two joined by "*" or "/".
+/// A formula with its inputs, whose values are in one unit as far as it can be told.
 struct Formula {
-    std::string text, unit;
-    Expression expression;
+    std::string text;
+    CarriedUnits carried;
     std::vector<Term> used;
 
     Formula(std::string formula, const DatasetInfo& info, const Terms& known)
-        : text(std::move(formula)), expression(text, known.names) {
-        std::vector<std::string> names;
-        for (const int name : expression.used()) {
-            used.push_back(known.terms[std::size_t(name)]);
-            names.push_back(withoutBlanks(known.names[std::size_t(name)]));
-        }
-        const std::string plain = withoutBlanks(text);
-        if (used.size() == 1 && plain == names[0]) unit = unitOf(info, used[0]);
-        for (std::size_t first = 0; used.size() == 2 && first < 2; ++first)
-            for (const int power : {1, -1}) {
-                if (plain != names[first] + (power > 0 ? "*" : "/") + names[1 - first]) continue;
-                const std::string a = unitOf(info, used[first]), b = unitOf(info, used[1 - first]);
-                if (!a.empty() && !b.empty()) unit = product(a, b, power);
-            }
+        : text(std::move(formula)), carried(read(text, info, known)) {
+        for (const int name : carried.expression.used()) used.push_back(known.terms[std::size_t(name)]);
     }
 
-    /// The unit of a product if no conversion factor is needed; V times A is W.
-    static std::string product(const std::string& a, const std::string& b, int power) {
-        if (power > 0)
-            for (const auto& [volts, current] : {std::pair(&a, &b), std::pair(&b, &a)})
-                if (*volts == "V" && (*current == "A" || current->starts_with("A/"))) return "W" + current->substr(1);
-        const std::array<UnitPower, 2> factors{{{a, 1}, {b, power}}};
-        const ComposedUnit composed = composedUnit(factors);
-        return composed.factor == 1 ? composed.unit : std::string();
+    static CarriedUnits read(const std::string& text, const DatasetInfo& info, const Terms& known) {
+        const Expression expression(text, known.names);
+        std::vector<std::optional<std::string>> units;
+        for (const int name : expression.used()) units.push_back(unitOf(info, known.terms[std::size_t(name)]));
+        try {
+            return carriedUnits(expression, units);
+        } catch (const Error& error) {
+            throw Error(error.reason(), {}, text);
+        }
     }
 };
 
@@ -192,8 +177,8 @@ Curves computeCurves(const BrickSource& source, const CurvesQuery& query, const 
         for (const Term& term : formula.used) inputs.push_back(valuesOf(term));
         const bool axis = formula.used.size() == 1 && formula.used[0].what == Term::What::Time;
         const bool plain = axis && (formula.text == "time" || formula.text == info.timeName);
-        Curve curve{plain ? info.timeName : formula.text, formula.unit, std::vector<double>(times)};
-        formula.expression.evaluate(inputs, curve.values);
+        Curve curve{plain ? info.timeName : formula.text, formula.carried.unit, std::vector<double>(times)};
+        formula.carried.expression.evaluate(inputs, curve.values);
         return curve;
     };
     Curves out{info.times, info.timeName, info.timeUnit, curveOf(formulas[0]), {}};

@@ -38,7 +38,7 @@ RegionStatistics computeRegionStatistics(const BrickSource& source, const Region
         [&](glm::ivec3 index) {
             BrickRegions out = empty();
             const auto columns = brickColumns(source, query.channels, query.time, index, query.level);
-            const std::vector<float> label = brickColumn(source, query.label, query.time, index, query.level);
+            const std::vector<double> label = brickColumn(source, query.label, query.time, index, query.level);
             forSamples(grid, index, query.level, [&](std::size_t i, glm::ivec3 at) {
                 const double volume = cells.volume(at);
                 const int region = regions > 0 ? regionOf(query.regions, label[i]) : -1;

@@ -73,11 +73,20 @@ private:
     }
 
     /// Bins of values; NaN is in none. Without branches, so that the compiler vectorises it.
-    void findBins(std::size_t channel, const std::vector<float>& values, std::vector<std::uint16_t>& bins) const {
+    void findBins(std::size_t channel, Column& column) const {
+        if (column.rest.empty())
+            findBins(
+                channel, column.value.size(), [&](std::size_t i) { return double(column.value[i]); }, column.bin);
+        else
+            findBins(
+                channel, column.value.size(), [&](std::size_t i) { return column.exact(i); }, column.bin);
+    }
+    void findBins(std::size_t channel, std::size_t samples, const auto& valueOf,
+                  std::vector<std::uint16_t>& bins) const {
         const double lo = ranges_[channel].lo, hi = ranges_[channel].hi, width = hi > lo ? hi - lo : 1;
         const double count = query_.bins, last = count - 1;
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            const double value = double(values[i]);
+        for (std::size_t i = 0; i < samples; ++i) {
+            const double value = valueOf(i);
             // Multiply first, so that integer borders between bins stay integers.
             const double bin = std::min((std::min(std::max(value, lo), hi) - lo) * count / width, last);
             bins[i] = std::uint16_t(int(value >= lo && value <= hi ? bin : count));
@@ -88,6 +97,7 @@ private:
         BrickSamples samples = source_.read({query_.channels[channel], query_.time, query_.level, index});
         Column out;
         out.value = std::move(samples.values);
+        out.rest = std::move(samples.rest);
         const std::size_t count = out.value.size();
         out.centred.resize(count);
         out.present.resize(count);
@@ -99,12 +109,12 @@ private:
         for (std::size_t i = 0; i < count; ++i) {
             const float value = out.value[i];
             const bool present = value == value;
-            out.centred[i] = present ? float(double(value) - shift) : 0;
+            out.centred[i] = present ? float(out.exact(i) - shift) : 0;
             out.present[i] = present ? 1 : 0;
             absent += present ? 0 : 1;
         }
         out.whole = absent == 0;
-        findBins(channel, out.value, out.bin);
+        findBins(channel, out);
         return out;
     }
 
@@ -152,16 +162,16 @@ private:
             std::vector<std::uint64_t>& histogram = bins.channels[c].packed;
             for (std::size_t i = 0; i < count; ++i)
                 if (columns[c].present[i] != 0) histogram[columns[c].bin[i]] += packed[i];
-            if (!query_.doi && columns[c].whole) {
+            if (!query_.doi && columns[c].whole && columns[c].rest.empty()) {
                 sums.inside[c].add(columns[c], shifts_[c], cell, volume);
                 continue;
             }
             for (std::size_t i = 0; i < count; ++i) {
                 if (columns[c].present[i] == 0) continue;
                 const double weight = query_.doi ? double(inside[i]) : 1.0;
-                sums.inside[c].add(columns[c].value[i], shifts_[c], cell[i], weight);
+                sums.inside[c].add(columns[c].exact(i), shifts_[c], cell[i], weight);
                 // Values exactly half-way are inside.
-                sums.outside[c].add(columns[c].value[i], shifts_[c], cell[i],
+                sums.outside[c].add(columns[c].exact(i), shifts_[c], cell[i],
                                     weight == 0.5 ? std::nextafter(0.5, 0.0) : 1 - weight);
             }
         }

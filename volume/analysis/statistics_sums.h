@@ -21,10 +21,13 @@ inline constexpr std::size_t kFlush = std::size_t(1) << (kCountShift - kFocusBit
 /// Values of one channel in one brick, ready to be summed.
 struct Column {
     std::vector<float> value;       ///< physical; NaN where absent
+    std::vector<float> rest;        ///< BrickSamples::rest
     std::vector<float> centred;     ///< less the channel's shift; 0 where absent
     std::vector<float> present;     ///< 1 or 0
     std::vector<std::uint16_t> bin; ///< the number of bins where absent or out of range
     bool whole = true;              ///< every sample is present
+
+    double exact(std::size_t i) const { return rest.empty() ? double(value[i]) : double(value[i]) + double(rest[i]); }
 };
 
 /// A range of samples [begin, end) of a brick, with their weights (null: all 1).
@@ -67,11 +70,11 @@ struct Moments {
 /// Weighted sums of one channel over a set of samples, relative to a shift so that close values keep their digits.
 struct Sums {
     double n = 0, volume = 0, sum = 0, squares = 0, integral = 0;
-    float min = std::numeric_limits<float>::infinity(), max = -std::numeric_limits<float>::infinity();
+    double min = std::numeric_limits<double>::infinity(), max = -std::numeric_limits<double>::infinity();
 
-    void add(float value, double shift, double cell, double weight) {
+    void add(double value, double shift, double cell, double weight) {
         if (weight <= 0) return;
-        const double v = double(value) - shift;
+        const double v = value - shift;
         n += weight;
         volume += weight * cell;
         sum += weight * v;
@@ -81,7 +84,8 @@ struct Sums {
         min = std::min(min, value);
         max = std::max(max, value);
     }
-    /// All of a whole column with weight 1; `cells`: the volume of each sample, `volumes`: of all together.
+    /// All of a whole column without a rest with weight 1; `cells`: the volume of each sample, `volumes`: of all
+    /// together.
     void add(const Column& column, double shift, std::span<const double> cells, double volumes) {
         const Stretch all{0, column.value.size(), nullptr};
         const auto [first, second, third] = laneSums<3>(all, [&](std::size_t i, auto& lanes, std::size_t lane) {
@@ -95,10 +99,13 @@ struct Sums {
         sum += first;
         squares += second;
         integral += third;
+        float least = std::numeric_limits<float>::infinity(), most = -least;
         for (const float value : column.value) {
-            min = std::min(min, value);
-            max = std::max(max, value);
+            least = std::min(least, value);
+            most = std::max(most, value);
         }
+        min = std::min(min, double(least));
+        max = std::max(max, double(most));
     }
     void add(const Sums& other) {
         n += other.n;
@@ -118,8 +125,8 @@ struct Sums {
                 volume,
                 shift + mean,
                 std::sqrt(variance),
-                any ? double(min) : kNan,
-                any ? double(max) : kNan,
+                any ? min : kNan,
+                any ? max : kNan,
                 shift * volume + integral};
     }
 };

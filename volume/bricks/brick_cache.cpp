@@ -47,6 +47,15 @@ BrickSamples BrickCache::read(const BrickKey& key) const {
     return *get(key);
 }
 
+bool BrickCache::computes(int channel) const {
+    const auto* of = dynamic_cast<const ComputesBetweenTimes*>(impl_->source.get());
+    return of && of->computes(channel);
+}
+
+std::shared_ptr<const BrickSource> BrickCache::computedAt(const TimePair& time) const {
+    return dynamic_cast<const ComputesBetweenTimes&>(*impl_->source).computedAt(time);
+}
+
 std::shared_ptr<const BrickSamples> BrickCache::get(const BrickKey& key) const {
     return impl_->bricks.get(key);
 }

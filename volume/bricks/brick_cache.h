@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volume/bricks/brick_source.h"
+#include "volume/bricks/source_at_time.h"
 
 #include <functional>
 #include <memory>
@@ -9,7 +10,7 @@ namespace tessera::volume {
 
 /// Caches decoded bricks of another source within a byte budget, evicting the least recently used. A brick is decoded
 /// once however many threads request it at the same time; failures are not cached.
-class BrickCache final : public BrickSource {
+class BrickCache final : public BrickSource, public ComputesBetweenTimes {
 public:
     BrickCache(std::shared_ptr<const BrickSource> source, std::size_t budget);
     ~BrickCache() override;
@@ -21,6 +22,8 @@ public:
     std::optional<BrickImportance> importance(const BrickKey& key) const override;
     std::optional<BrickChange> change(const BrickKey& key, int toTime) const override;
     BrickSamples read(const BrickKey& key) const override;
+    bool computes(int channel) const override;
+    std::shared_ptr<const BrickSource> computedAt(const TimePair& time) const override;
 
     /// The brick itself, shared with the cache.
     std::shared_ptr<const BrickSamples> get(const BrickKey& key) const;

@@ -13,18 +13,19 @@
 namespace tessera::volume {
 
 /// Samples of one channel of a brick, NaN where absent; of channel -1 none.
-inline std::vector<float> brickColumn(const BrickSource& source, int channel, int time, glm::ivec3 brick,
-                                      int level = 0) {
+inline std::vector<double> brickColumn(const BrickSource& source, int channel, int time, glm::ivec3 brick,
+                                       int level = 0) {
     if (channel < 0) return {};
-    BrickSamples samples = source.read({channel, time, level, brick});
-    for (std::size_t i = 0; i < samples.present.size(); ++i)
-        if (samples.present[i] == 0) samples.values[i] = std::numeric_limits<float>::quiet_NaN();
-    return std::move(samples.values);
+    const BrickSamples samples = source.read({channel, time, level, brick});
+    std::vector<double> column(samples.values.size());
+    for (std::size_t i = 0; i < column.size(); ++i)
+        column[i] = samples.isPresent(i) ? samples.exact(i) : std::numeric_limits<double>::quiet_NaN();
+    return column;
 }
 
-inline std::vector<std::vector<float>> brickColumns(const BrickSource& source, std::span<const int> channels, int time,
-                                                    glm::ivec3 brick, int level = 0) {
-    std::vector<std::vector<float>> columns;
+inline std::vector<std::vector<double>> brickColumns(const BrickSource& source, std::span<const int> channels, int time,
+                                                     glm::ivec3 brick, int level = 0) {
+    std::vector<std::vector<double>> columns;
     for (const int channel : channels) columns.push_back(brickColumn(source, channel, time, brick, level));
     return columns;
 }
@@ -49,9 +50,9 @@ inline std::vector<glm::ivec3> allBricks(const BrickGrid& grid) {
 }
 
 /// Position of a label value in `regions`, -1 where it is in none; without regions everything is in the first.
-inline int regionOf(std::span<const int> regions, float label) {
+inline int regionOf(std::span<const int> regions, double label) {
     if (regions.empty()) return 0;
-    if (!(std::abs(label) < 2e9f)) return -1;
+    if (!(std::abs(label) < 2e9)) return -1;
     const auto value = int(std::lround(label));
     for (std::size_t r = 0; r < regions.size(); ++r)
         if (regions[r] == value) return int(r);

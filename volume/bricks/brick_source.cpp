@@ -1,6 +1,7 @@
 #include "volume/bricks/brick_source.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <limits>
 
@@ -30,6 +31,16 @@ BrickStats statsOfSamples(const BrickSamples& samples) {
     }
     if (!samples.values.empty()) stats.presentFraction = float(double(present) / double(samples.values.size()));
     return stats;
+}
+
+void keepRest(BrickSamples& samples, const std::function<double(std::size_t)>& exactly) {
+    constexpr float kHeld = 16777216; // integers up to here are floats
+    const auto beyond = [&](float value) { return std::abs(value) >= kHeld; };
+    samples.rest.clear();
+    if (std::ranges::none_of(samples.values, beyond)) return;
+    samples.rest.resize(samples.values.size());
+    for (std::size_t i = 0; i < samples.rest.size(); ++i)
+        samples.rest[i] = beyond(samples.values[i]) ? float(exactly(i) - double(samples.values[i])) : 0.0f;
 }
 
 BrickSamples gather(const BrickGrid& grid, const BrickKey& key, int halo,

@@ -17,9 +17,18 @@ struct BrickSamples {
     glm::ivec3 size{0};
     std::vector<float> values;
     std::vector<std::uint8_t> present; ///< empty: all present; else one byte per sample, 0 = absent (value undefined)
+    /// What values lack of 32-bit integers beyond 2^24, which floats do not hold; empty: nothing. Lost where samples
+    /// are mixed; numbers of statistics, formulas and differences are computed from exact().
+    std::vector<float> rest = {};
 
+    double exact(std::size_t index) const {
+        return rest.empty() ? double(values[index]) : double(values[index]) + double(rest[index]);
+    }
     bool isPresent(std::size_t index) const { return volume::isPresent(present, index); }
 };
+
+/// Sets BrickSamples::rest where `exactly(i)`, which is within the rounding of values[i], is not that.
+void keepRest(BrickSamples& samples, const std::function<double(std::size_t)>& exactly);
 
 /// Range and share of the present samples of a brick; of none an empty range (infinity to -infinity) and 0.
 BrickStats statsOfSamples(const BrickSamples& samples);

@@ -99,6 +99,12 @@ BrickSamples fineBrick(const Field& field, glm::ivec3 begin, glm::ivec3 end) {
             }
     });
     if (std::all_of(out.present.begin(), out.present.end(), [](std::uint8_t p) { return p != 0; })) out.present.clear();
+    if (field.type == ScalarType::I32)
+        keepRest(out, [&, size = glm::uvec3(out.size)](std::size_t i) {
+            const auto n = std::uint32_t(i);
+            return field.value(
+                field.lattice.index(begin + glm::ivec3(n % size.x, n / size.x % size.y, n / size.x / size.y)));
+        });
     return out;
 }
 

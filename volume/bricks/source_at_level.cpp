@@ -1,5 +1,7 @@
 #include "volume/bricks/source_at_level.h"
 
+#include "volume/bricks/source_at_time.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -17,7 +19,7 @@ BrickGrid gridAtLevel(const BrickGrid& fine, int level) {
     return out;
 }
 
-class LevelSource final : public BrickSource {
+class LevelSource final : public BrickSource, public ComputesBetweenTimes {
 public:
     LevelSource(std::shared_ptr<const BrickSource> source, int level)
         : source_(std::move(source)), level_(level), grid_(gridAtLevel(source_->grid(), level)),
@@ -35,6 +37,13 @@ public:
         if (source_->grid().lattice.kind == LatticeKind::BCC) keepEvenSlices(out);
         return out;
     }
+    bool computes(int channel) const override {
+        const auto* of = dynamic_cast<const ComputesBetweenTimes*>(source_.get());
+        return of && of->computes(channel);
+    }
+    std::shared_ptr<const BrickSource> computedAt(const TimePair& time) const override {
+        return sourceAtLevel(dynamic_cast<const ComputesBetweenTimes&>(*source_).computedAt(time), level_);
+    }
 
 private:
     static void keepEvenSlices(BrickSamples& samples) {
@@ -48,6 +57,7 @@ private:
             values.resize(std::size_t(samples.size.z) * slice);
         };
         keep(samples.values);
+        keep(samples.rest);
         keep(samples.present);
     }
 

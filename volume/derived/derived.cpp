@@ -2,14 +2,16 @@
 
 #include "volume/base/error.h"
 #include "volume/bricks/brick_source.h"
+#include "volume/bricks/magnitude.h"
+#include "volume/bricks/source_at_time.h"
 #include "volume/derived/derived_bricks.h"
 #include "volume/derived/derived_names.h"
-#include "volume/sources/memory_source.h"
 
 #include <algorithm>
 #include <limits>
 #include <mutex>
 #include <unordered_map>
+#include <utility>
 
 namespace tessera::volume {
 
@@ -21,7 +23,7 @@ bool isZero(Range range) {
     return range.lo == 0 && range.hi == 0;
 }
 
-class DerivedSource final : public BrickSource {
+class DerivedSource final : public BrickSource, public ComputesBetweenTimes {
 public:
     /// `known`: the ranges; empty: compute them.
     DerivedSource(std::shared_ptr<const BrickSource> source, DerivedParameter derived, const Progress& progress,
@@ -36,6 +38,15 @@ public:
         info_.parameters.push_back(parameter);
         info_.parameters.back().ranges =
             known.empty() ? scan(parameter.components == 3 ? 4 : 1, progress) : std::move(known);
+        const auto below = [this](int channel) { return isComputedBetween(*below_, channel); };
+        computed_ = isComputedBetween(derived_.recipe, below_->info(), below);
+    }
+    /// At one time between stored ones.
+    DerivedSource(const DerivedSource& stored, const TimePair& now)
+        : bricks_(stored.bricks_, now), derived_(stored.derived_), info_(stored.info_), first_(stored.first_),
+          computed_(stored.computed_) {
+        below_ = bricks_.sourceNow();
+        info_.times = below_->info().times;
     }
 
     const DatasetInfo& info() const override { return info_; }
@@ -74,6 +85,19 @@ public:
         const auto bricks = bricks_.get(key);
         if (component < bricks->size()) return (*bricks)[component];
         return magnitude((*bricks)[0], (*bricks)[1], (*bricks)[2]);
+    }
+
+    bool computes(int channel) const override {
+        return channel < first_ ? isComputedBetween(*below_, channel) : computed_;
+    }
+
+    std::shared_ptr<const BrickSource> computedAt(const TimePair& time) const override {
+        constexpr std::size_t kKept = 3;
+        const std::lock_guard lock(betweenMutex_);
+        for (const auto& [at, source] : between_)
+            if (at == time) return source;
+        if (between_.size() >= kKept) between_.erase(between_.begin());
+        return between_.emplace_back(time, std::make_shared<const DerivedSource>(*this, time)).second;
     }
 
 private:
@@ -121,7 +145,10 @@ private:
     DerivedBricks bricks_;
     DerivedParameter derived_;
     DatasetInfo info_;
-    int first_; ///< of our channels
+    int first_;             ///< of our channels
+    bool computed_ = false; ///< between stored times
+    mutable std::mutex betweenMutex_;
+    mutable std::vector<std::pair<TimePair, std::shared_ptr<const BrickSource>>> between_; ///< used last
     mutable std::mutex statsMutex_;
     mutable std::unordered_map<BrickKey, BrickStats, BrickKeyHash> stats_;
 };

@@ -2,13 +2,13 @@
 
 #include "volume/base/load_once.h"
 #include "volume/bricks/brick_cache.h"
+#include "volume/bricks/magnitude.h"
 #include "volume/bricks/sample_position.h"
 #include "volume/derived/derived_names.h"
 #include "volume/derived/expression.h"
 #include "volume/derived/input_time.h"
 #include "volume/derived/other_source.h"
 #include "volume/derived/stencil.h"
-#include "volume/sources/memory_source.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,6 +42,7 @@ void setAbsent(BrickSamples& samples, std::size_t i) {
 }
 /// Makes results that are not finite absent.
 void set(BrickSamples& samples, std::size_t i, double value) {
+    if (!samples.rest.empty()) samples.rest[i] = 0;
     const auto narrow = float(value);
     if (std::isfinite(narrow))
         samples.values[i] = narrow;
@@ -58,8 +59,10 @@ struct DerivedBricks::Impl {
         std::vector<InputTime> times; ///< of its inputs
     };
 
-    Impl(std::shared_ptr<const BrickSource> source, DerivedRecipe recipe)
-        : source_(std::move(source)), cached_(std::make_shared<const BrickCache>(source_, kInputBudget)),
+    /// `now`: the one time between stored ones; `source` is then cached already.
+    Impl(std::shared_ptr<const BrickSource> source, DerivedRecipe recipe, const std::optional<TimePair>& now)
+        : source_(std::move(source)), now_(now), sourceNow_(now ? sourceAt(source_, *now).source : source_),
+          cached_(std::make_shared<const BrickCache>(sourceNow_, kInputBudget)), stored_(now ? source_ : cached_),
           inputs_(*cached_), recipe_(std::move(recipe)), names_(source_->info()),
           results_(
               kResultBudget, [this](const BrickKey& key) { return std::make_shared<const Bricks>(compute(key)); },
@@ -71,12 +74,12 @@ struct DerivedBricks::Impl {
             for (const std::string& text : formulaComponents(recipeOf->formula)) {
                 Formula& formula = formulas_.emplace_back(Expression(text, names_.names, OtherTimes::Allowed));
                 for (const Expression::Input& input : formula.expression.inputs())
-                    formula.times.emplace_back(cached_, names_.channel[std::size_t(input.name)],
-                                               input.at.value_or(TimeReference{}));
+                    formula.times.emplace_back(stored_, names_.channel[std::size_t(input.name)],
+                                               input.at.value_or(TimeReference{}), now_);
             }
         if (const auto* difference = std::get_if<DifferenceRecipe>(&recipe_)) {
             const int channel = channelOf(difference->channel);
-            times_.emplace_back(cached_, channel, difference->reference());
+            times_.emplace_back(stored_, channel, difference->reference(), now_);
             if (difference->from == OtherTime::Other) toOwnUnit_ = otherConversion(source_->info(), channel).value();
         }
     }
@@ -89,6 +92,11 @@ struct DerivedBricks::Impl {
     /// The same at another time.
     BrickSamples input(const InputTime& at, const BrickKey& key) const {
         return at.exists(key.time) ? at.read(key) : nothing(key);
+    }
+    /// The time of a key.
+    double timeOf(const BrickKey& key) const {
+        const std::vector<double>& times = source_->info().times;
+        return now_ ? timeAt(times, *now_) : times[std::size_t(key.time)];
     }
     int channelOf(const std::string& name) const { return *source_->info().findChannel(name); }
 
@@ -131,10 +139,9 @@ struct DerivedBricks::Impl {
                 samples.push_back(nothing(key));
             } else if (channel >= 0) {
                 samples.push_back(used.at ? input(at, key) : input(channel, key));
-                std::copy(samples.back().values.begin(), samples.back().values.end(), of.begin());
+                for (std::size_t i = 0; i < count; ++i) of[i] = samples.back().exact(i);
             } else if (channel == FormulaNames::kTime) {
-                const double now = source_->info().times[std::size_t(key.time)];
-                std::fill(of.begin(), of.end(), used.at ? at.time(key.time) : now);
+                std::fill(of.begin(), of.end(), used.at ? at.time(key.time) : timeOf(key));
             } else {
                 SamplePositions position(source_->grid(), key.index, key.level);
                 for (std::size_t i = 0; i < count; ++i, position.next()) of[i] = position.at()[-1 - channel];
@@ -232,7 +239,7 @@ struct DerivedBricks::Impl {
             for (std::size_t i = 0; i < count; ++i) {
                 if (!samples.isPresent(i)) continue;
                 // Welford: close values keep their digits.
-                const double value = double(samples.values[i]), before = value - mean[i];
+                const double value = samples.exact(i), before = value - mean[i];
                 n[i] += 1;
                 mean[i] += before / n[i];
                 squares[i] += before * (value - mean[i]);
@@ -253,7 +260,7 @@ struct DerivedBricks::Impl {
         for (std::size_t i = 0; i < out.values.size(); ++i) {
             if (!out.isPresent(i)) continue;
             if (recipe.measure == TimeMeasure::FromMean)
-                set(out, i, double(out.values[i]) - double((*both)[0].values[i]));
+                set(out, i, out.exact(i) - double((*both)[0].values[i]));
             else
                 set(out, i, double((*both)[1].values[i]));
         }
@@ -274,7 +281,7 @@ struct DerivedBricks::Impl {
         const BrickSamples other = input(times_.front(), key);
         for (std::size_t i = 0; i < out.values.size(); ++i) {
             if (out.isPresent(i) && other.isPresent(i))
-                set(out, i, double(out.values[i]) - toOwnUnit_(double(other.values[i])));
+                set(out, i, out.exact(i) - toOwnUnit_(other.exact(i)));
             else
                 setAbsent(out, i);
         }
@@ -291,7 +298,7 @@ struct DerivedBricks::Impl {
 
     Bricks make(const TimeRecipe&, const BrickKey& key) const {
         Bricks out(1, empty(key));
-        std::fill(out[0].values.begin(), out[0].values.end(), float(source_->info().times[std::size_t(key.time)]));
+        std::fill(out[0].values.begin(), out[0].values.end(), float(timeOf(key)));
         return out;
     }
 
@@ -321,8 +328,11 @@ struct DerivedBricks::Impl {
         return true;
     }
 
-    std::shared_ptr<const BrickSource> source_;
-    std::shared_ptr<const BrickCache> cached_;
+    std::shared_ptr<const BrickSource> source_; ///< all stored times
+    std::optional<TimePair> now_;
+    std::shared_ptr<const BrickSource> sourceNow_; ///< the time between stored ones, or the source
+    std::shared_ptr<const BrickCache> cached_;     ///< of it
+    std::shared_ptr<const BrickSource> stored_;    ///< all stored times, cached
     const BrickCache& inputs_;
     DerivedRecipe recipe_;
     FormulaNames names_;
@@ -333,7 +343,14 @@ struct DerivedBricks::Impl {
 };
 
 DerivedBricks::DerivedBricks(std::shared_ptr<const BrickSource> source, DerivedRecipe recipe)
-    : impl_(std::make_unique<Impl>(std::move(source), std::move(recipe))) {}
+    : impl_(std::make_unique<Impl>(std::move(source), std::move(recipe), std::nullopt)) {}
+
+DerivedBricks::DerivedBricks(const DerivedBricks& stored, const TimePair& now)
+    : impl_(std::make_unique<Impl>(stored.impl_->stored_, stored.impl_->recipe_, now)) {}
+
+const std::shared_ptr<const BrickSource>& DerivedBricks::sourceNow() const {
+    return impl_->sourceNow_;
+}
 
 DerivedBricks::~DerivedBricks() = default;
 

@@ -2,6 +2,7 @@
 
 #include "volume/bricks/brick_source.h"
 #include "volume/derived/derived_recipe.h"
+#include "volume/field/time_pair.h"
 
 #include <memory>
 #include <optional>
@@ -18,9 +19,14 @@ public:
 
     /// The recipe fits the source (derivedProblem).
     DerivedBricks(std::shared_ptr<const BrickSource> source, DerivedRecipe recipe);
+    /// The same at one time between stored ones, which is then time 0 of all keys. Reads what `stored` has cached.
+    DerivedBricks(const DerivedBricks& stored, const TimePair& now);
     ~DerivedBricks();
     DerivedBricks(const DerivedBricks&) = delete;
     DerivedBricks& operator=(const DerivedBricks&) = delete;
+
+    /// What is read at the one time between stored ones, which is time 0 there; null at stored times.
+    const std::shared_ptr<const BrickSource>& sourceNow() const;
 
     /// The brick for every component; key.channel is ignored. Thread-safe.
     std::shared_ptr<const Bricks> get(BrickKey key) const;

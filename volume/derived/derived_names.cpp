@@ -168,6 +168,20 @@ Parts partsOf(const DerivedRecipe& recipe, const DatasetInfo& info) {
     return parts;
 }
 
+bool isComputedBetween(const DerivedRecipe& recipe, const DatasetInfo& info, const std::function<bool(int)>& computed) {
+    if (std::holds_alternative<ExpressionRecipe>(recipe) || std::holds_alternative<MagnitudeRecipe>(recipe))
+        return true;
+    return std::ranges::any_of(std::visit(Inputs{info}, recipe), [&](const std::string& name) {
+        const Parameter* vector = findVector(info, name);
+        if (!vector ||
+            !(std::holds_alternative<DivergenceRecipe>(recipe) || std::holds_alternative<VorticityRecipe>(recipe))) {
+            const auto channel = info.findChannel(name);
+            return channel && computed(*channel);
+        }
+        return computed(info.channelIndex(int(vector - info.parameters.data()), 0));
+    });
+}
+
 std::string derivedProblem(const DerivedParameter& parameter, const DatasetInfo& info) {
     if (parameter.name.empty()) return "it needs a name";
     if (parameter.name.find('`') != std::string::npos) return "the name must not contain a back quote";

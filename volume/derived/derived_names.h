@@ -2,6 +2,7 @@
 
 #include "volume/derived/derived_recipe.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,10 @@ int componentsOf(const DerivedRecipe& recipe);
 
 /// The parts of a derived parameter: those of its inputs. If their labels differ, the first one is used.
 Parts partsOf(const DerivedRecipe& recipe, const DatasetInfo& info);
+
+/// Whether the parameter between two stored times is something else than that of both times mixed: where its formula
+/// is, and where one of its inputs is (`computed`, by channel).
+bool isComputedBetween(const DerivedRecipe& recipe, const DatasetInfo& info, const std::function<bool(int)>& computed);
 
 /// Error message for a derived parameter of a data set, with the position in the formula; "" if it is valid.
 std::string derivedProblem(const DerivedParameter& parameter, const DatasetInfo& info);

@@ -290,6 +290,12 @@ Expression::Expression(const std::string& text, std::span<const std::string> nam
     }
 }
 
+Expression Expression::rewritten(std::string translated) const {
+    Expression out = *this;
+    out.translated_ = std::move(translated);
+    return out;
+}
+
 void Expression::evaluate(std::span<const std::vector<double>> inputs, std::span<double> out) const {
     if (out.empty()) return;
     try {

@@ -46,6 +46,8 @@ public:
     /// The formula with its inputs replaced by variables(), in the order of inputs().
     const std::string& translated() const { return translated_; }
     const std::vector<std::string>& variables() const { return variables_; }
+    /// The same inputs in another formula of the same variables.
+    Expression rewritten(std::string translated) const;
 
     /// The formula at every point: inputs[i] holds the values of inputs()[i], out.size() of them. Thread-safe.
     void evaluate(std::span<const std::vector<double>> inputs, std::span<double> out) const;

@@ -205,7 +205,8 @@ public:
         const BrickSamples other = minus_.source->read({minusChannel_, minus_.time, key.level, key.index});
         for (std::size_t i = 0; i < out.values.size(); ++i) {
             const bool there = out.isPresent(i) && other.isPresent(i);
-            out.values[i] = there ? float(double(out.values[i]) - toUnit_(double(other.values[i]))) : 0;
+            out.values[i] = there ? float(out.exact(i) - toUnit_(other.exact(i))) : 0;
+            if (!out.rest.empty()) out.rest[i] = 0;
             if (there) continue;
             if (out.present.empty()) out.present.assign(out.values.size(), 1);
             out.present[i] = 0;

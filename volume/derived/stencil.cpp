@@ -62,6 +62,20 @@ double Neighbourhood::derivative(glm::ivec3 in, int axis) const {
 
 namespace {
 
+/// Makes samples absent that do not lie in a lattice of `whole` samples; the first one lies at `first`.
+void leaveOutBeyond(BrickSamples& samples, glm::ivec3 first, glm::ivec3 whole) {
+    const glm::ivec3 end = first + samples.size;
+    if (first.x >= 0 && first.y >= 0 && first.z >= 0 && end.x <= whole.x && end.y <= whole.y && end.z <= whole.z)
+        return;
+    if (samples.present.empty()) samples.present.assign(samples.values.size(), 1);
+    const auto within = [&](int axis, int at) { return at + first[axis] >= 0 && at + first[axis] < whole[axis]; };
+    std::size_t i = 0;
+    for (int z = 0; z < samples.size.z; ++z)
+        for (int y = 0; y < samples.size.y; ++y)
+            for (int x = 0; x < samples.size.x; ++x, ++i)
+                if (!within(0, x) || !within(1, y) || !within(2, z)) samples.present[i] = 0;
+}
+
 /// The interior of a brick with a border of `reach` samples, `own` of them, smoothed by weights along each axis.
 BrickSamples smoothedWithin(const BrickSamples& wide, glm::ivec3 own, int reach, int slices,
                             const std::vector<double>& weights) {
@@ -111,6 +125,11 @@ BrickSamples smoothedWithin(const BrickSamples& wide, glm::ivec3 own, int reach,
     return out;
 }
 
+BrickSamples withoutNeedlessFlags(BrickSamples samples) {
+    if (std::ranges::find(samples.present, std::uint8_t(0)) == samples.present.end()) samples.present.clear();
+    return samples;
+}
+
 } // namespace
 
 BrickSamples smoothed(const BrickGrid& grid, const BrickKey& key, double width, const ReadSamples& read,
@@ -119,10 +138,12 @@ BrickSamples smoothed(const BrickGrid& grid, const BrickKey& key, double width, 
     const int reach = std::max(1, int(std::ceil(3 * sigma)));
     std::vector<double> weights;
     for (int i = -reach; i <= reach; ++i) weights.push_back(std::exp(-0.5 * i * i / (sigma * sigma)));
-    const BrickSamples wide = gather(grid, key, reach, read);
+    BrickSamples wide = gather(grid, key, reach, read);
     const glm::ivec3 own = grid.brickSamples(key.index, key.level);
     const int slices = grid.lattice.kind == LatticeKind::BCC ? 2 : 1;
-    if (!label) return smoothedWithin(wide, own, reach, slices, weights);
+    leaveOutBeyond(wide, grid.levelBegin(key.index, key.level) - reach * glm::ivec3(1, 1, slices),
+                   grid.levelSamples(key.level));
+    if (!label) return withoutNeedlessFlags(smoothedWithin(wide, own, reach, slices, weights));
     const std::vector<std::uint8_t> parts = partsAround(grid, key, reach, read, *label);
     BrickSamples out;
     for (std::size_t part = 0; part < label->parts.count(); ++part) {
@@ -139,8 +160,7 @@ BrickSamples smoothed(const BrickGrid& grid, const BrickKey& key, double width, 
         for (std::size_t i = 0; i < made.values.size(); ++i)
             if (made.present[i] != 0) out.values[i] = made.values[i], out.present[i] = 1;
     }
-    if (std::ranges::find(out.present, std::uint8_t(0)) == out.present.end()) out.present.clear();
-    return out;
+    return withoutNeedlessFlags(std::move(out));
 }
 
 } // namespace tessera::volume

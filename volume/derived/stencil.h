@@ -44,7 +44,7 @@ private:
 };
 
 /// A Gaussian of `width` cells over the present samples of each sublattice, part by part, cut at three widths; absent
-/// samples stay absent.
+/// samples stay absent. Beyond the faces of the lattice there are none.
 BrickSamples smoothed(const BrickGrid& grid, const BrickKey& key, double width, const ReadSamples& read,
                       const std::optional<PartLabel>& label = {});
 

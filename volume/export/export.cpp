@@ -5,6 +5,8 @@
 #include "volume/export/export_formats.h"
 
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <numeric>
 
 namespace tessera::volume {
@@ -26,56 +28,107 @@ bool holdsSame(const Field& a, const Field& b) {
     return true;
 }
 
+/// The magnitude of a vector.
+Field lengthOf(const Dataset& dataset, int parameter, int time) {
+    Field field = asFloat(dataset.read(parameter, 0, time));
+    const auto sum = field.as<float>();
+    std::vector<double> squares(field.count(), 0);
+    for (int c = 0; c < dataset.info.parameters[std::size_t(parameter)].components; ++c) {
+        const Field part = asFloat(dataset.read(parameter, c, time));
+        const auto values = part.as<float>();
+        for (std::size_t i = 0; i < squares.size(); ++i) squares[i] += double(values[i]) * double(values[i]);
+    }
+    for (std::size_t i = 0; i < squares.size(); ++i) sum[i] = static_cast<float>(std::sqrt(squares[i]));
+    return field;
+}
+
+/// What a .nrrd file holds: the components of a parameter, or one channel; all of one type.
+struct NrrdContent {
+    std::string name, unit;
+    std::vector<Field> components;
+};
+
+/// Components as they are stored, or as floats where one is scaled or has absent samples, which are then NaN.
+std::vector<Field> nrrdFields(const Dataset& dataset, int parameter, int first, int count, int time,
+                              const std::string& path) {
+    std::vector<Field> out;
+    bool floats = false;
+    for (int c = first; c < first + count; ++c) {
+        const Field& field = out.emplace_back(dataset.read(parameter, c, time));
+        floats = floats || field.mask || field.scale != 1 || field.offset != 0;
+    }
+    if (!floats) return out;
+    for (Field& field : out) {
+        const Field converted = asFloat(field);
+        if (field.scale == 1 && field.offset == 0 && !holdsSame(converted, field))
+            throw Error(".nrrd marks absent samples as floats do, which cannot hold integers of " +
+                            dataset.info.parameters[std::size_t(parameter)].name + ": write .vti or .raw",
+                        path);
+        field = converted;
+    }
+    return out;
+}
+
+NrrdContent nrrdContent(const Dataset& dataset, const ExportSelection& selection, const std::vector<int>& parameters,
+                        int time, const std::string& path) {
+    const DatasetInfo& info = dataset.info;
+    if (selection.channel) {
+        const Channel channel = info.channel(*selection.channel);
+        if (channel.magnitude) return {channel.name, channel.unit, {lengthOf(dataset, channel.parameter, time)}};
+        return {channel.name, channel.unit, nrrdFields(dataset, channel.parameter, channel.component, 1, time, path)};
+    }
+    if (parameters.size() != 1)
+        throw Error(".nrrd holds one parameter, " + std::to_string(parameters.size()) + " are asked for", path);
+    const Parameter& parameter = info.parameters[std::size_t(parameters[0])];
+    return {parameter.name, parameter.unit, nrrdFields(dataset, parameters[0], 0, parameter.components, time, path)};
+}
+
+/// Samples with the components of each beside each other.
+void writeInterleaved(AtomicFile& file, const std::vector<Field>& components) {
+    const std::size_t bytes = byteSize(components[0].type), slices = std::size_t(components[0].lattice.size.z);
+    const std::size_t perSlice = components[0].count() / slices;
+    std::vector<std::byte> slice(perSlice * components.size() * bytes);
+    for (std::size_t k = 0; k < slices; ++k) {
+        for (std::size_t c = 0; c < components.size(); ++c)
+            for (std::size_t i = 0; i < perSlice; ++i)
+                std::memcpy(&slice[(i * components.size() + c) * bytes],
+                            components[c].samples.data() + (k * perSlice + i) * bytes, bytes);
+        file.write(slice.data(), slice.size());
+    }
+}
+
 std::string writeNrrd(const Dataset& dataset, const ExportSelection& selection, const std::vector<int>& parameters,
                       const std::vector<int>& times, const std::string& path) {
     const DatasetInfo& info = dataset.info;
-    const std::vector<Channel> channels = info.channels();
     if (times.size() != 1)
         throw Error(".nrrd holds one time, " + std::to_string(times.size()) + " are asked for", path);
-    std::optional<int> chosen = selection.channel;
-    if (!chosen && parameters.size() == 1) chosen = info.findChannel(info.parameters[std::size_t(parameters[0])].name);
-    if (!chosen)
-        throw Error(".nrrd holds one parameter, " + std::to_string(parameters.size()) + " are asked for", path);
-    const Channel& channel = channels[std::size_t(*chosen)];
-    Field field;
-    if (channel.magnitude) {
-        field = asFloat(dataset.read(channel.parameter, 0, times[0]));
-        const auto sum = field.as<float>();
-        std::vector<double> squares(field.count(), 0);
-        for (int c = 0; c < info.parameters[std::size_t(channel.parameter)].components; ++c) {
-            const Field part = asFloat(dataset.read(channel.parameter, c, times[0]));
-            const auto values = part.as<float>();
-            for (std::size_t i = 0; i < squares.size(); ++i) squares[i] += double(values[i]) * double(values[i]);
-        }
-        for (std::size_t i = 0; i < squares.size(); ++i) sum[i] = static_cast<float>(std::sqrt(squares[i]));
-    } else {
-        field = dataset.read(channel.parameter, channel.component, times[0]);
-        if (field.mask || field.scale != 1 || field.offset != 0) {
-            const Field floats = asFloat(field);
-            if (field.mask && field.scale == 1 && field.offset == 0 && !holdsSame(floats, field))
-                throw Error(".nrrd marks absent samples as floats do, which cannot hold integers of " + channel.name +
-                                ": write .vti or .raw",
-                            path);
-            field = floats;
-        }
-    }
+    const NrrdContent content = nrrdContent(dataset, selection, parameters, times[0], path);
+    const std::size_t components = content.components.size();
+    const bool vector = components > 1;
+    const ScalarType type = content.components[0].type;
     const Lattice& lattice = info.lattice;
-    std::string head = "NRRD0004\n# " + channel.name + " " + channel.unit + "\n";
-    head += "type: " + std::string(field.type == ScalarType::F32 ? "float" : name(field.type)) + "\ndimension: 3\n";
-    head += "sizes: " + std::to_string(lattice.size.x) + " " + std::to_string(lattice.size.y) + " " +
-            std::to_string(lattice.size.z) + "\n";
-    head += "space dimension: 3\nspace directions: (" + exactText(lattice.spacing.x) + ",0,0) (0," +
-            exactText(lattice.spacing.y) + ",0) (0,0," + exactText(lattice.spacing.z) + ")\n";
+    std::string head = "NRRD0004\n# " + content.name + " " + content.unit + "\n";
+    head += "type: " + std::string(type == ScalarType::F32 ? "float" : name(type)) +
+            "\ndimension: " + (vector ? "4" : "3") + "\n";
+    head += "sizes: " + (vector ? std::to_string(components) + " " : "") + std::to_string(lattice.size.x) + " " +
+            std::to_string(lattice.size.y) + " " + std::to_string(lattice.size.z) + "\n";
+    head += std::string("space dimension: 3\nspace directions: ") + (vector ? "none " : "") + "(" +
+            exactText(lattice.spacing.x) + ",0,0) (0," + exactText(lattice.spacing.y) + ",0) (0,0," +
+            exactText(lattice.spacing.z) + ")\n";
     head += "space origin: (" + exactText(lattice.origin.x) + "," + exactText(lattice.origin.y) + "," +
-            exactText(lattice.origin.z) + ")\nkinds: domain domain domain\nencoding: raw\n";
+            exactText(lattice.origin.z) + ")\nkinds: " + (vector ? "vector " : "") +
+            "domain domain domain\nencoding: raw\n";
     if (const std::string& unit = info.lengthUnit; !unit.empty() && unit.find('"') == std::string::npos)
         head += "space units: \"" + unit + "\" \"" + unit + "\" \"" + unit + "\"\n";
-    if (field.type != ScalarType::U8) head += "endian: little\n";
-    head += "content: " + channel.name + "\nunit:=" + channel.unit +
+    if (type != ScalarType::U8) head += "endian: little\n";
+    head += "content: " + content.name + "\nunit:=" + content.unit +
             "\ntime:=" + exactText(info.times[std::size_t(times[0])]) + "\n\n";
     AtomicFile file(path);
     file.write(head);
-    writeField(file, field);
+    if (vector)
+        writeInterleaved(file, content.components);
+    else
+        writeField(file, content.components[0]);
     file.commit();
     return path;
 }

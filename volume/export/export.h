@@ -14,7 +14,7 @@ namespace tessera::volume {
 struct ExportSelection {
     std::vector<int> parameters; ///< indices into DatasetInfo::parameters
     std::vector<int> times;      ///< indices into DatasetInfo::times, increasing
-    std::optional<int> channel;  ///< .nrrd: index into DatasetInfo::channels(); needed where there are several
+    std::optional<int> channel;  ///< .nrrd: index into DatasetInfo::channels(), to write that alone
     /// Write scaled integers as the values they represent: in their own type if it holds them, else in the smallest
     /// type that does, else as floats. For samples whose scaling is not that of the source.
     bool values = false;
@@ -24,7 +24,7 @@ struct ExportSelection {
 ///
 /// - .vti  VTK image data, point data, appended raw, one time; vectors as arrays of 3; field data TimeValue and units
 ///         ("O2 mol/m3; T K"). Several times: OUT_0000.vti ... and OUT.pvd. A .pvd path gives the same with any number.
-/// - .nrrd one channel at one time.
+/// - .nrrd one parameter at one time, of a vector all components (a first axis of the kind "vector"), or one channel.
 /// - .raw  (or .json) samples `[time][component][z][y][x]` as stored, and the sidecar beside them that `openFiles`
 ///         reads; a parameter whose type differs from the first's has its own "dtype", each component its own "scale"
 ///         and "offset".

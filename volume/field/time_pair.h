@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 namespace tessera::volume {
@@ -13,6 +14,11 @@ struct TimePair {
     int nearest() const { return weight >= 0.5 ? later : earlier; }
     bool operator==(const TimePair&) const = default;
 };
+
+/// The time itself.
+inline double timeAt(const std::vector<double>& times, const TimePair& pair) {
+    return (1 - pair.weight) * times[std::size_t(pair.earlier)] + pair.weight * times[std::size_t(pair.later)];
+}
 
 /// Where `time` lies among rising times. What is closer to a stored time than a millionth of the way to the next is
 /// that time.

@@ -31,7 +31,17 @@ void add(Crossing& to, const Crossing& other) {
 struct Part {
     std::array<Crossing, 6> faces;
     std::map<int, Crossing> borders;
+    Crossing absent, unlabelled;
     double volume = 0, amount = 0;
+
+    void add(const Part& other) {
+        for (std::size_t f = 0; f < 6; ++f) tessera::volume::add(faces[f], other.faces[f]);
+        for (const auto& [value, crossing] : other.borders) tessera::volume::add(borders[value], crossing);
+        tessera::volume::add(absent, other.absent);
+        tessera::volume::add(unlabelled, other.unlabelled);
+        volume += other.volume;
+        amount += other.amount;
+    }
 };
 
 /// A brick of each channel with a border of one sample.
@@ -86,11 +96,14 @@ void addSample(const Around& around, const SampleCells& cells, glm::ivec3 in, gl
                     *u * side * area);
                 continue;
             }
-            const auto other = around.region(in, axis, side);
-            if (!other || *other == own) continue;
             const auto otherC = around.carried(in, axis, side), otherU = around.velocity(in, axis, axis, side);
-            if (!otherC || !otherU) continue;
-            add(part.borders[*other], area, 0.5 * (*c * *u + *otherC * *otherU) * side * area,
+            if (!otherC || !otherU) {
+                add(part.absent, area, *c * *u * side * area, *u * side * area);
+                continue;
+            }
+            const auto other = around.region(in, axis, side);
+            if (other && *other == own) continue;
+            add(other ? part.borders[*other] : part.unlabelled, area, 0.5 * (*c * *u + *otherC * *otherU) * side * area,
                 0.5 * (*u + *otherU) * side * area);
         }
     }
@@ -102,6 +115,8 @@ Crossing RegionBalance::total() const {
     Crossing sum;
     for (const Crossing& face : faces) add(sum, face);
     for (const BorderCrossing& border : borders) add(sum, border.crossing);
+    add(sum, absent);
+    add(sum, unlabelled);
     return sum;
 }
 
@@ -128,17 +143,13 @@ std::vector<RegionBalance> computeBalance(const BrickSource& source, const Balan
             return parts;
         },
         [&](const std::vector<Part>& parts) {
-            for (std::size_t r = 0; r < parts.size(); ++r) {
-                for (std::size_t f = 0; f < 6; ++f) add(total[r].faces[f], parts[r].faces[f]);
-                for (const auto& [value, crossing] : parts[r].borders) add(total[r].borders[value], crossing);
-                total[r].volume += parts[r].volume;
-                total[r].amount += parts[r].amount;
-            }
+            for (std::size_t r = 0; r < parts.size(); ++r) total[r].add(parts[r]);
         },
         [&](double fraction) { progress.advance(fraction, "balance"); });
     std::vector<RegionBalance> out;
     for (std::size_t r = 0; r < regions.size(); ++r) {
-        RegionBalance balance{regions[r], total[r].faces, {}, total[r].volume, total[r].amount};
+        RegionBalance balance{regions[r],      total[r].faces, {}, total[r].absent, total[r].unlabelled,
+                              total[r].volume, total[r].amount};
         for (const auto& [value, crossing] : total[r].borders) balance.borders.push_back({value, crossing});
         out.push_back(std::move(balance));
     }

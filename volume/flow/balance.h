@@ -19,7 +19,7 @@ struct BalanceQuery {
 
 /// Flux through one surface of a region, as integrals of c U.n dA, with n pointing out of the region.
 struct Crossing {
-    double area = 0;        ///< where c and U exist (on both sides of a border)
+    double area = 0;        ///< where c and U exist (on both sides of a border, but for RegionBalance::absent)
     double in = 0, out = 0; ///< parts that flow in and out, neither negative where c is not
     double flow = 0;        ///< volume flow, out less in
     double net() const { return out - in; }
@@ -34,6 +34,8 @@ struct RegionBalance {
     int region = 0;
     std::array<Crossing, 6> faces;       ///< of the box: x from below, x from above, y ...
     std::vector<BorderCrossing> borders; ///< to other regions, by rising label value
+    Crossing absent;                     ///< to where c or U is absent
+    Crossing unlabelled;                 ///< to where the label is absent, but neither c nor U
     double volume = 0;                   ///< of its samples that have c
     double amount = 0;                   ///< integral of c over them
 
@@ -45,7 +47,8 @@ struct RegionBalance {
 
 /// Flux through each surface by the midpoint rule: a face of the box uses the values of the first or last samples, each
 /// times the area of its cell; the border between neighbouring samples of two regions uses the mean of c U.n of both.
-/// If c or U is absent on either side of a border, its flux is 0. On BCC each sublattice is integrated by itself and
+/// Where c or U is absent on the other side, whatever region is there, the surface uses the values of the sample alone.
+/// On BCC each sublattice is integrated by itself and
 /// both are averaged. Convection only: diffusion, and changes of what is stored over time, are in the residual. Throws
 /// Error, Cancelled.
 std::vector<RegionBalance> computeBalance(const BrickSource& source, const BalanceQuery& query,

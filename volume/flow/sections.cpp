@@ -101,7 +101,7 @@ private:
 /// Of one region, channel and plane.
 struct PlaneSums {
     double samples = 0, area = 0, integral = 0, weight = 0, weighted = 0, flux = 0, flow = 0;
-    float least = std::numeric_limits<float>::infinity(), most = -std::numeric_limits<float>::infinity();
+    double least = std::numeric_limits<double>::infinity(), most = -std::numeric_limits<double>::infinity();
 
     void add(const PlaneSums& other) {
         samples += other.samples;
@@ -120,8 +120,8 @@ struct PlaneSums {
         out.integral = integral;
         if (weight > 0) out.mean = weighted / weight;
         if (least <= most) {
-            out.least = double(least);
-            out.most = double(most);
+            out.least = least;
+            out.most = most;
         }
         return out;
     }
@@ -195,31 +195,31 @@ private:
         out.sums.resize(regions_ * channels * planes);
         const auto columns = brickColumns(source_, query_.channels, query_.time, index);
         const auto interest = brickColumns(source_, query_.doiChannels, query_.time, index);
-        const std::vector<float> label = brickColumn(source_, query_.label, query_.time, index);
-        const std::vector<float> density = brickColumn(source_, query_.density, query_.time, index);
+        const std::vector<double> label = brickColumn(source_, query_.label, query_.time, index);
+        const std::vector<double> density = brickColumn(source_, query_.density, query_.time, index);
         const bool moving = query_.velocity[0] >= 0;
         const auto velocity =
-            moving ? brickColumns(source_, query_.velocity, query_.time, index) : std::vector<std::vector<float>>();
+            moving ? brickColumns(source_, query_.velocity, query_.time, index) : std::vector<std::vector<double>>();
         const glm::dvec3 along = planes_.direction();
         std::vector<float> values(query_.doiChannels.size());
         std::vector<Share> shares;
         forSamples(grid_, index, 0, [&](std::size_t i, glm::ivec3 at) {
-            const int region = regionOf(query_.regions, label.empty() ? 0.0f : label[i]);
+            const int region = regionOf(query_.regions, label.empty() ? 0.0 : label[i]);
             if (region < 0) return;
             double doi = 1;
             if (query_.doi) {
-                for (std::size_t c = 0; c < values.size(); ++c) values[c] = interest[c][i];
+                for (std::size_t c = 0; c < values.size(); ++c) values[c] = float(interest[c][i]);
                 doi = std::clamp(query_.doi(values, samplePosition(grid_, at, 0)), 0.0, 1.0);
                 if (doi <= 0) return;
             }
             double speed = 0;
             for (int axis = 0; moving && axis < 3; ++axis)
-                if (along[axis] != 0) speed += along[axis] * double(velocity[std::size_t(axis)][i]);
+                if (along[axis] != 0) speed += along[axis] * velocity[std::size_t(axis)][i];
             const bool flows = moving && !std::isnan(speed);
-            const double rho = density.empty() ? 1.0 : double(density[i]);
+            const double rho = density.empty() ? 1.0 : density[i];
             planes_.sharesOf(at, shares);
             for (std::size_t c = 0; c < channels; ++c) {
-                const float value = columns[c][i];
+                const double value = columns[c][i];
                 if (std::isnan(value)) continue;
                 for (const Share& share : shares)
                     add(out.sums[(std::size_t(region) * channels + c) * planes + std::size_t(share.plane - out.first)],
@@ -229,10 +229,10 @@ private:
         return out;
     }
 
-    void add(PlaneSums& sums, const Share& share, float value, double doi, double speed, double rho) const {
+    void add(PlaneSums& sums, const Share& share, double value, double doi, double speed, double rho) const {
         const double area = (query_.weight == SectionWeight::Volume ? share.volume : share.area) * doi;
         if (!(area > 0)) return;
-        const double f = double(value), mass = std::abs(rho * speed);
+        const double f = value, mass = std::abs(rho * speed);
         const double weight = query_.weight == SectionWeight::MassFlow ? (std::isnan(mass) ? 0 : mass * area) : area;
         sums.samples += doi;
         sums.area += area;
@@ -267,8 +267,8 @@ std::vector<int> labelValues(const BrickSource& source, int label, int time, con
         allBricks(source.grid()),
         [&](glm::ivec3 at) {
             std::set<int> values;
-            for (const float value : brickColumn(source, label, time, at))
-                if (std::abs(value) < 2e9f) values.insert(int(std::lround(value)));
+            for (const double value : brickColumn(source, label, time, at))
+                if (std::abs(value) < 2e9) values.insert(int(std::lround(value)));
             return values;
         },
         [&](const std::set<int>& values) { all.insert(values.begin(), values.end()); },

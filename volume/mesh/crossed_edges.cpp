@@ -163,7 +163,8 @@ void CrossedEdges::place(int y, int z, SurfaceMesh& out) const {
                 const float from = grid_.values[lattice.index(a)], to = grid_.values[lattice.index(b)];
                 float t = (value_ - from) / (to - from);
                 if (!(t >= 0 && t <= 1)) t = 0.5f; // beside an infinite value
-                out.positions[number] = glm::vec3(glm::mix(lattice.position(a), lattice.position(b), double(t)));
+                out.positions[number] =
+                    glm::vec3(glm::mix(lattice.position(a), lattice.position(b), double(t)) - out.origin);
                 const glm::vec3 perCell = glm::mix(sampleGradient(grid_, a), sampleGradient(grid_, b), t);
                 const glm::vec3 down = -perCell / glm::vec3(lattice.spacing);
                 const float length = glm::length(down);
@@ -173,8 +174,9 @@ void CrossedEdges::place(int y, int z, SurfaceMesh& out) const {
     }
 }
 
-SurfaceMesh CrossedEdges::vertices(const Progress& progress) const {
+SurfaceMesh CrossedEdges::vertices(glm::dvec3 origin, const Progress& progress) const {
     SurfaceMesh out;
+    out.origin = origin;
     out.positions.resize(rowStart_.back());
     out.normals.resize(rowStart_.back());
     parallelFor(std::size_t(inside_.size.z), [&](std::size_t z) {

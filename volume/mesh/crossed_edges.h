@@ -61,8 +61,8 @@ public:
         const std::uint64_t before = (std::uint64_t(1) << (x & 63)) - 1;
         return rowStart_[row] + before_[at] + std::uint32_t(std::popcount(edges_[at] & before));
     }
-    /// Positions and normals of all vertices, in the order of their numbers.
-    SurfaceMesh vertices(const Progress& progress) const;
+    /// Positions (less an origin) and normals of all vertices, in the order of their numbers.
+    SurfaceMesh vertices(glm::dvec3 origin, const Progress& progress) const;
 
 private:
     void number(int z, std::vector<std::uint32_t>& rowCount);

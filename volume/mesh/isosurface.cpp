@@ -48,9 +48,9 @@ void join(SurfaceMesh& mesh, const std::vector<CellTriangles>& slabs) {
     });
 }
 
-SurfaceMesh extractPart(const SampleGrid& grid, float value, const Progress& progress) {
+SurfaceMesh extractPart(const SampleGrid& grid, float value, glm::dvec3 origin, const Progress& progress) {
     const CrossedEdges edges(grid, value, progress.part(0, 0.4));
-    SurfaceMesh mesh = edges.vertices(progress);
+    SurfaceMesh mesh = edges.vertices(origin, progress);
     progress.advance(0.7);
     std::vector<CellTriangles> slabs(std::size_t(slabCount(grid)));
     parallelFor(slabs.size(), [&](std::size_t slab) {
@@ -65,12 +65,13 @@ SurfaceMesh extractPart(const SampleGrid& grid, float value, const Progress& pro
 }
 
 /// Surfaces of each part separately: a jump between two parts is not a crossing.
-SurfaceMesh extract(const SampleGrid& grid, float value, const Progress& progress) {
-    if (grid.parts.empty()) return extractPart(grid, value, progress);
+SurfaceMesh extract(const SampleGrid& grid, float value, glm::dvec3 origin, const Progress& progress) {
+    if (grid.parts.empty()) return extractPart(grid, value, origin, progress);
     const std::size_t parts = 1 + std::size_t(*std::ranges::max_element(grid.parts));
     SurfaceMesh mesh;
+    mesh.origin = origin;
     for (std::size_t p = 0; p < parts; ++p) {
-        const SurfaceMesh own = extractPart(ofPart(grid, p), value,
+        const SurfaceMesh own = extractPart(ofPart(grid, p), value, origin,
                                             progress.part(double(p) / double(parts), double(p + 1) / double(parts)));
         const auto first = glm::uvec3(static_cast<std::uint32_t>(mesh.positions.size()));
         mesh.positions.insert(mesh.positions.end(), own.positions.begin(), own.positions.end());
@@ -91,8 +92,10 @@ bool spans(const SampleGrid& grid, const Box& box) {
 
 SurfaceMesh extractIsosurface(const SampleGrid& grid, double value, const std::optional<Box>& box,
                               const Progress& progress) {
-    if (!box || spans(grid, *box)) return extract(grid, float(value), progress);
-    SurfaceMesh mesh = extract(padded(grid), float(value), progress);
+    const Lattice& lattice = grid.lattice;
+    const glm::dvec3 origin = originFor(box.value_or(Box{lattice.origin, lattice.position(lattice.size - 1)}));
+    if (!box || spans(grid, *box)) return extract(grid, float(value), origin, progress);
+    SurfaceMesh mesh = extract(padded(grid), float(value), origin, progress);
     clipToBox(mesh, *box);
     return mesh;
 }
@@ -120,7 +123,7 @@ void sampleAtVertices(SurfaceMesh& mesh, const BrickSource& source, int channel,
         [&](std::size_t begin, std::size_t end) {
             if (progress.stop.stop_requested()) throw Cancelled();
             for (std::size_t i = begin; i < end; ++i) {
-                const glm::dvec3 position(mesh.positions[i]);
+                const glm::dvec3 position = mesh.origin + glm::dvec3(mesh.positions[i]);
                 const std::optional<double> value = categorical ? labelAt(position) : valueAt(grid, position);
                 mesh.scalars[i] = value ? float(*value) : std::numeric_limits<float>::quiet_NaN();
             }

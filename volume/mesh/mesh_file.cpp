@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <charconv>
+#include <cstdio>
 #include <cstring>
 #include <functional>
 #include <glm/geometric.hpp>
@@ -66,15 +67,29 @@ std::string word(const std::string& name) {
     return out.empty() ? "value" : out;
 }
 
+glm::dvec3 placeOf(const SurfaceMesh& mesh, std::size_t vertex) {
+    return mesh.origin + glm::dvec3(mesh.positions[vertex]);
+}
+bool isFar(const SurfaceMesh& mesh) {
+    return mesh.origin != glm::dvec3(0);
+}
+/// A position in 32 bits, or with an origin in 64.
+void writePlace(Writer& out, const SurfaceMesh& mesh, std::size_t vertex) {
+    if (!isFar(mesh)) return out.vector(mesh.positions[vertex]);
+    const glm::dvec3 place = placeOf(mesh, vertex);
+    for (int c = 0; c < 3; ++c) out.raw(place[c]);
+}
+
 void writePly(Writer& out, const SurfaceMesh& mesh, const std::string& scalarName) {
+    const std::string property = isFar(mesh) ? "\nproperty double " : "\nproperty float ";
     out.text("ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.positions.size()) +
-             "\nproperty float x\nproperty float y\nproperty float z\n");
+             property + "x" + property + "y" + property + "z\n");
     if (!mesh.normals.empty()) out.text("property float nx\nproperty float ny\nproperty float nz\n");
     if (!mesh.scalars.empty()) out.text("property float " + word(scalarName) + "\n");
     out.text("element face " + std::to_string(mesh.triangles.size()) +
              "\nproperty list uchar uint vertex_indices\nend_header\n");
     out.each(mesh.positions.size(), [&](std::size_t i) {
-        out.vector(mesh.positions[i]);
+        writePlace(out, mesh, i);
         if (!mesh.normals.empty()) out.vector(mesh.normals[i]);
         if (!mesh.scalars.empty()) out.raw(mesh.scalars[i]);
     });
@@ -86,6 +101,7 @@ void writePly(Writer& out, const SurfaceMesh& mesh, const std::string& scalarNam
 
 void writeStl(Writer& out, const SurfaceMesh& mesh) {
     std::string header = "binary STL";
+    if (const std::string shift = meshShift(mesh, ".stl"); !shift.empty()) header += ", " + shift;
     header.resize(80, ' ');
     out.text(header);
     out.raw(std::uint32_t(mesh.triangles.size()));
@@ -103,7 +119,7 @@ void writeStl(Writer& out, const SurfaceMesh& mesh) {
 }
 
 void writeObj(Writer& out, const SurfaceMesh& mesh) {
-    const auto line = [&](std::string_view key, const glm::vec3& v) {
+    const auto line = [&](std::string_view key, const auto& v) {
         out.text(key);
         for (int i = 0; i < 3; ++i) {
             out.text(" ");
@@ -111,7 +127,8 @@ void writeObj(Writer& out, const SurfaceMesh& mesh) {
         }
         out.text("\n");
     };
-    out.each(mesh.positions.size(), [&](std::size_t i) { line("v", mesh.positions[i]); });
+    out.each(mesh.positions.size(),
+             [&](std::size_t i) { isFar(mesh) ? line("v", placeOf(mesh, i)) : line("v", mesh.positions[i]); });
     out.each(mesh.normals.size(), [&](std::size_t i) { line("vn", mesh.normals[i]); });
     out.each(mesh.triangles.size(), [&](std::size_t i) {
         out.text("f");
@@ -147,7 +164,8 @@ void writeVtp(Writer& out, const SurfaceMesh& mesh, const std::string& scalarNam
     if (!mesh.normals.empty()) array("Float32", "Normals", 3, points * 12);
     if (!mesh.scalars.empty()) array("Float32", word(scalarName), 1, points * 4);
     out.text("</PointData>\n<Points>\n");
-    array("Float32", "Points", 3, points * 12);
+    const std::uint64_t pointBytes = isFar(mesh) ? points * 24 : points * 12;
+    array(isFar(mesh) ? "Float64" : "Float32", "Points", 3, pointBytes);
     out.text("</Points>\n<Polys>\n");
     array("UInt32", "connectivity", 1, triangles * 12);
     array("Int64", "offsets", 1, triangles * 8);
@@ -160,8 +178,8 @@ void writeVtp(Writer& out, const SurfaceMesh& mesh, const std::string& scalarNam
         out.raw(points * 4);
         out.each(points, [&](std::size_t i) { out.raw(mesh.scalars[i]); });
     }
-    out.raw(points * 12);
-    out.each(points, [&](std::size_t i) { out.vector(mesh.positions[i]); });
+    out.raw(pointBytes);
+    out.each(points, [&](std::size_t i) { writePlace(out, mesh, i); });
     out.raw(triangles * 12);
     out.each(triangles, [&](std::size_t i) {
         for (int c = 0; c < 3; ++c) out.raw(std::uint32_t(mesh.triangles[i][c]));
@@ -172,6 +190,14 @@ void writeVtp(Writer& out, const SurfaceMesh& mesh, const std::string& scalarNam
 }
 
 } // namespace
+
+std::string meshShift(const SurfaceMesh& mesh, const std::string& path) {
+    if (!isFar(mesh) || !path.ends_with(".stl")) return {};
+    char text[128];
+    std::snprintf(text, sizeof text, "32-bit coordinates, less (%.10g, %.10g, %.10g)", mesh.origin.x, mesh.origin.y,
+                  mesh.origin.z);
+    return text;
+}
 
 void writeMesh(const SurfaceMesh& mesh, const std::string& path, const std::string& scalarName,
                const Progress& progress) {

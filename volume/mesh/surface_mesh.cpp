@@ -1,6 +1,7 @@
 #include "volume/mesh/surface_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -71,6 +72,17 @@ private:
 
 } // namespace
 
+glm::dvec3 originFor(const Box& box) {
+    constexpr double kFar = 16; // extents: a cell of a thousand is then still known to a thousandth
+    glm::dvec3 size = box.size(), origin(0);
+    const double extent = std::max({size.x, size.y, size.z});
+    const glm::dvec3 most = glm::max(glm::abs(box.lo), glm::abs(box.hi));
+    if (!(extent > 0) || !(std::max({most.x, most.y, most.z}) > kFar * extent)) return origin;
+    const double step = std::pow(10.0, std::floor(std::log10(extent)));
+    for (int axis = 0; axis < 3; ++axis) origin[axis] = std::round(0.5 * (box.lo[axis] + box.hi[axis]) / step) * step;
+    return origin;
+}
+
 void removeUnused(SurfaceMesh& mesh) {
     std::vector<std::uint32_t> place(mesh.positions.size(), kUnused);
     for (const glm::uvec3& triangle : mesh.triangles)
@@ -93,8 +105,8 @@ void removeUnused(SurfaceMesh& mesh) {
 
 void clipToBox(SurfaceMesh& mesh, const Box& box) {
     for (int axis = 0; axis < 3; ++axis) {
-        PlaneCut(mesh, axis, float(box.lo[axis]), -1).run();
-        PlaneCut(mesh, axis, float(box.hi[axis]), 1).run();
+        PlaneCut(mesh, axis, float(box.lo[axis] - mesh.origin[axis]), -1).run();
+        PlaneCut(mesh, axis, float(box.hi[axis] - mesh.origin[axis]), 1).run();
     }
     removeUnused(mesh);
 }

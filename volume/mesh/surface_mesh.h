@@ -11,12 +11,19 @@ namespace tessera::volume {
 /// An indexed triangle mesh in physical coordinates. Triangles run counter-clockwise seen from their outer side, the
 /// one their normals point to.
 struct SurfaceMesh {
-    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> positions;  ///< less the origin
     std::vector<glm::vec3> normals;    ///< one per vertex, length 1, or 0 where there is no direction; or empty
     std::vector<float> scalars;        ///< one per vertex, or empty; NaN where there is no value
     std::vector<glm::uvec3> triangles; ///< indices of vertices
+    /// Of data that lie far from 0 in proportion to their size, as in geographic coordinates: 32 bits hold only what is
+    /// left of them.
+    glm::dvec3 origin{0};
     bool operator==(const SurfaceMesh&) const = default;
 };
+
+/// The origin for what lies in a box: 0, unless the box is so far away that its details would be lost; then a round
+/// number near its middle.
+glm::dvec3 originFor(const Box& box);
 
 /// Removes vertices that no triangle uses; the others keep their order.
 void removeUnused(SurfaceMesh& mesh);

@@ -1,6 +1,7 @@
 #include "volume/reconstruct/probe.h"
 
 #include "volume/bricks/parts_bricks.h"
+#include "volume/bricks/source_at_time.h"
 #include "volume/reconstruct/continued.h"
 #include "volume/reconstruct/reconstruct.h"
 
@@ -31,7 +32,7 @@ public:
             (std::size_t(in.z) * std::size_t(samples.size.y) + std::size_t(in.y)) * std::size_t(samples.size.x) +
             std::size_t(in.x);
         const bool present = samples.isPresent(n);
-        return {present ? double(samples.values[n]) : 0.0, present};
+        return {present ? samples.exact(n) : 0.0, present};
     }
 
 private:
@@ -159,7 +160,9 @@ std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::
     const Channel known = info.channel(channel);
     if (!time.between() || info.parameters[std::size_t(known.parameter)].categorical)
         return probeAlong(source, channel, positions, time.nearest());
-    return mixed(source, channel, positions, time);
+    if (!isComputedBetween(source, channel)) return mixed(source, channel, positions, time);
+    const std::shared_ptr<const BrickSource> borrowed(std::shared_ptr<const BrickSource>(), &source);
+    return probeAlong(*sourceAt(borrowed, time).source, channel, positions, 0);
 }
 
 std::vector<glm::dvec3> alongPolyline(std::span<const glm::dvec3> corners, int count) {

@@ -29,7 +29,8 @@ std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::
                                    int time);
 
 /// The same between two stored times: interpolated values are mixed, those of absent samples left out by their weight;
-/// labels and nearest samples are of the nearer time.
+/// labels and nearest samples are of the nearer time. Values of channels that are computed from others
+/// (isComputedBetween) are those of samples computed at that time.
 std::vector<ProbeValue> probe(const BrickSource& source, glm::dvec3 position, const TimePair& time);
 std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::span<const glm::dvec3> positions,
                                    const TimePair& time);

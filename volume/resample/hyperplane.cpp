@@ -2,6 +2,7 @@
 
 #include "volume/base/parallel.h"
 #include "volume/reconstruct/reconstruct.h"
+#include "volume/resample/series_dataset.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,8 +44,12 @@ std::uint8_t numberOf(const Field& field, glm::ivec3 at) {
 /// A slice in progress: its grid, and the sums of the frames so far.
 class Slicing {
 public:
-    Slicing(const Series& series, const Hyperplane& plane)
-        : lattice_(series.lattice), categorical_(series.categorical), box_(boxOf(series.lattice)), plane_(plane) {
+    Slicing(const Series& series, const Hyperplane& plane, std::span<const double> times)
+        : lattice_(series.lattice), categorical_(series.categorical), box_(boxOf(series.lattice)), plane_(plane),
+          times_(times) {
+        const double frames = box_.hi.w - box_.lo.w;
+        if (!times.empty()) box_.lo.w = times.front(), box_.hi.w = times.back();
+        const double perLattice = frames > 0 ? (box_.hi.w - box_.lo.w) / frames : 1; // units of the plane's t
         const glm::dvec4 extent = box_.hi - box_.lo, steep = glm::abs(plane.normal * extent);
         out_.solved = 0;
         for (int axis = 1; axis < 4; ++axis)
@@ -56,7 +61,7 @@ public:
             if (axis == out_.solved) continue;
             out_.axes[std::size_t(i)] = axis;
             grid_.origin[i] = box_.lo[axis];
-            grid_.spacing[i] = lattice_.spacing[axis] * finer;
+            grid_.spacing[i] = lattice_.spacing[axis] * finer * (axis == 3 ? perLattice : 1);
             grid_.size[i] = int(extent[axis] / grid_.spacing[i] + 1e-9) + 1;
             ++i;
         }
@@ -86,7 +91,7 @@ public:
                 for (int i = 0; i < grid_.size.x; ++i, ++index) {
                     const glm::dvec4 point = pointAt({i, j, int(k)});
                     if (!isTouched(frame, point)) continue;
-                    const double weight = frameWeight(lattice_, frame, point.w);
+                    const double weight = frameWeight(lattice_, frame, latticeTime(point.w));
                     const glm::dvec3 cells = ownGrid.toCells(glm::dvec3(point));
                     if (categorical_)
                         addLabel(index, samples, cells, weight);
@@ -119,9 +124,18 @@ private:
         return point;
     }
 
+    /// Times of the lattice are those of its frames, which may be unevenly spaced.
+    double latticeTime(double time) const {
+        if (times_.empty()) return time;
+        const double frame = frameAt(times_, time), whole = std::floor(frame);
+        const double from = lattice_.time(int(whole));
+        return from + (frame - whole) * (lattice_.time(int(whole) + 1) - from);
+    }
+
     bool isTouched(int frame, const glm::dvec4& point) const {
         return point[out_.solved] >= box_.lo[out_.solved] - margin_ &&
-               point[out_.solved] <= box_.hi[out_.solved] + margin_ && frameWeight(lattice_, frame, point.w) > 0;
+               point[out_.solved] <= box_.hi[out_.solved] + margin_ &&
+               frameWeight(lattice_, frame, latticeTime(point.w)) > 0;
     }
 
     /// For labels only the frame nearest in time is used.
@@ -159,6 +173,7 @@ private:
     bool categorical_;
     Box4 box_;
     Hyperplane plane_;
+    std::span<const double> times_;
     HyperplaneSlice out_;
     Lattice grid_;
     double margin_ = 0;
@@ -168,8 +183,9 @@ private:
 
 } // namespace
 
-HyperplaneSlice sliceBy(const Series& series, const Hyperplane& plane, const Progress& progress) {
-    Slicing slicing(series, plane);
+HyperplaneSlice sliceBy(const Series& series, const Hyperplane& plane, std::span<const double> times,
+                        const Progress& progress) {
+    Slicing slicing(series, plane, times);
     for (int frame = 0; frame < series.lattice.size.w; ++frame) {
         progress.advance(double(frame) / series.lattice.size.w, "slice");
         const std::vector<std::uint8_t> slices = slicing.slicesTouchedBy(frame);

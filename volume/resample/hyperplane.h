@@ -3,6 +3,7 @@
 #include "volume/resample/series.h"
 
 #include <array>
+#include <span>
 
 /// Three-dimensional slices of a field in space and time, in any direction (Röber 2002, section 4.1.3).
 namespace tessera::volume {
@@ -24,6 +25,10 @@ struct HyperplaneSlice {
 /// solved for is the one whose share of the normal, times its extent, is largest. Linear in space
 /// and time, on D4* the mean of both grids: give a prefiltered() series for quasi-interpolation. One frame is held at
 /// a time. Throws Error when the normal is 0 or the plane misses the lattice.
-HyperplaneSlice sliceBy(const Series& series, const Hyperplane& plane, const Progress& progress = {});
+///
+/// `times`: the time of each frame, rising; t is then a time, not a frame number, and along it the slice has as many
+/// even steps as the frames have. Empty: t is in units of the lattice.
+HyperplaneSlice sliceBy(const Series& series, const Hyperplane& plane, std::span<const double> times = {},
+                        const Progress& progress = {});
 
 } // namespace tessera::volume

@@ -1,11 +1,11 @@
 #include "volume/sources/alternating_source.h"
 
 #include "volume/bricks/brick_cache.h"
+#include "volume/bricks/magnitude.h"
 #include "volume/bricks/parts_bricks.h"
 #include "volume/reconstruct/reconstruct.h"
 #include "volume/resample/resample_taps.h"
 #include "volume/sources/axis_source.h"
-#include "volume/sources/memory_source.h"
 
 #include <algorithm>
 #include <array>
@@ -52,6 +52,7 @@ void blendValues(const std::vector<std::shared_ptr<const BrickSamples>>& bricks,
 BrickSamples blendBricks(const std::vector<std::shared_ptr<const BrickSamples>>& bricks,
                          const std::vector<WeightedTime>& times, const BrickStats& range) {
     BrickSamples out = *bricks.front();
+    out.rest.clear();
     blendValues(bricks, times, range, out.values);
     const auto isWhole = [](const auto& brick) { return brick->present.empty(); };
     if (std::all_of(bricks.begin(), bricks.end(), isWhole)) return out;

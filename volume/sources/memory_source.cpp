@@ -5,18 +5,16 @@
 #include "volume/base/parallel.h"
 #include "volume/bricks/brick_importance.h"
 #include "volume/bricks/field_bricks.h"
+#include "volume/bricks/magnitude.h"
 #include "volume/bricks/parts_bricks.h"
 #include "volume/field/part_masks.h"
 #include "volume/resample/resample.h"
 
 #include <algorithm>
-#include <cmath>
 #include <compare>
 #include <functional>
-#include <limits>
 #include <map>
 #include <mutex>
-#include <span>
 
 namespace tessera::volume {
 
@@ -37,41 +35,6 @@ struct FrameKeyHash {
 
 std::size_t fieldBytes(const Field& field) {
     return field.samples.size() + (field.mask ? field.mask->size() : 0);
-}
-
-BrickSamples magnitudeOf(std::span<const BrickSamples> components) {
-    BrickSamples out;
-    out.size = components.front().size;
-    out.values.resize(components.front().values.size());
-    for (std::size_t i = 0; i < out.values.size(); ++i) {
-        double square = 0;
-        for (const BrickSamples& component : components)
-            square += double(component.values[i]) * double(component.values[i]);
-        out.values[i] = float(std::sqrt(square));
-    }
-    for (const BrickSamples& component : components) {
-        if (component.present.empty()) continue;
-        if (out.present.empty()) out.present.assign(out.values.size(), 1);
-        for (std::size_t i = 0; i < out.values.size(); ++i)
-            if (component.present[i] == 0) out.present[i] = 0;
-    }
-    return out;
-}
-
-BrickStats magnitudeStatsOf(std::span<const BrickStats> components) {
-    double low = 0, high = 0;
-    BrickStats out;
-    for (const BrickStats& component : components) {
-        out.presentFraction = std::min(out.presentFraction, component.presentFraction);
-        const double a = component.min, b = component.max;
-        const double nearest = a <= 0 && b >= 0 ? 0 : std::min(std::abs(a), std::abs(b));
-        low += nearest * nearest;
-        high += std::max(a * a, b * b);
-    }
-    if (out.presentFraction == 0) return {std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest(), 0};
-    out.min = std::nextafter(float(std::sqrt(low)), 0.0f);
-    out.max = std::nextafter(float(std::sqrt(high)), std::numeric_limits<float>::max());
-    return out;
 }
 
 int chooseLevels(const Lattice& lattice, int brickSize) {
@@ -113,7 +76,7 @@ public:
         std::vector<BrickStats> components;
         for (int c = 0; c < channel.component; ++c)
             components.push_back(frameStats({channel.parameter, c, key.time})[grid_.numberOf(key.index)]);
-        return magnitudeStatsOf(components);
+        return magnitudeStats(components);
     }
 
     std::optional<BrickImportance> importance(const BrickKey& key) const override {
@@ -146,7 +109,7 @@ public:
         if (!channel.magnitude) return readComponent(key, channel.parameter, channel.component);
         std::vector<BrickSamples> components;
         for (int c = 0; c < channel.component; ++c) components.push_back(readComponent(key, channel.parameter, c));
-        return magnitudeOf(components);
+        return magnitude(components);
     }
 
 private:
@@ -245,14 +208,6 @@ std::shared_ptr<const BrickSource> makeMemorySource(Dataset dataset, const Memor
     return std::make_shared<const MemorySource>(std::move(dataset), options);
 }
 
-BrickSamples magnitude(const BrickSamples& x, const BrickSamples& y, const BrickSamples& z) {
-    const BrickSamples components[] = {x, y, z};
-    return magnitudeOf(components);
-}
-
-BrickStats magnitudeStats(const BrickStats& x, const BrickStats& y, const BrickStats& z) {
-    const BrickStats components[] = {x, y, z};
-    return magnitudeStatsOf(components);
 }
 
 } // namespace tessera::volume

@@ -22,12 +22,5 @@ struct MemorySourceOptions {
 };
 std::shared_ptr<const BrickSource> makeMemorySource(Dataset dataset, const MemorySourceOptions& options);
 
-/// Magnitude of a vector in one brick, sqrt(x^2 + y^2 + z^2), present where all three components are. The bricks have
-/// the same size. For sources that store components but serve DatasetInfo::channels().
-BrickSamples magnitude(const BrickSamples& x, const BrickSamples& y, const BrickSamples& z);
-
-/// Bounds of that magnitude from those of the components, rounded outwards; the real extremes may lie further inside.
-/// The least `presentFraction` of the three.
-BrickStats magnitudeStats(const BrickStats& x, const BrickStats& y, const BrickStats& z);
 
 } // namespace tessera::volume

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
+#include <utility>
 
 namespace tessera::volume {
 
@@ -12,15 +12,14 @@ namespace {
 
 class DifferenceSum {
 public:
-    void add(std::span<const float> a, std::span<const std::uint8_t> inA, std::span<const float> b,
-             std::span<const std::uint8_t> inB) {
-        for (std::size_t i = 0; i < a.size(); ++i) {
-            const bool hereA = inA.empty() || inA[i] != 0, hereB = inB.empty() || inB[i] != 0;
+    void add(const BrickSamples& a, const BrickSamples& b) {
+        for (std::size_t i = 0; i < a.values.size(); ++i) {
+            const bool hereA = a.isPresent(i), hereB = b.isPresent(i);
             if (hereA != hereB) ++out_.differing;
             if (!hereA || !hereB) continue;
-            const double apart = std::abs(double(a[i]) - double(b[i]));
+            const double apart = std::abs(a.exact(i) - b.exact(i));
             ++out_.samples;
-            if (a[i] != b[i]) ++out_.differing;
+            if (a.exact(i) != b.exact(i)) ++out_.differing;
             out_.largest = std::max(out_.largest, apart);
             squares_ += apart * apart;
         }
@@ -43,9 +42,12 @@ std::optional<SourceDifference> sourceDifference(const SourcePart& a, const Sour
     if (!(left.lattice == right.lattice)) return std::nullopt;
     DifferenceSum sum;
     if (left.brickSize != right.brickSize) {
-        const SampleGrid one = readSamples(a.source, a.channel, a.time, 0, progress.part(0, 0.5));
-        const SampleGrid other = readSamples(b.source, b.channel, b.time, 0, progress.part(0.5, 1));
-        sum.add(one.values, one.present, other.values, other.present);
+        const auto whole = [](const SourcePart& of, const Progress& part) {
+            SampleGrid all = readSamples(of.source, of.channel, of.time, 0, part);
+            return BrickSamples{all.lattice.size, std::move(all.values), std::move(all.present)};
+        };
+        const BrickSamples one = whole(a, progress.part(0, 0.5)), other = whole(b, progress.part(0.5, 1));
+        sum.add(one, other);
         return sum.result();
     }
     const std::size_t bricks = left.brickCount();
@@ -54,7 +56,7 @@ std::optional<SourceDifference> sourceDifference(const SourcePart& a, const Sour
         const glm::ivec3 at = left.indexOf(i);
         const BrickSamples one = a.source.read({a.channel, a.time, 0, at}),
                            other = b.source.read({b.channel, b.time, 0, at});
-        sum.add(one.values, one.present, other.values, other.present);
+        sum.add(one, other);
         progress.advance(double(i + 1) / double(bricks));
     }
     return sum.result();

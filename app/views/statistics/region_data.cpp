@@ -131,8 +131,8 @@ BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balanc
     BalanceTable table;
     table.notes = {"carried by " + balance.velocity + " (convection only, without diffusion)",
                    "midpoint rule at the samples: faces of the box use the first or last samples, borders between "
-                   "regions the mean of both sides where the parameter and " +
-                       balance.velocity + " exist on both sides",
+                   "regions the mean of both sides; borders to where the parameter or " +
+                       balance.velocity + " is absent the samples before them",
                    "reacts = out - in, in the row of totals; it includes reactions, diffusion through the surfaces, "
                    "and the change of what is stored over time"};
     if (speed.empty()) {
@@ -166,6 +166,8 @@ BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balanc
         for (std::size_t face = 0; face < 6; ++face) add(kFaces[face], region.faces[face], false);
         for (const volume::BorderCrossing& border : region.borders)
             add("border to " + volume::labelName(*label, border.region), border.crossing, false);
+        add("border to where it is absent", region.absent, false);
+        add("border to no region", region.unlabelled, false);
         add("total: reacts", region.total(), true);
     }
     return table;

@@ -68,7 +68,7 @@ Balance readBalance(const std::shared_ptr<const volume::BrickSource>& source, co
 
 /// A surface of a region, or a sum over all of its surfaces.
 struct BalanceRow {
-    std::string region, surface;                         ///< "x from below", "border to anode", or "total: reacts"
+    std::string region, surface;                         ///< "x from below", "border to anode", "total: reacts"
     double in = 0, out = 0, net = 0, flow = 0, area = 0; ///< in the units of the table
     bool total = false;                                  ///< over the surfaces above; its `net` is what reacts
     double relative = 0;                                 ///< of a total: net by what flows in; NaN elsewhere

@@ -36,22 +36,23 @@ float degreeOfInterest(vec3 p) {
     vec2 samples[BRUSH_FIELDS];
     for (int i = 0; i < BRUSH_FIELDS; ++i) samples[i] = reconstruct(BRUSH_FIELD(i), p);
 #endif
-    float doi = brushStart, own = 1.0;
+    float doi = brushStart, own = 1.0, there = 1.0;
 #if BRUSH_COLORS
     vec4 most = vec4(0.0);
 #endif
     for (int i = 0; i < brushTestCount; ++i) {
         ivec4 meaning = brushMeaning[i]; // kind, first field or -1, second field, flags
         vec4 a = brushShape[2 * i], b = brushShape[2 * i + 1];
-        if ((meaning.w & 1) != 0) own = 1.0;
+        if ((meaning.w & 1) != 0) own = there = 1.0;
         float test = meaning.x == BRUSH_TEST_ALWAYS ? 1.0 : 0.0;
+        bool both = false; // values that the test asks for are present
 #if BRUSH_FIELDS > 0
         vec2 x = samples[0], y = samples[0];
         for (int j = 1; j < BRUSH_FIELDS; ++j) {
             if (meaning.y == j) x = samples[j];
             if (meaning.z == j) y = samples[j];
         }
-        bool both = x.y >= PRESENT_COVERAGE && y.y >= PRESENT_COVERAGE && meaning.y >= 0 && meaning.z >= 0;
+        both = x.y >= PRESENT_COVERAGE && y.y >= PRESENT_COVERAGE && meaning.y >= 0 && meaning.z >= 0;
 #if BRUSH_RANGES
         float outside = max(max(a.x - x.x, x.x - a.y), 0.0);
         if (meaning.x == BRUSH_TEST_RANGE) test = both ? (outside > 0.0 ? max(0.0, 1.0 - outside * a.z) : 1.0) : 0.0;
@@ -79,6 +80,8 @@ float degreeOfInterest(vec3 p) {
                 if ((meaning.y >> j & 1) != 0) test = max(test, lensWeightAt(j, world));
         }
 #endif
+        bool asks = meaning.x == BRUSH_TEST_RANGE || meaning.x == BRUSH_TEST_ELLIPSE || meaning.x == BRUSH_TEST_LASSO;
+        if (asks && !both) there = 0.0;
         own = min(own, test);
         if ((meaning.w & 2) != 0) {
 #if BRUSH_COLORS
@@ -86,6 +89,7 @@ float degreeOfInterest(vec3 p) {
             if (held > most.w) most = vec4(brushOwnColor[i].rgb, held);
 #endif
             if ((meaning.w & 4) != 0) own = 1.0 - own;
+            if ((meaning.w & 16) != 0) own = min(own, there);
             doi = (meaning.w & 8) != 0 ? max(doi, own) : min(doi, own);
         }
     }
