@@ -4,9 +4,11 @@
 #include "app/views/curves/profile_data.h"
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
+#include "volume/analysis/statistics.h"
 #include "volume/reconstruct/probe.h"
 #include "volume/reconstruct/sample_grid.h"
 #include "volume/sources/centred_source.h"
+#include "volume/sources/memory_source.h"
 #include "volume/synthetic/models.h"
 
 #include <cmath>
@@ -290,15 +292,31 @@ TEST(Numbers, AreThoseOfTheSamplesAsComputed) {
     }
 }
 
-TEST(Numbers, OfAnArchiveAreItsOwn) {
+TEST(Numbers, OfAnArchiveOnBccAreThoseOfTheSourceWithinWhatItSays) {
     const std::string path =
         (std::filesystem::temp_directory_path() / ("tessera-numbers-" + std::to_string(getpid()) + ".tsr")).string();
     const DataRef data = smallCell();
     volume::Dataset cell = volume::makeModel(data.model, data.settings);
     codec::pack(cell, packing(StoredLattice::BCC), path);
     const Sources sources = opened(dataOf({path}, {}));
-    EXPECT_EQ(sources.pictures, sources.numbers);
-    EXPECT_EQ(originText(sources.origin, sources.numbers->info()), "resampled to BCC, stored losslessly");
+    EXPECT_EQ(sources.numbers->info().lattice, cell.info.lattice);
+    EXPECT_EQ(sources.pictures->info().lattice.kind, volume::LatticeKind::BCC);
+    const int region = sources.numbers->info().findChannel("region").value();
+    const volume::DatasetInfo& info = sources.numbers->info();
+    EXPECT_EQ(originText(sources.origin, info, {region}), "stored on BCC and corrected");
+    volume::StatisticsQuery query;
+    for (int c = 0; c < int(info.channels().size()); ++c) query.channels.push_back(c);
+    const auto computed = volume::makeMemorySource(cell, {.lattice = volume::LatticeKind::CC, .budget = 1 << 28});
+    const volume::Statistics of = volume::computeStatistics(*sources.numbers, query),
+                             wanted = volume::computeStatistics(*computed, query);
+    for (std::size_t c = 0; c < query.channels.size(); ++c) {
+        SCOPED_TRACE(info.channels()[c].name);
+        const double bound = errorBound(sources.origin, info, info.channels()[c]);
+        EXPECT_EQ(of.channels[c].all.samples, wanted.channels[c].all.samples);
+        EXPECT_NEAR(of.channels[c].all.mean, wanted.channels[c].all.mean, bound);
+        EXPECT_NEAR(of.channels[c].all.min, wanted.channels[c].all.min, bound);
+        EXPECT_NEAR(of.channels[c].all.max, wanted.channels[c].all.max, bound);
+    }
     std::filesystem::remove(path);
 }
 

@@ -63,7 +63,7 @@ check "no such file" 2 "$tessera" diff coarse.raw none.raw
 # An archive that was resampled and its source are compared on the grid of the source: what unpacking gives, either way round,
 # and what packing has said.
 check "a cell" 0 "$tessera" generate fuel-cell -o cell.vti --size 9x11x23 --times 1
-check "on BCC" 0 "$tessera" pack cell.vti -o bcc.tsr
+check "on BCC" 0 "$tessera" pack cell.vti -o bcc.tsr --lattice bcc
 check "unpacked" 0 "$tessera" unpack bcc.tsr -o unpacked.vti
 rows() { sed -n '/^  [A-Za-z]/p' out.txt | grep -v '^  parameter'; } # numbers by parameter
 check "with what is unpacked" 0 "$tessera" diff cell.vti unpacked.vti

@@ -28,7 +28,7 @@ refused 'gone.tsr: no such file' gone.tsr
 refused 'x.jpg: pictures are written as .png, .svg or .pdf' render cell.tsr -o x.jpg
 refused 'x.foo: pictures are written as' compare cell.tsr -o x.foo
 "$tessera" render cell.tsr --view histogram --time 0.03 -o h.csv > /dev/null 2> err || die "render a table"
-[ "$(head -1 h.csv)" = "# numbers: resampled to BCC, stored losslessly, at t = 0.03 s" ] || die "no time in: $(head -1 h.csv)"
+[ "$(head -1 h.csv)" = "# numbers: as computed, at t = 0.03 s" ] || die "no time in: $(head -1 h.csv)"
 "$tessera" --help | tr -s ' \n' ' ' | grep -q 'animation, .*, overview, .*, tesseract' || die "--help does not name the layouts"
 
 draw cell.tsr --layout "$source/layouts/overview.json" -o first.png || die "render"

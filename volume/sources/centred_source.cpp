@@ -3,6 +3,7 @@
 #include "volume/base/error.h"
 #include "volume/base/load_once.h"
 #include "volume/bricks/brick_cache.h"
+#include "volume/bricks/magnitude.h"
 #include "volume/bricks/parts_bricks.h"
 #include "volume/field/part_masks.h"
 #include "volume/sources/centred_samples.h"

@@ -208,6 +208,4 @@ std::shared_ptr<const BrickSource> makeMemorySource(Dataset dataset, const Memor
     return std::make_shared<const MemorySource>(std::move(dataset), options);
 }
 
-}
-
 } // namespace tessera::volume
