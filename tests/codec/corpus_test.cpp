@@ -159,6 +159,35 @@ TEST(Corpus, AStoredArchiveOfIntegersWithinABoundKeepsIt) {
     }
 }
 
+/// Two sides between which p jumps.
+volume::Dataset sidesDataset() {
+    volume::Dataset made =
+        makeDataset({12, 11, 10}, {{"p", ScalarType::F32}, {"region", ScalarType::U8, 1, {}, false, true}}, 1);
+    made.info.parameters[0].parts = {"region", {{0}, {2, 3}}};
+    made.read = [lattice = made.info.lattice](int p, int, int) {
+        volume::Field field = volume::makeField(lattice, p == 0 ? ScalarType::F32 : ScalarType::U8);
+        for (std::size_t i = 0; i < field.count(); ++i) {
+            const int x = int(i) % 12, y = int(i) / 12 % 11, z = int(i) / (12 * 11),
+                      side = y + x / 4 > 6 ? 2 + z % 2 : 0;
+            if (p == 0)
+                field.as<float>()[i] = float((side > 0 ? 900 : 100) + 3 * std::sin(0.4 * x) + z);
+            else
+                field.as<std::uint8_t>()[i] = std::uint8_t(side);
+        }
+        return field;
+    };
+    return made;
+}
+
+TEST(Corpus, AStoredArchiveOfPartsApartKeepsItsBound) {
+    const Archive archive(corpus() + "fuzz_archive/parted-3.tsr");
+    EXPECT_EQ(verifyArchive(archive).damaged, 0u);
+    ASSERT_NE(stateOf(archive, false).header.features & kPartedFrames, 0u);
+    const volume::Field is = readField(archive, 0, 0, 0), was = sidesDataset().read(0, 0, 0);
+    for (std::size_t i = 0; i < was.count(); ++i) ASSERT_NEAR(is.as<float>()[i], was.as<float>()[i], 0.5);
+    EXPECT_EQ(readField(archive, 1, 0, 0).samples, sidesDataset().read(1, 0, 0).samples);
+}
+
 /// Not a check: writes the seeds of fuzz_brick and fuzz_archive when the format changes
 /// (--gtest_also_run_disabled_tests).
 TEST(Corpus, DISABLED_WriteSeeds) {
@@ -201,6 +230,10 @@ TEST(Corpus, DISABLED_WriteSeeds) {
     rounds.absError = 20;
     rounds.brickSize = 16;
     pack(rough, rounds, corpus() + "fuzz_archive/integers-3.tsr");
+    volume::Dataset sides = sidesDataset();
+    rounds.absError = 0.5;
+    rounds.brickSize = 8;
+    pack(sides, rounds, corpus() + "fuzz_archive/parted-3.tsr");
     const std::string grown = corpus() + "fuzz_archive/grown-3-statistics.tsr";
     for (int step = 0; step < 3; ++step) {
         const char* const name = step == 1 ? "p" : "T";

@@ -160,8 +160,9 @@ TEST(Hostile, ForgedHeadersAndIndexesNeverCrash) {
     volume::Dataset more = makeDataset({7, 5, 9}, {{"p", ScalarType::F32, 1, Texture::Smooth, true, false}}, 2);
     append(more, folder / "small.tsr");
     forge(folder, readFile(folder / "small.tsr"));
-    for (const char* stored : {"bcc-bounded-3.tsr", "integers-3.tsr"})
-        forge(folder, readFile(std::string(TESSERA_SOURCE_DIR) + "/tests/fuzz/corpus/fuzz_archive/" + stored));
+    const std::string corpus = TESSERA_SOURCE_DIR "/tests/fuzz/corpus/fuzz_archive/";
+    for (const char* stored : {"bcc-bounded-3.tsr", "integers-3.tsr", "parted-3.tsr"})
+        forge(folder, readFile(corpus + stored));
 }
 
 TEST(Hostile, OtherFilesAreRefusedWithAReason) {

@@ -30,6 +30,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (data[9] % 2 != 0)
         for (std::size_t i = 0; i < count; ++i) present.push_back((data[10] >> (i * 7 % 8) & 1) != 0);
 
+    std::vector<std::uint8_t> parts; // of stepped bricks
+    if (data[9] / 2 % 2 != 0 && format.kind == volume::LatticeKind::CC)
+        for (std::size_t i = 0; i < count; ++i) parts.push_back(std::uint8_t(i * 3 / count + i % 7 / 6));
+
     const bool fitted = data[7] / 16 == 1;
     if (fitted) format.bodyCentred = true;
     // Every segment gets a share of the rest, or as many bytes as two of it say, copied so that a read beyond its end
@@ -56,9 +60,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const codec::BandDecoder decoder(fitted ? codec::fuzzFittedModel(format.levels)
                                             : codec::fuzzModel(format.levels, data[7] / 2 % 2 != 0));
     for (int level = 0; level < format.levels; ++level) {
-        const std::vector<std::span<const std::byte>> parts(segments.begin(), segments.end() - level);
+        const std::vector<std::span<const std::byte>> views(segments.begin(), segments.end() - level);
         codec::DecodedBrick decoded;
-        const codec::DecodeStatus status = codec::decodeBrick(format, parts, level, present, decoder, decoded);
+        const codec::DecodeStatus status = codec::decodeBrick(format, views, level, present, decoder, decoded, parts);
         if (status == codec::DecodeStatus::Ok && level == 0 && decoded.codes().size() != count) std::abort();
         if (status != codec::DecodeStatus::Ok) continue;
         std::vector<float> values(codec::countOf(decoded.size));
