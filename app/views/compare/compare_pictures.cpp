@@ -29,13 +29,15 @@ DataRef located(DataRef data, const DataRef& session) {
 }
 
 /// Why a variant cannot have these data, "" if it can: only built-in models have a choice of size, and archives keep
-/// the lattice and options they were packed with.
-std::string whyNot(const DataRef& wanted, const DataRef& session) {
+/// the options they were packed with; those on another lattice than a regular grid are drawn on that alone.
+std::string whyNot(const DataRef& wanted, const ViewContext& context) {
+    const DataRef& session = context.session.data;
     if (wanted.files.empty() || wanted.files != session.files) return {};
     if (wanted.settings != session.settings) return "only built-in models can have another size";
     if (wanted.files.size() != 1 || !codec::namesArchive(wanted.files[0].absolutePath)) return {};
-    if (wanted.lattice != session.lattice)
-        return "the lattice of an archive cannot be changed; open the data that it was packed from";
+    if (wanted.lattice != session.lattice && !canChooseLattice(session, *context.numbers, context.origin))
+        return "the archive holds no regular grid, so it is drawn on its own lattice alone; open the data that it was "
+               "packed from";
     if (wanted.packed != session.packed)
         return "an archive cannot be packed again here; open the data that it was packed from";
     return {};
@@ -85,7 +87,7 @@ bool ComparePictures::openCell(ViewContext& context, const std::string& pane, st
     CompareCell& cell = *cells_[index];
     if (!cell.failure.empty()) return false;
     if (!(cell.session.data == context.session.data)) {
-        cell.failure = whyNot(cell.session.data, context.session.data);
+        cell.failure = whyNot(cell.session.data, context);
         if (!cell.failure.empty()) return false;
         const auto data = dataFor(context, pane, cell.session.data);
         if (data != cell.data) cell.dropPicture();
