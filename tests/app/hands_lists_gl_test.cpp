@@ -239,7 +239,7 @@ TEST_F(ListHands, TheLatticeOfPicturesIsChosen) {
     ASSERT_EQ(session().data.lattice, PictureLattice::BodyCentred);
     click(at({"/data/lattice", "##lattice"}));
     ASSERT_TRUE(popup());
-    moveTo(item(popup(), {"grid"}).GetCenter());
+    moveTo(item(popup(), {"Grid"}).GetCenter());
     button(0, true);
     button(0, false); // no frame more: the workbench would compute them
     EXPECT_EQ(session().data.lattice, PictureLattice::Grid);

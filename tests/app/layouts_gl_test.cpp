@@ -45,7 +45,7 @@ const std::vector<Shipped>& shipped() {
         {"animation",
          "data layers slices timeline transfer volume",
          "O2 [mol/m³] = 2.5; T [K] 353.16 .. 356.85",
-         {{"volume", Orange, 0.0299}, {"volume", Cold, 0.0401}, {"slices", Green, 0.0479}}},
+         {{"volume", Orange, 0.0376}, {"volume", Cold, 0.0401}, {"slices", Green, 0.0479}}},
         {"charcoal",
          "data layers timeline transfer volume",
          "",

@@ -7,6 +7,8 @@
 #include "vis/transfer/transfer_function.h"
 #include "volume/base/error.h"
 #include "volume/bricks/source_at_time.h"
+#include "volume/derived/derived.h"
+#include "volume/sources/centred_source.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -29,13 +31,15 @@ DataRef located(DataRef data, const DataRef& session) {
 }
 
 /// Why a variant cannot have these data, "" if it can: only built-in models have a choice of size, and archives keep
-/// the lattice and options they were packed with.
-std::string whyNot(const DataRef& wanted, const DataRef& session) {
+/// the options they were packed with; those on another lattice than a regular grid are drawn on that alone.
+std::string whyNot(const DataRef& wanted, const ViewContext& context) {
+    const DataRef& session = context.session.data;
     if (wanted.files.empty() || wanted.files != session.files) return {};
     if (wanted.settings != session.settings) return "only built-in models can have another size";
     if (wanted.files.size() != 1 || !codec::namesArchive(wanted.files[0].absolutePath)) return {};
-    if (wanted.lattice != session.lattice)
-        return "the lattice of an archive cannot be changed; open the data that it was packed from";
+    if (wanted.lattice != session.lattice && !canChooseLattice(session, *context.numbers, context.origin))
+        return "the archive holds no regular grid, so it is drawn on its own lattice alone; open the data that it was "
+               "packed from";
     if (wanted.packed != session.packed)
         return "an archive cannot be packed again here; open the data that it was packed from";
     return {};
@@ -85,7 +89,7 @@ bool ComparePictures::openCell(ViewContext& context, const std::string& pane, st
     CompareCell& cell = *cells_[index];
     if (!cell.failure.empty()) return false;
     if (!(cell.session.data == context.session.data)) {
-        cell.failure = whyNot(cell.session.data, context.session.data);
+        cell.failure = whyNot(cell.session.data, context);
         if (!cell.failure.empty()) return false;
         const auto data = dataFor(context, pane, cell.session.data);
         if (data != cell.data) cell.dropPicture();
@@ -335,6 +339,17 @@ bool showsDifference(const ViewContext& context, const CompareCell& cell) {
 
 } // namespace
 
+namespace {
+
+/// The archive that is drawn; null if it is none. Valid as long as the source.
+const codec::Archive* archiveBelow(const std::shared_ptr<const volume::BrickSource>& source) {
+    if (!source) return nullptr;
+    const auto shown = volume::centredFrom(*source);
+    return dynamic_cast<const codec::Archive*>(volume::underived(shown ? shown : source).get());
+}
+
+} // namespace
+
 std::vector<CompareRow> ComparePictures::rows(const ViewContext& context, std::size_t reference) const {
     std::vector<CompareRow> out;
     for (std::size_t i = 0; i < cells_.size(); ++i) {
@@ -347,7 +362,7 @@ std::vector<CompareRow> ComparePictures::rows(const ViewContext& context, std::s
         row.milliseconds = cell.status.milliseconds;
         row.samples = double(cell.status.samples);
         row.bytes = double(cell.status.bytes);
-        if (const auto* archive = dynamic_cast<const codec::Archive*>(cell.source(context).get()))
+        if (const codec::Archive* archive = archiveBelow(cell.source(context)))
             row.storedBytes = double(archive->fileBytes());
         const bool known = cell.isMeasured() && reference < cells_.size() &&
                            cell.measured->query.reference == cells_[reference]->image;
