@@ -28,6 +28,21 @@ namespace tessera::app {
 
 namespace {
 
+/// What an archive says of its data, at the times of its source.
+volume::DatasetInfo infoOf(const codec::Archive& archive) {
+    volume::DatasetInfo info = archive.info();
+    if (!archive.metadata().alternating) return info;
+    info.times = archive.metadata().sourceTimes;
+    info.quantities = archive.metadata().sourceQuantities;
+    return info;
+}
+
+std::uint64_t bytesOfCorrections(const codec::Archive& archive) {
+    std::uint64_t bytes = 0;
+    for (const FileRange& range : archive.metadata().corrections) bytes += range.length;
+    return bytes;
+}
+
 Json vectorJson(const auto& v) {
     return {v.x, v.y, v.z};
 }
@@ -45,7 +60,7 @@ Json resampledJson(const codec::Metadata& metadata, std::size_t parameter, doubl
 }
 
 Json archiveJson(const codec::Archive& archive) {
-    const volume::DatasetInfo& info = archive.info();
+    const volume::DatasetInfo info = infoOf(archive);
     const volume::BrickGrid& grid = archive.grid();
     Json parameters = Json::array(), levels = Json::array();
     double stored = 0;
@@ -92,9 +107,10 @@ Json archiveJson(const codec::Archive& archive) {
             {"levels", std::move(levels)},
             {"masks", archive.maskCount()},
             {"maskBytes", archive.maskBytes()},
+            {"correctionBytes", bytesOfCorrections(archive)},
             {"repeatedBricks", archive.repeats().bricks},
             {"repeatedBytes", archive.repeats().bytes},
-            {"lossless", archive.metadata().lossless},
+            {"lossless", archive.metadata().lossless && !codec::isResampled(archive.metadata())},
             {"maxError", archive.metadata().maxError},
             {"exactness", codec::exactnessText(archive.metadata())},
             {"provenance", info.provenance},
@@ -106,7 +122,7 @@ std::string triple(glm::ivec3 v) {
 }
 
 void printArchive(const codec::Archive& archive) {
-    const volume::DatasetInfo& info = archive.info();
+    const volume::DatasetInfo info = infoOf(archive);
     const volume::BrickGrid& grid = archive.grid();
     const glm::dvec3 extent = info.bounds.size();
     std::printf("%s (archive, %s, %s)\n", info.name.c_str(), textOfBytes(double(archive.fileBytes())).c_str(),
@@ -127,6 +143,8 @@ void printArchive(const codec::Archive& archive) {
     std::printf("\n");
     if (archive.maskCount() > 0)
         std::printf("  masks      %d, %s\n", archive.maskCount(), textOfBytes(double(archive.maskBytes())).c_str());
+    if (const std::uint64_t bytes = bytesOfCorrections(archive); bytes > 0)
+        std::printf("  corrected  to the samples of the source, by %s\n", textOfBytes(double(bytes)).c_str());
     if (const auto repeats = archive.repeats(); repeats.bricks > 0)
         std::printf("  repeats    %llu bricks equal those of the time before, which saves %s\n",
                     static_cast<unsigned long long>(repeats.bricks), textOfBytes(double(repeats.bytes)).c_str());
