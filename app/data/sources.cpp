@@ -69,18 +69,16 @@ Sources openPacked(volume::Dataset dataset, const DataRef& data, const Progress&
         }
     } const remove{name};
     codec::pack(dataset, *data.packed, name, progress);
-    const auto packed = codec::openArchive(name);
+    const auto archive = std::make_shared<const codec::Archive>(name);
     const NumberOrigin computed = computedOrigin(dataset.info);
     if (!data.originals) {
+        std::shared_ptr<const volume::BrickSource> packed = archive;
+        if (data.packed->lattice != codec::StoredLattice::CC)
+            packed = volume::makeMemorySource(codec::gridDataset(archive, 0), onGrid());
         Sources out{drawnOn(packed, data.lattice), volume::makeMemorySource(std::move(dataset), onGrid()), computed};
         out.packed = packed;
-        if (data.packed->lattice != codec::StoredLattice::CC) {
-            const auto archive = std::make_shared<const codec::Archive>(name);
-            out.packed = volume::makeMemorySource(codec::gridDataset(archive, 0), onGrid());
-        }
         return out;
     }
-    const auto archive = std::make_shared<const codec::Archive>(name);
     NumberOrigin origin = storedOrigin(archive->metadata(), !archive->metadata().corrections.empty());
     origin.originals = true;
     origin.parameters = 2 * int(dataset.info.parameters.size());
@@ -308,8 +306,8 @@ Sources underived(const Sources& sources) {
 }
 
 bool canChooseLattice(const DataRef& data, const volume::BrickSource& numbers, const NumberOrigin& origin) {
-    if (data.packed) return !data.originals && data.packed->lattice == codec::StoredLattice::CC;
-    return !origin.lattice.ends_with("D4*") && volume::canBeCentred(numbers);
+    if (data.packed) return !data.originals;
+    return (origin.unpacked || !origin.lattice.ends_with("D4*")) && volume::canBeCentred(numbers);
 }
 
 Sources drawnOn(PictureLattice lattice, const Sources& sources) {
