@@ -1,5 +1,6 @@
 #include "app/edits/compare.h"
 #include "app/workbench/workbench_commands.h"
+#include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
 #include "tests/app/workbench_fixture.h"
 #include "tests/resident_memory.h"
