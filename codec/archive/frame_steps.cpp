@@ -192,7 +192,8 @@ std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, SampleNu
 std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, SampleNumbers& of, const FrameRecord& frame,
                                         const Model& model, const FrameOptions& options, const TimeBefore& before,
                                         const Taken& taken, const FrameSamples* rounded, const FrameSamples* parts) {
-    constexpr int kAgain = 16; // times between those at which all is tried
+    constexpr int kAgain = 16;        // times between those at which all is tried
+    constexpr double kFarther = 1.25; // on the bytes of another way, beyond which a way may not yet be given up
     const bool mean = options.rms > 0;
     // Samples may be exact under a bound of their mean error, if rounding them does not pay.
     const bool bounded = rounded || frame.numbers.kind == NumberKind::Quantised;
@@ -211,7 +212,7 @@ std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, SampleNum
             const bool otherTransform = way % 2 == 1, together = way / 2 == 1;
             if ((otherTransform && !both) || (together && (!parts || steps.steps))) continue;
             steps.bodyCentred = otherTransform != frame.bodyCentred;
-            if (together && best) steps.most = best->bytes;
+            if (together && best) steps.most = kFarther * best->bytes;
             steps.parted = parts && (steps.steps ? last->parted : !together);
             std::optional<SteppedFrame> found = attemptOne(steps);
             if (found && (!best || found->bytes < best->bytes)) best = std::move(found);
