@@ -2,9 +2,11 @@
 
 #include "codec/archive/step_trials.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace tessera::codec {
 
@@ -37,11 +39,12 @@ int differenceBits(const volume::Field& now, const volume::Field& before, const 
 
 /// How the time before was coded; nothing is set at the first time and when all is to be tried again.
 struct StepsBefore {
-    std::optional<StepChoice> steps; ///< with these, which are the only ones to be tried
-    bool rounded = false;            ///< with rounded samples: trials end earlier
-    double quantum = 0;              ///< in stored units
-    bool parted = false;             ///< whether parts are transformed apart, to be tried, whatever the time before had
-    bool bodyCentred = false;        ///< transform of BCC to be tried, whatever the time before had
+    std::optional<StepChoice> steps;                       ///< with these, which are the only ones to be tried
+    bool rounded = false;                                  ///< with rounded samples: trials end earlier
+    double quantum = 0;                                    ///< in stored units
+    double most = std::numeric_limits<double>::infinity(); ///< bytes of another way
+    bool parted = false;      ///< whether parts are transformed apart, to be tried, whatever the time before had
+    bool bodyCentred = false; ///< transform of BCC to be tried, whatever the time before had
 };
 
 /// Tries the best way so far, or `how`, with differences from the time before.
@@ -101,8 +104,9 @@ std::optional<SteppedFrame> trySteps(const volume::BrickGrid& grid, SampleNumber
     if (seen && seen->mask != frame.mask) seen = nullptr;
     StepSearch search(StepTrials(grid, samples, frame, options, seen, rounded, parts));
     const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
-    const double limit = search.trials().ofSamples(model, taken.serves(frame, model) ? &taken : nullptr).bytes +
-                         ofModel * search.trials().share();
+    const double limit =
+        std::min(before.most, search.trials().ofSamples(model, taken.serves(frame, model) ? &taken : nullptr).bytes +
+                                  ofModel * search.trials().share());
     tryOwn(search, how, before, limit);
     if (seen && search.trials().predicts()) tryPrediction(search, how, samples, *seen, !before.steps);
     if (search.least() >= limit) return std::nullopt;
@@ -172,7 +176,8 @@ std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, SampleNu
     StepTrials& trials = search.trials();
     const double ofModel = frame.model < 0 ? double(serialise(model).size()) : 0;
     const TrialOfSteps ofRounded = trials.ofSamples(model, taken.serves(frame, model) ? &taken : nullptr);
-    const double limit = ofRounded.bytes + ofModel * trials.share(), mean = how.mean->allowed * trials.share();
+    const double limit = std::min(before.most, ofRounded.bytes + ofModel * trials.share()),
+                 mean = how.mean->allowed * trials.share();
     // Errors are not the same everywhere: the boxes get the part of them that they have by rounding samples.
     const double part = all.squares > 0 ? how.mean->allowed / all.squares * ofRounded.squares : 0;
     const double squares = part > kLeastShare * mean ? part : mean;
@@ -187,7 +192,8 @@ std::optional<SteppedFrame> tryMeanSteps(const volume::BrickGrid& grid, SampleNu
 std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, SampleNumbers& of, const FrameRecord& frame,
                                         const Model& model, const FrameOptions& options, const TimeBefore& before,
                                         const Taken& taken, const FrameSamples* rounded, const FrameSamples* parts) {
-    constexpr int kAgain = 16; // times between those at which all is tried
+    constexpr int kAgain = 16;        // times between those at which all is tried
+    constexpr double kFarther = 1.25; // on the bytes of another way, beyond which a way may not yet be given up
     const bool mean = options.rms > 0;
     // Samples may be exact under a bound of their mean error, if rounding them does not pay.
     const bool bounded = rounded || frame.numbers.kind == NumberKind::Quantised;
@@ -206,6 +212,7 @@ std::optional<SteppedFrame> chooseSteps(const volume::BrickGrid& grid, SampleNum
             const bool otherTransform = way % 2 == 1, together = way / 2 == 1;
             if ((otherTransform && !both) || (together && (!parts || steps.steps))) continue;
             steps.bodyCentred = otherTransform != frame.bodyCentred;
+            if (together && best) steps.most = kFarther * best->bytes;
             steps.parted = parts && (steps.steps ? last->parted : !together);
             std::optional<SteppedFrame> found = attemptOne(steps);
             if (found && (!best || found->bytes < best->bytes)) best = std::move(found);
