@@ -310,6 +310,14 @@ bool canChooseLattice(const DataRef& data, const volume::BrickSource& numbers, c
     return (origin.unpacked || !origin.lattice.ends_with("D4*")) && volume::canBeCentred(numbers);
 }
 
+double storedBytes(const std::shared_ptr<const volume::BrickSource>& pictures) {
+    if (!pictures) return 0;
+    const auto shown = volume::centredFrom(*pictures);
+    const auto below = volume::underived(shown ? shown : pictures);
+    const auto* archive = dynamic_cast<const codec::Archive*>(below.get());
+    return archive ? double(archive->fileBytes()) : 0;
+}
+
 Sources drawnOn(PictureLattice lattice, const Sources& sources) {
     Sources out = sources;
     out.pictures = drawnOn(sources.packed ? sources.packed : sources.numbers, lattice);

@@ -2,13 +2,10 @@
 
 #include "app/data/open.h"
 #include "app/edits/compare_files.h"
-#include "codec/archive/archive.h"
 #include "codec/remote/address.h"
 #include "vis/transfer/transfer_function.h"
 #include "volume/base/error.h"
 #include "volume/bricks/source_at_time.h"
-#include "volume/derived/derived.h"
-#include "volume/sources/centred_source.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -339,17 +336,6 @@ bool showsDifference(const ViewContext& context, const CompareCell& cell) {
 
 } // namespace
 
-namespace {
-
-/// The archive that is drawn; null if it is none. Valid as long as the source.
-const codec::Archive* archiveBelow(const std::shared_ptr<const volume::BrickSource>& source) {
-    if (!source) return nullptr;
-    const auto shown = volume::centredFrom(*source);
-    return dynamic_cast<const codec::Archive*>(volume::underived(shown ? shown : source).get());
-}
-
-} // namespace
-
 std::vector<CompareRow> ComparePictures::rows(const ViewContext& context, std::size_t reference) const {
     std::vector<CompareRow> out;
     for (std::size_t i = 0; i < cells_.size(); ++i) {
@@ -362,8 +348,7 @@ std::vector<CompareRow> ComparePictures::rows(const ViewContext& context, std::s
         row.milliseconds = cell.status.milliseconds;
         row.samples = double(cell.status.samples);
         row.bytes = double(cell.status.bytes);
-        if (const codec::Archive* archive = archiveBelow(cell.source(context)))
-            row.storedBytes = double(archive->fileBytes());
+        row.storedBytes = storedBytes(cell.source(context));
         const bool known = cell.isMeasured() && reference < cells_.size() &&
                            cell.measured->query.reference == cells_[reference]->image;
         const bool comparable = i != reference && reference < cells_.size() &&
