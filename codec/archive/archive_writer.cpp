@@ -42,8 +42,7 @@ struct ArchiveWriter::Impl {
     explicit Impl(const std::string& path) : file(path) {}
     Impl(const std::string& path, Commits so) : file(path, so.header), commits(std::move(so)) {}
 
-    /// Whether coarse coefficients of a component mix samples that a reader must not mix. A volume of one brick is read
-    /// as a whole quickly.
+    /// Whether coarse coefficients of a component mix samples that a reader must not mix (in more than one brick).
     bool mixesParts(std::size_t component) const;
     int maskFor(const FrameSamples& samples, int zstdLevel);
     /// Or the steps of a frame. `idle`: the frame codes no token with the model.

@@ -1,8 +1,8 @@
 #include "codec/blocks/join.h"
 
-#include "codec/archive/append_frames.h"
 #include "codec/archive/archive.h"
 #include "codec/archive/brick_access.h"
+#include "codec/blocks/append_frames.h"
 #include "codec/pack/continuation.h"
 
 #include <algorithm>

@@ -2,7 +2,8 @@
 #include "codec/container/resample_error.h"
 
 #include "codec/archive/archive.h"
-#include "codec/pack/error_bound.h"
+#include "codec/pack/pack.h"
+#include "codec/unpack/packed_before.h"
 #include "codec/unpack/unpack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain/decoder.h"

@@ -1,4 +1,4 @@
-#include "codec/archive/append_frames.h"
+#include "codec/blocks/append_frames.h"
 
 #include "codec/archive/archive_impl.h"
 #include "codec/archive/commits.h"
