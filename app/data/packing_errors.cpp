@@ -88,11 +88,11 @@ void showErrors(SessionDocument& layout, DataRef& data, Sources& sources, std::v
         return;
     }
     const codec::PackOptions& packed = *layout.session.data.packed;
-    const bool grid = packed.lattice == codec::StoredLattice::CC;
-    messages.push_back(
-        "Shown as unpacked from an archive whose samples are within " + formatShare(packed.maxError) +
-        " of each parameter's range, beside the data as they are" +
-        (grid ? "." : "; it has another lattice, whose errors at the points of the data are shown too."));
+    const bool resampled = packed.lattice != codec::StoredLattice::CC && codec::isExact(packed);
+    messages.push_back((resampled ? std::string("Shown as resampled to another lattice and back")
+                                  : "Shown as unpacked from an archive whose samples are within " +
+                                        formatShare(packed.maxError) + " of each parameter's range") +
+                       ", beside the data as they are.");
     layout = std::move(*own);
     for (const volume::DerivedParameter& error : layout.session.data.derived) data.derived.push_back(error);
     sources = deriveBoth(underived(sources), data.derived, messages);

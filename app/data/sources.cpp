@@ -46,11 +46,12 @@ volume::MemorySourceOptions onGrid(int brickSize = volume::MemorySourceOptions{}
     return {.lattice = volume::LatticeKind::CC, .brickSize = brickSize, .budget = kFramesLoaded};
 }
 
-/// Samples as pictures draw them; as they are where they lie on no regular grid.
+/// Samples as pictures draw them; as they are where they lie on no regular grid, or on another machine, from which the
+/// bricks around those that are seen would have to come, too.
 std::shared_ptr<const volume::BrickSource> drawnOn(const std::shared_ptr<const volume::BrickSource>& numbers,
                                                    PictureLattice lattice,
                                                    const volume::BrickSource* former = nullptr) {
-    if (lattice == PictureLattice::Grid || !volume::canBeCentred(*numbers)) return numbers;
+    if (lattice == PictureLattice::Grid || numbers->info().remote || !volume::canBeCentred(*numbers)) return numbers;
     return volume::makeCentredSource(numbers, kBricksMade, former);
 }
 
@@ -307,7 +308,8 @@ Sources underived(const Sources& sources) {
 
 bool canChooseLattice(const DataRef& data, const volume::BrickSource& numbers, const NumberOrigin& origin) {
     if (data.packed) return !data.originals;
-    return (origin.unpacked || !origin.lattice.ends_with("D4*")) && volume::canBeCentred(numbers);
+    return (origin.unpacked || !origin.lattice.ends_with("D4*")) && !numbers.info().remote &&
+           volume::canBeCentred(numbers);
 }
 
 double storedBytes(const std::shared_ptr<const volume::BrickSource>& pictures) {

@@ -163,9 +163,12 @@ MemoryPlan planMemory(const Metadata& metadata, const volume::Dataset& dataset, 
     const double kept = d4 ? kTimesOfD4 * all : 0;
     const double least = kOwn + kept + std::max(step, coding);
     const double limit = options.memoryMb > 0 ? options.memoryMb * kMega : quarterOfRam();
-    // Of a component: source, stored samples, these prefiltered, prediction, and difference, which is coded.
-    constexpr double kCorrecting = 40;
-    const bool corrects = kOwn + kCorrecting * samples <= limit;
+    // Of a component: source, stored samples, these prefiltered, prediction, and difference, which is coded and kept;
+    // of D4* frames of every component too.
+    constexpr double kCorrecting = 64, kFramesOfD4 = 10;
+    const bool isD4 = options.lattice == StoredLattice::D4;
+    const double components = isD4 ? double(componentCount(source)) : 0;
+    const bool corrects = kOwn + (kCorrecting + kFramesOfD4 * components) * samples <= limit;
     if (dataset.read.inParts() && (slabLayers > 0 || least > limit)) {
         MemoryPlan slabs = planSlabs(metadata, source, options, slabLayers, least, limit);
         slabs.corrects = corrects;

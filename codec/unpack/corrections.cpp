@@ -176,7 +176,6 @@ Corrections correctionsOf(std::shared_ptr<const Archive> written, const volume::
     }
     out.options.effort = options.effort;
     out.options.zstdLevel = options.zstdLevel;
-    out.options.memoryMb = options.memoryMb;
     if (std::ranges::any_of(ways, [](const Way& way) { return way.bound > 0; })) {
         out.options.maxError = kInnerBound;
         out.options.lossless = false;

@@ -112,7 +112,7 @@ cp whole/run_6.* slow
 check "again" 0 "$tessera" pack --follow 'slow/run_*.raw' -o slow.tsr --settle 0.1 --until-idle 0.5 --lattice cc --json
 python3 -c 'import json; l=[json.loads(x) for x in open("out.txt")]; assert len(l)==1 and l[0]["time"]==6 and l[0]["times"]==7 and l[0]["file"]=="slow/run_6.raw", l' ||
     fail "$(cat out.txt)"
-check "with other options" 2 "$tessera" pack --follow 'slow/run_*.raw' -o slow.tsr --until-idle 0.5
+check "with other options" 2 "$tessera" pack --follow 'slow/run_*.raw' -o slow.tsr --until-idle 0.5 --lattice bcc
 say "other options" err.txt
 
 # A file that cannot be read is waited for, then said and left out, and the exit status tells.

@@ -112,7 +112,7 @@ status=$?
 [ $status = 3 ] && grep -q OpenGL err || {
     [ $status = 0 ] || die "render"
     sent "a small picture" 10000 $((big / 7)) # every second sample along each axis
-    draw served/big.tsr local.png --set /render/engine=gl || die "render, local"
+    draw served/big.tsr local.png --set /render/engine=gl --set /data/lattice=grid || die "render, local"
     alike local.png remote.png || fail "another picture"
     # Nor is a volume that fits into one texture read as a whole.
     size=80x60 draw $at/middle.tsr middle.png || die "render middle"

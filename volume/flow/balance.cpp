@@ -98,7 +98,11 @@ void addSample(const Around& around, const SampleCells& cells, glm::ivec3 in, gl
             }
             const auto otherC = around.carried(in, axis, side), otherU = around.velocity(in, axis, axis, side);
             if (!otherC || !otherU) {
-                add(part.absent, area, *c * *u * side * area, *u * side * area);
+                // Half a cell on along the straight line through the sample before: nothing flows through a wall.
+                const auto innerC = around.carried(in, axis, -side), innerU = around.velocity(in, axis, axis, -side);
+                const bool line = innerC && innerU;
+                const double carried = line ? 1.5 * *c * *u - 0.5 * *innerC * *innerU : *c * *u;
+                add(part.absent, area, carried * side * area, (line ? 1.5 * *u - 0.5 * *innerU : *u) * side * area);
                 continue;
             }
             const auto other = around.region(in, axis, side);

@@ -22,5 +22,4 @@ struct MemorySourceOptions {
 };
 std::shared_ptr<const BrickSource> makeMemorySource(Dataset dataset, const MemorySourceOptions& options);
 
-
 } // namespace tessera::volume
