@@ -5,6 +5,7 @@
 #include "codec/container/json_text.h"
 #include "codec/container/options_json.h"
 #include "volume/base/error.h"
+#include "volume/field/lattice4.h"
 
 #include <bit>
 #include <cmath>
@@ -234,6 +235,16 @@ std::string toJson(const Metadata& metadata) {
     return jsonText(document);
 }
 
+/// Whether stored samples can be those of a source: on its own grid, or resampled from it.
+bool isOf(const Metadata& metadata) {
+    const volume::Lattice &stored = metadata.info.lattice, &source = metadata.source;
+    if (metadata.alternating)
+        return source.kind == LatticeKind::CC &&
+               stored.size == glm::ivec3(volume::d4For({volume::LatticeKind4::CC, glm::ivec4(source.size, 2)}).size);
+    const bool resampled = stored.kind == LatticeKind::BCC && source.kind == LatticeKind::CC;
+    return stored.size == (resampled ? volume::bccFor(source) : source).size;
+}
+
 Metadata metadataFromJson(std::string_view text, const std::string& file) {
     const json document = json::parse(text, nullptr, false);
     if (document.is_discarded()) throw Error("not JSON", file, "metadata");
@@ -267,6 +278,8 @@ Metadata metadataFromJson(std::string_view text, const std::string& file) {
     info.provenance = data["provenance"].text();
     if (data.has("notes"))
         for (const Node& note : data["notes"].items(4096)) info.notes.push_back(note.text());
+
+    if (!isOf(metadata)) root["source"].fail("the samples of the data cannot be made of it");
 
     const Node grid = root["grid"];
     metadata.grid.lattice = info.lattice;

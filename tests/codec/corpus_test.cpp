@@ -3,6 +3,7 @@
 #include "codec/brick/brick_codec.h"
 #include "codec/brick/whole_brick.h"
 #include "codec/pack/pack.h"
+#include "codec/unpack/unpack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain/decoder.h"
 #include "tests/fuzz/fuzz_model.h"
@@ -188,6 +189,21 @@ TEST(Corpus, AStoredArchiveOfPartsApartKeepsItsBound) {
     EXPECT_EQ(readField(archive, 1, 0, 0).samples, sidesDataset().read(1, 0, 0).samples);
 }
 
+TEST(Corpus, AStoredArchiveWithCorrectionsKeepsLabelsAndItsBound) {
+    const auto archive = std::make_shared<const Archive>(corpus() + "fuzz_archive/corrected-3.tsr");
+    EXPECT_EQ(verifyArchive(*archive).damaged, 0u);
+    ASSERT_NE(stateOf(*archive, false).header.features & kCorrections, 0u);
+    const plain::Decoder decoder(readFile(corpus() + "fuzz_archive/corrected-3.tsr"));
+    ASSERT_EQ(decoder.corrections().size(), 1u);
+    const volume::Dataset back = gridDataset(archive, 0), made = sidesDataset();
+    const volume::Field is = back.read(0, 0, 0), was = made.read(0, 0, 0);
+    for (std::size_t i = 0; i < was.count(); ++i) ASSERT_NEAR(is.as<float>()[i], was.as<float>()[i], 0.5);
+    EXPECT_EQ(back.read(1, 0, 0).samples, made.read(1, 0, 0).samples);
+    // The second reader finds the labels, too.
+    const plain::Brick labels = decoder.corrections()[0].brick(1, 0, 0);
+    for (std::size_t i = 0; i < labels.values.size(); ++i) ASSERT_EQ(labels.values[i], made.read(1, 0, 0).value(i));
+}
+
 /// Not a check: writes the seeds of fuzz_brick and fuzz_archive when the format changes
 /// (--gtest_also_run_disabled_tests).
 TEST(Corpus, DISABLED_WriteSeeds) {
@@ -234,6 +250,8 @@ TEST(Corpus, DISABLED_WriteSeeds) {
     rounds.absError = 0.5;
     rounds.brickSize = 8;
     pack(sides, rounds, corpus() + "fuzz_archive/parted-3.tsr");
+    rounds.lattice = StoredLattice::BCC;
+    pack(sides, rounds, corpus() + "fuzz_archive/corrected-3.tsr");
     const std::string grown = corpus() + "fuzz_archive/grown-3-statistics.tsr";
     for (int step = 0; step < 3; ++step) {
         const char* const name = step == 1 ? "p" : "T";

@@ -1,9 +1,11 @@
 // A whole archive. Header, metadata and index get right checksums first, so that what lies behind them is reached.
 #include "codec/archive/archive.h"
 #include "codec/container/container.h"
+#include "codec/unpack/unpack.h"
 
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -33,17 +35,18 @@ void seal(std::vector<std::uint8_t>& bytes) {
 
 void readAll(const std::string& path) {
     try {
-        const codec::Archive archive(path);
-        (void)codec::verifyArchive(archive);
-        const glm::ivec3 last = archive.grid().count() - 1;
-        for (int level = 0; level < archive.grid().levels; ++level) try {
-                (void)archive.read({0, int(archive.info().times.size()) - 1, level, last});
-                (void)archive.read({0, 0, level, last});
-                (void)archive.stats({0, 0, level, last});
-                (void)archive.distribution({0, 0, level, last});
+        const auto archive = std::make_shared<const codec::Archive>(path);
+        (void)codec::verifyArchive(*archive);
+        const glm::ivec3 last = archive->grid().count() - 1;
+        for (int level = 0; level < archive->grid().levels; ++level) try {
+                (void)archive->read({0, int(archive->info().times.size()) - 1, level, last});
+                (void)archive->read({0, 0, level, last});
+                (void)archive->stats({0, 0, level, last});
+                (void)archive->distribution({0, 0, level, last});
             } catch (const Error&) {
             }
-        (void)codec::readField(archive, 0, 0, 0);
+        (void)codec::readField(*archive, 0, 0, 0);
+        (void)codec::gridDataset(archive, 0).read(0, 0, 0);
     } catch (const Error&) { // the only answer to a bad file
     }
 }
