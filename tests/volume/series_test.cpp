@@ -162,7 +162,7 @@ TEST(Series, NothingBleedsOverAMaskInTime) {
                 if (!field.present(i)) continue;
                 ASSERT_GE(field.value(i), 5 - 1e-3);
                 ASSERT_LE(field.value(i), 50 + 1e-3);
-                (t < 4.9 ? early : late) += field.value(i) > 6 ? 1 : 0;
+                (t < 4.2 ? early : late) += field.value(i) > 6 ? 1 : 0;
             }
             ASSERT_TRUE(t > 5 || field.mask) << t;
             ASSERT_TRUE(t < 7.5 || !field.mask) << t;

@@ -60,32 +60,24 @@ Series d4SeriesOf(const Dataset& frames, int parameter, int component) {
     return framesOf(frames, parameter, component, LatticeKind4::D4);
 }
 
-namespace {
-
-/// Throws Error unless a series is one that D4* can be made of.
-void requireEven(const DatasetInfo& info) {
+std::string whyNotD4(const DatasetInfo& info) {
     constexpr double kUneven = 0.01; // of a step
+    if (info.lattice.kind != LatticeKind::CC) return "D4* can be computed from a regular grid only";
     if (info.timeName == "operating point")
-        throw Error("D4* is a lattice in space and time; between operating points there is nothing", info.name);
+        return "D4* is a lattice in space and time; between operating points there is nothing";
     if (info.times.size() < kLeastD4Times)
-        throw Error("D4* is a lattice in space and time and needs " + std::to_string(kLeastD4Times) +
-                        " times or more, not " + std::to_string(info.times.size()),
-                    info.name);
+        return "D4* is a lattice in space and time and needs " + std::to_string(kLeastD4Times) +
+               " times or more, not " + std::to_string(info.times.size());
     const double step = (info.times.back() - info.times.front()) / double(info.times.size() - 1);
     for (std::size_t t = 1; t < info.times.size(); ++t)
         if (std::abs(info.times[t] - info.times[t - 1] - step) > kUneven * step)
-            throw Error("D4* needs evenly spaced times; from " + textOf(info.times[t - 1]) + " to " +
-                            textOf(info.times[t]) + " is not one of " + std::to_string(info.times.size() - 1) +
-                            " equal steps",
-                        info.name);
+            return "D4* needs evenly spaced times; from " + textOf(info.times[t - 1]) + " to " + textOf(info.times[t]) +
+                   " is not one of " + std::to_string(info.times.size() - 1) + " equal steps";
+    return "";
 }
 
-} // namespace
-
 Dataset toD4(const Dataset& source, const ResampleOptions& options, const SliceMemory& memory) {
-    if (source.info.lattice.kind != LatticeKind::CC)
-        throw Error("D4* can be computed from a regular grid only", source.info.name);
-    requireEven(source.info);
+    if (const std::string reason = whyNotD4(source.info); !reason.empty()) throw Error(reason, source.info.name);
     const Lattice4 lattice = d4For(frameLattice(source.info, LatticeKind4::CC));
     Dataset out;
     out.info = source.info;

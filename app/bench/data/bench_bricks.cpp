@@ -35,6 +35,7 @@ BenchTable benchBricks() {
         const auto packed = [&, &data = dataset](int brickSize) {
             const BenchFile file;
             codec::PackOptions options;
+            options.lattice = codec::StoredLattice::BCC;
             options.brickSize = brickSize;
             options.levels = 3;
             codec::pack(data, options, file.path);

@@ -5,6 +5,7 @@
 #include "codec/pack/pack.h"
 #include "codec/unpack/unpack.h"
 #include "volume/resample/resample.h"
+#include "volume/resample/series_dataset.h"
 
 #include <cmath>
 #include <limits>
@@ -91,7 +92,7 @@ BenchTable benchLatticeBytes() {
     for (auto& [name, whole] : volumeFiles()) {
         volume::Dataset dataset = firstParameterOf(whole);
         for (const codec::StoredLattice lattice : {codec::StoredLattice::BCC, codec::StoredLattice::D4}) {
-            if (lattice == codec::StoredLattice::D4 && dataset.info.times.size() < 2) continue;
+            if (lattice == codec::StoredLattice::D4 && !volume::whyNotD4(dataset.info).empty()) continue;
             for (const double bound : {0.0, 1e-3, 1e-2}) {
                 codec::PackOptions options;
                 options.lattice = lattice;

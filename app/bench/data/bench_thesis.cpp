@@ -4,6 +4,7 @@
 #include "app/bench/data/thesis_coding.h"
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
+#include "volume/resample/series_dataset.h"
 #include "volume/synthetic/models.h"
 
 #include <algorithm>
@@ -59,8 +60,8 @@ BenchTable benchThesisSizes() {
     const auto add = [&](const std::string& name, volume::Dataset& dataset, const ThesisData* known) {
         const BenchFile file;
         codec::PackOptions options;
-        const bool moves = dataset.info.times.size() > 1;
-        if (moves) options.lattice = codec::StoredLattice::D4;
+        const bool moves = volume::whyNotD4(dataset.info).empty();
+        options.lattice = moves ? codec::StoredLattice::D4 : codec::StoredLattice::BCC;
         const codec::PackSummary summary = codec::pack(dataset, options, file.path);
         const codec::Archive archive(file.path);
         const std::string times = std::to_string(dataset.info.times.size());
