@@ -306,7 +306,7 @@ void Packing::correct(ArchiveWriter& writer, const Progress& progress) {
             std::error_code ignored;
             std::filesystem::remove(path, ignored);
         }
-    } const file{partFileOf(path_) + ".tsr"};
+    } const file{path_ + ".corrections"}; // of this name: what a killed process left is replaced
     (void)pack(made.data, made.options, file.path, progress);
     metadata_.corrections.push_back(writer.addCorrections(file.path));
     for (std::size_t p = 0; p < errors_.size(); ++p) errors_[p] = std::max(errors_[p], made.bounds[p]);
