@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace tessera::app {
 
@@ -85,9 +86,10 @@ NumberOrigin storedOrigin(const codec::Metadata& metadata, bool unpacked) {
     origin.absError = metadata.lossless ? 0 : metadata.options.absError;
     origin.discarded = metadata.options.discard > 0;
     origin.unpacked = unpacked;
-    origin.corrected = unpacked && !metadata.corrections.empty();
-    if (unpacked)
-        for (const auto& error : metadata.resampled) origin.resampleErrors.push_back(error ? error->largest : 0);
+    const auto isKnown = [](const std::optional<codec::ResampleError>& error) { return error.has_value(); };
+    origin.corrected = unpacked && !metadata.corrections.empty() && std::ranges::all_of(metadata.resampled, isKnown);
+    if (origin.corrected)
+        for (const auto& error : metadata.resampled) origin.resampleErrors.push_back(error->largest);
     return origin;
 }
 

@@ -22,6 +22,10 @@ ResampleError joined(const std::optional<ResampleError>& before, const ResampleE
     return {rms * rms, before->largest + then.largest, then.samples, std::min(before->share, then.share)};
 }
 
+ResampleError joined(double bound, const ResampleError& then) {
+    return bound > 0 ? joined(ResampleError{bound * bound, bound, then.samples, 1}, then) : then;
+}
+
 double psnrOf(const ResampleError& error, double extent) {
     return error.meanSquare > 0 ? 10 * std::log10(extent * extent / error.meanSquare)
                                 : std::numeric_limits<double>::infinity();

@@ -22,5 +22,7 @@ double psnrOf(const ResampleError& error, double extent);
 
 /// Upper bound of the error of samples that were resampled twice: errors add up.
 ResampleError joined(const std::optional<ResampleError>& before, const ResampleError& then);
+/// The same where samples were off by up to `bound` before.
+ResampleError joined(double bound, const ResampleError& then);
 
 } // namespace tessera::codec

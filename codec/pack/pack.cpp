@@ -1,7 +1,6 @@
 #include "codec/pack/pack.h"
 
 #include "codec/archive/archive_writer.h"
-#include "codec/archive/brick_access.h"
 #include "codec/bytes/stopwatch.h"
 #include "codec/pack/continuation.h"
 #include "codec/pack/error_bound.h"
@@ -13,7 +12,6 @@
 #include "codec/pack/pack_size.h"
 #include "codec/unpack/corrections.h"
 #include "volume/field/part_masks.h"
-#include "volume/resample/resample.h"
 #include "volume/resample/series_dataset.h"
 #include "volume/system/part_file.h"
 
@@ -309,7 +307,10 @@ void Packing::correct(ArchiveWriter& writer, const Progress& progress) {
     } const file{path_ + ".corrections"}; // of this name: what a killed process left is replaced
     (void)pack(made.data, made.options, file.path, progress);
     metadata_.corrections.push_back(writer.addCorrections(file.path));
-    for (std::size_t p = 0; p < errors_.size(); ++p) errors_[p] = std::max(errors_[p], made.bounds[p]);
+    for (std::size_t p = 0; p < errors_.size(); ++p) {
+        errors_[p] = std::max(errors_[p], made.bounds[p]);
+        (*made.errors)[p] = joined(errorsBefore_[p], (*made.errors)[p]);
+    }
     if (std::ranges::all_of(made.bounds, [](double bound) { return bound == 0; })) resampled_ = *made.errors;
 }
 

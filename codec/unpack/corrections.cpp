@@ -1,14 +1,11 @@
 #include "codec/unpack/corrections.h"
 
-#include "volume/base/parallel.h"
 #include "volume/field/part_masks.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <string>
-#include <tuple>
 #include <utility>
 
 namespace tessera::codec {

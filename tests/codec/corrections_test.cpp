@@ -255,6 +255,23 @@ TEST(Corrections, StayWhenAnArchiveIsPackedAgain) {
     EXPECT_EQ(exactnessText(Archive(folder / "c.tsr").metadata()), "error within 0.001 of range");
 }
 
+TEST(Corrections, WithoutABoundSayTheErrorsOfWhatWasPackedToo) {
+    const TemporaryFolder folder;
+    Dataset made = randomCell(8, 1);
+    PackOptions options;
+    options.lattice = StoredLattice::BCC;
+    options.maxError = 0.02;
+    pack(made, options, folder / "a.tsr");
+    const auto archive = std::make_shared<const Archive>(folder / "a.tsr");
+    Dataset stored = storedDataset(archive);
+    options.maxError = 0;
+    pack(stored, options, folder / "b.tsr", {}, packedBefore(archive));
+    const auto again = std::make_shared<const Archive>(folder / "b.tsr");
+    ASSERT_FALSE(again->metadata().resampled.empty());
+    ASSERT_NO_FATAL_FAILURE(expectKept(made, again, 0)); // within what it says, beside the source of both
+    EXPECT_GT(again->metadata().resampled[0]->largest, 0.02 * extentOf(*again, 0));
+}
+
 TEST(Corrections, HoldBoundsThatDifferencesOfFloatsCannot) {
     const TemporaryFolder folder;
     Dataset made = randomCell(2, 1);

@@ -7,7 +7,6 @@
 #include "volume/bricks/parts_bricks.h"
 #include "volume/field/part_masks.h"
 #include "volume/sources/centred_samples.h"
-#include "volume/sources/memory_source.h"
 
 #include <algorithm>
 #include <cmath>
