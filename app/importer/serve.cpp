@@ -6,6 +6,7 @@
 #include "app/importer/readers/vtk_messages.h"
 #include "volume/import/files/stream.h"
 #include "volume/system/confine.h"
+#include "volume/system/free_memory.h"
 
 #include <algorithm>
 #include <chrono>

@@ -5,7 +5,7 @@
 #include "volume/base/error.h"
 #include "volume/base/parallel.h"
 #include "volume/resample/series.h"
-#include "volume/system/confine.h"
+#include "volume/system/free_memory.h"
 #include "volume/system/launched.h"
 
 #include <algorithm>
@@ -20,8 +20,7 @@ constexpr double kOwn = 64 * kMega; ///< the program itself, its threads and tab
 
 /// Shared by the processes that a launcher started on this machine.
 double quarterOfRam() {
-    const std::uint64_t all = volume::machineMemory();
-    return all > 0 ? double(all) / 4 / launched().onThisMachine : 1e9;
+    return double(volume::machineMemory()) / 4 / launched().onThisMachine;
 }
 
 bool isSpline(const volume::ResampleOptions& options) {

@@ -6,6 +6,7 @@
 #include "vis/passes/packet_frame.h"
 #include "vis/passes/present.h"
 #include "vis/processor/processor_renderer.h"
+#include "volume/system/free_memory.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,8 +49,11 @@ void ViewTargetDeleter::operator()(ViewTarget* target) const {
 }
 
 RendererOptions quickestOptions(RendererOptions options) {
+    const std::size_t quarter = volume::machineMemory() / 4;
+    options.memoryBudget = std::min(options.memoryBudget, quarter);
     if (!options.openGl) return options;
     const bool software = (options.driver ? *options.driver : currentDriver()).software;
+    if (software) options.textureBudget = std::min(options.textureBudget, quarter); // they are in the same memory
     options.packets = software ? Packets::Always : Packets::WhileCompiling;
     return options;
 }

@@ -17,7 +17,8 @@
 /// MachineError what only OpenGL can draw.
 namespace tessera::vis {
 
-/// Options of renderers that users look at: the processor casts rays where OpenGL runs on it, and elsewhere while
+/// Options of renderers that users look at: bricks take a quarter of memory at most; the processor casts rays where
+/// OpenGL runs on it, and elsewhere while
 /// OpenGL compiles. Needs a current context.
 RendererOptions quickestOptions(RendererOptions options = {});
 

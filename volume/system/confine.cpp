@@ -90,9 +90,4 @@ void limitProcessorTime(std::chrono::seconds most) {
     lower(RLIMIT_CPU, std::uint64_t(used.ru_utime.tv_sec + used.ru_stime.tv_sec + 1 + most.count()));
 }
 
-std::uint64_t machineMemory() {
-    const long pages = ::sysconf(_SC_PHYS_PAGES), bytes = ::sysconf(_SC_PAGE_SIZE);
-    return pages > 0 && bytes > 0 ? std::uint64_t(pages) * std::uint64_t(bytes) : 0;
-}
-
 } // namespace tessera::volume

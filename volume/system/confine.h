@@ -25,7 +25,4 @@ bool confine(const Confinement& allowed);
 /// call starts anew.
 void limitProcessorTime(std::chrono::seconds most);
 
-/// Memory of this machine, bytes; 0 if unknown.
-std::uint64_t machineMemory();
-
 } // namespace tessera::volume

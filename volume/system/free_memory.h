@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 namespace tessera::volume {
@@ -23,10 +25,24 @@ int memoryHeaps();
 void giveBackFreeMemory();
 
 /// Makes room for so many bytes. More than the C library keeps for later allocations come from the system in large
-/// pages where it has such, since each page costs a fault.
+/// pages where it has such, since each page costs a fault. Throws MachineError as requireMemory().
 void reserveLarge(std::vector<std::byte>& bytes, std::size_t size);
 
-/// Bytes that the system can give to programs without swapping; infinity where it does not say.
-double availableMemory();
+/// Where the system tells of itself.
+struct SystemFiles {
+    std::string processes = "/proc", groups = "/sys/fs/cgroup";
+};
+
+/// Memory of this machine, or what the control groups of this process allow of it, bytes; the largest number if
+/// unknown.
+std::uint64_t machineMemory(const SystemFiles& files = {});
+
+/// Bytes that the system, and the control groups of this process, can give to programs without swapping; infinity where
+/// they do not say.
+double availableMemory(const SystemFiles& files = {});
+
+/// Throws MachineError if so many bytes are not available: a system that promises more than it has would end the
+/// program later.
+void requireMemory(double bytes);
 
 } // namespace tessera::volume
