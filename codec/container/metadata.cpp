@@ -9,6 +9,8 @@
 
 #include <bit>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 #include <nlohmann/json.hpp>
 
 namespace tessera::codec {
@@ -130,8 +132,12 @@ volume::Lattice readLattice(const Node& node, bool* alternating = nullptr) {
     lattice.size = {size[0].integer(1, kLargest), size[1].integer(1, kLargest), size[2].integer(1, kLargest)};
     lattice.spacing = node["spacing"].vector();
     lattice.origin = node["origin"].vector();
-    for (int axis = 0; axis < 3; ++axis)
-        if (!(lattice.spacing[axis] > 0)) node["spacing"].fail("not above 0");
+    constexpr double kMost = 1e100; // so that sums and squares stay finite
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(lattice.spacing[axis] > 1 / kMost && lattice.spacing[axis] < kMost))
+            node["spacing"].fail("not a length above 0");
+        if (!(std::abs(lattice.origin[axis]) < kMost)) node["origin"].fail("not a place");
+    }
     return lattice;
 }
 
@@ -235,14 +241,38 @@ std::string toJson(const Metadata& metadata) {
     return jsonText(document);
 }
 
+/// The lattice that samples of a source are stored on.
+volume::Lattice storedOn(const Metadata& metadata) {
+    const volume::Lattice& source = metadata.source;
+    if (metadata.alternating)
+        return volume::d4For({volume::LatticeKind4::CC, glm::ivec4(source.size, 2), glm::dvec4(source.spacing, 1),
+                              glm::dvec4(source.origin, 0)})
+            .grid(0);
+    return metadata.info.lattice.kind == LatticeKind::BCC && source.kind == LatticeKind::CC ? volume::bccFor(source)
+                                                                                            : source;
+}
+
 /// Whether stored samples can be those of a source: on its own grid, or resampled from it.
 bool isOf(const Metadata& metadata) {
-    const volume::Lattice &stored = metadata.info.lattice, &source = metadata.source;
-    if (metadata.alternating)
-        return source.kind == LatticeKind::CC &&
-               stored.size == glm::ivec3(volume::d4For({volume::LatticeKind4::CC, glm::ivec4(source.size, 2)}).size);
-    const bool resampled = stored.kind == LatticeKind::BCC && source.kind == LatticeKind::CC;
-    return stored.size == (resampled ? volume::bccFor(source) : source).size;
+    if (metadata.alternating && metadata.source.kind != LatticeKind::CC) return false;
+    const volume::Lattice &stored = metadata.info.lattice, expected = storedOn(metadata);
+    if (stored.kind != expected.kind || stored.size != expected.size) return false;
+    const glm::dvec3 last(stored.size - 1), slack = expected.spacing * 1e-3 + 1e-9 * glm::abs(expected.origin);
+    const glm::dvec3 first = glm::abs(stored.origin - expected.origin),
+                     end = glm::abs(stored.fromCells(last) - expected.fromCells(last));
+    return glm::all(glm::lessThanEqual(first, slack)) && glm::all(glm::lessThanEqual(end, slack));
+}
+
+/// Whether bounds can be those of samples on a lattice: they begin and end within a cell of the outermost ones.
+bool areOf(const volume::Box& bounds, const volume::Lattice& lattice) {
+    const glm::dvec3 lo = lattice.position({0, 0, 0}), hi = lattice.position(lattice.size - 1);
+    for (int axis = 0; axis < 3; ++axis) {
+        const double slack = lattice.spacing[axis] + 1e-9 * (std::abs(lo[axis]) + std::abs(hi[axis]));
+        const bool near =
+            std::abs(bounds.lo[axis] - lo[axis]) <= slack && std::abs(bounds.hi[axis] - hi[axis]) <= slack;
+        if (!near || !(bounds.lo[axis] <= bounds.hi[axis])) return false; // nor if one is not finite
+    }
+    return true;
 }
 
 Metadata metadataFromJson(std::string_view text, const std::string& file) {
@@ -280,6 +310,7 @@ Metadata metadataFromJson(std::string_view text, const std::string& file) {
         for (const Node& note : data["notes"].items(4096)) info.notes.push_back(note.text());
 
     if (!isOf(metadata)) root["source"].fail("the samples of the data cannot be made of it");
+    if (!areOf(info.bounds, metadata.source)) data["bounds"].fail("they are not those of the samples");
 
     const Node grid = root["grid"];
     metadata.grid.lattice = info.lattice;

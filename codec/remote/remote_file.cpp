@@ -11,7 +11,9 @@ namespace tessera::codec {
 
 namespace {
 
-constexpr std::uint64_t kGap = 1;   ///< blocks between two wanted ones that are fetched along
+constexpr std::uint64_t kGap = 1; ///< blocks between two wanted ones that are fetched along
+/// Bytes that are asked for and kept in memory at once: what a server only states costs no memory.
+constexpr std::uint64_t kAtOnce = std::uint64_t(16) << 20;
 constexpr std::uint64_t kMost = 16; ///< blocks of a request: several connections share a long range
 
 std::string nameOf(std::uint64_t checksum, std::uint64_t bytes) {
@@ -112,8 +114,10 @@ void RemoteFile::release(const Blocks& blocks) const {
 
 void RemoteFile::readAhead(std::span<const FileRange> ranges) const {
     Blocks wanted;
-    for (const FileRange& range : ranges)
+    for (FileRange range : ranges) {
+        range.length = std::min(range.length, kAtOnce); // what follows is asked for once it is read
         for (const std::uint64_t block : blocksOf(range)) wanted.push_back(block);
+    }
     std::sort(wanted.begin(), wanted.end());
     wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
     const auto isHere = [&](std::uint64_t block) { return cache_->has(block, blockBytes(block)); };
@@ -140,31 +144,45 @@ void RemoteFile::copyBlock(FileRange range, std::uint64_t block, std::span<const
                     out.begin() + std::ptrdiff_t(begin - range.offset));
 }
 
+template <class Read> FilePart RemoteFile::inPieces(FileRange range, const Read& read) const {
+    std::vector<std::byte> all;
+    for (const std::uint64_t end = range.offset + range.length; range.offset < end;) {
+        const std::uint64_t next = std::min((range.offset / kAtOnce + 1) * kAtOnce, end);
+        std::vector<std::byte> piece(next - range.offset);
+        read({range.offset, piece.size()}, piece);
+        if (piece.size() == range.length) return FilePart(std::move(piece));
+        all.insert(all.end(), piece.begin(), piece.end());
+        range.offset = next;
+    }
+    return FilePart(std::move(all));
+}
+
 FilePart RemoteFile::part(FileRange range) const {
     if (range.offset + range.length <= head_.size())
         return FilePart(std::span(head_).subspan(range.offset, range.length));
-    readAhead({&range, 1});
-    std::vector<std::byte> out(range.length), whole;
-    Blocks missing;
-    for (const std::uint64_t block : blocksOf(range)) {
-        whole.resize(blockBytes(block));
-        if (cache_->read(block, whole))
-            copyBlock(range, block, whole, out);
-        else
-            missing.push_back(block);
-    }
-    if (!missing.empty()) // removed meanwhile, or the disk keeps nothing
-        fetch(missing, [&](std::uint64_t block, auto bytes) { copyBlock(range, block, bytes, out); });
-    return FilePart(std::move(out));
+    return inPieces(range, [&](FileRange piece, std::vector<std::byte>& out) {
+        readAhead({&piece, 1});
+        std::vector<std::byte> whole;
+        Blocks missing;
+        for (const std::uint64_t block : blocksOf(piece)) {
+            whole.resize(blockBytes(block));
+            if (cache_->read(block, whole))
+                copyBlock(piece, block, whole, out);
+            else
+                missing.push_back(block);
+        }
+        if (!missing.empty()) // removed meanwhile, or the disk keeps nothing
+            fetch(missing, [&](std::uint64_t block, auto bytes) { copyBlock(piece, block, bytes, out); });
+    });
 }
 
 std::optional<FilePart> RemoteFile::freshPart(FileRange range) const {
-    std::vector<std::byte> out(range.length);
-    fetch(blocksOf(range), [&](std::uint64_t block, auto bytes) {
-        cache_->write(block, bytes);
-        copyBlock(range, block, bytes, out);
+    return inPieces(range, [&](FileRange piece, std::vector<std::byte>& out) {
+        fetch(blocksOf(piece), [&](std::uint64_t block, auto bytes) {
+            cache_->write(block, bytes);
+            copyBlock(piece, block, bytes, out);
+        });
     });
-    return FilePart(std::move(out));
 }
 
 std::optional<Header> RemoteHeaders::read(const std::stop_token& stop) {

@@ -49,6 +49,8 @@ private:
     Blocks claim(const Blocks& blocks) const;
     void release(const Blocks& blocks) const;
     void note(const Reply& reply) const;
+    /// The bytes of a range from `read(range, bytes)` of pieces.
+    template <class Read> FilePart inPieces(FileRange range, const Read& read) const;
     /// Copies what a block and a range share to its place in `out`, the bytes of the range.
     static void copyBlock(FileRange range, std::uint64_t block, std::span<const std::byte> bytes,
                           std::vector<std::byte>& out);

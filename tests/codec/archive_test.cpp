@@ -371,6 +371,7 @@ TEST(Archive, OnBccNoVolumeIsOneLargeBrick) {
     const TemporaryFolder folder;
     volume::Dataset made = makeDataset({80, 8, 8}, {{"n", ScalarType::U8}}, 1);
     made.info.lattice.kind = volume::LatticeKind::BCC;
+    made.info.bounds.hi = made.info.lattice.position(made.info.lattice.size - 1);
     made.read = [lattice = made.info.lattice, read = made.read](int p, int c, int t) {
         volume::Field field = read(p, c, t);
         field.lattice = lattice;

@@ -77,7 +77,7 @@ inline volume::Dataset makeDataset(glm::ivec3 size, const std::vector<MadeParame
     volume::Dataset made;
     made.info.name = "made";
     made.info.lattice = {kind, size, {1.0, 1.0, 0.5}, {0, 0, 0}};
-    made.info.bounds = {{0, 0, 0}, glm::dvec3(size - 1) * made.info.lattice.spacing};
+    made.info.bounds = {{0, 0, 0}, made.info.lattice.position(size - 1)};
     made.info.times.clear();
     for (int t = 0; t < times; ++t) made.info.times.push_back(0.5 * t);
     for (const MadeParameter& p : parameters) {

@@ -38,15 +38,6 @@ void setUp(GLuint name, GLenum filter, const std::string& label) {
     glObjectLabel(GL_TEXTURE, name, -1, label.c_str());
 }
 
-int longestEdge(GLenum target) {
-    GLint edge = 0;
-    glGetIntegerv(target == GL_TEXTURE_3D         ? GL_MAX_3D_TEXTURE_SIZE
-                  : target == GL_TEXTURE_CUBE_MAP ? GL_MAX_CUBE_MAP_TEXTURE_SIZE
-                                                  : GL_MAX_TEXTURE_SIZE,
-                  &edge);
-    return edge;
-}
-
 bool fillsWithNan() {
     static const bool fills = [] {
         const char* mode = std::getenv("TESSERA_DEBUG_GL");
@@ -92,6 +83,15 @@ Texture checked(GLenum target, glm::ivec3 size, GLenum filter, const std::string
 }
 
 } // namespace
+
+int longestEdge(GLenum target) {
+    GLint edge = 0;
+    glGetIntegerv(target == GL_TEXTURE_3D         ? GL_MAX_3D_TEXTURE_SIZE
+                  : target == GL_TEXTURE_CUBE_MAP ? GL_MAX_CUBE_MAP_TEXTURE_SIZE
+                                                  : GL_MAX_TEXTURE_SIZE,
+                  &edge);
+    return edge;
+}
 
 Texture makeTexture2D(glm::ivec2 size, GLenum format, GLenum filter, const std::string& label) {
     return checked(GL_TEXTURE_2D, {size, 1}, filter, label,

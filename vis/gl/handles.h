@@ -41,6 +41,9 @@ using VertexArray = Handle<ObjectKind::VertexArray>;
 using Query = Handle<ObjectKind::Query>;
 using ProgramObject = Handle<ObjectKind::Program>;
 
+/// Longest edge in texels of a texture of this kind.
+int longestEdge(GLenum target);
+
 // Textures with one level of immutable storage, clamped to edge; `filter` is GL_NEAREST or GL_LINEAR. Each function
 // throws MachineError when the driver refuses the size or has no memory. The initial content is undefined; with
 // TESSERA_DEBUG_GL=nan in the environment it is NaN, or all bits set for integer formats.

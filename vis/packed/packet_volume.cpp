@@ -183,6 +183,16 @@ std::size_t PacketVolume::at(glm::ivec3 sample, int sublattice) const {
            2;
 }
 
+bool fitsPackets(const volume::Lattice& lattice) {
+    constexpr int kLongest = 32767 - 2 * kMargin;
+    constexpr double kMostPairs = 2147483647;
+    const glm::ivec3 texels = lattice.texels();
+    if (std::max({texels.x, texels.y, texels.z}) > kLongest) return false;
+    const glm::dvec3 bricks((texels + (2 * kMargin - 1 + kBrick - 1)) / kBrick);
+    const double sublattices = lattice.kind == volume::LatticeKind::BCC ? 2 : 1;
+    return bricks.x * bricks.y * bricks.z * sublattices * kSlice * kRow < kMostPairs;
+}
+
 std::size_t PacketVolume::bytes() const {
     std::size_t out =
         shorts.size() * 2 + floats.size() * 4 + present.size() * 2 + (lo.size() + hi.size()) * 4 + absent.size();

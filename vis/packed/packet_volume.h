@@ -66,6 +66,9 @@ struct PacketChannel {
     PacketChannel at(int stored) const { return {channel, {stored, stored, 0}, filter, exact}; }
 };
 
+/// Whether packets can find their way in a lattice: positions have 15 bits of whole cells, and pairs are counted in 31.
+bool fitsPackets(const volume::Lattice& lattice);
+
 /// Sets the bounds of blocks from those of the parts.
 void joinParts(PacketVolume& volume);
 

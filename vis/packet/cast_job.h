@@ -149,6 +149,7 @@ struct CastJob {
     float begin = 0;
     glm::dvec3 halfSize{0.5}, cell{1};           ///< world
     glm::dvec3 cellsPerWorld{1}, cellsOffset{0}; ///< position in a PacketVolume = world * cellsPerWorld + cellsOffset
+    glm::vec3 least{0}, most{0};                 ///< the positions of the box
     glm::dvec3 edges{1};                         ///< of a sublattice cell in world space, with sign
     float stepVoxels = 1;
     std::span<const PlacedClip> clips;

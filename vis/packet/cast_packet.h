@@ -104,6 +104,23 @@ inline Vec point(const glm::dvec3& a, const glm::dvec3& x, Floats byX, const glm
     return spreadOut<Floats>(a) + spreadOut<Floats>(x) * byX + spreadOut<Floats>(y) * byY;
 }
 
+/// Moves rays into the box where rounding took them further out of it than there are samples around: seen from afar,
+/// long data have many cells in the last digit of a distance.
+inline void keepWithin(const CastJob& job, Packet& packet) {
+    const Floats slack(0.05f);
+    for (int axis = 0; axis < 3; ++axis) {
+        const Floats least = Floats(job.least[axis]) - slack, most = Floats(job.most[axis]) + slack;
+        Floats &first = packet.first[axis], &advance = packet.advance[axis];
+        const Floats enter = multiplyAdd(-packet.phase, advance, first),
+                     exit = multiplyAdd(packet.count, advance, enter);
+        const Mask inside = (enter >= least) & (enter <= most) & (exit >= least) & (exit <= most);
+        if (!anyOf(packet.meets & !inside)) continue;
+        const Floats from = clamped(enter, least, most), to = clamped(exit, least, most);
+        advance = choose(inside, advance, (to - from) / larger(packet.count, Floats(1)));
+        first = choose(inside, first, multiplyAdd(packet.phase, advance, from));
+    }
+}
+
 /// The rays of the pixels from `begin` on, those below `end`.
 inline Packet beginPacket(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) {
     float x[kLanes], y[kLanes], phase[kLanes];
@@ -133,6 +150,7 @@ inline Packet beginPacket(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) 
     const Vec scale = spreadOut<Floats>(job.cellsPerWorld);
     packet.advance = packet.ray.direction * packet.step * scale;
     packet.first = packet.world(Floats(0)) * scale + spreadOut<Floats>(job.cellsOffset);
+    keepWithin(job, packet);
     for (const PlacedClip& clip : job.clips) {
         if (!clip.hole) continue;
         const SegmentOf<Floats> own = insideClip(clip, packet.ray);

@@ -1,5 +1,6 @@
 #include "vis/packet/packet_refusal.h"
 
+#include "vis/packed/packet_volume.h"
 #include "vis/packet/cast_job.h"
 #include "vis/packet/packet_channels.h"
 
@@ -20,6 +21,7 @@ std::string refusalOfFocus(const Scene& scene, const volume::DatasetInfo& info) 
 
 std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
     if (std::string why = refusalOfFocus(scene, info); !why.empty()) return why;
+    if (!fitsPackets(lattice)) return "so long data";
     if (scene.render.proxy != Proxy::Rays) return "proxy geometry";
     if (scene.render.adaptiveStep > 0) return "adaptive steps";
     if (scene.render.normalBits > 0) return "quantised normals";

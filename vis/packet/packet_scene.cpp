@@ -2,6 +2,7 @@
 
 #include "vis/optics/preintegration.h"
 #include "vis/optics/ray_setup.h"
+#include "vis/packet/packet_box.h"
 #include "vis/packet/packet_table.h"
 #include "vis/transfer/block_distance.h"
 
@@ -336,12 +337,7 @@ CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, co
     job.directionX = onPlane(right.direction);
     job.directionY = onPlane(up.direction);
     job.begin = scene.camera.projection == Projection::Perspective ? 0.0f : -1e6f;
-    // A data set of a single slice has no thickness; give it enough for rays to meet it.
-    job.halfSize = glm::max(frame.halfSize, glm::dvec3(1e-5));
-    job.cell = worldCell(lattice, frame);
-    job.edges = lattice.spacing * frame.scale;
-    job.cellsPerWorld = 1.0 / job.edges;
-    job.cellsOffset = (-frame.offset / frame.scale - lattice.origin) / lattice.spacing + double(kMargin);
+    placeBox(job, frame, lattice);
     job.stepVoxels = float(double(scene.render.stepVoxels) * stepFactor);
     clips_ = placeClips(scene.clips, frame);
     job.clips = clips_;

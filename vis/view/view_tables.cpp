@@ -88,8 +88,11 @@ TablesContent ViewTables::make(const TablesKey& key, const RenderCall& call) {
     const std::optional<BlockDistances> blocks = blockDistances(plan, key.scene, info);
     std::vector<std::uint8_t> steps = blockSteps(plan, key.scene, info, call.grid().lattice);
     const double work = blocks && !steps.empty() ? workLeft(*blocks, steps, key.scene, info, call.grid().lattice) : 1;
-    made.adaptive = blocks && work < kWorthSteps * blocks->occupied;
-    made.skip = made.adaptive || (blocks && blocks->occupied < kSkipOccupancy);
+    // Of long data there may be more blocks in a row than a texture holds: then no rays leap.
+    const bool fits =
+        blocks && std::max({blocks->count.x, blocks->count.y, blocks->count.z}) <= longestEdge(GL_TEXTURE_3D);
+    made.adaptive = fits && work < kWorthSteps * blocks->occupied;
+    made.skip = made.adaptive || (fits && blocks->occupied < kSkipOccupancy);
     if (!made.adaptive) steps.clear();
     covered_.clear();
     if (blocks)
