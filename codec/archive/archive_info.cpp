@@ -88,6 +88,7 @@ Archive::Archive(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 void Archive::Impl::load() {
     const Header& named = header.header;
+    if (named.metadata.length > kMostMetadata) throw Error("the metadata are too long", path, "byte 24");
     const FileRange ahead[] = {{named.metadata.offset, named.metadata.length},
                                {named.index.offset, named.index.length}};
     bytes->readAhead(ahead);

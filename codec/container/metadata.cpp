@@ -349,12 +349,12 @@ Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t features,
             throw Error("the metadata cannot be decoded", file, "metadata");
         return metadataFromJson(textOf(text), file);
     }
-    constexpr std::size_t kMost = std::size_t(1) << 26, kLeastRatio = 4096; // no text compresses by a higher ratio
+    constexpr std::size_t kLeastRatio = 4096; // no text compresses by a higher ratio
     if (block.size() < 4) throw Error("the metadata is truncated", file, "metadata");
     const std::size_t length = readU32(block.data());
     const auto body = block.subspan(4);
     if (length == body.size()) return metadataFromJson(textOf(body), file);
-    if (length > kMost || length / kLeastRatio > body.size())
+    if (length > kMostMetadata || length / kLeastRatio > body.size())
         throw Error("the metadata has an invalid length", file, "metadata");
     Bytes text(length);
     if (decompress(body, text) != DecodeStatus::Ok) throw Error("the metadata cannot be decoded", file, "metadata");

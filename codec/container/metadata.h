@@ -38,6 +38,9 @@ struct Metadata {
     bool operator==(const Metadata&) const = default;
 };
 
+/// Longest text of metadata, bytes: what a file or a server only states costs no memory.
+inline constexpr std::size_t kMostMetadata = std::size_t(1) << 26;
+
 /// Serialises the metadata as JSON without the times, compressed as far as the header's features allow.
 Bytes serialise(const Metadata& metadata, std::uint32_t features);
 /// Parses the metadata. Throws Error naming `file` and the JSON path when a key is missing or has the wrong type or an
