@@ -81,6 +81,20 @@ TEST(BrickImportance, UnitsDoNotMatterTheRangeDoes) {
     }
 }
 
+TEST(BrickImportance, RangesAsNarrowAndWideAsFloatsCount) {
+    const BrickGrid grid = gridOf(kCube);
+    const Field field = test::sampled<float>(kCube, scene);
+    const auto wanted = importanceOfBricks(grid, field, {10, 100}, false);
+    for (const double unit : {1e-42, 1e-40, 1e-37, 3e36}) {
+        const Field other = test::sampled<float>(kCube, [&](glm::dvec3 p) { return scene(p) * unit; });
+        const auto found = importanceOfBricks(grid, other, {10 * unit, 100 * unit}, false);
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+            EXPECT_NEAR(found[i].importance, wanted[i].importance, 0.02) << unit; // 1e-42 is 714 times the least float
+            EXPECT_NEAR(found[i].detail, wanted[i].detail, 0.02) << unit;
+        }
+    }
+}
+
 TEST(BrickImportance, StoredNumbersAreReadByTheirOffsetAndScale) {
     const BrickGrid grid = gridOf(kCube);
     const Field field = test::sampled<float>(kCube, [](glm::dvec3 p) { return std::rint(scene(p)); });

@@ -28,10 +28,12 @@ struct PartRows {
         dispatch(field.type, [&]<class T>(T) {
             const T* from = field.as<T>().data() + row;
             const auto factor = float(field.scale * scale), shift = float((field.offset - lo) * scale);
-            for (std::size_t x = 0; x < n; ++x) {
-                const float part = float(from[x]) * factor + shift;
-                values[x] = std::min(std::max(part, 0.0f), 1.0f);
-            }
+            const auto within = [](float part) { return std::min(std::max(0.0f, part), 1.0f); }; // 0 of no number
+            if (std::isfinite(factor) && std::isfinite(shift))
+                for (std::size_t x = 0; x < n; ++x) values[x] = within(float(from[x]) * factor + shift);
+            else // ranges of subnormal floats
+                for (std::size_t x = 0; x < n; ++x)
+                    values[x] = within(float((field.offset + field.scale * double(from[x]) - lo) * scale));
             if (!masked) return;
             for (std::size_t x = 0; x < n; ++x) {
                 bool there = field.present(row + x);
@@ -162,7 +164,7 @@ Smoothed smoothedHalf(const Field& field, int sublattice, const SmoothedRange& a
             [&](int k, int y, std::uint8_t*) {
                 return samples + lattice.index({0, y, k * slices + sublattice});
             },
-            [=](std::int32_t sum) { return std::min(std::max(float(sum) * factor + shift, 0.0f), 1.0f); });
+            [=](std::int32_t sum) { return std::min(std::max(0.0f, float(sum) * factor + shift), 1.0f); });
         return out;
     }
     const auto inAll = [](float sum) { return sum / kAllWeights; };
