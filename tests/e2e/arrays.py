@@ -149,6 +149,16 @@ class Writing(unittest.TestCase):
         self.assertEqual([p["name"] for p in about["parameters"]], ["T", "U", "grey", "region"])
         run("verify", "w.tsr")
 
+    def test_byte_orders_layouts_and_extremes(self):
+        numbers = np.arange(210).reshape(5, 6, 7)
+        several = [numbers.astype(kind) for kind in (">f4", "<f4", ">f8", ">i2", ">u2", ">i4", np.bool_)]
+        several += [np.asfortranarray(several[0]), several[0][::-1, :, ::-2], np.broadcast_to(several[0][:1], (4, 6, 7)),
+                    several[0].T, numbers.astype(np.float32) * np.float32(1e-42), (numbers - 99.0) * 3e36,
+                    np.ones((1, 1, 40000), np.float32), np.ones((40000, 1, 1), np.float32)]
+        for values in several:
+            tessera.write("several.tsr", {"v": values})
+            same(tessera.open("several.tsr")["v"].read(), values.astype(np.float32), values.dtype)
+
     def test_a_bound_is_kept(self):
         smooth = np.sin(np.arange(20000).reshape(20, 25, 40) * 0.01).astype(np.float32)
         tessera.write("b.tsr", {"T": smooth}, max_error=0.001)
@@ -183,7 +193,10 @@ class Writing(unittest.TestCase):
                                     ({"T": self.T}, {"units": "K"}), ({"T": self.T}, {"units": {"X": "K"}}),
                                     ({"T": self.T}, {"labels": {"X": {1: "a"}}}), ({"T": self.T}, {"origin": (np.nan, 0, 0)}), ({"T": self.T[:, :0]}, {}),
                                     ({"T": self.T.astype(np.complex64)}, {}), ({"T": self.T[1].astype(np.int64)}, {}),
-                                    ({"T": self.T}, {"quantities": {"U": ("V", [1])}})):
+                                    ({"T": self.T}, {"quantities": {"U": ("V", [1])}}),
+                                    ({"T": self.T}, {"units": {"T": 5}}), ({"T": self.T}, {"name": "\ud800"}),
+                                    ({"T": self.T}, {"time_unit": None}), ({"T": self.T}, {"spacing": (1e-300, 1, 1)}),
+                                    ({"T": self.T}, {"origin": (1e300, 1, 1)})):
             with self.assertRaises(tessera.Error):
                 tessera.write("wrong.tsr", parameters, **options)
             with self.assertRaises(tessera.Error):

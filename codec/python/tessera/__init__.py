@@ -174,7 +174,7 @@ def write(path, parameters, times=None, spacing=(1, 1, 1), origin=(0, 0, 0), *, 
     """Packs arrays into an archive.
 
     parameters: arrays by name, [z, y, x] or [time, z, y, x], vectors with a last axis of 3; uint8, int16, uint16, int32
-        or float32 (float64 is rounded to float32). Masked and NaN samples are absent. Without `times`, or with one, an
+        or float32 in any byte order (float64 is rounded to float32, bool is uint8). Masked and NaN samples are absent. Without `times`, or with one, an
         array of four axes whose last has 3 members is a vector at one time.
     times: one number for each time, rising; by default 0, 1, ...
     spacing, origin: (x, y, z) in length_unit ("": not stated).
@@ -198,6 +198,13 @@ def write(path, parameters, times=None, spacing=(1, 1, 1), origin=(0, 0, 0), *, 
         if np.shape(given) != (3,):
             raise Error(f"{path}: {what} is {given!r}, not three numbers (x, y, z)")
     units, labels = units or {}, labels or {}
+    texts = [("name", name), ("length_unit", length_unit), ("time_name", time_name), ("time_unit", time_unit)]
+    texts += [(f"the unit of {key}", unit) for key, unit in units.items()]
+    texts += [(f"a label of {key}", text) for key, names in labels.items() for text in names.values()]
+    texts += [text for key, (unit, _) in (quantities or {}).items() for text in (("a quantity", key), ("its unit", unit))]
+    for what, text in texts + [("a parameter", key) for key in parameters]:
+        if not isinstance(text, str) or any("\ud800" <= c <= "\udfff" for c in text):
+            raise Error(f"{path}: {what} is {text!r}, no text in Unicode")
     given = []
     for key, values in parameters.items():
         samples, absent = _samples(key, values, times)
@@ -234,8 +241,11 @@ def _samples(name, values, times):
     """Contiguous [time, z, y, x, component] and a mask of the same shape, empty where nothing is absent."""
     absent = np.ma.getmaskarray(values)
     values = np.asarray(np.ma.getdata(values))
+    values = values.astype(values.dtype.newbyteorder("="), copy=False)
     if values.dtype == np.float64 or values.dtype == np.float16:
         values = values.astype(np.float32)
+    if values.dtype == np.bool_:
+        values = values.astype(np.uint8)
     if values.dtype.kind == "f":
         absent = absent | np.isnan(values)
     several = times is not None and len(times) > 1
