@@ -259,7 +259,10 @@ void requireFilled(const Index& index, const IndexShape& shape, const Header& he
     for (const FrameRecord& frame : index.frames) add(frame);
     require(shape.corrections.empty() || (header.features & kCorrections) != 0,
             "there are corrections that the archive does not declare", file);
-    for (const FileRange& range : shape.corrections) add(range);
+    require(shape.numbers.empty() || (header.features & kRegionNumbers) != 0,
+            "there are numbers of regions that the archive does not declare", file);
+    for (const auto* ranges : {&shape.corrections, &shape.numbers})
+        for (const FileRange& range : *ranges) add(range);
     add(header.metadata);
     std::sort(parts.begin(), parts.end());
     std::uint64_t at = kFirstChunk;
