@@ -4,6 +4,7 @@
 #include "codec/container/container.h"
 #include "codec/container/json_text.h"
 #include "codec/container/number_shape.h"
+#include "volume/flow/whole_numbers.h"
 
 #include <algorithm>
 #include <bit>
@@ -128,6 +129,16 @@ void takeSeries(ByteReader& in, std::span<double> values) {
         values[t] = unordered(static_cast<std::int64_t>(numbers[t] << shift));
 }
 
+/// Sets the numbers of everything that follow from those of regions.
+void deriveWhole(NumbersAtTime& time) {
+    LabelNumbers& whole = time.labels[0];
+    const LabelNumbers& regions = time.labels[1];
+    for (std::size_t c = 0; c < whole.channels.size(); ++c)
+        whole.statistics.all[c] = volume::wholeSummary(regions.statistics, c, whole.statistics.all[c]);
+    for (std::size_t k = 0; k < whole.carried.size(); ++k)
+        whole.balances[k] = {volume::wholeBalance(regions.balances[k])};
+}
+
 /// How many numbers of all times together a block of so many bytes may hold.
 std::uint64_t mostNumbers(std::uint64_t bytes) {
     return (std::uint64_t(1) << 20) + 2 * bytes;
@@ -146,7 +157,7 @@ Bytes blockOf(std::span<const NumbersAtTime> times, std::string& shape) {
             LabelNumbers numbers = widened(time.labels[place], own);
             changeEmpty(numbers, [](Summary& of) { of = {}; });
             std::size_t at = first;
-            visitNumbers(numbers, place == 0, [&](double value, bool exact) {
+            visitNumbers(numbers, place == 0, own.derived, [&](double value, bool exact) {
                 if (at == values.size()) values.emplace_back();
                 values[at++].push_back(exact ? value : roundedNumber(value));
             });
@@ -265,14 +276,16 @@ ComputedNumbers decodeNumbers(std::span<const std::byte> block, std::string& sha
     for (std::size_t place = 0; place < shapes.size(); ++place) {
         std::vector<std::vector<double*>> at(times);
         for (std::size_t t = 0; t < times; ++t)
-            visitNumbers(out[t].labels[place], place == 0, [&](double& value, bool) { at[t].push_back(&value); });
+            visitNumbers(out[t].labels[place], place == 0, shapes[place].derived,
+                         [&](double& value, bool) { at[t].push_back(&value); });
         for (std::size_t n = 0; n < at.front().size(); ++n) {
             takeSeries(in, series);
             for (std::size_t t = 0; t < times; ++t) *at[t][n] = series[t];
         }
     }
     needNumbers(in.left() == 0, "there are more of them than they are of");
-    for (NumbersAtTime& time : out)
+    for (NumbersAtTime& time : out) {
+        if (shapes.front().derived) deriveWhole(time);
         for (LabelNumbers& of : time.labels) {
             const volume::RegionStatistics& whole = time.labels.front().statistics;
             of.statistics.allSamples = whole.allSamples;
@@ -282,6 +295,7 @@ ComputedNumbers decodeNumbers(std::span<const std::byte> block, std::string& sha
             changeEmpty(of, [&](Summary& none) { none = {0, 0, kNone, kNone, kNone, kNone, 0}; });
             narrow(of);
         }
+    }
     return out;
 }
 

@@ -59,7 +59,7 @@ public:
         const std::uint64_t bricks = shape_.bricks;
         // No count may exceed the capacity of the page's bytes, so nothing below overflows and allocations are
         // proportional to those bytes. Decompressed pages can be larger than the file; mostPageBytes limits them.
-        require(bricks <= room, "the index is too short", file_);
+        require(bricks <= room || (frames == 0 && masks == 0), "the index is too short", file_);
         const std::uint64_t maskBytes = kMaskRecordBytes + bricks * kMaskBrickBytes;
         const std::uint64_t frameBytes =
             kFrameRecordBytes + bricks * (kFrameBrickBytes + (notes_ ? kNotesBytes : 0) +

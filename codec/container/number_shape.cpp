@@ -1,6 +1,7 @@
 #include "codec/container/number_shape.h"
 
 #include "volume/base/error.h"
+#include "volume/flow/whole_numbers.h"
 
 #include <algorithm>
 #include <functional>
@@ -23,6 +24,7 @@ json toJson(const NumberShape& shape) {
     if (!shape.velocity.empty()) out["velocity"] = shape.velocity, out["carried"] = shape.carried;
     if (!shape.label.empty()) out["regions"] = shape.regions;
     if (!shape.borders.empty()) out["borders"] = shape.borders;
+    if (shape.derived) out["derived"] = true;
     return out;
 }
 
@@ -39,13 +41,17 @@ std::vector<NumberShape> shapesOf(const std::string& text) {
                 shape.carried = each.at("carried").get<std::vector<std::string>>();
             }
             if (!shape.label.empty()) shape.regions = each.at("regions").get<std::vector<int>>();
+            if (each.contains("derived")) shape.derived = each.at("derived").get<bool>();
             if (each.contains("borders")) shape.borders = each.at("borders").get<std::vector<std::pair<int, int>>>();
         }
     } catch (const json::exception&) {
         failNumbers("what they are of cannot be read");
     }
     needNumbers(!out.empty() && out.front().label.empty(), "those of everything are missing");
+    needNumbers(!out.front().derived || (out.size() > 1 && out[1].carried == out[0].carried),
+                "those of everything have no regions");
     for (const NumberShape& shape : out) {
+        needNumbers(!shape.derived || shape.label.empty(), "those of a label are not those of everything");
         needNumbers(shape.channels == out.front().channels, "labels have different channels");
         needNumbers(std::ranges::is_sorted(shape.regions, std::less_equal<>()), "regions are out of order");
         needNumbers(std::ranges::is_sorted(shape.borders, std::less_equal<>()), "borders are out of order");
@@ -70,6 +76,10 @@ NumberShape shapeOf(std::span<const NumbersAtTime> times, std::size_t place) {
     }
     shape.regions.assign(regions.begin(), regions.end());
     shape.borders.assign(borders.begin(), borders.end());
+    shape.derived = place == 0 && std::ranges::all_of(times, [](const NumbersAtTime& time) {
+                        return time.labels.size() > 1 && volume::coversAll(time.labels[1].statistics) &&
+                               time.labels[1].carried == time.labels[0].carried;
+                    });
     return shape;
 }
 

@@ -17,6 +17,7 @@ struct NumberShape {
     std::vector<std::string> channels, carried;
     std::vector<int> regions;
     std::vector<std::pair<int, int>> borders; ///< label values
+    bool derived = false;                     ///< of everything: from the regions of the next label, which cover it
 };
 
 /// Throws Error with this reason.
@@ -38,14 +39,15 @@ volume::LabelNumbers widened(const volume::LabelNumbers& from, const NumberShape
 /// Leaves out the regions and borders that are not there.
 void narrow(volume::LabelNumbers& numbers);
 
-/// Calls visit(number, whether it keeps every bit) for all numbers of a label in the order of the format. `whole`: also
-/// those of everything.
-template <class Visit> void visitNumbers(volume::LabelNumbers& numbers, bool whole, const Visit& visit) {
+/// Calls visit(number, whether it keeps every bit) for all numbers of a label that are stored, in the order of the
+/// format. `whole`: also those of everything. `derived`: these alone, and only what regions do not tell.
+template <class Visit> void visitNumbers(volume::LabelNumbers& numbers, bool whole, bool derived, const Visit& visit) {
     const auto summary = [&](volume::Summary& of) {
         visit(of.samples, true);
         visit(of.volume, true);
-        visit(of.mean, false);
         visit(of.deviation, false);
+        if (derived) return;
+        visit(of.mean, false);
         visit(of.min, true);
         visit(of.max, true);
     };
@@ -61,6 +63,7 @@ template <class Visit> void visitNumbers(volume::LabelNumbers& numbers, bool who
         visit(statistics.allVolume, true);
         for (volume::Summary& of : statistics.all) summary(of);
     }
+    if (derived) return;
     for (std::size_t r = 0; r < statistics.regions.size(); ++r) {
         visit(statistics.samples[r], true);
         visit(statistics.volume[r], true);

@@ -31,6 +31,7 @@ volume::ComputedNumbers madeNumbers(int times) {
             }
         for (LabelNumbers& of : at.labels) of.statistics.all = at.labels.front().statistics.all;
         LabelNumbers& labelled = at.labels.back();
+        labelled.statistics.samples.front() -= 1; // so they do not cover everything
         if (t % 3 == 1) {
             labelled.statistics.regions.pop_back();
             labelled.statistics.samples.pop_back();

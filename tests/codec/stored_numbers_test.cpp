@@ -108,6 +108,19 @@ TEST(StoredNumbers, StayWhenAnArchiveIsPackedAgain) {
     EXPECT_NE(summary.notes.back().find("left out"), std::string::npos);
 }
 
+/// What is added after all frames have been made readable has a page without frames.
+TEST(StoredNumbers, FollowFramesOfManyBricksThatAreReadable) {
+    const TemporaryFolder folder;
+    Dataset made = makeDataset({40, 40, 40}, {{"T", volume::ScalarType::F32, 1, Texture::Noise, false, false}}, 1);
+    PackOptions options = bounded();
+    options.maxError = 1e-5;
+    options.brickSize = 4;
+    pack(made, options, folder / "a.tsr");
+    const Archive archive(folder / "a.tsr");
+    EXPECT_EQ(archive.commits(), 2);
+    EXPECT_TRUE(archive.numbers());
+}
+
 TEST(StoredNumbers, SlabsGiveTheSame) {
     const TemporaryFolder folder;
     Dataset made = flowCell(4, 1);

@@ -2,6 +2,7 @@
 
 #include "volume/flow/flow_channels.h"
 #include "volume/flow/sections.h"
+#include "volume/flow/whole_numbers.h"
 
 #include <algorithm>
 
@@ -20,8 +21,9 @@ void addChannels(RegionStatistics&& more, RegionStatistics& statistics) {
         statistics.summary[r].insert(statistics.summary[r].end(), more.summary[r].begin(), more.summary[r].end());
 }
 
-LabelNumbers numbersOfLabel(const BrickSource& source, int label, int time, std::size_t cacheBytes,
-                            const Progress& progress) {
+/// Of a label, or of everything, whose balances follow from those of a label that covers it (`covering`, or null).
+LabelNumbers numbersOfLabel(const BrickSource& source, int label, int time, const LabelNumbers* covering,
+                            std::size_t cacheBytes, const Progress& progress) {
     const DatasetInfo& info = source.info();
     const std::vector<Channel> channels = info.channels();
     LabelNumbers out;
@@ -45,6 +47,10 @@ LabelNumbers numbersOfLabel(const BrickSource& source, int label, int time, std:
         addChannels(computeRegionStatistics(source, {own, label, regions, time, 0}, {{}, part.stop}), out.statistics);
         if (!velocity || parameter.components != 1) continue;
         out.carried.push_back(out.channels.back());
+        if (covering) {
+            out.balances.push_back({wholeBalance(covering->balances[out.balances.size()])});
+            continue;
+        }
         BalanceQuery query{own.front(), *velocity, label, regions, time};
         query.cacheBytes = cacheBytes;
         out.balances.push_back(computeBalance(source, query, {{}, part.stop}));
@@ -62,18 +68,23 @@ const NumbersAtTime* at(const ComputedNumbers& numbers, double time) {
 
 NumbersAtTime computeNumbers(const BrickSource& source, int time, std::size_t cacheBytes, const Progress& progress) {
     const DatasetInfo& info = source.info();
-    std::vector<int> labels{-1};
+    NumbersAtTime out;
+    out.time = info.times[std::size_t(time)];
+    std::vector<int> labels;
     const std::vector<Channel> channels = info.channels();
     for (std::size_t c = 0; c < channels.size(); ++c)
         if (info.parameters[std::size_t(channels[c].parameter)].categorical) labels.push_back(int(c));
-    NumbersAtTime out;
-    out.time = info.times[std::size_t(time)];
-    const double count = double(labels.size());
+    const double count = double(labels.size()) + 1;
     for (std::size_t l = 0; l < labels.size(); ++l) {
-        LabelNumbers numbers = numbersOfLabel(source, labels[l], time, cacheBytes,
-                                              progress.part(double(l) / count, double(l + 1) / count));
+        const Progress part = progress.part(double(l) / count, double(l + 1) / count);
+        LabelNumbers numbers = numbersOfLabel(source, labels[l], time, nullptr, cacheBytes, part);
         if (!numbers.channels.empty()) out.labels.push_back(std::move(numbers));
     }
+    const bool covers = !out.labels.empty() && coversAll(out.labels.front().statistics);
+    LabelNumbers whole = numbersOfLabel(source, -1, time, covers ? &out.labels.front() : nullptr, cacheBytes,
+                                        progress.part(1 - 1 / count, 1));
+    if (whole.channels.empty()) return out; // there are labels alone
+    out.labels.insert(out.labels.begin(), std::move(whole));
     return out;
 }
 
