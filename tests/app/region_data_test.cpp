@@ -230,7 +230,7 @@ TEST(RegionData, BalancesSayWhatCarriesAndInWhichUnit) {
 
 TEST(RegionData, CellsOfABalanceStandUnderTheirHeads) {
     const std::vector<std::string> cells =
-        balanceCells({"air", "total: reacts", 1.5, 2.5, 3.5, 4.5, 5.5, true, 0.25, 7.5});
+        balanceCells({}, {"air", "total: reacts", 1.5, 2.5, 3.5, 4.5, 5.5, true, 0.25, 7.5, 0, 0, 0});
     ASSERT_EQ(cells.size(), 9u);
     EXPECT_EQ(cells[0], "air");
     EXPECT_EQ(cells[1], "total: reacts");
