@@ -72,11 +72,11 @@ void run(const PlotRequest& request) {
     if (info.times.size() < 2) throw Error("has only one time: curves need several", request.inputs[0]);
     if (!csv && !figure) return drawPicture(request, data, sources);
     Session session;
-    const volume::Curves curves =
-        readCurves(*sources.numbers, plotCurvesQuery(request.view, session, info), progress.part(0.4, 1));
+    const PlotCurvesQuery query = plotCurvesQuery(request.view, session, info);
+    const volume::Curves curves = readCurves(*sources.numbers, sources.origin, query, progress.part(0.4, 1));
     AtomicFile file(request.output);
     if (csv) {
-        file.write(originLine(sources.origin, info) + curvesCsv(curves));
+        file.write("# numbers: " + curvesOrigin(info, sources.origin, query) + "\n" + curvesCsv(curves));
     } else {
         std::string pane;
         VectorPage page = curvesDrawing(curves, request.time);

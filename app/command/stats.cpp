@@ -44,8 +44,7 @@ Sources openInput(const DataRef& data, const Progress& progress) {
 std::string stateOf(const Question& question) {
     const glm::ivec3 size = question.source->grid().lattice.size;
     return question.info().name + ", " + std::to_string(size.x) + " x " + std::to_string(size.y) + " x " +
-           std::to_string(size.z) + " samples, numbers " +
-           originText(question.origin, question.info(), question.channels);
+           std::to_string(size.z) + " samples, numbers " + question.origin();
 }
 
 /// Throws Error for an option, by name, that would change nothing.
@@ -92,8 +91,7 @@ std::string jsonOf(const Question& question, const Answer& answer) {
 void write(const StatsRequest& request, const Question& question, const Answer& answer) {
     const std::string& path = request.output;
     if (path.empty()) return;
-    const std::string origin = originText(question.origin, question.info(), question.channels);
-    const std::string line = originLine(question.origin, question.info(), question.channels);
+    const std::string origin = question.origin(), line = "# numbers: " + origin + "\n";
     const auto figure = [&] {
         VectorPage drawing =
             drawingOf(request.options.planesAcross() ? answer.panels : figureOf(question, answer.json), 2);

@@ -33,7 +33,8 @@ SectionCurvesQuery sectionCurvesQuery(const StatsRequest& request, const Questio
 
 std::vector<RegionRow> regionRowsAt(const Question& question, double time, const Progress& progress) {
     const RegionQuery query{question.channels, question.label, question.at(time)};
-    std::vector<RegionRow> rows = regionRows(question.info(), query, readRegions(question.source, query, progress));
+    std::vector<RegionRow> rows =
+        regionRows(question.info(), query, readRegions(question.source, question.from, query, progress));
     std::erase_if(rows, [&](const RegionRow& row) {
         return !question.regions.empty() && std::ranges::none_of(question.regions, [&](int value) {
             return row.region == volume::labelName(volume::parameterOf(question.info(), question.label), value);
@@ -51,7 +52,8 @@ Answer sectionsAt(const StatsRequest& request, const Question& question, double 
     Answer answer;
     const volume::DatasetInfo& info = question.info();
     const SectionMeasure show = request.options.show;
-    const SectionCurves curves = readSections(question.source, sectionCurvesQuery(request, question, time), progress);
+    const SectionCurves curves =
+        readSections(question.source, sectionCurvesQuery(request, question, time), progress, question.from);
     answer.csv = sectionCsv(info, curves, first);
     answer.notes = sectionNotes(info, curves);
     answer.panels = sectionPanels(info, curves, show);
@@ -70,6 +72,7 @@ Answer sectionsAt(const StatsRequest& request, const Question& question, double 
             const volume::ComposedUnit unit = measureUnit(info, curves.query.channels[c], curves.velocity, show);
             const std::string& name = channels[static_cast<std::size_t>(curves.query.channels[c])].name;
             heads.push_back(titleWithUnit(name + (looks.size() > 1 ? " " + looks[r].name : ""), unit.unit));
+            if (!curves.errors.empty()) heads.emplace_back("\u00b1");
             Json entry{{"time", time}, {"parameter", name}, {"region", looks[r].name}, {"place", places}};
             for (std::size_t m = 0; m < std::size(kSectionMeasureNames); ++m) {
                 const volume::ComposedUnit own =
@@ -77,12 +80,20 @@ Answer sectionsAt(const StatsRequest& request, const Question& question, double 
                 Json list = Json::array();
                 for (const auto& value : values)
                     list.push_back(numberOrNull(measured(value, SectionMeasure(m), own.factor)));
-                entry[std::string(kSectionMeasureNames[m])] = {{"unit", own.unit}, {"values", std::move(list)}};
+                Json& of = entry[std::string(kSectionMeasureNames[m])];
+                of = {{"unit", own.unit}, {"values", std::move(list)}};
+                if (curves.errors.empty()) continue;
+                of["errors"] = Json::array();
+                for (const auto& value : values)
+                    of["errors"].push_back(numberOrNull(errorOf(curves, c, value, SectionMeasure(m), own.factor)));
             }
             answer.json.push_back(std::move(entry));
             for (std::size_t p = 0; p < places.size(); ++p) {
                 const double value = values[p].area > 0 ? measured(values[p], show, unit.factor) : std::nan("");
                 rows[p].push_back(std::isfinite(value) ? numberText(value) : "-");
+                if (curves.errors.empty()) continue;
+                const double error = errorOf(curves, c, values[p], show, unit.factor);
+                rows[p].push_back(std::isfinite(value) && std::isfinite(error) ? numberText(error) : "-");
             }
         }
     answer.text = alignedTable(heads, rows, 0);
@@ -93,12 +104,13 @@ Answer balanceAt(const StatsRequest& request, const Question& question, double t
                  const Progress& progress) {
     Answer answer;
     const RegionBalanceQuery query{question.balance, request.options.velocity, question.label, question.at(time)};
-    const BalanceTable table = balanceTable(question.info(), readBalance(question.source, query, progress));
+    BalanceTable table = balanceTable(question.info(), readBalance(question.source, question.from, query, progress));
+    table.errors = question.errors;
     answer.csv = balanceCsv(table, question.timeTitle(), question.several() ? csvNumber(time) : "", first);
     answer.notes = table.notes;
     std::vector<std::vector<std::string>> rows;
     for (const BalanceRow& row : table.rows) {
-        rows.push_back(balanceCells(row));
+        rows.push_back(balanceCells(table, row));
         answer.json.push_back({{"time", time},
                                {"parameter", table.parameter},
                                {"unit", table.unit},
@@ -112,6 +124,10 @@ Answer balanceAt(const StatsRequest& request, const Question& question, double t
                                {"flow", row.flow},
                                {"area", row.area},
                                {"inside", numberOrNull(row.inside)}});
+        if (table.errors)
+            answer.json.back().update({{"error", numberOrNull(row.error)},
+                                       {"flowError", numberOrNull(row.flowError)},
+                                       {"insideError", numberOrNull(row.insideError)}});
     }
     answer.text = table.parameter + "\n" + alignedTable(balanceHeads(table), rows, 2);
     return answer;
@@ -121,10 +137,11 @@ Answer regionsAt(const Question& question, double time, bool first, const Progre
     Answer answer;
     const std::vector<RegionRow> rows = regionRowsAt(question, time, progress);
     const std::string& unit = question.info().lengthUnit;
-    answer.csv = regionCsv(rows, unit, question.timeTitle(), question.several() ? csvNumber(time) : "", first);
+    answer.csv =
+        regionCsv(rows, unit, question.timeTitle(), question.several() ? csvNumber(time) : "", first, question.errors);
     std::vector<std::vector<std::string>> cells;
     for (const RegionRow& row : rows) {
-        cells.push_back(regionCells(row, unit));
+        cells.push_back(regionCells(row, unit, question.errors));
         answer.json.push_back({{"time", time},
                                {"parameter", row.parameter},
                                {"unit", row.unit},
@@ -137,8 +154,9 @@ Answer regionsAt(const Question& question, double time, bool first, const Progre
                                {"deviation", numberOrNull(row.summary.deviation)},
                                {"min", numberOrNull(row.summary.min)},
                                {"max", numberOrNull(row.summary.max)}});
+        if (question.errors) answer.json.back()["error"] = numberOrNull(row.error);
     }
-    answer.text = alignedTable(regionHeads(), cells, 2);
+    answer.text = alignedTable(regionHeads(question.errors), cells, 2);
     return answer;
 }
 

@@ -6,6 +6,7 @@
 #include "volume/base/error.h"
 #include "volume/flow/flow_channels.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <utility>
 
@@ -43,6 +44,31 @@ int regionNamed(const Question& question, const std::string& name) {
                 info.name);
 }
 
+/// Finds out what is known as computed, and whether there are bounds for the rest.
+void findKnown(Question& question, const StatsOptions& options) {
+    const volume::DatasetInfo& info = question.info();
+    const auto bounded = [&](int channel) {
+        return boundsNumbers(question.from) && errorBound(question.from, info, info.channel(channel)) > 0;
+    };
+    if (question.balance >= 0) {
+        const auto velocity = volume::velocityChannels(info, options.velocity);
+        const bool known = std::ranges::all_of(question.times, [&](double time) {
+            return isKnown(question.from, info,
+                           {question.balance, options.velocity, question.label, question.at(time)});
+        });
+        question.channels = {question.balance};
+        if (velocity) question.channels.insert(question.channels.end(), velocity->begin(), velocity->end());
+        question.known.assign(question.channels.size(), known);
+        question.errors = !known && std::ranges::any_of(question.channels, bounded);
+    } else if (!options.planesAcross()) {
+        question.known =
+            knownStatistics(question.from, info, question.channels,
+                            question.label >= 0 ? info.channel(question.label).name : std::string(), question.times);
+        for (std::size_t c = 0; c < question.channels.size(); ++c)
+            question.errors = question.errors || (!question.known[c] && bounded(question.channels[c]));
+    }
+}
+
 } // namespace
 
 Question questionOf(const StatsRequest& request, const Sources& sources) {
@@ -76,7 +102,12 @@ Question questionOf(const StatsRequest& request, const Sources& sources) {
     out.times = options.allTimes
                     ? info.times
                     : std::vector<double>{options.time ? timeWithin(info, *options.time) : info.times.back()};
+    findKnown(out, options);
     return out;
+}
+
+std::string Question::origin() const {
+    return originText(from, info(), channels, known);
 }
 
 } // namespace tessera::app

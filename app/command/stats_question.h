@@ -80,12 +80,16 @@ struct StatsRequest {
 /// The request with names resolved to indices of the data set.
 struct Question {
     std::shared_ptr<const volume::BrickSource> source;
-    NumberOrigin origin;
+    NumberOrigin from;
     std::vector<int> channels;
     int label = -1, balance = -1;
     std::vector<int> regions; ///< requested label values; empty: all
     std::vector<glm::dvec3> line;
     std::vector<double> times;
+    std::vector<bool> known = {}; ///< by channel: whether the numbers asked for are known as computed
+    bool errors = false;          ///< tables have bounds on errors of other numbers
+    /// Where the numbers come from, in words.
+    std::string origin() const;
     const volume::DatasetInfo& info() const { return source->info(); }
     volume::TimePair at(double time) const { return volume::timesAround(info().times, time); }
     bool several() const { return info().times.size() > 1; }

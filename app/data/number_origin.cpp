@@ -84,6 +84,7 @@ NumberOrigin storedOrigin(const codec::Metadata& metadata, bool unpacked) {
     origin.exact = metadata.lossless;
     origin.maxError = metadata.lossless ? 0 : metadata.maxError;
     origin.absError = metadata.lossless ? 0 : metadata.options.absError;
+    origin.ofComponents = metadata.options.ofComponents;
     origin.discarded = metadata.options.discard > 0;
     origin.unpacked = unpacked;
     const auto isKnown = [](const std::optional<codec::ResampleError>& error) { return error.has_value(); };
@@ -103,12 +104,53 @@ double errorBound(const NumberOrigin& origin, const volume::DatasetInfo& info, c
     if (std::size_t(channel.parameter) < origin.resampleErrors.size())
         return ofAll(origin.resampleErrors[std::size_t(channel.parameter)]);
     if (origin.exact) return 0;
-    double extent = 0;
-    for (int c = 0; c < std::min(parameter.components, int(parameter.ranges.size())); ++c)
-        extent = std::max(extent, parameter.ranges[std::size_t(c)].hi - parameter.ranges[std::size_t(c)].lo);
-    double bound = origin.maxError * extent;
-    if (origin.absError > 0) bound = bound > 0 ? std::min(bound, origin.absError) : origin.absError;
-    return ofAll(bound);
+    const auto boundOf = [&](double extent) {
+        const double bound = origin.maxError * extent;
+        return origin.absError > 0 ? (bound > 0 ? std::min(bound, origin.absError) : origin.absError) : bound;
+    };
+    double widest = 0, squares = 0;
+    for (int c = 0; c < std::min(parameter.components, int(parameter.ranges.size())); ++c) {
+        const double extent = parameter.ranges[std::size_t(c)].hi - parameter.ranges[std::size_t(c)].lo;
+        if (origin.ofComponents && c == channel.component) return boundOf(extent);
+        widest = std::max(widest, extent);
+        squares += boundOf(extent) * boundOf(extent);
+    }
+    return origin.ofComponents && channel.magnitude ? std::sqrt(squares) : ofAll(boundOf(widest));
+}
+
+bool boundsNumbers(const NumberOrigin& origin) {
+    return !origin.alongTime && (!origin.stored || (!origin.discarded && (origin.lattice == "CC" || origin.corrected)));
+}
+
+double numberError(const NumberOrigin& origin, const volume::DatasetInfo& info, const volume::Channel& channel) {
+    const bool derived = origin.parameters >= 0 && channel.parameter >= origin.parameters;
+    if (!origin.stored || (origin.exact && origin.lattice == "CC")) return 0;
+    return boundsNumbers(origin) && !derived ? errorBound(origin, info, channel) : std::nan("");
+}
+
+std::vector<bool> knownStatistics(const NumberOrigin& origin, const volume::DatasetInfo& info,
+                                  const std::vector<int>& channels, const std::string& label,
+                                  const std::vector<double>& times) {
+    std::vector<bool> known(channels.size(), false);
+    for (std::size_t c = 0; origin.computed && c < channels.size(); ++c)
+        known[c] = std::ranges::all_of(times, [&](double time) {
+            return volume::knownStatistics(*origin.computed, time, label, {info.channel(channels[c]).name}).has_value();
+        });
+    return known;
+}
+
+std::string originText(const NumberOrigin& origin, const volume::DatasetInfo& info, const std::vector<int>& channels,
+                       const std::vector<bool>& known) {
+    std::vector<int> others;
+    std::string names;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        if (c < known.size() && known[c]) continue;
+        others.push_back(channels[c]);
+        names += (names.empty() ? "" : ", ") + info.channel(channels[c]).name;
+    }
+    if (channels.empty() || others.size() == channels.size()) return originText(origin, info, channels);
+    const std::string computed = origin.mesh ? "resampled" : "as computed";
+    return others.empty() ? computed : computed + "; " + names + ": " + originText(origin, info, others);
 }
 
 std::string originText(const NumberOrigin& origin, const volume::DatasetInfo& info, const std::vector<int>& channels) {

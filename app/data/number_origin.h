@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/field/dataset.h"
+#include "volume/flow/computed_numbers.h"
 
 #include <memory>
 #include <string>
@@ -25,8 +25,9 @@ struct NumberOrigin {
     bool exact = true;      ///< every stored sample is what was packed
     double maxError = 0;    ///< else: bound on the error of a sample, relative to the largest range of its components
     double absError = 0;    ///< in the unit of the parameter; 0 = no such bound
-    bool unpacked = false;  ///< computed on the grid of the source from samples of the lattice
-    bool corrected = false; ///< then: with labels and absent samples as they were, and bounds that hold there
+    bool ofComponents = false; ///< that is relative to the range of each component
+    bool unpacked = false;     ///< computed on the grid of the source from samples of the lattice
+    bool corrected = false;    ///< then: with labels and absent samples as they were, and bounds that hold there
     /// Then: largest errors at the samples of the source, by parameter, in its unit; empty: none is known.
     std::vector<double> resampleErrors = {};
     bool discarded = false;                                  ///< bricks of little importance are left out
@@ -36,6 +37,8 @@ struct NumberOrigin {
         {}; ///< where those of the other data beside (volume/derived/other_source.h) come from, "" = none
     /// Parameters that are read; those after them are derived from these. -1: all.
     int parameters = -1;
+    /// Numbers of regions as they were computed, which an archive with a bound keeps; null: none are known.
+    std::shared_ptr<const volume::ComputedNumbers> computed = {};
     bool operator==(const NumberOrigin&) const = default;
 };
 
@@ -47,10 +50,27 @@ NumberOrigin storedOrigin(const codec::Metadata& metadata, bool unpacked = false
 /// Bound on the error of a sample of a channel, in its unit; 0 where it is exact.
 double errorBound(const NumberOrigin& origin, const volume::DatasetInfo& info, const volume::Channel& channel);
 
+/// Whether that bound holds for numbers of regions, too: every sample of the source is there, in its own region.
+bool boundsNumbers(const NumberOrigin& origin);
+
+/// Bound on the error of numbers of regions or sections of a channel that are made of its samples, in its unit: 0 if
+/// these are as computed, NaN if it is not known.
+double numberError(const NumberOrigin& origin, const volume::DatasetInfo& info, const volume::Channel& channel);
+
+/// By position in `channels`: whether statistics of the regions of a label ("" = everything) are known as computed, at
+/// all of these times.
+std::vector<bool> knownStatistics(const NumberOrigin& origin, const volume::DatasetInfo& info,
+                                  const std::vector<int>& channels, const std::string& label,
+                                  const std::vector<double>& times);
+
 /// In words, for these channels (indices of info.channels(); none: all): "as computed", "resampled from a mesh",
 /// "stored on CC, error at most 0.4 K".
 std::string originText(const NumberOrigin& origin, const volume::DatasetInfo& info,
                        const std::vector<int>& channels = {});
+
+/// The same of numbers that are known as computed for some of the channels.
+std::string originText(const NumberOrigin& origin, const volume::DatasetInfo& info, const std::vector<int>& channels,
+                       const std::vector<bool>& known);
 
 /// The same as the first line of a table: "# numbers: as computed".
 std::string originLine(const NumberOrigin& origin, const volume::DatasetInfo& info,

@@ -3,6 +3,7 @@
 #include "app/edits/compare_files.h"
 #include "app/history/session_file.h"
 #include "codec/archive/archive.h"
+#include "codec/container/coded_numbers.h"
 #include "codec/remote/address.h"
 #include "codec/unpack/unpack.h"
 #include "volume/base/byte_text.h"
@@ -117,6 +118,29 @@ bool canUnpack(const codec::Archive& archive) {
            kBytes * double(archive.metadata().source.count()) <= volume::availableMemory();
 }
 
+/// The numbers of regions that an archive keeps, at the times of an axis: time k is that of index order[k] of its
+/// source.
+std::shared_ptr<const volume::ComputedNumbers> numbersOf(const codec::Archive& archive, bool unpacked,
+                                                         const std::vector<int>& order,
+                                                         const std::vector<double>& times,
+                                                         std::vector<std::string>& messages) {
+    std::shared_ptr<const codec::StoredNumbers> stored;
+    try {
+        stored = archive.numbers();
+    } catch (const Error& error) {
+        messages.emplace_back(error.what());
+    }
+    if (!stored) return nullptr;
+    const std::vector<double>& former =
+        unpacked && archive.metadata().alternating ? archive.metadata().sourceTimes : archive.info().times;
+    auto out = std::make_shared<volume::ComputedNumbers>();
+    for (std::size_t t = 0; t < order.size(); ++t)
+        for (const volume::NumbersAtTime& at : stored->numbers)
+            if (std::size_t(order[t]) < former.size() && at.time == former[std::size_t(order[t])])
+                out->push_back({times[t], at.labels});
+    return out;
+}
+
 } // namespace
 
 Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
@@ -134,10 +158,13 @@ Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
         source = volume::makeAlternatingSource(archive, volume::TimeFilter::Cubic);
     }
     volume::OtherAxis axis = axisOf(source->info(), data, messages);
+    const std::vector<int> order = axis.order;
     if (axis.info.times != source->info().times || axis.info.timeName != source->info().timeName ||
         axis.info.timeUnit != source->info().timeUnit || !data.import.overTime.empty() || !data.import.units.empty())
         source = volume::onAxis(source, std::move(axis));
     source = volume::withLabelNames(source, data.import.labels);
+    if (data.grids == ShownGrids::Both)
+        origin.computed = numbersOf(*archive, unpacks, order, source->info().times, messages);
     const bool asStored = archive->metadata().alternating && !unpacks;
     return {asStored ? source : drawnOn(source, data.lattice), source, std::move(origin)};
 }

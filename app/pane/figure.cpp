@@ -227,13 +227,13 @@ std::string csvNumber(double value) {
 
 void exportMenu(ViewContext& context, ToolRow& tools, const std::string& title,
                 std::function<VectorPage(const Progress&)> figure, std::function<std::string(const Progress&)> csv,
-                bool atOneTime) {
+                bool atOneTime, const std::string& numbers) {
     std::string name = title; // as a file
     std::replace(name.begin(), name.end(), '/', '_');
     const auto described = [&]() -> ViewExport { // tables and pictures state the origin of their numbers
         if (!context.numbers) return {name, figure, csv};
         const volume::DatasetInfo& info = context.numbers->info();
-        std::string origin = originText(context.origin, info);
+        std::string origin = numbers.empty() ? originText(context.origin, info) : numbers;
         if (atOneTime && info.times.size() > 1) origin += ", at " + timeText(info, context.session.time);
         ViewExport made{name, {}, {}};
         if (csv)

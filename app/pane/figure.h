@@ -74,9 +74,9 @@ VectorPage drawingOf(const std::vector<FigurePanel>& panels, int columns);
 std::string csvNumber(double value);
 
 /// A tool whose menu exports what a view shows: its picture, vector graphics, a table. `atOneTime`: it shows the time
-/// of the session alone, which tables then state.
+/// of the session alone, which tables then state. `numbers`: where they come from, if not all from the samples.
 void exportMenu(ViewContext& context, ToolRow& tools, const std::string& name,
                 std::function<VectorPage(const Progress&)> figure, std::function<std::string(const Progress&)> csv,
-                bool atOneTime = true);
+                bool atOneTime = true, const std::string& numbers = {});
 
 } // namespace tessera::app

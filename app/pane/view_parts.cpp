@@ -38,7 +38,10 @@ std::string originText(const ViewContext& context, const std::vector<int>& chann
 }
 
 void drawOrigin(const ViewContext& context, ToolRow& tools, const std::vector<int>& channels, bool atOneTime) {
-    std::string text = originText(context, channels);
+    drawOriginText(context, tools, originText(context, channels), atOneTime);
+}
+
+void drawOriginText(const ViewContext& context, ToolRow& tools, std::string text, bool atOneTime) {
     const volume::DatasetInfo& info = context.numbers->info();
     const auto ownTime = [](const auto& each) {
         const auto* volume = std::get_if<VolumeView>(&each.second);
@@ -73,9 +76,14 @@ float heightAtLeast(float least) {
 }
 
 void tableHeader(std::initializer_list<const char*> names, int right) {
+    tableHeader(std::vector<std::string>(names.begin(), names.end()), right);
+}
+
+void tableHeader(const std::vector<std::string>& names, int right) {
     ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
     int column = 0;
-    for (const char* name : names) {
+    for (const std::string& each : names) {
+        const char* const name = each.c_str();
         ImGui::TableSetColumnIndex(column);
         if (column >= right) {
             const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(name).x;

@@ -29,10 +29,13 @@ std::string originText(const ViewContext& context, const std::vector<int>& chann
 /// are those of the session's time, which is said where a volume view has another one of its own.
 void drawOrigin(const ViewContext& context, ToolRow& tools, const std::vector<int>& channels = {},
                 bool atOneTime = true);
+/// The same of words that the view has found.
+void drawOriginText(const ViewContext& context, ToolRow& tools, std::string text, bool atOneTime = true);
 /// Faint text among the tools; left out where these are narrow and its row has no room.
 void drawNote(ToolRow& tools, const std::string& text);
 
 /// The head row of a table whose columns are set up; names from column `right` on stand over right-aligned numbers.
+void tableHeader(const std::vector<std::string>& names, int right = 1);
 void tableHeader(std::initializer_list<const char*> names, int right = 1);
 /// Text at the right edge of a table cell.
 void textRight(const std::string& text, bool faint = false);

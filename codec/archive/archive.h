@@ -17,6 +17,8 @@ struct MergedBrick;
 
 namespace tessera::codec {
 
+struct StoredNumbers;
+
 /// Result of verifyArchive.
 struct VerifyReport {
     std::uint64_t bricks = 0;        ///< decoded; each counts once for all its levels
@@ -59,6 +61,9 @@ public:
     /// The archives of corrections inside this one, on the grid of its source, each for some parameters and times
     /// (codec/unpack/corrections.h); opened by the first call. Throws Error.
     std::vector<std::shared_ptr<const Archive>> corrections() const;
+    /// Numbers of regions as they were computed from the source, where the archive keeps them; null if it has none.
+    /// Read by the first call. Throws Error when they are damaged.
+    std::shared_ptr<const StoredNumbers> numbers() const;
     const std::string& path() const;
     /// The format version.
     std::uint32_t version() const;

@@ -41,6 +41,8 @@ struct Archive::Impl {
     /// The archives of corrections, once they were asked for.
     mutable std::optional<std::vector<std::shared_ptr<const Archive>>> corrections;
     mutable std::mutex correctionsMutex;
+    mutable std::shared_ptr<const StoredNumbers> ofRegions; ///< the numbers, once they were asked for
+    mutable std::mutex numbersMutex;
 
     Impl(const std::string& name, const RemoteOptions& options) : Impl(name, options, openBytes(name, options)) {}
     /// Of a file on this machine whose header is not written yet.

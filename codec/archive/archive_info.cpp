@@ -1,6 +1,7 @@
 #include "codec/archive/archive.h"
 
 #include "codec/archive/archive_impl.h"
+#include "codec/container/coded_numbers.h"
 #include "volume/bricks/magnitude.h"
 #include "volume/bricks/parts_bricks.h"
 #include "volume/field/part_masks.h"
@@ -97,7 +98,7 @@ void Archive::Impl::load() {
     if (metadata.info.name.empty()) metadata.info.name = std::filesystem::path(path).stem().string();
     components = componentCount(metadata.info);
     bricks = checkedBrickCount(metadata.grid, path);
-    index = readIndex(*bytes, named, {components, bricks, metadata.grid, metadata.corrections}, path);
+    index = readIndex(*bytes, named, {components, bricks, metadata.grid, metadata.corrections, metadata.numbers}, path);
     metadata.info.times = index.times;
     // The numbers of times in metadata and index can differ in a growing archive.
     const auto fit = [](std::vector<volume::Quantity>& quantities, std::size_t times) {
@@ -153,6 +154,22 @@ std::vector<std::shared_ptr<const Archive>> Archive::corrections() const {
     }
     impl_->corrections = std::move(all);
     return *impl_->corrections;
+}
+
+std::shared_ptr<const StoredNumbers> Archive::numbers() const {
+    const std::lock_guard lock(impl_->numbersMutex);
+    if (impl_->ofRegions || impl_->metadata.numbers.empty()) return impl_->ofRegions;
+    auto all = std::make_shared<StoredNumbers>();
+    for (const FileRange& range : impl_->metadata.numbers) {
+        try {
+            addNumbers(decodeNumbers(impl_->bytes->part(range).bytes(), all->shape), all->numbers);
+        } catch (const ReadError&) {
+            throw;
+        } catch (const Error& error) {
+            damaged(impl_->path, range.offset, error.reason());
+        }
+    }
+    return impl_->ofRegions = std::move(all);
 }
 
 Archive::~Archive() = default;

@@ -186,6 +186,8 @@ VerifyReport verifyArchive(const Archive& archive, const Progress& progress) {
     verifier.guarded("corrections", [&] {
         for (const auto& corrections : archive.corrections()) verifier.add(verifyArchive(*corrections));
     });
+    verifier.guarded("numbers of regions", [&] { (void)archive.numbers(); });
+    for (const FileRange& range : impl.metadata.numbers) verifier.report.bytes += range.length;
     progress.advance(1);
     return std::move(verifier.report);
 }

@@ -15,7 +15,6 @@
 #include "codec/container/mask_hash.h"
 #include "volume/base/parallel.h"
 #include "volume/field/part_masks.h"
-#include "volume/system/mapped_file.h"
 
 #include <algorithm>
 #include <cassert>
@@ -378,11 +377,10 @@ std::shared_ptr<const Archive> ArchiveWriter::written(const Metadata& metadata) 
     return std::shared_ptr<const Archive>(new Archive(std::move(impl)));
 }
 
-FileRange ArchiveWriter::addCorrections(const std::string& file) {
-    const MappedFile bytes(file);
+FileRange ArchiveWriter::addPart(std::span<const std::byte> bytes, std::uint32_t feature) {
     const FileRange range{impl_->file.position(), bytes.size()};
-    impl_->file.append(bytes.part({0, bytes.size()}).bytes());
-    impl_->commits.header.features |= kCorrections;
+    impl_->file.append(bytes);
+    impl_->commits.header.features |= feature;
     return range;
 }
 

@@ -11,6 +11,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 namespace tessera::codec {
@@ -56,9 +57,9 @@ public:
     /// The archive as it would be if it were committed now, described by `metadata`; all its frames must have been
     /// added.
     std::shared_ptr<const Archive> written(const Metadata& metadata) const;
-    /// Appends an archive of corrections, all bytes of a file (codec/unpack/corrections.h). Returns where it is, which
-    /// the metadata of the next commit must name.
-    FileRange addCorrections(const std::string& file);
+    /// Appends bytes that the metadata of the next commit must name: an archive of corrections
+    /// (codec/unpack/corrections.h) or a block of numbers of regions. `feature`: of these. Returns where they are.
+    FileRange addPart(std::span<const std::byte> bytes, std::uint32_t feature);
 
     /// Number of bricks stored as repeats, and the bytes saved.
     Archive::Repeats repeats() const;

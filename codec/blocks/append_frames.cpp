@@ -73,11 +73,16 @@ std::uint64_t appendFrames(const Archive& archive, const Archive& more, const Me
         page.frames.push_back(std::move(frame));
     }
     Metadata together = now;
-    together.corrections = archive.metadata().corrections;
-    for (const FileRange& range : more.metadata().corrections) {
-        together.corrections.push_back({file.position(), range.length});
-        file.append(from.bytes->part(range).bytes());
-    }
+    const auto copyParts = [&](std::vector<FileRange>& to, const std::vector<FileRange>& own,
+                               const std::vector<FileRange>& added) {
+        to = own;
+        for (const FileRange& range : added) {
+            to.push_back({file.position(), range.length});
+            file.append(from.bytes->part(range).bytes());
+        }
+    };
+    copyParts(together.corrections, archive.metadata().corrections, more.metadata().corrections);
+    copyParts(together.numbers, archive.metadata().numbers, more.metadata().numbers);
     commits.commit(file, page, together, now.info.times.size(), true);
     file.finish();
     return commits.header.fileSize;

@@ -143,7 +143,7 @@ public:
     bool finish(const Progress& progress);
 
 private:
-    volume::Dataset piece(std::size_t number) const;
+    volume::Dataset blockOf(std::size_t number) const, piece(std::size_t number) const;
     PackedBefore beforeOf(std::size_t number, std::size_t times, PackedBefore before) const;
     std::string fileOf(std::size_t block) const { return job_.file(std::to_string(block) + ".tsr"); }
     std::string pieceOf(std::size_t number) const {
@@ -176,18 +176,24 @@ private:
     std::uintmax_t joinedBytes_ = 0; ///< of the file when they were counted
 };
 
-volume::Dataset Blocks::piece(std::size_t number) const {
+volume::Dataset Blocks::blockOf(std::size_t number) const {
     const std::size_t first = number / pieces_ * times_, end = std::min(first + times_, source_.info.times.size());
     std::vector<int> times(end - first);
     std::iota(times.begin(), times.end(), int(first));
-    volume::Dataset block = volume::withTimes(source_, times);
+    return volume::withTimes(source_, times);
+}
+
+volume::Dataset Blocks::piece(std::size_t number) const {
+    const volume::Dataset block = blockOf(number);
     return pieces_ == 1 ? block : volume::withParameters(block, {int(number % pieces_)});
 }
 
 /// What is known of the source, for one piece: the blocks together have compared as many samples as the source.
 PackedBefore Blocks::beforeOf(std::size_t number, std::size_t times, PackedBefore before) const {
     if (pieces_ > 1 && !before.resampled.empty()) before.resampled = {before.resampled[number % pieces_]};
-    before.source.reset(); // of all times
+    before.source.reset();                       // of all times
+    before.keepsNumbers = number % pieces_ == 0; // of all parameters
+    if (pieces_ > 1) before.whole = blockOf(number);
     before.ofSeries = before.ofSeries || source_.info.times.size() > 1;
     for (std::optional<ResampleError>& error : before.resampled)
         if (error) error->samples *= double(times) / double(source_.info.times.size());

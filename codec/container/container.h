@@ -48,9 +48,12 @@ inline constexpr std::uint32_t kCorrections = 512;
 inline constexpr std::uint32_t kPartedFrames = 2048;
 /// Feature: frames of integers can be of kind Stepped. Only set once one is.
 inline constexpr std::uint32_t kSteppedIntegers = 4096;
+/// Feature: the metadata name blocks of numbers of regions. Only set once there is one.
+inline constexpr std::uint32_t kRegionNumbers = 8192;
 /// Features that are only set once they are used.
 inline constexpr std::uint32_t kSetWhenUsed = kSteppedBricks | kSubsamples | kPredictedFrames | kFittedModels |
-                                              kMixedBricks | kCorrections | kPartedFrames | kSteppedIntegers;
+                                              kMixedBricks | kCorrections | kPartedFrames | kSteppedIntegers |
+                                              kRegionNumbers;
 inline constexpr std::uint32_t kUsualFeatures = kBrickNotes | kCompact | kBandContexts | kBrickStatistics,
                                kKnownFeatures = kUsualFeatures | kSetWhenUsed;
 

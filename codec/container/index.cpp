@@ -59,7 +59,7 @@ public:
         const std::uint64_t bricks = shape_.bricks;
         // No count may exceed the capacity of the page's bytes, so nothing below overflows and allocations are
         // proportional to those bytes. Decompressed pages can be larger than the file; mostPageBytes limits them.
-        require(bricks <= room, "the index is too short", file_);
+        require(bricks <= room || (frames == 0 && masks == 0), "the index is too short", file_);
         const std::uint64_t maskBytes = kMaskRecordBytes + bricks * kMaskBrickBytes;
         const std::uint64_t frameBytes =
             kFrameRecordBytes + bricks * (kFrameBrickBytes + (notes_ ? kNotesBytes : 0) +
@@ -259,7 +259,10 @@ void requireFilled(const Index& index, const IndexShape& shape, const Header& he
     for (const FrameRecord& frame : index.frames) add(frame);
     require(shape.corrections.empty() || (header.features & kCorrections) != 0,
             "there are corrections that the archive does not declare", file);
-    for (const FileRange& range : shape.corrections) add(range);
+    require(shape.numbers.empty() || (header.features & kRegionNumbers) != 0,
+            "there are numbers of regions that the archive does not declare", file);
+    for (const auto* ranges : {&shape.corrections, &shape.numbers})
+        for (const FileRange& range : *ranges) add(range);
     add(header.metadata);
     std::sort(parts.begin(), parts.end());
     std::uint64_t at = kFirstChunk;

@@ -98,6 +98,7 @@ struct IndexShape {
     std::uint64_t components = 0, bricks = 0;
     volume::BrickGrid grid;
     std::vector<FileRange> corrections = {}; ///< archives inside the file
+    std::vector<FileRange> numbers = {};     ///< blocks of numbers of regions
 };
 
 /// Limit of the decompressed size of all pages of a compact archive, so that a small file cannot request much memory.

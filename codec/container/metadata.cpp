@@ -236,8 +236,12 @@ std::string toJson(const Metadata& metadata) {
         document["data"]["quantities"].push_back(quantityJson(quantity));
     if (!metadata.resampled.empty()) document["resampled"] = resampledJson(metadata.resampled);
     if (metadata.alternating) document["sourceTimes"] = metadata.sourceTimes;
-    for (const FileRange& range : metadata.corrections)
-        document["corrections"].push_back({{"offset", range.offset}, {"length", range.length}});
+    const auto putRanges = [&](const char* key, const std::vector<FileRange>& ranges) {
+        for (const FileRange& range : ranges)
+            document[key].push_back({{"offset", range.offset}, {"length", range.length}});
+    };
+    putRanges("corrections", metadata.corrections);
+    putRanges("numbers", metadata.numbers);
     return jsonText(document);
 }
 
@@ -296,9 +300,13 @@ Metadata metadataFromJson(std::string_view text, const std::string& file) {
     info.times.clear();
     if (root.has("resampled")) metadata.resampled = readResampled(root["resampled"], info.parameters.size());
     if (metadata.alternating) metadata.sourceTimes = readTimes(root["sourceTimes"]);
-    if (root.has("corrections"))
-        for (const Node& range : root["corrections"].items(1 << 20))
-            metadata.corrections.push_back({range["offset"].count(), range["length"].count()});
+    const auto takeRanges = [&](const char* key, std::vector<FileRange>& ranges) {
+        if (!root.has(key)) return;
+        for (const Node& range : root[key].items(1 << 20))
+            ranges.push_back({range["offset"].count(), range["length"].count()});
+    };
+    takeRanges("corrections", metadata.corrections);
+    takeRanges("numbers", metadata.numbers);
     info.timeUnit = data["timeUnit"].text();
     if (data.has("timeName")) info.timeName = data["timeName"].text();
     if (data.has("quantities")) {

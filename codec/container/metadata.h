@@ -33,6 +33,8 @@ struct Metadata {
     /// Archives inside the file, on the grid of the source, each for some parameters and times
     /// (codec/unpack/corrections.h).
     std::vector<FileRange> corrections = {};
+    /// Blocks of numbers of regions, as they were computed from the source (codec/container/coded_numbers.h).
+    std::vector<FileRange> numbers = {};
     std::string program; ///< name and version of the program that wrote it
     PackOptions options; ///< packing options, also used when it grows
     bool operator==(const Metadata&) const = default;

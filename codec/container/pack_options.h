@@ -39,6 +39,7 @@ struct PackOptions {
     double maxError = 0;
     double absError = 0;
     double psnr = 0;
+    bool ofComponents = false;
     double sizeMb = 0;
     ThresholdOptions threshold;
     double discard = 0;
@@ -90,6 +91,11 @@ struct PackOptions {
                                    .doc = "Smallest peak signal-to-noise ratio at any time (range of the parameter / "
                                           "RMS error); 0 = no such bound",
                                    .range = Range{0, 200}});
+        visit(self.ofComponents,
+              FieldInfo{.key = "ofComponents",
+                        .unit = "",
+                        .doc = "Bounds relative to the range of a vector are relative to that of each component by "
+                               "itself, instead of the widest one"});
         visit(self.sizeMb, FieldInfo{.key = "targetSize",
                                      .unit = "MB",
                                      .doc = "Largest size of the archive; the smallest error relative to the ranges "

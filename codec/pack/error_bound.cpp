@@ -138,6 +138,15 @@ double NumberCounts::rms(std::int64_t step) {
     return rms_[step] = samples_ > 0 ? std::sqrt(squares / samples_) : 0;
 }
 
+volume::Parameter boundedBy(const PackOptions& options, const volume::Parameter& parameter, std::size_t component) {
+    volume::Parameter of = parameter;
+    if (options.ofComponents && component < parameter.ranges.size()) {
+        of.components = 1;
+        of.ranges = {parameter.ranges[component]};
+    }
+    return of;
+}
+
 FrameBound boundFor(const PackOptions& options, const volume::Parameter& parameter, const FrameSamples& samples) {
     std::optional<NumberCounts> counts;
     return boundFor(options, parameter, samples, counts);

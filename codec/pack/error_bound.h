@@ -22,6 +22,10 @@ struct FrameBound {
     double mostError = std::numeric_limits<double>::infinity(); ///< with `rms`: the bound stated for all samples
 };
 
+/// What a bound of a component is relative to: its parameter, as the options say with the range of that component
+/// alone.
+volume::Parameter boundedBy(const PackOptions& options, const volume::Parameter& parameter, std::size_t component);
+
 /// The strictest of the requested bounds. A PSNR is converted by trial on the frame to the coarsest rounding that
 /// reaches it; for integers to the largest step, odd or even.
 FrameBound boundFor(const PackOptions& options, const volume::Parameter& parameter, const FrameSamples& samples);

@@ -138,6 +138,24 @@ MemoryPlan planSlabs(const Metadata& metadata, const volume::DatasetInfo& source
     return plan;
 }
 
+/// What numbers of regions need at least: a label with a parameter, or with a component and a velocity, of whole frames
+/// or of three layers of bricks; twice, since half of it is for bricks.
+double bytesForNumbers(const volume::Dataset& dataset) {
+    constexpr double kLayers = 3 * 32;
+    const volume::DatasetInfo& info = dataset.info;
+    double label = 0, most = 0, scalar = 0, vector = 0;
+    for (const volume::Parameter& parameter : info.parameters) {
+        const double bytes = parameter.components * (double(volume::byteSize(parameter.type)) + 1);
+        if (parameter.categorical) label = std::max(label, bytes);
+        if (parameter.components == 1) scalar = std::max(scalar, bytes);
+        if (parameter.components == 3) vector = std::max(vector, bytes);
+        most = std::max(most, bytes);
+    }
+    const bool inParts = dataset.read.inParts() && info.lattice.kind == volume::LatticeKind::CC;
+    const double slices = inParts ? std::min(kLayers, double(info.lattice.size.z)) : double(info.lattice.size.z);
+    return 2 * double(info.lattice.size.x) * info.lattice.size.y * slices * (label + std::max(most, scalar + vector));
+}
+
 } // namespace
 
 MemoryPlan planMemory(const Metadata& metadata, const volume::Dataset& dataset, const PackOptions& options,
@@ -168,9 +186,15 @@ MemoryPlan planMemory(const Metadata& metadata, const volume::Dataset& dataset, 
     const bool isD4 = options.lattice == StoredLattice::D4;
     const double components = isD4 ? double(componentCount(source)) : 0;
     const bool corrects = kOwn + (kCorrecting + kFramesOfD4 * components) * samples <= limit;
+    const double numbers = bytesForNumbers(dataset);
+    const auto numberBytes = [&](double held) {
+        const double left = limit - kOwn - held;
+        return left >= numbers ? static_cast<std::size_t>(left) : 0;
+    };
     if (dataset.read.inParts() && (slabLayers > 0 || least > limit)) {
         MemoryPlan slabs = planSlabs(metadata, source, options, slabLayers, least, limit);
         slabs.corrects = corrects;
+        slabs.numberBytes = numberBytes(0);
         return slabs;
     }
     if (options.memoryMb > 0 && least > limit) refuse(least, limit);
@@ -178,6 +202,7 @@ MemoryPlan planMemory(const Metadata& metadata, const volume::Dataset& dataset, 
     plan.corrects = corrects;
     const double frames = source.times.size() > 1 ? (d4 ? 2 : 1) * last : 0;
     plan.keepFrames = least + frames <= limit;
+    plan.numberBytes = numberBytes(plan.keepFrames ? frames : 0);
     plan.readAhead = least + (plan.keepFrames ? frames : 0) + step <= limit;
     return plan;
 }

@@ -8,11 +8,12 @@ namespace tessera::codec {
 
 /// Memory use of packing besides one time of a parameter and its coded bytes.
 struct MemoryPlan {
-    bool keepFrames = true; ///< keep the last frame of every component, to find unchanged bricks
-    bool readAhead = true;  ///< read the next frames while the current ones are coded
-    int slabLayers = 0;     ///< brick layers in memory at a time; 0: whole frames
-    int slabStep = 0;       ///< source slices in memory at a time when all are scanned
-    bool corrects = true;   ///< whole frames fit, which corrections need
+    bool keepFrames = true;      ///< keep the last frame of every component, to find unchanged bricks
+    bool readAhead = true;       ///< read the next frames while the current ones are coded
+    int slabLayers = 0;          ///< brick layers in memory at a time; 0: whole frames
+    int slabStep = 0;            ///< source slices in memory at a time when all are scanned
+    bool corrects = true;        ///< whole frames fit, which corrections need
+    std::size_t numberBytes = 0; ///< for numbers of regions once all is coded; 0: they do not fit
 };
 
 /// The fastest plan within the memory limit, which includes the program itself. Whole frames need the larger of the

@@ -8,11 +8,14 @@
 #include "codec/pack/given_up.h"
 #include "codec/pack/memory_plan.h"
 #include "codec/pack/pack_grid.h"
+#include "codec/pack/pack_numbers.h"
 #include "codec/pack/pack_passes.h"
 #include "codec/pack/pack_size.h"
+#include "codec/pack/packable.h"
 #include "codec/unpack/corrections.h"
 #include "volume/field/part_masks.h"
 #include "volume/resample/series_dataset.h"
+#include "volume/system/mapped_file.h"
 #include "volume/system/part_file.h"
 
 #include <algorithm>
@@ -29,45 +32,15 @@ using volume::Field;
 using volume::LatticeKind;
 using volume::ScalarType;
 
-void check(const volume::DatasetInfo& source, const PackOptions& options) {
-    if (source.parameters.empty() || source.times.empty()) throw Error("there is nothing to pack");
-    for (int axis = 0; axis < 3; ++axis) {
-        if (source.lattice.size[axis] < 1) throw Error("there are no samples to pack");
-        const double spacing = source.lattice.spacing[axis];
-        if (!(spacing > 0) || !std::isfinite(spacing)) throw Error("the spacing must be finite and greater than 0");
-        if (!std::isfinite(source.lattice.origin[axis])) throw Error("the origin must be finite");
-    }
-    if (!std::ranges::all_of(source.times, [](double time) { return std::isfinite(time); }) ||
-        std::ranges::adjacent_find(source.times, std::greater_equal<>{}) != source.times.end())
-        throw Error("the times must be finite and rise");
-    if (!(options.maxError >= 0 && options.maxError < 1)) throw Error("the error bound must be from 0 to below 1");
-    if (!(options.absError >= 0) || !(options.psnr >= 0)) throw Error("error bounds must not be negative");
-    if (hasThreshold(options) && (options.psnr > 0 || options.sizeMb > 0))
-        throw Error("a threshold can be combined with a bound on the error of samples, but not with a PSNR or a size");
-    if (!options.lossless && isExact(options) && options.discard == 0)
-        throw Error("without lossless, an error bound, a threshold or a limit of importance is needed");
-    if (options.lattice == StoredLattice::CC && source.lattice.kind == LatticeKind::BCC)
-        throw Error("the data lies on BCC; it cannot be packed as CC");
-}
-
-/// Brick layers of the slabs that a team shares: one, but for so many that their open files would be too many. Those of
-/// the samples of all components are open, and of the result of a step, twice while samples change.
-int layersOfTeam(const volume::BrickGrid& grid, const volume::DatasetInfo& info) {
-    constexpr int kMostFiles = 512;
-    int components = 1;
-    for (const volume::Parameter& parameter : info.parameters) components = std::max(components, parameter.components);
-    const int slabs = std::max(1, kMostFiles / (components + 2));
-    return (grid.count().z + slabs - 1) / slabs;
-}
-
 /// One run of pack or append.
 class Packing {
 public:
     /// Packs into a new archive, or appends to `grown`, whose options are then `options`.
     Packing(volume::Dataset& source, int slabLayers, const PackedBefore& before, const PackOptions& options,
             const std::string& path, const Archive* grown, SlabTeam* team = nullptr)
-        : source_(source), dataset_(source), options_(options), path_(path), grown_(grown), team_(team) {
-        check(source.info, options);
+        : source_(source), dataset_(source), before_(before), options_(options), path_(path), grown_(grown),
+          team_(team) {
+        requirePackable(source.info, options);
         assert(!team || (source.read.inParts() && !grown && options.discard == 0 && !hasThreshold(options)));
         metadata_.source =
             before.grid && source.info.lattice.kind == LatticeKind::BCC ? *before.grid : source.info.lattice;
@@ -87,9 +60,13 @@ public:
         metadata_.lossless = isExact(options) && options.discard == 0 && before.lossless;
         metadata_.program = "tessera";
         metadata_.options = options;
-        metadata_.options.memoryMb = 0; // depends on the machine, not on the archive
+        metadata_.options.memoryMb = 0;                                  // depends on the machine, not on the archive
+        if (before.maxError > 0) metadata_.options.ofComponents = false; // former errors are relative to all
         place_ = grown ? continuationOf(*grown, metadata_) : Continuation(info);
-        if (grown) metadata_.corrections = grown->metadata().corrections;
+        if (grown) {
+            metadata_.corrections = grown->metadata().corrections;
+            metadata_.numbers = grown->metadata().numbers;
+        }
         ranges_.resize(info.parameters.size());
         errors_.assign(info.parameters.size(), 0);
         for (const volume::Parameter& parameter : info.parameters)
@@ -111,8 +88,6 @@ public:
             truth_ = source;
         else if (info.lattice.kind == LatticeKind::BCC)
             truth_ = before.source;
-        resampledBefore_ = before.resampled;
-        ofSeries_ = before.ofSeries;
     }
 
     PackSummary run(const Progress& progress);
@@ -138,21 +113,20 @@ private:
     volume::Dataset& source_;
     volume::Dataset dataset_;              ///< the data to be stored, before resampling to BCC
     std::optional<volume::Dataset> truth_; ///< what they are made of on the grid of the source, if that is another one
+    PackedBefore before_;
     PackOptions options_;
     std::string path_;
     const Archive* grown_;
     SlabTeam* team_; ///< or null
-    bool ofSeries_ = false;
     Metadata metadata_;
     Continuation place_;
     MemoryPlan memory_;
     FrameQueueOptions reading_;
-    std::vector<std::vector<Range>> ranges_;                    ///< found while packing, by parameter
-    std::vector<double> errors_;                                ///< largest of a sample, by parameter, in its unit
-    std::vector<double> errorsBefore_;                          ///< previous errors of the source
-    std::vector<std::uint8_t> discarded_;                       ///< flag per brick
-    std::vector<std::optional<ResampleError>> resampledBefore_; ///< of the source, by parameter
-    std::vector<ResampleError> resampled_;                      ///< of what has no bound, by parameter; empty: unknown
+    std::vector<std::vector<Range>> ranges_; ///< found while packing, by parameter
+    std::vector<double> errors_;             ///< largest of a sample, by parameter, in its unit
+    std::vector<double> errorsBefore_;       ///< previous errors of the source
+    std::vector<std::uint8_t> discarded_;    ///< flag per brick
+    std::vector<ResampleError> resampled_;   ///< of what has no bound, by parameter; empty: unknown
     PackSummary summary_;
 };
 
@@ -177,7 +151,7 @@ Metadata Packing::soFar(std::size_t wholeTimes) const {
     if (wholeTimes < now.info.times.size()) // D4*: only the source times that the frames so far cover
         std::erase_if(now.sourceTimes, [&](double time) { return time > now.info.times[wholeTimes - 1]; });
     place_.widen(read, now.info);
-    place_.noteResampled(resampledBefore_, resampled_, now);
+    place_.noteResampled(before_.resampled, resampled_, now);
     for (std::size_t p = 0; p < errors_.size(); ++p) {
         const double extent = extentOf(now.info.parameters[std::size_t(place_.parameterOf[p])]);
         if (extent > 0) now.maxError = std::max(now.maxError, (errorsBefore_[p] + errors_[p]) / extent);
@@ -197,7 +171,7 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
     frame.mostPredicted = options_.mostPredicted;
     frame.keepsAbsent = exact && !resamples && options_.discard == 0;
     frame.categorical = about.categorical;
-    frame.mayMix = !ofSeries_;
+    frame.mayMix = !before_.ofSeries;
     frame.importance = options_.importance;
     if (options_.bccTransform != BccTransform::Auto)
         frame.bodyCentred = options_.bccTransform == BccTransform::BodyCentred;
@@ -208,7 +182,8 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
     frame.range = c < known.size() ? known[c] : Range{1, 0};
 
     leaveOut(samples, metadata_.grid, discarded_);
-    const FrameBound bound = exact ? FrameBound() : boundFor(options_, whole, samples);
+    const volume::Parameter relativeTo = boundedBy(options_, whole, c);
+    const FrameBound bound = exact ? FrameBound() : boundFor(options_, relativeTo, samples);
     frame.maxError = bound.error;
     frame.rms = bound.rms;
     frame.mostError = bound.mostError;
@@ -216,7 +191,7 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
     std::optional<FrameSamples> rounded; // integers
     if (hasThreshold(options_) && !about.categorical) {
         const double scale = std::abs(samples.scale());
-        const Thresholded left = giveUp(samples, metadata_.grid, frame, options_.threshold, extentOf(whole));
+        const Thresholded left = giveUp(samples, metadata_.grid, frame, options_.threshold, extentOf(relativeTo));
         summary_.weakenedBricks += left.weakened;
         frame.numbers = left.numbers;
         frame.maxError = std::max(frame.maxError, left.maxError);
@@ -305,8 +280,9 @@ void Packing::correct(ArchiveWriter& writer, const Progress& progress) {
             std::filesystem::remove(path, ignored);
         }
     } const file{path_ + ".corrections"}; // of this name: what a killed process left is replaced
-    (void)pack(made.data, made.options, file.path, progress);
-    metadata_.corrections.push_back(writer.addCorrections(file.path));
+    (void)pack(made.data, made.options, file.path, progress, {.keepsNumbers = false});
+    const MappedFile inner(file.path);
+    metadata_.corrections.push_back(writer.addPart(inner.part({0, inner.size()}).bytes(), kCorrections));
     for (std::size_t p = 0; p < errors_.size(); ++p) {
         errors_[p] = std::max(errors_[p], made.bounds[p]);
         (*made.errors)[p] = joined(errorsBefore_[p], (*made.errors)[p]);
@@ -321,7 +297,9 @@ PackSummary Packing::run(const Progress& progress) {
             metadata_.alternating || (isRelative(options_) && (times() > 1 || grown_ || options_.discard > 0));
         const double begin = passes ? 0.3 : 0;
         gather(progress.part(0, begin));
-        const Progress work = progress.part(begin, corrects() ? 0.6 : 1);
+        const bool hasNumbers = !metadata_.lossless && before_.keepsNumbers;
+        const double numbersBegin = hasNumbers ? 0.9 : 1;
+        const Progress work = progress.part(begin, corrects() ? 0.6 : numbersBegin);
         summary_.bricks = metadata_.grid.brickCount();
         const auto writer = grown_ ? std::make_unique<ArchiveWriter>(*grown_, metadata_, memory_.keepFrames)
                                    : std::make_unique<ArchiveWriter>(path_, metadata_, memory_.keepFrames);
@@ -343,7 +321,14 @@ PackSummary Packing::run(const Progress& progress) {
         settleRanges(dataset_.info, ranges_);
         source_.info.parameters = dataset_.info.parameters;
         if (!writes()) return summary_;
-        if (corrects()) correct(*writer, progress.part(0.6, 1));
+        if (corrects()) correct(*writer, progress.part(0.6, numbersBegin));
+        if (hasNumbers) {
+            volume::Dataset original = truth_ ? *truth_ : source_;
+            original.info.parameters = source_.info.parameters; // with ranges
+            const std::string note =
+                addNumbers(*writer, original, before_, grown_, memory_, metadata_, progress.part(numbersBegin, 1));
+            if (!note.empty()) summary_.notes.push_back(note);
+        }
         Stopwatch write(summary_.writeSeconds);
         sayLimits();
         summary_.repeatedBricks = writer->repeats().bricks;
@@ -390,7 +375,9 @@ PackSummary append(volume::Dataset& source, const std::string& path, double memo
     options.memoryMb = memoryMb;
     std::optional<volume::Dataset> further = withoutKnownLabels(source, grown);
     if (!further) return Packing(source, slabLayers, before, options, path, grown.get()).run(progress);
-    PackSummary summary = Packing(*further, slabLayers, before, options, path, grown.get()).run(progress);
+    PackedBefore beside = before;
+    beside.whole = source;
+    PackSummary summary = Packing(*further, slabLayers, beside, options, path, grown.get()).run(progress);
     for (volume::Parameter& parameter : source.info.parameters)
         for (const volume::Parameter& made : further->info.parameters)
             if (made.name == parameter.name) parameter.ranges = made.ranges;

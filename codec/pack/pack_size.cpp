@@ -52,15 +52,15 @@ double bytesAt(const std::vector<SizeAtBound>& curve, double bound) {
     return curve.back().bytes;
 }
 
-/// The next bound to try: interpolated between trials on either side, or else along the estimates from the single
-/// trial.
+/// The next bound to try: between trials on either side, interpolated or, with `halves`, in the middle; else along the
+/// estimates from the single trial.
 double nextBound(const std::vector<SizeAtBound>& curve, const std::optional<SizeAtBound>& above,
-                 const std::optional<SizeAtBound>& below, double aim) {
+                 const std::optional<SizeAtBound>& below, double aim, bool halves) {
     constexpr double kLeastStep = 1.15, kFinest = 1e-8;
     if (!above && !below) return boundAt(curve, aim);
     if (above && below) {
         const double finer = std::max(above->bound, kFinest);
-        const double part = (above->bytes - aim) / (above->bytes - below->bytes);
+        const double part = halves ? 0.5 : (above->bytes - aim) / (above->bytes - below->bytes);
         return finer * std::pow(below->bound / finer, std::clamp(part, 0.1, 0.9));
     }
     const SizeAtBound& trial = above ? *above : *below;
@@ -186,7 +186,8 @@ PackSummary packToSize(const PackOptions& asked, SizeControl control, const std:
         return came;
     };
     while (trials < kTrials) {
-        const SizeAtBound came = attempt(std::min(nextBound(curve, above, below, aim), kLargestBound));
+        const bool halves = trials >= 4 && trials % 2 == 0; // sizes may jump, and interpolation then stays at one side
+        const SizeAtBound came = attempt(std::min(nextBound(curve, above, below, aim, halves), kLargestBound));
         if (came.bytes > wanted) {
             above = came;
             if (came.bound >= kLargestBound) break;

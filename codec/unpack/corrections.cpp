@@ -24,7 +24,11 @@ constexpr const char *kPresence = "presence", *kDifference = "difference", *kSam
 /// The bound of a parameter in its unit, as options state it; 0: none. That of a mean error bounds each error.
 double statedBound(const PackOptions& options, const volume::Parameter& about) {
     if (about.categorical) return 0;
-    const double extent = extentOf(about);
+    double extent = extentOf(about);
+    for (int c = 0; options.ofComponents && c < std::min(about.components, int(about.ranges.size())); ++c) {
+        const Range& own = about.ranges[std::size_t(c)];
+        if (own.hi > own.lo) extent = std::min(extent, own.hi - own.lo);
+    }
     double bound = std::numeric_limits<double>::infinity();
     if (options.maxError > 0) bound = std::min(bound, options.maxError * extent);
     if (options.absError > 0) bound = std::min(bound, options.absError);

@@ -12,6 +12,7 @@ PackedBefore packedBefore(const std::shared_ptr<const Archive>& archive) {
     if (isResampled(metadata) && (!corrected || !metadata.resampled.empty()))
         before.resampled.resize(metadata.info.parameters.size());
     if (corrected) before.source = gridDataset(archive, 0);
+    before.numbers = archive->numbers();
     return before;
 }
 

@@ -21,6 +21,12 @@ struct PackedBefore {
     /// The samples on that grid, which corrections lead back to; empty: unknown, or the data lie on it.
     std::optional<volume::Dataset> source = {};
     bool ofSeries = false; ///< the data are times of a series that others follow or precede
+    /// Whether an archive with a bound gets the numbers of regions.
+    bool keepsNumbers = true;
+    /// Those that the archive keeps; null if it has none.
+    std::shared_ptr<const StoredNumbers> numbers = {};
+    /// The same times with all parameters that numbers are of, where the data have some of these; empty: the data.
+    std::optional<volume::Dataset> whole = {};
 };
 
 /// The properties of an archive that pack needs where its stored samples are packed again: their errors so far.

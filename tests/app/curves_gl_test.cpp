@@ -97,7 +97,7 @@ TEST_F(CurvesViewTest, StatisticsOfABrushAreThoseOfTheStatisticsView) {
     session.selection.brushes = {brush};
     curvesView.y = {"mean(T)", "share(T)", "volume(T)"};
     curvesView.brushed = true;
-    const volume::Curves curves = readCurves(*source, plotCurvesQuery(curvesView, session, source->info()));
+    const volume::Curves curves = readCurves(*source, {}, plotCurvesQuery(curvesView, session, source->info()));
     for (std::size_t t = 0; t < curves.times.size(); ++t) {
         session.time = curves.times[t];
         BrushedQuery query = brushedQuery(session, source->info(), {*channel}, {range}, 8, false);
@@ -112,7 +112,7 @@ TEST_F(CurvesViewTest, StatisticsOfABrushAreThoseOfTheStatisticsView) {
 TEST_F(CurvesViewTest, TablesAndFiguresHoldTheCurves) {
     curvesView.x = "current_density";
     curvesView.y = {"voltage", "voltage*current_density"};
-    const volume::Curves curves = readCurves(*source, plotCurvesQuery(curvesView, session, source->info()));
+    const volume::Curves curves = readCurves(*source, {}, plotCurvesQuery(curvesView, session, source->info()));
     const std::string csv = curvesCsv(curves);
     EXPECT_EQ(csv.substr(0, csv.find('\n')),
               "time [s],current_density [A/m2],voltage [V],voltage*current_density [W/m2]");

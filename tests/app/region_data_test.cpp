@@ -42,7 +42,7 @@ TEST(RegionData, RowsSayOfWhatTheirSharesAre) {
     const auto source = cellSource(cell());
     const volume::DatasetInfo& info = source->info();
     const RegionQuery query{{0, 2}, 1, {}};
-    const volume::RegionStatistics statistics = readRegions(source, query);
+    const RegionNumbers statistics = readRegions(source, {}, query);
     const std::vector<RegionRow> rows = regionRows(info, query, statistics);
     ASSERT_EQ(rows.size(), 8u); // three regions and the whole, of both parameters
     EXPECT_EQ(rows[1].region, "air");
@@ -130,7 +130,7 @@ TEST(RegionData, WithoutAVelocityThereIsNoFlux) {
     EXPECT_EQ(rowsOf(sectionCsv(source->info(), curves))[1][11], ""); // no number rather than 0
     query.weight = volume::SectionWeight::MassFlow;
     EXPECT_THROW(readSections(source, query), Error);
-    EXPECT_THROW(readBalance(source, {}), Error);
+    EXPECT_THROW(readBalance(source, {}, {}), Error);
 }
 
 TEST(RegionData, SectionsCountWhatIsBrushed) {
@@ -151,7 +151,7 @@ TEST(RegionData, SectionsCountWhatIsBrushed) {
 TEST(RegionData, BalancesAreInMolesPerSecond) {
     const auto source = cellSource(cell());
     const volume::DatasetInfo& info = source->info();
-    const Balance balance = readBalance(source, {0, "", 1, {}});
+    const Balance balance = readBalance(source, {}, {0, "", 1, {}});
     const BalanceTable table = balanceTable(info, balance);
     EXPECT_EQ(table.unit, "mol/s");
     EXPECT_EQ(table.insideUnit, "mol");
@@ -180,7 +180,7 @@ TEST(RegionData, BalancesAreInMolesPerSecond) {
     const auto csv = rowsOf(balanceCsv(table, "", ""));
     EXPECT_EQ(csv[0][3], "in [mol/s]");
     EXPECT_EQ(csv.size(), table.rows.size() + 1);
-    EXPECT_EQ(balanceCells(table.rows[0]).size(), balanceHeads(table).size());
+    EXPECT_EQ(balanceCells(table, table.rows[0]).size(), balanceHeads(table).size());
     EXPECT_GE(table.notes.size(), 3u);
 }
 
@@ -188,7 +188,7 @@ TEST(RegionData, BalancesAreInMolesPerSecond) {
 TEST(RegionData, BalancesFollowTheUnitOfLength) {
     const auto source = cellSource(cell());
     volume::DatasetInfo info = source->info();
-    const Balance balance = readBalance(source, {0, "", 1, {}});
+    const Balance balance = readBalance(source, {}, {0, "", 1, {}});
     const BalanceTable metres = balanceTable(info, balance);
     info.lengthUnit = "mm";
     const BalanceTable table = balanceTable(info, balance);
@@ -211,7 +211,7 @@ TEST(RegionData, BalancesSayWhatCarriesAndInWhichUnit) {
     volume::Dataset data = cell();
     const auto notes = [&] {
         const auto source = cellSource(data);
-        return balanceTable(source->info(), readBalance(source, {0, "", 1, {}})).notes;
+        return balanceTable(source->info(), readBalance(source, {}, {0, "", 1, {}})).notes;
     };
     const std::vector<std::string> stated = notes();
     EXPECT_EQ(stated.front(), "carried by U (convection only, without diffusion)");
@@ -230,7 +230,7 @@ TEST(RegionData, BalancesSayWhatCarriesAndInWhichUnit) {
 
 TEST(RegionData, CellsOfABalanceStandUnderTheirHeads) {
     const std::vector<std::string> cells =
-        balanceCells({"air", "total: reacts", 1.5, 2.5, 3.5, 4.5, 5.5, true, 0.25, 7.5});
+        balanceCells({}, {"air", "total: reacts", 1.5, 2.5, 3.5, 4.5, 5.5, true, 0.25, 7.5, 0, 0, 0});
     ASSERT_EQ(cells.size(), 9u);
     EXPECT_EQ(cells[0], "air");
     EXPECT_EQ(cells[1], "total: reacts");
@@ -273,7 +273,7 @@ TEST(RegionData, OxygenOfTheSharedCellFallsAlongItsChannel) {
     EXPECT_NEAR(panels[1].series[0].points.front().y, 21.80, 0.01);
     EXPECT_NEAR(panels[1].series[0].points.back().y, 20.78, 0.01);
     const BalanceTable balance =
-        balanceTable(info, readBalance(sources.numbers, {query.channels[0], "", query.label, {}}));
+        balanceTable(info, readBalance(sources.numbers, sources.origin, {query.channels[0], "", query.label, {}}));
     for (const BalanceRow& row : balance.rows)
         if (row.total && row.region == "cathode") {
             EXPECT_LT(row.relative, -0.2); // much of the oxygen is used up

@@ -161,7 +161,8 @@ TEST(Hostile, ForgedHeadersAndIndexesNeverCrash) {
     append(more, folder / "small.tsr");
     forge(folder, readFile(folder / "small.tsr"));
     const std::string corpus = TESSERA_SOURCE_DIR "/tests/fuzz/corpus/fuzz_archive/";
-    for (const char* stored : {"bcc-bounded-3.tsr", "integers-3.tsr", "parted-3.tsr", "corrected-3.tsr"})
+    for (const char* stored :
+         {"bcc-bounded-3.tsr", "integers-3.tsr", "parted-3.tsr", "corrected-3.tsr", "numbers-3.tsr"})
         forge(folder, readFile(corpus + stored));
 }
 

@@ -52,6 +52,44 @@ say 'plate' out.txt
 "$tessera" stats named.tsr --by region --of T --label region:0=rib > out.txt 2>err || die "names over those of an archive"
 say 'rib' out.txt
 
+# Archives with a bound keep numbers of their source.
+near() { # near A B: the same tables but for rounding: of nine digits, and of differences
+    python3 - "$1" "$2" <<'PY'
+import sys
+def number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return None
+a, b = (open(name).read().splitlines() for name in sys.argv[1:])
+assert len(a) == len(b), (len(a), len(b))
+for line, other in zip(a, b):
+    fields, others = line.split(","), other.split(",")
+    assert len(fields) == len(others), (line, other)
+    most = max([abs(number(x)) for x in fields if number(x) is not None], default=0)
+    for x, y in zip(fields, others):
+        if x != y:
+            assert abs(number(x) - number(y)) <= max(2e-9 * abs(number(x)), 1e-11 * most), (line, other)
+PY
+}
+"$tessera" generate fuel-cell -o series.raw --size 11x13x21 --times 8 > /dev/null 2>err || die "make a series"
+for lattice in cc bcc d4; do
+    "$tessera" pack series.raw -o "$lattice.tsr" --lattice $lattice --max-error 0.01 > /dev/null 2>err || die "pack on $lattice"
+    for question in "--all-times" "--balance O2 --all-times" "--by none"; do
+        # shellcheck disable=SC2086
+        "$tessera" stats series.raw $question -o want.csv > /dev/null 2>err || die "stats $question"
+        # shellcheck disable=SC2086
+        "$tessera" stats "$lattice.tsr" $question -o got.csv > /dev/null 2>err || die "stats $question on $lattice"
+        near want.csv got.csv || fail "$question on $lattice: $(diff want.csv got.csv | head -4)"
+    done
+    "$tessera" plot series.raw --y 'mean(T)' --region 1 -o want.csv 2>err || die "plot"
+    "$tessera" plot "$lattice.tsr" --y 'mean(T)' --region 1 -o got.csv 2>err || die "plot on $lattice"
+    near want.csv got.csv || fail "curves on $lattice: $(diff want.csv got.csv | head -4)"
+    "$tessera" stats "$lattice.tsr" --along z --of O2 -o got.csv > /dev/null 2>err || die "sections on $lattice"
+    say 'error of mean' got.csv
+    say 'error at most' got.csv
+done
+
 # Wrong words: status 2 and one line.
 for words in "--of nothing" "--by T" "--along w" "--line 1,2,3" "--balance nothing" "--regions nowhere" \
     "--along z --balance O2" "--velocity T --balance O2" "--label region:x=a" "--label nothing:1=a" "-o out.txt" \

@@ -120,6 +120,32 @@ Statistics statisticsAt(const BrickSource& source, const CurvesQuery& query, con
     return computeStatistics(source, ask, progress);
 }
 
+/// The same from what is known, with the channels that are not, or are `integrated`, counted.
+Statistics knownOrCounted(const BrickSource& source, const CurvesQuery& query, const std::vector<int>& channels,
+                          const std::set<int>& integrated, int time, const Progress& progress) {
+    std::vector<std::optional<ChannelStatistics>> known(channels.size());
+    std::vector<int> others;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        if (query.known && !query.doi) known[c] = query.known(channels[c], time);
+        if (!known[c] || integrated.contains(channels[c])) others.push_back(channels[c]);
+    }
+    Statistics counted;
+    if (!others.empty()) counted = statisticsAt(source, query, others, time, progress);
+    Statistics out;
+    std::size_t next = 0;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        const bool isCounted = !known[c] || integrated.contains(channels[c]);
+        ChannelStatistics of = isCounted ? counted.channels[next++] : ChannelStatistics();
+        if (known[c]) {
+            known[c]->all.integral = of.all.integral;
+            known[c]->inside.integral = of.inside.integral;
+            of = std::move(*known[c]);
+        }
+        out.channels.push_back(std::move(of));
+    }
+    return out;
+}
+
 double valueOf(const ChannelStatistics& statistics, bool parted, Kind kind) {
     const Summary& of = parted ? statistics.inside : statistics.all;
     switch (kind) {
@@ -150,17 +176,20 @@ Curves computeCurves(const BrickSource& source, const CurvesQuery& query, const 
     formulas.emplace_back(query.x, info, known);
     for (const std::string& y : query.y) formulas.emplace_back(y, info, known);
 
-    std::set<int> wanted;
+    std::set<int> wanted, integrated;
     for (const Formula& formula : formulas)
         for (const Term& term : formula.used)
-            if (term.what == Term::What::Statistic) wanted.insert(term.index);
+            if (term.what == Term::What::Statistic) {
+                wanted.insert(term.index);
+                if (term.kind == Kind::Integral) integrated.insert(term.index);
+            }
     const std::vector<int> channels(wanted.begin(), wanted.end());
     const bool parted = query.label >= 0 || query.doi;
     const std::size_t times = info.times.size();
     std::vector<Statistics> statistics(channels.empty() ? 0 : times);
     for (std::size_t t = 0; t < statistics.size(); ++t)
-        statistics[t] = statisticsAt(source, query, channels, static_cast<int>(t),
-                                     progress.part(double(t) / double(times), double(t + 1) / double(times)));
+        statistics[t] = knownOrCounted(source, query, channels, integrated, static_cast<int>(t),
+                                       progress.part(double(t) / double(times), double(t + 1) / double(times)));
 
     const auto valuesOf = [&](const Term& term) {
         if (term.what == Term::What::Time) return info.times;

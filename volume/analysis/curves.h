@@ -3,6 +3,7 @@
 #include "volume/analysis/statistics.h"
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ struct CurvesQuery {
     std::vector<int> doiChannels;
     std::function<double(std::span<const float> values, glm::dvec3 position)> doi;
     int level = 0; ///< of detail, of the statistics
+    /// Statistics of a channel at a time, of all samples and of those inside the regions, that are known without
+    /// samples, but for integrals; not asked where there is a degree of interest.
+    std::function<std::optional<ChannelStatistics>(int channel, int time)> known;
 };
 
 struct Curve {

@@ -12,12 +12,38 @@ namespace tessera::volume {
 
 namespace {
 
-constexpr std::size_t kCacheBytes = std::size_t(256) << 20;
+/// A product of a carried quantity and a speed, with the bound on its error and on that of the speed.
+struct Carried {
+    double value = 0, speed = 0, error = 0, speedError = 0;
+    Carried(double c, double u, double cError, double uError)
+        : value(c * u), speed(u), error(std::abs(u) * cError + std::abs(c) * uError + cError * uError),
+          speedError(uError) {}
+    Carried times(double factor) const {
+        Carried out = *this;
+        out.value *= factor;
+        out.speed *= factor;
+        out.error *= std::abs(factor);
+        out.speedError *= std::abs(factor);
+        return out;
+    }
+    Carried plus(const Carried& other) const {
+        Carried out = *this;
+        out.value += other.value;
+        out.speed += other.speed;
+        out.error += other.error;
+        out.speedError += other.speedError;
+        return out;
+    }
+};
 
-void add(Crossing& to, double area, double carried, double flow) {
+/// Adds what flows out through a face of this area.
+void add(Crossing& to, const Carried& through, double side, double area) {
+    const double carried = through.value * side * area;
     to.area += area;
     (carried > 0 ? to.out : to.in) += std::abs(carried);
-    to.flow += flow;
+    to.flow += through.speed * side * area;
+    to.error += through.error * area;
+    to.flowError += through.speedError * area;
 }
 
 void add(Crossing& to, const Crossing& other) {
@@ -25,6 +51,8 @@ void add(Crossing& to, const Crossing& other) {
     to.in += other.in;
     to.out += other.out;
     to.flow += other.flow;
+    to.error += other.error;
+    to.flowError += other.flowError;
 }
 
 /// Of one region in one brick.
@@ -32,7 +60,7 @@ struct Part {
     std::array<Crossing, 6> faces;
     std::map<int, Crossing> borders;
     Crossing absent, unlabelled;
-    double volume = 0, amount = 0;
+    double volume = 0, amount = 0, amountError = 0;
 
     void add(const Part& other) {
         for (std::size_t f = 0; f < 6; ++f) tessera::volume::add(faces[f], other.faces[f]);
@@ -41,6 +69,7 @@ struct Part {
         tessera::volume::add(unlabelled, other.unlabelled);
         volume += other.volume;
         amount += other.amount;
+        amountError += other.amountError;
     }
 };
 
@@ -77,23 +106,28 @@ private:
 };
 
 /// Fluxes out of the cell of one sample.
-void addSample(const Around& around, const SampleCells& cells, glm::ivec3 in, glm::ivec3 at, int own, Part& part) {
+void addSample(const Around& around, const SampleCells& cells, const BalanceQuery& query, glm::ivec3 in, glm::ivec3 at,
+               int own, Part& part) {
     const auto c = around.carried(in);
     if (!c) return;
     const double volume = cells.volume(at);
     part.volume += volume;
     part.amount += *c * volume;
+    part.amountError += query.carriedError * volume;
     const glm::dvec3 box = cells.size(at);
     const int s = cells.sublatticeOf(at);
     for (int axis = 0; axis < 3; ++axis) {
         const auto u = around.velocity(in, axis);
         if (!u) continue;
         const double area = box[(axis + 1) % 3] * box[(axis + 2) % 3] / cells.sublattices();
+        const auto carriedBy = [&](double carried, double speed) {
+            return Carried(carried, speed, query.carriedError, query.velocityError[std::size_t(axis)]);
+        };
+        const Carried here = carriedBy(*c, *u);
         for (const int side : {-1, 1}) {
             const int next = cells.within(at)[axis] + side;
             if (next < 0 || next >= cells.count(s, axis)) {
-                add(part.faces[std::size_t(2 * axis + (side > 0 ? 1 : 0))], area, *c * *u * side * area,
-                    *u * side * area);
+                add(part.faces[std::size_t(2 * axis + (side > 0 ? 1 : 0))], here, side, area);
                 continue;
             }
             const auto otherC = around.carried(in, axis, side), otherU = around.velocity(in, axis, axis, side);
@@ -101,14 +135,14 @@ void addSample(const Around& around, const SampleCells& cells, glm::ivec3 in, gl
                 // Half a cell on along the straight line through the sample before: nothing flows through a wall.
                 const auto innerC = around.carried(in, axis, -side), innerU = around.velocity(in, axis, axis, -side);
                 const bool line = innerC && innerU;
-                const double carried = line ? 1.5 * *c * *u - 0.5 * *innerC * *innerU : *c * *u;
-                add(part.absent, area, carried * side * area, (line ? 1.5 * *u - 0.5 * *innerU : *u) * side * area);
+                add(part.absent, line ? here.times(1.5).plus(carriedBy(*innerC, *innerU).times(-0.5)) : here, side,
+                    area);
                 continue;
             }
             const auto other = around.region(in, axis, side);
             if (other && *other == own) continue;
-            add(other ? part.borders[*other] : part.unlabelled, area, 0.5 * (*c * *u + *otherC * *otherU) * side * area,
-                0.5 * (*u + *otherU) * side * area);
+            add(other ? part.borders[*other] : part.unlabelled, here.plus(carriedBy(*otherC, *otherU)).times(0.5), side,
+                area);
         }
     }
 }
@@ -128,7 +162,7 @@ std::vector<RegionBalance> computeBalance(const BrickSource& source, const Balan
                                           const Progress& progress) {
     const std::vector<int> regions = query.label >= 0 ? query.regions : std::vector<int>{0};
     // Caches bricks, which are read again as neighbours; does not own the source.
-    const BrickCache cache(std::shared_ptr<const BrickSource>(std::shared_ptr<void>(), &source), kCacheBytes);
+    const BrickCache cache(std::shared_ptr<const BrickSource>(std::shared_ptr<void>(), &source), query.cacheBytes);
     const BrickGrid grid = source.grid();
     const SampleCells cells(grid, source.info().bounds, 0);
     std::vector<Part> total(regions.size());
@@ -142,7 +176,7 @@ std::vector<RegionBalance> computeBalance(const BrickSource& source, const Balan
                 const auto own = around.region(at - first);
                 if (!own) return;
                 for (std::size_t r = 0; r < regions.size(); ++r)
-                    if (regions[r] == *own) addSample(around, cells, at - first, at, *own, parts[r]);
+                    if (regions[r] == *own) addSample(around, cells, query, at - first, at, *own, parts[r]);
             });
             return parts;
         },
@@ -152,8 +186,9 @@ std::vector<RegionBalance> computeBalance(const BrickSource& source, const Balan
         [&](double fraction) { progress.advance(fraction, "balance"); });
     std::vector<RegionBalance> out;
     for (std::size_t r = 0; r < regions.size(); ++r) {
-        RegionBalance balance{regions[r],      total[r].faces, {}, total[r].absent, total[r].unlabelled,
-                              total[r].volume, total[r].amount};
+        RegionBalance balance{regions[r],      total[r].faces,      {},
+                              total[r].absent, total[r].unlabelled, total[r].volume,
+                              total[r].amount, total[r].amountError};
         for (const auto& [value, crossing] : total[r].borders) balance.borders.push_back({value, crossing});
         out.push_back(std::move(balance));
     }

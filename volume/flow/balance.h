@@ -15,6 +15,9 @@ struct BalanceQuery {
     int label = -1;                       ///< channel of a label; -1: the whole box is one region
     std::vector<int> regions;             ///< of its values, in the order wanted
     int time = 0;
+    double carriedError = 0;                         ///< bound on the error of each sample of what is carried
+    std::array<double, 3> velocityError{0, 0, 0};    ///< and of the components of the velocity
+    std::size_t cacheBytes = std::size_t(256) << 20; ///< of bricks that are kept, since neighbours need them again
 };
 
 /// Flux through one surface of a region, as integrals of c U.n dA, with n pointing out of the region.
@@ -22,6 +25,8 @@ struct Crossing {
     double area = 0;        ///< where c and U exist (on both sides of a border, but for RegionBalance::absent)
     double in = 0, out = 0; ///< parts that flow in and out, neither negative where c is not
     double flow = 0;        ///< volume flow, out less in
+    double error = 0;       ///< bound on the errors of in, out and net, if samples are within the bounds of the query
+    double flowError = 0;   ///< and on that of flow
     double net() const { return out - in; }
 };
 
@@ -38,6 +43,7 @@ struct RegionBalance {
     Crossing unlabelled;                 ///< to where the label is absent, but neither c nor U
     double volume = 0;                   ///< of its samples that have c
     double amount = 0;                   ///< integral of c over them
+    double amountError = 0;              ///< bound on its error
 
     Crossing total() const;
     /// Outflow minus inflow: the amount produced inside (negative: consumed), if nothing is stored and all transport is

@@ -98,9 +98,15 @@ private:
     std::vector<double> place_, thickness_;
 };
 
+/// Along the normal of the planes, with the bound on its error.
+struct Speed {
+    double value = 0, error = 0;
+};
+
 /// Of one region, channel and plane.
 struct PlaneSums {
     double samples = 0, area = 0, integral = 0, weight = 0, weighted = 0, flux = 0, flow = 0;
+    double fluxError = 0, flowError = 0;
     double least = std::numeric_limits<double>::infinity(), most = -std::numeric_limits<double>::infinity();
 
     void add(const PlaneSums& other) {
@@ -111,11 +117,13 @@ struct PlaneSums {
         weighted += other.weighted;
         flux += other.flux;
         flow += other.flow;
+        fluxError += other.fluxError;
+        flowError += other.flowError;
         least = std::min(least, other.least);
         most = std::max(most, other.most);
     }
     SectionValues values() const {
-        SectionValues out{samples, area, kNone, kNone, kNone, kNone, flux, flow};
+        SectionValues out{samples, area, kNone, kNone, kNone, kNone, flux, flow, fluxError, flowError};
         if (!(area > 0)) return out;
         out.integral = integral;
         if (weight > 0) out.mean = weighted / weight;
@@ -212,10 +220,13 @@ private:
                 doi = std::clamp(query_.doi(values, samplePosition(grid_, at, 0)), 0.0, 1.0);
                 if (doi <= 0) return;
             }
-            double speed = 0;
+            Speed speed;
             for (int axis = 0; moving && axis < 3; ++axis)
-                if (along[axis] != 0) speed += along[axis] * velocity[std::size_t(axis)][i];
-            const bool flows = moving && !std::isnan(speed);
+                if (along[axis] != 0) {
+                    speed.value += along[axis] * velocity[std::size_t(axis)][i];
+                    speed.error += std::abs(along[axis]) * query_.velocityError[std::size_t(axis)];
+                }
+            if (std::isnan(speed.value)) speed = {};
             const double rho = density.empty() ? 1.0 : density[i];
             planes_.sharesOf(at, shares);
             for (std::size_t c = 0; c < channels; ++c) {
@@ -223,16 +234,17 @@ private:
                 if (std::isnan(value)) continue;
                 for (const Share& share : shares)
                     add(out.sums[(std::size_t(region) * channels + c) * planes + std::size_t(share.plane - out.first)],
-                        share, value, doi, flows ? speed : 0, rho);
+                        share, value, query_.errors.empty() ? 0 : query_.errors[c], doi, speed, rho);
             }
         });
         return out;
     }
 
-    void add(PlaneSums& sums, const Share& share, double value, double doi, double speed, double rho) const {
+    void add(PlaneSums& sums, const Share& share, double value, double error, double doi, Speed along,
+             double rho) const {
         const double area = (query_.weight == SectionWeight::Volume ? share.volume : share.area) * doi;
         if (!(area > 0)) return;
-        const double f = value, mass = std::abs(rho * speed);
+        const double f = value, speed = along.value, mass = std::abs(rho * speed);
         const double weight = query_.weight == SectionWeight::MassFlow ? (std::isnan(mass) ? 0 : mass * area) : area;
         sums.samples += doi;
         sums.area += area;
@@ -241,6 +253,8 @@ private:
         sums.weighted += f * weight;
         sums.flux += f * speed * area;
         sums.flow += speed * area;
+        sums.fluxError += (std::abs(speed) * error + std::abs(f) * along.error + error * along.error) * area;
+        sums.flowError += along.error * area;
         if (doi < 0.5) return;
         sums.least = std::min(sums.least, value);
         sums.most = std::max(sums.most, value);

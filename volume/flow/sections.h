@@ -32,6 +32,8 @@ struct SectionQuery {
     std::function<double(std::span<const float> values, glm::dvec3 position)> doi;
     std::vector<int> doiChannels;
     int time = 0;
+    std::vector<double> errors = {}; ///< bounds on the errors of samples, by position in `channels`; empty: 0
+    std::array<double, 3> velocityError{0, 0, 0}; ///< and of the components of the velocity
 };
 
 /// One plane: sums over the samples of a region that have a value f there. a is the area of the sample's cell in the
@@ -51,6 +53,7 @@ struct SectionQuery {
 /// Where nothing is, area is 0 and the rest NaN but for samples, flux and flow.
 struct SectionValues {
     double samples = 0, area = 0, mean = 0, least = 0, most = 0, integral = 0, flux = 0, flow = 0;
+    double fluxError = 0, flowError = 0; ///< bounds on their errors, without a degree of interest
 };
 
 struct Sections {

@@ -45,6 +45,10 @@ volume::CurvesQuery queryOf(const PlotCurvesQuery& asked, const volume::DatasetI
     return query;
 }
 
+std::string labelOf(const volume::DatasetInfo& info, const PlotCurvesQuery& asked) {
+    return asked.label >= 0 ? info.channel(asked.label).name : std::string();
+}
+
 bool sameAxis(const volume::Curves& curves) {
     return curves.x.values == curves.times;
 }
@@ -128,8 +132,41 @@ PlotCurvesQuery plotCurvesQuery(const CurvesView& view, const Session& session, 
     return query;
 }
 
-volume::Curves readCurves(const volume::BrickSource& source, const PlotCurvesQuery& asked, const Progress& progress) {
-    return volume::computeCurves(source, queryOf(asked, source.info()), progress);
+volume::Curves readCurves(const volume::BrickSource& source, const NumberOrigin& origin, const PlotCurvesQuery& asked,
+                          const Progress& progress) {
+    const volume::DatasetInfo& info = source.info();
+    volume::CurvesQuery query = queryOf(asked, info);
+    if (origin.computed && asked.regions.size() <= 1)
+        query.known = [&](int channel, int time) -> std::optional<volume::ChannelStatistics> {
+            const auto known = volume::knownStatistics(*origin.computed, info.times[std::size_t(time)],
+                                                       labelOf(info, asked), {info.channel(channel).name});
+            if (!known) return std::nullopt;
+            volume::ChannelStatistics out;
+            out.all = known->all.front();
+            constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+            out.inside = {0, 0, kNone, kNone, kNone, kNone, 0};
+            for (std::size_t r = 0; r < known->regions.size(); ++r)
+                if (!asked.regions.empty() && known->regions[r] == asked.regions.front())
+                    out.inside = known->summary[r].front();
+            return out;
+        };
+    return volume::computeCurves(source, query, progress);
+}
+
+std::string curvesOrigin(const volume::DatasetInfo& info, const NumberOrigin& origin, const PlotCurvesQuery& asked) {
+    std::vector<int> channels;
+    const auto count = int(info.channels().size());
+    bool integrals = false;
+    for (int channel = 0; channel < count; ++channel) {
+        const std::string argument = "(" + info.channel(channel).name + ")";
+        const auto names = [&](const std::string& formula) { return formula.find(argument) != formula.npos; };
+        if (names(asked.x) || std::ranges::any_of(asked.y, names)) channels.push_back(channel);
+    }
+    for (const std::string& formula : asked.y) integrals = integrals || formula.find("integral(") != formula.npos;
+    if (channels.empty() || integrals || asked.brushes.selection.active() || asked.regions.size() > 1)
+        return originText(origin, info, channels);
+    return originText(origin, info, channels,
+                      knownStatistics(origin, info, channels, labelOf(info, asked), info.times));
 }
 
 std::vector<std::vector<std::size_t>> curveGroups(const volume::Curves& curves) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/data/number_origin.h"
 #include "app/pane/figure.h"
 #include "app/queries/statistics_query.h"
 #include "volume/analysis/curves.h"
@@ -36,9 +37,12 @@ LabelRegion findRegion(const volume::DatasetInfo& info, const std::string& text)
 CurvesView resolvedCurves(const CurvesView& view, const volume::DatasetInfo& info);
 /// What a view wants. Throws Error for a region that is not there.
 PlotCurvesQuery plotCurvesQuery(const CurvesView& view, const Session& session, const volume::DatasetInfo& info);
-/// Reads the values. Throws Error, Cancelled.
-volume::Curves readCurves(const volume::BrickSource& source, const PlotCurvesQuery& query,
+/// Looks values up that are known as computed, and reads the others. Throws Error, Cancelled.
+volume::Curves readCurves(const volume::BrickSource& source, const NumberOrigin& origin, const PlotCurvesQuery& query,
                           const Progress& progress = {});
+
+/// Where the numbers of curves come from, in words.
+std::string curvesOrigin(const volume::DatasetInfo& info, const NumberOrigin& origin, const PlotCurvesQuery& query);
 
 /// A range with the finite values of a curve in it.
 Range rangeOf(const std::vector<double>& values, Range range);

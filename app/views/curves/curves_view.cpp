@@ -134,7 +134,7 @@ void chooseRegion(ToolRow& tools, const volume::DatasetInfo& info, CurvesView& v
 }
 
 void drawToolbar(ViewContext& context, CurvesCache& cache, const std::shared_ptr<const volume::Curves>& curves,
-                 CurvesView& view) {
+                 const PlotCurvesQuery& query, CurvesView& view) {
     const volume::DatasetInfo& info = context.numbers->info();
     const CurvesView resolved = resolvedCurves(view, info);
     ToolRow tools(context);
@@ -166,7 +166,7 @@ void drawToolbar(ViewContext& context, CurvesCache& cache, const std::shared_ptr
         exportMenu(
             context, tools, "curves",
             [curves, time = context.session.time](const Progress&) { return curvesDrawing(*curves, time); },
-            [curves](const Progress&) { return curvesCsv(*curves); }, false);
+            [curves](const Progress&) { return curvesCsv(*curves); }, false, curvesOrigin(info, context.origin, query));
     }
 }
 
@@ -321,11 +321,11 @@ void drawCurvesView(ViewContext& context, const std::string& pane, CurvesView& v
     if (failure.empty() && info.times.size() > 1 && !query.y.empty())
         curves = cache.answers.get(
             context, context.numbers, {.key = "curves " + pane, .title = "Curves", .quiet = true}, query,
-            [](const auto& source, const PlotCurvesQuery& asked, int, const Progress& progress) {
-                return readCurves(*source, asked, progress);
+            [origin = context.origin](const auto& source, const PlotCurvesQuery& asked, int, const Progress& progress) {
+                return readCurves(*source, origin, asked, progress);
             },
             [](const PlotCurvesQuery& a, const PlotCurvesQuery& b) { return a.x == b.x && a.y == b.y; });
-    if (!context.figure && info.times.size() > 1) drawToolbar(context, cache, curves, view);
+    if (!context.figure && info.times.size() > 1) drawToolbar(context, cache, curves, query, view);
     if (info.times.size() < 2) return drawHint("One time", "Curves need several times: open a series.");
     if (failure.empty()) failure = cache.answers.failure();
     if (!curves && !failure.empty()) return drawHint("No values", failure.c_str());

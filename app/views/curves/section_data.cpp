@@ -50,7 +50,7 @@ std::string velocityUnit(const volume::DatasetInfo& info, const std::string& vel
 } // namespace
 
 SectionCurves readSections(const std::shared_ptr<const volume::BrickSource>& source, const SectionCurvesQuery& asked,
-                           const Progress& progress) {
+                           const Progress& progress, const NumberOrigin& origin) {
     const volume::DatasetInfo& info = source->info();
     volume::SectionQuery query;
     query.channels = asked.channels;
@@ -58,7 +58,7 @@ SectionCurves readSections(const std::shared_ptr<const volume::BrickSource>& sou
     query.weight = asked.weight;
     if (asked.line.size() == 2) query.line = {asked.line[0], asked.line[1]};
     query.planes = asked.planes;
-    SectionCurves out{asked, {}, {}};
+    SectionCurves out{asked, {}, {}, {}};
     const volume::SourceAtTime shown = volume::sourceAt(source, asked.time);
     if (asked.label >= 0 && asked.regions.empty())
         out.query.regions = volume::labelValues(*shown.source, asked.label, shown.time, progress.part(0, 0.2));
@@ -75,6 +75,12 @@ SectionCurves readSections(const std::shared_ptr<const volume::BrickSource>& sou
     if (asked.weight == volume::SectionWeight::MassFlow) query.density = volume::densityChannel(info).value_or(-1);
     setInterest(query, asked, info);
     query.time = shown.time;
+    for (const int channel : asked.channels) out.errors.push_back(numberError(origin, info, info.channel(channel)));
+    if (asked.selection.active() || std::ranges::none_of(out.errors, [](double error) { return error > 0; }))
+        out.errors.clear();
+    query.errors = out.errors;
+    for (std::size_t axis = 0; !out.errors.empty() && query.velocity[0] >= 0 && axis < 3; ++axis)
+        query.velocityError[axis] = numberError(origin, info, info.channel(query.velocity[axis]));
     out.sections = volume::computeSections(*shown.source, query, progress.part(0.2, 1));
     return out;
 }
@@ -125,6 +131,27 @@ double measured(const volume::SectionValues& values, SectionMeasure measure, dou
     return std::nan("");
 }
 
+double errorOf(const SectionCurves& curves, std::size_t channel, const volume::SectionValues& values,
+               SectionMeasure measure, double factor) {
+    const double error = curves.errors.empty() ? 0 : curves.errors[channel];
+    switch (measure) {
+    case SectionMeasure::Mean:
+        return curves.query.weight == volume::SectionWeight::MassFlow && error > 0 ? std::nan("") : error;
+    case SectionMeasure::Least:
+    case SectionMeasure::Most:
+        return error;
+    case SectionMeasure::Integral:
+        return error * values.area * factor;
+    case SectionMeasure::Flux:
+        return values.fluxError * factor;
+    case SectionMeasure::Flow:
+        return values.flowError * factor;
+    case SectionMeasure::Area:
+        return 0;
+    }
+    return std::nan("");
+}
+
 std::vector<CurveLook> curveLooks(const volume::DatasetInfo& info, const SectionCurvesQuery& asked) {
     const bool selected = asked.selection.active();
     if (asked.regions.empty() || asked.label < 0)
@@ -143,7 +170,7 @@ std::string placeTitle(const SectionCurvesQuery& asked) {
 }
 
 std::string sectionCsv(const volume::DatasetInfo& info, const SectionCurves& curves, bool head) {
-    const auto& [asked, sections, velocity] = curves;
+    const auto& [asked, sections, velocity, errors] = curves;
     const bool several = info.times.size() > 1;
     std::string csv;
     if (head) {
@@ -153,7 +180,11 @@ std::string sectionCsv(const volume::DatasetInfo& info, const SectionCurves& cur
                 ",";
         csv += csvField(placeTitle(asked) + (info.lengthUnit.empty() ? "" : " [" + info.lengthUnit + "]"));
         csv += ",region,parameter,unit,weight,samples,mean,min,max,integral,integral unit,flux,flux unit,flow,flow "
-               "unit,area,area unit\n";
+               "unit,area,area unit";
+        for (const SectionMeasure measure : kMeasures)
+            if (!errors.empty() && measure != SectionMeasure::Area)
+                csv += ",error of " + std::string(kSectionMeasureNames[std::size_t(measure)]);
+        csv += "\n";
     }
     const double weight = asked.time.weight;
     const double time = info.times[static_cast<std::size_t>(asked.time.earlier)] * (1 - weight) +
@@ -180,6 +211,9 @@ std::string sectionCsv(const volume::DatasetInfo& info, const SectionCurves& cur
                         csv += csvNumber(measured(values, kMeasures[m], units[m].factor));
                     if (kMeasures[m] > SectionMeasure::Most) csv += "," + csvField(units[m].unit);
                 }
+                for (std::size_t m = 0; m < std::size(kMeasures); ++m)
+                    if (!errors.empty() && kMeasures[m] != SectionMeasure::Area)
+                        csv += "," + csvNumber(errorOf(curves, c, values, kMeasures[m], units[m].factor));
                 csv += "\n";
             }
         }
@@ -188,7 +222,7 @@ std::string sectionCsv(const volume::DatasetInfo& info, const SectionCurves& cur
 
 std::vector<FigurePanel> sectionPanels(const volume::DatasetInfo& info, const SectionCurves& curves,
                                        SectionMeasure measure) {
-    const auto& [asked, sections, velocity] = curves;
+    const auto& [asked, sections, velocity, errors] = curves;
     if (velocity.empty() && (measure == SectionMeasure::Flux || measure == SectionMeasure::Flow))
         throw Error("a flux needs a velocity, and no vector has the name or unit of one");
     const LengthUnit length = suitableLength(

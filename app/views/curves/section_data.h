@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/data/number_origin.h"
 #include "app/pane/figure.h"
 #include "app/session/section_settings.h"
 #include "vis/scene/selection.h"
@@ -35,6 +36,8 @@ struct SectionCurves {
     SectionCurvesQuery query; ///< with the regions that have a curve
     volume::Sections sections;
     std::string velocity; ///< the parameter that carries, "" where there is none
+    /// Bounds on the errors of samples by position in the query's channels, NaN where not known; empty: there are none.
+    std::vector<double> errors = {};
 };
 
 inline constexpr const char* kSectionMeasureDocs[] = {
@@ -48,13 +51,16 @@ inline constexpr const char* kSectionMeasureDocs[] = {
 
 /// Computes the curves. Throws Error (no velocity for mass flow or a flux), Cancelled.
 SectionCurves readSections(const std::shared_ptr<const volume::BrickSource>& source, const SectionCurvesQuery& query,
-                           const Progress& progress = {});
+                           const Progress& progress = {}, const NumberOrigin& origin = {});
 
 /// Unit of a measure of a channel; values are multiplied by `factor` to be in it.
 volume::ComposedUnit measureUnit(const volume::DatasetInfo& info, int channel, const std::string& velocity,
                                  SectionMeasure measure);
 /// One measure of a plane in that unit.
 double measured(const volume::SectionValues& values, SectionMeasure measure, double factor);
+/// Bound on its error, for the channel at a position of the query; NaN where it is not known.
+double errorOf(const SectionCurves& curves, std::size_t channel, const volume::SectionValues& values,
+               SectionMeasure measure, double factor);
 
 /// Names and colours of the curves, by SectionCurvesQuery::regions: "all", "selection" or the regions'.
 struct CurveLook {

@@ -224,8 +224,8 @@ void drawSections(ViewContext& context, const std::string& pane, ProfileView& vi
     const SectionCurvesQuery query = queryOf(context, view, shown);
     const auto curves = cache.answers.get(
         context, context.numbers, {.key = "sections " + pane, .title = "Averages over planes", .quiet = true}, query,
-        [](const auto& source, const SectionCurvesQuery& asked, int, const Progress& progress) {
-            return readSections(source, asked, progress);
+        [origin = context.origin](const auto& source, const SectionCurvesQuery& asked, int, const Progress& progress) {
+            return readSections(source, asked, progress, origin);
         },
         [](const SectionCurvesQuery& a, const SectionCurvesQuery& b) {
             return a.channels == b.channels && a.axis == b.axis && a.line == b.line;

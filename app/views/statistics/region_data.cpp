@@ -26,13 +26,23 @@ std::string scientific(double value) {
     return std::isfinite(value) ? numberText(value) : "-";
 }
 
+/// A bound with two digits, rounded up.
+std::string errorText(double error) {
+    if (!(error > 0) || !std::isfinite(error)) return error == 0 ? "0" : "-";
+    const double unit = std::pow(10.0, std::floor(std::log10(error)) - 1);
+    return numberText(std::ceil(error / unit * (1 - 1e-12)) * unit);
+}
+
 } // namespace
 
-volume::RegionStatistics readRegions(const std::shared_ptr<const volume::BrickSource>& source, const RegionQuery& asked,
-                                     const Progress& progress) {
+namespace {
+
+volume::RegionStatistics countRegions(const std::shared_ptr<const volume::BrickSource>& source,
+                                      const RegionQuery& asked, const std::vector<int>& channels,
+                                      const Progress& progress) {
     const volume::SourceAtTime shown = volume::sourceAt(source, asked.time);
     volume::RegionStatisticsQuery query;
-    query.channels = asked.channels;
+    query.channels = channels;
     query.label = asked.label;
     query.time = shown.time;
     if (asked.label >= 0)
@@ -40,8 +50,79 @@ volume::RegionStatistics readRegions(const std::shared_ptr<const volume::BrickSo
     return volume::computeRegionStatistics(*shown.source, query, progress.part(0.2, 1));
 }
 
+std::string labelNamed(const volume::DatasetInfo& info, int label) {
+    return label >= 0 ? info.channel(label).name : std::string();
+}
+
+/// Statistics of one channel from those of several.
+struct OfChannel {
+    const volume::RegionStatistics* of;
+    std::size_t position;
+};
+
+/// Statistics of channels from several sources, by the regions of all of them.
+volume::RegionStatistics together(const std::vector<OfChannel>& channels) {
+    volume::RegionStatistics out = *channels.front().of;
+    for (const OfChannel& channel : channels)
+        for (std::size_t r = 0; r < channel.of->regions.size(); ++r) {
+            const auto at = std::ranges::lower_bound(out.regions, channel.of->regions[r]);
+            if (at != out.regions.end() && *at == channel.of->regions[r]) continue;
+            const auto place = at - out.regions.begin();
+            out.regions.insert(at, channel.of->regions[r]);
+            out.samples.insert(out.samples.begin() + place, channel.of->samples[r]);
+            out.volume.insert(out.volume.begin() + place, channel.of->volume[r]);
+        }
+    out.all.clear();
+    out.summary.assign(out.regions.size(), std::vector<volume::Summary>(channels.size()));
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        const auto& [of, position] = channels[c];
+        out.all.push_back(of->all[position]);
+        for (std::size_t r = 0; r < of->regions.size(); ++r) {
+            const auto to = std::size_t(std::ranges::lower_bound(out.regions, of->regions[r]) - out.regions.begin());
+            out.summary[to][c] = of->summary[r][position];
+        }
+    }
+    return out;
+}
+
+} // namespace
+
+bool isKnown(const NumberOrigin& origin, const volume::DatasetInfo& info, const RegionQuery& asked) {
+    const std::vector<bool> known = knownStatistics(origin, info, asked.channels, labelNamed(info, asked.label),
+                                                    {info.times[std::size_t(asked.time.earlier)]});
+    return !asked.time.between() && std::ranges::all_of(known, [](bool each) { return each; });
+}
+
+RegionNumbers readRegions(const std::shared_ptr<const volume::BrickSource>& source, const NumberOrigin& origin,
+                          const RegionQuery& asked, const Progress& progress) {
+    const volume::DatasetInfo& info = source->info();
+    const double time = info.times[std::size_t(asked.time.earlier)];
+    const std::string label = labelNamed(info, asked.label);
+    std::vector<std::optional<volume::RegionStatistics>> known(asked.channels.size());
+    std::vector<int> others;
+    for (std::size_t c = 0; c < asked.channels.size(); ++c) {
+        if (origin.computed && !asked.time.between())
+            known[c] = volume::knownStatistics(*origin.computed, time, label, {info.channel(asked.channels[c]).name});
+        if (!known[c]) others.push_back(asked.channels[c]);
+    }
+    volume::RegionStatistics counted;
+    if (!others.empty() || asked.channels.empty()) counted = countRegions(source, asked, others, progress);
+    if (asked.channels.empty()) return {counted};
+    std::vector<OfChannel> channels;
+    RegionNumbers out;
+    std::size_t next = 0;
+    for (std::size_t c = 0; c < asked.channels.size(); ++c) {
+        const volume::Channel channel = info.channel(asked.channels[c]);
+        channels.push_back(known[c] ? OfChannel{&*known[c], 0} : OfChannel{&counted, next++});
+        out.errors.push_back(known[c] ? 0 : numberError(origin, info, channel));
+    }
+    out.statistics = together(channels);
+    return out;
+}
+
 std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionQuery& asked,
-                                  const volume::RegionStatistics& statistics) {
+                                  const RegionNumbers& numbers) {
+    const volume::RegionStatistics& statistics = numbers.statistics;
     std::vector<RegionRow> rows;
     const std::vector<volume::Channel> channels = info.channels();
     for (std::size_t c = 0; c < asked.channels.size(); ++c) {
@@ -51,7 +132,7 @@ std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionQ
                              const volume::Summary& summary) {
             rows.push_back({channel.name, channel.unit, region, value, color, all,
                             summary.samples / statistics.allSamples, existing > 0 ? summary.samples / existing : 0,
-                            summary, info.channelRange(channel)});
+                            summary, info.channelRange(channel), c < numbers.errors.size() ? numbers.errors[c] : 0});
         };
         for (std::size_t r = 0; r < statistics.regions.size(); ++r) {
             const volume::Parameter& label = volume::parameterOf(info, asked.label);
@@ -64,34 +145,43 @@ std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionQ
     return rows;
 }
 
-std::vector<std::string> regionHeads() {
-    return {"Parameter", "Region", "Samples",        "Of all",  "Of its own",
-            "Volume",    "Mean",   "Std. deviation", "Minimum", "Maximum"};
+bool showsErrors(const std::vector<RegionRow>& rows) {
+    return std::ranges::any_of(rows, [](const RegionRow& row) { return row.error > 0; });
 }
 
-std::vector<std::string> regionCells(const RegionRow& row, const std::string& lengthUnit) {
+std::vector<std::string> regionHeads(bool errors) {
+    std::vector<std::string> heads{"Parameter", "Region", "Samples",        "Of all",  "Of its own",
+                                   "Volume",    "Mean",   "Std. deviation", "Minimum", "Maximum"};
+    if (errors) heads.emplace_back("Within \u00b1");
+    return heads;
+}
+
+std::vector<std::string> regionCells(const RegionRow& row, const std::string& lengthUnit, bool errors) {
     const double digits = (row.range.hi - row.range.lo) / 10000;
     const volume::Summary& of = row.summary;
     const auto number = [&](double value) { return std::isfinite(value) ? formatNumber(value, digits) : "-"; };
-    return {titleWithUnit(row.parameter, row.unit),
-            row.region,
-            formatCount(of.samples),
-            formatShare(row.ofAll),
-            formatShare(row.ofExisting),
-            formatVolume(of.volume, lengthUnit),
-            number(of.mean),
-            number(of.deviation),
-            number(of.min),
-            number(of.max)};
+    std::vector<std::string> cells{titleWithUnit(row.parameter, row.unit),
+                                   row.region,
+                                   formatCount(of.samples),
+                                   formatShare(row.ofAll),
+                                   formatShare(row.ofExisting),
+                                   formatVolume(of.volume, lengthUnit),
+                                   number(of.mean),
+                                   number(of.deviation),
+                                   number(of.min),
+                                   number(of.max)};
+    if (errors) cells.push_back(row.error == 0 ? "as computed" : errorText(row.error));
+    return cells;
 }
 
 std::string regionCsv(const std::vector<RegionRow>& rows, const std::string& lengthUnit, const std::string& timeTitle,
-                      const std::string& time, bool head) {
+                      const std::string& time, bool head, bool errors) {
     std::string csv;
     if (head)
         csv += (time.empty() ? "" : csvField(timeTitle) + ",") +
                "parameter,unit,region,samples,share of all samples,share of the samples where it exists,volume" +
-               (lengthUnit.empty() ? "" : " [" + lengthUnit + "3]") + ",mean,deviation,min,max\n";
+               (lengthUnit.empty() ? "" : " [" + lengthUnit + "3]") + ",mean,deviation,min,max" +
+               (errors ? ",error\n" : "\n");
     for (const RegionRow& row : rows) {
         if (!time.empty()) csv += time + ",";
         csv += csvField(row.parameter) + "," + csvField(row.unit) + "," + csvField(row.region);
@@ -99,16 +189,30 @@ std::string regionCsv(const std::vector<RegionRow>& rows, const std::string& len
         for (const double value :
              {of.samples, row.ofAll, row.ofExisting, of.volume, of.mean, of.deviation, of.min, of.max})
             csv += "," + csvNumber(value);
-        csv += "\n";
+        csv += (errors ? "," + csvNumber(row.error) : "") + "\n";
     }
     return csv;
 }
 
-Balance readBalance(const std::shared_ptr<const volume::BrickSource>& source, const RegionBalanceQuery& asked,
-                    const Progress& progress) {
-    const auto velocity = volume::velocityChannels(source->info(), asked.velocity);
+bool isKnown(const NumberOrigin& origin, const volume::DatasetInfo& info, const RegionBalanceQuery& asked) {
+    const auto velocity = volume::velocityChannels(info, asked.velocity);
+    return origin.computed && velocity && !asked.time.between() &&
+           volume::knownBalance(*origin.computed, info.times[std::size_t(asked.time.earlier)],
+                                labelNamed(info, asked.label), info.channel(asked.channel).name,
+                                volume::parameterOf(info, (*velocity)[0]).name);
+}
+
+Balance readBalance(const std::shared_ptr<const volume::BrickSource>& source, const NumberOrigin& origin,
+                    const RegionBalanceQuery& asked, const Progress& progress) {
+    const volume::DatasetInfo& info = source->info();
+    const auto velocity = volume::velocityChannels(info, asked.velocity);
     if (!velocity && !asked.velocity.empty()) throw Error("there is no vector \"" + asked.velocity + "\"");
     if (!velocity) throw Error("a balance needs a velocity, and no vector has the name or unit of one");
+    const std::string carrier = volume::parameterOf(info, (*velocity)[0]).name;
+    if (isKnown(origin, info, asked))
+        return {asked, carrier,
+                *volume::knownBalance(*origin.computed, info.times[std::size_t(asked.time.earlier)],
+                                      labelNamed(info, asked.label), info.channel(asked.channel).name, carrier)};
     const volume::SourceAtTime shown = volume::sourceAt(source, asked.time);
     volume::BalanceQuery query;
     query.channel = asked.channel;
@@ -117,8 +221,14 @@ Balance readBalance(const std::shared_ptr<const volume::BrickSource>& source, co
     query.time = shown.time;
     if (asked.label >= 0)
         query.regions = volume::labelValues(*shown.source, asked.label, shown.time, progress.part(0, 0.1));
-    return {asked, volume::parameterOf(source->info(), (*velocity)[0]).name,
-            volume::computeBalance(*shown.source, query, progress.part(0.1, 1))};
+    query.carriedError = numberError(origin, info, info.channel(asked.channel));
+    bool exact = query.carriedError == 0, bounded = std::isfinite(query.carriedError);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        query.velocityError[axis] = numberError(origin, info, info.channel((*velocity)[axis]));
+        exact = exact && query.velocityError[axis] == 0;
+        bounded = bounded && std::isfinite(query.velocityError[axis]);
+    }
+    return {asked, carrier, volume::computeBalance(*shown.source, query, progress.part(0.1, 1)), exact, bounded};
 }
 
 BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balance) {
@@ -150,6 +260,8 @@ BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balanc
     table.areaUnit = area.unit;
     table.insideUnit = inside.unit;
     const double none = std::nan("");
+    const auto errorOf = [&](double error) { return balance.computed ? 0 : balance.bounded ? error : none; };
+    table.errors = !balance.computed && balance.bounded;
     for (const volume::RegionBalance& region : balance.regions) {
         if (!(region.volume > 0)) continue;
         const volume::Parameter* label =
@@ -161,7 +273,9 @@ BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balanc
                                   crossing.net() * unit.factor, crossing.flow * flow.factor,
                                   crossing.area * area.factor, total,
                                   total && crossing.in > 0 ? crossing.net() / crossing.in : none,
-                                  total ? region.amount * inside.factor : none});
+                                  total ? region.amount * inside.factor : none, errorOf(crossing.error * unit.factor),
+                                  errorOf(crossing.flowError * flow.factor),
+                                  total ? errorOf(region.amountError * inside.factor) : none});
         };
         for (std::size_t face = 0; face < 6; ++face) add(kFaces[face], region.faces[face], false);
         for (const volume::BorderCrossing& border : region.borders)
@@ -174,22 +288,32 @@ BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balanc
 }
 
 std::vector<std::string> balanceHeads(const BalanceTable& table) {
-    return {"Region",
-            "Surface",
-            titleWithUnit("In", table.unit),
-            titleWithUnit("Out", table.unit),
-            titleWithUnit("Out - in", table.unit),
-            "Of in",
-            titleWithUnit("Volume flow", table.flowUnit),
-            titleWithUnit("Area", table.areaUnit),
-            titleWithUnit("Inside", table.insideUnit)};
+    std::vector<std::string> heads{"Region",
+                                   "Surface",
+                                   titleWithUnit("In", table.unit),
+                                   titleWithUnit("Out", table.unit),
+                                   titleWithUnit("Out - in", table.unit),
+                                   "Of in",
+                                   titleWithUnit("Volume flow", table.flowUnit),
+                                   titleWithUnit("Area", table.areaUnit),
+                                   titleWithUnit("Inside", table.insideUnit)};
+    if (table.errors) {
+        heads.push_back("In, out \u00b1");
+        heads.push_back("Flow \u00b1");
+        heads.push_back("Inside \u00b1");
+    }
+    return heads;
 }
 
-std::vector<std::string> balanceCells(const BalanceRow& row) {
+std::vector<std::string> balanceCells(const BalanceTable& table, const BalanceRow& row) {
     char share[32] = "-";
     if (std::isfinite(row.relative)) std::snprintf(share, sizeof share, "%+.4f %%", 100 * row.relative);
-    return {row.region, row.surface,          scientific(row.in),   scientific(row.out),   scientific(row.net),
-            share,      scientific(row.flow), scientific(row.area), scientific(row.inside)};
+    std::vector<std::string> cells{row.region,           row.surface,          scientific(row.in),
+                                   scientific(row.out),  scientific(row.net),  share,
+                                   scientific(row.flow), scientific(row.area), scientific(row.inside)};
+    if (table.errors)
+        for (const double error : {row.error, row.flowError, row.insideError}) cells.push_back(errorText(error));
+    return cells;
 }
 
 std::string balanceCsv(const BalanceTable& table, const std::string& timeTitle, const std::string& time, bool head) {
@@ -201,12 +325,15 @@ std::string balanceCsv(const BalanceTable& table, const std::string& timeTitle, 
         csv += (time.empty() ? "" : csvField(timeTitle) + ",") + "parameter,region,surface," + title("in", table.unit) +
                "," + title("out", table.unit) + "," + title("out - in", table.unit) + ",share of in," +
                title("volume flow", table.flowUnit) + "," + title("area", table.areaUnit) + "," +
-               title("inside", table.insideUnit) + "\n";
+               title("inside", table.insideUnit) +
+               (table.errors ? ",error of in and out,error of volume flow,error of inside\n" : "\n");
     for (const BalanceRow& row : table.rows) {
         if (!time.empty()) csv += time + ",";
         csv += csvField(table.parameter) + "," + csvField(row.region) + "," + csvField(row.surface);
         for (const double value : {row.in, row.out, row.net, row.relative, row.flow, row.area, row.inside})
             csv += "," + csvNumber(value);
+        if (table.errors)
+            for (const double error : {row.error, row.flowError, row.insideError}) csv += "," + csvNumber(error);
         csv += "\n";
     }
     return csv;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/data/number_origin.h"
 #include "volume/analysis/region_statistics.h"
 #include "volume/field/time_pair.h"
 #include "volume/flow/balance.h"
@@ -20,9 +21,21 @@ struct RegionQuery {
     bool operator==(const RegionQuery&) const = default;
 };
 
-/// Counts; the regions are the values that the label has at that time. Throws Error, Cancelled.
-volume::RegionStatistics readRegions(const std::shared_ptr<const volume::BrickSource>& source, const RegionQuery& query,
-                                     const Progress& progress = {});
+/// Numbers, each either as computed or of the samples.
+struct RegionNumbers {
+    volume::RegionStatistics statistics;
+    /// By position in the query's channels: bound on the errors of mean, deviation, least and most, in its unit; 0: as
+    /// computed; NaN: not known. Empty: all are as computed.
+    std::vector<double> errors = {};
+};
+
+/// Looks numbers up, and counts those that are not known; the regions are the values that the label has at that time.
+/// Throws Error, Cancelled.
+RegionNumbers readRegions(const std::shared_ptr<const volume::BrickSource>& source, const NumberOrigin& origin,
+                          const RegionQuery& query, const Progress& progress = {});
+
+/// Whether numbers of all channels are known as computed.
+bool isKnown(const NumberOrigin& origin, const volume::DatasetInfo& info, const RegionQuery& query);
 
 /// One row of the table: a parameter in a region.
 struct RegionRow {
@@ -34,19 +47,24 @@ struct RegionRow {
     double ofExisting = 0;   ///< share of the samples where the parameter exists
     volume::Summary summary; ///< of the samples where the parameter exists
     Range range;             ///< of the parameter, for the digits of texts
+    double error = 0;        ///< bound on the errors of the summary; 0: as computed; NaN: not known
 };
 
 /// By parameter, then regions in their order, then the whole. Regions where a parameter has no sample are left out.
 std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionQuery& query,
-                                  const volume::RegionStatistics& statistics);
+                                  const RegionNumbers& numbers);
 
-/// Heads of the columns of regionCells(): parameter, region, samples, share, volume, mean, spread, least, most.
-std::vector<std::string> regionHeads();
-std::vector<std::string> regionCells(const RegionRow& row, const std::string& lengthUnit);
+/// Whether some of the rows have a bound on their errors, so that tables have a column of these.
+bool showsErrors(const std::vector<RegionRow>& rows);
+
+/// Heads of the columns of regionCells(): parameter, region, samples, share, volume, mean, spread, least, most;
+/// `errors`: and the bound on the errors of these four.
+std::vector<std::string> regionHeads(bool errors = false);
+std::vector<std::string> regionCells(const RegionRow& row, const std::string& lengthUnit, bool errors = false);
 
 /// One line per row; `time` as text stands first where it is not empty, with the head `timeTitle`.
 std::string regionCsv(const std::vector<RegionRow>& rows, const std::string& lengthUnit, const std::string& timeTitle,
-                      const std::string& time, bool head = true);
+                      const std::string& time, bool head = true, bool errors = false);
 
 struct RegionBalanceQuery {
     int channel = 0;
@@ -60,11 +78,15 @@ struct Balance {
     RegionBalanceQuery query;
     std::string velocity; ///< the parameter that carries
     std::vector<volume::RegionBalance> regions;
+    bool computed = true; ///< else of samples within bounds, which errors are of
+    bool bounded = true;  ///< then: the bounds are known
 };
 
-/// Computes the balance of every region. Throws Error where there is no velocity, Cancelled.
-Balance readBalance(const std::shared_ptr<const volume::BrickSource>& source, const RegionBalanceQuery& query,
-                    const Progress& progress = {});
+/// Looks the balance of every region up, or computes it. Throws Error where there is no velocity, Cancelled.
+Balance readBalance(const std::shared_ptr<const volume::BrickSource>& source, const NumberOrigin& origin,
+                    const RegionBalanceQuery& query, const Progress& progress = {});
+/// Whether it is known as computed.
+bool isKnown(const NumberOrigin& origin, const volume::DatasetInfo& info, const RegionBalanceQuery& query);
 
 /// A surface of a region, or a sum over all of its surfaces.
 struct BalanceRow {
@@ -73,17 +95,20 @@ struct BalanceRow {
     bool total = false;                                  ///< over the surfaces above; its `net` is what reacts
     double relative = 0;                                 ///< of a total: net by what flows in; NaN elsewhere
     double inside = 0;                                   ///< of a total: the amount in the region; NaN elsewhere
+    /// Bounds on errors: of in, out and net, of the volume flow, of what is inside; 0: as computed, NaN: not known.
+    double error = 0, flowError = 0, insideError = 0;
 };
 struct BalanceTable {
     std::string parameter, unit, flowUnit, areaUnit, insideUnit;
     std::vector<BalanceRow> rows;
+    bool errors = false;            ///< tables have columns of errors
     std::vector<std::string> notes; ///< what is approximate
 };
 /// Surfaces that nothing touches are left out.
 BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balance);
 
 std::vector<std::string> balanceHeads(const BalanceTable& table);
-std::vector<std::string> balanceCells(const BalanceRow& row);
+std::vector<std::string> balanceCells(const BalanceTable& table, const BalanceRow& row);
 std::string balanceCsv(const BalanceTable& table, const std::string& timeTitle, const std::string& time,
                        bool head = true);
 

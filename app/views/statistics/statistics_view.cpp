@@ -17,7 +17,7 @@ namespace {
 
 struct StatisticsCache : ViewCache {
     AsyncStatistics answers;
-    AsyncQuery<RegionQuery, volume::RegionStatistics> regions;
+    AsyncQuery<RegionQuery, RegionNumbers> regions;
     AsyncQuery<RegionBalanceQuery, Balance> balance;
 };
 
@@ -47,14 +47,37 @@ const volume::JointHistogram* jointOf(const volume::Statistics& statistics, std:
     return nullptr;
 }
 
+/// Sets the summaries of all samples that are known as computed, unless samples are brushed.
+void useKnown(const NumberOrigin& origin, const volume::DatasetInfo& info, const BrushedQuery& query,
+              volume::Statistics& statistics) {
+    if (query.selection.active()) return;
+    for (std::size_t i = 0; i < statistics.channels.size(); ++i)
+        if (const RegionQuery of{{query.channels[i]}, -1, query.time}; isKnown(origin, info, of))
+            statistics.channels[i].all =
+                volume::knownStatistics(*origin.computed, info.times[std::size_t(query.time.earlier)], "",
+                                        {info.channel(query.channels[i]).name})
+                    ->all.front();
+}
+
+/// Where the numbers of the table come from, in words.
+std::string tableOrigin(const NumberOrigin& origin, const volume::DatasetInfo& info, const BrushedQuery& query,
+                        const std::vector<int>& shown) {
+    std::vector<bool> known;
+    for (const int channel : shown)
+        known.push_back(!query.selection.active() && isKnown(origin, info, {{channel}, -1, query.time}));
+    const std::string text = originText(origin, info, shown, known), read = originText(origin, info, shown);
+    return text == read ? text : text + "; r of samples " + read;
+}
+
 /// Everything at full resolution: summaries and all correlations.
-std::string statisticsCsv(const std::shared_ptr<const volume::BrickSource>& source, BrushedQuery query,
-                          std::size_t shown, const Progress& progress) {
+std::string statisticsCsv(const std::shared_ptr<const volume::BrickSource>& source, const NumberOrigin& origin,
+                          BrushedQuery query, std::size_t shown, const Progress& progress) {
     const volume::DatasetInfo& info = source->info();
     const bool brushed = query.selection.active();
     query.pairs = volume::allPairs(static_cast<int>(shown));
     query.bins = 1;
-    const volume::Statistics statistics = readStatistics(source, query, 0, progress);
+    volume::Statistics statistics = readStatistics(source, query, 0, progress);
+    useKnown(origin, info, query, statistics);
     const std::vector<volume::Channel> channels = info.channels();
     const auto nameOf = [&](std::size_t i) { return channels[static_cast<std::size_t>(query.channels[i])].name; };
     const std::string cubes = info.lengthUnit.empty() ? "" : " [" + info.lengthUnit + "3]";
@@ -162,13 +185,11 @@ void drawTable(const volume::DatasetInfo& info, const StatisticsResult& result, 
 /// The table of every region, without any brush.
 void drawRegionTable(Session& session, const volume::DatasetInfo& info, const volume::Parameter& label,
                      const std::vector<RegionRow>& rows) {
-    const std::vector<std::string> heads = regionHeads();
+    const std::vector<std::string> heads = regionHeads(showsErrors(rows));
     std::vector<std::vector<std::string>> texts;
-    for (const RegionRow& row : rows) texts.push_back(regionCells(row, info.lengthUnit));
+    for (const RegionRow& row : rows) texts.push_back(regionCells(row, info.lengthUnit, showsErrors(rows)));
     if (!beginTable("regions", heads, texts, 2, {})) return;
-    tableHeader({"Parameter", "Region", "Samples", "Of all", "Of its own", "Volume", "Mean", "Std. deviation",
-                 "Minimum", "Maximum"},
-                2);
+    tableHeader(heads, 2);
     std::string last;
     for (const RegionRow& row : rows) {
         const std::vector<std::string>& cells = texts[static_cast<std::size_t>(&row - rows.data())];
@@ -204,7 +225,7 @@ void drawRegionTable(Session& session, const volume::DatasetInfo& info, const vo
 void drawBalanceTable(const BalanceTable& table) {
     const std::vector<std::string> heads = balanceHeads(table);
     std::vector<std::vector<std::string>> texts;
-    for (const BalanceRow& row : table.rows) texts.push_back(balanceCells(row));
+    for (const BalanceRow& row : table.rows) texts.push_back(balanceCells(table, row));
     const float notes = ImGui::GetTextLineHeightWithSpacing() * 1.2f;
     if (beginTable("balance", heads, texts, 2, {0, -notes})) {
         ImGui::TableHeadersRow();
@@ -253,8 +274,8 @@ void drawBalance(ViewContext& context, ToolRow& tools, const std::string& pane, 
     const RegionBalanceQuery query{channel, "", label, volume::timesAround(info.times, context.session.time)};
     const auto balance = cache.balance.get(
         context, context.numbers, {.key = "balance " + pane, .title = "Balance of every region", .quiet = true}, query,
-        [](const auto& source, const RegionBalanceQuery& asked, int, const Progress& progress) {
-            return readBalance(source, asked, progress);
+        [origin = context.origin](const auto& source, const RegionBalanceQuery& asked, int, const Progress& progress) {
+            return readBalance(source, origin, asked, progress);
         },
         [](const RegionBalanceQuery& a, const RegionBalanceQuery& b) { return a.channel == b.channel; });
     if (!balance) {
@@ -262,8 +283,10 @@ void drawBalance(ViewContext& context, ToolRow& tools, const std::string& pane, 
         return failure.empty() ? ImGui::TextDisabled("Computing...") : drawHint("No balance", failure.c_str());
     }
     const auto table = std::make_shared<BalanceTable>(balanceTable(info, *balance));
-    exportMenu(context, tools, "balance", {}, [table](const Progress&) { return balanceCsv(*table, "", ""); });
-    drawOrigin(context, tools, {channel});
+    const std::string origin = originText(context.origin, info, {channel}, {isKnown(context.origin, info, query)});
+    exportMenu(
+        context, tools, "balance", {}, [table](const Progress&) { return balanceCsv(*table, "", ""); }, true, origin);
+    drawOriginText(context, tools, origin);
     drawBalanceTable(*table);
 }
 
@@ -289,8 +312,8 @@ bool drawRegions(ViewContext& context, ToolRow& tools, const std::string& pane, 
     const RegionQuery query{shown, *label, volume::timesAround(info.times, context.session.time)};
     const auto numbers = cache.regions.get(
         context, context.numbers, {.key = "regions " + pane, .title = "Statistics by region", .quiet = true}, query,
-        [](const auto& source, const RegionQuery& asked, int, const Progress& progress) {
-            return readRegions(source, asked, progress);
+        [origin = context.origin](const auto& source, const RegionQuery& asked, int, const Progress& progress) {
+            return readRegions(source, origin, asked, progress);
         },
         [](const RegionQuery& a, const RegionQuery& b) { return a.channels == b.channels; });
     if (!numbers) {
@@ -298,9 +321,16 @@ bool drawRegions(ViewContext& context, ToolRow& tools, const std::string& pane, 
         return true;
     }
     const auto rows = std::make_shared<std::vector<RegionRow>>(regionRows(info, query, *numbers));
-    exportMenu(context, tools, "regions", {},
-               [rows, unit = info.lengthUnit](const Progress&) { return regionCsv(*rows, unit, "", ""); });
-    drawOrigin(context, tools, shown);
+    std::vector<bool> known;
+    for (const int channel : shown) known.push_back(isKnown(context.origin, info, {{channel}, *label, query.time}));
+    const std::string origin = originText(context.origin, info, shown, known);
+    exportMenu(
+        context, tools, "regions", {},
+        [rows, unit = info.lengthUnit](const Progress&) {
+            return regionCsv(*rows, unit, "", "", true, showsErrors(*rows));
+        },
+        true, origin);
+    drawOriginText(context, tools, origin);
     drawRegionTable(context.session, info, volume::parameterOf(info, *label), *rows);
     return true;
 }
@@ -345,10 +375,13 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
         if (ImGui::IsItemHovered())
             tooltip("Parameter with which the correlation of the others is shown (Pearson's r)");
     }
-    exportMenu(context, tools, "statistics", {},
-               [source = context.numbers, query, count = shown.size()](const Progress& progress) {
-                   return statisticsCsv(source, query, count, progress);
-               });
+    const std::string origin = tableOrigin(context.origin, info, query, shown);
+    exportMenu(
+        context, tools, "statistics", {},
+        [source = context.numbers, from = context.origin, query, count = shown.size()](const Progress& progress) {
+            return statisticsCsv(source, from, query, count, progress);
+        },
+        true, origin);
     if (!result) {
         ImGui::TextDisabled("%s", cache.answers.failure().empty() ? "Counting..." : cache.answers.failure().c_str());
         return;
@@ -357,8 +390,10 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
         std::string(result->brushed ? "weighted by the degree of interest" : "nothing is brushed") +
         (result->statistics.level > 0 ? ", first estimate" : "");
     drawNote(tools, state);
-    drawOrigin(context, tools, shown);
-    drawTable(info, *result, std::min(shown.size(), result->statistics.channels.size()),
+    drawOriginText(context, tools, origin);
+    StatisticsResult numbers = *result;
+    useKnown(context.origin, info, numbers.query, numbers.statistics);
+    drawTable(info, numbers, std::min(shown.size(), result->statistics.channels.size()),
               std::min(with, result->query.channels.size() - 1));
 }
 

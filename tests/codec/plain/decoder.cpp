@@ -92,7 +92,7 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         Piece found[2];
         for (Piece& part : found) part = readPiece(in);
         if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 ||
-            (features & ~(1023u | 2048u | 4096u)) != 0)
+            (features & ~(1023u | 2048u | 4096u | 8192u)) != 0)
             return false;
         if (end > file_.size()) return false;
         if (end <= end_) return true; // the other copy is as good or better
@@ -108,6 +108,7 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         knowsCorrections_ = features / 512 % 2 == 1;
         knowsParts_ = features / 2048 % 2 == 1;
         knowsSteppedIntegers_ = features / 4096 % 2 == 1;
+        knowsNumbers_ = features / 8192 % 2 == 1;
         end_ = end;
         std::copy(found, found + 2, parts);
         return true;
@@ -183,6 +184,19 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
             const Decoder& inner = corrections_.back();
             need(inner.end_ == length && inner.corrections_.empty() && !inner.bcc_, "corrections");
             need(inner.size_ == metadata_["source"]["size"].get<Size>(), "corrections");
+        }
+    }
+
+    // 1.8: they are not needed for samples
+    if (metadata_.contains("numbers")) {
+        need(knowsNumbers_, "numbers");
+        for (const auto& range : metadata_["numbers"]) {
+            const std::size_t offset = range["offset"], length = range["length"];
+            need(length > 8 && offset <= end_ && length <= end_ - offset, "numbers");
+            covered.push_back({offset, length, 0});
+            std::uint64_t stated = 0;
+            for (std::size_t i = 8; i-- > 0;) stated = stated << 8 | file_[offset + i];
+            need(XXH3_64bits(file_.data() + offset + 8, length - 8) == stated, "numbers");
         }
     }
 

@@ -101,7 +101,7 @@ private:
     std::vector<std::string> types_; ///< of the component of each frame within a time
     bool hasNotes_ = false, compact_ = false, knowsBands_ = false, hasStatistics_ = false, knowsSteps_ = false,
          knowsSubsamples_ = false, knowsPredictions_ = false, knowsFits_ = false, knowsMixed_ = false,
-         knowsCorrections_ = false, knowsParts_ = false, knowsSteppedIntegers_ = false;
+         knowsCorrections_ = false, knowsParts_ = false, knowsSteppedIntegers_ = false, knowsNumbers_ = false;
     std::size_t end_ = 0; ///< of the archive in the file
     std::vector<Piece> models_;
     std::vector<Mask> masks_;
