@@ -26,9 +26,12 @@ TEST(Addresses, HostsAndUsersHaveNoOtherCharacters) {
         const std::string c(1, static_cast<char>(byte));
         const bool plain = byte < 128 && (std::isalnum(byte) != 0 || std::string("._-").find(c) != std::string::npos);
         for (const char* const scheme : {"http://", "https://", "sftp://"}) {
-            if (byte != '/' && byte != '@') // these end the host, or begin it
+            if (byte != '/' && byte != '@') { // these end the host, or begin it
                 EXPECT_EQ(isAddress(scheme + ("a" + c) + "b/c.tsr"), plain) << byte;
-            if (byte != '/' && byte != '%') EXPECT_EQ(isAddress(scheme + ("a" + c) + "b@host/c.tsr"), plain) << byte;
+            }
+            if (byte != '/' && byte != '%') {
+                EXPECT_EQ(isAddress(scheme + ("a" + c) + "b@host/c.tsr"), plain) << byte;
+            }
         }
         char code[4];
         std::snprintf(code, sizeof code, "%%%02X", unsigned(byte));
@@ -49,7 +52,7 @@ TEST(Consent, IsGivenToMachinesWhateverTheUserAndThePath) {
 }
 
 /// Ends what a test demands.
-class ConsentTest : public testing::Test {
+class ConsentTest : public ::testing::Test {
 protected:
     void TearDown() override { allowAllMachines(); }
     /// What opening says: of port 1 of this machine, where nobody answers.
