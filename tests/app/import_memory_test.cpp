@@ -189,7 +189,9 @@ TEST_F(ImportMemoryFile, OfADamagedFileNothingIsRecalledAndThatIsSaid) {
         EXPECT_TRUE(recallOptions({"none.vti"}, stated, said) == stated);
         ASSERT_EQ(said.size(), 1u) << damage;
         EXPECT_EQ(said[0].find(known.string()), 0u) << said[0];
-        rememberStated(volume::ImportOptions{.units = {{"T", "K"}}}, "cell");
+        volume::ImportOptions more;
+        more.units = {{"T", "K"}};
+        rememberStated(more, "cell");
         std::string after;
         std::getline(std::ifstream(known) >> std::ws, after, '\0');
         EXPECT_EQ(after, damage) << "it may still be mended by hand";

@@ -90,10 +90,9 @@ TEST(Verify, ARangeThatIsNotThatOfTheSamplesIsDamage) {
     const std::vector<char> one = readFile(folder / "one.tsr");
     const volume::BrickStats is = Archive(folder / "one.tsr").stats({0, 0, 0, {0, 0, 0}});
     EXPECT_EQ(verified(folder, one).damaged, 0u);
-    for (const float isNot : {is.max - 1, is.max + 1})
-        EXPECT_EQ(verified(folder, withIndex(one, [&](Bytes& page) { replaceLast(page, is.max, isNot); })).damage,
-                  std::vector<std::string>{
-                      "v component 0 time 0 brick 0,0,0: index: its range differs from that of its samples"});
+    EXPECT_EQ(verified(folder, withIndex(one, [&](Bytes& page) { replaceLast(page, is.max, is.max - 1); })).damage,
+              std::vector<std::string>{
+                  "v component 0 time 0 brick 0,0,0: index: its range differs from that of its samples"});
     // Of a brick that repeats the one of the time before.
     const std::vector<char> still = rowOfBricks(folder, false, 2, true);
     EXPECT_EQ(verified(folder, still).damaged, 0u);

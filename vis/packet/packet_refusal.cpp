@@ -9,6 +9,9 @@ namespace tessera::vis::packet {
 
 namespace {
 
+/// Positions are cells in 16 bits with a sign (Fixed); rays take steps and gradients beyond the data.
+constexpr int kMostCells = 32'000;
+
 std::string refusalOfFocus(const Scene& scene, const volume::DatasetInfo& info) {
     if (!scene.selection.active()) return "";
     if (scene.selection.contextBlur > 0) return "blurred context";
@@ -20,6 +23,7 @@ std::string refusalOfFocus(const Scene& scene, const volume::DatasetInfo& info) 
 
 std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
     if (std::string why = refusalOfFocus(scene, info); !why.empty()) return why;
+    if (std::max({lattice.size.x, lattice.size.y, lattice.size.z}) > kMostCells) return "so many samples along an axis";
     if (scene.render.proxy != Proxy::Rays) return "proxy geometry";
     if (scene.render.adaptiveStep > 0) return "adaptive steps";
     if (scene.render.normalBits > 0) return "quantised normals";
