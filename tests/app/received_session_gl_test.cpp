@@ -83,8 +83,8 @@ struct ReceivedSession : DrawnWorkbench {
             if (text.text == button) {
                 for (const bool down : {false, true, false})
                     frame([&](ImGuiIO& io) {
-                        io.AddMousePosEvent(text.middle().x, text.middle().y);
-                        io.AddMouseButtonEvent(0, down);
+                        io.MousePos = text.middle();
+                        io.MouseDown[0] = down;
                     });
                 return;
             }
