@@ -3,13 +3,18 @@
 #include "app/data/import_options.h"
 #include "app/data/open.h"
 #include "app/ui/ticks.h"
+#include "app/user_files/machines.h"
+#include "app/user_files/state_dir.h"
 #include "codec/archive/archive.h"
 #include "codec/container/json_text.h"
-#include "codec/remote/address.h"
+#include "codec/remote/consent.h"
 #include "volume/base/error.h"
+#include "volume/base/printable.h"
+#include "volume/base/terminal.h"
 #include "volume/import/files/named_files.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -17,6 +22,7 @@
 #include <mutex>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <system_error>
 #include <unistd.h>
 
@@ -60,8 +66,8 @@ Progress terminalProgress(const std::string& title) {
         if (percent == last) return;
         last = percent;
         const std::string rest = seconds ? ", " + std::to_string(std::lround(*seconds)) + " s left" : "";
-        std::fprintf(stderr, "\r\033[K%s %3d %%%s %s%s", title.c_str(), percent, rest.c_str(), what.c_str(),
-                     percent >= 100 ? "\r\033[K" : "");
+        const std::string line = printable(title + " " + std::to_string(percent) + " %" + rest + " " + what);
+        std::fprintf(stderr, "\r\033[K%s%s", line.c_str(), percent >= 100 ? "\r\033[K" : "");
         std::fflush(stderr);
     };
     return progress;
@@ -73,32 +79,53 @@ int parseAndRun(CLI::App& app, int argc, const char* const* argv, const std::fun
     std::signal(SIGXFSZ, SIG_IGN); // a limit of file sizes is an error of the write, not the end of the program
     try {
         if (before) before();
-        app.parse(argc, argv);
+        try {
+            app.parse(argc, argv);
+        } catch (const CLI::ParseError& error) {
+            std::ostringstream help, problem; // either is empty
+            const bool failed = app.exit(error, help, problem) != 0;
+            say("%s", help.str().c_str());
+            warn("%s", problem.str().c_str());
+            if (failed) return 1;
+        }
+        finishOutput();
         return 0;
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : 1;
     } catch (const Cancelled&) {
-        std::fprintf(stderr, "%s: cancelled\n", name);
+        warn("%s: cancelled\n", name);
         return 130;
     } catch (const MachineError& error) {
-        std::fprintf(stderr, "%s: %s\n", name, error.what());
+        warn("%s: %s\n", name, error.what());
         return 3;
     } catch (const Error& error) {
-        std::fprintf(stderr, "%s: %s\n", name, error.what());
+        warn("%s: %s\n", name, error.what());
         return 2;
     } catch (const std::system_error& error) { // e.g. permission denied, or no more threads
-        std::fprintf(stderr, "%s: %s\n", name, error.what());
+        warn("%s: %s\n", name, error.what());
         return 3;
     } catch (const std::bad_alloc&) {
-        std::fprintf(stderr, "%s: not enough memory\n", name);
+        warn("%s: not enough memory\n", name);
         return 3;
     } catch (const std::exception& error) { // a fault of the program
-        std::fprintf(stderr, "%s: internal error: %s\n", name, error.what());
+        warn("%s: internal error: %s\n", name, error.what());
         return 3;
     }
 }
 
+namespace {
+
+/// Files that others made may name any machine: only those are asked that the user names on the command line, and those
+/// that he has opened something of before.
+void askOnlyKnownMachines(const std::vector<std::string>& words) {
+    codec::requireConsent([](const std::string& machine) { return isKnownMachine(stateFolder(), machine); });
+    // A window that packs in this process as its child may have been allowed to ask just once.
+    const bool byHand = std::ranges::find(words, "--progress-json") == words.end();
+    if (std::ranges::any_of(words, codec::isRemote)) allowNamed(words, byHand ? stateFolder() : std::string());
+}
+
+} // namespace
+
 int runCommandLine(int argc, const char* const* argv) {
+    askOnlyKnownMachines({argv + std::min(argc, 1), argv + argc});
     CLI::App app{"Tessera: a workbench for simulations with many values per point", "tessera"};
     app.set_version_flag("--version", std::string("tessera ") + TESSERA_VERSION);
     app.require_subcommand(0, 1);
@@ -194,7 +221,7 @@ std::string byProcess(const std::optional<Launched>& started) {
 
 void sayShare(std::size_t own, std::size_t all, const std::string& what, const std::optional<Launched>& started) {
     if (const std::string by = byProcess(started); !by.empty())
-        std::printf("%zu of %zu %s%s\n", own, all, what.c_str(), by.c_str());
+        say("%zu of %zu %s%s\n", own, all, what.c_str(), by.c_str());
 }
 
 Progress jsonProgress(const Progress& terminal) {
@@ -207,7 +234,7 @@ Progress jsonProgress(const Progress& terminal) {
         last = fraction;
         nlohmann::json line{{"fraction", fraction}, {"what", what}};
         if (seconds) line["secondsLeft"] = *seconds;
-        std::printf("%s\n", jsonText(line).c_str());
+        sayJson(jsonText(line));
         std::fflush(stdout);
     };
     return progress;

@@ -22,7 +22,8 @@ struct DataRef;
 }
 
 /// The command line. Each subcommand is one file of app/command with one add function; its callback does the work and
-/// throws: Error ends with status 2, MachineError with 3, Cancelled with 130, wrong usage with 1.
+/// throws: Error ends with status 2, MachineError with 3, also where standard output cannot take
+/// what is printed, Cancelled with 130, wrong usage with 1.
 namespace tessera::app {
 
 void addBenchCommand(CLI::App& app);

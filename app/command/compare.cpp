@@ -10,6 +10,7 @@
 #include "app/views/compare/compare_view.h"
 #include "codec/blocks/share_results.h"
 #include "volume/base/error.h"
+#include "volume/base/terminal.h"
 #include "volume/export/time_files.h"
 #include "volume/system/atomic_file.h"
 
@@ -76,7 +77,7 @@ void openBeside(Opened& opened, const std::string& path, const Progress& progres
         OtherData{.files = other.files, .model = other.model, .settings = other.settings, .import = other.import};
     std::vector<std::string> messages;
     ComparedData compared = openCompared(data, session, messages, progress);
-    for (const std::string& text : messages) std::fprintf(stderr, "tessera: %s\n", text.c_str());
+    for (const std::string& text : messages) warn("tessera: %s\n", text.c_str());
     if (compared.channel.empty()) throw Error("the two data sets have no parameter in common", path);
     opened.take(std::move(compared.sources));
     session.data = data;

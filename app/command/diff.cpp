@@ -4,9 +4,12 @@
 #include "app/data/format.h"
 #include "app/data/import_options.h"
 #include "app/data/open.h"
+#include "codec/container/json_text.h"
 #include "codec/pack/pack.h"
 #include "vis/image/image_io.h"
+#include "volume/base/csv_text.h"
 #include "volume/base/error.h"
+#include "volume/base/terminal.h"
 #include "volume/derived/other_source.h"
 #include "volume/export/export.h"
 #include "volume/system/atomic_file.h"
@@ -112,7 +115,7 @@ std::vector<int> comparable(const volume::DatasetInfo& info, const DiffRequest& 
         if (!info.findChannel(name))
             throw Error("there is no parameter \"" + name + "\"; there are " + namesOfFirst(info), request.first);
     if (out.empty()) throw Error("the two data sets have no parameter in common", request.second);
-    if (!left.empty()) std::fprintf(stderr, "tessera: cannot be compared: %s\n", left.c_str());
+    if (!left.empty()) warn("tessera: cannot be compared: %s\n", left.c_str());
     return out;
 }
 
@@ -143,9 +146,9 @@ std::vector<DiffRow> compare(const volume::BrickSource& source, const std::vecto
 }
 
 void print(const std::vector<DiffRow>& rows, const DiffRequest& request, const std::string& how) {
-    std::printf("%s minus %s, %s, over all times\n", request.first.c_str(), request.second.c_str(), how.c_str());
-    std::printf("  %-16s %-8s %12s %12s %12s %12s %10s %10s %10s\n", "parameter", "unit", "min", "mean", "RMS", "max",
-                "samples", "differ", "in one");
+    say("%s minus %s, %s, over all times\n", request.first.c_str(), request.second.c_str(), how.c_str());
+    say("  %-16s %-8s %12s %12s %12s %12s %10s %10s %10s\n", "parameter", "unit", "min", "mean", "RMS", "max",
+        "samples", "differ", "in one");
     bool equal = true;
     for (std::size_t i = 0; i < rows.size();) {
         DiffRow all = rows[i];
@@ -153,23 +156,22 @@ void print(const std::vector<DiffRow>& rows, const DiffRequest& request, const s
         const auto number = [&](double value) {
             return all.samples > 0 && !all.label ? numberText(value) : std::string("-");
         };
-        std::printf("  %-16s %-8s %12s %12s %12s %12s %10zu %10zu %10zu\n", all.channel.name.c_str(),
-                    all.label ? "label" : all.channel.unit.c_str(), number(all.least).c_str(),
-                    number(all.mean()).c_str(), number(all.rms()).c_str(), number(all.most).c_str(), all.samples,
-                    all.differing, all.alone);
+        say("  %-16s %-8s %12s %12s %12s %12s %10zu %10zu %10zu\n", all.channel.name.c_str(),
+            all.label ? "label" : all.channel.unit.c_str(), number(all.least).c_str(), number(all.mean()).c_str(),
+            number(all.rms()).c_str(), number(all.most).c_str(), all.samples, all.differing, all.alone);
         equal = equal && all.samples > 0 && all.alone == 0 && all.differing == 0;
     }
-    if (equal) std::printf("  no sample differs\n");
+    if (equal) say("  no sample differs\n");
 }
 
 std::string csv(const std::vector<DiffRow>& rows, const volume::DatasetInfo& info, const NumberOrigin& origin) {
-    std::string text = originLine(origin, info) + "parameter,unit," + info.timeName +
-                       (info.timeUnit.empty() ? "" : " [" + info.timeUnit + "]") +
+    std::string text = originLine(origin, info) + "parameter,unit," +
+                       csvField(info.timeName + (info.timeUnit.empty() ? "" : " [" + info.timeUnit + "]")) +
                        ",min,mean,RMS,max,samples,in one only,differing\n";
     for (const DiffRow& row : rows) {
-        text += row.channel.name + "," + row.channel.unit + "," + toJson(row.time).dump();
+        text += csvField(row.channel.name) + "," + csvField(row.channel.unit) + "," + jsonText(toJson(row.time));
         for (const double value : {row.least, row.mean(), row.rms(), row.most})
-            text += "," + (row.samples > 0 && !row.label ? toJson(value).dump() : std::string());
+            text += "," + (row.samples > 0 && !row.label ? jsonText(toJson(value)) : std::string());
         text += "," + std::to_string(row.samples) + "," + std::to_string(row.alone) + "," +
                 std::to_string(row.differing) + "\n";
     }
@@ -238,7 +240,7 @@ void run(const DiffRequest& request) {
         codec::pack(made, {}, request.output, rest);
     } else {
         for (const std::string& written : volume::exportDataset(made, {}, request.output, rest))
-            std::printf("%s\n", written.c_str());
+            say("%s\n", written.c_str());
     }
 }
 

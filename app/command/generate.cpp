@@ -3,6 +3,7 @@
 #include "app/described/describe_cli.h"
 #include "codec/pack/pack.h"
 #include "volume/base/byte_text.h"
+#include "volume/base/terminal.h"
 #include "volume/export/export.h"
 #include "volume/synthetic/casting.h"
 #include "volume/synthetic/fuel_cell.h"
@@ -63,13 +64,13 @@ struct PrintSetting {
     template <class T> void operator()(const T& value, const FieldInfo& info) const {
         std::string range;
         if (info.range) range = numberText(info.range->lo) + " .. " + numberText(info.range->hi);
-        std::printf("%-22s %-9s %-18s %-5s %s\n", std::string(info.key).c_str(), numberText(double(value)).c_str(),
-                    range.c_str(), std::string(info.unit).c_str(), std::string(info.doc).c_str());
+        say("%-22s %-9s %-18s %-5s %s\n", std::string(info.key).c_str(), numberText(double(value)).c_str(),
+            range.c_str(), std::string(info.unit).c_str(), std::string(info.doc).c_str());
     }
 };
 
 void listSettings(const std::string& model) {
-    std::printf("%-22s %-9s %-18s %-5s %s\n", "setting", "default", "range", "unit", "meaning");
+    say("%-22s %-9s %-18s %-5s %s\n", "setting", "default", "range", "unit", "meaning");
     const volume::FuelCellSettings cell;
     const volume::MarschnerLobbSettings signal;
     const volume::CastingSettings casting;
@@ -98,12 +99,12 @@ void run(const GenerateRequest& request) {
     volume::Dataset dataset = volume::makeModel(request.model, settings, progress.part(0, 0.7));
     if (archive) {
         const codec::PackSummary summary = codec::pack(dataset, request.options, request.output, progress.part(0.7, 1));
-        std::printf("%s: %s of %s\n", request.output.c_str(), textOfBytes(double(summary.archiveBytes)).c_str(),
-                    textOfBytes(double(summary.sourceBytes)).c_str());
+        say("%s: %s of %s\n", request.output.c_str(), textOfBytes(double(summary.archiveBytes)).c_str(),
+            textOfBytes(double(summary.sourceBytes)).c_str());
         return;
     }
     for (const std::string& file : volume::exportDataset(dataset, {}, request.output, progress.part(0.7, 1)))
-        std::printf("%s\n", file.c_str());
+        say("%s\n", file.c_str());
 }
 
 } // namespace

@@ -13,6 +13,7 @@
 #include "codec/pack/error_bound.h"
 #include "codec/remote/address.h"
 #include "volume/base/byte_text.h"
+#include "volume/base/terminal.h"
 #include "volume/import/find_parts.h"
 #include "volume/import/import.h"
 
@@ -125,51 +126,51 @@ void printArchive(const codec::Archive& archive) {
     const volume::DatasetInfo info = infoOf(archive);
     const volume::BrickGrid& grid = archive.grid();
     const glm::dvec3 extent = info.bounds.size();
-    std::printf("%s (archive, %s, %s)\n", info.name.c_str(), textOfBytes(double(archive.fileBytes())).c_str(),
-                codec::exactnessText(archive.metadata()).c_str());
-    std::printf("  samples    %s on %s, from a grid of %s\n", triple(info.lattice.size).c_str(),
-                archive.metadata().alternating                  ? "D4* (each time)"
-                : info.lattice.kind == volume::LatticeKind::BCC ? "BCC"
-                                                                : "CC",
-                triple(archive.metadata().source.size).c_str());
-    std::printf("  extent     %s x %s x %s%s%s\n", numberText(extent.x).c_str(), numberText(extent.y).c_str(),
-                numberText(extent.z).c_str(), info.lengthUnit.empty() ? "" : " ", info.lengthUnit.c_str());
-    std::printf("  times      %s\n", timesText(info).c_str());
-    std::printf("%s", quantityLines(info).c_str());
-    if (archive.commits() > 1) std::printf("  written    in %d steps\n", archive.commits());
-    std::printf("  bricks     %s of %d, levels from fine to coarse:", triple(grid.count()).c_str(), grid.brickSize);
+    say("%s (archive, %s, %s)\n", info.name.c_str(), textOfBytes(double(archive.fileBytes())).c_str(),
+        codec::exactnessText(archive.metadata()).c_str());
+    say("  samples    %s on %s, from a grid of %s\n", triple(info.lattice.size).c_str(),
+        archive.metadata().alternating                  ? "D4* (each time)"
+        : info.lattice.kind == volume::LatticeKind::BCC ? "BCC"
+                                                        : "CC",
+        triple(archive.metadata().source.size).c_str());
+    say("  extent     %s x %s x %s%s%s\n", numberText(extent.x).c_str(), numberText(extent.y).c_str(),
+        numberText(extent.z).c_str(), info.lengthUnit.empty() ? "" : " ", info.lengthUnit.c_str());
+    say("  times      %s\n", timesText(info).c_str());
+    say("%s", quantityLines(info).c_str());
+    if (archive.commits() > 1) say("  written    in %d steps\n", archive.commits());
+    say("  bricks     %s of %d, levels from fine to coarse:", triple(grid.count()).c_str(), grid.brickSize);
     for (int level = 0; level < grid.levels; ++level)
-        std::printf("%s %s", level > 0 ? "," : "", textOfBytes(double(archive.levelBytes(level))).c_str());
-    std::printf("\n");
+        say("%s %s", level > 0 ? "," : "", textOfBytes(double(archive.levelBytes(level))).c_str());
+    say("\n");
     if (archive.maskCount() > 0)
-        std::printf("  masks      %d, %s\n", archive.maskCount(), textOfBytes(double(archive.maskBytes())).c_str());
+        say("  masks      %d, %s\n", archive.maskCount(), textOfBytes(double(archive.maskBytes())).c_str());
     if (const std::uint64_t bytes = bytesOfCorrections(archive); bytes > 0)
-        std::printf("  corrected  to the samples of the source, by %s\n", textOfBytes(double(bytes)).c_str());
+        say("  corrected  to the samples of the source, by %s\n", textOfBytes(double(bytes)).c_str());
     if (const auto repeats = archive.repeats(); repeats.bricks > 0)
-        std::printf("  repeats    %llu bricks equal those of the time before, which saves %s\n",
-                    static_cast<unsigned long long>(repeats.bricks), textOfBytes(double(repeats.bytes)).c_str());
-    std::printf("  parameters\n");
+        say("  repeats    %llu bricks equal those of the time before, which saves %s\n",
+            static_cast<unsigned long long>(repeats.bricks), textOfBytes(double(repeats.bytes)).c_str());
+    say("  parameters\n");
     for (std::size_t p = 0; p < info.parameters.size(); ++p) {
         const volume::Parameter& parameter = info.parameters[p];
-        std::printf("    %-16s %-8s %-8s", parameter.name.c_str(), std::string(volume::name(parameter.type)).c_str(),
-                    (parameter.unit + (parameter.unitGuessed ? " (guessed)" : "")).c_str());
-        if (parameter.components > 1) std::printf(" vector of %d, length", parameter.components);
+        say("    %-16s %-8s %-8s", parameter.name.c_str(), std::string(volume::name(parameter.type)).c_str(),
+            (parameter.unit + (parameter.unitGuessed ? " (guessed)" : "")).c_str());
+        if (parameter.components > 1) say(" vector of %d, length", parameter.components);
         const bool hasRange = !parameter.ranges.empty() && !parameter.categorical;
         if (hasRange)
-            std::printf(" %s .. %s", numberText(parameter.ranges.back().lo).c_str(),
-                        numberText(parameter.ranges.back().hi).c_str());
+            say(" %s .. %s", numberText(parameter.ranges.back().lo).c_str(),
+                numberText(parameter.ranges.back().hi).c_str());
         std::string more; // after a range, else the first
         for (const volume::Label& label : parameter.labels)
             more += (more.empty() ? " " : ", ") + std::to_string(label.value) +
                     (label.name.empty() ? "" : " " + label.name);
         if (parameter.parts.count() > 1) more += (more.empty() ? " " : ", ") + volume::partsText(parameter);
-        std::printf("%s%s", hasRange && !more.empty() ? "," : "", more.c_str());
+        say("%s%s", hasRange && !more.empty() ? "," : "", more.c_str());
         if (const std::string words = codec::resampledText(archive.metadata(), p); !words.empty())
-            std::printf("  (%s)", words.c_str());
-        std::printf("\n");
+            say("  (%s)", words.c_str());
+        say("\n");
     }
-    if (!info.provenance.empty()) std::printf("  %s\n", info.provenance.c_str());
-    for (const std::string& note : info.notes) std::printf("  %s\n", note.c_str());
+    if (!info.provenance.empty()) say("  %s\n", info.provenance.c_str());
+    for (const std::string& note : info.notes) say("  %s\n", note.c_str());
 }
 
 void printSession(const std::string& path, bool asJson) {
@@ -180,31 +181,29 @@ void printSession(const std::string& path, bool asJson) {
     for (const DataFile& file : session.data.files) files.push_back(file.path);
     for (const auto& [key, view] : session.views) views.push_back(key);
     if (asJson) {
-        std::printf("%s\n", jsonText({{"kind", "session"},
-                                      {"file", path},
-                                      {"schema", session.schema},
-                                      {"title", session.title},
-                                      {"files", files},
-                                      {"model", session.data.model},
-                                      {"views", views},
-                                      {"layers", session.layers.size()},
-                                      {"messages", document.messages}},
-                                     1)
-                                .c_str());
+        sayJson(jsonText({{"kind", "session"},
+                          {"file", path},
+                          {"schema", session.schema},
+                          {"title", session.title},
+                          {"files", files},
+                          {"model", session.data.model},
+                          {"views", views},
+                          {"layers", session.layers.size()},
+                          {"messages", document.messages}},
+                         1));
         return;
     }
-    std::printf("%s (session)\n", session.title.empty() ? path.c_str() : session.title.c_str());
-    for (const DataFile& file : session.data.files) std::printf("  data       %s\n", file.path.c_str());
+    say("%s (session)\n", session.title.empty() ? path.c_str() : session.title.c_str());
+    for (const DataFile& file : session.data.files) say("  data       %s\n", file.path.c_str());
     if (session.data.other)
-        for (const DataFile& file : session.data.other->files) std::printf("  other data %s\n", file.path.c_str());
+        for (const DataFile& file : session.data.other->files) say("  other data %s\n", file.path.c_str());
     for (const volume::DerivedParameter& each : session.data.derived)
-        std::printf("  derived    %s%s\n", each.name.c_str(),
-                    each.unit.empty() ? "" : (" [" + each.unit + "]").c_str());
-    if (!session.data.model.empty()) std::printf("  model      %s\n", session.data.model.c_str());
-    std::printf("  views     ");
-    for (const auto& [key, view] : session.views) std::printf(" %s", key.c_str());
-    std::printf("\n  layers     %zu\n", session.layers.size());
-    for (const std::string& message : document.messages) std::printf("  %s\n", message.c_str());
+        say("  derived    %s%s\n", each.name.c_str(), each.unit.empty() ? "" : (" [" + each.unit + "]").c_str());
+    if (!session.data.model.empty()) say("  model      %s\n", session.data.model.c_str());
+    say("  views     ");
+    for (const auto& [key, view] : session.views) say(" %s", key.c_str());
+    say("\n  layers     %zu\n", session.layers.size());
+    for (const std::string& message : document.messages) say("  %s\n", message.c_str());
 }
 
 /// Calls `visit(channel, time, brick)` for every stored component of every brick.
@@ -269,8 +268,8 @@ std::string barsOf(const std::vector<std::uint32_t>& counts) {
 
 void printBricks(const codec::Archive& archive) {
     const auto channels = archive.info().channels();
-    std::printf("  %-16s %12s %-10s %10s %10s %10s %7s %9s %6s %11s %11s %8s  %s\n", "channel", "time", "brick", "min",
-                "max", "mean", "present", "importance", "detail", "change", "change RMS", "bytes", "histogram");
+    say("  %-16s %12s %-10s %10s %10s %10s %7s %9s %6s %11s %11s %8s  %s\n", "channel", "time", "brick", "min", "max",
+        "mean", "present", "importance", "detail", "change", "change RMS", "bytes", "histogram");
     forBricks(archive, [&](int channel, int time, glm::ivec3 brick) {
         const volume::BrickKey key{channel, time, 0, brick};
         const volume::BrickStats stats = archive.stats(key);
@@ -283,18 +282,17 @@ void printBricks(const codec::Archive& archive) {
         const auto changeText = [&](float value) {
             return std::isfinite(value) ? numberText(double(value)) : std::string("appears");
         };
-        std::printf("  %-16s %12s %-10s %10s %10s %10s %6.1f%% %10s %6s %11s %11s %8s  %s\n",
-                    channels[std::size_t(channel)].name.c_str(),
-                    numberText(archive.info().times[std::size_t(time)]).c_str(), place.c_str(),
-                    any ? numberText(double(stats.min)).c_str() : "-",
-                    any ? numberText(double(stats.max)).c_str() : "-",
-                    distribution && distribution->samples > 0 ? numberText(distribution->mean).c_str() : "-",
-                    100.0 * double(stats.presentFraction),
-                    importance ? numberText(std::round(1000 * double(importance->importance)) / 1000).c_str() : "-",
-                    importance ? numberText(std::round(1000 * double(importance->detail)) / 1000).c_str() : "-",
-                    change ? changeText(change->max).c_str() : "-", change ? changeText(change->rms).c_str() : "-",
-                    archive.repeats(key) > 0 ? "repeats" : std::to_string(archive.brickBytes(key)).c_str(),
-                    distribution ? barsOf(distribution->counts).c_str() : "");
+        say("  %-16s %12s %-10s %10s %10s %10s %6.1f%% %10s %6s %11s %11s %8s  %s\n",
+            channels[std::size_t(channel)].name.c_str(), numberText(archive.info().times[std::size_t(time)]).c_str(),
+            place.c_str(), any ? numberText(double(stats.min)).c_str() : "-",
+            any ? numberText(double(stats.max)).c_str() : "-",
+            distribution && distribution->samples > 0 ? numberText(distribution->mean).c_str() : "-",
+            100.0 * double(stats.presentFraction),
+            importance ? numberText(std::round(1000 * double(importance->importance)) / 1000).c_str() : "-",
+            importance ? numberText(std::round(1000 * double(importance->detail)) / 1000).c_str() : "-",
+            change ? changeText(change->max).c_str() : "-", change ? changeText(change->rms).c_str() : "-",
+            archive.repeats(key) > 0 ? "repeats" : std::to_string(archive.brickBytes(key)).c_str(),
+            distribution ? barsOf(distribution->counts).c_str() : "");
     });
 }
 
@@ -314,7 +312,7 @@ void describeArchive(const InfoRequest& request) {
         Json document = archiveJson(archive);
         if (request.bricks) document["bricks"] = bricksJson(archive);
         if (request.merge) document["merged"] = layoutsJson(layouts, request.merging);
-        std::printf("%s\n", jsonText(document, 1).c_str());
+        sayJson(jsonText(document, 1));
         return;
     }
     printArchive(archive);
@@ -343,8 +341,7 @@ void describe(const InfoRequest& request) {
         printSession(paths[0], asJson);
     } else {
         const volume::ImportPreview preview = previewOf(paths, request.import);
-        std::printf("%s%s", (asJson ? describePreviewJson(preview) : describePreview(preview)).c_str(),
-                    asJson ? "\n" : "");
+        say("%s%s", (asJson ? describePreviewJson(preview) : describePreview(preview)).c_str(), asJson ? "\n" : "");
     }
 }
 

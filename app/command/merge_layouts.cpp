@@ -2,6 +2,7 @@
 
 #include "app/data/format.h"
 #include "volume/base/byte_text.h"
+#include "volume/base/terminal.h"
 
 #include <cmath>
 #include <cstdio>
@@ -55,25 +56,25 @@ std::vector<MergeLayout> mergeLayouts(const codec::Archive& archive, const volum
 void printLayouts(const codec::Archive& archive, const std::vector<MergeLayout>& layouts,
                   const volume::MergeOptions& options) {
     const glm::ivec3 count = archive.grid().count();
-    std::printf("  %-10s %8s %10s %10s  %s\n", "merged", "bricks", "apart", "as one", "of each size");
+    say("  %-10s %8s %10s %10s  %s\n", "merged", "bricks", "apart", "as one", "of each size");
     for (const MergeLayout& layout : layouts) {
         std::string sizes;
         for (const auto& [size, number] : mergeSizes(layout))
             sizes += (sizes.empty() ? "" : ", ") + std::to_string(number) + " of " + size;
-        std::printf("  %-10s %8s %10s %10s  %s\n", mergeName(layout.shape).c_str(),
-                    (std::to_string(layout.boxes.size()) + "/" + std::to_string(count.x * count.y * count.z)).c_str(),
-                    textOfBytes(double(layout.sum().apart)).c_str(), textOfBytes(double(layout.sum().together)).c_str(),
-                    sizes.c_str());
+        say("  %-10s %8s %10s %10s  %s\n", mergeName(layout.shape).c_str(),
+            (std::to_string(layout.boxes.size()) + "/" + std::to_string(count.x * count.y * count.z)).c_str(),
+            textOfBytes(double(layout.sum().apart)).c_str(), textOfBytes(double(layout.sum().together)).c_str(),
+            sizes.c_str());
     }
     for (const MergeLayout& layout : layouts) {
         if (layout.shape != options.shape) continue;
-        std::printf("  %-12s %-12s %10s %10s %10s\n", "from", "to", "importance", "apart", "as one");
+        say("  %-12s %-12s %10s %10s %10s\n", "from", "to", "importance", "apart", "as one");
         for (std::size_t b = 0; b < layout.boxes.size(); ++b)
-            std::printf("  %-12s %-12s %10s %10llu %10llu\n", mergeTriple(layout.boxes[b].begin, ",").c_str(),
-                        mergeTriple(layout.boxes[b].end - 1, ",").c_str(),
-                        numberText(std::round(1000 * double(layout.boxes[b].importance)) / 1000).c_str(),
-                        static_cast<unsigned long long>(layout.bytes[b].apart),
-                        static_cast<unsigned long long>(layout.bytes[b].together));
+            say("  %-12s %-12s %10s %10llu %10llu\n", mergeTriple(layout.boxes[b].begin, ",").c_str(),
+                mergeTriple(layout.boxes[b].end - 1, ",").c_str(),
+                numberText(std::round(1000 * double(layout.boxes[b].importance)) / 1000).c_str(),
+                static_cast<unsigned long long>(layout.bytes[b].apart),
+                static_cast<unsigned long long>(layout.bytes[b].together));
     }
 }
 

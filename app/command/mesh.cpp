@@ -7,6 +7,7 @@
 #include "app/ui/ticks.h"
 #include "codec/blocks/share_results.h"
 #include "volume/base/error.h"
+#include "volume/base/terminal.h"
 #include "volume/export/time_files.h"
 #include "volume/flow/flow_channels.h"
 #include "volume/mesh/mesh_file.h"
@@ -145,8 +146,8 @@ void writeAllTimes(const MeshRequest& request, const DataRef& data, const volume
         codec::shareResults({request.output, about, started, isMade}, files.size(), compute, finish, progress);
     if (isEmpty(done.results)) throwEmpty(request, info);
     for (std::size_t t = 0; done.last && t < files.size(); ++t)
-        std::printf("%s: %s\n", files[t].c_str(), done.results[t].c_str());
-    if (done.last && collects) std::printf("%s\n", volume::collectionOf(request.output).c_str());
+        say("%s: %s\n", files[t].c_str(), done.results[t].c_str());
+    if (done.last && collects) say("%s\n", volume::collectionOf(request.output).c_str());
     sayShare(done.own, files.size(), "surfaces", started);
 }
 
@@ -156,7 +157,7 @@ void run(MeshRequest request) {
     const DataRef data = dataOf(request, progress.part(0, 0.1));
     std::vector<std::string> messages;
     const auto source = openSource(data, messages, progress.part(0.1, 0.3));
-    for (const std::string& message : messages) std::fprintf(stderr, "tessera: %s\n", message.c_str());
+    for (const std::string& message : messages) warn("tessera: %s\n", message.c_str());
     settle(request, *source);
     const volume::DatasetInfo& info = source->info();
     const MeshOptions& mesh = request.mesh;
@@ -169,7 +170,7 @@ void run(MeshRequest request) {
         const auto surface = surfaceAt(mesh.time.value_or(info.times.front()), rest.part(0, 0.7));
         if (surface->mesh.triangles.empty()) throwEmpty(request, info);
         volume::writeMesh(surface->mesh, request.output, mesh.colorBy, rest.part(0.7, 1));
-        std::printf("%s: %s\n", request.output.c_str(), textOf(surface->mesh, request.output).c_str());
+        say("%s: %s\n", request.output.c_str(), textOf(surface->mesh, request.output).c_str());
         return;
     }
     writeAllTimes(request, data, info, surfaceAt, rest);

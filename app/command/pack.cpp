@@ -13,6 +13,7 @@
 #include "codec/remote/address.h"
 #include "codec/unpack/unpack.h"
 #include "volume/base/byte_text.h"
+#include "volume/base/terminal.h"
 #include "volume/import/files/series.h"
 #include "volume/system/free_memory.h"
 
@@ -164,7 +165,7 @@ void runGrowing(const PackRequest& request) {
 }
 
 void sayNotes(const codec::PackSummary& summary) {
-    for (const std::string& note : summary.notes) std::fprintf(stderr, "tessera: %s\n", note.c_str());
+    for (const std::string& note : summary.notes) warn("tessera: %s\n", note.c_str());
 }
 
 /// Packs in blocks of times, which processes share.
@@ -182,7 +183,7 @@ void runBlocks(const PackRequest& request, const Launched& started, const PackIn
     if (request.json || request.progressJson) {
         nlohmann::json report = reportOf(summary.own, request.output);
         report.update({{"blocks", summary.blocks}, {"ownBlocks", summary.packed}, {"rank", started.rank}});
-        std::printf("%s\n", jsonText(report, request.progressJson ? -1 : 1).c_str());
+        sayJson(jsonText(report, request.progressJson ? -1 : 1));
         return;
     }
     sayNotes(summary.own);
@@ -192,36 +193,35 @@ void runBlocks(const PackRequest& request, const Launched& started, const PackIn
     if (summary.last)
         text += "; " + request.output + ": " + textOfBytes(double(summary.own.archiveBytes)) + ", " +
                 exactnessOf(request.output);
-    std::printf("%s\n", text.c_str());
+    say("%s\n", text.c_str());
 }
 
 /// Prints what was packed.
-void say(const PackRequest& request, const codec::PackSummary& summary) {
+void sayPacked(const PackRequest& request, const codec::PackSummary& summary) {
     if (request.json || request.progressJson) {
-        std::printf("%s\n", jsonText(reportOf(summary, request.output), request.progressJson ? -1 : 1).c_str());
+        sayJson(jsonText(reportOf(summary, request.output), request.progressJson ? -1 : 1));
         return;
     }
     sayNotes(summary);
     if (summary.discardedBricks > 0)
-        std::printf("%llu of %llu bricks are less important than the limit and are left out\n",
-                    static_cast<unsigned long long>(summary.discardedBricks),
-                    static_cast<unsigned long long>(summary.bricks));
+        say("%llu of %llu bricks are less important than the limit and are left out\n",
+            static_cast<unsigned long long>(summary.discardedBricks), static_cast<unsigned long long>(summary.bricks));
     if (summary.repeatedBricks > 0)
-        std::printf("%llu bricks equal those of the time before, which saves %s\n",
-                    static_cast<unsigned long long>(summary.repeatedBricks),
-                    textOfBytes(double(summary.repeatedBytes)).c_str());
+        say("%llu bricks equal those of the time before, which saves %s\n",
+            static_cast<unsigned long long>(summary.repeatedBricks),
+            textOfBytes(double(summary.repeatedBytes)).c_str());
     const double source = double(summary.sourceBytes), stored = double(summary.archiveBytes);
     if (request.append) {
-        std::printf("%s: now %s, %s of it from %s, %.2f s (%s/s)\n", request.output.c_str(),
-                    textOfBytes(stored).c_str(), textOfBytes(double(summary.addedBytes)).c_str(),
-                    textOfBytes(source).c_str(), summary.seconds, textOfBytes(source / summary.seconds).c_str());
+        say("%s: now %s, %s of it from %s, %.2f s (%s/s)\n", request.output.c_str(), textOfBytes(stored).c_str(),
+            textOfBytes(double(summary.addedBytes)).c_str(), textOfBytes(source).c_str(), summary.seconds,
+            textOfBytes(source / summary.seconds).c_str());
         return;
     }
-    std::printf("%s: %s from %s (%.2f : 1), %.1f %% of the samples, %.2f s (%s/s)\n", request.output.c_str(),
-                textOfBytes(stored).c_str(), textOfBytes(source).c_str(), source / stored,
-                100.0 * double(summary.storedSamples) / double(summary.sourceSamples), summary.seconds,
-                textOfBytes(source / summary.seconds).c_str());
-    std::printf("%s\n", exactnessOf(request.output).c_str());
+    say("%s: %s from %s (%.2f : 1), %.1f %% of the samples, %.2f s (%s/s)\n", request.output.c_str(),
+        textOfBytes(stored).c_str(), textOfBytes(source).c_str(), source / stored,
+        100.0 * double(summary.storedSamples) / double(summary.sourceSamples), summary.seconds,
+        textOfBytes(source / summary.seconds).c_str());
+    say("%s\n", exactnessOf(request.output).c_str());
 }
 
 /// Whether an archive is appended to one that was packed alike: then nothing is coded again.
@@ -247,14 +247,14 @@ void run(PackRequest request) {
     if (request.keepsLattice) request.options.lattice = storedLattice(request.inputs[0]);
     const Progress terminal = terminalProgress("pack");
     const Progress progress = request.progressJson ? jsonProgress(terminal) : terminal;
-    if (joins(request)) return say(request, codec::join(request.output, request.inputs[0]));
+    if (joins(request)) return sayPacked(request, codec::join(request.output, request.inputs[0]));
     PackInput input = open(request, progress.part(0, 0.02));
     const Progress rest = progress.part(0.02, 1);
     const Launched started = launched();
     if (whole && !request.alone && (started.count > 1 || blocks)) return runBlocks(request, started, input, rest);
-    say(request, request.append
-                     ? codec::append(input.data, request.output, request.options.memoryMb, rest, input.before)
-                     : codec::pack(input.data, request.options, request.output, rest, input.before));
+    sayPacked(request, request.append
+                           ? codec::append(input.data, request.output, request.options.memoryMb, rest, input.before)
+                           : codec::pack(input.data, request.options, request.output, rest, input.before));
 }
 
 /// Throws where samples are asked for bit for bit, and an error bound too.

@@ -12,6 +12,7 @@
 #include "app/user_files/state_dir.h"
 #include "codec/remote/address.h"
 #include "volume/base/error.h"
+#include "volume/base/terminal.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -184,6 +185,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options) {
     addTransferOption(command, options.transfer);
     addImportOptions(command, options.import);
     addRemoteOptions(command, options.remote);
+    addAllowRemoteOption(command);
 }
 
 Opened openForPicture(const PictureOptions& options, const Progress& progress) {
@@ -223,7 +225,7 @@ Opened openForPicture(const PictureOptions& options, const Progress& progress) {
             applyNamed(opened.document.session, *opened.source, words, own.list);
     }
     for (const auto* const texts : {&opened.messages, &opened.warnings})
-        for (const std::string& text : *texts) std::fprintf(stderr, "tessera: %s\n", text.c_str());
+        for (const std::string& text : *texts) warn("tessera: %s\n", text.c_str());
     return opened;
 }
 

@@ -6,6 +6,7 @@
 #include "app/views/curves/curves_data.h"
 #include "vis/image/image_io.h"
 #include "volume/base/error.h"
+#include "volume/base/terminal.h"
 #include "volume/system/atomic_file.h"
 
 #include <CLI/CLI.hpp>
@@ -67,7 +68,7 @@ void run(const PlotRequest& request) {
     std::vector<std::string> messages;
     const DataRef data = dataRef(request);
     const Sources sources = openSources(data, messages, progress.part(0, 0.4));
-    for (const std::string& message : messages) std::fprintf(stderr, "tessera: %s\n", message.c_str());
+    for (const std::string& message : messages) warn("tessera: %s\n", message.c_str());
     const volume::DatasetInfo& info = sources.numbers->info();
     if (info.times.size() < 2) throw Error("has only one time: curves need several", request.inputs[0]);
     if (!csv && !figure) return drawPicture(request, data, sources);

@@ -10,6 +10,7 @@
 #include "codec/blocks/share_results.h"
 #include "codec/container/json_text.h"
 #include "volume/base/error.h"
+#include "volume/base/terminal.h"
 #include "volume/system/atomic_file.h"
 
 #include <CLI/CLI.hpp>
@@ -37,7 +38,7 @@ Sources openInput(const DataRef& data, const Progress& progress) {
     std::vector<std::string> messages;
     Sources sources = openSources(data, messages, progress);
     checkDerived(data.derived, volume::underived(sources.numbers)->info());
-    for (const std::string& message : messages) std::fprintf(stderr, "tessera: %s\n", message.c_str());
+    for (const std::string& message : messages) warn("tessera: %s\n", message.c_str());
     return sources;
 }
 
@@ -107,8 +108,8 @@ void print(const StatsRequest& request, const Question& question, const Answer& 
     if (request.options.json) {
         std::fputs(jsonOf(question, answer).c_str(), stdout);
     } else if (request.output.empty()) {
-        std::printf("%s\n%s", stateOf(question).c_str(), answer.text.c_str());
-        for (const std::string& note : answer.notes) std::printf("  %s\n", note.c_str());
+        say("%s\n%s", stateOf(question).c_str(), answer.text.c_str());
+        for (const std::string& note : answer.notes) say("  %s\n", note.c_str());
     }
 }
 

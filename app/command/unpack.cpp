@@ -3,6 +3,7 @@
 #include "app/command/derive_option.h"
 #include "app/data/format.h"
 #include "app/data/import_options.h"
+#include "volume/base/terminal.h"
 #include "volume/export/export.h"
 #include "volume/flow/flow_channels.h"
 #include "volume/resample/hyperplane.h"
@@ -98,7 +99,7 @@ void run(const UnpackRequest& request) {
     const bool values = !archive->metadata().lossless;
     for (const std::string& written : volume::exportDataset(dataset, select(request, dataset.info, values),
                                                             request.output, progress.part(derives ? 0.5 : 0, 1)))
-        std::printf("%s\n", written.c_str());
+        say("%s\n", written.c_str());
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 #include "codec/container/json_text.h"
 #include "codec/remote/remote_file.h"
 #include "volume/base/byte_text.h"
+#include "volume/base/terminal.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -39,25 +40,24 @@ void run(const VerifyRequest& request) {
     // A crash may damage one of the two headers; the data are intact then.
     const bool whole = report.damaged == (report.damagedHeader ? 1 : 0);
     if (json) {
-        std::printf("%s\n", jsonText({{"file", path},
-                                      {"ok", whole},
-                                      {"bricks", report.bricks},
-                                      {"samples", report.samples},
-                                      {"bytes", archive.fileBytes()},
-                                      {"damaged", report.damaged},
-                                      {"damagedBricks", report.damagedBricks},
-                                      {"damage", report.damage}},
-                                     1)
-                                .c_str());
+        sayJson(jsonText({{"file", path},
+                          {"ok", whole},
+                          {"bricks", report.bricks},
+                          {"samples", report.samples},
+                          {"bytes", archive.fileBytes()},
+                          {"damaged", report.damaged},
+                          {"damagedBricks", report.damagedBricks},
+                          {"damage", report.damage}},
+                         1));
     } else {
-        for (const std::string& line : report.damage) std::fprintf(stderr, "%s: %s\n", path.c_str(), line.c_str());
+        for (const std::string& line : report.damage) warn("%s: %s\n", path.c_str(), line.c_str());
     }
     if (!whole) throw Error(verdictOf(report), path);
     if (!json)
-        std::printf("%s: whole%s; %llu brick%s decoded at every level, %s checked\n", path.c_str(),
-                    report.damagedHeader ? " but for one copy of the header, which the next append replaces" : "",
-                    static_cast<unsigned long long>(report.bricks), report.bricks == 1 ? "" : "s",
-                    textOfBytes(double(archive.fileBytes())).c_str());
+        say("%s: whole%s; %llu brick%s decoded at every level, %s checked\n", path.c_str(),
+            report.damagedHeader ? " but for one copy of the header, which the next append replaces" : "",
+            static_cast<unsigned long long>(report.bricks), report.bricks == 1 ? "" : "s",
+            textOfBytes(double(archive.fileBytes())).c_str());
 }
 
 } // namespace

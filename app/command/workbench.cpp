@@ -42,6 +42,7 @@ void addWorkbench(CLI::App& app) {
                    "Write a PNG of the window whenever its picture is complete; for scripts");
     addImportOptions(app, options->import);
     addRemoteOptions(app, options->remote);
+    addAllowRemoteOption(app);
     app.callback([options, &app] {
         if (!app.get_subcommands().empty()) return;
         // Fail here instead of opening a window with nothing to show.

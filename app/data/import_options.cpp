@@ -2,6 +2,8 @@
 
 #include "app/data/format.h"
 #include "app/described/describe_cli.h"
+#include "codec/container/json_text.h"
+#include "codec/remote/consent.h"
 #include "volume/base/byte_text.h"
 #include "volume/base/error.h"
 #include "volume/import/find_parts.h"
@@ -57,7 +59,7 @@ std::vector<std::string> importArguments(const volume::ImportOptions& options) {
     for (const auto& [parameter, unit] : options.units) add("--unit", parameter + "=" + unit);
     add("--length-unit", options.lengthUnit);
     std::string times, parameters;
-    for (const double time : options.times) times += (times.empty() ? "" : ",") + nlohmann::json(time).dump();
+    for (const double time : options.times) times += (times.empty() ? "" : ",") + jsonText(time);
     for (const std::string& parameter : options.parameters) parameters += (parameters.empty() ? "" : ",") + parameter;
     add("--times", times);
     add("--parameters", parameters);
@@ -66,6 +68,12 @@ std::vector<std::string> importArguments(const volume::ImportOptions& options) {
 
 void addRemoteOptions(CLI::App& command, codec::RemoteOptions& options) {
     addDescribed(command, options, "remote.");
+}
+
+void addAllowRemoteOption(CLI::App& command) {
+    command.add_flag_callback("--allow-remote", codec::allowAllMachines,
+                              "Ask any machine that a session or a picture names for its data; without it, only those "
+                              "from which you have opened something yourself");
 }
 
 void addImportOptions(CLI::App& command, volume::ImportOptions& options) {
@@ -238,7 +246,7 @@ std::string describePreviewJson(const volume::ImportPreview& preview) {
         out["parameters"].push_back(std::move(entry));
     }
     out["notes"] = preview.notes;
-    return out.dump(1) + "\n";
+    return jsonText(out, 1) + "\n";
 }
 
 } // namespace tessera::app

@@ -16,6 +16,8 @@ void addImportOptions(CLI::App& command, volume::ImportOptions& options);
 
 /// Adds the options of every command that opens archives: --remote.cache and so on. `options` must outlive the parsing.
 void addRemoteOptions(CLI::App& command, codec::RemoteOptions& options);
+/// Adds --allow-remote to a command that opens sessions, which may name other machines.
+void addAllowRemoteOption(CLI::App& command);
 
 /// What `tessera info DATAFILE` prints: dims, spacing, parameters with type and unit, times, bytes, notes.
 std::string describePreview(const volume::ImportPreview& preview);

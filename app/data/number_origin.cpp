@@ -2,6 +2,7 @@
 
 #include "app/ui/ticks.h"
 #include "codec/container/metadata.h"
+#include "volume/base/printable.h"
 #include "volume/derived/other_source.h"
 #include "volume/field/mesh_origin.h"
 
@@ -189,7 +190,7 @@ std::string originText(const NumberOrigin& origin, const volume::DatasetInfo& in
 }
 
 std::string originLine(const NumberOrigin& origin, const volume::DatasetInfo& info, const std::vector<int>& channels) {
-    return "# numbers: " + originText(origin, info, channels) + "\n";
+    return "# numbers: " + printable(originText(origin, info, channels)) + "\n";
 }
 
 } // namespace tessera::app

@@ -5,6 +5,7 @@
 #include "app/data/format.h"
 #include "app/data/packing_errors.h"
 #include "app/data/picture_session.h"
+#include "app/described/within_ranges.h"
 #include "app/user_files/import_memory.h"
 
 #include "app/history/session_file.h"
@@ -204,13 +205,13 @@ Opened openSession(const std::string& path, Kind kind, const OpenRequest& reques
 
 /// The data of a request, else those of its layout, which lies in `folder`, else the first model.
 DataRef dataRequested(const OpenRequest& request, const SessionDocument* layout, const std::string& folder,
-                      const Progress& progress) {
+                      std::vector<std::string>& messages, const Progress& progress) {
     if (request.data) return *request.data;
     DataRef data;
     if (!request.paths.empty()) {
         requireData(request.paths);
         const volume::ImportOptions stated = request.import.value_or(volume::ImportOptions{});
-        data = dataOf(request.paths, recallOptions(request.paths, stated, progress.part(0, 0.1)));
+        data = dataOf(request.paths, recallOptions(request.paths, stated, messages, progress.part(0, 0.1)));
     } else if (hasData(layout->session.data)) {
         const ResolvedData found = resolveData(layout->session.data, folder);
         if (!found.missing.empty()) throw Error("data file is missing", found.missing[0].wanted.path);
@@ -249,6 +250,7 @@ Opened openData(DataRef data, std::optional<SessionDocument> layout, const Progr
     if (layout && !sameData(layout->session.data, data)) showLastIfEmpty(session, *opened.numbers, opened.messages);
     if (!layout || !sameData(layout->session.data, data)) aimFirstView(session, *opened.numbers, firstAspect(info));
     if (layout) fitSurfaces(session, *opened.numbers, layout->session, opened.messages);
+    keepWithinRanges(session); // cameras of flat data, for example
     opened.document.history.reset(session);
     opened.firstView = true;
     return opened;
@@ -271,9 +273,12 @@ Opened open(const OpenRequest& request, const Progress& progress) {
         layout = loadSession(path);
         folder = fs::path(path).parent_path().string();
     }
-    DataRef data = dataRequested(request, layout ? &*layout : nullptr, folder, progress);
+    std::vector<std::string> said;
+    DataRef data = dataRequested(request, layout ? &*layout : nullptr, folder, said, progress);
     if (request.remote) data.remote = *request.remote;
-    return openData(std::move(data), std::move(layout), progress);
+    Opened opened = openData(std::move(data), std::move(layout), progress);
+    opened.messages.insert(opened.messages.begin(), said.begin(), said.end());
+    return opened;
 }
 
 void requireData(const std::vector<std::string>& paths) {
@@ -283,9 +288,11 @@ void requireData(const std::vector<std::string>& paths) {
         if (codec::isRemote(path) || !std::filesystem::is_regular_file(path, unknown)) continue;
         if (!alone && codec::namesArchive(path))
             throw Error("is an archive, which is opened alone; tessera compare --with compares two data sets", path);
-        if (hasEnding(path, ".tessera.json") || (hasEnding(path, ".json") && looksLikeSession(readText(path))))
+        if (hasEnding(path, ".tessera.json") || (hasEnding(path, ".json") && looksLikeSession(readText(path)))) {
+            (void)loadSession(path); // a broken one says what is broken
             throw Error(alone ? "is a session, and data are expected here" : "is a session, which is opened alone",
                         path);
+        }
         if (alone && namesPicture(path) && holdsSession(path))
             throw Error("is a picture that contains a session, and data are expected here", path);
     }

@@ -1,6 +1,7 @@
 #include "app/data/packing_errors.h"
 
 #include "app/ui/ticks.h"
+#include "codec/container/json_text.h"
 #include "volume/derived/derived.h"
 
 #include <algorithm>
@@ -70,7 +71,7 @@ std::optional<SessionDocument> errorsLayout(const SessionDocument& layout, const
     Json raw = layout.raw;
     raw.erase("data");
     replaceNames(raw, names);
-    SessionDocument out = parseSession(raw.dump(), "layout of errors");
+    SessionDocument out = parseSession(jsonText(raw), "layout of errors");
     out.session.data.derived = std::move(derived);
     return out;
 }

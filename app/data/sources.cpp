@@ -4,7 +4,7 @@
 #include "app/history/session_file.h"
 #include "codec/archive/archive.h"
 #include "codec/container/coded_numbers.h"
-#include "codec/remote/address.h"
+#include "codec/remote/consent.h"
 #include "codec/unpack/unpack.h"
 #include "volume/base/byte_text.h"
 #include "volume/base/error.h"
@@ -302,6 +302,8 @@ Sources openStored(const DataRef& data, std::vector<std::string>& messages, cons
             whole = withOther(whole, other);
             messages.push_back((path.empty() ? other.numbers->info().name : fs::path(path).filename().string()) +
                                " is shown beside it, " + how);
+        } catch (const codec::NotAllowed&) {
+            throw; // there is a question
         } catch (const Error& error) {
             throw Error(error.reason(), error.file().empty() ? path : error.file(), error.place());
         }

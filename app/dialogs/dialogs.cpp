@@ -1,11 +1,13 @@
 #include "app/dialogs/dialogs.h"
 
 #include "app/dialogs/file_dialog.h"
+#include "app/dialogs/modal.h"
 #include "app/drawing/panels.h"
 #include "app/pane/pane_title.h"
 #include "app/ui/fitted_text.h"
 #include "app/ui/number_field.h"
 #include "app/ui/parameter_widget.h"
+#include "codec/container/json_text.h"
 #include "volume/base/byte_text.h"
 #include "volume/base/error.h"
 
@@ -19,23 +21,6 @@ namespace tessera::app {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Begins a centred modal dialog; `open` becomes false with Esc or the cross.
-bool beginDialog(const char* title, bool& open, float width) {
-    if (open && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
-    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
-    ImGui::SetNextWindowSize({width, 0});
-    if (!ImGui::BeginPopupModal(title, &open, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoResize))
-        return false;
-    if (escapePressed() && !ImGui::IsWindowAppearing()) open = false; // not by the key that asked
-    return true;
-}
-
-void endDialog(bool open) {
-    if (!open) ImGui::CloseCurrentPopup();
-    keepInView();
-    ImGui::EndPopup();
-}
 
 /// A part of a dialog that scrolls where the dialog, with `below` pixels under that part, is higher than the window.
 class Scrolled {
@@ -65,30 +50,6 @@ private:
     bool child_;
     float from_;
 };
-
-/// Buttons at the right end of a dialog; returns the index of the one pressed, -1 for none. Enter presses the last.
-int dialogButtons(std::initializer_list<const char*> names) {
-    const float width = ImGui::GetFontSize() * 7, gap = ImGui::GetStyle().ItemSpacing.x;
-    const float total = static_cast<float>(names.size()) * (width + gap) - gap;
-    ImGui::Spacing();
-    ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowContentRegionMax().x - total));
-    int chosen = -1, index = 0;
-    for (const char* name : names) {
-        if (index > 0) ImGui::SameLine();
-        const bool last = index + 1 == static_cast<int>(names.size());
-        if (last) {
-            ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetColorU32(ImGuiCol_SliderGrab));
-            ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(255, 255, 255, 255));
-        }
-        if (ImGui::Button(name, {width, 0})) chosen = index;
-        if (last) ImGui::PopStyleColor(2);
-        ++index;
-    }
-    // Ignore the Enter that has just closed the previous dialog.
-    if (chosen < 0 && pressed({.key = key::kEnter}) && !ImGui::IsAnyItemActive() && !ImGui::IsWindowAppearing())
-        chosen = static_cast<int>(names.size()) - 1;
-    return chosen;
-}
 
 } // namespace
 
@@ -319,7 +280,7 @@ std::optional<PictureRequest> PictureDialog::draw(Session& session, const volume
     const int button = dialogButtons({"Cancel", "Save..."});
     const bool save = button == 1 && request;
     if (button == 0 || save) shown_ = false;
-    if (save) rememberChoice(stateFolder, kFormChoice, toJson(*form_).dump());
+    if (save) rememberChoice(stateFolder, kFormChoice, jsonText(toJson(*form_)));
     endDialog(shown_);
     return save ? request : std::nullopt;
 }

@@ -15,6 +15,8 @@ public:
     /// `folder`: of the state of the program, "" = none.
     Autosaver(std::string folder, std::chrono::milliseconds interval);
 
+    /// Why nothing is kept, "" where something is.
+    const std::string& problem() const { return autosave_.problem(); }
     /// Sessions left behind by crashed runs, newest first.
     std::vector<Recovery> abandoned() const { return autosave_.abandoned(); }
     /// Once per frame: writes the document where it has been edited and the interval is over. `now` in seconds.

@@ -5,6 +5,7 @@
 #include "app/data/sources.h"
 #include "app/edits/compare_files.h"
 #include "app/user_files/import_memory.h"
+#include "app/user_files/machines.h"
 #include "app/user_files/state_dir.h"
 #include "app/views/data/derived_list.h"
 #include "volume/base/background.h"
@@ -101,34 +102,34 @@ void DataFollower::show(const DataRef& data, const std::string& title) {
 void DataFollower::compareWith(const std::vector<std::string>& paths, const volume::ImportOptions& stated,
                                std::function<void(Session&, const CompareView&)> openView) {
     const std::string title = "Comparing with another file";
-    jobs_.start("open", title,
-                [this, title, paths, stated, openView = std::move(openView), from = document_.sources().pictures,
-                 session = document_.session()](const Progress& progress) -> Jobs::Finish {
-                    const auto made = std::make_shared<RemadeData>(RemadeData{from, {}, session.data, {}});
-                    requireData(paths);
-                    const DataRef other = dataOf(paths, recallOptions(paths, stated, progress.part(0, 0.1)));
-                    made->data.other =
-                        OtherData{.files = other.files, .model = {}, .settings = {}, .import = other.import};
-                    const ComparedData compared =
-                        openCompared(made->data, session, made->messages, progress.part(0.1, 1));
-                    made->sources = compared.sources;
-                    const auto beside = volume::otherOf(*volume::underived(compared.sources.numbers));
-                    const std::string name = beside ? beside->info().name : std::string();
-                    return [this, title, made, openView, stated, name, channel = compared.channel] {
-                        if (document_.sources().pictures != made->from)
-                            return messages_.add(title + ": not shown, as the data have changed since");
-                        Session& now = document_.session();
-                        now.data.other = made->data.other;
-                        moveTo(*made);
-                        if (!options_.headless) rememberStated(stated, name);
-                        if (channel.empty()) return;
-                        showOtherDifference(now, document_.info(), channel);
-                        CompareView view;
-                        view.variants = fileVariants(now, document_.info());
-                        openView(now, view);
-                        document_.replace(now, title);
-                    };
-                });
+    allowNamed(paths, options_.stateFolder);
+    jobs_.start(
+        "open", title,
+        [this, title, paths, stated, openView = std::move(openView), from = document_.sources().pictures,
+         session = document_.session()](const Progress& progress) -> Jobs::Finish {
+            const auto made = std::make_shared<RemadeData>(RemadeData{from, {}, session.data, {}});
+            requireData(paths);
+            const DataRef other = dataOf(paths, recallOptions(paths, stated, made->messages, progress.part(0, 0.1)));
+            made->data.other = OtherData{.files = other.files, .model = {}, .settings = {}, .import = other.import};
+            const ComparedData compared = openCompared(made->data, session, made->messages, progress.part(0.1, 1));
+            made->sources = compared.sources;
+            const auto beside = volume::otherOf(*volume::underived(compared.sources.numbers));
+            const std::string name = beside ? beside->info().name : std::string();
+            return [this, title, made, openView, stated, name, channel = compared.channel] {
+                if (document_.sources().pictures != made->from)
+                    return messages_.add(title + ": not shown, as the data have changed since");
+                Session& now = document_.session();
+                now.data.other = made->data.other;
+                moveTo(*made);
+                if (!options_.headless) rememberStated(stated, name);
+                if (channel.empty()) return;
+                showOtherDifference(now, document_.info(), channel);
+                CompareView view;
+                view.variants = fileVariants(now, document_.info());
+                openView(now, view);
+                document_.replace(now, title);
+            };
+        });
 }
 
 void DataFollower::compareNoMore() {

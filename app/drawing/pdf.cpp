@@ -2,6 +2,7 @@
 
 #include "app/drawing/embedded_session.h"
 #include "volume/base/error.h"
+#include "volume/base/printable.h"
 
 #include <array>
 #include <cairo-ft.h>
@@ -109,22 +110,23 @@ private:
         paint(circle.color, circle.line);
     }
     void draw(const Words& words) {
+        const std::string text = printable(words.text); // cairo fails for what is not UTF-8
         cairo_set_font_face(page_, fonts_.get(words.face));
         cairo_set_font_size(page_, words.size);
         color(words.color);
         cairo_text_extents_t extents;
-        cairo_text_extents(page_, words.text.c_str(), &extents);
+        cairo_text_extents(page_, text.c_str(), &extents);
         cairo_translate(page_, words.at.x, words.at.y);
         cairo_rotate(page_, words.angle * std::numbers::pi / 180);
         cairo_translate(page_, -words.anchor * extents.x_advance, words.middle ? kMiddle * words.size : 0);
         cairo_move_to(page_, 0, 0);
         if (words.halo > 0) {
-            cairo_text_path(page_, words.text.c_str());
+            cairo_text_path(page_, text.c_str());
             paint(kHalo, words.halo);
             color(words.color);
             cairo_move_to(page_, 0, 0);
         }
-        cairo_show_text(page_, words.text.c_str());
+        cairo_show_text(page_, text.c_str());
     }
     void draw(const Picture& picture) {
         const glm::ivec2 size = picture.image.size;

@@ -1,6 +1,7 @@
 #include "app/drawing/drawing.h"
 
 #include "app/drawing/embedded_session.h"
+#include "volume/base/printable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,7 +78,7 @@ public:
         std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" "
                           "width=\"" +
                           width + "pt\" height=\"" + height + "pt\" viewBox=\"0 0 " + width + " " + height + "\">\n";
-        if (!drawing_.numbers.empty()) out += "<desc>numbers: " + escapedXml(drawing_.numbers) + "</desc>\n";
+        if (!drawing_.numbers.empty()) out += "<desc>numbers: " + escapedXml(printable(drawing_.numbers)) + "</desc>\n";
         if (!drawing_.session.empty()) out += sessionElement(drawing_.session);
         for (const Mark& mark : drawing_.marks) std::visit([&](const auto& shape) { draw(shape); }, mark.shape);
         return out + body_ + "</svg>\n";
@@ -113,7 +114,7 @@ private:
                      number(words.at.y) + ")\"";
         body_ += std::string(" font-family=\"") + face.family + ", Helvetica, Arial, sans-serif\" font-weight=\"" +
                  face.weight + "\"" + attribute("font-size", words.size) + fill(words.color);
-        body_ += " xml:space=\"preserve\">" + escapedXml(words.text) + "</text>\n";
+        body_ += " xml:space=\"preserve\">" + escapedXml(printable(words.text)) + "</text>\n";
     }
     void draw(const Picture& picture) {
         body_ += "<image" + placed(picture.box) + " preserveAspectRatio=\"none\"" +

@@ -3,6 +3,7 @@
 #include "app/history/edit_titles.h"
 #include "app/history/parameter_path.h"
 #include "app/session/session_json.h"
+#include "codec/container/json_text.h"
 #include "codec/remote/address.h"
 #include "volume/base/csv_text.h"
 #include "volume/base/error.h"
@@ -46,7 +47,8 @@ Session variantSession(const Session& session, const CompareVariant& variant) {
     for (const auto& [path, value] : variant.changes) {
         // An empty object stands for the defaults, whole, so that changes of single settings find their place.
         const bool defaults = value == "{}" && (path == kPackedPath || path == kTimeAxisPath);
-        setInDocument(document, path, defaults ? toJson(withOptionalData({}))[Json::json_pointer(path)].dump() : value);
+        setInDocument(document, path,
+                      defaults ? jsonText(toJson(withOptionalData({}))[Json::json_pointer(path)]) : value);
     }
     std::vector<JsonIssue> unknown;
     Session out = sessionFromJson(document, {}, &unknown);
@@ -63,7 +65,7 @@ std::string differingText(const Json& now, const Json& before) {
     for (const auto& [key, value] : now.items()) {
         const Json was = before.is_object() ? before.value(key, Json()) : Json();
         if (was == value) continue;
-        std::string shown = value.is_string() ? value.get<std::string>() : value.dump();
+        std::string shown = value.is_string() ? value.get<std::string>() : jsonText(value);
         if (value.is_object()) shown = differingText(value, was);
         text += (text.empty() ? "" : ", ") + key + (shown.empty() ? "" : " " + shown);
     }
@@ -118,7 +120,7 @@ namespace {
 
 /// A value as it stands in CompareVariant::changes.
 std::string settingText(const Json& value) {
-    return value.is_string() ? value.get<std::string>() : value.dump();
+    return value.is_string() ? value.get<std::string>() : jsonText(value);
 }
 
 } // namespace
@@ -166,13 +168,15 @@ std::string questionsCsv(const std::vector<CompareQuestion>& questions) {
     std::string csv = "question,answer,seconds\n";
     for (const CompareQuestion& each : questions)
         csv += csvField(each.text) + "," + csvField(each.answer) + "," +
-               (each.seconds > 0 ? toJson(each.seconds).dump() : std::string()) + "\n";
+               (each.seconds > 0 ? jsonText(toJson(each.seconds)) : std::string()) + "\n";
     return csv;
 }
 
 std::string compareCsv(const std::vector<CompareRow>& rows, const std::string& timeTitle, const std::string& time,
                        bool head) {
-    const auto number = [](double value) { return std::isfinite(value) ? toJson(value).dump() : std::string("inf"); };
+    const auto number = [](double value) {
+        return std::isfinite(value) ? jsonText(toJson(value)) : std::string("inf");
+    };
     std::string csv;
     if (head)
         csv += (time.empty() ? "" : csvField(timeTitle) + ",") +

@@ -2,6 +2,7 @@
 
 #include "app/described/describe_json.h"
 #include "app/session/session_json.h"
+#include "codec/container/json_text.h"
 #include "volume/derived/derived.h"
 #include "volume/derived/other_source.h"
 
@@ -156,9 +157,9 @@ std::vector<CompareVariant> fileVariants(const Session& session, const volume::D
         const vis::Layer layer{.name = {}, .technique = vis::VolumeLayer{.channel = compared}};
         Session shown = session;
         shown.layers = {layer};
-        first.changes["/layers"] = toJson(shown)["layers"].dump();
+        first.changes["/layers"] = jsonText(toJson(shown)["layers"]);
         shown.layers.front().technique = vis::VolumeLayer{.channel = nameInOther(info, compared)};
-        second.changes["/layers"] = toJson(shown)["layers"].dump();
+        second.changes["/layers"] = jsonText(toJson(shown)["layers"]);
     }
     first.name = own;
     second.name = other;
@@ -168,7 +169,8 @@ std::vector<CompareVariant> fileVariants(const Session& session, const volume::D
             continue;
         Session shown = session;
         shown.layers = {vis::Layer{.name = {}, .technique = vis::VolumeLayer{.channel = derived.name}}};
-        variants.push_back({.name = own + " minus " + other, .changes = {{"/layers", toJson(shown)["layers"].dump()}}});
+        variants.push_back(
+            {.name = own + " minus " + other, .changes = {{"/layers", jsonText(toJson(shown)["layers"])}}});
     }
     return variants;
 }

@@ -2,6 +2,7 @@
 
 #include "app/session/session_json.h"
 #include "app/session/shown_scene.h"
+#include "codec/container/json_text.h"
 
 #include <algorithm>
 #include <functional>
@@ -52,7 +53,7 @@ void keepSettings(Session& session, const DataRef& made) {
                 else
                     settings[key] = shown->second;
             }
-            found->second = settings.dump();
+            found->second = jsonText(settings);
         }
     }
 }

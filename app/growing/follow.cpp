@@ -3,6 +3,7 @@
 #include "app/growing/held_signals.h"
 #include "codec/archive/archive.h"
 #include "volume/base/error.h"
+#include "volume/base/terminal.h"
 #include "volume/import/growing_series.h"
 
 #include <algorithm>
@@ -51,8 +52,8 @@ void Following::continueArchive() {
     }
     if (known > 0) files_.done(paths[known - 1], ArrivingFiles::Clock::now());
     if (wanted.json) return;
-    std::printf("%s: continues after time %.10g, with %s in it\n", wanted.output.c_str(), last,
-                timesCounted(archive.info().times.size()).c_str());
+    say("%s: continues after time %.10g, with %s in it\n", wanted.output.c_str(), last,
+        timesCounted(archive.info().times.size()).c_str());
     std::fflush(stdout);
 }
 
@@ -71,7 +72,7 @@ void Following::tryAppend(const std::string& path) {
 
 void Following::tellNotes() {
     for (const ArrivingFiles::Note& note : files_.takeNotes(ArrivingFiles::Clock::now()))
-        std::fprintf(stderr, "tessera: %s: %s\n", note.path.c_str(), note.text.c_str());
+        warn("tessera: %s: %s\n", note.path.c_str(), note.text.c_str());
 }
 
 void Following::run() {

@@ -4,6 +4,7 @@
 #include "codec/archive/archive.h"
 #include "volume/base/error.h"
 #include "volume/base/number_text.h"
+#include "volume/base/terminal.h"
 #include "volume/import/files/raw.h"
 #include "volume/system/part_file.h"
 
@@ -206,7 +207,7 @@ std::optional<StatedFrame> Streaming::next() {
             throw Error("time " + exactText(frame.time) + " of frame " + std::to_string(read_) +
                             " is not after the last one, " + exactText(*last_),
                         kInput);
-        std::fprintf(stderr, "tessera: time %.10g of frame %zu is in the archive already\n", frame.time, read_);
+        warn("tessera: time %.10g of frame %zu is in the archive already\n", frame.time, read_);
         fs::remove(file);
     }
 }

@@ -5,6 +5,7 @@
 #include "codec/pack/pack.h"
 #include "volume/base/byte_text.h"
 #include "volume/base/error.h"
+#include "volume/base/terminal.h"
 #include "volume/import/parts_rules.h"
 
 #include <algorithm>
@@ -29,7 +30,7 @@ void requireFrameByFrame(const codec::PackOptions& options) {
 /// Says what the first file of a series decides for all others.
 void sayDecided(const volume::GrowingSeries& series, const volume::ImportOptions& stated, const std::string& first) {
     const auto say = [&](const std::string& text) {
-        std::fprintf(stderr, "tessera: %s: %s (taken for all later times)\n", first.c_str(), text.c_str());
+        warn("tessera: %s: %s (taken for all later times)\n", first.c_str(), text.c_str());
     };
     for (const std::string& rule : series.options.absent)
         if (std::ranges::find(stated.absent, rule) == stated.absent.end()) say("absent: " + rule);
@@ -106,7 +107,7 @@ void GrowingOutput::append(const std::string& path, const std::optional<StatedFr
     replaces_ = false;
     if (before == 0) sayDecided(series, request_.import, stated ? frameText(*stated) : path);
     if (!series_)
-        for (const std::string& note : summary.notes) std::fprintf(stderr, "tessera: %s\n", note.c_str());
+        for (const std::string& note : summary.notes) warn("tessera: %s\n", note.c_str());
     series_ = std::move(series);
     const double seconds = std::chrono::duration<double>(Clock::now() - begun).count();
     for (std::size_t t = 0; t < times.size(); ++t) {
@@ -121,12 +122,11 @@ void GrowingOutput::append(const std::string& path, const std::optional<StatedFr
                 line["frame"] = stated->number;
             else
                 line["file"] = path;
-            std::printf("%s\n", jsonText(line).c_str());
+            sayJson(jsonText(line));
         } else {
             const std::string of = stated ? frameText(*stated) : std::filesystem::path(path).filename().string();
-            std::printf("%s: time %.10g of %s appended (%s, %s, %.2f s)\n", request_.output.c_str(), times[t],
-                        of.c_str(), timesCounted(count).c_str(), textOfBytes(double(summary.archiveBytes)).c_str(),
-                        seconds);
+            say("%s: time %.10g of %s appended (%s, %s, %.2f s)\n", request_.output.c_str(), times[t], of.c_str(),
+                timesCounted(count).c_str(), textOfBytes(double(summary.archiveBytes)).c_str(), seconds);
         }
     }
     std::fflush(stdout);
@@ -135,10 +135,9 @@ void GrowingOutput::append(const std::string& path, const std::optional<StatedFr
 void sayRemembered(const volume::ImportOptions& stated, const volume::ImportOptions& used) {
     for (const std::string& rule : used.absent)
         if (std::ranges::find(stated.absent, rule) == stated.absent.end())
-            std::fprintf(stderr, "tessera: remembered: --absent %s\n", rule.c_str());
+            warn("tessera: remembered: --absent %s\n", rule.c_str());
     for (const auto& [from, to] : used.rename)
-        if (!stated.rename.contains(from))
-            std::fprintf(stderr, "tessera: remembered: --rename %s=%s\n", from.c_str(), to.c_str());
+        if (!stated.rename.contains(from)) warn("tessera: remembered: --rename %s=%s\n", from.c_str(), to.c_str());
 }
 
 std::string timesCounted(std::size_t times) {

@@ -1,5 +1,6 @@
 #include "app/history/session_file.h"
 
+#include "app/described/within_ranges.h"
 #include "codec/remote/address.h"
 #include "volume/base/error.h"
 #include "volume/system/atomic_file.h"
@@ -45,7 +46,10 @@ bool looksLikeSession(std::string_view text) {
         return document.is_object() && document.contains("schema") &&
                (document.contains("views") || document.contains("layers") || document.contains("dock"));
     } catch (const Error&) {
-        return false;
+        // One that was damaged: it is read as a session, to say where.
+        const auto names = [&](std::string_view key) { return text.find(key) != std::string_view::npos; };
+        return names("\"app\": \"tessera\"") ||
+               (names("\"schema\"") && (names("\"views\"") || names("\"layers\"") || names("\"dock\"")));
     }
 }
 
@@ -171,6 +175,7 @@ std::string printSession(const SessionDocument& document, const std::string& pat
         picture = relative.empty() ? absolutePath(picture).generic_string() : relative.generic_string();
     }
     session.animation.playing = false;
+    keepWithinRanges(session); // else it could not be read back
     Json json = toJson(session);
     restoreUnknown(json, document.unknown);
     json["app"] = "tessera";

@@ -26,7 +26,7 @@ SessionDocument parseSession(std::string_view text, const std::string& file);
 /// Reads a session file. Throws Error.
 SessionDocument loadSession(const std::string& path);
 
-/// True when a JSON text is a session, not e.g. the sidecar of a raw file. Never throws.
+/// True when a JSON text is a session, also a damaged one, not e.g. the sidecar of a raw file. Never throws.
 bool looksLikeSession(std::string_view text);
 
 /// Session text as it is saved at `path` (files that it names relative to its folder): sorted keys, one item per line.

@@ -4,6 +4,7 @@
 #include "app/platform/gui.h"
 #include "vis/gl/headless.h"
 #include "volume/base/error.h"
+#include "volume/base/terminal.h"
 #include "volume/system/atomic_file.h"
 
 #include <cstdio>
@@ -150,7 +151,7 @@ PictureMaker::PictureMaker(const vis::RendererOptions& options) : impl_(std::mak
     try {
         if (own.openGl) impl_->context.emplace();
     } catch (const MachineError& error) {
-        std::fprintf(stderr, "tessera: the processor draws without OpenGL: %s\n", error.what());
+        warn("tessera: the processor draws without OpenGL: %s\n", error.what());
         own.openGl = false;
     }
     impl_->renderer = std::make_shared<vis::Renderer>(vis::quickestOptions(own));

@@ -9,6 +9,7 @@
 #include "codec/remote/fetch_queue.h"
 #include "vis/gl/requirements.h"
 #include "volume/base/error.h"
+#include "volume/system/shader_cache.h"
 
 #include <epoxy/gl.h>
 
@@ -32,6 +33,7 @@ std::string lastGlfwError() {
 
 struct Glfw {
     Glfw() {
+        guardShaderCache();
         if (glfwInit() != GLFW_TRUE) throw MachineError("no window can be opened: " + lastGlfwError());
     }
     ~Glfw() { glfwTerminate(); }
@@ -146,7 +148,10 @@ struct Window {
 
 struct GlfwBackEnd {
     // Keep the window's own callbacks, which feed the queue.
-    explicit GlfwBackEnd(GLFWwindow* window) { ImGui_ImplGlfw_InitForOpenGL(window, false); }
+    explicit GlfwBackEnd(GLFWwindow* window) {
+        guardShaderCache(); // there is a context now
+        ImGui_ImplGlfw_InitForOpenGL(window, false);
+    }
     ~GlfwBackEnd() { ImGui_ImplGlfw_Shutdown(); }
     GlfwBackEnd(const GlfwBackEnd&) = delete;
     GlfwBackEnd& operator=(const GlfwBackEnd&) = delete;
@@ -177,6 +182,13 @@ void awaitEvents(const Window& window, double idle) {
         glfwWaitEvents();
 }
 
+void sayWhatIsOff(Workbench& workbench) {
+    if (app::stateFolder().empty())
+        workbench.message("Autosave is off, and nothing is remembered: there is no folder for it, $XDG_STATE_HOME or "
+                          "~/.local/state",
+                          true);
+}
+
 } // namespace
 
 void runWindow(const OpenRequest& request, const std::string& screenshots) {
@@ -192,6 +204,7 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
                          .wake = [] { glfwPostEmptyEvent(); }});
     window.workbench = &workbench;
     workbench.writePicture = [](const auto&... what) { writePicture(what...); };
+    sayWhatIsOff(workbench);
     workbench.open(request);
 
     std::string title;

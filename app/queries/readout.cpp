@@ -302,7 +302,7 @@ std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, 
     for (int axis = 0; axis < 3; ++axis) {
         const bool time = session.data.timeAxis && static_cast<int>(session.data.timeAxis->axis) == axis;
         const auto& [name, unit] = labels[static_cast<std::size_t>(axis)];
-        csv += std::string(name) + "," + (time ? unit.name : info.lengthUnit) + "," +
+        csv += std::string(name) + "," + csvField(time ? unit.name : info.lengthUnit) + "," +
                number(session.cursor[axis] * (time ? unit.perUnit : 1)) + "," + end;
     }
     csv += csvField(info.timeName) + "," + csvField(info.timeUnit) + "," + number(session.time) + "," + end;
@@ -311,8 +311,8 @@ std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, 
                number(volume::valueAt(info.times, quantity.values, session.time)) + "," + end;
     for (std::size_t i = 0; i < readout.channels.size() && i < readout.values.size(); ++i) {
         const volume::ProbeValue& value = readout.values[i];
-        csv += readout.channels[i].name + "," + readout.channels[i].unit + "," + number(value.interpolated) + "," +
-               number(value.nearest) +
+        csv += csvField(readout.channels[i].name) + "," + csvField(readout.channels[i].unit) + "," +
+               number(value.interpolated) + "," + number(value.nearest) +
                (regions ? "," + csvField(regionText(info, readout, readout.channels[i].parameter)) : "") + "\n";
     }
     return csv;

@@ -1,5 +1,6 @@
 #include "app/session/session.h"
 
+#include "app/described/within_ranges.h"
 #include "app/session/label_colors.h"
 
 #include <algorithm>
@@ -216,6 +217,7 @@ Session defaultSession(const volume::DatasetInfo& info, const DataRef& data) {
     DockNode right =
         split(9, DockKind::Column, 0.5f, stack(10, {"layers", "data", "history"}), stack(11, {"transfer", "log"}));
     session.dock.root = split(1, DockKind::Row, 0.79f, std::move(left), std::move(right));
+    keepWithinRanges(session); // whatever the data are
     return session;
 }
 

@@ -198,7 +198,7 @@ struct Session {
         visit(self.stretch, FieldInfo{.key = "stretch",
                                       .unit = "",
                                       .doc = "Factor by which each axis is stretched; 1 = true proportions",
-                                      .range = Range{0.01, 1000},
+                                      .range = Range{0.01, 1e6},
                                       .logScale = true});
         visit(self.camera, FieldInfo{.key = "camera", .unit = "", .doc = "Camera of the 3D views"});
         visit(self.selection, FieldInfo{.key = "selection", .unit = "", .doc = "Brushes shared by all views"});

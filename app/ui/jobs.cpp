@@ -1,5 +1,6 @@
 #include "app/ui/jobs.h"
 
+#include "codec/remote/consent.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -13,6 +14,7 @@ struct Jobs::Job {
     std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
     std::stop_source stop;
     std::jthread thread;
+    std::function<Finish(const Progress&)> work;
     // Guarded by the mutex below.
     std::mutex mutex;
     double fraction = 0;
@@ -20,6 +22,7 @@ struct Jobs::Job {
     bool done = false;
     Finish finish;
     std::string failure;
+    std::string machine; ///< that is not allowed
 };
 
 void Jobs::start(const std::string& key, const std::string& title, std::function<Finish(const Progress&)> work,
@@ -29,11 +32,12 @@ void Jobs::start(const std::string& key, const std::string& title, std::function
     job->key = key;
     job->title = title;
     job->quiet = quiet;
+    job->work = std::move(work);
     {
         const std::lock_guard lock(mutex_);
         jobs_.push_back(job);
     }
-    job->thread = std::jthread([this, self = job.get(), work = std::move(work)] {
+    job->thread = std::jthread([this, self = job.get()] {
         Progress progress;
         progress.stop = self->stop.get_token();
         progress.report = [self](double fraction, const std::string& what) {
@@ -42,9 +46,12 @@ void Jobs::start(const std::string& key, const std::string& title, std::function
             if (!what.empty()) self->what = what;
         };
         Finish finish;
-        std::string failure;
+        std::string failure, machine;
         try {
-            finish = work(progress);
+            finish = self->work(progress);
+        } catch (const codec::NotAllowed& error) {
+            failure = error.what();
+            machine = error.machine();
         } catch (const Cancelled&) {
             self->stop.request_stop();
         } catch (const std::bad_alloc&) {
@@ -56,6 +63,7 @@ void Jobs::start(const std::string& key, const std::string& title, std::function
             const std::lock_guard lock(self->mutex);
             self->finish = std::move(finish);
             self->failure = std::move(failure);
+            self->machine = std::move(machine);
             self->done = true;
         }
         if (wake) wake();
@@ -101,7 +109,12 @@ std::vector<std::string> Jobs::collect() {
     for (const auto& job : finished) {
         job->thread.join();
         if (job->stop.stop_requested()) continue; // cancelled: drop its result
-        if (!job->failure.empty()) {
+        if (!job->machine.empty() && refused) {
+            refused({job->title, job->machine,
+                     [this, key = job->key, title = job->title, quiet = job->quiet, work = job->work] {
+                         start(key, title, work, quiet);
+                     }});
+        } else if (!job->failure.empty()) {
             messages.push_back(job->title.empty() ? job->failure : job->title + ": " + job->failure);
         } else if (job->finish) {
             try {

@@ -32,6 +32,14 @@ public:
     };
     std::vector<Status> list() const;
 
+    /// A job that would have asked a machine that nobody has allowed (codec::NotAllowed).
+    struct Refused {
+        std::string title, machine;
+        std::function<void()> again; ///< starts it once more
+    };
+    /// Called by collect() for such a job; where it is null, they fail like others.
+    std::function<void(Refused)> refused;
+
     /// Runs what finished jobs handed back; call once per frame on the GUI thread. Returns messages of failed jobs.
     std::vector<std::string> collect();
     /// Blocks until every job is finished (headless rendering, tests); collect() afterwards.

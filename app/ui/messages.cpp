@@ -1,5 +1,8 @@
 #include "app/ui/messages.h"
 
+#include "volume/base/printable.h"
+#include "volume/base/terminal.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
@@ -21,10 +24,11 @@ std::string localClock() {
 
 Messages::Messages(std::function<double()> now, bool echo) : now_(std::move(now)), echo_(echo) {}
 
-void Messages::add(const std::string& text, bool failure) {
+void Messages::add(const std::string& said, bool failure) {
+    const std::string text = printableLines(said);
     messages_.push_back({text, localClock(), failure, now_(), false});
     if (messages_.size() > kKept) messages_.pop_front();
-    if (echo_ && failure) std::fprintf(stderr, "tessera: %s\n", text.c_str());
+    if (echo_ && failure) warn("tessera: %s\n", text.c_str());
 }
 
 void Messages::setAside() {

@@ -5,6 +5,7 @@
 #include "codec/container/json_text.h"
 #include "codec/remote/address.h"
 #include "volume/base/error.h"
+#include "volume/base/terminal.h"
 #include "volume/field/labels.h"
 #include "volume/import/absent.h"
 #include "volume/import/find_parts.h"
@@ -45,7 +46,11 @@ void readRules(const Json& document, const std::string& key, const std::string& 
         if (!list.is_array()) throw Error("must be a list", file, "/" + key + "/" + data);
         for (const Json& rule : list) {
             if (!rule.is_string()) throw Error("must be texts", file, "/" + key + "/" + data);
-            check(rule.get<std::string>());
+            try {
+                check(rule.get<std::string>());
+            } catch (const Error& error) {
+                throw Error(error.what(), file, "/" + key + "/" + data);
+            }
             out[data].push_back(rule.get<std::string>());
         }
     }
@@ -171,8 +176,15 @@ volume::ImportOptions withMemory(volume::ImportOptions options, const ImportMemo
 }
 
 volume::ImportOptions recallOptions(const std::vector<std::string>& paths, const volume::ImportOptions& stated,
-                                    const Progress& progress) {
-    const ImportMemory memory = loadImportMemory();
+                                    std::vector<std::string>& messages, const Progress& progress) {
+    ImportMemory memory;
+    try {
+        memory = loadImportMemory();
+    } catch (const Error& error) {
+        messages.push_back(
+            std::string(error.what()) +
+            "; units, names and labels that were stated before are not used until it is mended or removed");
+    }
     if (paths.size() == 1 && codec::namesArchive(paths[0])) {
         volume::ImportOptions options = stated;
         if (!memory.labels.empty()) options.labels = withMemory(stated, memory, codec::Archive(paths[0]).info()).labels;
@@ -186,6 +198,14 @@ volume::ImportOptions recallOptions(const std::vector<std::string>& paths, const
         options = withMemory(stated, memory, volume::previewFiles(paths, stated, progress, Misfits::Ignored).info);
     }
     if (!nothingStated) volume::previewFiles(paths, options, progress); // refuses what fits nothing
+    return options;
+}
+
+volume::ImportOptions recallOptions(const std::vector<std::string>& paths, const volume::ImportOptions& stated,
+                                    const Progress& progress) {
+    std::vector<std::string> messages;
+    volume::ImportOptions options = recallOptions(paths, stated, messages, progress);
+    for (const std::string& text : messages) warn("tessera: %s\n", text.c_str());
     return options;
 }
 

@@ -36,7 +36,10 @@ volume::ImportOptions withMemory(volume::ImportOptions options, const ImportMemo
                                  const volume::DatasetInfo& info);
 
 /// Adds remembered options for these files; call before previewFiles or openFiles. For an archive only names of label
-/// values are added.
+/// values are added. Where the file of what is remembered is damaged, a message says so and nothing is added.
+volume::ImportOptions recallOptions(const std::vector<std::string>& paths, const volume::ImportOptions& stated,
+                                    std::vector<std::string>& messages, const Progress& progress = {});
+/// The same for commands: the message is printed.
 volume::ImportOptions recallOptions(const std::vector<std::string>& paths, const volume::ImportOptions& stated,
                                     const Progress& progress = {});
 

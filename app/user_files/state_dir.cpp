@@ -9,10 +9,10 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
-#include <fcntl.h>
 #include <filesystem>
 #include <map>
-#include <sys/file.h>
+#include <optional>
+#include <set>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -30,12 +30,21 @@ std::string lockPath(const std::string& session) {
     return session + ".lock";
 }
 
-/// An exclusive lock on a file, or -1.
-int lockFile(const std::string& path) {
-    const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-    if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) == 0) return file;
-    if (file >= 0) ::close(file);
-    return -1;
+/// An exclusive lock on the name of a session; nothing while another process has it. Throws MachineError where there
+/// are no locks.
+std::optional<LockedFile> claim(const std::string& session) {
+    const std::string path = lockPath(session);
+    for (;;) {
+        std::optional<LockedFile> lock = LockedFile::tryLock(path, LockedFile::Kind::Exclusive);
+        if (!lock || lock->isAt(path)) return lock;
+        // Another process has removed the file before it was locked here: it keeps nobody out.
+    }
+}
+
+/// Gives up a claimed name.
+void release(const std::string& session, std::optional<LockedFile>& lock) {
+    if (lock && lock->isAt(lockPath(session))) ::unlink(lockPath(session).c_str());
+    lock.reset();
 }
 
 } // namespace
@@ -109,31 +118,59 @@ void rememberChoice(const std::string& folder, const std::string& name, const st
 }
 
 Autosave::Autosave(std::string folder) : folder_(std::move(folder)) {
-    if (folder_.empty()) return;
-    path_ = folder_ + "/" + kPrefix + std::to_string(getpid()) + kSuffix;
-    lock_ = lockFile(lockPath(path_));
+    if (!folder_.empty()) takeName();
+}
+
+/// Takes the first name whose lock is free and that no session has: one that has was left by a crashed run.
+void Autosave::takeName() {
+    constexpr int kMostNames = 1000;
+    problem_ = folder_ + ": no name is free";
+    try {
+        for (int n = 0; n < kMostNames; ++n) {
+            const std::string path = folder_ + "/" + kPrefix + std::to_string(getpid()) +
+                                     (n == 0 ? std::string() : "-" + std::to_string(n)) + kSuffix;
+            std::optional<LockedFile> lock = claim(path);
+            if (!lock) continue;
+            if (::access(path.c_str(), F_OK) == 0) {
+                release(path, lock);
+                continue;
+            }
+            path_ = path;
+            lock_ = std::move(lock);
+            problem_.clear();
+            return;
+        }
+    } catch (const Error& error) {
+        problem_ = error.what();
+    }
 }
 
 Autosave::~Autosave() {
     remove();
-    if (lock_ < 0) return;
-    ::unlink(lockPath(path_).c_str());
-    ::close(lock_);
+    release(path_, lock_);
 }
 
 std::vector<Recovery> Autosave::abandoned() const {
     std::vector<std::pair<std::time_t, std::string>> found;
     std::error_code problem;
-    if (folder_.empty()) return {};
+    if (folder_.empty() || !lock_) return {}; // without locks it is not known who is alive
+    const std::string locked = std::string(kSuffix) + ".lock";
+    std::set<std::string> sessions;
     for (const auto& entry : fs::directory_iterator(folder_, problem)) {
-        const std::string name = entry.path().filename().string();
-        if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix) || entry.path() == path_) continue;
-        const int lock = lockFile(lockPath(entry.path().string()));
-        if (lock < 0) continue; // its run is still active
-        ::close(lock);
-        struct stat status {};
-        if (::stat(entry.path().c_str(), &status) == 0) found.emplace_back(status.st_mtime, entry.path().string());
+        std::string name = entry.path().filename().string();
+        if (name.ends_with(locked)) name.resize(name.size() - 5);
+        if (name.starts_with(kPrefix) && name.ends_with(kSuffix)) sessions.insert(folder_ + "/" + name);
     }
+    sessions.erase(path_);
+    for (const std::string& session : sessions) try {
+            std::optional<LockedFile> lock = claim(session);
+            if (!lock) continue; // its run is still active
+            struct stat status {};
+            if (::stat(session.c_str(), &status) == 0) found.emplace_back(status.st_mtime, session);
+            release(session, lock);
+        } catch (const Error&) {
+            // Somebody else's: it stays.
+        }
     std::sort(found.rbegin(), found.rend());
     std::vector<Recovery> all;
     for (const auto& [time, path] : found) {
@@ -146,12 +183,23 @@ std::vector<Recovery> Autosave::abandoned() const {
 }
 
 void Autosave::discard(const Recovery& recovery) {
-    ::unlink(recovery.path.c_str());
-    ::unlink(lockPath(recovery.path).c_str());
+    try {
+        std::optional<LockedFile> lock = claim(recovery.path);
+        if (!lock) return;
+        ::unlink(recovery.path.c_str());
+        release(recovery.path, lock);
+    } catch (const Error&) {
+        // It stays, and is offered again.
+    }
 }
 
 std::string Autosave::save(const std::string& text) {
-    if (path_.empty() || lock_ < 0) return {};
+    if (!lock_) return {};
+    if (!lock_->isAt(lockPath(path_))) { // somebody tidied up: what was kept counts as left by a crashed run
+        lock_.reset();
+        takeName();
+        if (!lock_) return problem_;
+    }
     try {
         writeAtomically(path_, text);
     } catch (const Error& error) {
@@ -161,7 +209,7 @@ std::string Autosave::save(const std::string& text) {
 }
 
 void Autosave::remove() {
-    if (!path_.empty()) ::unlink(path_.c_str());
+    if (lock_ && lock_->isAt(lockPath(path_))) ::unlink(path_.c_str());
 }
 
 } // namespace tessera::app

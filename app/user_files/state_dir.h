@@ -1,5 +1,8 @@
 #pragma once
 
+#include "volume/system/locked_file.h"
+
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,24 +28,32 @@ struct Recovery {
 };
 
 /// Keeps the autosave of this run. It holds a lock on a file beside it, which the system releases when the process ends
-/// in any way: an autosave without a lock was left by a crashed run.
+/// in any way: an autosave without a lock was left by a crashed run. Processes of several machines or containers may
+/// share the folder and have the same number: a name counts as free only with the lock on it, and nothing is removed
+/// without its lock.
 class Autosave {
 public:
+    /// "" for the folder keeps nothing.
     explicit Autosave(std::string folder);
     ~Autosave(); ///< removes the autosave: a clean end
     Autosave(const Autosave&) = delete;
     Autosave& operator=(const Autosave&) = delete;
 
-    /// Sessions of dead runs, newest first.
+    /// Why nothing is kept though there is a folder; "" where all is well.
+    const std::string& problem() const { return problem_; }
+    /// Sessions of dead runs, newest first. Locks that were left without a session are removed.
     std::vector<Recovery> abandoned() const;
+    /// Removes a session of a dead run, unless it is in use again.
     static void discard(const Recovery& recovery);
     /// Writes the session text; failures (a full disk) are returned as a message, never thrown.
     std::string save(const std::string& text);
     void remove();
 
 private:
-    std::string folder_, path_;
-    int lock_ = -1;
+    void takeName();
+
+    std::string folder_, path_, problem_;
+    std::optional<LockedFile> lock_;
 };
 
 } // namespace tessera::app

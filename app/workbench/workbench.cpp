@@ -42,9 +42,11 @@ Workbench::Workbench(WorkbenchOptions options)
       files_(jobs_) {
     jobs_.wake = options_.wake;
     if (!options_.headless) {
+        jobs_.refused = [this](Jobs::Refused job) { machines_.show(std::move(job)); };
         helpInBackground();
         autosaver_ = std::make_unique<Autosaver>(options_.stateFolder, options_.autosaveInterval);
         recovery_.show(autosaver_->abandoned());
+        if (const std::string& why = autosaver_->problem(); !why.empty()) message("Autosave is off: " + why, true);
     }
     panes_.paneDrawn = options_.paneDrawn;
     for (const auto make :
@@ -237,6 +239,7 @@ void Workbench::drawDialogs() {
     if (answer == LeaveDialog::Answer::Save) saveThen(leave_.take());
     if (answer == LeaveDialog::Answer::Discard) leave_.take()();
     if (const auto go = question_.draw()) go();
+    if (auto decision = machines_.draw()) decide(std::move(*decision));
     help_.draw(commands_, look_.fonts(), renderer_->residency());
 }
 

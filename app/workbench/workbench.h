@@ -2,6 +2,7 @@
 
 #include "app/dialogs/dialogs.h"
 #include "app/dialogs/file_questions.h"
+#include "app/dialogs/machine_dialog.h"
 #include "app/dialogs/picture_request.h"
 #include "app/document/autosaver.h"
 #include "app/document/data_follower.h"
@@ -124,6 +125,8 @@ private:
     /// Opens a session with the data it names, or asks for those that are missing.
     void openWhole(const std::shared_ptr<Opened>& opened, const std::string& title);
     void recover(const Recovery& recovery);
+    /// Starts the jobs that wait for a machine again, or says that it is not asked.
+    void decide(MachineDialog::Decision decision);
     /// `then` is called when the session is saved.
     void saveThen(std::function<void()> then);
     bool saveTo(const std::string& path);
@@ -156,6 +159,7 @@ private:
     PictureDialog pictures_;
     LeaveDialog leave_;
     QuestionDialog question_;
+    MachineDialog machines_;
     HelpDialogs help_;
     std::vector<Command> commands_;
     CommandPalette palette_;

@@ -1,8 +1,9 @@
 #include "app/drawing/drawing.h"
 #include "app/user_files/import_memory.h"
+#include "app/user_files/machines.h"
 #include "app/workbench/fit_box.h"
 #include "app/workbench/workbench.h"
-#include "codec/remote/address.h"
+#include "codec/remote/consent.h"
 #include "volume/base/error.h"
 #include "volume/import/over_time.h"
 #include "volume/system/atomic_file.h"
@@ -37,7 +38,20 @@ void Workbench::leave(std::function<void()> go) {
         go();
 }
 
+void Workbench::decide(MachineDialog::Decision decision) {
+    for (const Jobs::Refused& job : decision.jobs) {
+        if (decision.answer == MachineDialog::Answer::No) {
+            message(job.title + ": " + job.machine + " is not asked for the data", true);
+            continue;
+        }
+        codec::allowMachine(job.machine);
+        if (decision.answer == MachineDialog::Answer::Always) rememberMachine(options_.stateFolder, job.machine);
+        job.again();
+    }
+}
+
 void Workbench::start(const OpenRequest& request) {
+    allowNamed(request.paths, options_.stateFolder);
     std::string title = "Opening the built-in fuel cell";
     if (!request.paths.empty())
         title = "Opening " + fs::path(request.paths.front()).filename().string();

@@ -1,7 +1,9 @@
 #include "codec/archive/archive_impl.h"
 #include "codec/brick/subsamples.h"
+#include "codec/container/exactness.h"
 #include "volume/base/parallel.h"
 
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 
@@ -73,13 +75,29 @@ struct Verifier {
         const Bytes numbers = impl.numbersOf(record, parameter.type, *decoded);
         if (format.subsampled && decoded->subsamples != subsamplesOf(format, numbers, fine))
             throw Error("its coarsest samples differ from those of level 0", impl.path, "index");
-        if (!impl.hasStatistics()) return bytes;
         const FrameBrick& noted = record.bricks[brick];
+        const bool counted = impl.hasStatistics();
         const BrickSummary found =
-            summaryOf(parameter.type, record.valueOffset, record.valueScale, numbers, fine, true);
-        if (!agree(found, noted.min, noted.max, noted.histogram))
-            throw Error("its statistics differ from those of its samples", impl.path, "index");
+            summaryOf(parameter.type, record.valueOffset, record.valueScale, numbers, fine, counted);
+        if (counted ? !agree(found, noted.min, noted.max, noted.histogram) : !sameRange(found, noted))
+            throw Error(counted ? "its statistics differ from those of its samples"
+                                : "its range differs from that of its samples",
+                        impl.path, "index");
         return bytes;
+    }
+
+    /// Of a brick and what is stated of it, or of another. None has any order where no sample is present.
+    static bool sameRange(const auto& brick, const FrameBrick& noted) {
+        if (!(brick.min <= brick.max)) return !(noted.min <= noted.max);
+        return brick.min == noted.min && brick.max == noted.max;
+    }
+
+    /// A repeated brick has the range of the one whose samples it has.
+    void repeat(std::size_t number, std::size_t brick) const {
+        const FrameBrick& noted = impl.index.frames[number].bricks[brick];
+        const std::size_t first = number - std::size_t(noted.notes.repeats) * impl.components;
+        if (!sameRange(impl.index.frames[first].bricks[brick], noted))
+            throw Error("its range differs from that of the brick it repeats", impl.path, "index");
     }
 
     void frame(std::size_t number) {
@@ -101,7 +119,9 @@ struct Verifier {
                     for (std::size_t s = brick; s < record.segments.size(); s += impl.bricks)
                         (void)impl.segment(record.segments[s]);
                 });
-            else if (!repeats) // a repeat was checked with the brick it repeats
+            else if (repeats) // its samples were checked with the brick it repeats
+                whole = guarded(where, [&] { repeat(number, brick); });
+            else
                 whole = guarded(where, [&] { bytes += this->brick(record, parameters[parameter], brick); });
             if (whole && !lacking)
                 samples += countOf(impl.metadata.grid.brickSamples(at, 0));
@@ -112,6 +132,28 @@ struct Verifier {
         report.samples += samples;
         report.bytes += bytes;
         report.damagedBricks += bad;
+    }
+
+    /// The range of each component, as the metadata states it: colours and axes follow from it. It holds all samples of
+    /// an archive that stores those of its source as they are.
+    void ranges() {
+        if (!impl.metadata.lossless || isResampled(impl.metadata)) return;
+        for (std::size_t c = 0; c < impl.components; ++c) {
+            const std::size_t number = parameterOf(impl.metadata.info, c);
+            const volume::Parameter& parameter = impl.metadata.info.parameters[number];
+            const std::size_t component = c - firstComponent(impl.metadata.info, int(number));
+            if (component >= parameter.ranges.size()) continue;
+            const Range stated = parameter.ranges[component];
+            const bool isHeld = std::ranges::all_of(impl.index.frames, [&](const FrameRecord& frame) {
+                return frame.component != c || std::ranges::all_of(frame.bricks, [&](const FrameBrick& brick) {
+                           return !(brick.min <= brick.max) ||
+                                  (brick.min >= float(stated.lo) && brick.max <= float(stated.hi));
+                       });
+            });
+            if (!isHeld)
+                note("metadata: the range of " + parameter.name + " component " + std::to_string(component) +
+                     " leaves out some of its samples");
+        }
     }
 
     /// The report on an archive inside this one.
@@ -183,6 +225,7 @@ VerifyReport verifyArchive(const Archive& archive, const Progress& progress) {
         progress.advance(double(f) / double(frames));
         verifier.frame(f);
     }
+    verifier.ranges();
     verifier.guarded("corrections", [&] {
         for (const auto& corrections : archive.corrections()) verifier.add(verifyArchive(*corrections));
     });

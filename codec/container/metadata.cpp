@@ -5,6 +5,7 @@
 #include "codec/container/json_text.h"
 #include "codec/container/options_json.h"
 #include "volume/base/error.h"
+#include "volume/base/printable.h"
 #include "volume/field/lattice4.h"
 
 #include <bit>
@@ -82,7 +83,7 @@ public:
     }
     std::string text() const {
         if (!value_.is_string()) fail("not a text");
-        return value_.get<std::string>();
+        return printable(value_.get<std::string>());
     }
     double number() const {
         if (!value_.is_number()) fail("not a number");

@@ -40,6 +40,24 @@ std::string decoded(const std::string& text) {
     return out;
 }
 
+/// Letters, digits, and those of `others`: nothing that ssh, a shell, a terminal or another reader of addresses could
+/// take for something else.
+bool isPlain(std::string_view text, std::string_view others) {
+    return std::ranges::all_of(text, [&](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               others.find(c) != std::string_view::npos;
+    });
+}
+
+/// A host without the brackets around one of IPv6; nothing for what is none.
+std::optional<std::string> hostIn(const std::string& text) {
+    const bool brackets = text.size() > 2 && text.front() == '[' && text.back() == ']';
+    const std::string host = brackets ? text.substr(1, text.size() - 2) : text;
+    // ssh would take one that begins with a minus sign for an option.
+    if (host.empty() || host.front() == '-' || !isPlain(host, brackets ? ".:" : "._-")) return std::nullopt;
+    return host;
+}
+
 } // namespace
 
 bool isRemote(const std::string& path) {
@@ -69,20 +87,22 @@ Address parseAddress(const std::string& text) {
             throw Error("an address with a password is not opened, since it would be stored in sessions: put the "
                         "password into ~/.netrc, or use ssh keys",
                         scheme->first.data() + host + address.path);
+        if (address.user.empty() || address.user.front() == '-' || !isPlain(address.user, "._-"))
+            throw Error("the user of the address may have letters, digits and . _ - only", text);
     }
     const std::size_t colon = host.rfind(':');
     if (colon != std::string::npos && host.find(']', colon) == std::string::npos) {
         address.port = host.substr(colon + 1);
         host.resize(colon);
         const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
-        if (address.port.empty() || address.port.size() > 5 || !std::ranges::all_of(address.port, isDigit))
-            throw Error("the port of the address is no number", text);
+        if (address.port.empty() || address.port.size() > 5 || !std::ranges::all_of(address.port, isDigit) ||
+            std::stoi(address.port) > 65535)
+            throw Error("the port of the address is no number up to 65535", text);
     }
-    if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-    // ssh would take a host or a user that begins with a minus sign for an option.
-    if (host.empty() || host.front() == '-' || (!address.user.empty() && address.user.front() == '-'))
-        throw Error("the address has no valid host", text);
-    address.host = host;
+    const std::optional<std::string> name = hostIn(host);
+    if (!name)
+        throw Error("the address has no valid host: letters, digits and . _ - only, or an address of IPv6 in []", text);
+    address.host = *name;
     return address;
 }
 

@@ -20,8 +20,9 @@ bool isRemote(const std::string& path);
 /// Whether a path or an address names an archive: *.tsr, or on another machine, since only archives are read from
 /// there.
 bool namesArchive(const std::string& path);
-/// Throws Error when the address has no host or no path, an invalid port, or a password: that belongs into ~/.netrc or
-/// an agent of ssh, not into sessions and lists of recent files.
+/// Throws Error when the address has no host or no path, an invalid port, characters in the host or the user that no
+/// such name needs, or a password: that belongs into ~/.netrc or an agent of ssh, not into sessions and lists of recent
+/// files.
 Address parseAddress(const std::string& text);
 
 } // namespace tessera::codec

@@ -34,7 +34,8 @@ public:
     virtual void lookAgain() {}
 };
 
-/// By libcurl: http and https. Passwords come from ~/.netrc, proxies from the environment, as with curl.
+/// By libcurl: http and https. Passwords come from an entry for the host in ~/.netrc, and go to no other host; proxies
+/// come from the environment, as with curl.
 std::unique_ptr<Connection> connectWeb(const Address& address);
 /// By the program ssh, with all that the user has set up for it (~/.ssh/config, agent, known hosts, jump hosts). It
 /// never asks for anything.

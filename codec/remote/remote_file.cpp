@@ -2,6 +2,7 @@
 
 #include "codec/container/container.h"
 #include "codec/remote/block_runs.h"
+#include "codec/remote/consent.h"
 #include "volume/system/mapped_file.h"
 
 #include <algorithm>
@@ -37,7 +38,9 @@ std::string cacheName(std::span<const std::byte> head, std::uint64_t size) {
     return header ? nameOf(header->index.checksum, header->fileSize) : nameOf(checksum(head), size);
 }
 
+/// Throws NotAllowed: the only way to another machine asks first.
 FetchQueue::Connect connectTo(const Address& address) {
+    requireAllowed(address);
     return [address] { return address.scheme == Address::Scheme::Sftp ? connectSsh(address) : connectWeb(address); };
 }
 

@@ -27,7 +27,7 @@ class RemoteFile final : public FileBytes {
 public:
     static constexpr std::uint64_t kBlockBytes = 1 << 16;
 
-    /// Throws Error when the file cannot be reached, or is no file that can be read in ranges.
+    /// Throws NotAllowed; Error when the file cannot be reached, or is no file that can be read in ranges.
     RemoteFile(const std::string& address, const RemoteOptions& options);
 
     std::uint64_t size() const override { return size_; }

@@ -1,4 +1,6 @@
 #include "codec/remote/connection.h"
+#include "codec/remote/consent.h"
+#include "codec/remote/login.h"
 
 #include <algorithm>
 #include <array>
@@ -13,6 +15,9 @@ namespace tessera::codec {
 namespace {
 
 constexpr long kConnectSeconds = 10, kStalledSeconds = 15;
+constexpr long kLeastRate = 500; ///< bytes a second over kStalledSeconds; below, the request has failed
+/// Bytes of an answer that are taken beyond those asked for: heads, and pages that only lead elsewhere.
+constexpr std::size_t kMostHead = 1 << 18, kMostAside = 1 << 16;
 
 /// One request: what the server says before and with the bytes.
 struct Answer {
@@ -22,6 +27,7 @@ struct Answer {
     long status = 0;
     std::uint64_t announced = 0; ///< bytes of the body, if the server states them
     bool outside = false;        ///< the server sends other bytes than those asked for
+    std::size_t headBytes = 0;   ///< of all answers up to the last
 };
 
 std::optional<std::uint64_t> numberOf(std::string_view text) {
@@ -44,6 +50,7 @@ void takeContentRange(std::string_view value, Answer& answer) {
 
 std::size_t takeHeader(char* text, std::size_t, std::size_t bytes, void* user) {
     auto& answer = *static_cast<Answer*>(user);
+    if ((answer.headBytes += bytes) > kMostHead) return 0; // ends the transfer
     std::string_view line(text, bytes);
     while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.remove_suffix(1);
     if (line.starts_with("HTTP/")) { // the first line, also of each answer that only leads to another address
@@ -67,7 +74,7 @@ std::size_t takeHeader(char* text, std::size_t, std::size_t bytes, void* user) {
 
 std::size_t takeBody(char* text, std::size_t, std::size_t bytes, void* user) {
     auto& answer = *static_cast<Answer*>(user);
-    if (answer.status >= 300) return bytes; // a page that explains an error
+    if (answer.status >= 300) return 0; // a page that explains an error, of any length: ends the transfer
     const bool part = answer.status == 206 && !answer.outside;
     // A file that is shorter than the range may come as a whole.
     const bool whole = answer.status == 200 && answer.range.offset == 0 && answer.announced > 0 &&
@@ -79,8 +86,14 @@ std::size_t takeBody(char* text, std::size_t, std::size_t bytes, void* user) {
     return bytes;
 }
 
-int goesOn(void* user, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
-    return static_cast<Answer*>(user)->stop.stop_requested() ? 1 : 0;
+int goesOn(void* user, curl_off_t, curl_off_t received, curl_off_t, curl_off_t) {
+    const auto& answer = *static_cast<Answer*>(user);
+    return answer.stop.stop_requested() || std::uint64_t(received) > answer.range.length + kMostAside ? 1 : 0;
+}
+
+/// The address for libcurl, without the user, made of parts that were checked: it must not find another host in it.
+std::string urlOf(const Address& address) {
+    return machineOf(address) + address.text.substr(address.text.find('/', address.text.find("://") + 3));
 }
 
 class WebConnection final : public Connection {
@@ -89,18 +102,21 @@ public:
         static const CURLcode started = curl_global_init(CURL_GLOBAL_DEFAULT); // once, in whichever thread is first
         curl_ = started == CURLE_OK ? curl_easy_init() : nullptr;
         if (!curl_) throw MachineError("libcurl cannot be started", address_);
-        set(CURLOPT_URL, address_.c_str());
+        set(CURLOPT_URL, urlOf(address).c_str());
         set(CURLOPT_PROTOCOLS_STR, "http,https");
-        set(CURLOPT_REDIR_PROTOCOLS_STR, "http,https");
+        set(CURLOPT_REDIR_PROTOCOLS_STR, address.scheme == Address::Scheme::Https ? "https" : "http,https");
         set(CURLOPT_FOLLOWLOCATION, 1L);
         set(CURLOPT_MAXREDIRS, 8L);
-        set(CURLOPT_NETRC, long(CURL_NETRC_OPTIONAL));
+        const std::optional<Login> login = storedLogin(address.host, address.user);
+        if (const std::string& user = login ? login->user : address.user; !user.empty())
+            set(CURLOPT_USERNAME, user.c_str());
+        if (login) set(CURLOPT_PASSWORD, login->password.c_str()); // not sent to hosts that an answer leads to
         // Authorities that the system does not know, named as for the program curl.
         for (const char* const name : {"SSL_CERT_FILE", "CURL_CA_BUNDLE"})
             if (const char* const file = std::getenv(name); file && *file) set(CURLOPT_CAINFO, file);
         set(CURLOPT_NOSIGNAL, 1L);
         set(CURLOPT_CONNECTTIMEOUT, kConnectSeconds);
-        set(CURLOPT_LOW_SPEED_LIMIT, 1L);
+        set(CURLOPT_LOW_SPEED_LIMIT, kLeastRate);
         set(CURLOPT_LOW_SPEED_TIME, kStalledSeconds);
         set(CURLOPT_USERAGENT, "tessera");
         set(CURLOPT_ERRORBUFFER, problem_.data());
@@ -114,7 +130,7 @@ public:
     WebConnection& operator=(const WebConnection&) = delete;
 
     Reply read(FileRange range, const std::stop_token& stop) override {
-        Answer answer{range, stop, {}, 0, 0, false};
+        Answer answer{range, stop, {}, 0, 0, false, 0};
         const std::string wanted = std::to_string(range.offset) + "-" + std::to_string(range.offset + range.length - 1);
         set(CURLOPT_RANGE, wanted.c_str());
         set(CURLOPT_HEADERDATA, &answer);
@@ -133,9 +149,12 @@ private:
 
     /// Throws what is wrong with an answer.
     void refuse(const Answer& answer, CURLcode result) const {
+        if (answer.headBytes > kMostHead || result == CURLE_ABORTED_BY_CALLBACK)
+            throw Error("the server sends more than was asked for", address_);
         const std::string status = " (HTTP " + std::to_string(answer.status) + ")";
         if (answer.status == 401 || answer.status == 403 || answer.status == 407)
-            throw Error("access denied" + status + "; passwords are read from ~/.netrc", address_);
+            throw Error("access denied" + status + "; passwords are read from ~/.netrc, from entries for the very host",
+                        address_);
         if (answer.status == 404 || answer.status == 410) throw Error("no such file" + status, address_);
         if (answer.status == 408 || answer.status == 429 || answer.status >= 500)
             throw PassingError("the server cannot answer now" + status, address_);

@@ -179,5 +179,25 @@ TEST_F(ImportMemoryFile, DamagedFileIsAnErrorWithItsPlace) {
     }
 }
 
+TEST_F(ImportMemoryFile, OfADamagedFileNothingIsRecalledAndThatIsSaid) {
+    const fs::path known = importMemoryPath();
+    fs::create_directories(known.parent_path());
+    for (const char* const damage : {"", "{", R"({"units": 3})", R"({"absent": {"cell": ["no rule ="]}})"}) {
+        std::ofstream(known) << damage;
+        const volume::ImportOptions stated;
+        std::vector<std::string> said;
+        EXPECT_TRUE(recallOptions({"none.vti"}, stated, said) == stated);
+        ASSERT_EQ(said.size(), 1u) << damage;
+        EXPECT_EQ(said[0].find(known.string()), 0u) << said[0];
+        volume::ImportOptions more;
+        more.units = {{"T", "K"}};
+        rememberStated(more, "cell");
+        std::string after;
+        std::getline(std::ifstream(known) >> std::ws, after, '\0');
+        EXPECT_EQ(after, damage) << "it may still be mended by hand";
+    }
+    fs::remove(known);
+}
+
 } // namespace
 } // namespace tessera::app

@@ -63,7 +63,7 @@ TEST(Addresses, ThatCannotBeOpenedAreRefused) {
     EXPECT_THAT(refusal("http:///a"), HasSubstr("no valid host"));
     EXPECT_THAT(refusal("http://host:8x/a"), HasSubstr("port"));
     EXPECT_THAT(refusal("sftp://-oProxyCommand=x/a"), HasSubstr("no valid host"));
-    EXPECT_THAT(refusal("sftp://-oX@host/a"), HasSubstr("no valid host"));
+    EXPECT_THAT(refusal("sftp://-oX@host/a"), HasSubstr("the user of the address"));
     const std::string said = refusal("https://me:secret@host/a.tsr");
     EXPECT_THAT(said, HasSubstr("~/.netrc"));
     EXPECT_THAT(said, ::testing::Not(HasSubstr("secret"))); // neither shown nor logged

@@ -71,6 +71,52 @@ TEST(Verify, StatisticsThatAreNotThoseOfTheSamplesAreDamage) {
                   "v component 0 time 0 brick 0,0,0: index: its statistics differ from those of its samples"});
 }
 
+/// The last place in a page that holds a number, with another there.
+void replaceLast(Bytes& page, float is, float isNot) {
+    std::byte pattern[sizeof is];
+    std::memcpy(pattern, &is, sizeof is);
+    const auto at = std::find_end(page.begin(), page.end(), std::begin(pattern), std::end(pattern));
+    ASSERT_NE(at, page.end());
+    std::memcpy(&*at, &isNot, sizeof isNot);
+}
+
+TEST(Verify, ARangeThatIsNotThatOfTheSamplesIsDamage) {
+    const TemporaryFolder folder;
+    // Of one brick, which has no statistics.
+    PackOptions options;
+    options.lattice = StoredLattice::CC;
+    volume::Dataset made = makeDataset({8, 8, 8}, {{"v", ScalarType::U16, 1, Texture::Noise, false, false}}, 1);
+    pack(made, options, folder / "one.tsr");
+    const std::vector<char> one = readFile(folder / "one.tsr");
+    const volume::BrickStats is = Archive(folder / "one.tsr").stats({0, 0, 0, {0, 0, 0}});
+    EXPECT_EQ(verified(folder, one).damaged, 0u);
+    EXPECT_EQ(verified(folder, withIndex(one, [&](Bytes& page) { replaceLast(page, is.max, is.max - 1); })).damage,
+              std::vector<std::string>{
+                  "v component 0 time 0 brick 0,0,0: index: its range differs from that of its samples"});
+    // Of a brick that repeats the one of the time before.
+    const std::vector<char> still = rowOfBricks(folder, false, 2, true);
+    EXPECT_EQ(verified(folder, still).damaged, 0u);
+    EXPECT_EQ(verified(folder, withIndex(still, [](Bytes& page) { replaceLast(page, 99, 98); })).damage,
+              std::vector<std::string>{
+                  "v component 0 time 1 brick 3,0,0: index: its range differs from that of the brick it repeats"});
+}
+
+TEST(Verify, AStatedRangeThatLeavesOutSamplesIsDamage) {
+    const TemporaryFolder folder;
+    for (const bool honest : {true, false}) {
+        volume::Dataset made = makeDataset({8, 8, 8}, {{"v", ScalarType::U16, 1, Texture::Noise, false, false}}, 1);
+        made.info.parameters[0].ranges = {{0, honest ? 65535. : 50.}};
+        PackOptions options;
+        options.lattice = StoredLattice::CC;
+        pack(made, options, folder / "stated.tsr");
+        const VerifyReport report = verifyArchive(Archive(folder / "stated.tsr"));
+        EXPECT_EQ(report.damage, honest ? std::vector<std::string>()
+                                        : std::vector<std::string>{
+                                              "metadata: the range of v component 0 leaves out some of its samples"});
+        EXPECT_EQ(report.damagedBricks, 0u);
+    }
+}
+
 TEST(Verify, AModelOutsideTheFileIsRefused) {
     const TemporaryFolder folder;
     volume::Dataset made = makeDataset(

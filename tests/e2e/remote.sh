@@ -31,7 +31,7 @@ way() { python3 -c 'import sys, urllib.request as u; u.urlopen(sys.argv[1]).read
 told() { python3 -c 'import sys, urllib.request as u; print(u.urlopen(sys.argv[1]).read().decode().strip())' "$at/told"; }
 # sent WHAT LEAST MOST: bytes of files sent since the last call.
 sent() {
-    read -r bytes requests most <<< "$(told)"
+    read -r bytes requests most logins <<< "$(told)"
     echo "$1: $bytes bytes in $requests requests, $most at a time"
     [ "$bytes" -ge "$2" ] && [ "$bytes" -le "$3" ] || fail "$1: $bytes bytes, not $2 to $3"
 }
@@ -210,6 +210,99 @@ rm .netrc
 check "several" 2 "$tessera" stats $at/cell.tsr $at/big.tsr
 say "opened by itself" err.txt
 
+# The default entry of .netrc is for every host, so for none that a file may name; nor does a password go to the host that
+# an answer leads to.
+printf 'default login me password secret\n' > .netrc
+way password=bWU6c2VjcmV0
+told > /dev/null
+check "with the default entry" 2 "$tessera" info $at/cell.tsr
+read -r bytes requests most logins <<< "$(told)"
+[ "$requests" -ge 1 ] && [ "$logins" = 0 ] || fail "the default entry was sent in $logins of $requests requests"
+way password=
+printf 'machine localhost login me password secret\n' > .netrc
+way "elsewhere=$at/big.tsr"
+told > /dev/null
+check "a password for one host" 0 "$tessera" info http://localhost:$port/elsewhere.tsr
+read -r bytes requests most logins <<< "$(told)"
+[ "$logins" -ge 1 ] && [ $((2 * logins)) -le "$requests" ] || fail "$logins of $requests requests had the password"
+way elsewhere=/big.tsr
+rm .netrc
+
+# Answers without an end: what was not asked for is not read to it, and what comes too slowly is given up.
+forget
+for endless in 1 2 3; do
+    way endless=$endless
+    name=cell.tsr status=2
+    [ $endless = 2 ] && name=elsewhere.tsr status=0 # what it leads to is read
+    check "an answer without end, $endless" $status timeout 60 "$tessera" info $at/$name --remote.patience 0
+    [ "$(wc -l < err.txt)" -le 1 ] || fail "not one line"
+    read -r bytes requests most logins <<< "$(told)"
+    echo "an answer without end, $endless: $bytes bytes sent"
+    [ "$bytes" -le 20000000 ] || fail "$bytes bytes were taken of it"
+done
+way endless=4
+check "a head that creeps" 2 timeout 60 "$tessera" info $at/cell.tsr --remote.patience 0
+[ "$(wc -l < err.txt)" = 1 ] || fail "not one line"
+way endless=0
+
+# A session that somebody sent names a machine: it is not asked before the user allows it.
+python3 - "$source" "$at" "$work" <<'PY'
+import json, sys
+source, at, work = sys.argv[1:]
+session = json.load(open(source + "/tests/sessions/portable.tessera.json"))
+session["app"] = "tessera"
+for key in ("history", "dock"):
+    session.pop(key, None)
+def write(name, address, change=lambda data: None):
+    file = {"absolutePath": address, "path": address, "bytes": 1, "hash": ""}
+    session["data"]["files"] = [file]
+    change(session["data"])
+    json.dump(session, open(name, "w"))
+    session["data"].pop("other", None)
+write("sent.tessera.json", at + "/cell.tsr")
+write("ssh.tessera.json", "sftp://me@cluster:2022" + work + "/served/cell.tsr")
+write("command.tessera.json", "sftp://-oProxyCommand=touch${IFS}owned/x.tsr")
+def other(data):
+    data["files"] = [{"absolutePath": work + "/served/cell.tsr", "path": work + "/served/cell.tsr", "bytes": 1, "hash": ""}]
+    data["other"] = {"files": [{"absolutePath": at + "/cell.tsr", "path": at + "/cell.tsr", "bytes": 1, "hash": ""}]}
+write("other.tessera.json", "", other)
+session.pop("app")
+write("layout.tessera.json", at + "/cell.tsr")
+PY
+mkdir -p bin
+printf '#!/bin/sh\nexec python3 "%s" "$@"\n' "$source/tests/e2e/fake_ssh.py" > bin/ssh
+chmod +x bin/ssh
+export FAKE_SSH_LOG=$work/ssh.log
+rm -rf state/tessera/machines.json cache
+told > /dev/null
+picture() { env PATH="$work/bin:$PATH" "$tessera" render "$@" --view volume --size 64x48 -o sent.png; }
+for session in sent other layout ssh; do
+    check "$session: a session that names a machine" 2 picture $session.tessera.json
+    say "is named by a file, and nobody has allowed to ask it; --allow-remote" err.txt
+    [ "$(wc -l < err.txt)" = 1 ] || fail "not one line"
+done
+check "data of it in another layout" 2 picture sent.tessera.json --layout overview
+check "each time of it" 2 "$tessera" replay sent.tessera.json --animation -o replayed
+check "a host that is an option" 2 picture command.tessera.json --allow-remote
+say "the address has no valid host" err.txt
+[ ! -e owned ] || fail "a host was taken for an option of ssh"
+read -r bytes requests most logins <<< "$(told)"
+[ "$requests" = 0 ] || fail "$requests requests before the user allowed any"
+[ ! -e ssh.log ] || fail "ssh was started before the user allowed it"
+picture sent.tessera.json --allow-remote > out.txt 2> err.txt # it may lack OpenGL
+read -r bytes requests most logins <<< "$(told)"
+[ "$requests" -ge 1 ] || fail "allowed, it is not asked: $(cat err.txt)"
+picture ssh.tessera.json --allow-remote > out.txt 2> err.txt
+[ -e ssh.log ] || fail "allowed, ssh is not started: $(cat err.txt)"
+rm -f ssh.log
+check "allowed once" 2 picture sent.tessera.json
+check "the user himself" 0 "$tessera" info $at/cell.tsr
+rm -rf cache
+told > /dev/null
+picture sent.tessera.json > out.txt 2> err.txt
+read -r bytes requests most logins <<< "$(told)"
+[ "$requests" -ge 1 ] || fail "a machine that the user has asked himself is not known: $(cat err.txt)"
+
 # https, with a certificate that is trusted only where it is named; there is one where openssl could make it.
 if [ -n "$secure" ]; then
     check "not trusted" 2 "$tessera" info https://localhost:$secure/cell.tsr
@@ -256,7 +349,7 @@ way delay=1
 reader=$!
 asked=0
 for ((i = 0; i < 100 && asked < 3; ++i)); do # twice for the headers, which are answered, and for the rest
-    read -r bytes requests most <<< "$(told)"
+    read -r bytes requests most logins <<< "$(told)"
     asked=$((asked + requests))
     sleep 0.1
 done
@@ -269,10 +362,6 @@ way delay=0
 same "info of the new one" cell.tsr info FILE
 
 # sftp, by a program that stands for ssh.
-mkdir bin
-printf '#!/bin/sh\nexec python3 "%s" "$@"\n' "$source/tests/e2e/fake_ssh.py" > bin/ssh
-chmod +x bin/ssh
-export FAKE_SSH_LOG=$work/ssh.log
 ssh_at=sftp://me@cluster:2022$work/served
 fake() { env PATH="$work/bin:$PATH" "$@"; }
 forget

@@ -5,10 +5,12 @@ import email.utils, http.server, os, ssl, sys, threading, time, urllib.parse
 
 folder, port_file = sys.argv[1:3]
 lock = threading.Lock()
-told = {"bytes": 0, "requests": 0, "most": 0, "now": 0}
+told = {"bytes": 0, "requests": 0, "most": 0, "now": 0, "logins": 0}
 # delay: seconds before each answer; busy: answers that are 503; cut: answers that end after half of their bytes;
+# endless: 1: errors have a page without an end, 2: answers that lead elsewhere have, 3: heads have none, 4: a head that
+# comes a byte a second; logins: requests that came with a password since /told
 # rate: bytes a second of all answers together, 0 = any; ranges: 0 = whole files only; damage: answers whose first byte is wrong; password: "user:word", base 64
-ways = {"delay": 0.0, "rate": 0.0, "busy": 0, "cut": 0, "ranges": 1, "damage": 0, "password": ""}
+ways = {"delay": 0.0, "rate": 0.0, "busy": 0, "cut": 0, "ranges": 1, "damage": 0, "password": "", "endless": 0, "elsewhere": "/big.tsr"}
 
 
 def once(name):
@@ -52,11 +54,12 @@ class Handler(http.server.BaseHTTPRequestHandler):
             return self.say(200)
         if where.path == "/told":
             with lock:
-                text = "%d %d %d\n" % (told["bytes"], told["requests"], told["most"])
-                told.update({"bytes": 0, "requests": 0, "most": 0})
+                text = "%d %d %d %d\n" % (told["bytes"], told["requests"], told["most"], told["logins"])
+                told.update({"bytes": 0, "requests": 0, "most": 0, "logins": 0})
             return self.say(200, text.encode())
         with lock:
             told["requests"] += 1
+            told["logins"] += "Authorization" in self.headers
             told["now"] += 1
             told["most"] = max(told["most"], told["now"])
         try:
@@ -66,11 +69,33 @@ class Handler(http.server.BaseHTTPRequestHandler):
             with lock:
                 told["now"] -= 1
 
+    def never_end(self, first, piece, pause):
+        self.close_connection = True
+        try:
+            self.wfile.write(first)
+            while True:
+                self.wfile.write(piece)
+                self.wfile.flush()
+                with lock:
+                    told["bytes"] += len(piece)
+                time.sleep(pause)
+        except OSError:
+            pass
+
     def give(self, path):
+        page, much = b"HTTP/1.1 %s\r\nContent-Type: text/html\r\n%s\r\n", b"x" * 65536
+        if ways["endless"] == 1:
+            return self.never_end(page % (b"404 Not Found", b""), much, 0)
+        if ways["endless"] == 2 and path.endswith("/elsewhere.tsr"):
+            return self.never_end(page % (b"302 Found", b"Location: /big.tsr\r\n"), much, 0)
+        if ways["endless"] == 3:
+            return self.never_end(b"HTTP/1.1 206 Partial Content\r\n", b"X-A: " + b"x" * 1000 + b"\r\n", 0)
+        if ways["endless"] == 4:
+            return self.never_end(b"HTTP/1.1 206 Partial Content\r\n", b"X", 1)
         if once("busy"):
             return self.say(503)
         if path.endswith("/elsewhere.tsr"):
-            return self.say(302, Location="/big.tsr")
+            return self.say(302, Location=ways["elsewhere"])
         if ways["password"] and self.headers.get("Authorization") != "Basic " + ways["password"]:
             return self.say(401, WWW_Authenticate='Basic realm="x"')
         try:

@@ -281,6 +281,19 @@ TEST(Architecture, AreasForTheMouseHaveASize) {
     }
 }
 
+// Names of files and of what is in them may hold anything: terminal.h makes it harmless, jsonText() makes JSON of it.
+TEST(Architecture, TextsLeaveByTheFunctionsThatMakeThemPrintable) {
+    const std::set<std::string> progress = {"app/command/command.cpp"}, // erases its line
+        numbers = {"app/described/describe_cli.h", "app/session/describe_markdown.cpp"};
+    for (const std::string& file : filesOf("app", {".h", ".cpp"})) {
+        if (file.starts_with("app/importer/") || file.starts_with("app/bench/")) continue;
+        const std::string text = textOf(kRoot / file);
+        for (const char* const printing : {"std::printf", "std::fprintf(std", "std::cout", "std::cerr", "std::puts"})
+            EXPECT_TRUE(text.find(printing) == std::string::npos || progress.contains(file)) << file;
+        EXPECT_TRUE(text.find(".dump(") == std::string::npos || numbers.contains(file)) << file;
+    }
+}
+
 // Shaders are files; C++ may only generate "#define NAME value" lines and the version that heads a composed program.
 TEST(Architecture, NoGlslInCpp) {
     for (const std::string folder : {"volume", "codec", "vis", "app"})

@@ -92,7 +92,7 @@ TEST(Stream, HeadersThatAreNoObjectAreCalledSo) {
             parseStreamHeader(bad, "a");
             ADD_FAILURE() << bad;
         } catch (const Error& error) {
-            EXPECT_STREQ(error.what(), "a: tessera-import sent a header that is not JSON") << bad;
+            EXPECT_STREQ(error.what(), "a: its answer is not JSON") << bad;
         }
 }
 
@@ -169,17 +169,21 @@ protected:
 
 TEST_F(FakeImporter, FailuresCostOneLine) {
     use("exit 7");
-    EXPECT_THAT(failure(), testing::EndsWith("a.vti: tessera-import ended with status 7"));
+    EXPECT_THAT(failure(),
+                testing::EndsWith("a.vti: the reader of this file (tessera-import) failed: it ended with status 7"));
     use("echo broken pipe of gas >&2; kill -SEGV $$");
-    EXPECT_THAT(failure(), testing::EndsWith("a.vti: tessera-import crashed (signal 11): broken pipe of gas"));
+    EXPECT_THAT(failure(), testing::EndsWith("failed: it crashed (signal 11): broken pipe of gas"));
     use("head -c 4000 /dev/urandom");
-    EXPECT_THAT(failure(), testing::HasSubstr("invalid message"));
+    EXPECT_THAT(failure(), testing::HasSubstr("its answer is no message"));
     use("printf 'TSI1'");
     EXPECT_THAT(failure(), testing::HasSubstr("ended early"));
     use(message(3, "is damaged"));
     EXPECT_THAT(failure(), testing::EndsWith("a.vti: is damaged"));
-    use(message(1, "{}"));
-    EXPECT_THAT(failure(), testing::HasSubstr("bad header"));
+    // Also what it said last stands in the line.
+    use("echo a spacing of 0 >&2; " + message(1, "{}") + "exit 5");
+    EXPECT_THAT(failure(),
+                testing::EndsWith("a.vti: the reader of this file (tessera-import) failed: blocks: is missing "
+                                  "in its answer, or cannot be used; it ended with status 5: a spacing of 0"));
     use(message(1, R"({"format":"vti","blocks":[]})"));
     EXPECT_THAT(failure(), testing::HasSubstr("holds no data"));
     use(message(1, kHeader) + "exit 0");

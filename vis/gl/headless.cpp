@@ -2,6 +2,7 @@
 
 #include "vis/gl/requirements.h"
 #include "volume/base/error.h"
+#include "volume/system/shader_cache.h"
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
@@ -94,6 +95,7 @@ struct HeadlessContext::Impl {
 };
 
 HeadlessContext::HeadlessContext(bool debug) : impl_(std::make_unique<Impl>()) {
+    guardShaderCache();
     if (!epoxy_has_egl()) throw MachineError("the library EGL is not installed");
     std::string tried;
     for (const EglDisplay& each : eglDisplays()) {
@@ -102,6 +104,7 @@ HeadlessContext::HeadlessContext(bool debug) : impl_(std::make_unique<Impl>()) {
             impl_->display = each.display;
             impl_->context = made.context;
             if (debug) glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+            guardShaderCache();
             return;
         }
         tried += (tried.empty() ? "" : "; ") + each.name + ": " + made.reason;

@@ -2,6 +2,7 @@
 
 #include "volume/base/error.h"
 #include "volume/base/number_text.h"
+#include "volume/base/printable.h"
 #include "volume/export/export_formats.h"
 
 #include <cmath>
@@ -107,7 +108,7 @@ std::string writeNrrd(const Dataset& dataset, const ExportSelection& selection, 
     const bool vector = components > 1;
     const ScalarType type = content.components[0].type;
     const Lattice& lattice = info.lattice;
-    std::string head = "NRRD0004\n# " + content.name + " " + content.unit + "\n";
+    std::string head = "NRRD0004\n# " + printable(content.name + " " + content.unit) + "\n";
     head += "type: " + std::string(type == ScalarType::F32 ? "float" : name(type)) +
             "\ndimension: " + (vector ? "4" : "3") + "\n";
     head += "sizes: " + (vector ? std::to_string(components) + " " : "") + std::to_string(lattice.size.x) + " " +
@@ -118,10 +119,10 @@ std::string writeNrrd(const Dataset& dataset, const ExportSelection& selection, 
     head += "space origin: (" + exactText(lattice.origin.x) + "," + exactText(lattice.origin.y) + "," +
             exactText(lattice.origin.z) + ")\nkinds: " + (vector ? "vector " : "") +
             "domain domain domain\nencoding: raw\n";
-    if (const std::string& unit = info.lengthUnit; !unit.empty() && unit.find('"') == std::string::npos)
+    if (const std::string unit = printable(info.lengthUnit); !unit.empty() && unit.find('"') == std::string::npos)
         head += "space units: \"" + unit + "\" \"" + unit + "\" \"" + unit + "\"\n";
     if (type != ScalarType::U8) head += "endian: little\n";
-    head += "content: " + content.name + "\nunit:=" + content.unit +
+    head += "content: " + printable(content.name) + "\nunit:=" + printable(content.unit) +
             "\ntime:=" + exactText(info.times[std::size_t(times[0])]) + "\n\n";
     AtomicFile file(path);
     file.write(head);

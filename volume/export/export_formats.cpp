@@ -1,5 +1,7 @@
 #include "volume/export/export_formats.h"
 
+#include "volume/base/printable.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -143,7 +145,7 @@ void writeField(AtomicFile& file, const Field& field) {
 
 std::string xmlText(const std::string& text) {
     std::string out;
-    for (const char c : text) {
+    for (const char c : printable(text)) {
         switch (c) {
         case '&':
             out += "&amp;";

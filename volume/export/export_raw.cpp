@@ -178,7 +178,7 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
     out["bytes"] = bytes;
     if (!info.provenance.empty()) out["provenance"] = info.provenance;
     AtomicFile words(sidecar.string());
-    words.write(out.dump(1) + "\n");
+    words.write(out.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n");
     file.commit();
     words.commit();
     return {raw.string(), sidecar.string()};

@@ -27,12 +27,14 @@ public:
         for (const SeriesFile& entry : entries) paths_.push_back(entry.path);
     }
 
-    std::string header(std::size_t file, const Progress& progress) {
+    std::vector<FileBlock> header(std::size_t file, const Progress& progress) {
         // No frame is expected, so no frame length is valid.
         const std::vector<std::byte> text = answer(file, MessageKind::Header, Lattice{}, ScalarType::U8, [&] {
             progress.advance(double(file) / double(paths_.size()), fs::path(paths_[file]).filename().string());
         });
-        return {reinterpret_cast<const char*>(text.data()), text.size()};
+        return understood(file, [&] {
+            return parseStreamHeader({reinterpret_cast<const char*>(text.data()), text.size()}, paths_[file]);
+        });
     }
 
     Field frame(std::size_t file, std::size_t block, int array, int component, int time, const Lattice& target,
@@ -43,7 +45,8 @@ public:
                       target.origin.y, target.origin.z, target.spacing.x, target.spacing.y, target.spacing.z);
         const std::lock_guard lock(mutex_);
         child_.write(line);
-        return parseFrame(answer(file, MessageKind::Frame, target, type, {}), target, type);
+        const auto bytes = answer(file, MessageKind::Frame, target, type, {});
+        return understood(file, [&] { return parseFrame(bytes, target, type); });
     }
 
     std::vector<Range> ranges(std::size_t file, std::size_t block, int array, int time) {
@@ -52,7 +55,9 @@ public:
         const std::lock_guard lock(mutex_);
         child_.write(line);
         const auto text = answer(file, MessageKind::Header, Lattice{}, ScalarType::U8, {});
-        return parseRanges({reinterpret_cast<const char*>(text.data()), text.size()}, paths_[file]);
+        return understood(file, [&] {
+            return parseRanges({reinterpret_cast<const char*>(text.data()), text.size()}, paths_[file]);
+        });
     }
 
 private:
@@ -81,27 +86,40 @@ private:
                                   const std::function<void()>& waiting) {
         std::byte headBytes[kMessageHeadBytes];
         if (!child_.read(headBytes, waiting)) failed(file);
-        MessageHead head;
-        try {
-            head = parseMessageHead(headBytes, lattice, type);
-        } catch (const Error& error) {
-            throw Error(error.reason(), paths_[file]);
-        }
+        const MessageHead head = understood(file, [&] { return parseMessageHead(headBytes, lattice, type); });
         std::vector<std::byte> bytes(head.length);
         if (!child_.read(bytes, waiting)) failed(file);
         if (head.kind == MessageKind::Failure)
             throw Error(
                 std::string(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 500)),
                 paths_[file]);
-        if (head.kind != wanted) throw Error("tessera-import answered another request", paths_[file]);
+        if (head.kind != wanted) unusable(file, "it answers another request");
         return bytes;
     }
 
     [[noreturn]] void failed(std::size_t file) {
         const std::string how = child_.ending();
         if (child_.interrupted()) throw Cancelled();
-        throw Error("tessera-import " + (how.empty() ? "ended early" : how), paths_[file]);
+        throw Error(kFailed + (how.empty() ? "it ended early" : "it " + how), paths_[file]);
     }
+
+    /// What it sent cannot be used: says so, with its last words.
+    [[noreturn]] void unusable(std::size_t file, const std::string& why) {
+        const std::string how = child_.ending();
+        if (child_.interrupted()) throw Cancelled();
+        throw Error(kFailed + why + (how.empty() ? "" : "; it " + how), paths_[file]);
+    }
+
+    /// What `parse` makes of an answer.
+    template <class Parse> auto understood(std::size_t file, const Parse& parse) -> decltype(parse()) {
+        try {
+            return parse();
+        } catch (const Error& error) {
+            unusable(file, (error.place().empty() ? "" : error.place() + ": ") + error.reason());
+        }
+    }
+
+    inline static const std::string kFailed = "the reader of this file (tessera-import) failed: ";
 
     std::vector<std::string> paths_;
     std::mutex mutex_;
@@ -154,7 +172,7 @@ std::vector<std::vector<FileBlock>> openForeign(const std::vector<SeriesFile>& e
     std::vector<std::vector<FileBlock>> files;
     for (std::size_t f = 0; f < paths.size(); ++f) {
         progress.advance(double(f) / double(paths.size()), fs::path(paths[f]).filename().string());
-        files.push_back(parseStreamHeader(importer->header(f, progress), paths[f]));
+        files.push_back(importer->header(f, progress));
         for (std::size_t p = 0; p < files[f].size(); ++p) {
             FileBlock& block = files[f][p];
             const std::vector<Kept> kept = withoutPresence(block.arrays);

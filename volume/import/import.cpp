@@ -216,8 +216,8 @@ std::vector<OpenedFile> openEach(const std::vector<SeriesFile>& entries, const s
         else
             foreign.push_back(entries[i]);
     }
-    if (foreign.empty()) return files;
-    std::vector<std::vector<FileBlock>> blocks = openForeign(foreign, progress);
+    std::vector<std::vector<FileBlock>> blocks;
+    if (!foreign.empty()) blocks = openForeign(foreign, progress);
     std::size_t next = 0;
     for (OpenedFile& file : files)
         if (file.blocks.empty()) {
@@ -225,6 +225,8 @@ std::vector<OpenedFile> openEach(const std::vector<SeriesFile>& entries, const s
             for (FileBlock& block : file.blocks)
                 if (!file.entry.part.empty() || block.name.empty()) block.name = blockName(file.entry);
         }
+    for (OpenedFile& file : files)
+        for (FileBlock& block : file.blocks) makePrintable(block);
     return files;
 }
 

@@ -12,6 +12,7 @@
 #include "app/ui/ticks.h"
 #include "app/views/compare/compare_offers.h"
 #include "app/views/compare/compare_panes.h"
+#include "codec/container/json_text.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -168,7 +169,7 @@ void drawVariantMenu(ViewContext& context, const char* id, CompareView& view, st
     for (const auto& [path, value] : before)
         if (drawParameter(changed, path, widgets)) {
             const Json now = toJson(changed)[Json::json_pointer(path)];
-            edited.changes[path] = now.is_string() ? now.get<std::string>() : now.dump();
+            edited.changes[path] = now.is_string() ? now.get<std::string>() : jsonText(now);
         }
     if (!dropped.empty())
         std::erase_if(edited.changes, [&](const auto& change) {

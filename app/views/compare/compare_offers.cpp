@@ -4,6 +4,7 @@
 #include "app/described/key_words.h"
 #include "app/edits/compare_files.h"
 #include "app/ui/ticks.h"
+#include "codec/container/json_text.h"
 #include "codec/remote/address.h"
 
 #include <algorithm>
@@ -50,7 +51,7 @@ CompareOffers otherTimes(const Session& session, const volume::DatasetInfo& info
     }
     std::vector<CompareVariant> variants;
     for (const double time : times)
-        variants.push_back(changed(formatQuantity(time, info.timeUnit), "/time", toJson(time).dump()));
+        variants.push_back(changed(formatQuantity(time, info.timeUnit), "/time", jsonText(toJson(time))));
     CompareOffers group = oneByOne("Another time", "Each of these", std::move(variants));
     // The farther end differs most.
     if (!times.empty() && session.time - times.front() < times.back() - session.time) group.first = times.size() - 1;

@@ -2,6 +2,7 @@
 
 #include "app/data/open.h"
 #include "app/edits/compare_files.h"
+#include "codec/container/json_text.h"
 #include "codec/remote/address.h"
 #include "vis/transfer/transfer_function.h"
 #include "volume/base/error.h"
@@ -60,7 +61,7 @@ std::shared_ptr<CompareData> ComparePictures::dataFor(ViewContext& context, cons
     if (found->source || !found->failure.empty()) return found;
     const auto opened = found->opening.get(
         context, std::shared_ptr<const void>(),
-        {.key = pane + ":data" + toJson(data).dump(), .title = "Data to compare", .duringEdits = true}, data,
+        {.key = pane + ":data" + jsonText(toJson(data)), .title = "Data to compare", .duringEdits = true}, data,
         [session = context.session.data](const auto&, const DataRef& asked, int, const Progress& progress) {
             CompareData::Opened out;
             out.sources =

@@ -89,7 +89,7 @@ std::string statisticsCsv(const std::shared_ptr<const volume::BrickSource>& sour
         if (brushed) parts.insert(parts.begin(), {"all", statistics.channels[i].all});
         for (const Part& part : parts) {
             csv += csvField(nameOf(i)) + "," + csvField(channels[static_cast<std::size_t>(query.channels[i])].unit) +
-                   "," + part.name;
+                   "," + csvField(part.name);
             const volume::Summary& of = part.summary;
             for (const double value : {of.samples, of.volume, of.mean, of.deviation, of.min, of.max})
                 csv += "," + csvNumber(value);

@@ -9,6 +9,7 @@
 #include "app/session/shown_scene.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
+#include "codec/container/json_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -112,7 +113,7 @@ void addVariant(ViewContext& context, const std::string& path) {
     Session& session = context.session;
     const Json value = toJson(session)[Json::json_pointer(path)];
     CompareVariant variant;
-    variant.changes[path] = value.is_string() ? value.get<std::string>() : value.dump();
+    variant.changes[path] = value.is_string() ? value.get<std::string>() : jsonText(value);
     for (auto& [pane, view] : session.views)
         if (auto* compare = std::get_if<CompareView>(&view)) {
             if (compare->variants.empty()) compare->variants.emplace_back();

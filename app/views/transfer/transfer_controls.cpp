@@ -9,6 +9,7 @@
 #include "app/ui/widgets.h"
 #include "app/user_files/colormap_file.h"
 #include "app/views/transfer/color_edit.h"
+#include "codec/container/json_text.h"
 #include "vis/transfer/simplify_colors.h"
 
 #include <algorithm>
@@ -194,7 +195,7 @@ void drawOwnColors(ViewContext& context, vis::TransferFunction& function, const 
         });
     if (ImGui::MenuItem("Export...", nullptr, false, own && context.exportText))
         context.exportText(channel + "-colors.json", [colors = function.colors](const Progress&) {
-            return Json{{"colors", toJson(colors)}}.dump(2) + "\n";
+            return jsonText({{"colors", toJson(colors)}}, 2) + "\n";
         });
     ImGui::EndPopup();
 }

@@ -32,7 +32,7 @@ struct HeaderReader {
     std::string place;
 
     [[noreturn]] void fail(const char* key) const {
-        throw Error("tessera-import sent a bad header", file, place + key);
+        throw Error("is missing in its answer, or cannot be used", file, place + key);
     }
     const json& get(const char* key) const {
         const auto at = object.find(key);
@@ -176,22 +176,22 @@ std::uint64_t frameBytes(const Lattice& lattice, ScalarType type, bool mask) {
 
 MessageHead parseMessageHead(std::span<const std::byte> bytes, const Lattice& lattice, ScalarType type) {
     if (bytes.size() < kMessageHeadBytes || take<std::uint32_t>(bytes, 0) != kStreamMagic)
-        throw Error("tessera-import sent an invalid message");
+        throw Error("its answer is no message");
     const auto kind = take<std::uint32_t>(bytes, 4);
     const auto length = take<std::uint64_t>(bytes, 8);
-    if (kind < 1 || kind > 3) throw Error("tessera-import sent a message of unknown kind " + std::to_string(kind));
+    if (kind < 1 || kind > 3) throw Error("its answer is of the unknown kind " + std::to_string(kind));
     const MessageHead head{static_cast<MessageKind>(kind), length};
     const bool fits = head.kind == MessageKind::Frame
                           ? length == frameBytes(lattice, type, false) || length == frameBytes(lattice, type, true)
                           : length <= kMostTextBytes;
-    if (!fits) throw Error("tessera-import sent a message of invalid length " + std::to_string(length));
+    if (!fits) throw Error("its answer has the impossible length " + std::to_string(length));
     return head;
 }
 
 std::vector<FileBlock> parseStreamHeader(std::string_view text, const std::string& file) {
     const json document = json::parse(text, nullptr, false);
     if (!document.is_object()) // nor is what cannot be parsed
-        throw Error("tessera-import sent a header that is not JSON", file);
+        throw Error("its answer is not JSON", file);
     const HeaderReader reader{document, file, ""};
     const json& list = reader.get("blocks");
     if (!list.is_array() || list.size() > kMostBlocks) reader.fail("blocks");
@@ -207,25 +207,25 @@ std::vector<Range> parseRanges(std::string_view text, const std::string& file) {
     const json document = json::parse(text, nullptr, false);
     const bool fits = document.is_object() && document.contains("ranges") && document["ranges"].is_array() &&
                       document["ranges"].size() <= 4;
-    if (!fits) throw Error("tessera-import sent malformed ranges", file);
+    if (!fits) throw Error("its answer has no usable ranges", file);
     std::vector<Range> ranges;
     for (const json& pair : document["ranges"]) {
         ranges.push_back({std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
         if (pair.is_null()) continue;
         if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number() || !pair[1].is_number())
-            throw Error("tessera-import sent malformed ranges", file);
+            throw Error("its answer has no usable ranges", file);
         ranges.back() = {pair[0].get<double>(), pair[1].get<double>()};
     }
     return ranges;
 }
 
 Field parseFrame(std::span<const std::byte> bytes, const Lattice& lattice, ScalarType type) {
-    if (bytes.size() < kFrameHeadBytes) throw Error("tessera-import sent too few samples");
+    if (bytes.size() < kFrameHeadBytes) throw Error("its answer has too few samples");
     const auto mask = take<std::uint32_t>(bytes, 4);
     const glm::ivec3 size(take<std::int32_t>(bytes, 8), take<std::int32_t>(bytes, 12), take<std::int32_t>(bytes, 16));
     if (take<std::uint32_t>(bytes, 0) != static_cast<std::uint32_t>(type) || mask > 1 || size != lattice.size ||
         bytes.size() != frameBytes(lattice, type, mask == 1))
-        throw Error("tessera-import sent samples of another layout than requested");
+        throw Error("its answer has samples of another layout than requested");
     Field field = makeField(lattice, type);
     std::memcpy(field.samples.data(), bytes.data() + kFrameHeadBytes, field.samples.size());
     if (mask == 1) {
