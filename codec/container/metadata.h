@@ -38,6 +38,12 @@ struct Metadata {
     bool operator==(const Metadata&) const = default;
 };
 
+inline constexpr std::size_t kMostParameters = 4096; ///< that readers accept
+
+/// The same metadata. Throws Error where a reader would refuse them, so that nothing is packed that cannot be read: for
+/// more parameters, labels or quantities than readers accept, and the like.
+const Metadata& storable(const Metadata& metadata);
+
 /// Serialises the metadata as JSON without the times, compressed as far as the header's features allow.
 Bytes serialise(const Metadata& metadata, std::uint32_t features);
 /// Parses the metadata. Throws Error naming `file` and the JSON path when a key is missing or has the wrong type or an

@@ -52,7 +52,7 @@ void check(const volume::DatasetInfo& source, const PackOptions& options) {
 
 /// Brick layers of the slabs that a team shares: one, but for so many that their open files would be too many. Those of
 /// the samples of all components are open, and of the result of a step, twice while samples change.
-int layersOfTeam(const volume::BrickGrid& grid, const volume::DatasetInfo& info) {
+int layersOf(const volume::BrickGrid& grid, const volume::DatasetInfo& info) {
     constexpr int kMostFiles = 512;
     int components = 1;
     for (const volume::Parameter& parameter : info.parameters) components = std::max(components, parameter.components);
@@ -94,7 +94,7 @@ public:
         errors_.assign(info.parameters.size(), 0);
         for (const volume::Parameter& parameter : info.parameters)
             errorsBefore_.push_back(parameter.categorical ? 0 : before.maxError * extentOf(parameter));
-        memory_ = planMemory(metadata_, source, options, team ? layersOfTeam(metadata_.grid, info) : slabLayers);
+        memory_ = planMemory(storable(metadata_), source, options, team ? layersOf(metadata_.grid, info) : slabLayers);
         reading_ = {.toBcc = toBcc,
                     .resample = options.resample,
                     .grid = metadata_.grid,
