@@ -212,7 +212,9 @@ Opened openForPicture(const PictureOptions& options, const Progress& progress) {
         Json document = toJson(opened.document.session);
         for (const std::string& setting : options.settings) applySetting(document, setting);
         std::vector<JsonIssue> unknown;
-        opened.document.session = sessionFromJson(document, "--set", &unknown);
+        Session set = sessionFromJson(document, "--set", &unknown);
+        takeAllowed(set.data, opened.document.session.data);
+        opened.document.session = std::move(set);
         if (!unknown.empty()) throw Error("unknown key", "--set", unknown.front().path);
         const DataRef data = opened.document.session.data;
         if (!(data == opened.document.history.data())) opened = openWith(std::move(opened), data, progress);

@@ -107,6 +107,7 @@ Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& in
         !layout.session.selection.brushes.empty())
         messages.emplace_back("the layout's brushes were made for other data and are left out: brush in a plot");
     Session session = sessionFromJson(result, {});
+    takeAllowed(session.data, data);
     std::erase_if(session.transfer, [&](const auto& entry) {
         return !info.findChannel(entry.first) && !ownFunction(session, entry.first);
     });

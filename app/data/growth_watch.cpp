@@ -3,6 +3,7 @@
 #include "codec/remote/address.h"
 #include "codec/remote/remote_file.h"
 #include "volume/base/error.h"
+#include "volume/system/input_file.h"
 
 #include <array>
 #include <condition_variable>
@@ -29,6 +30,7 @@ GrowthWatch::GrowthWatch(std::string path, std::function<void()> wake, std::chro
 /// other; both count as one change.
 GrowthWatch::State GrowthWatch::state() const {
     std::array<char, codec::kFirstChunk> bytes{};
+    if (!whyNoFile(path_).empty()) return {};
     std::ifstream file(path_, std::ios::binary);
     file.read(bytes.data(), std::streamsize(bytes.size()));
     std::error_code gone;

@@ -61,6 +61,7 @@ std::vector<std::string> importArguments(const volume::ImportOptions& options) {
     std::string times, parameters;
     for (const double time : options.times) times += (times.empty() ? "" : ",") + jsonText(time);
     for (const std::string& parameter : options.parameters) parameters += (parameters.empty() ? "" : ",") + parameter;
+    if (options.allowOutside) out.push_back("--allow-outside");
     add("--times", times);
     add("--parameters", parameters);
     return out;
@@ -99,6 +100,11 @@ void addImportOptions(CLI::App& command, volume::ImportOptions& options) {
         .add_flag_function(
             "--no-auto-absent", [&options](std::int64_t) { options.autoAbsent = false; },
             "Do not treat samples as absent where a parameter is 0 in a whole region")
+        ->group("Import");
+    command
+        .add_flag("--allow-outside", options.allowOutside,
+                  "Let files name others that lie neither beside them nor in folders below; only for files of people "
+                  "you trust, since they could show any file that you may read")
         ->group("Import");
     const auto repeated = [&command](const char* name, std::vector<std::string>& rules, const char* help) {
         command.add_option(name, rules, help)

@@ -59,7 +59,12 @@ Opened openDocument(SessionDocument document, const std::string& folder, const O
         return opened;
     }
     DataRef data = found.data;
-    if (request.import) data.import = *request.import;
+    if (request.import) {
+        volume::ImportOptions about = *request.import;
+        const bool allowed = std::exchange(about.allowOutside, false);
+        if (about != volume::ImportOptions{}) data.import = about;
+        data.import.allowOutside = allowed;
+    }
     if (request.remote) data.remote = *request.remote;
     return openWith(std::move(opened), data, progress);
 }

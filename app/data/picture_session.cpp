@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <optional>
 
@@ -33,9 +31,11 @@ std::optional<std::string> sessionInPng(const std::string& path) {
 
 /// Whether the key of a session stands in a file, also where the session is damaged.
 bool namesSession(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-    return bytes.find(vis::kSessionTextKey) != std::string::npos;
+    try {
+        return readText(path).find(vis::kSessionTextKey) != std::string::npos;
+    } catch (const Error&) { // also of a picture that is too large to hold one
+        return false;
+    }
 }
 
 } // namespace

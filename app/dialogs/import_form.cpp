@@ -194,6 +194,11 @@ void ImportForm::draw() {
     field("Units", 0, 7, em * 22, "O2=mol/m3  T=K (remembered)", units_);
     field("Names", 31, 4, -FLT_MIN, "O2.air=O2  wO2=O2", names_);
     field("Lengths in", 0, 7, em * 22, "mm, where the file states none (remembered)", lengths_);
+    ImGui::SameLine(em * 31);
+    if (ImGui::Checkbox("Files elsewhere", &stated_.allowOutside)) changed = true;
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("%s", "Let files name others that lie neither beside them nor in folders below.\n"
+                                "Only for files of people you trust: they could show any file that you may read.");
     ImGui::Spacing();
     if (changed) readFields();
 }

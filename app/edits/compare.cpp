@@ -53,6 +53,7 @@ Session variantSession(const Session& session, const CompareVariant& variant) {
     std::vector<JsonIssue> unknown;
     Session out = sessionFromJson(document, {}, &unknown);
     if (!unknown.empty()) throw Error("unknown key", {}, unknown.front().path);
+    takeAllowed(out.data, session.data);
     followSharedFunctions(out);
     return out;
 }

@@ -1,5 +1,7 @@
 #include "app/edits/context_style.h"
 
+#include "app/session/session_json.h"
+
 #include <algorithm>
 
 namespace tessera::app {
@@ -105,7 +107,7 @@ void setContextStyle(Session& session, const volume::DatasetInfo& info, ContextS
     layer.brushes = vis::BrushEffect::None;
     if (former)
         session.layers[*former] = layer;
-    else
+    else if (session.layers.size() < kMostLayers)
         session.layers.push_back(layer);
 }
 

@@ -169,7 +169,9 @@ Session History::seek(std::size_t position) {
     document_ = app::toJson(base_);
     while (position_ > position) document_ = document_.patch(steps_[--position_].inverse);
     while (position_ < position) document_ = document_.patch(steps_[position_++].forward);
-    base_ = sessionFromJson(document_, {});
+    Session sought = sessionFromJson(document_, {});
+    takeAllowed(sought.data, base_.data);
+    base_ = std::move(sought);
     pending_ = false;
     lastCommit_ = -1e9;
     nextName_.clear();

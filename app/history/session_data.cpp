@@ -1,6 +1,7 @@
 #include "app/history/session_file.h"
 #include "codec/remote/address.h"
 #include "volume/import/files/named_files.h"
+#include "volume/system/input_file.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -26,6 +27,7 @@ std::string hex(std::uint64_t value) {
 
 /// xxh64 of the first and the last MiB of a file; "" when it cannot be read.
 std::string hashOfEnds(const std::string& path, std::uintmax_t bytes) {
+    if (!whyNoFile(path).empty()) return {};
     std::ifstream in(path, std::ios::binary);
     if (!in) return {};
     constexpr std::uintmax_t part = 1 << 20;

@@ -4,12 +4,10 @@
 #include "codec/remote/address.h"
 #include "volume/base/error.h"
 #include "volume/system/atomic_file.h"
+#include "volume/system/input_file.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 
 namespace tessera::app {
 
@@ -31,13 +29,8 @@ void restoreUnknown(Json& document, const std::vector<JsonIssue>& unknown) {
 } // namespace
 
 std::string readText(const std::string& path) {
-    std::error_code problem;
-    if (fs::is_directory(path, problem)) throw Error("is a folder", path);
-    std::ifstream in(path, std::ios::binary);
-    if (!in) throw Error(std::strerror(errno), path);
-    std::string text{std::istreambuf_iterator<char>(in), {}};
-    if (in.bad()) throw Error("cannot be read", path);
-    return text;
+    constexpr std::uintmax_t kMost = 256'000'000; // a session with a long history, or a picture, has a few millions
+    return readInput(path, kMost);
 }
 
 bool looksLikeSession(std::string_view text) {

@@ -4,10 +4,12 @@
 #include "app/importer/formats.h"
 #include "app/importer/present_cells.h"
 #include "app/importer/readers/check_file.h"
+#include "app/importer/readers/hdf_names.h"
 #include "app/importer/readers/vtk_messages.h"
 #include "app/importer/swept_names.h"
 #include "app/importer/tables/table_rows.h"
 #include "volume/import/files/formats.h"
+#include "volume/system/input_file.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -117,14 +119,19 @@ vtkSmartPointer<vtkDataObject> readByVtk(const Source& source, int time) {
         throw std::runtime_error("ends early or is damaged: " + std::string(error.what()));
     }
     if (output == nullptr) throw std::runtime_error("contains no data");
-    return copyOf(output);
+    vtkSmartPointer<vtkDataObject> copy = copyOf(output);
+    if (source.mark) source.mark(copy);
+    return copy;
 }
 
 } // namespace
 
 Source openSource(const std::vector<std::string>& files) {
     const std::string& path = files.front();
-    if (!fs::exists(path)) throw std::runtime_error("no such file");
+    for (const std::string& file : files)
+        if (const std::string why = whyNoFile(file); !why.empty() && !fs::is_directory(file))
+            throw std::runtime_error(why);
+    if (!fs::is_directory(path)) checkHdfNames(path);
     const volume::FileFormat* format = volume::isZarrFolder(path) ? volume::formatNamed("Zarr")
                                        : fs::is_directory(path)   ? volume::formatNamed("OpenFOAM")
                                                                   : volume::formatOfFile(path);

@@ -3,6 +3,7 @@
 #include "app/importer/describe_source.h"
 #include "app/importer/frame.h"
 #include "app/importer/open_source.h"
+#include "app/importer/readers/check_file.h"
 #include "app/importer/readers/vtk_messages.h"
 #include "volume/import/files/stream.h"
 #include "volume/system/confine.h"
@@ -198,12 +199,53 @@ void sendRanges(State& state, const std::string& line) {
     sendMessage(MessageKind::Header, rangesJson(at != nullptr ? at->data : nullptr, from, array));
 }
 
+/// The words of a command line; of "-" those from stdin, each ended by a zero byte, up to an empty one.
+std::vector<std::string> wordsGiven(int argc, char** argv) {
+    std::vector<std::string> words(argv + 1, argv + argc);
+    if (words != std::vector<std::string>{"-"}) return words;
+    words.clear();
+    for (std::string word; std::getline(std::cin, word, '\0') && !word.empty();) words.push_back(word);
+    return words;
+}
+
+/// Opens the files and sends the header of each; false where one cannot be opened, which is sent instead.
+bool openAll(State& state, const std::vector<std::string>& words) {
+    bool like = false;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (words[i] == "--like" || words[i] == "--allow-outside") {
+            like = words[i] == "--like";
+            if (!like) letNameOutside(volume::Outside::Allowed);
+            continue;
+        }
+        std::vector<std::string> files{words[i]};
+        if (words[i] == "--slices" && i + 2 < words.size()) {
+            const std::size_t first = i + 2, stated = std::size_t(std::max(std::atoi(words[i + 1].c_str()), 1)),
+                              count = std::min(stated, words.size() - first);
+            files.assign(words.begin() + std::ptrdiff_t(first), words.begin() + std::ptrdiff_t(first + count));
+            i = first + count - 1;
+        }
+        volume::limitProcessorTime(kMostTime);
+        try {
+            state.files.push_back(openFile(state, files, like));
+            sendMessage(MessageKind::Header, headerJson(state.files.back().blocks));
+        } catch (const std::bad_alloc&) {
+            sendMessage(MessageKind::Failure, kNoMemory);
+            return false;
+        } catch (const std::exception& error) {
+            sendMessage(MessageKind::Failure, error.what());
+            return false;
+        }
+        like = false;
+    }
+    return true;
+}
+
 } // namespace
 
 int serve(int argc, char** argv) {
     if (argc < 2 || std::string(argv[1]) == "--help") {
-        std::fprintf(stderr, "tessera-import [--like | --slices N] FILE ...: streams data files to tessera, see "
-                             "volume/import/files/stream.h\n");
+        std::fprintf(stderr, "tessera-import [--allow-outside] [--like | --slices N] FILE ...: streams data files to "
+                             "tessera, see volume/import/files/stream.h\n");
         return argc < 2 ? 1 : 0;
     }
     // Readers may print to stdout: redirect that to stderr, and send messages to a copy of the original stdout.
@@ -213,32 +255,12 @@ int serve(int argc, char** argv) {
     catchMessages();
     // Files may be damaged or hostile, and readers have errors: they can change nothing and take no more than this.
     volume::confine({.writable = {"/dev/null"}, .memory = volume::machineMemory() / 4 * 3});
+    // Names in HDF5 files count from these, not from where the program runs or where others have their files.
+    ::setenv("HDF5_EXTFILE_PREFIX", "${ORIGIN}", 1);
+    ::setenv("HDF5_VDS_PREFIX", "${ORIGIN}", 1);
+    ::unsetenv("HDF5_EXT_PREFIX");
     State state;
-    bool like = false;
-    for (int i = 1; i < argc; ++i) {
-        if (std::string(argv[i]) == "--like") {
-            like = true;
-            continue;
-        }
-        std::vector<std::string> files{argv[i]};
-        if (std::string(argv[i]) == "--slices" && i + 2 < argc) {
-            const int first = i + 2, count = std::min(std::atoi(argv[i + 1]), argc - first);
-            files.assign(argv + first, argv + first + std::max(count, 1));
-            i = first + std::max(count, 1) - 1;
-        }
-        volume::limitProcessorTime(kMostTime);
-        try {
-            state.files.push_back(openFile(state, files, like));
-            sendMessage(MessageKind::Header, headerJson(state.files.back().blocks));
-        } catch (const std::bad_alloc&) {
-            sendMessage(MessageKind::Failure, kNoMemory);
-            return 0;
-        } catch (const std::exception& error) {
-            sendMessage(MessageKind::Failure, error.what());
-            return 0;
-        }
-        like = false;
-    }
+    if (!openAll(state, wordsGiven(argc, argv))) return 0;
     for (std::string line; std::getline(std::cin, line);) {
         volume::limitProcessorTime(kMostTime);
         try {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <set>
 #include <utility>
+#include <vtkAbstractArray.h>
 #include <vtkCellData.h>
 #include <vtkCompositeDataIterator.h>
 #include <vtkCompositeDataSet.h>
@@ -61,13 +62,14 @@ using Numbers = std::map<std::string, double>;
 
 std::vector<std::string> arrayNames(vtkDataObject* data) {
     std::vector<std::string> names;
+    std::set<std::string> known;
     const auto add = [&](vtkDataObject* leaf) {
         auto* set = vtkDataSet::SafeDownCast(leaf);
         if (set == nullptr) return;
         for (vtkDataSetAttributes* from : {static_cast<vtkDataSetAttributes*>(set->GetPointData()),
                                            static_cast<vtkDataSetAttributes*>(set->GetCellData())})
             for (int i = 0; i < from->GetNumberOfArrays(); ++i)
-                if (from->GetArrayName(i) != nullptr && std::ranges::find(names, from->GetArrayName(i)) == names.end())
+                if (from->GetArrayName(i) != nullptr && known.insert(from->GetArrayName(i)).second)
                     names.emplace_back(from->GetArrayName(i));
     };
     if (auto* composite = vtkCompositeDataSet::SafeDownCast(data)) {
@@ -79,22 +81,27 @@ std::vector<std::string> arrayNames(vtkDataObject* data) {
     return names;
 }
 
-/// Leaves the arrays of one time, under their names.
+/// Leaves the arrays of one time, under their names, behind those of all times.
 void keepTime(vtkDataSetAttributes* arrays, const SweptArrays& swept, std::size_t time) {
+    std::vector<vtkSmartPointer<vtkAbstractArray>> others;
     std::vector<vtkSmartPointer<vtkDataArray>> kept;
-    std::vector<std::string> gone;
     for (int i = 0; i < arrays->GetNumberOfArrays(); ++i) {
-        vtkDataArray* array = arrays->GetArray(i);
-        if (array == nullptr || array->GetName() == nullptr) continue;
-        const auto place = swept.places.find(array->GetName());
-        if (place == swept.places.end()) continue;
-        gone.emplace_back(array->GetName());
+        vtkAbstractArray* any = arrays->GetAbstractArray(i);
+        auto* array = vtkDataArray::SafeDownCast(any);
+        const auto place =
+            array == nullptr || array->GetName() == nullptr ? swept.places.end() : swept.places.find(array->GetName());
+        if (place == swept.places.end()) {
+            others.emplace_back(any);
+            continue;
+        }
         if (place->second.time != time) continue;
         kept.push_back(vtkSmartPointer<vtkDataArray>::Take(array->NewInstance()));
         kept.back()->ShallowCopy(array);
         kept.back()->SetName(place->second.name.c_str());
     }
-    for (const std::string& name : gone) arrays->RemoveArray(name.c_str());
+    if (others.size() == std::size_t(arrays->GetNumberOfArrays())) return;
+    arrays->Initialize(); // one by one each removal would move all arrays behind it
+    for (const auto& array : others) arrays->AddArray(array);
     for (const auto& array : kept) arrays->AddArray(array);
 }
 
@@ -240,14 +247,14 @@ void foldSweptNames(Source& source, vtkSmartPointer<vtkDataObject> data) {
                                    std::to_string(swept.times.size()) + " times of one");
     }
     // Times that together show every array.
-    std::set<std::string> shown;
-    source.shownAt.clear();
-    for (std::size_t time = 0; time < std::max<std::size_t>(source.times.size(), 1); ++time) {
-        bool isNew = time == 0;
-        for (const auto& [name, place] : swept.places)
-            if (place.time == time && shown.insert(place.name).second) isNew = true;
-        if (isNew) source.shownAt.push_back(time);
+    std::map<std::string, std::size_t> first;
+    for (const auto& [name, place] : swept.places) {
+        const auto known = first.emplace(place.name, place.time).first;
+        known->second = std::min(known->second, place.time);
     }
+    std::set<std::size_t> shown{0};
+    for (const auto& [name, time] : first) shown.insert(time);
+    source.shownAt.assign(shown.begin(), shown.end());
     source.reader = nullptr;
     source.readerTimes.clear();
     source.check = nullptr;

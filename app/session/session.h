@@ -129,6 +129,13 @@ struct DataRef {
     }
 };
 
+/// What the user allowed files to name (ImportOptions::allowOutside), which no JSON says: taken over where a session is
+/// made of the JSON of one that is open.
+inline void takeAllowed(DataRef& to, const DataRef& from) {
+    to.import.allowOutside = from.import.allowOutside;
+    if (to.other && from.other) to.other->import.allowOutside = from.other->import.allowOutside;
+}
+
 enum class Theme { Dark, Light };
 inline constexpr std::string_view kThemeNames[] = {"dark", "light"};
 

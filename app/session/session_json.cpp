@@ -1,6 +1,9 @@
 #include "app/session/session_json.h"
 
+#include "app/session/shown_scene.h"
 #include "volume/base/error.h"
+
+#include <utility>
 
 namespace tessera::app {
 
@@ -23,6 +26,11 @@ Session sessionFromJson(const Json& document, const std::string& file, std::vect
         if (bad > 1) more = " (and " + std::to_string(bad - 1) + " more)";
         throw Error(first->reason + more, file, first->path.empty() ? "/" : first->path);
     }
+    for (const std::vector<vis::Layer>* layers : layerLists(std::as_const(session)))
+        if (layers->size() > kMostLayers)
+            throw Error("has " + std::to_string(layers->size()) + " layers, more than " + std::to_string(kMostLayers) +
+                            " are not drawn",
+                        file, "/layers");
     return session;
 }
 

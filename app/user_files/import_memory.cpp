@@ -10,13 +10,12 @@
 #include "volume/import/absent.h"
 #include "volume/import/find_parts.h"
 #include "volume/system/atomic_file.h"
+#include "volume/system/input_file.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <set>
 
 namespace tessera::app {
@@ -114,9 +113,8 @@ std::string importMemoryPath() {
 ImportMemory loadImportMemory(const std::string& path) {
     ImportMemory memory;
     if (path.empty() || !fs::exists(path)) return memory;
-    std::ifstream in(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
-    const Json document = Json::parse(text, nullptr, false);
+    constexpr std::uintmax_t kMost = 64'000'000;
+    const Json document = Json::parse(readInput(path, kMost), nullptr, false);
     if (document.is_discarded() || !document.is_object()) throw Error("is not a JSON object", path);
     if (const auto units = document.find("units"); units != document.end())
         memory.units = readTexts(*units, path, "/units");

@@ -1,6 +1,7 @@
 #include "app/edits/context_style.h"
 #include "app/edits/scene_task.h"
 #include "app/pane/view_parts.h"
+#include "app/session/session_json.h"
 #include "app/session/shown_scene.h"
 #include "app/tools/brush_list.h"
 #include "app/tools/camera_controller.h"
@@ -74,7 +75,10 @@ void addLayers(SceneChanges& list) {
             [&workbench, kind](Session& session, const volume::DatasetInfo&) {
                 addLayer(session, *workbench.source(), kind);
             },
-            [&workbench, kind] { return kind != 3 || !firstVector(workbench.document().info()).empty(); });
+            [&workbench, kind] {
+                return workbench.document().session().layers.size() < kMostLayers &&
+                       (kind != 3 || !firstVector(workbench.document().info()).empty());
+            });
     }
 }
 

@@ -154,7 +154,7 @@ std::int32_t ArchiveWriter::Impl::modelOfSteps(const FrameRecord& frame) const {
 
 ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata, bool keepsFrames)
     : impl_(std::make_unique<Impl>(path)) {
-    impl_->metadata = metadata;
+    impl_->metadata = storable(metadata);
     impl_->keepsFrames = keepsFrames;
     // A volume of one brick is read as quickly as its statistics would be, and they would be a large part of its size.
     if (metadata.grid.count() == glm::ivec3(1)) impl_->commits.header.features &= ~kBrickStatistics;
@@ -164,7 +164,7 @@ ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, b
     const bool laterTimes = metadata.info.times.size() > archive.info().times.size();
     ArchiveState state = stateOf(archive, keepsFrames && laterTimes);
     impl_ = std::make_unique<Impl>(archive.path(), commitsOf(archive, state));
-    impl_->metadata = metadata;
+    impl_->metadata = storable(metadata);
     impl_->known = archive.impl_->index;
     impl_->keepsFrames = keepsFrames;
     impl_->models = state.models;

@@ -12,6 +12,7 @@
 #include "volume/field/quantities.h"
 #include "volume/resample/resample.h"
 #include "volume/system/atomic_file.h"
+#include "volume/system/input_file.h"
 #include "volume/system/part_file.h"
 #include "volume/system/sync.h"
 
@@ -87,7 +88,7 @@ std::string textOf(const Ranges& ranges) {
 }
 
 Ranges readRanges(const std::string& path, std::size_t parameters) {
-    std::ifstream in(path);
+    std::ifstream in = openInput(path);
     Ranges ranges(parameters);
     for (std::vector<Range>& each : ranges) {
         std::size_t count = 0;

@@ -3,6 +3,7 @@
 #include "codec/blocks/shared_job.h"
 #include "volume/base/error.h"
 #include "volume/system/atomic_file.h"
+#include "volume/system/input_file.h"
 #include "volume/system/part_file.h"
 
 #include <filesystem>
@@ -22,6 +23,7 @@ std::string withoutSlash(const std::string& path) {
 }
 
 std::optional<std::string> textIn(const std::string& path) {
+    if (!whyNoFile(path).empty()) return std::nullopt;
     std::ifstream in(path, std::ios::binary);
     if (!in) return std::nullopt;
     return std::string(std::istreambuf_iterator<char>(in), {});

@@ -2,6 +2,7 @@
 
 #include "volume/base/error.h"
 #include "volume/system/atomic_file.h"
+#include "volume/system/input_file.h"
 
 #include <algorithm>
 #include <chrono>
@@ -27,6 +28,7 @@ constexpr const char *kLock = "job.lock", *kAbout = "job.json", *kComplete = "co
 constexpr std::string_view kRanks = "ranks-", kCame = "came-", kLeft = "left-";
 
 std::string contentOf(const std::string& path) {
+    if (!whyNoFile(path).empty()) return {};
     std::ifstream in(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
 }

@@ -1,6 +1,7 @@
 #include "codec/container/growing_file.h"
 
 #include "volume/base/error.h"
+#include "volume/system/input_file.h"
 #include "volume/system/locked_file.h"
 #include "volume/system/part_file.h"
 #include "volume/system/sync.h"
@@ -37,6 +38,7 @@ GrowingFile::GrowingFile(const std::string& path)
 
 GrowingFile::GrowingFile(const std::string& path, const Header& header)
     : path_(path), kind_(Kind::Appending), position_(header.fileSize), committed_(header.fileSize), header_(header) {
+    requireFile(path);
     file_ = std::fopen(path.c_str(), "r+be");
     if (!file_) fail();
     try {
@@ -93,7 +95,7 @@ void GrowingFile::lock(int descriptor) const {
 /// Keeps others from writing to what lies at the path until it is replaced; throws if one does.
 void GrowingFile::lockReplaced() {
     if (replaced_ >= 0) ::close(std::exchange(replaced_, -1)); // another file may lie there by now
-    const int replaced = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+    const int replaced = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (replaced < 0) return; // there is nothing, or it cannot be read
     try {
         lock(replaced);

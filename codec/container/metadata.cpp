@@ -296,7 +296,8 @@ Metadata metadataFromJson(std::string_view text, const std::string& file) {
     info.lattice = readLattice(data["lattice"], &metadata.alternating);
     info.bounds = {data["bounds"]["lo"].vector(), data["bounds"]["hi"].vector()};
     info.lengthUnit = data["lengthUnit"].text();
-    for (const Node& parameter : data["parameters"].items(4096)) info.parameters.push_back(readParameter(parameter));
+    for (const Node& parameter : data["parameters"].items(kMostParameters))
+        info.parameters.push_back(readParameter(parameter));
     if (info.parameters.empty()) data["parameters"].fail("no parameters");
     info.times.clear();
     if (root.has("resampled")) metadata.resampled = readResampled(root["resampled"], info.parameters.size());
@@ -333,6 +334,21 @@ Metadata metadataFromJson(std::string_view text, const std::string& file) {
 }
 
 } // namespace
+
+const Metadata& storable(const Metadata& metadata) {
+    const std::size_t count = metadata.info.parameters.size();
+    if (count > kMostParameters)
+        throw Error(std::to_string(count) + " parameters do not fit into an archive, which holds " +
+                    std::to_string(kMostParameters) + " at most: choose some with --parameters");
+    Metadata known = metadata; // ranges may not be known yet
+    for (volume::Parameter& parameter : known.info.parameters) parameter.ranges.clear();
+    try {
+        metadataFromJson(toJson(known), {});
+    } catch (const Error& error) {
+        throw Error("does not fit into an archive: " + error.place() + " is " + error.reason());
+    }
+    return metadata;
+}
 
 Bytes serialise(const Metadata& metadata, std::uint32_t features) {
     const std::string text = toJson(metadata);

@@ -42,6 +42,11 @@ struct Metadata {
 
 /// Longest text of metadata, bytes: what a file or a server only states costs no memory.
 inline constexpr std::size_t kMostMetadata = std::size_t(1) << 26;
+inline constexpr std::size_t kMostParameters = 4096; ///< that readers accept
+
+/// The same metadata. Throws Error where a reader would refuse them, so that nothing is packed that cannot be read: for
+/// more parameters, labels or quantities than readers accept, and the like.
+const Metadata& storable(const Metadata& metadata);
 
 /// Serialises the metadata as JSON without the times, compressed as far as the header's features allow.
 Bytes serialise(const Metadata& metadata, std::uint32_t features);

@@ -2,15 +2,12 @@
 
 #include "volume/base/error.h"
 #include "volume/system/atomic_file.h"
+#include "volume/system/input_file.h"
 
 #include <algorithm>
 #include <csetjmp>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <png.h>
-#include <system_error>
 
 namespace tessera::vis {
 
@@ -171,11 +168,10 @@ void writePng(const std::string& path, const Image& image, const std::map<std::s
 }
 
 std::vector<std::uint8_t> readBytes(const std::string& path) {
-    std::error_code failed;
-    if (std::filesystem::is_directory(path, failed)) throw Error("is a folder", path);
-    std::ifstream in(path, std::ios::binary);
-    if (!in) throw Error("cannot be opened", path);
-    return {std::istreambuf_iterator<char>(in), {}};
+    constexpr std::uintmax_t kMost =
+        1'000'000'000; // as many pixels as one of surroundings may have take half of it at most
+    const std::string bytes = readInput(path, kMost);
+    return {bytes.begin(), bytes.end()};
 }
 
 Image decodePng(std::span<const std::uint8_t> bytes, const std::string& name,

@@ -10,9 +10,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string_view>
 
 namespace tessera::volume {
 
@@ -23,8 +25,10 @@ namespace {
 /// The running tessera-import process; one request at a time.
 class Importer {
 public:
-    Importer(const std::string& program, const std::vector<SeriesFile>& entries) : child_(arguments(program, entries)) {
+    Importer(const std::string& program, const std::vector<SeriesFile>& entries, Outside outside)
+        : child_({program, "-"}) {
         for (const SeriesFile& entry : entries) paths_.push_back(entry.path);
+        child_.write(wordsOf(entries, outside));
     }
 
     std::vector<FileBlock> header(std::size_t file, const Progress& progress) {
@@ -61,24 +65,29 @@ public:
     }
 
 private:
-    static std::vector<std::string> arguments(const std::string& program, const std::vector<SeriesFile>& entries) {
-        const auto asWord = [](const std::string& path) { return fs::path(path).is_absolute() ? path : "./" + path; };
-        std::vector<std::string> words{program};
+    /// Each word ended by a zero byte, and an empty one in the end.
+    static std::string wordsOf(const std::vector<SeriesFile>& entries, Outside outside) {
+        std::string words;
+        const auto add = [&words](const std::string& word) { words.append(word.c_str(), word.size() + 1); };
+        const auto addPath = [&](const std::string& path) { add(fs::path(path).is_absolute() ? path : "./" + path); };
+        if (outside == Outside::Allowed) add("--allow-outside");
         std::string last;
         for (const SeriesFile& entry : entries) {
             const std::string& path = entry.path;
             if (!entry.slices.empty()) {
-                words.insert(words.end(), {"--slices", std::to_string(entry.slices.size())});
-                for (const std::string& slice : entry.slices) words.push_back(asWord(slice));
+                add("--slices");
+                add(std::to_string(entry.slices.size()));
+                for (const std::string& slice : entry.slices) addPath(slice);
                 last.clear();
                 continue;
             }
             const NumberedName name = numberedName(path);
             const std::string pattern = name.number ? name.pattern : std::string();
-            if (!pattern.empty() && pattern == last) words.emplace_back("--like");
+            if (!pattern.empty() && pattern == last) add("--like");
             last = pattern;
-            words.push_back(asWord(path));
+            addPath(path);
         }
+        add({});
         return words;
     }
 
@@ -132,10 +141,11 @@ struct Kept {
     int index, flags;
 };
 std::vector<Kept> withoutPresence(std::vector<Array>& arrays) {
+    std::map<std::string_view, int> first; // by name
+    for (std::size_t i = 0; i < arrays.size(); ++i) first.emplace(arrays[i].name, int(i));
     const auto find = [&](const std::string& name) {
-        for (std::size_t i = 0; i < arrays.size(); ++i)
-            if (arrays[i].name == name) return static_cast<int>(i);
-        return -1;
+        const auto at = first.find(name);
+        return at == first.end() ? -1 : at->second;
     };
     std::vector<Kept> kept;
     std::vector<Array> remaining;
@@ -161,14 +171,15 @@ std::string findImporter() {
     return programBeside("tessera-import");
 }
 
-std::vector<std::vector<FileBlock>> openForeign(const std::vector<SeriesFile>& entries, const Progress& progress) {
+std::vector<std::vector<FileBlock>> openForeign(const std::vector<SeriesFile>& entries, Outside outside,
+                                                const Progress& progress) {
     std::vector<std::string> paths;
     for (const SeriesFile& entry : entries) paths.push_back(entry.path);
     const std::string program = findImporter();
     if (program.empty())
         throw Error("reading this format needs the program tessera-import, which was not built (it needs VTK)",
                     paths.front());
-    const auto importer = std::make_shared<Importer>(program, entries);
+    const auto importer = std::make_shared<Importer>(program, entries, outside);
     std::vector<std::vector<FileBlock>> files;
     for (std::size_t f = 0; f < paths.size(); ++f) {
         progress.advance(double(f) / double(paths.size()), fs::path(paths[f]).filename().string());

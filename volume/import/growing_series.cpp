@@ -14,8 +14,8 @@ namespace tessera::volume {
 
 namespace {
 
-std::vector<SeriesFile> entriesOf(const std::vector<std::string>& paths) {
-    std::vector<SeriesFile> entries = expandPaths(paths);
+std::vector<SeriesFile> entriesOf(const std::vector<std::string>& paths, const ImportOptions& options) {
+    std::vector<SeriesFile> entries = expandPaths(paths, outsideBy(options));
     for (SeriesFile& entry : entries) {
         if (!entry.slices.empty()) throw Error("holds a slice of a volume, not a time of a series", entry.path);
         entry.growing = true;
@@ -43,7 +43,7 @@ GrowingSeries growingSeries(const std::string& first, const ImportOptions& state
     if (!stated.times.empty()) throw Error("a series that grows has times of its own", {}, "--times");
     if (!stated.overTime.empty())
         throw Error("a table over time is read with the whole series, not while it grows", {}, "--over-time");
-    const OpenedSeries opened = openSeries(entriesOf({first}), stated, true, progress, false);
+    const OpenedSeries opened = openSeries(entriesOf({first}, stated), stated, true, progress, false);
     GrowingSeries series{first, stated, opened.dataset.info};
     series.options.absent = opened.absent;
     series.options.autoAbsent = false;
@@ -54,7 +54,7 @@ GrowingSeries growingSeries(const std::string& first, const ImportOptions& state
 Dataset openOfSeries(const GrowingSeries& series, const std::string& path, const Progress& progress) {
     const bool isFirst = path == series.first;
     const std::vector<std::string> paths = isFirst ? std::vector{path} : std::vector{series.first, path};
-    Dataset both = openSeries(entriesOf(paths), series.options, true, progress, false).dataset;
+    Dataset both = openSeries(entriesOf(paths, series.options), series.options, true, progress, false).dataset;
     if (isFirst) return both;
     const std::vector<double>& known = series.info.times;
     std::vector<int> own;

@@ -15,6 +15,7 @@
 #include "volume/import/opened_series.h"
 #include "volume/import/over_time.h"
 #include "volume/import/stated_names.h"
+#include "volume/system/input_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -156,15 +157,16 @@ std::set<std::string> namesInFile(const std::vector<LabelRule>& rules, const Imp
 }
 
 /// A .nrrd file whose samples are raw, which needs no other program.
-std::optional<FileBlock> openNrrd(const std::string& path) {
+std::optional<FileBlock> openNrrd(const std::string& path, Outside outside) {
     const FileFormat* format = formatOf(path);
-    if (format == nullptr || format->name != "nrrd" || !std::filesystem::exists(path)) return std::nullopt;
+    if (format == nullptr || format->name != "nrrd") return std::nullopt;
     std::string head(kMostNrrdHeader, '\0');
-    std::ifstream in(path, std::ios::binary);
+    std::ifstream in = openInput(path);
     in.read(head.data(), static_cast<std::streamsize>(head.size()));
     head.resize(static_cast<std::size_t>(in.gcount()));
     try {
-        const StoredImage image = parseNrrd(head);
+        StoredImage image = parseNrrd(head);
+        image.files.outside = outside;
         if (image.files.encoding != SampleEncoding::Raw || isLongInteger(image.type)) return std::nullopt;
         return openStored(image, path, "nrrd");
     } catch (const Error& error) {
@@ -203,21 +205,22 @@ void stateRanges(DatasetInfo& info, const Assembled& assembled, const std::vecto
 }
 
 /// The blocks of every file: raw and NRRD files read here, all others through one tessera-import.
-std::vector<OpenedFile> openEach(const std::vector<SeriesFile>& entries, const std::string& rawOption,
+std::vector<OpenedFile> openEach(const std::vector<SeriesFile>& entries, const ImportOptions& options,
                                  const Progress& progress) {
+    const Outside outside = outsideBy(options);
     std::vector<OpenedFile> files(entries.size());
     std::vector<SeriesFile> foreign;
     for (std::size_t i = 0; i < entries.size(); ++i) {
         files[i].entry = entries[i];
-        if (isRaw(entries[i].path, rawOption))
-            files[i].blocks.push_back(openRaw(entries[i].path, rawOption));
-        else if (std::optional<FileBlock> block = openNrrd(entries[i].path))
+        if (isRaw(entries[i].path, options.raw))
+            files[i].blocks.push_back(openRaw(entries[i].path, options.raw, outside));
+        else if (std::optional<FileBlock> block = openNrrd(entries[i].path, outside))
             files[i].blocks.push_back(std::move(*block));
         else
             foreign.push_back(entries[i]);
     }
     std::vector<std::vector<FileBlock>> blocks;
-    if (!foreign.empty()) blocks = openForeign(foreign, progress);
+    if (!foreign.empty()) blocks = openForeign(foreign, outside, progress);
     std::size_t next = 0;
     for (OpenedFile& file : files)
         if (file.blocks.empty()) {
@@ -272,7 +275,7 @@ OpenedSeries openSeries(const std::vector<SeriesFile>& entries, const ImportOpti
     std::vector<LabelRule> labels;
     for (const std::string& rule : options.labels) labels.push_back(parseLabelRule(rule));
 
-    std::vector<OpenedFile> files = openEach(entries, options.raw, progress.part(0, 0.3));
+    std::vector<OpenedFile> files = openEach(entries, options, progress.part(0, 0.3));
     OpenedSeries opened;
     opened.format = files.front().blocks.empty() ? "" : files.front().blocks.front().format;
     Assembled assembled = assemble(std::move(files), options.gridSize, readSamples, progress.part(0.3, 0.7));
@@ -321,7 +324,7 @@ double bytesOf(const DatasetInfo& info) {
 ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOptions& options,
                            const Progress& progress, Misfits misfits) {
     if (paths.empty()) throw Error("no file given");
-    OpenedSeries opened = openSeries(expandPaths(paths), options, false, progress, false, misfits);
+    OpenedSeries opened = openSeries(expandPaths(paths, outsideBy(options)), options, false, progress, false, misfits);
     ImportPreview preview{opened.format, {}, 0, std::move(opened.notes)};
     preview.bytes = bytesOf(opened.dataset.info);
     preview.info = std::move(opened.dataset.info);
@@ -331,7 +334,8 @@ ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOp
 Dataset openFiles(const std::vector<std::string>& paths, const ImportOptions& options, const Progress& progress,
                   bool meshRanges) {
     if (paths.empty()) throw Error("no file given");
-    return openSeries(expandPaths(paths), options, true, progress, meshRanges, Misfits::Ignored).dataset;
+    return openSeries(expandPaths(paths, outsideBy(options)), options, true, progress, meshRanges, Misfits::Ignored)
+        .dataset;
 }
 
 void scanRanges(Dataset& dataset, const Progress& progress) {

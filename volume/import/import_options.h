@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volume/base/describe.h"
+#include "volume/import/files/named_path.h"
 
 #include <glm/vec3.hpp>
 #include <map>
@@ -35,6 +36,8 @@ struct ImportOptions {
     std::vector<std::string> parts;
     std::string timeName, timeUnit; ///< of the axis of a series; "" = what the files say
     std::string overTime;           ///< CSV file with quantities over time, "" = none
+    /// Files may name others outside of their folder. Not described: no session says so, only the user who opens it.
+    bool allowOutside = false;
 
     bool operator==(const ImportOptions&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -66,5 +69,9 @@ struct ImportOptions {
         visit(self.overTime, FieldInfo{.key = "overTime", .unit = "", .doc = "CSV file with quantities over time"});
     }
 };
+
+inline Outside outsideBy(const ImportOptions& options) {
+    return options.allowOutside ? Outside::Allowed : Outside::Refused;
+}
 
 } // namespace tessera::volume

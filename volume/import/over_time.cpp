@@ -3,6 +3,7 @@
 #include "volume/base/error.h"
 #include "volume/base/trimmed.h"
 #include "volume/field/quantities.h"
+#include "volume/system/input_file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -10,7 +11,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <set>
@@ -177,13 +177,7 @@ TimeTable parseTimeTable(std::string_view text, const std::string& file) {
 }
 
 TimeTable readTimeTable(const std::string& path) {
-    std::error_code failed;
-    const auto size = fs::file_size(path, failed);
-    std::ifstream in(path, std::ios::binary);
-    if (failed || !in) throw Error("cannot be read", path);
-    if (size > kMostTableBytes) throw Error("is too large for a table over time", path);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
-    return parseTimeTable(text, path);
+    return parseTimeTable(readInput(path, kMostTableBytes), path);
 }
 
 void addTable(DatasetInfo& info, const TimeTable& table) {
@@ -229,7 +223,7 @@ void stateQuantities(DatasetInfo& info, const ImportOptions& options) {
 
 bool isTimeTable(const std::string& path) {
     const std::string ending = lower(fs::path(path).extension().string());
-    if (ending != ".csv" && ending != ".tsv") return false;
+    if ((ending != ".csv" && ending != ".tsv") || !whyNoFile(path).empty()) return false;
     std::ifstream in(path);
     std::string line;
     while (std::getline(in, line) && (trimmed(line).empty() || trimmed(line).starts_with('#'))) {

@@ -9,7 +9,7 @@ namespace tessera {
 /// A file mapped for reading. The file must not shrink while it is mapped.
 class MappedFile final : public FileBytes {
 public:
-    /// Throws Error when the file cannot be opened or is no regular file.
+    /// Throws Error when the file cannot be opened or is no regular file (volume/system/input_file.h).
     explicit MappedFile(const std::string& path);
     ~MappedFile() override;
     MappedFile(const MappedFile&) = delete;

@@ -1,11 +1,11 @@
 #include "volume/system/scratch_file.h"
 
 #include "volume/base/error.h"
+#include "volume/system/input_file.h"
 
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -20,9 +20,11 @@ ScratchFile::ScratchFile(const std::string& folder) {
 }
 
 std::unique_ptr<const ScratchFile> ScratchFile::of(const std::string& path) {
-    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0) throw MachineError(std::string("cannot be read: ") + std::strerror(errno), path);
-    return std::unique_ptr<const ScratchFile>(new ScratchFile(file));
+    try {
+        return std::unique_ptr<const ScratchFile>(new ScratchFile(openInputDescriptor(path)));
+    } catch (const Error& error) {
+        throw MachineError("cannot be read: " + error.reason(), path);
+    }
 }
 
 ScratchFile::~ScratchFile() {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <tuple>
 
@@ -93,15 +94,18 @@ int addAxis(ArrayFile& file, StoredAxis axis) {
     return int(file.axes.size()) - 1;
 }
 
-/// Takes the axes of an array of the same shape, or of the end of its shape.
-bool takeAxesOfOther(ArrayFile& file, StoredArray& array) {
-    if (array.dims.size() < 2) return false;
-    for (const StoredArray& other : file.arrays) {
-        if (other.axes.empty() || other.dims != array.dims) continue;
-        array.axes = other.axes;
-        return true;
+/// Arrays without axes take those of the first one of the same shape.
+void takeAxesOfOthers(ArrayFile& file, std::vector<std::string>& taken) {
+    std::map<Dims, std::vector<int>> known;
+    for (const StoredArray& array : file.arrays)
+        if (!array.axes.empty()) known.emplace(array.dims, array.axes);
+    for (StoredArray& array : file.arrays) {
+        if (!array.axes.empty() || array.dims.size() < 2) continue;
+        const auto like = known.find(array.dims);
+        if (like == known.end()) continue;
+        array.axes = like->second;
+        taken.push_back(array.name);
     }
-    return false;
 }
 
 /// Whether the one-dimensional arrays x, y and z have the lengths of axes in this order, slowest first.
@@ -164,8 +168,7 @@ std::string quoted(const std::vector<std::string>& names) {
 } // namespace
 
 void giveAxes(ArrayFile& file, GuessedAxes& guessed) {
-    for (StoredArray& array : file.arrays)
-        if (array.axes.empty() && takeAxesOfOther(file, array)) guessed.likeOthers.push_back(array.name);
+    takeAxesOfOthers(file, guessed.likeOthers);
     const Dims grid = namelessGrid(file.arrays);
     if (grid.empty()) return;
     std::size_t times = 1;
@@ -237,11 +240,12 @@ void guessKinds(ArrayFile& file, GuessedAxes& guessed) {
 std::vector<std::string> notesOn(const GuessedAxes& guessed, const ArrayFile& file,
                                  const std::vector<const StoredArray*>& drawn) {
     std::vector<std::string> notes;
+    std::set<std::string_view> named;
+    for (const StoredArray* one : drawn) named.insert(one->name);
     const auto ofDrawn = [&](const std::vector<std::string>& names) {
         std::vector<std::string> out;
         for (const std::string& name : names)
-            if (std::ranges::find(drawn, name, [](const StoredArray* one) { return one->name; }) != drawn.end())
-                out.push_back(name);
+            if (named.contains(name)) out.push_back(name);
         return out;
     };
     if (const auto names = ofDrawn(guessed.likeOthers); !names.empty())

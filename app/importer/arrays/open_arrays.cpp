@@ -6,6 +6,7 @@
 #include "app/importer/arrays/conventions.h"
 #include "app/importer/arrays/whole_numbers.h"
 #include "app/importer/readers/check_file.h"
+#include "volume/import/files/import_limits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -213,13 +214,16 @@ void openArrays(ArrayFile file, Source& source) {
             if (!unit.empty()) source.units[part.name] = unit;
             opened->words += wordsFor(part.name, part.array.words);
             opened->parts.push_back(std::move(part));
+            if (opened->parts.size() > volume::kMostArrays)
+                throw std::runtime_error("holds more than " + std::to_string(volume::kMostArrays) +
+                                         " arrays of samples, which are not read");
         }
     }
     if (opened->parts.empty()) throw std::runtime_error("holds no array of numbers on a grid");
     takeTimes(file, *opened, source);
     for (const StoredArray& array : file.arrays) {
         if (isOnGrid(file, array, opened->grid.axes)) continue;
-        if (takeQuantity(array, *opened, source)) continue;
+        if (source.quantities.size() < volume::kMostQuantities && takeQuantity(array, *opened, source)) continue;
         others.push_back("\"" + array.name + "\" " + axesText(file, array));
     }
     for (volume::Quantity& quantity : file.numbers) {

@@ -1,5 +1,6 @@
 #include "app/importer/foam/foam_field.h"
 
+#include "app/importer/readers/check_file.h"
 #include "app/importer/readers/dimension_units.h"
 
 #include <algorithm>
@@ -36,7 +37,8 @@ std::string unquoted(std::string text) {
     return text;
 }
 
-/// The file that #include names: beside the one that says so, or in a folder of the case.
+/// The file that #include names: beside the one that says so, or in a folder of the case. Throws for what lies
+/// elsewhere.
 std::string includedFile(const std::string& named, const std::string& from, const std::string& root) {
     std::string name = unquoted(named);
     for (const auto& [word, folder] : {std::pair{"$FOAM_CASE", ""},
@@ -44,17 +46,20 @@ std::string includedFile(const std::string& named, const std::string& from, cons
                                        {"<case>", ""},
                                        {"<constant>", "/constant"},
                                        {"<system>", "/system"}})
-        if (name.starts_with(word)) return root + folder + name.substr(std::string(word).size());
-    return fs::path(name).is_absolute() ? name : (fs::path(from).parent_path() / name).string();
+        if (name.starts_with(word)) return besidesIn(root, "." + (folder + name.substr(std::string(word).size())));
+    const fs::path path = fs::path(from).parent_path() / name; // an absolute name stays as it is
+    return besidesIn(root, path.is_absolute() ? path.string() : path.lexically_proximate(root).string());
 }
 
 void readEntries(FoamCursor& in, const std::string& path, const std::string& root, int depth, FieldEntries& out) {
     while (in.more() && !out.found) {
         const std::string key = unquoted(std::string(in.word()));
         if (key == "#include" || key == "#includeIfPresent" || key == "#sinclude" || key == "#includeEtc") {
-            const std::string named = includedFile(std::string(in.word()), path, root);
+            const std::string word(in.word());
+            if (key == "#includeEtc" || depth >= kMostIncluded) continue;
+            const std::string named = includedFile(word, path, root);
             std::error_code problem;
-            if (key == "#includeEtc" || depth >= kMostIncluded || !fs::is_regular_file(named, problem)) continue;
+            if (!fs::is_regular_file(named, problem)) continue;
             const FoamFile file = readFoamFile({named, named, -1});
             FoamCursor inner(file);
             FieldEntries entries;

@@ -2,6 +2,8 @@
 
 #include "app/importer/readers/check_file.h"
 #include "app/importer/readers/hdf_id.h"
+#include "app/importer/readers/hdf_names.h"
+#include "volume/system/input_file.h"
 
 #include <algorithm>
 #include <hdf5.h>
@@ -129,6 +131,8 @@ std::size_t HdfShape::count() const {
 
 HdfFile::HdfFile(const std::string& path) : path_(path) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    if (whyNoFile(path) == kPipeOrDevice) throw std::runtime_error(kPipeOrDevice);
+    checkHdfNames(path);
     const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     if (file < 0)
         throw std::runtime_error(H5Fis_hdf5(path.c_str()) > 0 ? "is truncated or damaged" : "is not an HDF5 file");

@@ -2,13 +2,13 @@
 
 #include "app/importer/readers/check_file.h"
 #include "volume/base/error.h"
+#include "volume/system/input_file.h"
 
 #include <algorithm>
 #include <bzlib.h>
 #include <cctype>
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -41,9 +41,7 @@ struct Pieces {
     std::ifstream in;
     std::vector<char> bytes = std::vector<char>(kPiece);
 
-    Pieces(const std::string& path, std::uint64_t begin) : in(path, std::ios::binary) {
-        in.seekg(std::streamoff(begin));
-    }
+    Pieces(const std::string& path, std::uint64_t begin) : in(openInput(path)) { in.seekg(std::streamoff(begin)); }
     std::span<char> next() {
         in.read(bytes.data(), std::streamsize(bytes.size()));
         return std::span(bytes).first(std::size_t(std::max<std::streamsize>(in.gcount(), 0)));

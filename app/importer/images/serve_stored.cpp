@@ -1,6 +1,7 @@
 #include "app/importer/images/serve_stored.h"
 
 #include "app/importer/images/sample_stream.h"
+#include "app/importer/readers/check_file.h"
 
 #include <array>
 #include <cmath>
@@ -102,6 +103,7 @@ vtkSmartPointer<vtkImageData> gridOf(const StoredImage& image) {
 }
 
 void serveStored(Source& source, StoredImage image) {
+    image.files.outside = outsideOfFolders();
     const volume::ReadBytes read = samplesOf(image, source.path);
     const bool isLong = volume::isLongInteger(image.type);
     const bool fits = isLong && volume::fitsInt32(image, read);

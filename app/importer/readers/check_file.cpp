@@ -1,6 +1,8 @@
 #include "app/importer/readers/check_file.h"
 
+#include "app/importer/readers/piece_cover.h"
 #include "volume/base/byte_text.h"
+#include "volume/system/input_file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -8,7 +10,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <regex>
+#include <optional>
+#include <pugixml.hpp>
 #include <set>
 #include <stdexcept>
 #include <vector>
@@ -20,39 +23,107 @@ namespace fs = std::filesystem;
 
 namespace {
 
-void checkXml(const std::string& path, std::set<std::string>& seen) {
+volume::Outside allowedOutside = volume::Outside::Refused; ///< of the process: it reads files for one request
+
+/// The files that a VTK XML file names, of the kinds that hold no samples of their own.
+std::vector<std::string> namedInXml(const std::string& path) {
+    constexpr std::size_t kMostList = std::size_t(1) << 30;
+    if (bytesIn(path) > kMostList) throw std::runtime_error("is too large for a list of files");
+    const std::string text = readWhole(path);
+    // Names might be put together from entities, which VTK replaces.
+    if (text.find("<!ENTITY") != std::string::npos) throw std::runtime_error("declares entities, as no VTK file does");
+    pugi::xml_document document;
+    document.load_buffer(text.data(), text.size());
+    std::vector<std::string> names;
+    struct Walker : pugi::xml_tree_walker {
+        std::vector<std::string>* to = nullptr;
+        bool for_each(pugi::xml_node& node) override {
+            for (const pugi::xml_attribute& attribute : node.attributes())
+                if (std::string_view(attribute.name()) == "file" || std::string_view(attribute.name()) == "Source")
+                    to->emplace_back(attribute.value());
+            return true;
+        }
+    } walker;
+    walker.to = &names;
+    document.traverse(walker);
+    return names;
+}
+
+/// Whether a VTK XML file lists others, by its head as VTK's readers take it, or by its ending as they choose a reader.
+bool listsFiles(const std::string& path, const std::string& head) {
+    const std::string ending = fs::path(path).extension().string();
+    if (ending.starts_with(".vtm") || ending.starts_with(".vth") || ending == ".vtb" || ending == ".vtpd" ||
+        ending == ".vtpc" || ending.starts_with(".pv"))
+        return true;
+    const std::size_t type = head.find("type", std::min(head.find("<VTKFile"), head.size()));
+    const std::string_view kind = std::string_view(head).substr(std::min(type, head.size()), 40);
+    if (kind.find("\"PolyData") != std::string_view::npos) return false;
+    return kind.find("\"P") != std::string_view::npos || kind.find("'P") != std::string_view::npos ||
+           kind.find("vtk") != std::string_view::npos;
+}
+
+/// Every part of a list holds the samples that the list says it has.
+void checkParts(const std::string& path, const GridPieces& pieces) {
+    for (std::size_t p = 0; p < pieces.sources.size() && p < pieces.parts.size(); ++p) {
+        std::optional<GridPieces> inner = piecesOf(besides(path, pieces.sources[p]));
+        if (!inner) continue; // another kind: VTK tells
+        inner->whole = pieces.parts[p];
+        if (const std::size_t missing = missingIn(*inner, false); missing > 0)
+            throw std::runtime_error("its part " + pieces.sources[p] + " lacks " + std::to_string(missing) +
+                                     " of the samples that it should have");
+    }
+}
+
+void checkXml(const std::string& path, bool gaps, std::set<std::string>& seen) {
     if (!seen.insert(path).second) return;
     constexpr std::size_t kTail = 4096;
     const std::size_t size = bytesIn(path);
-    if (readPart(path, 0, kTail).find("<VTKFile") == std::string::npos)
-        throw std::runtime_error("is not a VTK XML file");
+    const std::string head = readPart(path, 0, kTail);
+    if (head.find("<VTKFile") == std::string::npos) throw std::runtime_error("is not a VTK XML file");
     if (readPart(path, size - std::min(size, kTail), kTail).find("</VTKFile>") == std::string::npos)
         throw std::runtime_error("ends before its last tag: truncated");
-    const std::string ending = fs::path(path).extension().string();
-    const bool lists = ending.starts_with(".vtm") || ending == ".vtb" || ending == ".vtpd" || ending == ".vtpc" ||
-                       ending.starts_with(".pv");
-    if (!lists) return;
-    const std::string text = readWhole(path);
-    static const std::regex kNamed("\\s(?:file|Source)\\s*=\\s*\"([^\"]*)\"");
-    for (std::sregex_iterator at(text.begin(), text.end(), kNamed), end; at != end; ++at) {
-        const std::string name = (*at)[1].str(), inner = besides(path, name);
-        if (!fs::exists(inner)) throw std::runtime_error("names " + name + ", which does not exist");
-        try {
-            checkXml(inner, seen);
-        } catch (const std::runtime_error& error) {
-            throw std::runtime_error("its part " + name + " " + error.what());
+    if (listsFiles(path, head))
+        for (const std::string& name : namedInXml(path)) {
+            const std::string inner = besides(path, name);
+            if (!fs::exists(inner)) throw std::runtime_error("names " + name + ", which does not exist");
+            try {
+                checkXml(inner, false, seen);
+            } catch (const std::runtime_error& error) {
+                throw std::runtime_error("its part " + name + " " + error.what());
+            }
         }
-    }
+    const std::optional<GridPieces> pieces = piecesOf(path);
+    if (!pieces) return;
+    checkParts(path, *pieces);
+    if (const std::size_t missing = gaps ? 0 : missingIn(*pieces, false); missing > 0)
+        throw std::runtime_error("its pieces leave out " + std::to_string(missing) +
+                                 " of the samples of its whole extent");
 }
 
 } // namespace
 
+void letNameOutside(volume::Outside outside) {
+    allowedOutside = outside;
+}
+
+volume::Outside outsideOfFolders() {
+    return allowedOutside;
+}
+
+std::string besidesIn(const std::string& folder, const std::string& name) {
+    std::string path = volume::namedPathIn(folder, name, allowedOutside);
+    if (whyNoFile(path) == kPipeOrDevice)
+        throw std::runtime_error("names \"" + name.substr(0, 200) + "\", which " + kPipeOrDevice);
+    return path;
+}
+
 std::string besides(const std::string& file, const std::string& name) {
-    const fs::path path(name);
-    return path.is_absolute() ? name : (fs::path(file).parent_path() / path).string();
+    return besidesIn(fs::path(file).parent_path().string(), name);
 }
 
 std::string readPart(const std::string& path, std::size_t begin, std::size_t count) {
+    if (whyNoFile(path) == kPipeOrDevice)
+        throw std::runtime_error(fs::path(path).filename().string() + " " + kPipeOrDevice);
     std::ifstream in(path, std::ios::binary);
     in.seekg(0, std::ios::end);
     const std::streamoff end = in.tellg(); // a count from a damaged header must take no memory
@@ -98,13 +169,13 @@ void checkLastLine(std::string_view text) {
         throw std::runtime_error("ends within a line: truncated (a whole file ends with a line end)");
 }
 
-void checkXml(const std::string& path) {
+void checkXml(const std::string& path, bool gaps) {
     std::set<std::string> seen;
-    checkXml(path, seen);
+    checkXml(path, gaps, seen);
 }
 
 void checkDeflated(const std::string& path, std::size_t begin, double wanted) {
-    std::ifstream in(path, std::ios::binary);
+    std::ifstream in = openInput(path);
     in.seekg(static_cast<std::streamoff>(begin));
     z_stream stream{};
     constexpr int kAnyHeader = 15 + 32;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "volume/import/files/named_path.h"
+
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -8,8 +10,15 @@
 /// std::runtime_error with one line of reason.
 namespace tessera::importer {
 
-/// Resolves a name in `file` relative to the folder of `file`.
+/// Whether files may name others outside of their folders: from now on, in the whole process. Refused at first.
+void letNameOutside(volume::Outside outside);
+volume::Outside outsideOfFolders();
+
+/// The path of what `file` names, which is no pipe or device if it is there. Throws for what lies outside of the folder
+/// of `file` unless that is allowed. Every name of another file that stands in a file goes through this.
 std::string besides(const std::string& file, const std::string& name);
+/// The same for a name from a folder.
+std::string besidesIn(const std::string& folder, const std::string& name);
 
 /// Bytes [begin, begin + count) of a file, fewer where it ends.
 std::string readPart(const std::string& path, std::size_t begin, std::size_t count);
@@ -26,8 +35,9 @@ void refuseHollow(double stated, double stored, const std::string& what = {});
 /// For text, whose last number might be cut: the last line must have a line end.
 void checkLastLine(std::string_view text);
 
-/// A VTK XML file, and all files that it names, must have their closing tag.
-void checkXml(const std::string& path);
+/// A VTK XML file, and all files that it names, must have their closing tag, and grids all samples of their extents.
+/// `gaps`: the caller takes care of those that the file itself lacks (readers/piece_cover.h).
+void checkXml(const std::string& path, bool gaps);
 
 /// The zlib or gzip stream at `begin` must end, and hold at least `wanted` bytes once inflated.
 void checkDeflated(const std::string& path, std::size_t begin, double wanted);

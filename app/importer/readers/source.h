@@ -40,6 +40,7 @@ struct Source {
     std::function<vtkSmartPointer<vtkDataObject>(std::size_t time)> read;
     /// Throws if the files of a time are shorter than their headers state; called before they are read.
     std::function<void(const Source& self, std::size_t time)> check;
+    std::function<void(vtkDataObject*)> mark; ///< marks in what VTK read the points and cells that no file holds
     std::vector<double> times;                ///< empty: not stated
     std::vector<double> readerTimes;          ///< the same, as VTK's reader has them (float32 converted to double)
     std::map<std::string, std::string> units; ///< stated by the file, by array

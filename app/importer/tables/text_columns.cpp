@@ -17,7 +17,7 @@ namespace tessera::importer {
 namespace {
 
 constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kMostWords = 255, kMostColumns = 50'000;
+constexpr std::size_t kMostWords = 255, kMostColumns = 20'000;
 
 std::string shortWord(std::string_view field) {
     std::size_t end = std::min<std::size_t>(field.size(), 40);

@@ -1,5 +1,6 @@
 #include "app/importer/zarr/ome_zarr.h"
 
+#include "app/importer/readers/check_file.h"
 #include "app/importer/readers/give_times.h"
 #include "app/importer/zarr/zarr_array.h"
 #include "volume/base/unit_conversion.h"
@@ -258,7 +259,7 @@ void addLabels(const std::string& folder, OmeImage& image, std::vector<std::stri
         if (name.empty() || name.find("..") != std::string::npos || name.front() == '/') continue;
         try {
             std::vector<std::string> ignored;
-            OmeLevel level = openLevel((fs::path(folder) / "labels" / name).string(), ignored);
+            OmeLevel level = openLevel(besidesIn((fs::path(folder) / "labels").string(), name), ignored);
             const std::size_t times = level.lengthOf(AxisRole::Time);
             if (spaceOf(level) != spaceOf(image.levels.front()) ||
                 (times != 1 && times != image.levels.front().lengthOf(AxisRole::Time)))

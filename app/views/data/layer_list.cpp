@@ -4,6 +4,7 @@
 #include "app/edits/add_layer.h"
 #include "app/pane/view_parts.h"
 #include "app/session/own_functions.h"
+#include "app/session/session_json.h"
 #include "app/views/timeline/keyframes.h"
 
 #include <algorithm>
@@ -125,7 +126,8 @@ void drawLayerList(ViewContext& context, const volume::DatasetInfo& info, int& s
 void drawLayerButtons(ViewContext& context, const volume::DatasetInfo& info, int& selected) {
     std::vector<vis::Layer>& layers = context.session.layers;
     const bool any = selected >= 0 && selected < static_cast<int>(layers.size());
-    if (iconButton(context, "add", icons::kPlus, "Add a layer")) ImGui::OpenPopup("add layer");
+    const bool room = layers.size() < kMostLayers;
+    if (iconButton(context, "add", icons::kPlus, "Add a layer", room)) ImGui::OpenPopup("add layer");
     if (ImGui::BeginPopup("add layer")) {
         static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice", "Flow"};
         for (std::size_t kind = 0; kind < std::size(kNames); ++kind)
@@ -136,7 +138,7 @@ void drawLayerButtons(ViewContext& context, const volume::DatasetInfo& info, int
         ImGui::EndPopup();
     }
     ImGui::SameLine(0, em() * 0.2f);
-    if (iconButton(context, "copy", icons::kCopy, "Duplicate the layer", any)) {
+    if (iconButton(context, "copy", icons::kCopy, "Duplicate the layer", any && room)) {
         vis::Layer copy = layers[static_cast<std::size_t>(selected)];
         if (!copy.name.empty()) copy.name += " copy";
         layers.insert(layers.begin() + selected + 1, copy);

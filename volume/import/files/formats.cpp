@@ -1,5 +1,7 @@
 #include "volume/import/files/formats.h"
 
+#include "volume/system/input_file.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
@@ -84,6 +86,7 @@ const FileFormat* formatNamed(std::string_view name) {
 const FileFormat* formatOfFile(const std::string& path) {
     if (const FileFormat* format = formatOf(path)) return format;
     if (namesFoamCase(path)) return formatNamed("OpenFOAM");
+    if (!whyNoFile(path).empty()) return nullptr;
     std::ifstream in(path, std::ios::binary);
     char head[132] = {};
     in.read(head, sizeof head);
@@ -120,6 +123,7 @@ bool namesFoamCase(const std::string& path) {
 
 bool isSlice(const FileFormat& format, const std::string& path) {
     if (!format.slices || format.name != "TIFF") return format.slices;
+    if (!whyNoFile(path).empty()) return true;
     std::ifstream in(path, std::ios::binary);
     const auto number = [&](std::size_t bytes, bool big) {
         unsigned char raw[8] = {};

@@ -7,5 +7,7 @@ namespace tessera::volume {
 
 inline constexpr int kMostSamplesPerAxis = 1 << 20;
 inline constexpr std::size_t kMostTimes = 1'000'000;
+inline constexpr std::size_t kMostArrays = 10'000;   ///< of one file, each with samples
+inline constexpr std::size_t kMostQuantities = 4096; ///< over time, as many as an archive holds
 
 } // namespace tessera::volume

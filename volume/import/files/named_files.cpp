@@ -2,7 +2,9 @@
 
 #include "volume/base/error.h"
 #include "volume/import/files/formats.h"
+#include "volume/import/files/named_path.h"
 #include "volume/import/files/series.h"
+#include "volume/system/input_file.h"
 
 #include <algorithm>
 #include <array>
@@ -21,6 +23,12 @@ namespace {
 
 constexpr std::size_t kMostNamed = 100'000;
 
+fs::path plain(const fs::path& path) {
+    std::error_code unknown;
+    const fs::path whole = fs::absolute(path.empty() ? fs::path(".") : path, unknown).lexically_normal();
+    return whole.has_filename() ? whole : whole.parent_path(); // without a slash at its end
+}
+
 std::string ending(const fs::path& path) {
     std::string text = path.extension().string();
     std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
@@ -37,6 +45,7 @@ bool isHeader(const std::string& kind) {
 /// The beginning of a file, which contains the header.
 std::string headOf(const fs::path& path) {
     constexpr std::size_t kMost = 1 << 20;
+    if (!whyNoFile(path.string()).empty()) return {};
     std::string text(kMost, '\0');
     std::ifstream in(path, std::ios::binary);
     in.read(text.data(), std::streamsize(text.size()));
@@ -129,7 +138,7 @@ std::vector<fs::path> namedDirectly(const fs::path& path) {
         const fs::path folder = fs::absolute(path).parent_path();
         addCase(path.filename().string().starts_with("controlDict") ? folder.parent_path() : folder);
     } else if (fs::is_directory(path, problem) || kind == ".pvd" || kind == ".series" || !fs::exists(path, problem)) {
-        for (const SeriesFile& file : expandPaths({path.string()})) {
+        for (const SeriesFile& file : expandPaths({path.string()}, Outside::Allowed)) {
             named.emplace_back(file.path);
             named.insert(named.end(), file.slices.begin(), file.slices.end());
         }
@@ -156,6 +165,23 @@ std::vector<fs::path> namedDirectly(const fs::path& path) {
 }
 
 } // namespace
+
+bool liesWithin(const std::string& folder, const std::string& path) {
+    const fs::path base = plain(folder), at = plain(path);
+    return std::mismatch(base.begin(), base.end(), at.begin(), at.end()).first == base.end();
+}
+
+std::string namedPathIn(const std::string& folder, const std::string& name, Outside outside) {
+    const std::string path = (fs::path(folder) / name).string(); // an absolute name stays as it is
+    if (outside == Outside::Refused && !liesWithin(folder, path))
+        throw Error("names \"" + name.substr(0, 200) + "\", which lies outside of its folder: --allow-outside, or " +
+                    "Files elsewhere in File > Open, reads it all the same");
+    return path;
+}
+
+std::string namedPath(const std::string& file, const std::string& name, Outside outside) {
+    return namedPathIn(fs::path(file).parent_path().string(), name, outside);
+}
 
 std::vector<std::string> filesNamedBy(const std::string& path) {
     const auto normal = [](const fs::path& file) {

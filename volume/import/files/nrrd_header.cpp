@@ -148,6 +148,9 @@ std::optional<std::string> numberedFile(std::string_view pattern, long number) {
         width = std::min<std::size_t>(width * 10 + std::size_t(pattern[at] - '0'), 64);
     if (at >= pattern.size() || std::string_view("diu").find(pattern[at]) == std::string_view::npos)
         return std::nullopt;
+    if (pattern.find('%', at) != std::string_view::npos)
+        throw Error("\"" + std::string(pattern.substr(0, 60)) +
+                    "\" is no pattern of one number, such as slice%03d.raw");
     std::string digits = std::to_string(number);
     if (digits.size() < width) digits.insert(zeros && number < 0 ? 1 : 0, width - digits.size(), zeros ? '0' : ' ');
     return std::string(pattern.substr(0, mark)) + digits + std::string(pattern.substr(at + 1));

@@ -37,7 +37,8 @@ std::vector<std::string> nrrdWords(const std::string& text);
 /// The names of a data file's field: one name, "slice%03d.raw 1 10 1", or those of the list.
 std::vector<std::string> nrrdDataFiles(const NrrdHeader& header);
 
-/// "s%02d.raw" with a number in place of %02d; nothing where a name has no such place.
+/// "s%02d.raw" with a number in place of %02d; nothing where a name has no such place. Throws Error where anything like
+/// a second place follows.
 std::optional<std::string> numberedFile(std::string_view pattern, long number);
 
 } // namespace tessera::volume

@@ -1,12 +1,12 @@
 #include "volume/import/files/raw.h"
 
 #include "volume/base/error.h"
+#include "volume/system/input_file.h"
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
@@ -52,8 +52,7 @@ Field readComponent(const std::string& path, const RawForm& form, std::size_t co
     field.scale = what.scale;
     field.offset = what.offset;
 
-    std::ifstream in(path, std::ios::binary);
-    if (!in) throw Error("cannot be read", path);
+    std::ifstream in = openInput(path);
     in.seekg(static_cast<std::streamoff>(at));
     const bool swap = form.bigEndian && storedBytes(what.type) > 1;
     const bool direct = what.type != RawType::I8 && what.type != RawType::F64;
@@ -116,11 +115,15 @@ std::string whatJsonIs(const nlohmann::json& document) {
 constexpr std::uintmax_t kMostSidecar = 16 << 20; ///< bytes
 
 std::string readSidecar(const fs::path& path) {
-    std::error_code unknown;
-    const std::uintmax_t size = fs::file_size(path, unknown);
-    if (!unknown && size > kMostSidecar) throw Error("is too large for a sidecar", path.string());
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
+    return readInput(path.string(), kMostSidecar);
+}
+
+std::string dataFileOf(const std::string& sidecar, const std::string& named, Outside outside) {
+    try {
+        return namedPath(sidecar, named, outside);
+    } catch (const Error& error) {
+        throw Error(error.reason(), sidecar);
+    }
 }
 
 } // namespace
@@ -145,18 +148,17 @@ bool isRaw(const std::string& path, const std::string& rawOption) {
 bool hasSidecar(const std::string& path) {
     const fs::path file(path), sidecar = fs::path(file).replace_extension(".json");
     std::error_code unknown;
-    if (file.extension() != ".raw" || !fs::exists(sidecar, unknown)) return false;
+    if (file.extension() != ".raw" || !whyNoFile(sidecar.string()).empty()) return false;
     return fs::file_size(sidecar, unknown) > kMostSidecar || otherThanSidecar(readSidecar(sidecar)).empty();
 }
 
 RawForm statedForm(const std::string& rawOption) {
     if (!rawOption.ends_with(".json")) return parseRawOption(rawOption);
-    std::error_code unknown;
-    if (!fs::is_regular_file(rawOption, unknown)) throw Error("no such file", rawOption, "--raw");
+    if (const std::string why = whyNoFile(rawOption); !why.empty()) throw Error(why, rawOption, "--raw");
     return parseSidecar(readSidecar(rawOption), rawOption);
 }
 
-FileBlock openRaw(const std::string& path, const std::string& rawOption) {
+FileBlock openRaw(const std::string& path, const std::string& rawOption, Outside outside) {
     RawForm form;
     fs::path data = path;
     if (!rawOption.empty()) {
@@ -164,7 +166,7 @@ FileBlock openRaw(const std::string& path, const std::string& rawOption) {
     } else {
         fs::path sidecar = path;
         if (sidecar.extension() != ".json") sidecar.replace_extension(".json");
-        if (!fs::exists(path)) throw Error("no such file", path);
+        requireFile(path);
         const bool exists = fs::exists(sidecar);
         const std::string text = exists ? readSidecar(sidecar) : "";
         const std::string other = exists ? otherThanSidecar(text) : "";
@@ -184,16 +186,15 @@ FileBlock openRaw(const std::string& path, const std::string& rawOption) {
         if (data.extension() == ".json") {
             data = sidecar;
             data.replace_extension(".raw");
-            if (!form.dataFile.empty()) data = sidecar.parent_path() / form.dataFile;
+            if (!form.dataFile.empty()) data = dataFileOf(sidecar.string(), form.dataFile, outside);
         }
     }
     return openForm(form, path, data.string(), "raw");
 }
 
 FileBlock openForm(const RawForm& form, const std::string& path, const std::string& data, const std::string& format) {
-    std::error_code failed;
-    const auto size = fs::file_size(data, failed);
-    if (failed) throw Error("no such file", data);
+    requireFile(data);
+    const auto size = fs::file_size(data);
     if (size == 0) throw Error("is empty", data);
     const auto counted = [](std::size_t n, const char* one) {
         return std::to_string(n) + " " + one + (n == 1 ? "" : "s");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volume/import/files/file_block.h"
+#include "volume/import/files/named_path.h"
 
 #include <span>
 #include <string>
@@ -60,8 +61,9 @@ std::string rawOptionOfName(const std::string& path);
 bool hasSidecar(const std::string& path);
 
 /// Opens a raw file named by itself or by its sidecar; `rawOption` (may be empty) takes the place of the sidecar.
-/// Checks the size of the file against the form; samples are read on demand.
-FileBlock openRaw(const std::string& path, const std::string& rawOption);
+/// `outside`: whether the sidecar may name a file elsewhere. Checks the size of the file against the form; samples are
+/// read on demand.
+FileBlock openRaw(const std::string& path, const std::string& rawOption, Outside outside = Outside::Refused);
 
 /// Opens a file with a known layout; `named` is the name the user gave, `data` the file with the samples. Checks its
 /// size.

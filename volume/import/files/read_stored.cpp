@@ -1,6 +1,7 @@
 // Samples of stored images: which bytes, as which numbers.
 #include "volume/base/error.h"
 #include "volume/import/files/stored_image.h"
+#include "volume/system/input_file.h"
 
 #include <algorithm>
 #include <bit>
@@ -75,9 +76,11 @@ std::uint64_t afterLines(std::ifstream& in, std::uint64_t begin, std::uint64_t l
 SamplePart partOf(const StoredImage& image, const std::string& path, const std::string& name, double wanted) {
     const SampleFiles& files = image.files;
     const std::string which = name.empty() ? "" : "its file " + name + " ";
+    if (const std::string why = whyNoFile(path); !why.empty())
+        throw Error((name.empty() ? "" : "its samples' file " + name + " cannot be read: ") + why);
+    std::ifstream in(path, std::ios::binary);
     std::error_code failed;
     const std::uintmax_t whole = fs::file_size(path, failed);
-    std::ifstream in(path, std::ios::binary);
     if (failed || !in) throw Error(name.empty() ? "cannot be read" : "its samples' file " + name + " cannot be read");
     SamplePart part{path, name, files.begin, 0};
     if (files.lineSkip > 0) part.begin = afterLines(in, part.begin, files.lineSkip);
@@ -109,10 +112,9 @@ std::vector<SamplePart> partsOf(const StoredImage& image, const std::string& hea
         throw Error("names " + std::to_string(files.names.size()) + " files, which cannot hold equal parts of " +
                     std::to_string(image.samples()) + " samples");
     std::vector<SamplePart> parts;
-    for (const std::string& name : files.names) {
-        const fs::path path = fs::path(header).parent_path() / name; // an absolute name stays as it is
-        parts.push_back(partOf(image, path.string(), name, image.bytes() / double(files.names.size())));
-    }
+    for (const std::string& name : files.names)
+        parts.push_back(
+            partOf(image, namedPath(header, name, files.outside), name, image.bytes() / double(files.names.size())));
     return parts;
 }
 

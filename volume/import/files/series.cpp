@@ -3,15 +3,14 @@
 #include "volume/base/error.h"
 #include "volume/import/files/file_names.h"
 #include "volume/import/files/formats.h"
+#include "volume/system/input_file.h"
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <glob.h>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -27,13 +26,7 @@ constexpr std::size_t kMostFiles = 1'000'000;
 constexpr std::uintmax_t kMostListBytes = 256u << 20;
 
 std::string readText(const std::string& path) {
-    std::error_code failed;
-    const auto size = fs::file_size(path, failed);
-    if (failed) throw Error("cannot be read", path);
-    if (size > kMostListBytes) throw Error("is too large for a list of files", path);
-    std::ifstream in(path, std::ios::binary);
-    if (!in) throw Error("cannot be read", path);
-    return {std::istreambuf_iterator<char>(in), {}};
+    return readInput(path, kMostListBytes);
 }
 
 std::string ending(const std::string& path) {
@@ -42,9 +35,12 @@ std::string ending(const std::string& path) {
     return text;
 }
 
-std::string besides(const std::string& list, const std::string& name) {
-    const fs::path path(name);
-    return path.is_absolute() ? name : (fs::path(list).parent_path() / path).string();
+std::string listedPath(const std::string& list, const std::string& name, Outside outside) {
+    try {
+        return namedPath(list, name, outside);
+    } catch (const Error& error) {
+        throw Error(error.reason(), list);
+    }
 }
 
 std::optional<double> parseTime(std::string_view text) {
@@ -196,7 +192,7 @@ SliceName sliceName(const std::string& path) {
     return found;
 }
 
-std::vector<SeriesFile> parsePvd(const std::string& xml, const std::string& file) {
+std::vector<SeriesFile> parsePvd(const std::string& xml, const std::string& file, Outside outside) {
     if (xml.find("<Collection") == std::string::npos) throw Error("holds no Collection: not a .pvd file", file);
     std::vector<SeriesFile> files;
     for (std::size_t at = 0; (at = xml.find("<DataSet", at)) != std::string::npos;) {
@@ -206,7 +202,7 @@ std::vector<SeriesFile> parsePvd(const std::string& xml, const std::string& file
         const std::optional<std::string> name = attribute(tag, "file"), time = attribute(tag, "timestep");
         if (!name || name->empty()) throw Error("DataSet without a file", file, "byte " + std::to_string(at));
         SeriesFile entry;
-        entry.path = besides(file, *name);
+        entry.path = listedPath(file, *name, outside);
         if (time) {
             entry.time = parseTime(*time);
             if (!entry.time)
@@ -225,7 +221,7 @@ std::vector<SeriesFile> parsePvd(const std::string& xml, const std::string& file
     return files;
 }
 
-std::vector<SeriesFile> parseSeries(const std::string& text, const std::string& file) {
+std::vector<SeriesFile> parseSeries(const std::string& text, const std::string& file, Outside outside) {
     const nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
     if (document.is_discarded() || !document.is_object()) throw Error("is not JSON of a file series", file);
     const auto list = document.find("files");
@@ -238,7 +234,7 @@ std::vector<SeriesFile> parseSeries(const std::string& text, const std::string& 
         if (!item.is_object() || !item.contains("name") || !item["name"].is_string())
             throw Error("needs a name", file, place);
         SeriesFile entry;
-        entry.path = besides(file, item["name"].get<std::string>());
+        entry.path = listedPath(file, item["name"].get<std::string>(), outside);
         if (item.contains("time")) {
             if (!item["time"].is_number()) throw Error("time is not a number", file, place);
             entry.time = item["time"].get<double>();
@@ -251,7 +247,7 @@ std::vector<SeriesFile> parseSeries(const std::string& text, const std::string& 
     return files;
 }
 
-std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths) {
+std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths, Outside outside) {
     std::vector<SeriesFile> files;
     std::vector<std::string> pending(paths.rbegin(), paths.rend());
     std::set<std::string> seen; // ignore duplicate paths
@@ -285,13 +281,17 @@ std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths) {
             pending.insert(pending.end(), fits.rbegin(), fits.rend());
             continue;
         }
+        requireFile(path);
         const std::string kind = ending(path);
         if (kind == ".pvd" || kind == ".series") {
             std::vector<SeriesFile> listed =
-                kind == ".pvd" ? parsePvd(readText(path), path) : parseSeries(readText(path), path);
+                kind == ".pvd" ? parsePvd(readText(path), path, outside) : parseSeries(readText(path), path, outside);
             for (SeriesFile& entry : listed)
-                if (!fs::exists(entry.path, ignored))
-                    throw Error("lists " + entry.path + ", which does not exist", path);
+                if (const std::string why = whyNoFile(entry.path);
+                    !why.empty() && !fs::is_directory(entry.path, ignored))
+                    throw Error("lists " + entry.path + ", which " +
+                                    (why == kNoSuchFile ? std::string("does not exist") : why),
+                                path);
             files.insert(files.end(), listed.begin(), listed.end());
             continue;
         }

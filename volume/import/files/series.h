@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volume/import/files/file_names.h"
+#include "volume/import/files/named_path.h"
 
 #include <optional>
 #include <string>
@@ -31,17 +32,18 @@ struct SeriesFile {
 /// Expands the paths given by the user: a directory (of Zarr, an OpenFOAM case, its single .pvd or .series, or its
 /// files of the most frequent known suffix), a pattern with * or ?, a ParaView .pvd or .series file, or files. Groups
 /// keep the order of their first file; files of a group are sorted by time, then number. Duplicate paths are ignored.
-/// Throws Error for paths that do not exist or cannot be read.
-std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths);
+/// Throws Error for paths that do not exist or cannot be read, and for lists of files elsewhere if that is refused.
+std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths, Outside outside = Outside::Refused);
 
 /// The files that a pattern with * or ? fits, in alphabetical order; empty if there is none.
 std::vector<std::string> filesOfPattern(const std::string& pattern);
 
 /// Contents of a .pvd (XML Collection). `file` names it in errors; paths are relative to its folder.
-std::vector<SeriesFile> parsePvd(const std::string& xml, const std::string& file);
+std::vector<SeriesFile> parsePvd(const std::string& xml, const std::string& file, Outside outside = Outside::Refused);
 
 /// Contents of a .series (ParaView's JSON: {"files": [{"name": .., "time": ..}]}).
-std::vector<SeriesFile> parseSeries(const std::string& json, const std::string& file);
+std::vector<SeriesFile> parseSeries(const std::string& json, const std::string& file,
+                                    Outside outside = Outside::Refused);
 
 /// The number of a slice in the name of its file, and that of its time where it has one: those that follow a letter z
 /// and a letter t of their own ("run_t03_z012_c1.tif"), else the last. `volume` is the name without the number of the

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volume/import/files/file_block.h"
+#include "volume/import/files/named_path.h"
 #include "volume/import/files/upright.h"
 
 #include <cstddef>
@@ -29,9 +30,10 @@ enum class SampleEncoding : std::uint8_t { Raw, Deflate, Bzip2, Hex, Text };
 /// The files that hold the samples, one after the other in equal parts.
 struct SampleFiles {
     SampleEncoding encoding = SampleEncoding::Raw;
-    std::vector<std::string> names; ///< beside the header; empty: they follow in the header's own file
-    std::uint64_t begin = 0;        ///< bytes before all else in each file: the header
-    std::uint64_t lineSkip = 0;     ///< then so many lines
+    std::vector<std::string> names;     ///< from the header's folder; empty: they follow in the header's own file
+    Outside outside = Outside::Refused; ///< whether these may lie elsewhere
+    std::uint64_t begin = 0;            ///< bytes before all else in each file: the header
+    std::uint64_t lineSkip = 0;         ///< then so many lines
     /// Then so many bytes, of deflated samples once they are inflated. Negative: samples end -byteSkip - 1 bytes before
     /// the end.
     std::int64_t byteSkip = 0;

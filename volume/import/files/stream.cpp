@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostBlocks = 100'000, kMostArrays = 10'000;
+constexpr std::size_t kMostBlocks = 100'000;
 
 template <class T> T take(std::span<const std::byte> bytes, std::size_t at) {
     T value;

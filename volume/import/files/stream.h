@@ -11,13 +11,16 @@
 
 /// The protocol between tessera-import and the main program.
 ///
-/// `tessera-import [--like | --slices N] FILE ...` reads request lines from stdin and writes messages to stdout;
-/// messages for people go to stderr. All numbers are little-endian. A message is
+/// `tessera-import [--allow-outside] [--like | --slices N] FILE ...` reads request lines from stdin and writes messages
+/// to stdout; messages for people go to stderr. `tessera-import -` reads these words from stdin before the requests,
+/// each ended by a zero byte, the last one empty: a command line has no room for the names of a long series. All
+/// numbers are little-endian. A message is
 ///
 ///     u32 magic "TSI1"   u32 kind   u64 length   length bytes
 ///
 /// kind 1, header: JSON text; one for each FILE, in order, before any request. A FILE after `--like` is expected to
-/// have the layout of the one before it; N files after `--slices` are slices of one volume and count as one. Keys:
+/// have the layout of the one before it; N files after `--slices` are slices of one volume and count as one. With
+/// `--allow-outside` files may name others outside of their folders. Keys:
 /// "format", "blocks": [{"name", "mesh", "cellData", "dims", "spacing", "origin", "box" (6 numbers, x first), "cells",
 /// "cellSize", "lengthUnit", "timeName", "timeUnit", "notes", "times", "quantities": [{"name", "unit", "values": [a
 /// number or null for each time]}], "arrays": [{"name", "unit", "components", "type", "labels": {"1": "air"}}]}].
