@@ -7,9 +7,9 @@
 #include "app/workbench/workbench.h"
 #include "app/workbench/workbench_commands.h"
 #include "codec/remote/fetch_queue.h"
+#include "vis/gl/headless.h"
 #include "vis/gl/requirements.h"
 #include "volume/base/error.h"
-#include "volume/system/shader_cache.h"
 
 #include <epoxy/gl.h>
 
@@ -33,7 +33,7 @@ std::string lastGlfwError() {
 
 struct Glfw {
     Glfw() {
-        guardShaderCache();
+        vis::guardShaderCache();
         if (glfwInit() != GLFW_TRUE) throw MachineError("no window can be opened: " + lastGlfwError());
     }
     ~Glfw() { glfwTerminate(); }
@@ -149,7 +149,7 @@ struct Window {
 struct GlfwBackEnd {
     // Keep the window's own callbacks, which feed the queue.
     explicit GlfwBackEnd(GLFWwindow* window) {
-        guardShaderCache(); // there is a context now
+        vis::guardShaderCache(); // there is a context now
         ImGui_ImplGlfw_InitForOpenGL(window, false);
     }
     ~GlfwBackEnd() { ImGui_ImplGlfw_Shutdown(); }

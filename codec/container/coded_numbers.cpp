@@ -24,7 +24,7 @@ using volume::NumbersAtTime;
 using volume::Summary;
 
 constexpr int kMostOrder = 3;
-constexpr std::uint64_t kRounding = 28; ///< low bits of 52 that are given up, 2^-25 of a number: float samples stay exact
+constexpr std::uint64_t kRounding = 12; ///< low bits of 52 that are given up: 2^-41 of a number
 
 /// Numbers without samples are not numbers, and coded as 0.
 template <class Change> void changeEmpty(LabelNumbers& numbers, const Change& change) {

@@ -18,7 +18,7 @@ struct StoredNumbers {
 
 /// Codes numbers in blocks, each of some of the times. `shape`: what the last block before says of labels, channels and
 /// regions, "" = there is none; becomes that of the last one. Counts, volumes, least and most keep every bit, other
-/// numbers are rounded to 25 bits, so those of floats stay exact.
+/// numbers are rounded by less than 1e-12 of themselves.
 std::vector<Bytes> encodeNumbers(const volume::ComputedNumbers& numbers, std::string& shape);
 
 /// The numbers of both, by rising time.

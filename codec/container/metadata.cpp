@@ -320,7 +320,7 @@ Metadata metadataFromJson(std::string_view text, const std::string& file) {
         for (const Node& note : data["notes"].items(4096)) info.notes.push_back(note.text());
 
     if (!isOf(metadata)) root["source"].fail("the samples of the data cannot be made of it");
-    if (!areOf(info.bounds, metadata.source)) data["bounds"].fail("they are not those of the samples");
+    if (!areOf(info.bounds, metadata.source)) data["bounds"].fail("not the box of the samples");
 
     const Node grid = root["grid"];
     metadata.grid.lattice = info.lattice;

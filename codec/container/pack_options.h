@@ -40,6 +40,7 @@ struct PackOptions {
     double absError = 0;
     double psnr = 0;
     bool ofComponents = false;
+    bool regionNumbers = true;
     double sizeMb = 0;
     ThresholdOptions threshold;
     double discard = 0;
@@ -96,6 +97,11 @@ struct PackOptions {
                         .unit = "",
                         .doc = "Bounds relative to the range of a vector are relative to that of each component by "
                                "itself, instead of the widest one"});
+        visit(self.regionNumbers,
+              FieldInfo{.key = "regionNumbers",
+                        .unit = "",
+                        .doc = "With an error bound, keep means, extremes and balances of everything and of each "
+                               "region as computed from the source: about a kilobyte for each time"});
         visit(self.sizeMb, FieldInfo{.key = "targetSize",
                                      .unit = "MB",
                                      .doc = "Largest size of the archive; the smallest error relative to the ranges "

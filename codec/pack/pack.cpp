@@ -71,7 +71,8 @@ public:
         errors_.assign(info.parameters.size(), 0);
         for (const volume::Parameter& parameter : info.parameters)
             errorsBefore_.push_back(parameter.categorical ? 0 : before.maxError * extentOf(parameter));
-        memory_ = planMemory(storable(metadata_), source, options, team ? layersOfTeam(metadata_.grid, info) : slabLayers);
+        memory_ =
+            planMemory(storable(metadata_), source, options, team ? layersOfTeam(metadata_.grid, info) : slabLayers);
         reading_ = {.toBcc = toBcc,
                     .resample = options.resample,
                     .grid = metadata_.grid,

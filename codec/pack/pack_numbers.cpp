@@ -55,6 +55,7 @@ std::string shapeBefore(const Archive* grown) {
 
 std::string addNumbers(ArchiveWriter& writer, const volume::Dataset& source, const PackedBefore& before,
                        const Archive* grown, const MemoryPlan& memory, Metadata& metadata, const Progress& progress) {
+    if (!metadata.options.regionNumbers) return {};
     const volume::Dataset& from = before.whole ? *before.whole : source;
     volume::ComputedNumbers numbers;
     if (before.numbers)

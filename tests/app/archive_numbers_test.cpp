@@ -47,11 +47,9 @@ struct PackedCell {
     RegionBalanceQuery balance() const { return {0, "", *volume::labelChannel(info()), {1, 1, 0}}; }
 };
 
-constexpr double kStored = 6e-8; ///< stored numbers are rounded to 25 bits
-
 /// What two rows may differ by, besides rounding.
 void expectWithin(double is, double was, double bound, double unit) {
-    EXPECT_LE(std::abs(is - was), bound + kStored * std::max(std::abs(was), unit));
+    EXPECT_LE(std::abs(is - was), bound + 1e-12 * std::max(std::abs(was), unit));
 }
 
 void expectRows(const std::vector<RegionRow>& is, const std::vector<RegionRow>& was) {
@@ -61,7 +59,7 @@ void expectRows(const std::vector<RegionRow>& is, const std::vector<RegionRow>& 
         SCOPED_TRACE(is[i].parameter + " " + is[i].region);
         EXPECT_EQ(is[i].region, was[i].region);
         EXPECT_EQ(own.samples, wanted.samples);
-        EXPECT_NEAR(own.volume, wanted.volume, kStored * wanted.volume);
+        EXPECT_NEAR(own.volume, wanted.volume, 1e-12 * wanted.volume);
         const double unit = std::max(std::abs(wanted.min), std::abs(wanted.max));
         expectWithin(own.mean, wanted.mean, is[i].error, unit);
         expectWithin(own.deviation, wanted.deviation, is[i].error, unit);
@@ -76,7 +74,7 @@ void expectBalance(const BalanceTable& is, const BalanceTable& was) {
         const BalanceRow &own = is.rows[i], &wanted = was.rows[i];
         SCOPED_TRACE(own.region + ", " + own.surface);
         EXPECT_EQ(own.surface, wanted.surface);
-        EXPECT_NEAR(own.area, wanted.area, kStored * wanted.area); // summed in another order
+        EXPECT_NEAR(own.area, wanted.area, 1e-12 * wanted.area); // summed in another order
         const double unit = wanted.in + wanted.out;
         expectWithin(own.in, wanted.in, own.error, unit);
         expectWithin(own.out, wanted.out, own.error, unit);

@@ -17,7 +17,8 @@ bool draws(const std::string& path, const vis::RendererOptions& options) {
         const Opened opened = open({.paths = {path}, .layout = "", .data = {}, .import = {}});
         if (!opened.source || opened.source->grid().lattice.count() > 100'000) return false;
         PictureMaker maker(options);
-        const PictureRequest request{.size = {640, 420}};
+        PictureRequest request;
+        request.size = {640, 420};
         return maker.render(opened.document, opened.sources(), request).rgba.size() > 0;
     } catch (const Error&) { // all that may come of it
         return false;

@@ -163,6 +163,7 @@ TEST(PackSlabs, AreTakenWhereFramesDoNotFit) {
     const TemporaryFolder folder;
     volume::Dataset made;
     made.info.lattice = {volume::LatticeKind::CC, {160, 160, 640}, {1, 1, 1}, {0, 0, 0}};
+    made.info.bounds = {glm::dvec3(0), glm::dvec3(made.info.lattice.size - 1)};
     made.info.parameters = {{"v", "", 1, ScalarType::U8, false, {}, {}}};
     int wholes = 0, most = 0; // of parts
     made.read = [&, lattice = made.info.lattice](int, int, int, volume::SliceRange slices) {
