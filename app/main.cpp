@@ -14,7 +14,7 @@
 /// Replaces the operators of the whole program, so no library does it.
 void* operator new(std::size_t bytes) {
     constexpr std::size_t kLarge = std::size_t(32) << 20;
-    if (bytes >= kLarge && double(bytes) > tessera::volume::availableMemory()) throw std::bad_alloc();
+    if (bytes >= kLarge && double(bytes) > tessera::volume::availableMemory({}, true)) throw std::bad_alloc();
     void* const block = std::malloc(bytes > 0 ? bytes : 1);
     if (block == nullptr) throw std::bad_alloc();
     return block;

@@ -94,13 +94,13 @@ int parseAndRun(CLI::App& app, int argc, const char* const* argv, const std::fun
         warn("%s: cancelled\n", name);
         return 130;
     } catch (const MachineError& error) {
-        warn("%s: %s\n", name, error.what());
+        warn("%s: %s\n", name, printable(error.what()).c_str());
         return 3;
     } catch (const Error& error) {
-        warn("%s: %s\n", name, error.what());
+        warn("%s: %s\n", name, printable(error.what()).c_str());
         return 2;
     } catch (const std::system_error& error) { // e.g. permission denied, or no more threads
-        warn("%s: %s\n", name, error.what());
+        warn("%s: %s\n", name, printable(error.what()).c_str());
         return 3;
     } catch (const std::bad_alloc&) {
         warn("%s: not enough memory\n", name);

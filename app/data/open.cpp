@@ -64,6 +64,7 @@ Opened openDocument(SessionDocument document, const std::string& folder, const O
         const bool allowed = std::exchange(about.allowOutside, false);
         if (about != volume::ImportOptions{}) data.import = about;
         data.import.allowOutside = allowed;
+        if (data.other) data.other->import.allowOutside = allowed;
     }
     if (request.remote) data.remote = *request.remote;
     return openWith(std::move(opened), data, progress);

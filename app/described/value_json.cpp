@@ -169,18 +169,19 @@ void numbersFromJson(Value value, const Json& json, const Reading& reading) {
     for (std::size_t i = 0; i < count; ++i) value.setNumber(parts[i], static_cast<int>(i));
 }
 
-/// Of layers, lenses, keyframes and the like; lists of plain numbers may be longer.
-constexpr std::size_t kMostElements = 10'000;
+/// Of layers, lenses, keyframes and the like; lists of plain numbers may be longer, and a series may have many files.
+constexpr std::size_t kMostElements = 10'000, kMostFiles = 1'000'000;
 
 void listFromJson(Value value, const Json& json, const Reading& reading) {
     if (!json.is_array()) return wrongType(json, "an array", reading.issues, reading.path);
     value.type->resize(value.at, 0); // elements start from their defaults
-    if (json.size() > kMostElements && std::ranges::any_of(json, [](const Json& one) { return one.is_object(); })) {
-        reading.issues.push_back({reading.path,
-                                  "has " + std::to_string(json.size()) + " entries, more than " +
-                                      std::to_string(kMostElements) + " are not read",
-                                  false,
-                                  {}});
+    const std::size_t most = reading.path.ends_with("/files") ? kMostFiles : kMostElements;
+    if (json.size() > most && std::ranges::any_of(json, [](const Json& one) { return one.is_object(); })) {
+        reading.issues.push_back(
+            {reading.path,
+             "has " + std::to_string(json.size()) + " entries, more than " + std::to_string(most) + " are not read",
+             false,
+             {}});
         return;
     }
     value.type->resize(value.at, json.size());

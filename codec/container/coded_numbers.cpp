@@ -82,7 +82,7 @@ void putSeries(ByteWriter& out, std::span<const double> values) {
     }
     std::uint64_t any = 0;
     for (const double value : values) any |= static_cast<std::uint64_t>(ordered(value));
-    const int shift = std::countr_zero(any);
+    const int shift = any == 0 ? 0 : std::countr_zero(any); // 0: zeros of both signs
     std::vector<std::uint64_t> numbers;
     for (const double value : values) numbers.push_back(static_cast<std::uint64_t>(ordered(value) >> shift));
     std::vector<std::uint64_t> best;

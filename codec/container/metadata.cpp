@@ -345,7 +345,7 @@ const Metadata& storable(const Metadata& metadata) {
     try {
         metadataFromJson(toJson(known), {});
     } catch (const Error& error) {
-        throw Error("does not fit into an archive: " + error.place() + " is " + error.reason());
+        throw Error("does not fit into an archive: " + error.place() + ": " + error.reason());
     }
     return metadata;
 }

@@ -12,7 +12,12 @@ PackedBefore packedBefore(const std::shared_ptr<const Archive>& archive) {
     if (isResampled(metadata) && (!corrected || !metadata.resampled.empty()))
         before.resampled.resize(metadata.info.parameters.size());
     if (corrected) before.source = gridDataset(archive, 0);
-    before.numbers = archive->numbers();
+    try {
+        before.numbers = archive->numbers();
+    } catch (const ReadError&) {
+        throw;
+    } catch (const Error&) { // damaged ones say nothing of samples: they are left out
+    }
     return before;
 }
 

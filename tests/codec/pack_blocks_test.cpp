@@ -56,7 +56,9 @@ int packBy(int processes, const volume::Dataset& made, const PackOptions& option
     return failed;
 }
 
-TEST(PackBlocks, OneProcessPacksEveryBlock) {
+using PackBlocks = WithChildren;
+
+TEST_F(PackBlocks, OneProcessPacksEveryBlock) {
     const TemporaryFolder folder;
     volume::Dataset made = series();
     const BlockSummary summary = packInBlocks(made, small(), folder / "blocks.tsr", {3, {}});
@@ -73,7 +75,7 @@ TEST(PackBlocks, OneProcessPacksEveryBlock) {
     EXPECT_EQ(folder.files(), 2u) << "the folder of the blocks has gone";
 }
 
-TEST(PackBlocks, TheBytesDoNotDependOnTheNumberOfProcesses) {
+TEST_F(PackBlocks, TheBytesDoNotDependOnTheNumberOfProcesses) {
     const TemporaryFolder folder;
     const volume::Dataset made = series();
     for (const PackOptions& options : {small(), small(1e-3), small(0, StoredLattice::BCC)}) {
@@ -87,7 +89,7 @@ TEST(PackBlocks, TheBytesDoNotDependOnTheNumberOfProcesses) {
     }
 }
 
-TEST(PackBlocks, BoundsAreRelativeToTheRangesOfAllTimes) {
+TEST_F(PackBlocks, BoundsAreRelativeToTheRangesOfAllTimes) {
     const TemporaryFolder folder;
     volume::Dataset made = makeDataset({16, 16, 16}, {{"T", ScalarType::F32, 1, Texture::Smooth, false, false}}, 4);
     made.read = [read = made.read](int p, int c, int t) {
@@ -107,7 +109,7 @@ TEST(PackBlocks, BoundsAreRelativeToTheRangesOfAllTimes) {
     EXPECT_LE(largestError(blocks, made, 0), bound);
 }
 
-TEST(PackBlocks, ProcessesShareTheParametersOfATime) {
+TEST_F(PackBlocks, ProcessesShareTheParametersOfATime) {
     const TemporaryFolder folder;
     volume::test::TwoRegions regions;
     regions.place = 9;
@@ -135,7 +137,7 @@ TEST(PackBlocks, ProcessesShareTheParametersOfATime) {
         }
 }
 
-TEST(PackBlocks, AnArchiveThatWasResampledIsSoAsBefore) {
+TEST_F(PackBlocks, AnArchiveThatWasResampledIsSoAsBefore) {
     const TemporaryFolder folder;
     volume::Dataset made = series();
     pack(made, small(0, StoredLattice::BCC), folder / "source.tsr");
@@ -155,7 +157,7 @@ TEST(PackBlocks, AnArchiveThatWasResampledIsSoAsBefore) {
     }
 }
 
-TEST(PackBlocks, TheParametersOfAnInterruptedBlockAreNotPackedAgain) {
+TEST_F(PackBlocks, TheParametersOfAnInterruptedBlockAreNotPackedAgain) {
     const TemporaryFolder folder;
     const volume::Dataset made = series();
     ASSERT_EQ(packBy(1, made, small(), folder / "whole.tsr", 2, true), 0);
@@ -191,7 +193,7 @@ TEST(PackBlocks, TheParametersOfAnInterruptedBlockAreNotPackedAgain) {
     EXPECT_EQ(folder.files(), 2u);
 }
 
-TEST(PackBlocks, WhatAKilledProcessLeftIsGoneOnWith) {
+TEST_F(PackBlocks, WhatAKilledProcessLeftIsGoneOnWith) {
     const TemporaryFolder folder;
     const volume::Dataset made = series();
     ASSERT_EQ(packBy(1, made, small(), folder / "whole.tsr", 2), 0);
@@ -222,7 +224,7 @@ TEST(PackBlocks, WhatAKilledProcessLeftIsGoneOnWith) {
 }
 
 // One that was killed while it was alone in the folder that an earlier job left, and before the first one came.
-TEST(PackBlocks, TheFolderGoesThoughAProcessOfTheJobWasKilled) {
+TEST_F(PackBlocks, TheFolderGoesThoughAProcessOfTheJobWasKilled) {
     const TemporaryFolder folder;
     const volume::Dataset made = series();
     volume::Dataset deadly = made;
@@ -244,7 +246,7 @@ TEST(PackBlocks, TheFolderGoesThoughAProcessOfTheJobWasKilled) {
     EXPECT_EQ(folder.files(), 1u);
 }
 
-TEST(PackBlocks, OthersDoTheBlockOfAKilledProcess) {
+TEST_F(PackBlocks, OthersDoTheBlockOfAKilledProcess) {
     const TemporaryFolder folder;
     const volume::Dataset made = series();
     ASSERT_EQ(packBy(1, made, small(), folder / "whole.tsr", 2), 0);
@@ -265,7 +267,7 @@ TEST(PackBlocks, OthersDoTheBlockOfAKilledProcess) {
     EXPECT_EQ(folder.files(), 2u);
 }
 
-TEST(PackBlocks, AProcessThatStartsLateDoesNotBeginAgain) {
+TEST_F(PackBlocks, AProcessThatStartsLateDoesNotBeginAgain) {
     const TemporaryFolder folder;
     const volume::Dataset made = series();
     const auto launchedAs = [](int rank) { return BlockOptions{2, {rank, 2, 1, "7"}}; };
@@ -281,7 +283,7 @@ TEST(PackBlocks, AProcessThatStartsLateDoesNotBeginAgain) {
     EXPECT_EQ(folder.files(), 1u);
 }
 
-TEST(PackBlocks, WhoHasLeftAFormerRunHasNotLeftThisOne) {
+TEST_F(PackBlocks, WhoHasLeftAFormerRunHasNotLeftThisOne) {
     const TemporaryFolder folder;
     const volume::Dataset made = series();
     const auto launchedAs = [](int rank) { return BlockOptions{2, {rank, 2, 1, "7"}}; };
@@ -294,7 +296,7 @@ TEST(PackBlocks, WhoHasLeftAFormerRunHasNotLeftThisOne) {
     EXPECT_EQ(folder.files(), 1u);
 }
 
-TEST(PackBlocks, TheFolderOfCompleteWorkDoesNotHideNewData) {
+TEST_F(PackBlocks, TheFolderOfCompleteWorkDoesNotHideNewData) {
     const TemporaryFolder folder;
     const volume::Dataset made = series();
     EXPECT_EQ(packInBlocks(made, small(), folder / "run.tsr", {2, {0, 2, 1, "7"}}).packed, 4u); // the other never comes
@@ -306,7 +308,7 @@ TEST(PackBlocks, TheFolderOfCompleteWorkDoesNotHideNewData) {
     EXPECT_EQ(folder.files(), 1u);
 }
 
-TEST(PackBlocks, AnotherRunOfALauncherWithoutNamesBeginsAnew) {
+TEST_F(PackBlocks, AnotherRunOfALauncherWithoutNamesBeginsAnew) {
     const TemporaryFolder folder;
     const volume::Dataset made = series();
     const BlockOptions first{2, {0, 2, 1, "-"}};
@@ -314,7 +316,7 @@ TEST(PackBlocks, AnotherRunOfALauncherWithoutNamesBeginsAnew) {
     EXPECT_EQ(packInBlocks(made, small(), folder / "run.tsr", first).packed, 4u);
 }
 
-TEST(PackBlocks, BricksOfAnAutomaticSizeAreAlike) { // of small integers at one time they are larger than at several
+TEST_F(PackBlocks, BricksOfAnAutomaticSizeAreAlike) { // of small integers at one time they are larger than at several
     const TemporaryFolder folder;
     const volume::Dataset made =
         makeDataset({80, 70, 60}, {{"n", ScalarType::U8, 1, Texture::Smooth, false, false}}, 3);
@@ -327,7 +329,7 @@ TEST(PackBlocks, BricksOfAnAutomaticSizeAreAlike) { // of small integers at one 
     for (int t = 0; t < 3; ++t) expectSame(readField(archive, 0, 0, t), made.read(0, 0, t), true);
 }
 
-TEST(PackBlocks, ABlockWithoutSamplesBringsNoRange) {
+TEST_F(PackBlocks, ABlockWithoutSamplesBringsNoRange) {
     const TemporaryFolder folder;
     for (const int absent : {0, 1, 2}) {
         volume::Dataset made = makeDataset({16, 16, 16}, {{"T", ScalarType::F32, 2, Texture::Smooth, false, false}}, 3);
@@ -344,7 +346,7 @@ TEST(PackBlocks, ABlockWithoutSamplesBringsNoRange) {
     }
 }
 
-TEST(PackBlocks, AnExistingArchiveStaysUntilTheNewOneIsComplete) {
+TEST_F(PackBlocks, AnExistingArchiveStaysUntilTheNewOneIsComplete) {
     const TemporaryFolder folder;
     const volume::Dataset made = series();
     writeFile(folder / "run.tsr", {'o', 'l', 'd'});
@@ -359,7 +361,7 @@ TEST(PackBlocks, AnExistingArchiveStaysUntilTheNewOneIsComplete) {
     EXPECT_EQ(Archive(folder / "run.tsr").info().times.size(), 7u);
 }
 
-TEST(PackBlocks, OtherWorkInTheFolderIsRefused) {
+TEST_F(PackBlocks, OtherWorkInTheFolderIsRefused) {
     const TemporaryFolder folder;
     const volume::Dataset made = series();
     volume::Dataset bad = made;
@@ -385,7 +387,7 @@ TEST(PackBlocks, OtherWorkInTheFolderIsRefused) {
     EXPECT_FALSE(fs::exists(folder / "folder.tsr.blocks"));
 }
 
-TEST(PackBlocks, VanishedBlocksArePackedAgain) {
+TEST_F(PackBlocks, VanishedBlocksArePackedAgain) {
     const TemporaryFolder folder;
     const volume::Dataset whole = series();
     volume::Dataset made = whole;
@@ -400,7 +402,7 @@ TEST(PackBlocks, VanishedBlocksArePackedAgain) {
     for (int t = 0; t < 7; ++t) expectSame(readField(archive, 2, 0, t), whole.read(2, 0, t), true);
 }
 
-TEST(PackBlocks, ARemovedFolderIsSaidToBe) {
+TEST_F(PackBlocks, ARemovedFolderIsSaidToBe) {
     const TemporaryFolder folder;
     volume::Dataset made = series();
     made.read = [read = made.read, &folder](int p, int c, int t) {
@@ -411,7 +413,7 @@ TEST(PackBlocks, ARemovedFolderIsSaidToBe) {
     EXPECT_FALSE(fs::exists(folder / "run.tsr"));
 }
 
-TEST(PackBlocks, WhatDependsOnAllTimesIsRefused) {
+TEST_F(PackBlocks, WhatDependsOnAllTimesIsRefused) {
     const TemporaryFolder folder;
     PackOptions d4 = small(), sized = small(), discards = small();
     d4.lattice = StoredLattice::D4;
@@ -422,7 +424,7 @@ TEST(PackBlocks, WhatDependsOnAllTimesIsRefused) {
     EXPECT_EQ(folder.files(), 0u);
 }
 
-TEST(PackBlocks, EachProcessHasABlock) {
+TEST_F(PackBlocks, EachProcessHasABlock) {
     EXPECT_EQ(blockTimes(1000, {0, 4, 1, ""}), 16u);
     EXPECT_EQ(blockTimes(10, {0, 4, 1, ""}), 3u);
     EXPECT_EQ(blockTimes(3, {0, 8, 1, ""}), 1u);

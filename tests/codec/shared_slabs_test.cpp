@@ -60,7 +60,9 @@ std::vector<char> packedAlone(const volume::Dataset& made, const PackOptions& op
     return readFile(folder / "alone.tsr");
 }
 
-TEST(SharedSlabs, GiveTheArchiveOfOneProcess) {
+using SharedSlabs = WithChildren;
+
+TEST_F(SharedSlabs, GiveTheArchiveOfOneProcess) {
     const TemporaryFolder folder;
     std::vector<PackOptions> ways;
     for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC}) {
@@ -85,7 +87,7 @@ TEST(SharedSlabs, GiveTheArchiveOfOneProcess) {
     EXPECT_EQ(folder.files(), 2u) << "what was shared is gone";
 }
 
-TEST(SharedSlabs, OfASeriesAreTheSameForAnyNumberOfProcesses) {
+TEST_F(SharedSlabs, OfASeriesAreTheSameForAnyNumberOfProcesses) {
     const TemporaryFolder folder;
     const volume::Dataset made = volumes(5);
     PackOptions options = small();
@@ -101,7 +103,7 @@ TEST(SharedSlabs, OfASeriesAreTheSameForAnyNumberOfProcesses) {
 }
 
 // That the processes share the work, rather than each doing all of it.
-TEST(SharedSlabs, AreEachReadByOneProcess) {
+TEST_F(SharedSlabs, AreEachReadByOneProcess) {
     const TemporaryFolder folder;
     volume::Dataset made =
         inParts(makeDataset({16, 16, 64}, {{"T", ScalarType::F32, 1, Texture::Smooth, false, false}}, 1));
@@ -136,7 +138,7 @@ volume::Dataset onReading(int slice, volume::Dataset made, const std::function<v
     return made;
 }
 
-TEST(SharedSlabs, OfAKilledProcessAreDoneByTheOthers) {
+TEST_F(SharedSlabs, OfAKilledProcessAreDoneByTheOthers) {
     const TemporaryFolder folder;
     const volume::Dataset made = volumes();
     const std::vector<char> alone = packedAlone(made, small(), folder);
@@ -165,7 +167,7 @@ TEST(SharedSlabs, OfAKilledProcessAreDoneByTheOthers) {
     }
 }
 
-TEST(SharedSlabs, ANextRunGoesOnFromWholeTimes) {
+TEST_F(SharedSlabs, ANextRunGoesOnFromWholeTimes) {
     const TemporaryFolder folder;
     const volume::Dataset made = volumes(3);
     const std::vector<char> alone = packedAlone(made, small(), folder);
@@ -184,7 +186,7 @@ TEST(SharedSlabs, ANextRunGoesOnFromWholeTimes) {
     EXPECT_EQ(folder.files(), 2u);
 }
 
-TEST(SharedSlabs, RefuseWhatTheyCannotDo) {
+TEST_F(SharedSlabs, RefuseWhatTheyCannotDo) {
     const TemporaryFolder folder;
     volume::Dataset whole = makeDataset({9, 9, 9}, {{"T", ScalarType::F32, 1, Texture::Smooth, false, false}}, 1);
     EXPECT_THROW(packInBlocks(whole, small(), folder / "a.tsr", together(0, 1)), Error);

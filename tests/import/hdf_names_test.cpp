@@ -68,6 +68,8 @@ TEST_F(HdfNames, OutsideAreRefusedUnlessAllowed) {
     EXPECT_THAT(failure(withStorage(far + ".raw")), testing::HasSubstr("outside of its folder"));
     EXPECT_EQ(openFiles({withStorage(far + ".raw")}, allowed).read(0, 0, 0).value(0), 1);
     EXPECT_THAT(failure(withStorage("../far.raw")), testing::HasSubstr("outside of its folder"));
+    withStorage("../far.raw"); // and where a virtual data set leads
+    EXPECT_THAT(failure(withVirtual("storage.h5")), testing::HasSubstr("outside of its folder"));
     // Through a file beside it, too.
     fs::rename(withLink("../far.h5"), folder_ / "data/hop.h5");
     EXPECT_THAT(failure(withLink("hop.h5")), testing::HasSubstr("outside of its folder"));
@@ -80,6 +82,11 @@ TEST_F(HdfNames, BesideAreRead) {
         EXPECT_EQ(openFiles({withVirtual(name)}, {}).read(0, 0, 0).value(0), 1) << name;
     }
     EXPECT_EQ(openFiles({withStorage("near.raw")}, {}).read(0, 0, 0).value(0), 1);
+    {
+        const HdfId file(H5Fopen((folder_ / "data/near.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+        H5Lcreate_external("../gone.h5", "/T", file.id(), "link to a file that is not there", H5P_DEFAULT, H5P_DEFAULT);
+    }
+    EXPECT_EQ(openFiles({near}, {}).read(0, 0, 0).value(0), 1);
     // The library takes an absolute name that is not there for one beside: files that were moved together.
     EXPECT_EQ(openFiles({withLink("/nowhere/near.h5")}, {}).read(0, 0, 0).value(0), 1);
 }

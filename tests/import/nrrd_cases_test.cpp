@@ -28,6 +28,30 @@ TEST_F(ScanCases, NrrdSkipsWhatItsHeaderSays) {
     EXPECT_EQ(first("encoding: text\nline skip: 1\n", "# head\n97 2 3 4, 5 6 7 8"), 'a');
 }
 
+TEST_F(ScanCases, DamageOfCompressedSamplesIsTold) {
+    std::string samples;
+    for (int i = 0; i < 5 * 6 * 700; ++i) samples += char(i * i / 7);
+    const std::string head = "NRRD0004\ntype: uchar\nsizes: 5 6 700\nencoding: gzip\n\n",
+                      packed = stored(samples, false);
+    const auto failure = [&](const std::string& bytes) -> std::string {
+        try {
+            openFiles({write("s.nrrd", head + bytes)}, {}).read(0, 0, 0);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(failure(packed), "");
+    EXPECT_EQ(failure(packed + "something else"), "");
+    for (std::size_t at = 100; at < packed.size();
+         at += 1517) { // the stream is not compressed: only its checksum tells
+        std::string damaged = packed;
+        damaged[at] = char(damaged[at] ^ 1);
+        EXPECT_NE(failure(damaged), "") << at;
+    }
+    for (const std::size_t missing : {1, 4, 8}) EXPECT_NE(failure(packed.substr(0, packed.size() - missing)), "");
+}
+
 TEST_F(ScanCases, NrrdWithComponents) {
     const Dataset vectors = openFiles({scan("nrrd_gzip_vector.nrrd")}, {});
     ASSERT_EQ(vectors.info.parameters.size(), 1u);

@@ -1,5 +1,5 @@
 #include "volume/base/error.h"
-#include "volume/import/files/named_path.h"
+#include "volume/import/files/named_files.h"
 #include "volume/import/files/series.h"
 #include "volume/import/import.h"
 
@@ -39,6 +39,20 @@ TEST(NamedPath, FilesBesideAndBelowAreTheirs) {
         EXPECT_NE(refusal(file, "../a.raw"), "") << file;
         EXPECT_NE(refusal(file, "/etc/passwd"), "") << file;
     }
+}
+
+TEST(NamedPath, NamesWithAZeroByteAreNone) {
+    for (const Outside outside : {Outside::Refused, Outside::Allowed})
+        EXPECT_THROW(namedPath("/x/data/a.mhd", std::string("a.raw\0b", 7), outside), Error);
+}
+
+TEST(NamedPath, ALinkToTheFolderIsTheFolder) {
+    const fs::path folder = fs::temp_directory_path() / ("tessera_linked_" + std::to_string(getpid()));
+    fs::create_directories(folder / "real/run");
+    fs::create_directory_symlink(folder / "real/run", folder / "link");
+    EXPECT_EQ(refusal((folder / "link/a.pvd").string(), (folder / "real/run/b.vti").string()), "");
+    EXPECT_NE(refusal((folder / "link/a.pvd").string(), (folder / "real/b.vti").string()), "");
+    fs::remove_all(folder);
 }
 
 class NamesOutside : public testing::Test {

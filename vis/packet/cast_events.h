@@ -32,8 +32,8 @@ inline Floats sampleAt(const Packet& packet, Floats t) {
 inline Vec cellsInBox(const CastJob& job, const Vec& world) {
     Vec cells;
     for (int axis = 0; axis < 3; ++axis) {
-        const Floats half(job.halfSize[axis]), within = clamped(world[axis], -half, half);
-        cells[axis] = multiplyAdd(within, Floats(job.cellsPerWorld[axis]), Floats(job.cellsOffset[axis]));
+        const Floats half(job.box.halfSize[axis]), within = clamped(world[axis], -half, half);
+        cells[axis] = multiplyAdd(within, Floats(job.box.cellsPerWorld[axis]), Floats(job.box.cellsOffset[axis]));
     }
     return cells;
 }

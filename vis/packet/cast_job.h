@@ -4,6 +4,7 @@
 #include "vis/optics/look_shading.h"
 #include "vis/optics/ray_setup.h"
 #include "vis/optics/shade.h"
+#include "vis/packed/packed_box.h"
 #include "vis/packed/packed_light.h"
 #include "vis/scene/brush_effect.h"
 #include "vis/scene/clipping.h"
@@ -147,10 +148,8 @@ struct CastJob {
     glm::dvec3 origin{0}, originX{0}, originY{0};          ///< linear in ndc
     glm::dvec3 direction{0}, directionX{0}, directionY{0}; ///< to be normalised
     float begin = 0;
-    glm::dvec3 halfSize{0.5}, cell{1};           ///< world
-    glm::dvec3 cellsPerWorld{1}, cellsOffset{0}; ///< position in a PacketVolume = world * cellsPerWorld + cellsOffset
-    glm::vec3 least{0}, most{0};                 ///< the positions of the box
-    glm::dvec3 edges{1};                         ///< of a sublattice cell in world space, with sign
+    PackedBox box;
+    glm::dvec3 cell{1}; ///< world
     float stepVoxels = 1;
     std::span<const PlacedClip> clips;
 

@@ -28,8 +28,8 @@ struct Looked {
 inline Vec withinBox(const CastJob& job, const Vec& cells) {
     Vec out;
     for (int axis = 0; axis < 3; ++axis) {
-        const double half = job.halfSize[axis] * __builtin_fabs(job.cellsPerWorld[axis]),
-                     middle = job.cellsOffset[axis];
+        const double half = job.box.halfSize[axis] * __builtin_fabs(job.box.cellsPerWorld[axis]),
+                     middle = job.box.cellsOffset[axis];
         out[axis] = clamped(cells[axis], Floats(middle - half), Floats(middle + half));
     }
     return out;
@@ -38,7 +38,7 @@ inline Vec withinBox(const CastJob& job, const Vec& cells) {
 /// The gradient in world axes that a look is shaded by; `value` gives what is at a position in cells.
 template <class Value> Vec lookGradient(const CastJob& job, const Looked& at, const Value& value) {
     if (!(at.layer.smooth > 0)) return at.narrow;
-    const Vec edges = spreadOut<Floats>(job.edges);
+    const Vec edges = spreadOut<Floats>(job.box.edges);
     return volume::smoothGradientOf<Floats>(value, at.cells, double(at.layer.smooth), at.narrow * edges) / edges;
 }
 
@@ -46,7 +46,7 @@ template <class Value> Vec lookGradient(const CastJob& job, const Looked& at, co
 template <class Value>
 LookSampleOf<Floats> lookSample(const CastJob& job, const Looked& at, const Value& value, const Vec& gradient) {
     const Look& look = *at.layer.look;
-    const Vec perWorld = spreadOut<Floats>(job.cellsPerWorld);
+    const Vec perWorld = spreadOut<Floats>(job.box.cellsPerWorld);
     const LookPlaceOf<Floats> place{.world = at.world,
                                     .toViewer = -at.direction,
                                     .along = at.distance * inner(at.direction, spreadOut<Floats>(job.middle)),

@@ -11,7 +11,7 @@ inline Packet packetAt(const CastJob& job, const Vec& world) {
     packet.meets = maskOf((1u << kLanes) - 1);
     packet.ray.origin = world;
     packet.ray.direction = packet.advance = Vec(Floats(0), Floats(0), Floats(0));
-    packet.first = world * spreadOut<Floats>(job.cellsPerWorld) + spreadOut<Floats>(job.cellsOffset);
+    packet.first = world * spreadOut<Floats>(job.box.cellsPerWorld) + spreadOut<Floats>(job.box.cellsOffset);
     packet.count = Floats(1);
     packet.step = packet.enter = packet.phase = Floats(0);
     for (std::size_t i = 0; i < job.focus.lenses.size(); ++i) packet.bends |= job.focus.magnifies[i] > 0;

@@ -109,7 +109,7 @@ inline Vec point(const glm::dvec3& a, const glm::dvec3& x, Floats byX, const glm
 inline void keepWithin(const CastJob& job, Packet& packet) {
     const Floats slack(0.05f);
     for (int axis = 0; axis < 3; ++axis) {
-        const Floats least = Floats(job.least[axis]) - slack, most = Floats(job.most[axis]) + slack;
+        const Floats least = Floats(job.box.least[axis]) - slack, most = Floats(job.box.most[axis]) + slack;
         Floats &first = packet.first[axis], &advance = packet.advance[axis];
         const Floats enter = multiplyAdd(-packet.phase, advance, first),
                      exit = multiplyAdd(packet.count, advance, enter);
@@ -137,7 +137,7 @@ inline Packet beginPacket(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) 
     const Floats across = Floats::load(x), up = Floats::load(y);
     packet.ray.origin = point(job.origin, job.originX, across, job.originY, up);
     packet.ray.direction = unit(point(job.direction, job.directionX, across, job.directionY, up));
-    SegmentOf<Floats> segment = segmentInBox<Floats>(packet.ray, job.halfSize, Floats(job.begin));
+    SegmentOf<Floats> segment = segmentInBox<Floats>(packet.ray, job.box.halfSize, Floats(job.begin));
     for (const PlacedClip& clip : job.clips)
         if (!clip.hole) segment = commonPart(segment, insideClip(clip, packet.ray));
     packet.meets = maskOf(within) & (segment.enter < segment.exit);
@@ -147,9 +147,9 @@ inline Packet beginPacket(const CastJob& job, glm::ivec2 begin, glm::ivec2 end) 
     packet.step = length / larger(packet.count, Floats(1));
     packet.enter = choose(packet.meets, segment.enter, Floats(0));
     packet.phase = Floats::load(phase);
-    const Vec scale = spreadOut<Floats>(job.cellsPerWorld);
+    const Vec scale = spreadOut<Floats>(job.box.cellsPerWorld);
     packet.advance = packet.ray.direction * packet.step * scale;
-    packet.first = packet.world(Floats(0)) * scale + spreadOut<Floats>(job.cellsOffset);
+    packet.first = packet.world(Floats(0)) * scale + spreadOut<Floats>(job.box.cellsOffset);
     keepWithin(job, packet);
     for (const PlacedClip& clip : job.clips) {
         if (!clip.hole) continue;

@@ -86,8 +86,8 @@ inline Ints pairWeights(Floats f) {
 
 /// Where the data are that a position shows, behind magnifying lenses; both in cells.
 inline Vec bent(const CastJob& job, const Vec& cells) {
-    const Vec offset = spreadOut<Floats>(job.cellsOffset), scale = spreadOut<Floats>(job.cellsPerWorld);
-    return bentBy<Floats>(job.focus.lenses, (cells - offset) / scale, job.halfSize) * scale + offset;
+    const Vec offset = spreadOut<Floats>(job.box.cellsOffset), scale = spreadOut<Floats>(job.box.cellsPerWorld);
+    return bentBy<Floats>(job.focus.lenses, (cells - offset) / scale, job.box.halfSize) * scale + offset;
 }
 
 /// Reconstructs samples; Bcc and Exact as in PacketVolume. Twin: volume/reconstruct/reconstruct.h.

@@ -50,13 +50,13 @@ template <bool Bcc, bool Exact> struct SampleCaster {
         count(lanes, 2 * job.stencil.count);
         if (packet.bends) return gradientBehindLenses(read, cells, lanes);
         if (!Exact && !read.masked && sharesReads(job.stencil, Bcc))
-            return sharedGradient<Bcc>(read.volume, cells, job.stencil.reach, lanes) / spreadOut<Floats>(job.edges);
-        return volume::gradientOf<Floats>(value, cells, job.stencil) / spreadOut<Floats>(job.edges);
+            return sharedGradient<Bcc>(read.volume, cells, job.stencil.reach, lanes) / spreadOut<Floats>(job.box.edges);
+        return volume::gradientOf<Floats>(value, cells, job.stencil) / spreadOut<Floats>(job.box.edges);
     }
 
     [[gnu::noinline]] Vec gradientBehindLenses(const Read& read, const Vec& cells, Mask lanes) {
         const auto value = [&](const Vec& at) { return read(at, lanes); };
-        return volume::gradientOf<Floats>(value, cells, job.stencil) / spreadOut<Floats>(job.edges);
+        return volume::gradientOf<Floats>(value, cells, job.stencil) / spreadOut<Floats>(job.box.edges);
     }
     /// The same within the part that each place belongs to.
     [[gnu::noinline]] Vec gradientOfParts(const Read& read, const Vec& cells, Mask lanes) {

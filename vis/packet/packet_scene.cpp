@@ -2,7 +2,7 @@
 
 #include "vis/optics/preintegration.h"
 #include "vis/optics/ray_setup.h"
-#include "vis/packet/packet_box.h"
+#include "vis/packed/packed_box.h"
 #include "vis/packet/packet_table.h"
 #include "vis/transfer/block_distance.h"
 
@@ -304,7 +304,7 @@ float magnifiedReach(const PlacedLens& lens, double cell) {
 /// The octants that rays go into, a bit each; a little beyond the picture, because rays are moved within their pixels.
 unsigned octantsOf(const CastJob& job) {
     const glm::dvec3 spread = 1.1 * (glm::abs(job.directionX) + glm::abs(job.directionY));
-    const glm::dvec3 cells = glm::sign(job.cellsPerWorld);
+    const glm::dvec3 cells = glm::sign(job.box.cellsPerWorld);
     unsigned out = 0;
     for (unsigned octant = 0; octant < 8; ++octant) {
         bool some = true;
@@ -337,7 +337,8 @@ CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, co
     job.directionX = onPlane(right.direction);
     job.directionY = onPlane(up.direction);
     job.begin = scene.camera.projection == Projection::Perspective ? 0.0f : -1e6f;
-    placeBox(job, frame, lattice);
+    job.box = packedBox(frame, lattice);
+    job.cell = worldCell(lattice, frame);
     job.stepVoxels = float(double(scene.render.stepVoxels) * stepFactor);
     clips_ = placeClips(scene.clips, frame);
     job.clips = clips_;

@@ -69,7 +69,10 @@ private:
     static std::string wordsOf(const std::vector<SeriesFile>& entries, Outside outside) {
         std::string words;
         const auto add = [&words](const std::string& word) { words.append(word.c_str(), word.size() + 1); };
-        const auto addPath = [&](const std::string& path) { add(fs::path(path).is_absolute() ? path : "./" + path); };
+        const auto addPath = [&](const std::string& path) {
+            if (path.find('\0') != std::string::npos) throw Error("a name with a zero byte", path.c_str());
+            add(fs::path(path).is_absolute() ? path : "./" + path);
+        };
         if (outside == Outside::Allowed) add("--allow-outside");
         std::string last;
         for (const SeriesFile& entry : entries) {

@@ -86,7 +86,8 @@ struct Group {
 Group groupIn(const std::string& folder, bool isFirstVersion) {
     Group group{numberIn(folder + (isFirstVersion ? "/memory.limit_in_bytes" : "/memory.max"))};
     if (!(group.limit < 1e18)) return {}; // the first version states no limit as a large number
-    group.used = numberIn(folder + (isFirstVersion ? "/memory.usage_in_bytes" : "/memory.current"));
+    const double used = numberIn(folder + (isFirstVersion ? "/memory.usage_in_bytes" : "/memory.current"));
+    group.used = used < kNoLimit ? used : 0; // not told
     const std::string statistics = folder + "/memory.stat", whole = isFirstVersion ? "total_" : "";
     for (const char* kind : {"inactive_file ", "active_file "}) {
         const double bytes = numberAfter(statistics, whole + kind);
@@ -123,8 +124,9 @@ std::uint64_t machineMemory(const SystemFiles& files) {
     return least < 1e18 ? std::uint64_t(least) : ~std::uint64_t(0);
 }
 
-double availableMemory(const SystemFiles& files) {
-    double least = numberAfter(files.processes + "/meminfo", "MemAvailable:") * 1024; // kB
+double availableMemory(const SystemFiles& files, bool withSwap) {
+    const std::string about = files.processes + "/meminfo"; // kB
+    double least = (numberAfter(about, "MemAvailable:") + (withSwap ? numberAfter(about, "SwapFree:") : 0)) * 1024;
     for (const Group& group : limitingGroups(files))
         least = std::min(least, std::max(0.0, group.limit - group.used + group.files));
     return least;
@@ -133,7 +135,7 @@ double availableMemory(const SystemFiles& files) {
 void requireMemory(double bytes) {
     constexpr double kFew = 256.0 * kMebi, kGiga = 1e9; // few are not worth the question
     if (bytes <= kFew) return;
-    const double available = availableMemory();
+    const double available = availableMemory({}, true);
     if (bytes <= available) return;
     char text[120];
     std::snprintf(text, sizeof text, "not enough memory: %.3g GB are needed at once, and %.3g GB are free",

@@ -37,9 +37,9 @@ struct SystemFiles {
 /// unknown.
 std::uint64_t machineMemory(const SystemFiles& files = {});
 
-/// Bytes that the system, and the control groups of this process, can give to programs without swapping; infinity where
-/// they do not say.
-double availableMemory(const SystemFiles& files = {});
+/// Bytes that the system, and the control groups of this process, can give to programs, without swapping or with it;
+/// infinity where they do not say.
+double availableMemory(const SystemFiles& files = {}, bool withSwap = false);
 
 /// Throws MachineError if so many bytes are not available: a system that promises more than it has would end the
 /// program later.

@@ -37,7 +37,7 @@ std::string unquoted(std::string text) {
     return text;
 }
 
-/// The file that #include names: beside the one that says so, or in a folder of the case. Throws for what lies
+/// The file that #include names: beside the one that says so, or in a folder of the case. Throws for what is
 /// elsewhere.
 std::string includedFile(const std::string& named, const std::string& from, const std::string& root) {
     std::string name = unquoted(named);
@@ -48,6 +48,8 @@ std::string includedFile(const std::string& named, const std::string& from, cons
                                        {"<system>", "/system"}})
         if (name.starts_with(word)) return besidesIn(root, "." + (folder + name.substr(std::string(word).size())));
     const fs::path path = fs::path(from).parent_path() / name; // an absolute name stays as it is
+    std::error_code problem;
+    if (!fs::exists(path, problem)) return path.string(); // it may be left out of a case that was copied
     return besidesIn(root, path.is_absolute() ? path.string() : path.lexically_proximate(root).string());
 }
 

@@ -143,11 +143,8 @@ std::vector<std::int64_t> XdmfNumbers::integers() const {
 std::string XdmfItems::fileBeside(pugi::xml_node item, const std::string& name) const {
     // A file that has been moved together with its heavy data names them where they were.
     const std::string path = document_.pathOf(item), moved = besides(path, fs::path(name).filename().string());
-    const bool elsewhere =
-        !volume::liesWithin(fs::path(path).parent_path().string(), (fs::path(path).parent_path() / name).string());
-    if (elsewhere && outsideOfFolders() == volume::Outside::Refused && fs::exists(moved)) return moved;
-    const std::string wanted = besides(path, name);
-    if (fs::exists(wanted)) return wanted;
+    std::error_code unknown;
+    if (fs::exists(fs::path(path).parent_path() / name, unknown)) return besides(path, name); // or it is refused
     if (!fs::exists(moved)) throw std::runtime_error("its file " + name.substr(0, 200) + " is not there");
     return moved;
 }

@@ -154,7 +154,10 @@ void placeMeta(const MetaHeader& header, std::size_t dimensions, StoredImage& im
             direction[axis] = 1;
         }
         const double step = spacing[std::size_t(axis)];
-        image.grid.steps[axis] = direction * (std::isfinite(step) && step != 0 ? step : 1);
+        const bool isLength = std::isfinite(step) && step != 0;
+        if (!isLength)
+            image.notes.push_back(std::string("its spacing along ") + "xyz"[axis] + " is no length: 1 was taken");
+        image.grid.steps[axis] = direction * (isLength ? step : 1);
         image.grid.origin[axis] = std::isfinite(origin[std::size_t(axis)]) ? origin[std::size_t(axis)] : 0;
     }
     volume::completeSteps(image.grid, space);

@@ -285,8 +285,7 @@ private:
         part_ = part;
         at_ = 0;
         decoder_ = makeDecoder(part);
-        const bool packed = files_.encoding == SampleEncoding::Deflate || files_.encoding == SampleEncoding::Bzip2;
-        if (!packed) return;
+        if (!isPacked()) return;
         std::vector<char> skipped(kPiece);
         for (std::uint64_t left = bytesBefore(part); left > 0;) {
             const auto count = std::size_t(std::min<std::uint64_t>(left, kPiece));
@@ -324,6 +323,18 @@ private:
     void fill(std::span<char> to) {
         if (decoder_->take(to) != to.size()) throwShort();
         at_ += to.size();
+        if (at_ == each_ && isPacked()) finish();
+    }
+
+    /// Reads on to the end of the stream, whose checksum tells of samples that are not those that were stored.
+    void finish() {
+        constexpr std::size_t kMostRest = std::size_t(64) << 20; // what follows the samples is not read without end
+        std::vector<char> rest(kPiece);
+        for (std::size_t left = kMostRest; left > 0 && decoder_->take(rest) == rest.size();) left -= rest.size();
+    }
+
+    bool isPacked() const {
+        return files_.encoding == SampleEncoding::Deflate || files_.encoding == SampleEncoding::Bzip2;
     }
 
     [[noreturn]] void throwShort() {

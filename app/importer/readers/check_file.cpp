@@ -30,8 +30,9 @@ std::vector<std::string> namedInXml(const std::string& path) {
     constexpr std::size_t kMostList = std::size_t(1) << 30;
     if (bytesIn(path) > kMostList) throw std::runtime_error("is too large for a list of files");
     const std::string text = readWhole(path);
-    // Names might be put together from entities, which VTK replaces.
-    if (text.find("<!ENTITY") != std::string::npos) throw std::runtime_error("declares entities, as no VTK file does");
+    // Names might be put together from entities, or be defaults of attributes, which VTK's reader knows.
+    if (text.find("<!DOCTYPE") != std::string::npos)
+        throw std::runtime_error("declares a document type, as no VTK file does");
     pugi::xml_document document;
     document.load_buffer(text.data(), text.size());
     std::vector<std::string> names;

@@ -19,9 +19,14 @@ namespace {
 
 constexpr std::size_t kDeepest = 256; // groups within groups
 
-/// A file that the library would open for this name. It takes an absolute one that is not there for one beside.
+/// A file that the library would open for this name; "" if there is none. It takes an absolute one that is not there
+/// for one beside.
 std::string linkedFile(const std::string& file, const std::string& name) {
     std::error_code unknown;
+    const fs::path folder = fs::path(file).parent_path();
+    if (!fs::exists(folder / name, unknown) && !fs::exists(name, unknown) &&
+        !fs::exists(folder / fs::path(name).filename(), unknown))
+        return {};
     if (fs::path(name).is_absolute() && !fs::exists(name, unknown))
         return besides(file, fs::path(name).filename().string());
     const std::string beside = besides(file, name);
@@ -30,15 +35,15 @@ std::string linkedFile(const std::string& file, const std::string& name) {
                                                                      : besides(file, fs::absolute(name).string());
 }
 
-/// The names of other files that hold the samples of a data set.
-void checkStorage(const std::string& file, hid_t dataset) {
+/// The names of other files that hold the samples of a data set; adds those that name others in turn.
+void checkStorage(const std::string& file, hid_t dataset, std::vector<std::string>& linked) {
     const HdfId made(H5Dget_create_plist(dataset));
     char name[4096] = {};
     std::size_t parts = 0;
     if (H5Pget_layout(made.id()) == H5D_VIRTUAL && H5Pget_virtual_count(made.id(), &parts) >= 0)
         for (std::size_t p = 0; p < parts; ++p)
             if (H5Pget_virtual_filename(made.id(), p, name, sizeof name) > 0 && std::string(name) != ".")
-                linkedFile(file, name);
+                linked.push_back(linkedFile(file, name));
     const int externals = H5Pget_external_count(made.id());
     for (int e = 0; e < externals; ++e) {
         off_t offset = 0;
@@ -80,7 +85,8 @@ std::string fileOfLink(hid_t group, const std::string& link) {
 /// Each object once, whatever links lead to it.
 std::string keyOfObject(hid_t object) {
     H5G_stat_t about{};
-    if (H5Gget_objinfo(object, ".", 1, &about) < 0) return {};
+    if (H5Gget_objinfo(object, ".", 1, &about) < 0)
+        throw std::runtime_error("has an object that cannot be told from others");
     return std::to_string(about.objno[0]) + " " + std::to_string(about.objno[1]);
 }
 
@@ -103,9 +109,11 @@ void checkNamesIn(const std::string& path, std::vector<std::string>& linked) {
                 linked.push_back(linkedFile(path, name));
         for (const std::string& name : members.hard) {
             auto object = std::make_shared<const HdfId>(H5Oopen(group.id->id(), name.c_str(), H5P_DEFAULT));
-            if (!*object || !seen.insert(keyOfObject(object->id())).second) continue;
+            if (!*object) continue;
             const H5I_type_t kind = H5Iget_type(object->id());
-            if (kind == H5I_DATASET) checkStorage(path, object->id());
+            if (kind != H5I_DATASET && kind != H5I_GROUP) continue;
+            if (!seen.insert(keyOfObject(object->id())).second) continue;
+            if (kind == H5I_DATASET) checkStorage(path, object->id(), linked);
             if (kind != H5I_GROUP) continue;
             if (group.depth >= kDeepest)
                 throw std::runtime_error("nests groups more than " + std::to_string(kDeepest) + " deep");

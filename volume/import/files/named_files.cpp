@@ -2,7 +2,6 @@
 
 #include "volume/base/error.h"
 #include "volume/import/files/formats.h"
-#include "volume/import/files/named_path.h"
 #include "volume/import/files/series.h"
 #include "volume/system/input_file.h"
 
@@ -167,12 +166,20 @@ std::vector<fs::path> namedDirectly(const fs::path& path) {
 } // namespace
 
 bool liesWithin(const std::string& folder, const std::string& path) {
+    const auto within = [](const fs::path& base, const fs::path& at) {
+        return std::mismatch(base.begin(), base.end(), at.begin(), at.end()).first == base.end();
+    };
     const fs::path base = plain(folder), at = plain(path);
-    return std::mismatch(base.begin(), base.end(), at.begin(), at.end()).first == base.end();
+    if (within(base, at)) return true;
+    std::error_code unknown; // a link to the folder itself
+    const fs::path realBase = fs::weakly_canonical(base, unknown), realAt = fs::weakly_canonical(at, unknown);
+    return !unknown && within(realBase, realAt);
 }
 
 std::string namedPathIn(const std::string& folder, const std::string& name, Outside outside) {
     const std::string path = (fs::path(folder) / name).string(); // an absolute name stays as it is
+    if (path.find('\0') != std::string::npos) // where the system ends the name, but not what is checked
+        throw Error("names \"" + std::string(path.c_str()).substr(0, 200) + "\" with a zero byte behind it");
     if (outside == Outside::Refused && !liesWithin(folder, path))
         throw Error("names \"" + name.substr(0, 200) + "\", which lies outside of its folder: --allow-outside, or " +
                     "Files elsewhere in File > Open, reads it all the same");

@@ -206,6 +206,8 @@ Ruler rulerOf(const NrrdAxis& axis, bool ofTime, std::vector<std::string>& notes
             notes.emplace_back("the file does not say whether axis mins and maxs are those of cells or of nodes: they "
                                "are taken as those of cells");
     }
+    if (axis.spacing == 0 || std::isinf(axis.spacing)) // NaN: it is not known
+        notes.emplace_back("a spacing of the file is 0 or infinite: it was left out");
     Ruler ruler;
     if (std::isfinite(axis.spacing) && axis.spacing != 0) {
         ruler = {axis.spacing, 0, true};
