@@ -194,7 +194,9 @@ void Autosave::discard(const Recovery& recovery) {
 }
 
 std::string Autosave::save(const std::string& text) {
-    if (!lock_ || !lock_->isAt(lockPath(path_))) { // somebody tidied up: what was kept counts as left by a crashed run
+    if (!lock_) takeName(); // why there is none has been said
+    if (!lock_) return {};
+    if (!lock_->isAt(lockPath(path_))) { // somebody tidied up: what was kept counts as left by a crashed run
         lock_.reset();
         takeName();
         if (!lock_) return problem_;

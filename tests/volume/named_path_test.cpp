@@ -1,5 +1,5 @@
 #include "volume/base/error.h"
-#include "volume/import/files/named_files.h"
+#include "volume/import/files/named_path.h"
 #include "volume/import/files/series.h"
 #include "volume/import/import.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "volume/base/describe.h"
-#include "volume/import/files/named_files.h"
+#include "volume/import/files/named_path.h"
 
 #include <glm/vec3.hpp>
 #include <map>

@@ -1,6 +1,7 @@
 #include "volume/import/stated_names.h"
 
 #include "volume/base/error.h"
+#include "volume/base/printable.h"
 #include "volume/base/unit_conversion.h"
 #include "volume/field/labels.h"
 
@@ -122,6 +123,25 @@ std::set<std::string> namesIn(const ImportOptions& options) {
         if (names.erase(to) > 0) names.insert(from);
     }
     return names;
+}
+
+void makePrintable(FileBlock& block) {
+    for (std::string* const text :
+         {&block.name, &block.lengthUnit, &block.timeUnit, &block.provenance, &block.timeName})
+        *text = printable(*text);
+    for (std::string& note : block.notes) note = printable(note);
+    for (Array& array : block.arrays) {
+        array.name = printable(array.name);
+        array.unit = printable(array.unit);
+        for (Label& label : array.labels) {
+            label.name = printable(label.name);
+            label.color = printable(label.color);
+        }
+    }
+    for (Quantity& quantity : block.quantities) {
+        quantity.name = printable(quantity.name);
+        quantity.unit = printable(quantity.unit);
+    }
 }
 
 } // namespace tessera::volume

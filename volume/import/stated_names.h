@@ -23,4 +23,8 @@ std::string noSuchParameter(const std::string& name, const DatasetInfo& info);
 /// The names that options say something about, as they are in the file and as they are renamed.
 std::set<std::string> namesIn(const ImportOptions& options);
 
+/// Makes all names, units and notes of a block texts that can be shown and written anywhere, whatever bytes the file
+/// has.
+void makePrintable(FileBlock& block);
+
 } // namespace tessera::volume

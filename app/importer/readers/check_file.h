@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/import/files/named_files.h"
+#include "volume/import/files/named_path.h"
 
 #include <cstddef>
 #include <string>

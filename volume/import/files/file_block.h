@@ -47,8 +47,4 @@ struct FileBlock {
     std::function<std::vector<Range>(int array, int time)> ranges;
 };
 
-/// Makes all names, units and notes of a block texts that can be shown and written anywhere, whatever bytes the file
-/// has.
-void makePrintable(FileBlock& block);
-
 } // namespace tessera::volume

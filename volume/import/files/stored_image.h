@@ -1,7 +1,7 @@
 #pragma once
 
 #include "volume/import/files/file_block.h"
-#include "volume/import/files/named_files.h"
+#include "volume/import/files/named_path.h"
 #include "volume/import/files/upright.h"
 
 #include <cstddef>
