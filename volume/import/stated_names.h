@@ -2,6 +2,7 @@
 
 #include "volume/field/dataset.h"
 #include "volume/import/absent.h"
+#include "volume/import/files/file_block.h"
 #include "volume/import/import_options.h"
 #include "volume/import/parts_rules.h"
 
@@ -9,7 +10,7 @@
 #include <string>
 #include <vector>
 
-/// Whether what import options name is in the data.
+/// Names: whether those that import options state are in the data, and those of files as texts that can be shown.
 namespace tessera::volume {
 
 /// Throws Error for a name that no parameter has (in units: nor a quantity), with those that there are, and for a unit
