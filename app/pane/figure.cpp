@@ -225,24 +225,25 @@ std::string csvNumber(double value) {
     return text;
 }
 
-void exportMenu(ViewContext& context, ToolRow& tools, const std::string& title,
-                std::function<VectorPage(const Progress&)> figure, std::function<std::string(const Progress&)> csv,
-                bool atOneTime, const std::string& numbers) {
-    std::string name = title; // as a file
+void exportMenu(ViewContext& context, ToolRow& tools, ViewExport asked, bool atOneTime, const std::string& numbers) {
+    std::string& name = asked.name; // as a file
+    const std::string title = name;
     std::replace(name.begin(), name.end(), '/', '_');
+    if (asked.table && !asked.csv)
+        asked.csv = [table = asked.table](const Progress& progress) { return csvOf(table(progress)); };
     const auto described = [&]() -> ViewExport { // tables and pictures state the origin of their numbers
-        if (!context.numbers) return {name, figure, csv};
+        if (!context.numbers) return asked;
         const volume::DatasetInfo& info = context.numbers->info();
         std::string origin = numbers.empty() ? originText(context.origin, info) : numbers;
         if (atOneTime && info.times.size() > 1) origin += ", at " + timeText(info, context.session.time);
-        ViewExport made{name, {}, {}};
-        if (csv)
-            made.csv = [csv, origin](const Progress& progress) {
+        ViewExport made = asked;
+        if (asked.csv)
+            made.csv = [csv = asked.csv, origin](const Progress& progress) {
                 return "# numbers: " + origin + "\n" + csv(progress);
             };
-        if (figure)
-            made.figure = [figure, origin](const Progress& progress) {
-                VectorPage drawing = figure(progress);
+        if (asked.figure)
+            made.figure = [figure = asked.figure, origin](const PageForm& form, const Progress& progress) {
+                VectorPage drawing = figure(form, progress);
                 drawing.numbers = origin;
                 return drawing;
             };
@@ -259,7 +260,8 @@ void exportMenu(ViewContext& context, ToolRow& tools, const std::string& title,
     for (const auto& [item, suffix] :
          {std::pair{"Vector graphics (SVG)...", "svg"}, {"Vector graphics (PDF)...", "pdf"}})
         if (made.figure && context.exportFigure && ImGui::MenuItem(item))
-            context.exportFigure(name + "." + suffix, made.figure);
+            context.exportFigure(name + "." + suffix,
+                                 [figure = made.figure](const Progress& progress) { return figure({}, progress); });
     if (made.csv && ImGui::MenuItem("Copy table (CSV)"))
         context.jobs.start("copy " + title, "Copying " + title,
                            [csv = made.csv](const Progress& progress) -> Jobs::Finish {

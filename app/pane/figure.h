@@ -75,8 +75,7 @@ std::string csvNumber(double value);
 
 /// A tool whose menu exports what a view shows: its picture, vector graphics, a table. `atOneTime`: it shows the time
 /// of the session alone, which tables then state. `numbers`: where they come from, if not all from the samples.
-void exportMenu(ViewContext& context, ToolRow& tools, const std::string& name,
-                std::function<VectorPage(const Progress&)> figure, std::function<std::string(const Progress&)> csv,
-                bool atOneTime = true, const std::string& numbers = {});
+void exportMenu(ViewContext& context, ToolRow& tools, ViewExport made, bool atOneTime = true,
+                const std::string& numbers = {});
 
 } // namespace tessera::app

@@ -6,6 +6,8 @@
 #include "app/session/session.h"
 #include "app/ui/jobs.h"
 #include "app/ui/messages.h"
+#include "app/values/page_form.h"
+#include "app/values/table.h"
 #include "vis/passes/renderer.h"
 #include "volume/bricks/brick_source.h"
 
@@ -31,11 +33,12 @@ struct ViewCache {
     virtual bool shared() const { return false; }
 };
 
-/// What a view can be exported as beside its picture; either may be empty.
+/// What a view can be exported as beside its picture; each may be empty.
 struct ViewExport {
     std::string name; ///< of a file, without ending
-    std::function<VectorPage(const Progress&)> figure;
-    std::function<std::string(const Progress&)> csv;
+    std::function<VectorPage(const PageForm&, const Progress&)> figure = {};
+    std::function<Table(const Progress&)> table = {};
+    std::function<std::string(const Progress&)> csv = {}; ///< of a table that is not yet a value
 };
 
 /// Input of a view in one frame of the window. Views read and edit `session`, nothing else; the workbench compares it

@@ -169,7 +169,7 @@ std::string PictureMaker::exportText(const SessionDocument& document, const Sour
         const ViewExport* offered = workbench.exported(request.pane);
         if (offered && table && offered->csv) text = offered->csv(progress);
         if (!offered || table || !offered->figure) return;
-        VectorPage page = offered->figure(progress);
+        VectorPage page = offered->figure({}, progress);
         page.session = printSession(document, path);
         text = fileOf(page, suffix);
     });

@@ -340,8 +340,9 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
     if (!context.figure) {
         ToolRow tools(context);
         drawCompareToolbar(context, tools, view, variants);
-        exportMenu(
-            context, tools, "comparison", {}, [rows = cache.rows](const Progress&) { return compareCsv(rows); }, false);
+        exportMenu(context, tools,
+                   {.name = "comparison", .csv = [rows = cache.rows](const Progress&) { return compareCsv(rows); }},
+                   false);
     }
     Frame frame{context, view, cache, variants};
     const std::size_t count = frame.variants.size();

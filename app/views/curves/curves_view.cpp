@@ -163,10 +163,12 @@ void drawToolbar(ViewContext& context, CurvesCache& cache, const std::shared_ptr
         }
     }
     if (curves) {
-        exportMenu(
-            context, tools, "curves",
-            [curves, time = context.session.time](const Progress&) { return curvesDrawing(*curves, time); },
-            [curves](const Progress&) { return curvesCsv(*curves); }, false, curvesOrigin(info, context.origin, query));
+        exportMenu(context, tools,
+                   {.name = "curves",
+                    .figure = [curves, time = context.session.time](
+                                  const PageForm&, const Progress&) { return curvesDrawing(*curves, time); },
+                    .csv = [curves](const Progress&) { return curvesCsv(*curves); }},
+                   false, curvesOrigin(info, context.origin, query));
     }
 }
 

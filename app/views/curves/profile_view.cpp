@@ -64,10 +64,11 @@ void drawToolbar(ViewContext& context, const std::shared_ptr<const Profile>& pro
             view.points.clear();
     }
     if (profile) {
-        exportMenu(
-            context, tools, "profile",
-            [info, profile, session](const Progress&) { return profileDrawing(info, session, *profile); },
-            [info, profile, session](const Progress&) { return profileCsv(info, session, *profile); });
+        exportMenu(context, tools,
+                   {.name = "profile",
+                    .figure = [info, profile, session](
+                                  const PageForm&, const Progress&) { return profileDrawing(info, session, *profile); },
+                    .csv = [info, profile, session](const Progress&) { return profileCsv(info, session, *profile); }});
     }
     drawOrigin(context, tools, shown, view.over == ProfileOver::Line);
     if (view.points.size() == 1 && view.over != ProfileOver::Time) drawNote(tools, "one more corner needed");

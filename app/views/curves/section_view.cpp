@@ -123,12 +123,13 @@ void drawToolbar(ViewContext& context, ProfileView& view, const std::vector<int>
         choose(tools, "##weight", view.sections.weight, kWeights, kWeightHelp, 7);
     if (const auto label = volume::labelChannel(info)) chooseRegions(tools, info, *label, view.sections);
     if (!curves) return;
-    exportMenu(
-        context, tools, "sections",
-        [info, curves, measure = view.sections.measure](const Progress&) {
-            return drawingOf(sectionPanels(info, *curves, measure), 2);
-        },
-        [info, curves](const Progress&) { return sectionCsv(info, *curves); });
+    exportMenu(context, tools,
+               {.name = "sections",
+                .figure =
+                    [info, curves, measure = view.sections.measure](const PageForm&, const Progress&) {
+                        return drawingOf(sectionPanels(info, *curves, measure), 2);
+                    },
+                .csv = [info, curves](const Progress&) { return sectionCsv(info, *curves); }});
     drawOrigin(context, tools, shown);
 }
 

@@ -130,11 +130,11 @@ void drawMore(ViewContext& context, ToolRow& tools, ScatterMatrixView& view, con
     }
     if (!result) return;
     exportMenu(
-        context, tools, "scatterplots",
-        [info, result, logDensity = view.logDensity, focus = focusColor(context.session)](const Progress&) {
-            return matrixDrawing(info, *result, logDensity, focus);
-        },
-        [info, result](const Progress&) { return matrixCsv(info, *result); });
+        context, tools,
+        {.name = "scatterplots",
+         .figure = [info, result, logDensity = view.logDensity, focus = focusColor(context.session)](
+                       const PageForm&, const Progress&) { return matrixDrawing(info, *result, logDensity, focus); },
+         .csv = [info, result](const Progress&) { return matrixCsv(info, *result); }});
 }
 
 /// The end of the line: the share in focus, and the button that clears the brushes. Their space is reserved even

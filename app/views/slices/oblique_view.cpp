@@ -79,12 +79,15 @@ void drawTools(ViewContext& context, ToolRow& tools, ObliqueView& view, const Fl
         ImGui::Checkbox("in 3D", &view.inSpace);
         if (ImGui::IsItemHovered()) tooltip("Draw the slice in the volume views too");
     }
-    exportMenu(
-        context, tools, "oblique",
-        [source = context.numbers, session = context.session, flat, lines = view.lines,
-         channel](const Progress& progress) { return flatDrawing(*source, session, flat, lines, channel, progress); },
-        [source = context.numbers, session = context.session, flat, channels = comparedChannels(info)](
-            const Progress& progress) { return flatCsv(*source, session, flat, channels, progress); });
+    exportMenu(context, tools,
+               {.name = "oblique",
+                .figure =
+                    [source = context.numbers, session = context.session, flat, lines = view.lines,
+                     channel](const PageForm&, const Progress& progress) {
+                        return flatDrawing(*source, session, flat, lines, channel, progress);
+                    },
+                .csv = [source = context.numbers, session = context.session, flat, channels = comparedChannels(info)](
+                           const Progress& progress) { return flatCsv(*source, session, flat, channels, progress); }});
     if (!view.showReadout || !tools.next(iconButtonWidth(context, icons::kCopy))) return;
     if (iconButton(context, "copy", icons::kCopy, "Copy the values at the cross-hair as CSV"))
         ImGui::SetClipboardText((originLine(context.origin, context.numbers->info()) +

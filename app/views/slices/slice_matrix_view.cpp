@@ -145,12 +145,15 @@ void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<
     }
     const volume::TimePair time = volume::timesAround(info.times, context.session.time);
     exportMenu(
-        context, tools, "slices",
-        [source = context.numbers, session = context.session, shown, axes, planes = view.planes](
-            const Progress& progress) { return sliceDrawing(*source, session, shown, axes, planes, progress); },
-        [source = context.numbers, shown, axes, planes = view.planes, time](const Progress& progress) {
-            return sliceCsv(*source, shown, axes, planes, time, progress);
-        });
+        context, tools,
+        {.name = "slices",
+         .figure =
+             [source = context.numbers, session = context.session, shown, axes,
+              planes = view.planes](const PageForm&, const Progress& progress) {
+                 return sliceDrawing(*source, session, shown, axes, planes, progress);
+             },
+         .csv = [source = context.numbers, shown, axes, planes = view.planes,
+                 time](const Progress& progress) { return sliceCsv(*source, shown, axes, planes, time, progress); }});
     if (tools.fits(ImGui::CalcTextSize(directions.c_str()).x)) drawNote(tools, directions);
 }
 

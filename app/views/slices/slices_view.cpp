@@ -28,12 +28,12 @@ void chooseShown(ViewContext& context, ToolRow& tools, SlicesView& view, const R
         if (ImGui::IsItemHovered()) tooltip("Parameter that colours the slices");
     }
     chooseContours(tools, info, view.lines);
-    exportMenu(
-        context, tools, "slices",
-        [source = context.numbers, session = context.session, view, channel](const Progress& progress) {
-            return slicesDrawing(*source, session, view, channel, progress);
-        },
-        nullptr);
+    exportMenu(context, tools,
+               {.name = "slices",
+                .figure = [source = context.numbers, session = context.session, view,
+                           channel](const PageForm&, const Progress& progress) {
+                    return slicesDrawing(*source, session, view, channel, progress);
+                }});
     if (!view.showReadout || !tools.next(iconButtonWidth(context, icons::kCopy))) return;
     if (iconButton(context, "copy", icons::kCopy, "Copy the values at the cross-hair as CSV"))
         ImGui::SetClipboardText((originLine(context.origin, context.numbers->info()) +

@@ -136,14 +136,17 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
     }
     if (result) {
         exportMenu(
-            context, tools, channel.name + "-histogram",
-            [result, channel](const Progress&) {
-                return drawingOf(
-                    {histogramFigure(channel, result->statistics.channels.front().histogram, result->brushed)}, 1);
-            },
-            [result, channel](const Progress&) {
-                return histogramCsv(channel, result->statistics.channels.front().histogram, result->brushed);
-            });
+            context, tools,
+            {.name = channel.name + "-histogram",
+             .figure =
+                 [result, channel](const PageForm&, const Progress&) {
+                     return drawingOf(
+                         {histogramFigure(channel, result->statistics.channels.front().histogram, result->brushed)}, 1);
+                 },
+             .csv =
+                 [result, channel](const Progress&) {
+                     return histogramCsv(channel, result->statistics.channels.front().histogram, result->brushed);
+                 }});
     }
     if (result) drawOrigin(context, tools, {result->query.channels.front()});
     if (context.session.selection.brushes.empty()) drawNote(tools, "drag to brush");

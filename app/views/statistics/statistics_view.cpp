@@ -284,8 +284,9 @@ void drawBalance(ViewContext& context, ToolRow& tools, const std::string& pane, 
     }
     const auto table = std::make_shared<BalanceTable>(balanceTable(info, *balance));
     const std::string origin = originText(context.origin, info, {channel}, {isKnown(context.origin, info, query)});
-    exportMenu(
-        context, tools, "balance", {}, [table](const Progress&) { return balanceCsv(*table, "", ""); }, true, origin);
+    exportMenu(context, tools,
+               {.name = "balance", .csv = [table](const Progress&) { return balanceCsv(*table, "", ""); }}, true,
+               origin);
     drawOriginText(context, tools, origin);
     drawBalanceTable(*table);
 }
@@ -324,12 +325,11 @@ bool drawRegions(ViewContext& context, ToolRow& tools, const std::string& pane, 
     std::vector<bool> known;
     for (const int channel : shown) known.push_back(isKnown(context.origin, info, {{channel}, *label, query.time}));
     const std::string origin = originText(context.origin, info, shown, known);
-    exportMenu(
-        context, tools, "regions", {},
-        [rows, unit = info.lengthUnit](const Progress&) {
-            return regionCsv(*rows, unit, "", "", true, showsErrors(*rows));
-        },
-        true, origin);
+    exportMenu(context, tools,
+               {.name = "regions",
+                .csv = [rows, unit = info.lengthUnit](
+                           const Progress&) { return regionCsv(*rows, unit, "", "", true, showsErrors(*rows)); }},
+               true, origin);
     drawOriginText(context, tools, origin);
     drawRegionTable(context.session, info, volume::parameterOf(info, *label), *rows);
     return true;
@@ -376,12 +376,11 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
             tooltip("Parameter with which the correlation of the others is shown (Pearson's r)");
     }
     const std::string origin = tableOrigin(context.origin, info, query, shown);
-    exportMenu(
-        context, tools, "statistics", {},
-        [source = context.numbers, from = context.origin, query, count = shown.size()](const Progress& progress) {
-            return statisticsCsv(source, from, query, count, progress);
-        },
-        true, origin);
+    exportMenu(context, tools,
+               {.name = "statistics",
+                .csv = [source = context.numbers, from = context.origin, query, count = shown.size()](
+                           const Progress& progress) { return statisticsCsv(source, from, query, count, progress); }},
+               true, origin);
     if (!result) {
         ImGui::TextDisabled("%s", cache.answers.failure().empty() ? "Counting..." : cache.answers.failure().c_str());
         return;
