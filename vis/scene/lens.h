@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <glm/mat3x3.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -158,6 +159,8 @@ std::vector<PlacedLens> placeLenses(const std::vector<Lens>& lenses, const World
 
 /// Index of the lens with a name, -1 if there is none.
 int findLens(const std::vector<PlacedLens>& lenses, const std::string& name);
+/// Index of the lens that a layer is drawn in: -1 for everywhere (""), nullopt if there is none of that name.
+std::optional<int> lensOf(const std::vector<PlacedLens>& lenses, const std::string& name);
 
 /// Effect of all lenses on a layer at a position; the layer belongs to lens `own` (-1: to none).
 template <class N> struct LensActionOf {
