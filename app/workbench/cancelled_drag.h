@@ -4,7 +4,7 @@ namespace tessera::app {
 
 /// Esc gives up what is being dragged with the mouse, or changed by keys, and does nothing else then: it closes no menu
 /// and clears no brush. The mouse counts as let go until its buttons are.
-class GivenUpDrag {
+class CancelledDrag {
 public:
     /// Call first in a frame. True in the one in which something is given up: the session is to be what it was before,
     /// also after views have seen the key.

@@ -9,10 +9,10 @@
 /// it.
 namespace tessera::app {
 
-class Chain {
+class LinkControl {
 public:
     /// `picture`: of the view, in whose upper right corner the chain hangs.
-    Chain(const ViewContext& context, const VolumeView& view, const PictureBox& picture);
+    LinkControl(const ViewContext& context, const VolumeView& view, const PictureBox& picture);
 
     /// Takes the mouse over it; before the item of the picture, which lies below.
     void take();
@@ -28,7 +28,7 @@ private:
     bool shown_ = false, hovered_ = false;
 };
 
-/// Its menu, which edits the view; outside of ShownScene.
-void drawChainMenu(ViewContext& context, VolumeView& view);
+/// Draws the menu of the control, which edits the view. Call it outside of ShownScene.
+void drawLinkMenu(ViewContext& context, VolumeView& view);
 
 } // namespace tessera::app

@@ -1,4 +1,4 @@
-#include "app/views/volume/chain.h"
+#include "app/views/volume/link_control.h"
 
 #include "app/pane/view_parts.h"
 #include "app/session/shown_scene.h"
@@ -61,7 +61,7 @@ void drawOwnTime(ViewContext& context, double& time) {
 
 } // namespace
 
-Chain::Chain(const ViewContext& context, const VolumeView& view, const PictureBox& picture)
+LinkControl::LinkControl(const ViewContext& context, const VolumeView& view, const PictureBox& picture)
     : context_(context), view_(view) {
     const float side = std::round(em() * 1.6f), gap = std::round(em() * 0.4f);
     size_ = {side, side};
@@ -71,7 +71,7 @@ Chain::Chain(const ViewContext& context, const VolumeView& view, const PictureBo
              (over || ownsAny(view) || volumeViews(context.session) > 1 || ImGui::IsPopupOpen(kMenu));
 }
 
-void Chain::take() {
+void LinkControl::take() {
     if (!shown_) return;
     const ImVec2 before = ImGui::GetCursorScreenPos();
     ImGui::SetCursorScreenPos(min_);
@@ -81,7 +81,7 @@ void Chain::take() {
     ImGui::SetCursorScreenPos(before);
 }
 
-std::optional<std::pair<ImVec2, ImVec2>> Chain::draw(ImDrawList& list) const {
+std::optional<std::pair<ImVec2, ImVec2>> LinkControl::draw(ImDrawList& list) const {
     if (!shown_) return std::nullopt;
     const bool own = ownsAny(view_);
     const Icon icon = own ? icons::kChainOff : icons::kChain;
@@ -95,7 +95,7 @@ std::optional<std::pair<ImVec2, ImVec2>> Chain::draw(ImDrawList& list) const {
     return std::pair{min_, max};
 }
 
-void drawChainMenu(ViewContext& context, VolumeView& view) {
+void drawLinkMenu(ViewContext& context, VolumeView& view) {
     if (!ImGui::BeginPopup(kMenu)) return;
     if (escapePressed()) ImGui::CloseCurrentPopup();
     ImGui::TextDisabled("Shared with other views");

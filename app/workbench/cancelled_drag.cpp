@@ -1,4 +1,4 @@
-#include "app/workbench/given_up_drag.h"
+#include "app/workbench/cancelled_drag.h"
 
 #include "app/ui/keys.h"
 
@@ -6,7 +6,7 @@
 
 namespace tessera::app {
 
-bool GivenUpDrag::begin() {
+bool CancelledDrag::begin() {
     const bool held = mouseHeld();
     if (letGo_) {
         hideMouseButtons();
@@ -19,7 +19,7 @@ bool GivenUpDrag::begin() {
     return true;
 }
 
-void GivenUpDrag::end() {
+void CancelledDrag::end() {
     active_ = ImGui::IsAnyItemActive() && !typing();
 }
 
