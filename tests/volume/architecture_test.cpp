@@ -129,8 +129,9 @@ TEST(Architecture, IncludesOnlyPointUpTheListOfRooms) {
     EXPECT_GT(seen, 1000u);
     for (const std::string& room : rooms) {
         EXPECT_GT(files[room], 0) << room << " of docs/rooms.md holds nothing";
-        EXPECT_LE(files[room], 28) << room << " is no longer seen at a glance: split it";
-        std::printf("%3d files  %s\n", files[room], room.c_str());
+        // A hint, no limit: what belongs together is not put elsewhere to keep a number.
+        const bool many = files[room] > 28;
+        std::printf("%3d files  %s%s\n", files[room], room.c_str(), many ? ": rather many, is it two subjects?" : "");
     }
 }
 
