@@ -1,6 +1,6 @@
 #include "tests/reference/image.h"
 
-#include "vis/optics/context_blur.h"
+#include "vis/formulas/context_blur.h"
 
 #include <algorithm>
 #include <cassert>
@@ -61,11 +61,11 @@ Image outOfFocus(const Image& image, double radius) {
             double weight = 1;
             for (int tap = 0; tap < kBlurTaps; ++tap) {
                 // The shader's y runs up.
-                const glm::dvec2 offset = blurTap(tap) * radius * glm::dvec2(1, -1);
+                const glm::dvec2 offset = blurTap<double>(tap) * radius * glm::dvec2(1, -1);
                 const glm::dvec2 at = glm::clamp(glm::dvec2(x, y) + 0.5 + offset, glm::dvec2(0),
                                                  glm::dvec2(image.size) - glm::dvec2(1e-9));
                 const double share =
-                    blurShare(image.interest[index(int(at.x), int(at.y))], glm::length(offset), radius);
+                    blurShare<double>(image.interest[index(int(at.x), int(at.y))], glm::length(offset), radius);
                 sum += share * colorAt(at);
                 weight += share;
             }

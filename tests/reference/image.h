@@ -24,7 +24,7 @@ struct Difference {
 };
 Difference compare(const Image& a, const Image& b, double threshold);
 
-/// Applies context blur (vis/optics/context_blur.h); `radius` in pixels. The picture must have degrees of interest.
+/// Applies context blur (vis/formulas/context_blur.h); `radius` in pixels. The picture must have degrees of interest.
 Image outOfFocus(const Image& image, double radius);
 
 } // namespace tessera::vis::reference

@@ -1,9 +1,9 @@
 #include "tests/reference/raycast.h"
 
-#include "vis/optics/contour.h"
-#include "vis/optics/jitter.h"
 #include "tests/reference/prepared.h"
 #include "tests/reference/projection.h"
+#include "vis/formulas/colors.h"
+#include "vis/optics/jitter.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>

@@ -115,7 +115,9 @@ TEST(Architecture, IncludesOnlyPointUpTheListOfRooms) {
                 std::string include = named.substr(1);
                 if (file.ends_with(".glsl")) { // what fills a <slot:> is named by C++
                     if (include.starts_with("slot:")) continue;
-                    include = "vis/shaders/" + include;
+                    const bool formula = include.starts_with("formulas/"); // made of C++
+                    include =
+                        formula ? "vis/" + include.substr(0, include.rfind('.')) + ".h" : "vis/shaders/" + include;
                     EXPECT_TRUE(fs::exists(kRoot / include)) << file << " includes " << include;
                 }
                 EXPECT_FALSE(include.starts_with("..") || include.starts_with("./"))
