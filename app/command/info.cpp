@@ -38,9 +38,9 @@ volume::DatasetInfo infoOf(const codec::Archive& archive) {
     return info;
 }
 
-std::uint64_t bytesOfCorrections(const codec::Archive& archive) {
+std::uint64_t bytesOf(const std::vector<FileRange>& parts) {
     std::uint64_t bytes = 0;
-    for (const FileRange& range : archive.metadata().corrections) bytes += range.length;
+    for (const FileRange& part : parts) bytes += part.length;
     return bytes;
 }
 
@@ -108,7 +108,8 @@ Json archiveJson(const codec::Archive& archive) {
             {"levels", std::move(levels)},
             {"masks", archive.maskCount()},
             {"maskBytes", archive.maskBytes()},
-            {"correctionBytes", bytesOfCorrections(archive)},
+            {"correctionBytes", bytesOf(archive.metadata().corrections)},
+            {"regionNumberBytes", bytesOf(archive.metadata().numbers)},
             {"repeatedBricks", archive.repeats().bricks},
             {"repeatedBytes", archive.repeats().bytes},
             {"lossless", archive.metadata().lossless && !codec::isResampled(archive.metadata())},
@@ -144,8 +145,10 @@ void printArchive(const codec::Archive& archive) {
     say("\n");
     if (archive.maskCount() > 0)
         say("  masks      %d, %s\n", archive.maskCount(), textOfBytes(double(archive.maskBytes())).c_str());
-    if (const std::uint64_t bytes = bytesOfCorrections(archive); bytes > 0)
+    if (const std::uint64_t bytes = bytesOf(archive.metadata().corrections); bytes > 0)
         say("  corrected  to the samples of the source, by %s\n", textOfBytes(double(bytes)).c_str());
+    if (const std::uint64_t bytes = bytesOf(archive.metadata().numbers); bytes > 0)
+        say("  regions    their numbers as computed from the source, %s\n", textOfBytes(double(bytes)).c_str());
     if (const auto repeats = archive.repeats(); repeats.bricks > 0)
         say("  repeats    %llu bricks equal those of the time before, which saves %s\n",
             static_cast<unsigned long long>(repeats.bricks), textOfBytes(double(repeats.bytes)).c_str());

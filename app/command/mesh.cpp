@@ -3,7 +3,7 @@
 #include "app/data/open.h"
 #include "app/described/describe_cli.h"
 #include "app/described/describe_json.h"
-#include "app/queries/surface_query.h"
+#include "app/queries/geometry_query.h"
 #include "app/ui/ticks.h"
 #include "codec/blocks/share_results.h"
 #include "volume/base/error.h"

@@ -1,10 +1,12 @@
 #include "app/command/picture_options.h"
 
+#include "app/command/command.h"
 #include "app/data/apply_layout.h"
 #include "app/data/format.h"
 #include "app/data/import_options.h"
 #include "app/data/library.h"
 #include "app/described/describe_cli.h"
+#include "app/described/key_words.h"
 #include "app/history/parameter_path.h"
 #include "app/session/shown_scene.h"
 #include "app/ui/ticks.h"
@@ -105,7 +107,7 @@ std::string paneOf(const Session& session, const std::string& view) {
     for (const auto& [pane, state] : session.views) {
         const auto kind =
             std::visit([](const auto& v) { return std::string_view(std::decay_t<decltype(v)>::kType); }, state);
-        if (kind == view) return pane;
+        if (sameName(kind, view)) return pane;
     }
     return {};
 }

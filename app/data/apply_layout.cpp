@@ -4,6 +4,7 @@
 #include "app/data/first_view.h"
 #include "app/data/format.h"
 #include "app/data/packing_errors.h"
+#include "app/described/key_words.h"
 #include "app/edits/layout_brushes.h"
 #include "app/edits/other_data.h"
 #include "app/session/own_functions.h"
@@ -67,20 +68,21 @@ std::vector<std::string> layoutNames() {
 }
 
 bool isDemonstration(std::string_view layout) {
-    static constexpr std::string_view kNames[] = {"animation", "charcoal", "compare_lattice", "evening",
-                                                  "illustration"};
+    static constexpr std::string_view kNames[] = {"animation", "charcoal", "compareLattice", "evening", "illustration"};
     return std::ranges::find(kNames, layout) != std::end(kNames);
 }
 
 std::string findLayout(const std::string& nameOrPath) {
     std::error_code problem;
     if (hasEnding(nameOrPath, ".json") && fs::is_regular_file(nameOrPath, problem)) return nameOrPath;
-    for (const fs::path& folder : layoutFolders()) {
-        const fs::path path = folder / (nameOrPath + ".json");
-        if (nameOrPath.find('/') == std::string::npos && fs::is_regular_file(path, problem)) return path.string();
-    }
     std::string known;
-    for (const std::string& name : layoutNames()) known += (known.empty() ? "" : ", ") + name;
+    for (const std::string& name : layoutNames()) {
+        known += (known.empty() ? "" : ", ") + name;
+        if (!sameName(name, nameOrPath)) continue;
+        for (const fs::path& folder : layoutFolders())
+            if (const fs::path path = folder / (name + ".json"); fs::is_regular_file(path, problem))
+                return path.string();
+    }
     throw Error("no layout of that name; there are " + (known.empty() ? "none" : known), {}, nameOrPath);
 }
 

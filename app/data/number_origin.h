@@ -30,9 +30,9 @@ struct NumberOrigin {
     bool corrected = false;    ///< then: with labels and absent samples as they were, and bounds that hold there
     /// Then: largest errors at the samples of the source, by parameter, in its unit; empty: none is known.
     std::vector<double> resampleErrors = {};
-    bool discarded = false;                                  ///< bricks of little importance are left out
-    bool alongTime = false;                                  ///< time takes the place of an axis: read between times
-    std::shared_ptr<const volume::BrickSource> cutFrom = {}; ///< then: the data in space that the plane is of
+    bool discarded = false; ///< bricks of little importance are left out
+    bool alongTime = false; ///< time takes the place of an axis: read between times
+    std::shared_ptr<const volume::BrickSource> spaceOfPlane = {}; ///< then: the data in space that the plane is of
     std::string other =
         {}; ///< where those of the other data beside (volume/derived/other_source.h) come from, "" = none
     /// Parameters that are read; those after them are derived from these. -1: all.

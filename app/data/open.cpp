@@ -72,6 +72,14 @@ Opened openDocument(SessionDocument document, const std::string& folder, const O
 
 } // namespace
 
+OpenRequest recoveryRequest(const std::string& path) {
+    OpenRequest request;
+    request.paths = {path};
+    request.import.emplace();
+    request.import->allowOutside = true;
+    return request;
+}
+
 DataRef dataOf(const std::vector<std::string>& paths, const volume::ImportOptions& options) {
     DataRef data;
     data.import = options;

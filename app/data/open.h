@@ -22,6 +22,9 @@ struct OpenRequest {
     std::optional<codec::RemoteOptions> remote = {}; ///< for archives on other machines
 };
 
+/// Of a session that was kept automatically. Its data were shown, so the files elsewhere that they name were allowed.
+OpenRequest recoveryRequest(const std::string& path);
+
 struct Opened {
     SessionDocument document;
     std::shared_ptr<const volume::BrickSource> source;  ///< of pictures; null if data are missing

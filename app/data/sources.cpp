@@ -315,7 +315,7 @@ Sources openStored(const DataRef& data, std::vector<std::string>& messages, cons
     const auto numbers = along(whole.numbers);
     NumberOrigin origin = whole.origin;
     origin.alongTime = true;
-    origin.cutFrom = whole.numbers;
+    origin.spaceOfPlane = whole.numbers;
     origin.parameters = int(numbers->info().parameters.size());
     return {drawnOn(whole.packed ? along(whole.packed) : numbers, data.lattice), numbers, std::move(origin)};
 }

@@ -59,4 +59,14 @@ std::string oneOf(std::string_view list) {
     return words;
 }
 
+bool sameName(std::string_view a, std::string_view b) {
+    const auto folded = [](std::string_view name) {
+        std::string out;
+        for (const char c : name)
+            if (c != '_' && c != '-' && c != ' ') out += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+        return out;
+    };
+    return folded(a) == folded(b);
+}
+
 } // namespace tessera::app

@@ -41,7 +41,7 @@ bool goesOn(const volume::BrickSource& was, const volume::BrickSource& is) {
 struct Both {
     std::shared_ptr<const volume::BrickSource> own, other;
     explicit Both(const std::shared_ptr<const volume::BrickSource>& source)
-        : own(volume::besideOther(*source)), other(volume::otherOf(*source)) {
+        : own(volume::firstDataOf(*source)), other(volume::otherOf(*source)) {
         if (!own) own = source;
     }
     std::shared_ptr<const volume::BrickSource> joined() const { return other ? volume::withOther(own, other) : own; }

@@ -1,6 +1,6 @@
 #include "app/document/surface_export.h"
 
-#include "app/queries/surface_query.h"
+#include "app/queries/geometry_query.h"
 #include "app/session/shown_scene.h"
 #include "volume/base/error.h"
 #include "volume/mesh/mesh_file.h"

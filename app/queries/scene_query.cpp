@@ -26,8 +26,7 @@ void addObliqueSlices(vis::Scene& scene, const Session& session, const volume::D
 vis::Scene AsyncScene::get(ViewContext& context, const std::string& pane, bool moving) {
     vis::Scene scene = sceneWithLimits(context);
     addObliqueSlices(scene, context.session, context.source->info());
-    scene.geometry = surfaces_.get(context, pane, moving);
-    for (vis::GeometryLayer& flow : flow_.get(context, pane)) scene.geometry.push_back(std::move(flow));
+    scene.geometry = geometry_.get(context, pane, moving);
     return scene;
 }
 

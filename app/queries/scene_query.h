@@ -1,7 +1,6 @@
 #pragma once
 
-#include "app/queries/flow_query.h"
-#include "app/queries/surface_query.h"
+#include "app/queries/geometry_query.h"
 
 /// The scene that a 3D view draws, including everything computed outside the renderer.
 namespace tessera::app {
@@ -13,8 +12,7 @@ public:
     vis::Scene get(ViewContext& context, const std::string& pane, bool moving);
 
 private:
-    AsyncSurfaces surfaces_;
-    AsyncFlow flow_;
+    AsyncGeometry geometry_;
 };
 
 } // namespace tessera::app

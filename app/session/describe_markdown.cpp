@@ -69,6 +69,15 @@ std::string describeKind(const ViewTraits& kind) {
     return text;
 }
 
+/// Of every way to compute a parameter.
+std::string recipeSections() {
+    return []<class... Recipe>(const std::variant<Recipe...>*) {
+        return (markdownSection<Recipe>("Recipe of type `" + std::string(Recipe::kType) + "`",
+                                        std::string(Recipe::kKind.doc)) +
+                ...);
+    }(static_cast<const volume::DerivedRecipe*>(nullptr));
+}
+
 } // namespace
 
 std::string parameterReference() {
@@ -119,12 +128,7 @@ std::string parameterReference() {
     out += markdownSection<Track>("animation.tracks", "The keyframes of one setting.");
     out += markdownSection<Keyframe>("animation.tracks.keys", "One keyframe.");
     out += markdownSection<volume::DerivedParameter>("data.derived", "A parameter computed from others.");
-    out += markdownSection<volume::ExpressionRecipe>("Recipe of type `expression`", "A formula.");
-    out += markdownSection<volume::GradientRecipe>("Recipe of type `gradient`", "A vector.");
-    out += markdownSection<volume::DeviationRecipe>("Recipe of type `deviation`", "Deviation from the mean over time.");
-    out += markdownSection<volume::SmoothRecipe>("Recipe of type `smooth`", "A copy smoothed by a Gaussian.");
-    out += markdownSection<volume::DifferenceRecipe>("Recipe of type `difference`",
-                                                     "A parameter minus itself at another time or in other data.");
+    out += recipeSections();
     return out;
 }
 

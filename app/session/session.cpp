@@ -1,5 +1,6 @@
 #include "app/session/session.h"
 
+#include "app/described/key_words.h"
 #include "app/described/within_ranges.h"
 #include "app/session/label_colors.h"
 
@@ -99,7 +100,7 @@ std::optional<ViewState> viewOfKind(std::string_view kind) {
     std::optional<ViewState> view;
     forEachViewKind([&](const auto& row) {
         using State = typename std::decay_t<decltype(row)>::State;
-        if (State::kType == kind) view = State{};
+        if (sameName(State::kType, kind)) view = State{};
     });
     return view;
 }

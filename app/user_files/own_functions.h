@@ -31,7 +31,7 @@ OwnFunctions loadOwnFunctions(const std::string& folder);
 /// Error, MachineError.
 std::string saveOwnFunction(const std::string& folder, const vis::TransferRecipe& recipe);
 
-/// Removes one. Throws Error, MachineError; the file stays as it was then.
+/// Removes the function of that name. Throws Error, MachineError; the file stays as it was then.
 void deleteOwnFunction(const std::string& folder, const std::string& name);
 
 } // namespace tessera::app

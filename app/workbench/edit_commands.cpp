@@ -280,29 +280,27 @@ void showData(Workbench& workbench) {
 
 /// Adds a derived parameter of each kind, from the parameter shown first. Differences have commands of their own.
 std::vector<Command> derivedCommands(Workbench& workbench) {
-    static constexpr std::array<const char*, std::size(kDerivedKinds) - 1> kKindWords = {
-        "expression equation function",
-        "length norm absolute",
-        "grad derivative slope",
-        "div sources",
-        "curl rotation",
-        "fluctuation mean variance",
-        "smooth filter blur gaussian average",
-        "coordinates xyz",
-        "clock"};
     std::vector<Command> commands;
-    for (std::size_t kind = 0; kind < kKindWords.size(); ++kind) {
-        const bool ofVector = kind == 3 || kind == 4; // divergence and vorticity
+    for (std::size_t kind = 0; kind < volume::kDerivedKinds; ++kind) {
+        const volume::DerivedRecipe recipe = volume::recipeOfKind(kind);
+        const volume::DerivedKind& own = volume::kindOf(recipe);
+        if (own.words.empty()) continue;
+        bool ofVector = false;
+        std::visit(
+            [&](const auto& each) {
+                volume::forEachInput(each, [&](const std::string&, bool isVector) { ofVector = ofVector || isVector; });
+            },
+            recipe);
         const auto channel = [&workbench] {
             return resolveChannel(workbench.document().info(), workbench.session(), "");
         };
-        std::string name = kDerivedKinds[kind];
+        std::string name(own.title);
         name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
         commands.push_back(
             {.menu = "",
              .name = "Add derived parameter: " + name,
              .help = "Add a parameter computed from others; Derived parameters in the pane Data has its settings",
-             .words = "new compute calculate computed " + std::string(kKindWords[kind]),
+             .words = "new compute calculate computed " + std::string(own.words),
              .run =
                  [&workbench, channel, kind] {
                      const volume::DatasetInfo& info = workbench.document().info();

@@ -198,6 +198,22 @@ void resetArrangement(Workbench& workbench) {
     repair(session.dock, paneKeys(session));
 }
 
+bool isLower(const std::string& text, std::size_t at) {
+    return at < text.size() && text[at] >= 'a' && text[at] <= 'z';
+}
+
+/// "overTime" and "over_time" are "Over time"; capitals that stand together stay.
+std::string titleOfLayout(const std::string& name) {
+    std::string title;
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        const bool begins = i > 0 && name[i] >= 'A' && name[i] <= 'Z' && isLower(name, i - 1) && isLower(name, i + 1);
+        if (begins) title += ' ';
+        title += begins ? static_cast<char>(name[i] - 'A' + 'a') : name[i] == '_' ? ' ' : name[i];
+    }
+    if (isLower(title, 0)) title[0] = static_cast<char>(title[0] - 'a' + 'A');
+    return title;
+}
+
 void showLayout(Workbench& workbench, const std::string& name, const std::string& title) {
     try {
         std::vector<std::string> messages;
@@ -244,9 +260,7 @@ std::vector<Command> layoutCommands(Workbench& workbench) {
         std::ranges::stable_partition(names, [](const std::string& name) { return !isDemonstration(name); });
     for (const std::string& name : names) {
         const bool first = name == names.front() || (!shows.empty() && name == shows.front());
-        std::string title = name;
-        std::replace(title.begin(), title.end(), '_', ' ');
-        title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+        const std::string title = titleOfLayout(name);
         commands.push_back(
             {.menu = "Layout",
              .name = (first ? "-" : "") + title,

@@ -83,7 +83,7 @@ void Workbench::frame() {
     if (const auto run = std::exchange(chosen_, nullptr)) run();
     data_.follow(ImGui::IsAnyItemActive(), ImGui::IsMouseDown(ImGuiMouseButton_Left));
     keyboard_.begin();
-    const bool givenUp = givenUp_.begin() && document_.loaded();
+    const bool givenUp = cancelledDrag_.begin() && document_.loaded();
     givenUp ? document_.giveUpEdit() : pressKeys();
     drawWindow();
     if (givenUp) document_.giveUpEdit(); // views that saw the key have their own ways of taking a drag back
@@ -100,7 +100,7 @@ void Workbench::frame() {
                          ImGui::IsMouseDown(ImGuiMouseButton_Right) || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
     document_.observe(editing, now());
     if (autosaver_) autosaver_->update(document_, now(), jobs_, messages_);
-    givenUp_.end();
+    cancelledDrag_.end();
     keyboard_.end();
 }
 

@@ -7,7 +7,7 @@
 #include "app/document/autosaver.h"
 #include "app/document/data_follower.h"
 #include "app/document/document.h"
-#include "app/workbench/given_up_drag.h"
+#include "app/workbench/cancelled_drag.h"
 #include "app/workbench/idle_moment.h"
 #include "app/workbench/keyboard_focus.h"
 #include "app/workbench/pane_host.h"
@@ -164,7 +164,7 @@ private:
     std::vector<Command> commands_;
     CommandPalette palette_;
     KeyboardFocus keyboard_;
-    GivenUpDrag givenUp_;
+    CancelledDrag cancelledDrag_;
     IdleMoment memory_;            ///< when free memory is given back
     std::function<void()> chosen_; ///< command chosen in this frame, run before the next one
 

@@ -92,9 +92,7 @@ void Workbench::openWhole(const std::shared_ptr<Opened>& opened, const std::stri
 
 void Workbench::recover(const Recovery& recovery) {
     jobs_.start("open", "Recovering", [this, recovery](const Progress& progress) -> Jobs::Finish {
-        OpenRequest request;
-        request.paths = {recovery.path};
-        auto opened = std::make_shared<Opened>(app::open(request, progress));
+        auto opened = std::make_shared<Opened>(app::open(recoveryRequest(recovery.path), progress));
         return [this, opened, recovery] {
             opened->sessionPath.clear(); // the autosave is not a file to save to
             // Keep the autosave until its data are found.

@@ -19,7 +19,7 @@ public:
     bool writes() const override { return writes_; }
     /// States that the piece has been packed, and removes what was shared.
     void end() const;
-    /// Whether it has been packed without this process, in which what it helps with may then fail.
+    /// Whether other processes have packed the piece. What this one still does for it may then fail.
     bool isOver() const;
     /// Waits a little for that, since another machine may see late that files have gone.
     bool endsSoon() const;

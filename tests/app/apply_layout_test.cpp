@@ -40,7 +40,7 @@ OpenRequest smallCell(int times) {
 TEST_F(LayoutTest, ALayoutChosenKeepsTheTimeAndItsSurfacesExistThen) {
     const Opened opened = open(smallCell(5));
     const volume::DatasetInfo& info = opened.source->info();
-    for (const char* name : {"evening", "charcoal", "compare_lattice", "gases"})
+    for (const char* name : {"evening", "charcoal", "compareLattice", "gases"})
         for (std::size_t t = 0; t < info.times.size(); ++t) {
             Session shown = opened.document.session;
             shown.time = info.times[t];
@@ -107,7 +107,7 @@ TEST_F(LayoutTest, ALayoutOfErrorsOnDataWithoutOriginalsIsToldOf) {
     for (const bool originals : {false, true}) {
         shown.data.originals = originals;
         std::vector<std::string> messages;
-        changeLayout(loadSession(findLayout("compression_error")), *opened.source, shown, messages);
+        changeLayout(loadSession(findLayout("compressionError")), *opened.source, shown, messages);
         EXPECT_EQ(std::ranges::count_if(
                       messages, [](const std::string& text) { return text.find("originals") != std::string::npos; }),
                   originals ? 0 : 1);
@@ -186,7 +186,7 @@ TEST_F(LayoutTest, VariantsOfAnotherModelAreLeftOut) {
     OpenRequest request = smallCell(2);
     const Opened opened = open(request);
     std::vector<std::string> messages;
-    const SessionDocument layout = loadSession(findLayout("compare_lattice"));
+    const SessionDocument layout = loadSession(findLayout("compareLattice"));
     const Session session = changeLayout(layout, *opened.source, opened.document.session, messages);
     const auto& compare = std::get<CompareView>(session.views.at("compare"));
     ASSERT_EQ(compare.variants.size(), 5u);
@@ -219,7 +219,7 @@ TEST_F(LayoutTest, TheLayoutOfErrorsPacksOtherData) {
     request.data.emplace();
     request.data->model = "marschner-lobb";
     request.data->settings = {{"nx", 12}, {"ny", 12}, {"nz", 12}};
-    request.layout = "compression_error";
+    request.layout = "compressionError";
     const Opened opened = open(request);
     const Session& session = opened.document.session;
     EXPECT_TRUE(session.data.originals);
@@ -241,13 +241,13 @@ TEST_F(LayoutTest, TheLayoutOfErrorsPacksOtherData) {
     EXPECT_FALSE(says(opened, "an archive has no originals"));
     // A file of one's own, and as an archive.
     request = rawRequest(raw("own.raw"));
-    request.layout = "compression_error";
+    request.layout = "compressionError";
     EXPECT_TRUE(open(request).document.session.data.originals);
     volume::Dataset signal = volume::makeModel("marschner-lobb", {{"nx", 12}, {"ny", 12}, {"nz", 12}});
     codec::pack(signal, {}, in("own.tsr"));
     request = {};
     request.paths = {in("own.tsr")};
-    request.layout = "compression_error";
+    request.layout = "compressionError";
     const Opened archive = open(request);
     EXPECT_FALSE(archive.document.session.data.originals);
     EXPECT_TRUE(says(archive, "an archive has no originals"));
@@ -298,7 +298,7 @@ TEST_F(LayoutTest, WhatALayoutLosesIsTold) {
 }
 
 TEST_F(LayoutTest, FunctionsOfALayerOrFaceAloneAreTaken) {
-    SessionDocument layout = loadSession(findLayout("shadowcube"));
+    SessionDocument layout = loadSession(findLayout("shadowCube"));
     vis::TransferFunction far;
     far.colormap = "gray";
     layout.session.transfer["far"] = layout.session.transfer["nobody's"] = far;
@@ -317,11 +317,25 @@ TEST_F(LayoutTest, DemonstrationsAreFew) {
     EXPECT_FALSE(isDemonstration("overview"));
 }
 
+// Views are "shadowCube", models "fuel-cell": who mixes them up is understood.
+TEST_F(LayoutTest, NamesAreFoundHoweverTheyAreSpelled) {
+    const std::string path = findLayout("shadowCube");
+    for (const char* name : {"shadowcube", "shadow_cube", "Shadow cube", "SHADOW-CUBE"})
+        EXPECT_EQ(findLayout(name), path) << name;
+    EXPECT_EQ(findLayout("over_time"), findLayout("overTime"));
+    EXPECT_THROW(findLayout("shadow"), Error);
+    EXPECT_THROW(findLayout("../layouts/overview"), Error);
+    EXPECT_TRUE(viewOfKind("shadow_cube") && viewOfKind("SliceMatrix"));
+    EXPECT_FALSE(viewOfKind("slice"));
+    for (const std::string& name : layoutNames())
+        EXPECT_EQ(name.find('_'), std::string::npos) << "one spelling is listed";
+}
+
 TEST_F(LayoutTest, ShippedLayoutsAreValid) {
     const std::vector<std::string> names = layoutNames();
     EXPECT_TRUE(std::find(names.begin(), names.end(), "overview") != names.end());
     for (const char* shipped : {"gases", "starved", "statistics", "flow", "lens", "focus", "charcoal", "illustration",
-                                "shadowcube", "tesseract", "animation"})
+                                "shadowCube", "tesseract", "animation"})
         EXPECT_TRUE(std::find(names.begin(), names.end(), shipped) != names.end()) << shipped;
     for (const std::string& name : names) {
         const SessionDocument layout = loadSession(findLayout(name));

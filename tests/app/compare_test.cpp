@@ -40,7 +40,7 @@ TEST(Compare, AVariantIsTheSessionWithItsChanges) {
 }
 
 TEST(Compare, TheLayoutOfCompressionsPacksAnyData) {
-    const Session layout = loadSession(std::string(TESSERA_SOURCE_DIR) + "/layouts/compare_compression.json").session;
+    const Session layout = loadSession(std::string(TESSERA_SOURCE_DIR) + "/layouts/compareCompression.json").session;
     Session own = layout;
     own.data = {};
     own.data.model = "casting"; // as they were opened, not packed

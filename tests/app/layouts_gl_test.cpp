@@ -51,14 +51,14 @@ const std::vector<Shipped>& shipped() {
          "",
          {{"volume", Light, 0.86}, {"volume", Warm, 0}, {"volume", Cold, 0}}},
         // Several pictures beside each other are under test with the view itself.
-        {"compare_compression", "compare data layers transfer", "O2 [mol/m³] = 2.5; T [K] 353.16 .. 356.85", {}},
-        {"compare_lattice", "compare data layers transfer", "rho = 0.5", {}},
-        {"compare_techniques",
+        {"compareCompression", "compare data layers transfer", "O2 [mol/m³] = 2.5; T [K] 353.16 .. 356.85", {}},
+        {"compareLattice", "compare data layers transfer", "rho = 0.5", {}},
+        {"compareTechniques",
          "compare data layers scatterMatrix transfer",
          kTemperature,
          {{"scatterMatrix", Orange, 0.0146}},
          true},
-        {"compression_error",
+        {"compressionError",
          "data histogram history layers log scatterMatrix slices timeline transfer volume",
          "T error [K] -0.0368 .. 0.0368",
          {{"volume", Cold, 0.035},
@@ -92,7 +92,7 @@ const std::vector<Shipped>& shipped() {
          "data history layers scatterMatrix slices statistics timeline transfer volume",
          "T [K] 353.16 .. 356.85; O2 [mol/m³] 0.06 .. 6.22; O2 [mol/m³] = 2.2; |U| [m/s] 0.00 .. 2.76",
          {{"volume", Cold, 0.0244}, {"volume", Warm, 0.0628}, {"scatterMatrix", Orange, 0}}},
-        {"over_time",
+        {"overTime",
          "data layers profile profile-2 slices timeline transfer volume",
          "H2 [mol/m³] 24.48 .. 33.11",
          {{"profile", Cold, 0.0173},
@@ -103,7 +103,7 @@ const std::vector<Shipped>& shipped() {
          "data history layers log scatterMatrix slices timeline transfer volume",
          kTemperature,
          {{"volume", Warm, 0.0674}, {"slices", Warm, 0.0396}, {"scatterMatrix", Orange, 0}}},
-        {"shadowcube",
+        {"shadowCube",
          "data layers shadowCube slices timeline transfer",
          kTemperature,
          {{"shadowCube", Warm, 0.0694}, {"shadowCube", Green, 0.0311}}},
@@ -225,7 +225,7 @@ TEST_P(Layouts, AreDrawnWithoutOpenGl) {
     const std::string name = GetParam().name;
     std::vector<std::string> panes = {"volume", "tesseract", "shadowCube"};
     if (name == "overview") panes.insert(panes.end(), {"slices", "scatterMatrix"});
-    if (name == "compare_techniques") panes.push_back("compare");
+    if (name == "compareTechniques") panes.push_back("compare");
     PictureMaker without({.openGl = false});
     for (const std::string& pane : panes) {
         if (!session().views.contains(pane)) continue;

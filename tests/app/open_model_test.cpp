@@ -28,7 +28,7 @@ TEST(OpenModel, ANameOpensTheModelLikeAFile) {
 }
 
 TEST(OpenModel, LayoutAndLatticeApplyToIt) {
-    OpenRequest request = named("marschner-lobb", "shadowcube");
+    OpenRequest request = named("marschner-lobb", "shadowCube");
     request.lattice = PictureLattice::Grid;
     const Opened opened = open(request);
     EXPECT_EQ(opened.source->info().lattice.kind, volume::LatticeKind::CC);

@@ -238,6 +238,26 @@ TEST_F(OpenTest, BadFilesAreErrors) {
     EXPECT_THROW(open(request), Error);
 }
 
+// A header may name samples elsewhere only where the user allows it, which no file says.
+TEST_F(OpenTest, AnAutosaveOpensTheFilesElsewhereThatWereAllowed) {
+    fs::create_directory(folder / "data");
+    std::ofstream(folder / "samples.raw") << "01234567";
+    std::ofstream(folder / "data/header.nhdr") << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\n"
+                                                  "encoding: raw\ndata file: ../samples.raw\n";
+    OpenRequest request;
+    request.paths = {in("data/header.nhdr")};
+    EXPECT_THROW(open(request), Error);
+    request.import.emplace().allowOutside = true;
+    const Opened shown = open(request);
+    std::ofstream(folder / "autosave.tessera.json") << printSession(shown.document, in("autosave.tessera.json"));
+    request.import.reset();
+    request.paths = {in("autosave.tessera.json")};
+    EXPECT_THROW(open(request), Error) << "as a session of somebody";
+    const Opened again = open(recoveryRequest(in("autosave.tessera.json")));
+    ASSERT_TRUE(again.source);
+    EXPECT_EQ(again.source->info().lattice.size, glm::ivec3(2));
+}
+
 TEST_F(OpenTest, RecentFilesAndAutosave) {
     const std::string state = folder.string();
     EXPECT_TRUE(recentFiles(state).empty());

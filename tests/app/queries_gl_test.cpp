@@ -1,8 +1,8 @@
 #include "app/described/describe_json.h"
 #include "app/queries/async_query.h"
+#include "app/queries/geometry_query.h"
 #include "app/queries/readout.h"
 #include "app/queries/statistics_query.h"
-#include "app/queries/surface_query.h"
 #include "app/queries/visibility_query.h"
 #include "app/views/compare/compare_pictures.h"
 #include "app/views/tesseract/tesseract_query.h"
@@ -377,7 +377,7 @@ TEST_F(AsyncQueries, ASurfaceInTwoPartsTellsItsProgressInOne) {
 }
 
 TEST_F(AsyncQueries, CancelledSurfaceWaitsForAnotherQuery) {
-    AsyncSurfaces answers;
+    AsyncGeometry answers;
     vis::IsoLayer layer{.channel = "T"};
     const Range range = source->info().channelRange(source->info().channel(*source->info().findChannel("T")));
     layer.value = 0.5 * (range.lo + range.hi);

@@ -28,7 +28,7 @@ struct TimeAlong : ViewsTest {
     void drawCut(View& shown, void (*function)(ViewContext&, const std::string&, View&), ImVec2 size) {
         frame([&] {
             ViewContext context{session, source, renderer, jobs, caches};
-            context.origin.cutFrom = space;
+            context.origin.spaceOfPlane = space;
             context.headless = true;
             ImGui::SetNextWindowPos({0, 0});
             ImGui::SetNextWindowSize(size);
@@ -304,12 +304,12 @@ TEST_F(TimeAlongWorkbench, TheDataInSpaceStandBesideAsTheyWere) {
     workbench.session().data.timeAxis->place = 0.9;
     settle();
     EXPECT_NE(workbench.numbers(), numbers);
-    EXPECT_NE(workbench.origin().cutFrom, nullptr);
+    EXPECT_NE(workbench.origin().spaceOfPlane, nullptr);
     EXPECT_EQ(besidePane(), beside);
     ASSERT_TRUE(run("Time along z")); // back
     settle();
     EXPECT_EQ(besidePane(), "");
-    EXPECT_EQ(workbench.origin().cutFrom, nullptr);
+    EXPECT_EQ(workbench.origin().spaceOfPlane, nullptr);
     workbench.session().camera = camera;
     EXPECT_LT(differing(before, pictureOf("volume")), 0.01);
 }

@@ -1,4 +1,4 @@
-#include "app/queries/flow_query.h"
+#include "app/queries/geometry_query.h"
 #include "app/views/compare/compare_questions.h"
 #include "app/views/curves/section_data.h"
 #include "app/views/tesseract/tesseract_wire.h"
@@ -112,32 +112,32 @@ TEST_F(Views, FlowComesAtOnceOrFromTheBackground) {
     session.layers = {{"flow", true, flow}};
     ViewContext context{session, source, renderer, jobs, caches};
     context.headless = true;
-    AsyncFlow atOnce, later;
-    const std::vector<vis::GeometryLayer> whole = atOnce.get(context, "a");
+    AsyncGeometry atOnce, later;
+    const std::vector<vis::GeometryLayer> whole = atOnce.get(context, "a", false);
     ASSERT_EQ(whole.size(), 1u);
     EXPECT_FALSE(whole[0].geometry->mesh.triangles.empty());
     EXPECT_EQ(whole[0].channel, "O2");
-    EXPECT_EQ(atOnce.get(context, "a"), whole) << "kept";
+    EXPECT_EQ(atOnce.get(context, "a", false), whole) << "kept";
     std::get<vis::FlowLayer>(session.layers[0].technique).style.opacity = 0.5f;
-    EXPECT_EQ(atOnce.get(context, "a")[0].geometry, whole[0].geometry) << "only drawn otherwise";
+    EXPECT_EQ(atOnce.get(context, "a", false)[0].geometry, whole[0].geometry) << "only drawn otherwise";
 
     context.headless = false;
-    EXPECT_TRUE(later.get(context, "b").empty());
+    EXPECT_TRUE(later.get(context, "b", false).empty());
     EXPECT_TRUE(context.awaiting && !context.busy) << "the job says when another frame is needed";
     jobs.wait();
     jobs.collect();
-    const std::vector<vis::GeometryLayer> made = later.get(context, "b");
+    const std::vector<vis::GeometryLayer> made = later.get(context, "b", false);
     ASSERT_EQ(made.size(), 1u);
     EXPECT_EQ(made[0].geometry->mesh.positions, whole[0].geometry->mesh.positions);
     // While another is made the last one stays, with the colours it was made for.
     std::get<vis::FlowLayer>(session.layers[0].technique).channel = "T";
-    ASSERT_EQ(later.get(context, "b").size(), 1u);
-    EXPECT_EQ(later.get(context, "b")[0].channel, "O2");
+    ASSERT_EQ(later.get(context, "b", false).size(), 1u);
+    EXPECT_EQ(later.get(context, "b", false)[0].channel, "O2");
     jobs.wait();
     jobs.collect();
-    EXPECT_EQ(later.get(context, "b")[0].channel, "T");
+    EXPECT_EQ(later.get(context, "b", false)[0].channel, "T");
     session.layers[0].visible = false;
-    EXPECT_TRUE(later.get(context, "b").empty());
+    EXPECT_TRUE(later.get(context, "b", false).empty());
 }
 
 /// The place in the list of corners of the first one of a colour, and of the last one; nothing where there is none.

@@ -306,7 +306,7 @@ TEST_F(WorkbenchOpening, CamerasOfLayoutsShowTheWholeBoxInTheirPanes) {
     request.data.emplace();
     request.data->model = "fuel-cell";
     request.data->settings = {{"nx", 5}, {"ny", 5}, {"nz", 21}, {"times", 2}};
-    Json near = loadSession(findLayout("compression_error")).raw;
+    Json near = loadSession(findLayout("compressionError")).raw;
     near["camera"]["distance"] = 0.8;
     write("near.json", near.dump());
     for (const std::string layout : {"near.json", "overview", "gases"}) {
@@ -376,7 +376,7 @@ TEST_F(WorkbenchOpening, CamerasOfLayoutsShowTheWholeBoxInComparisons) {
         request.data.emplace();
         request.data->model = "fuel-cell";
         request.data->settings = {{"nx", 5}, {"ny", 5}, {"nz", 21}, {"times", 2}};
-        Json near = loadSession(findLayout("compare_compression")).raw;
+        Json near = loadSession(findLayout("compareCompression")).raw;
         near["camera"]["distance"] = 0.8;
         write("near.json", near.dump());
         request.layout = "near.json";

@@ -1,6 +1,6 @@
-#include "app/bench/data/thesis_coding.h"
+#include "bench/data/thesis_coding.h"
 
-#include "app/bench/data/run_length.h"
+#include "bench/data/run_length.h"
 #include "tests/codec/make_dataset.h"
 #include "volume/base/error.h"
 

@@ -295,7 +295,7 @@ check("and its settings are in front", s["views"]["layers"]["task"] == "lenses",
 xdo("mousemove", LENS[0] - 60, LENS[1] - 12, "keydown", "alt", "click", 4, "keyup", "alt")
 until("Alt and the wheel make it larger", lambda s: s["lenses"][0]["size"][0] > lenses[0]["size"][0],
       lambda s: [each["size"] for each in s["lenses"]])
-for name, shows in (("shadowcube", "shadowCube"), ("tesseract", "tesseract"), ("charcoal", "volume")):
+for name, shows in (("shadowCube", "shadowCube"), ("tesseract", "tesseract"), ("charcoal", "volume")):
     palette("layout: " + name)
     until(f"the layout {name} shows its view, and keeps the brush",
           lambda s: shows in [view["type"] for view in s["views"].values()] and s["views"] != before["views"] and

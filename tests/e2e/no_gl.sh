@@ -74,7 +74,7 @@ for layout in "$source"/layouts/*.json; do
     layouts=$((layouts + 1))
     case $name in
         charcoal | evening) set -- --set '/data/settings={"nx":24,"ny":24,"nz":24,"times":1}' ;;
-        compression_error) # its data are not of a file, so its own must be few
+        compressionError) # its data are not of a file, so its own must be few
             sed 's/"settings": {/&"nx": 7, "ny": 13, "nz": 40, /' "$layout" > few.json
             layout=few.json
             set -- ;;

@@ -8,7 +8,7 @@ mkdir shaders
 export MESA_SHADER_DUMP_PATH=$work/shaders MESA_SHADER_CACHE_DISABLE=1
 export GALLIVM_PERF=nopt LP_NATIVE_VECTOR_WIDTH=128 # for the pictures, which nothing looks at: see docs/testing.md
 "$tessera" generate fuel-cell -o cell.tsr --size 5x9x21 --times 2 > out.txt 2>&1 || { cat out.txt; die "generate"; }
-for layout in overview flow illustration lens evening shadowcube; do
+for layout in overview flow illustration lens evening shadowCube; do
     data=cell.tsr
     [ $layout = evening ] && data= # which shows a signal of its own
     # shellcheck disable=SC2086

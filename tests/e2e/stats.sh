@@ -75,6 +75,7 @@ PY
 "$tessera" generate fuel-cell -o series.raw --size 11x13x21 --times 8 > /dev/null 2>err || die "make a series"
 for lattice in cc bcc d4; do
     "$tessera" pack series.raw -o "$lattice.tsr" --lattice $lattice --max-error 0.01 > /dev/null 2>err || die "pack on $lattice"
+    "$tessera" info "$lattice.tsr" > out.txt && say '  regions    their numbers as computed from the source, ' out.txt
     for question in "--all-times" "--balance O2 --all-times" "--by none"; do
         # shellcheck disable=SC2086
         "$tessera" stats series.raw $question -o want.csv > /dev/null 2>err || die "stats $question"

@@ -4,7 +4,7 @@
 #include "codec/unpack/unpack.h"
 #include "tests/fuzz/changed_archive.h"
 #include "vis/processor/processor_renderer.h"
-#include "vis/reference/raycast.h"
+#include "tests/reference/raycast.h"
 #include "volume/export/export.h"
 
 #include <memory>

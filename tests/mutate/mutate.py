@@ -30,9 +30,9 @@ import trial
 ROOMS = {
     "volume": dict(but=(), libraries=["volume"], tests=["volume_tests", "import_tests"], programs=[], scripts=[]),
     "codec": dict(but=(), libraries=["codec"], tests=["codec_tests"], programs=[], scripts=[]),
-    "vis": dict(but=(), libraries=["vis_model", "vis_reference", "vis_packet", "vis"],
+    "vis": dict(but=(), libraries=["vis_model", "vis_packet", "vis"],
                 tests=["vis_tests", "packet_tests", "vis_gl_tests"], programs=[], scripts=[]),
-    "app": dict(but=("app/importer/", "app/bench/"), libraries=["app_core", "drawing", "app", "tessera"],
+    "app": dict(but=("app/importer/",), libraries=["app_core", "drawing", "app", "tessera"],
                 tests=["app_tests", "app_gl_tests"], programs=["tessera"],
                 scripts=["compare", "diff", "generate", "mesh", "plot", "render", "stats"]),
 }

@@ -3,7 +3,7 @@
 #include "tests/vis/wavy_data.h"
 #include "vis/packet/packet_refusal.h"
 #include "vis/packet/packet_renderer.h"
-#include "vis/reference/raycast.h"
+#include "tests/reference/raycast.h"
 
 #include <cmath>
 #include <functional>

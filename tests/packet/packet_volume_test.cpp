@@ -145,7 +145,7 @@ TEST(PacketChannels, AreExactWhereTheFunctionIsNarrow) {
                     {"", true, IsoLayer{.channel = "b"}},
                     {"", false, VolumeLayer{.channel = "b"}}};
     const auto exact = [&] {
-        const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
+        const std::vector<LayerSamples> drawn = layerSamples(scene, info, drawnScene(scene, info));
         EXPECT_EQ(drawn.size(), 2u) << "hidden layers need nothing";
         EXPECT_EQ(drawn.at(0).channel.exact, drawn.at(1).channel.exact) << "all alike";
         return drawn.at(0).channel.exact;

@@ -1,6 +1,6 @@
 #include "tests/vis/raycast_compare.h"
 #include "tests/vis/shader_probe.h"
-#include "vis/optics/context_blur.h"
+#include "vis/formulas/context_blur.h"
 
 #include <glm/geometric.hpp>
 
@@ -11,14 +11,14 @@ namespace {
 using BlurLib = test::ShaderProbe;
 
 TEST_F(BlurLib, TapsAndSharesAreAlike) {
-    const auto got = evaluate("#include \"lib/shading/context_blur.glsl\"\n",
+    const auto got = evaluate("#include \"formulas/context_blur.glsl\"\n",
                               "vec4(blurTap(i / 2), blurShare(abs(a[i].x), 4.0 * abs(a[i].y), 5.0), 0.0)");
     for (int i = 0; i < kCases; ++i) {
-        const glm::dvec2 tap = blurTap(i / 2);
+        const glm::dvec2 tap = blurTap<double>(i / 2);
         EXPECT_NEAR(got[i].x, tap.x, 2e-5);
         EXPECT_NEAR(got[i].y, tap.y, 2e-5);
         EXPECT_LE(glm::length(tap), 1);
-        EXPECT_NEAR(got[i].z, blurShare(std::abs(double(a[i].x)), 4 * std::abs(double(a[i].y)), 5), 1e-5);
+        EXPECT_NEAR(got[i].z, blurShare<double>(std::abs(double(a[i].x)), 4 * std::abs(double(a[i].y)), 5), 1e-5);
     }
 }
 

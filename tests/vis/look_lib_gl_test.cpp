@@ -42,7 +42,7 @@ protected:
 TEST_F(LookLib, EnhancementsAgree) {
     const auto got = evaluate(kHead, "vec4(boundaryFactor(vec3(0.2, 2.0, 1.5), at(a[i], b[i])), "
                                      "silhouetteFactor(vec3(0.1, 3.0, 2.5), at(a[i], b[i])), "
-                                     "outline(abs(a[i].y), 40.0 * abs(b[i].x), 0.01), lightStep(a[i].x, 4.0))");
+                                     "outline(abs(a[i].y), 40.0 * abs(b[i].x), 0.01), lightStep(a[i].x, 4))");
     for (int i = 0; i < kCases; ++i) {
         vis::Look boundary, silhouette;
         boundary.boundary = vis::BoundaryEnhancement{.retained = 0.2f, .strength = 2, .exponent = 1.5f};

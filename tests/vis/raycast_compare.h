@@ -6,7 +6,7 @@
 #include "vis/image/light_picture.h"
 #include "vis/optics/ray_setup.h"
 #include "vis/passes/renderer.h"
-#include "vis/reference/raycast.h"
+#include "tests/reference/raycast.h"
 
 #include <algorithm>
 #include <cmath>

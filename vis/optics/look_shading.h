@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/formulas/surface_lines.h"
 #include "vis/optics/grain.h"
 #include "vis/optics/ray_setup.h"
 #include "vis/optics/surface_light.h"
@@ -10,8 +11,6 @@
 /// vis/shaders/lib/shading/look.glsl. Colours are linear. Where the field is nearly constant a sample has no surface
 /// normal: `weight` fades out what needs one, as in shading.
 namespace tessera::vis {
-
-inline constexpr double kNoCut = 1e4; ///< a distance in pixels from a cut that is none
 
 /// marksAt().
 template <class N> struct GrainMarks { N tooth{0.5}, stroke{0.5}, crossing{0.5}, dots{0.5}; };
@@ -93,70 +92,6 @@ template <class N> glm::vec<3, N> lookAlbedo(const Look& look, const glm::vec<3,
     return blended(albedo, blended(white, albedo, N(look.charcoal->localTone)), share);
 }
 
-/// A coordinate along a surface: its change across the picture, |e - (v_e / n.v) n| per world unit, and whether the
-/// surface crosses the planes of this coordinate: 0 where it is nearly parallel to them (within 6 degrees), 1 from 20
-/// on.
-template <class N> struct AcrossPictureOf { N change, crosses; };
-template <class N>
-AcrossPictureOf<N> acrossPicture(const glm::vec<3, N>& normal, const glm::vec<3, N>& toViewer, int axis) {
-    const N facing = inner(normal, toViewer);
-    const N along = choose(facing < N(0), smaller(facing, N(-0.02)), larger(facing, N(0.02)));
-    glm::vec<3, N> change = normal * (-toViewer[axis] / along);
-    change[axis] += N(1);
-    const N slope = squareRoot(larger(N(0), N(1) - normal[axis] * normal[axis]));
-    return {lengthOf(change), smoothStep(N(0.1), N(0.35), slope)};
-}
-
-/// Coverage of a pixel, 0..1, by the intersection lines of a surface with planes at multiples of `spacing` along x, y
-/// and z; lines are `width` pixels wide. The distance of a coordinate to a multiple is divided by its change across the
-/// picture. Lines closer than 4 pixels turn into their mean; where the surface does not cross the planes they fade out.
-/// `pixel`: world edge of a pixel.
-template <class N>
-N wireCoverage(const glm::vec<3, N>& world, const glm::vec<3, N>& normal, const glm::vec<3, N>& toViewer,
-               double spacing, double width, N pixel) {
-    N covered(0);
-    for (int axis = 0; axis < 3; ++axis) {
-        const AcrossPictureOf<N> own = acrossPicture(normal, toViewer, axis);
-        const N gap = N(spacing) / larger(own.change * pixel, N(1e-6));
-        const N x = world[axis] / N(spacing), away = magnitude(x - roundDown(x + N(0.5))) * gap;
-        const N line = blended(clamped(N(0.5 * width + 0.5) - away, N(0), N(1)), smaller(N(width) / gap, N(1)),
-                               clamped(N(2) - N(0.5) * gap, N(0), N(1)));
-        covered = larger(covered, line * own.crosses);
-    }
-    return covered;
-}
-
-/// 1 on outlines of constant width, 0 elsewhere: |n.v| < sqrt(T k (2 - T k)) for curvature k and thickness T in world
-/// units (Kindlmann et al. 2003, equation 10), softened over the outer half.
-template <class N> N outline(N facing, N curvature, N thickness) {
-    const N bent = smaller(N(1), thickness * curvature), limit = squareRoot(bent * (N(2) - bent));
-    return N(1) - smoothStep(N(0.5), N(1), facing / larger(limit, N(1e-6)));
-}
-
-/// Distance in pixels from a place of a surface to where a face of the box cuts it off, at most kNoCut: that of each
-/// coordinate to the face, divided by its change across the picture. Faces that the surface does not cross cut nothing.
-template <class N>
-N cutDistance(const glm::vec<3, N>& world, const glm::vec<3, N>& normal, const glm::vec<3, N>& toViewer,
-              const glm::dvec3& halfSize, N pixel) {
-    N nearest(kNoCut);
-    for (int axis = 0; axis < 3; ++axis) {
-        const AcrossPictureOf<N> own = acrossPicture(normal, toViewer, axis);
-        const N left = larger(N(halfSize[axis]) - magnitude(world[axis]), N(0));
-        nearest = smaller(nearest, left / larger(own.change * pixel, N(1e-6)) + N(kNoCut) * (N(1) - own.crosses));
-    }
-    return nearest;
-}
-
-/// Coverage of a pixel by the line along a cut.
-template <class N> N cutLine(N cut, N width) {
-    return clamped(width + N(0.5) - cut, N(0), N(1));
-}
-
-/// n.l quantised: min(n - 1, floor(n max(0, n.l))) / (n - 1).
-template <class N> N lightStep(N light, int steps) {
-    return smaller(N(steps - 1), roundDown(N(steps) * larger(N(0), light))) / N(steps - 1);
-}
-
 /// World distance over which curvature is measured: view.reach max(1, 1.5 smooth).
 double bendReach(const Look& look, const LookView& view);
 
@@ -202,7 +137,7 @@ double grainSoftness(const CharcoalDrawing& charcoal);
 template <class N>
 N charcoalInk(const CharcoalDrawing& charcoal, const glm::vec<3, N>& lit, const LookSampleOf<N>& sample, bool light) {
     const N one(1), bare(charcoal.bare);
-    const N bright = squareRoot(clamped(inner(lit, spreadOut<N>(kLuminance)), N(0), one));
+    const N bright = squareRoot(clamped(luminance(lit), N(0), one));
     const N drawn =
         power(larger((light ? bright : one - bright) - bare, N(0)) * (one / (one - bare)), N(charcoal.contrast));
     const N steep = blended(one, squareRoot(clamped(sample.steepness, N(0), one)), N(charcoal.steepness));
@@ -267,8 +202,7 @@ glm::vec<3, N> lookColor(const Look& look, const glm::vec<3, N>& albedo, const g
     }
     if (const auto& own = look.cartoon) {
         const N width = N(own->outline) * sample.pixel, amount = N(own->amount) * sample.weight * sample.share;
-        const glm::vec<3, N> within =
-            own->outlineColor ? linear(*own->outlineColor) : inkOn(inner(albedo, spreadOut<N>(kLuminance)));
+        const glm::vec<3, N> within = own->outlineColor ? linear(*own->outlineColor) : inkOn(luminance(albedo));
         const auto line = [&](double share) {
             return amount * larger(outline(sample.facing(), sample.curvature, N(share) * width),
                                    cutLine(sample.cut, N(share * own->outline)));

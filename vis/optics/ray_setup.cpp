@@ -62,8 +62,4 @@ glm::dvec3 linearFromSrgb(glm::dvec3 encoded) {
     return {linearFromSrgb(encoded.x), linearFromSrgb(encoded.y), linearFromSrgb(encoded.z)};
 }
 
-double luminance(glm::dvec3 linear) {
-    return glm::dot(linear, kLuminance);
-}
-
 } // namespace tessera::vis

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/formulas/colors.h"
 #include "vis/scene/ray_segment.h"
 #include "vis/scene/scene.h"
 #include "volume/base/numbers.h"
@@ -154,8 +155,5 @@ inline double srgbFromLinear(double linear) {
     return srgbFromLinear<double>(linear);
 }
 glm::dvec3 linearFromSrgb(glm::dvec3 encoded);
-inline constexpr glm::dvec3 kLuminance{0.2126, 0.7152, 0.0722}; ///< Rec. 709
-/// Rec. 709 luminance of linear light.
-double luminance(glm::dvec3 linear);
 
 } // namespace tessera::vis

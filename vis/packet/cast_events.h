@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vis/optics/contour.h"
+#include "vis/formulas/colors.h"
 #include "vis/packet/cast_layers.h"
 
 /// Slices and rasterised surfaces that packets of rays meet. Only for cast_*.cpp.

@@ -124,9 +124,8 @@ Focus focusAt(const FocusView& focus, const LayerView& layer, const Vec& cells, 
 
 /// A layer's colour after brushes and lenses.
 inline Vec focused(const FocusView& focus, const LayerView& layer, const Vec& color, const Focus& of) {
-    const Floats grey =
-        color.x * Floats(kLuminance.x) + color.y * Floats(kLuminance.y) + color.z * Floats(kLuminance.z);
-    const Vec out = focusedColor<Floats>(layer.brushes, focus.context, color, grey, of.interest.doi, of.saturation);
+    const Vec out =
+        focusedColor<Floats>(layer.brushes, focus.context, color, luminance(color), of.interest.doi, of.saturation);
     if (!(focus.brushColor > 0) || layer.brushes == BrushEffect::None) return out;
     return blended(out, of.interest.color, of.interest.held * of.interest.doi * Floats(focus.brushColor));
 }

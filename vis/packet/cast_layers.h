@@ -95,7 +95,8 @@ template <bool Bcc, bool Exact> struct Caster : SampleCaster<Bcc, Exact> {
     }
 
     /// The intersections with an iso-surface between samples k - 1 and k.
-    Met meetSurface(const LayerView& layer, bool masked, const Found& before, const Found& now, Floats k, Mask lanes) {
+    RayHit meetSurface(const LayerView& layer, bool masked, const Found& before, const Found& now, Floats k,
+                       Mask lanes) {
         const Read read = reader(layer, masked);
         const Floats value(layer.isoValue), far(kFar);
         const Mask above = before.value >= value, below = !above, over = now.value >= value;
@@ -107,7 +108,7 @@ template <bool Bcc, bool Exact> struct Caster : SampleCaster<Bcc, Exact> {
             part = read.part(packet.cells(k), crossed);
             crossed &= same(read.part(packet.cells(k - Floats(1)), crossed));
         }
-        Met out{far, {Floats(0), Floats(0), Floats(0)}, Floats(0)};
+        RayHit out{far, {Floats(0), Floats(0), Floats(0)}, Floats(0)};
         if (!anyOf(crossed)) return out;
         Floats lo = k - Floats(1), hi = k;
         for (int i = 0; i < kBisections; ++i) {
@@ -193,7 +194,7 @@ template <bool Bcc, bool Exact> struct Caster : SampleCaster<Bcc, Exact> {
     static bool isProjection(RayStyle style) { return style != RayStyle::Composite && style != RayStyle::Iso; }
 
     void drawSurfaces(const Found* before, const Found* now, bool masked, Floats k, Mask lanes) {
-        Met met[kMostPacketSurfaces];
+        RayHit met[kMostPacketSurfaces];
         int crossed = 0;
         for (std::size_t i = 0; i < job.layers.size(); ++i) {
             const LayerView& layer = job.layers[i];

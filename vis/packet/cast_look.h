@@ -15,7 +15,7 @@ inline Floats patternOf(const GrainTile& tile, int pattern, Floats x, Floats y) 
 }
 
 /// A sample that a look draws.
-struct Looked {
+struct LookInput {
     const LayerView& layer;
     Vec cells, world, direction; ///< direction: of the rays
     Floats distance, doi;        ///< along the ray; degree of interest
@@ -36,7 +36,7 @@ inline Vec withinBox(const CastJob& job, const Vec& cells) {
 }
 
 /// The gradient in world axes that a look is shaded by; `value` gives what is at a position in cells.
-template <class Value> Vec lookGradient(const CastJob& job, const Looked& at, const Value& value) {
+template <class Value> Vec lookGradient(const CastJob& job, const LookInput& at, const Value& value) {
     if (!(at.layer.smooth > 0)) return at.narrow;
     const Vec edges = spreadOut<Floats>(job.box.edges);
     return volume::smoothGradientOf<Floats>(value, at.cells, double(at.layer.smooth), at.narrow * edges) / edges;
@@ -44,7 +44,7 @@ template <class Value> Vec lookGradient(const CastJob& job, const Looked& at, co
 
 /// Inputs of the look of samples with a gradient in world axes.
 template <class Value>
-LookSampleOf<Floats> lookSample(const CastJob& job, const Looked& at, const Value& value, const Vec& gradient) {
+LookSampleOf<Floats> lookSample(const CastJob& job, const LookInput& at, const Value& value, const Vec& gradient) {
     const Look& look = *at.layer.look;
     const Vec perWorld = spreadOut<Floats>(job.box.cellsPerWorld);
     const LookPlaceOf<Floats> place{.world = at.world,

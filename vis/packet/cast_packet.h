@@ -12,24 +12,24 @@ inline constexpr float kNoPick = -2, kPickOpacity = 0.1f; // as in vis/shaders/l
 inline constexpr float kFar = 1e9f;                       ///< beyond all samples
 
 /// A contribution at or between samples.
-struct Met {
+struct RayHit {
     Floats at; ///< in samples; kFar: none
     Vec color;
     Floats opacity;
 };
-inline Met choose(Mask which, const Met& a, const Met& b) {
+inline RayHit choose(Mask which, const RayHit& a, const RayHit& b) {
     return {
         choose(which, a.at, b.at),
         {choose(which, a.color.x, b.color.x), choose(which, a.color.y, b.color.y), choose(which, a.color.z, b.color.z)},
         choose(which, a.opacity, b.opacity)};
 }
 /// Nearest first; equal ones in order.
-inline void sortByDistance(Met* met, int count) {
+inline void sortByDistance(RayHit* met, int count) {
     for (int end = count; end > 1; --end)
         for (int i = 0; i + 1 < end; ++i) {
             const Mask later = met[i].at > met[i + 1].at;
             if (!anyOf(later)) continue;
-            const Met a = met[i], b = met[i + 1];
+            const RayHit a = met[i], b = met[i + 1];
             met[i] = choose(later, b, a);
             met[i + 1] = choose(later, a, b);
         }
@@ -52,7 +52,7 @@ struct Packet {
 
     /// Slices and rasterised surfaces that rays meet, nearest first; those up to `passed` are put behind what is there.
     /// Whatever is put behind others comes after them: they need not be looked for at every sample.
-    Met events[kMostPacketSlices + kPeels];
+    RayHit events[kMostPacketSlices + kPeels];
     int eventCount = 0;
     Floats passed{-kFar};
 

@@ -132,7 +132,7 @@ template <bool Bcc, bool Exact> struct SampleCaster {
         Vec narrow = none; // labels have none
         if (!layer.volume->labels) narrow = choose(lanes, gradient(read, cells, lanes), none);
         const Floats steep = steepness(narrow), weight = smaller(Floats(1), steep * Floats(layer.surfaceScale));
-        const Looked at{
+        const LookInput at{
             layer, cells,  packet.world(k), packet.ray.direction,     packet.enter + (k + packet.phase) * packet.step,
             doi,   narrow, steep,           iso ? Floats(1) : weight, iso};
         const Floats part = read.part(cells, lanes);

@@ -275,7 +275,7 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
             }
             if (!anyOf(met)) return;
             const bool masked = someAbsent(job, packet, k, met);
-            const Met surface = this->meetSurface(layer, masked, before, now, k, met);
+            const RayHit surface = this->meetSurface(layer, masked, before, now, k, met);
             packet.blend(surface.color, surface.opacity, surface.at, met);
             before.value = choose(met, now.value, before.value);
             before.present = (before.present & !met) | (now.present & met);

@@ -1,7 +1,7 @@
 #include "vis/packet/packet_channels.h"
 
+#include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace tessera::vis::packet {
 
@@ -10,116 +10,57 @@ namespace {
 /// A range of places narrower than this part of the data's range is read from floats.
 constexpr double kNarrow = 1.0 / 8;
 
-/// Whether placeLenses() gives a lens of that name.
-bool hasLens(const Scene& scene, const std::string& name) {
-    int enabled = 0;
-    for (const Lens& lens : scene.lenses)
-        if (lens.enabled && enabled++ < kMaxLenses && lens.name == name) return true;
-    return false;
-}
-
-} // namespace
-
-Transfer transferOfLayer(const Scene& scene, const volume::DatasetInfo& info, const Layer& layer, int channel) {
-    const volume::Channel known = info.channel(channel);
-    const TransferFunction& function = transferFor(scene, layer.transfer.empty() ? known.name : layer.transfer);
-    return {function, effectiveRange(function, info.channelRange(known))};
-}
-
-Transfer transferOfColors(const Scene& scene, const volume::DatasetInfo& info, const Layer& layer, int channel) {
-    // A surface's own function is that of its colours, a volume's that of its opacity.
-    if (std::holds_alternative<IsoLayer>(layer.technique)) return transferOfLayer(scene, info, layer, channel);
-    return transferOfLayer(scene, info, {}, channel);
-}
-
-namespace {
-
 /// The stored times that samples at a time come from; of labels the nearest.
-volume::TimePair timesOf(const volume::DatasetInfo& info, int channel, double time) {
+volume::TimePair timesOf(const volume::DatasetInfo& info, bool labels, double time) {
     const volume::TimePair around = volume::timesAround(info.times, time);
-    if (!info.parameters[std::size_t(info.channel(channel).parameter)].categorical) return around;
-    return {around.nearest(), around.nearest(), 0};
+    return labels ? volume::TimePair{around.nearest(), around.nearest(), 0} : around;
 }
 
-/// Whether a range is a small part of that of the data.
-bool isNarrow(Range range, Range whole) {
+/// Whether a function covers a small part of the data's range.
+bool isNarrow(const DrawnChannel& drawn, const volume::DatasetInfo& info) {
+    const Range range = drawn.range, whole = info.channelRange(info.channel(drawn.channel));
     return std::abs(range.hi - range.lo) < kNarrow * std::abs(whole.hi - whole.lo);
 }
 
-/// Whether strokes or dots depend on second differences and thresholds, for which 15 bits are too few here and there.
-bool drawsMarks(const Look* look) {
-    return look && look->charcoal;
+/// Whether 15 bits are too few: for functions and gradients of a small part of the range, and here and there for
+/// strokes and dots, which depend on second differences and thresholds.
+bool needsFloats(const DrawnLayer& drawn, const volume::DatasetInfo& info) {
+    return isNarrow(drawn.shown, info) || (drawn.colors && isNarrow(*drawn.colors, info)) || drawn.gradient ||
+           drawn.byRegions || (drawn.look && drawn.look->charcoal);
 }
 
 } // namespace
 
-bool byRegions(const Technique& technique, const TransferFunction& function) {
-    const auto* volume = std::get_if<VolumeLayer>(&technique);
-    return volume && volume->style == RayStyle::Composite && volume->quantity == Quantity::Value &&
-           function.kind == TransferKind::Regions;
-}
-
-Classification classificationOf(const Technique& technique, const TransferFunction& function, bool categorical) {
-    const auto* volume = std::get_if<VolumeLayer>(&technique);
-    const bool chooses = volume && volume->style == RayStyle::Composite && volume->quantity == Quantity::Value &&
-                         !categorical && function.kind == TransferKind::Curve;
-    return chooses ? volume->classification : Classification::Post;
-}
-
-std::vector<DrawnChannel> drawnChannels(const Scene& scene, const volume::DatasetInfo& info) {
-    std::vector<DrawnChannel> out;
-    bool exact = false; // all have samples of the same kind
-    for (std::size_t i = 0; i < scene.layers.size(); ++i) {
-        const Layer& layer = scene.layers[i];
-        if (!layer.lens.empty() && !hasLens(scene, layer.lens)) continue;
-        if (!layer.visible || std::holds_alternative<FlowLayer>(layer.technique)) continue;
-        const auto* iso = std::get_if<IsoLayer>(&layer.technique);
-        if (iso && iso->method == SurfaceMethod::Polygons) continue;
-        const std::string& name =
-            std::visit([](const auto& t) -> const std::string& { return t.channel; }, layer.technique);
-        const std::optional<int> channel = info.findChannel(name);
-        if (!channel) continue;
-        const double time = scene.time + layer.timeShift;
-        const auto wholeOf = [&](int of) { return info.channelRange(info.channel(of)); };
-        const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
-        exact = exact || isNarrow(transferOfLayer(scene, info, layer, *channel).range, wholeOf(*channel)) ||
-                (volume && volume->quantity == Quantity::Gradient) || drawsMarks(lookOf(layer.technique)) ||
-                byRegions(layer.technique, transferOfLayer(scene, info, layer, *channel).function);
-        Filter filter = scene.render.filter;
-        const TransferFunction& function = transferOfLayer(scene, info, layer, *channel).function;
-        const bool labels = info.parameters[std::size_t(info.channel(*channel).parameter)].categorical;
-        if (classificationOf(layer.technique, function, labels) == Classification::Pre &&
-            filter == Filter::AverageQuasi)
-            filter = Filter::Average; // samples themselves are classified
-        out.push_back({int(i), {*channel, timesOf(info, *channel, time), filter, false}});
-        const std::optional<int> colors = info.findChannel(colorByOf(layer.technique));
-        if (!colors) continue;
-        exact = exact || isNarrow(transferOfColors(scene, info, layer, *colors).range, wholeOf(*colors));
-        out.back().colors = {*colors, timesOf(info, *colors, time), scene.render.filter, false};
+std::vector<LayerSamples> layerSamples(const Scene& scene, const volume::DatasetInfo& info, const DrawnScene& drawn) {
+    // All have samples of the same kind.
+    const bool exact =
+        std::ranges::any_of(drawn.layers, [&](const DrawnLayer& layer) { return needsFloats(layer, info); });
+    const auto samplesOf = [&](const DrawnChannel& of, Filter filter) {
+        return PacketChannel{of.channel, timesOf(info, of.categorical, scene.time + of.timeShift), filter, exact};
+    };
+    std::vector<LayerSamples> out;
+    for (const DrawnLayer& layer : drawn.layers) {
+        const Filter filter = scene.render.filter;
+        // Before interpolation samples themselves are classified.
+        const bool raw = layer.classification == Classification::Pre && filter == Filter::AverageQuasi;
+        out.push_back({layer, samplesOf(layer.shown, raw ? Filter::Average : filter)});
+        if (layer.colors) out.back().colors = samplesOf(*layer.colors, filter);
     }
-    for (DrawnChannel& drawn : out) {
-        drawn.channel.exact = exact;
-        if (drawn.colors) drawn.colors->exact = exact;
-    }
-    return out;
-}
-
-std::vector<int> brushedChannels(const Scene& scene, const volume::DatasetInfo& info) {
-    std::vector<int> out;
-    for (const std::string& name : selectedChannels(scene.selection))
-        if (const std::optional<int> channel = info.findChannel(name)) out.push_back(*channel);
     return out;
 }
 
 std::vector<PacketChannel> packetChannels(const Scene& scene, const volume::DatasetInfo& info) {
+    const DrawnScene drawn = drawnScene(scene, info);
     std::vector<PacketChannel> out;
-    for (const DrawnChannel& drawn : drawnChannels(scene, info)) {
-        out.push_back(drawn.channel);
-        if (drawn.colors) out.push_back(*drawn.colors);
+    for (const LayerSamples& layer : layerSamples(scene, info, drawn)) {
+        out.push_back(layer.channel);
+        if (layer.colors) out.push_back(*layer.colors);
     }
     const bool exact = !out.empty() && out.front().exact;
-    for (const int channel : brushedChannels(scene, info))
-        out.push_back({channel, timesOf(info, channel, scene.time), scene.render.filter, exact});
+    for (const int channel : drawn.brushed) {
+        const bool labels = info.parameters[std::size_t(info.channel(channel).parameter)].categorical;
+        out.push_back({channel, timesOf(info, labels, scene.time), scene.render.filter, exact});
+    }
     return out;
 }
 

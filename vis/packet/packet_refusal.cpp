@@ -10,31 +10,30 @@ namespace tessera::vis::packet {
 
 namespace {
 
-std::string refusalOfFocus(const Scene& scene, const volume::DatasetInfo& info) {
+std::string refusalOfFocus(const Scene& scene, const DrawnScene& drawn) {
     if (!scene.selection.active()) return "";
     if (scene.selection.contextBlur > 0) return "blurred context";
-    const std::vector<int> brushed = brushedChannels(scene, info);
-    return brushed.size() > std::size_t(kMostBrushFields) ? "brushes of so many parameters" : "";
+    return drawn.brushed.size() > std::size_t(kMostBrushFields) ? "brushes of so many parameters" : "";
 }
 
 } // namespace
 
 std::string packetRefusal(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice) {
-    if (std::string why = refusalOfFocus(scene, info); !why.empty()) return why;
+    const DrawnScene drawn = drawnScene(scene, info);
+    if (std::string why = refusalOfFocus(scene, drawn); !why.empty()) return why;
     if (!fitsPackets(lattice)) return "so long data";
     if (scene.render.proxy != Proxy::Rays) return "proxy geometry";
     if (scene.render.adaptiveStep > 0) return "adaptive steps";
     if (scene.render.normalBits > 0) return "quantised normals";
     if (scene.render.filter == Filter::Tetrahedral && lattice.kind == volume::LatticeKind::BCC)
         return "tetrahedral interpolation";
-    const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
     int surfaces = 0, slices = 0;
-    for (const DrawnChannel& each : drawn) {
-        const Technique& technique = scene.layers[std::size_t(each.layer)].technique;
-        surfaces += std::holds_alternative<IsoLayer>(technique);
-        slices += std::holds_alternative<SliceLayer>(technique);
+    for (const DrawnLayer& layer : drawn.layers) {
+        surfaces += layer.surface != nullptr;
+        slices += layer.slice != nullptr;
     }
-    if (drawn.size() > std::size_t(kMostPacketLayers) || surfaces > kMostPacketSurfaces || slices > kMostPacketSlices)
+    if (drawn.layers.size() > std::size_t(kMostPacketLayers) || surfaces > kMostPacketSurfaces ||
+        slices > kMostPacketSlices)
         return "so many layers";
     return "";
 }

@@ -44,8 +44,9 @@ struct Tabled {
 
 /// `alone`: each sample is classified by itself, as in composite layers and slices. Then a range without width
 /// separates values below and above, and labels lie on entries; else all places are those of the range.
-Tabled tabled(const Transfer& transfer, const PacketVolume& volume, bool alone, bool regions = false) {
-    const auto [function, range] = transfer;
+Tabled tabled(const DrawnChannel& drawn, const PacketVolume& volume, bool alone, bool regions = false) {
+    const TransferFunction& function = *drawn.function;
+    const Range range = drawn.range;
     const double width = range.hi - range.lo;
     if (width == 0) {
         constexpr double kSteep = 1e12;
@@ -66,11 +67,11 @@ Tabled tabled(const Transfer& transfer, const PacketVolume& volume, bool alone, 
 } // namespace
 
 /// The samples of a layer, where they lie in its transfer function, its brushes and lens; not yet its table.
-LayerView PacketScene::viewOfLayer(const Layer& layer, glm::vec2 places, std::size_t index) const {
+LayerView PacketScene::viewOfLayer(const DrawnLayer& layer, glm::vec2 places, std::size_t index) const {
     LayerView out;
     out.volume = &views_[index];
     out.brushes = layer.brushes;
-    if (!layer.lens.empty()) out.lens = findLens(lenses_, layer.lens);
+    out.lens = layer.lens;
     out.placeScale = places.x;
     out.placeOffset = places.y;
     return out;
@@ -95,30 +96,25 @@ IntegralView PacketScene::integralsOf(const TransferFunction& function, Range ra
 }
 
 /// `index` of a volume: that of the colouring channel.
-ColorView PacketScene::colorsOf(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
-                                std::size_t index) {
-    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
-    Tabled own = tabled(transferOfColors(scene, info, layer, drawn.colors->channel), *volumes_[index], true);
-    const auto* iso = std::get_if<IsoLayer>(&layer.technique);
+ColorView PacketScene::colorsOf(const DrawnLayer& drawn, std::size_t index) {
+    Tabled own = tabled(*drawn.colors, *volumes_[index], true);
     return {.volume = &views_[index],
             .placeScale = own.places.x,
             .placeOffset = own.places.y,
             .table = keep(std::move(own.table.entries)),
-            .absent = glm::vec3(linearFromSrgb(glm::dvec3(iso ? iso->color : kNoValueColor)))};
+            .absent = glm::vec3(linearFromSrgb(glm::dvec3(drawn.surface ? drawn.surface->color : kNoValueColor)))};
 }
 
 /// `index` of a volume: that of the slice.
-void PacketScene::addSlice(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
-                           std::size_t index) {
-    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
-    const Transfer transfer = transferOfLayer(scene, info, layer, drawn.channel.channel);
-    Tabled own = tabled(transfer, *volumes_[index], true);
+void PacketScene::addSlice(const DrawnLayer& drawn, std::size_t index) {
+    const Range range = drawn.shown.range;
+    Tabled own = tabled(drawn.shown, *volumes_[index], true);
     SliceView out;
-    out.look = viewOfLayer(layer, own.places, index);
+    out.look = viewOfLayer(drawn, own.places, index);
     out.look.table = keep(std::move(own.table.entries));
-    const double width = transfer.range.hi - transfer.range.lo;
+    const double width = range.hi - range.lo;
     out.levelScale = width != 0 ? float(volumes_[index]->scale / width) : 0;
-    out.levelOffset = width != 0 ? float((volumes_[index]->offset - transfer.range.lo) / width) : 0;
+    out.levelOffset = width != 0 ? float((volumes_[index]->offset - range.lo) / width) : 0;
     slices_.push_back(out);
     sliceLayers_.push_back(drawn.layer);
 }
@@ -134,19 +130,15 @@ void PacketScene::placeSlices(const Scene& scene, const WorldFrame& frame) {
 }
 
 /// `index` of a volume: that of the layer.
-void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
-                           std::size_t index) {
-    const Layer& layer = scene.layers[std::size_t(drawn.layer)];
+void PacketScene::addLayer(const DrawnLayer& drawn, std::size_t index) {
     const PacketVolume& volume = *volumes_[index];
-    const Transfer transfer = transferOfLayer(scene, info, layer, drawn.channel.channel);
-    const auto [function, range] = transfer;
+    const TransferFunction& function = *drawn.shown.function;
+    const Range range = drawn.shown.range;
     const double width = range.hi - range.lo;
-    const auto* own = std::get_if<VolumeLayer>(&layer.technique);
-    const bool gradient = own && own->quantity == Quantity::Gradient;
-    const bool alone = own && own->style == RayStyle::Composite && !gradient;
-    const bool regions = byRegions(layer.technique, function);
-    const auto [table, places, toRange] = tabled(transfer, volume, alone, regions);
-    LayerView out = viewOfLayer(layer, places, index);
+    const VolumeLayer* const own = drawn.volume;
+    const bool alone = own && own->style == RayStyle::Composite && !drawn.gradient, regions = drawn.byRegions;
+    const auto [table, places, toRange] = tabled(drawn.shown, volume, alone, regions);
+    LayerView out = viewOfLayer(drawn, places, index);
     out.opacityScale = table.opacityScale;
     out.table = keep(table.entries);
     packed_.push_back(packedTable(function, alone && width == 0 ? Range{0, 1} : range));
@@ -155,24 +147,24 @@ void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, 
     if (regions) out.regions = regions_.emplace_back(function.regions);
     out.byRegions = regions;
     out.toRange = toRange;
-    out.classification = classificationOf(layer.technique, function, volume.labels);
+    out.classification = drawn.classification;
     if (out.classification == Classification::PreIntegrated) out.integrals = integralsOf(function, range);
     const double perRange = width != 0 && !volume.labels ? std::abs(volume.scale / width) : 0;
-    out.gradient = gradient;
+    out.gradient = drawn.gradient;
     out.gradientScale = float(perRange / double(function.gradientTop));
     out.surfaceScale = width != 0 || volume.labels ? float(perRange / kFlatGradient) : 1e20f;
-    if (drawn.colors) out.colors = colorsOf(scene, info, drawn, index + 1);
-    if (const Look* look = lookOf(layer.technique); look && look->any()) {
-        out.look = &looks_.emplace_back(*look);
+    if (drawn.colors) out.colors = colorsOf(drawn, index + 1);
+    if (drawn.look && drawn.look->any()) {
+        out.look = &looks_.emplace_back(*drawn.look);
         const auto kind = volume.bcc ? volume::LatticeKind::BCC : volume::LatticeKind::CC;
-        out.smooth = float(volume::smoothReach(kind, double(look->smooth)));
+        out.smooth = float(volume::smoothReach(kind, double(drawn.look->smooth)));
     }
     const glm::dvec2 map(out.placeScale, out.placeOffset);
     const int edge = skip_.edge;
     const double slack = volume.exact ? kSlack / 2 / kQuantum : kSlack;
     std::function<bool(float, float)> shows = [](float, float) { return true; };
     const OpacityRanges opaque(table.opacity, map);
-    if (const auto* iso = std::get_if<IsoLayer>(&layer.technique)) {
+    if (const IsoLayer* const iso = drawn.surface) {
         out.style = RayStyle::Iso;
         out.isoValue = float((iso->value - volume.offset) / volume.scale);
         out.isoOpacity = iso->opacity;
@@ -182,10 +174,10 @@ void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, 
         };
     } else {
         out.style = own->style;
-        out.shaded = own->shaded && !volume.labels;
+        out.shaded = drawn.shaded;
         out.density = own->density;
         out.threshold = float(width != 0 ? std::max(0.0, (own->threshold - range.lo) / width) : 0.5);
-        if (!gradient && (own->style == RayStyle::Composite || own->style == RayStyle::XRay))
+        if (!drawn.gradient && (own->style == RayStyle::Composite || own->style == RayStyle::XRay))
             shows = [&](float lo, float hi) {
                 return opaque.any(float(double(lo) - slack), float(double(hi) + slack));
             };
@@ -197,8 +189,7 @@ void PacketScene::addLayer(const Scene& scene, const volume::DatasetInfo& info, 
 }
 
 /// Brushes in samples of the volumes that follow those of the layers.
-void PacketScene::addBrushes(const Scene& scene, const volume::DatasetInfo& info) {
-    const std::vector<int> channels = brushedChannels(scene, info);
+void PacketScene::addBrushes(const Scene& scene, const volume::DatasetInfo& info, const std::vector<int>& channels) {
     const std::size_t first = volumes_.size() - channels.size();
     for (std::size_t i = first; i < volumes_.size(); ++i) fields_.push_back(&views_[i]);
     const BrushTests found = brushTests(scene.selection, info, channels, lenses_);
@@ -240,7 +231,7 @@ void PacketScene::addBrushes(const Scene& scene, const volume::DatasetInfo& info
 
 PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, std::vector<SharedVolume> volumes)
     : volumes_(std::move(volumes)) {
-    const std::vector<DrawnChannel> drawn = drawnChannels(scene, info);
+    const DrawnScene drawn = drawnScene(scene, info);
     for (const SharedVolume& volume : volumes_) {
         views_.push_back(viewOf(*volume));
         std::vector<VolumeView> parts;
@@ -248,27 +239,22 @@ PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, st
         partViews_.push_back(std::move(parts));
         views_.back().parts = partViews_.back().data();
     }
-    lenses_ = placeLenses(scene, worldFrame(info.bounds, scene.stretch));
-    addBrushes(scene, info);
+    lenses_ = drawn.lenses;
+    addBrushes(scene, info, drawn.brushed);
     // Small blocks pay where rays soon end at surfaces.
-    const auto techniqueOf = [&](const DrawnChannel& each) -> const Technique& {
-        return scene.layers[std::size_t(each.layer)].technique;
-    };
-    const bool surfaces = std::ranges::all_of(drawn, [&](const DrawnChannel& each) {
-        const auto* volume = std::get_if<VolumeLayer>(&techniqueOf(each));
-        return !volume || (volume->style == RayStyle::Composite && volume->shaded);
-    });
+    const bool surfaces =
+        std::ranges::all_of(drawn.layers, [](const DrawnLayer& layer) { return !layer.volume || layer.shaded; });
     skip_.edge = surfaces ? kFine : 2 * kFine;
     std::vector<const PacketVolume*> sampled; // along rays
     std::size_t next = 0;                     // volume
-    for (const DrawnChannel& each : drawn) {
-        if (std::holds_alternative<SliceLayer>(techniqueOf(each))) {
-            addSlice(scene, info, each, next);
+    for (const DrawnLayer& layer : drawn.layers) {
+        if (layer.slice) {
+            addSlice(layer, next);
         } else {
-            addLayer(scene, info, each, next);
+            addLayer(layer, next);
             sampled.push_back(volumes_[next].get());
         }
-        next += each.colors ? 2 : 1;
+        next += layer.colors ? 2 : 1;
     }
     if (layers_.size() == 1 && (layers_[0].style == RayStyle::Maximum || layers_[0].style == RayStyle::Minimum))
         bound_ = scoreBounds(*sampled[0], skip_, [&](float sample) {

@@ -33,15 +33,14 @@ public:
                 double stepFactor, const PackedLight& around);
 
 private:
-    void addBrushes(const Scene& scene, const volume::DatasetInfo& info);
-    LayerView viewOfLayer(const Layer& layer, glm::vec2 places, std::size_t index) const;
+    void addBrushes(const Scene& scene, const volume::DatasetInfo& info, const std::vector<int>& channels);
+    LayerView viewOfLayer(const DrawnLayer& layer, glm::vec2 places, std::size_t index) const;
     IntegralView integralsOf(const TransferFunction& function, Range range);
     const std::int32_t* keep(std::vector<std::int32_t> entries);
-    ColorView colorsOf(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn,
-                       std::size_t index);
-    void addSlice(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn, std::size_t index);
+    ColorView colorsOf(const DrawnLayer& drawn, std::size_t index);
+    void addSlice(const DrawnLayer& drawn, std::size_t index);
     void placeSlices(const Scene& scene, const WorldFrame& frame);
-    void addLayer(const Scene& scene, const volume::DatasetInfo& info, const DrawnChannel& drawn, std::size_t index);
+    void addLayer(const DrawnLayer& drawn, std::size_t index);
 
     std::vector<SharedVolume> volumes_;
     std::vector<VolumeView> views_;

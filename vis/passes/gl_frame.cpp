@@ -99,7 +99,7 @@ void refineByOpenGl(RendererState& shared, ViewTarget& target, const RenderCall&
         request.wait ? ProgramAnswer{shared.tools.programs.find(recipe), ProgramStage::Ready}
                      : shared.tools.programs.request(recipe, target.meanwhile ? 0 : request.budgetMs / 4);
     if (!answer.program && (answer.stage == ProgramStage::Failed || request.wait)) return giveUp(shared, target, call);
-    if (!answer.program && (probing || !drawMeanwhile(shared, target, call, start)))
+    if (!answer.program && (probing || !drawWhileCompiling(shared, target, call, start)))
         return postpone(shared, target, scene);
     if (!answer.program) return;
     bindPlan(shared, target, call);
@@ -112,7 +112,7 @@ void refineByOpenGl(RendererState& shared, ViewTarget& target, const RenderCall&
     }
     if (!readyToDraw(shared, target, call, call, answer, recipe) || !presents) return postpone(shared, target, scene);
     target.shown.compiling = false;
-    endMeanwhile(shared, target);
+    handOverToGl(shared, target);
     RayPrograms programs{.program = answer.program, .beyondPlan = {}, .beyondScene = {}};
     addBeyond(shared, programs, target, call);
     if (probing) return drawReduced(shared, target, call, programs, {kProbeShrink, 1});

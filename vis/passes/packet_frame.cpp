@@ -179,7 +179,7 @@ bool drawByPackets(RendererState& shared, ViewTarget& target, const RenderCall& 
     return true;
 }
 
-bool drawMeanwhile(RendererState& shared, ViewTarget& target, const RenderCall& call, Clock::time_point start) {
+bool drawWhileCompiling(RendererState& shared, ViewTarget& target, const RenderCall& call, Clock::time_point start) {
     std::optional<Clock::time_point>& since = target.shown.compilingSince;
     if (!since) since = start;
     const bool may = shared.options.packets == Packets::WhileCompiling &&
@@ -204,7 +204,7 @@ bool drawMeanwhile(RendererState& shared, ViewTarget& target, const RenderCall& 
     }
 }
 
-void endMeanwhile(RendererState& shared, ViewTarget& target) {
+void handOverToGl(RendererState& shared, ViewTarget& target) {
     target.shown.compilingSince.reset();
     if (!target.meanwhile) return;
     target.meanwhile = false;

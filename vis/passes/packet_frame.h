@@ -17,9 +17,9 @@ bool drawByPackets(RendererState& shared, ViewTarget& target, const RenderCall& 
 
 /// Draws a call whose program is being compiled, where the processor may and can and its samples are here; false if
 /// not.
-bool drawMeanwhile(RendererState& shared, ViewTarget& target, const RenderCall& call, Clock::time_point start);
+bool drawWhileCompiling(RendererState& shared, ViewTarget& target, const RenderCall& call, Clock::time_point start);
 
 /// OpenGL draws what the processor began, in tiles of its own.
-void endMeanwhile(RendererState& shared, ViewTarget& target);
+void handOverToGl(RendererState& shared, ViewTarget& target);
 
 } // namespace tessera::vis

@@ -1,7 +1,7 @@
 #include "vis/passes/present.h"
 
 #include "vis/demand/box_lines.h"
-#include "vis/optics/context_blur.h"
+#include "vis/formulas/context_blur.h"
 #include "vis/optics/grain.h"
 #include "vis/processor/presented.h"
 #include "vis/raycast/look_uniforms.h"

@@ -48,15 +48,9 @@ SurfaceShading::SurfaceShading(const Scene& scene, const volume::DatasetInfo& in
     light_.maps = light.maps;
     by_ = shadedBy(light_);
     if (light.volume) by_.setVolume(light.volume->grid, !light.volume->scattered.empty());
-    for (const GeometryLayer& layer : scene.geometry) {
-        const int lens = layer.lens.empty() ? -1 : findLens(lenses_, layer.lens);
-        if (!drawn(scene, layer) || (!layer.lens.empty() && lens < 0)) continue;
-        SurfaceLayer& made = layers_.emplace_back(SurfaceLayer{.layer = &layer, .lens = lens, .range = {}});
-        const auto channel = layer.channel.empty() ? std::nullopt : info.findChannel(layer.channel);
-        if (!channel) continue;
-        const volume::Channel known = info.channel(*channel);
-        made.function = &transferFor(scene, layer.transfer.empty() ? known.name : layer.transfer);
-        made.range = effectiveRange(*made.function, info.channelRange(known));
+    for (const DrawnGeometry& drawn : drawnGeometry(scene, lenses_)) {
+        const GeometryLayer& layer = scene.geometry[std::size_t(drawn.layer)];
+        layers_.push_back({&layer, drawn.lens, colorsOf(scene, info, layer)});
     }
 }
 
@@ -71,10 +65,11 @@ glm::dvec3 SurfaceShading::toViewer(glm::dvec3 world) const {
 }
 
 glm::dvec3 SurfaceShading::ownColor(const SurfaceLayer& layer, double value) const {
-    if (!layer.function || std::isnan(value)) return linearFromSrgb(glm::dvec3(layer.layer->style.color));
-    const double width = layer.range.hi - layer.range.lo;
-    const double place = width == 0 ? 0.5 : std::clamp((value - layer.range.lo) / width, 0.0, 1.0);
-    return linearFromSrgb(glm::dvec3(evaluate(*layer.function, {0, 1}, place)));
+    if (!layer.colors || std::isnan(value)) return linearFromSrgb(glm::dvec3(layer.layer->style.color));
+    const Range range = layer.colors->range;
+    const double width = range.hi - range.lo;
+    const double place = width == 0 ? 0.5 : std::clamp((value - range.lo) / width, 0.0, 1.0);
+    return linearFromSrgb(glm::dvec3(evaluate(*layer.colors->function, {0, 1}, place)));
 }
 
 glm::dvec3 SurfaceShading::lit(glm::dvec3 albedo, glm::dvec3 normal, glm::dvec3 world) const {

@@ -4,6 +4,7 @@
 #include "vis/optics/shade.h"
 #include "vis/packed/packed_light.h"
 #include "vis/processor/triangle.h"
+#include "vis/scene/drawn_scene.h"
 #include "volume/field/dataset.h"
 
 namespace tessera::vis {
@@ -11,9 +12,8 @@ namespace tessera::vis {
 /// A geometry layer with all that its colours depend on.
 struct SurfaceLayer {
     const GeometryLayer* layer = nullptr;
-    int lens = -1;                              ///< index of the lens that it is drawn in, -1: everywhere
-    const TransferFunction* function = nullptr; ///< of its scalars; null: its own colour
-    Range range;
+    int lens = -1;                           ///< index of the lens that it is drawn in, -1: everywhere
+    std::optional<DrawnChannel> colors = {}; ///< what its scalars are looked up in; none: its own colour
 };
 
 /// What a pixel sees of a triangle, and what the next pixels in its row and its column see of the same one.

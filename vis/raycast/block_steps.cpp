@@ -32,8 +32,8 @@ std::vector<std::uint8_t> blockSteps(const RayPlan& plan, const Scene& scene, co
             added.value = toTexel(field, iso->value);
             continue;
         }
-        const ChannelTransfer transfer = transferOf(scene, info, field);
-        added.medium.emplace(transfer.function, transfer.range, double(std::get<VolumeLayer>(layer.technique).density),
+        const DrawnChannel shown = drawnChannel(scene, info, field);
+        added.medium.emplace(*shown.function, shown.range, double(std::get<VolumeLayer>(layer.technique).density),
                              use.shaded);
         added.map = transferMap(field, scene, info);
     }

@@ -9,7 +9,7 @@ namespace tessera::vis {
 /// Constants: which kinds of tests the program needs, and its capacity for tests.
 std::vector<std::pair<std::string, std::string>> brushDefines(const BrushTests& brushes, const Selection& selection);
 
-/// Whether unselected samples are blurred (vis/optics/context_blur.h); not supported by proxy geometry.
+/// Whether unselected samples are blurred (vis/formulas/context_blur.h); not supported by proxy geometry.
 bool blursContext(const Scene& scene);
 
 /// Sets the brush uniforms of a plan with bound fields, and the appearance of the context.

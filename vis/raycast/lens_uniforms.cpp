@@ -49,10 +49,4 @@ void setLensUniforms(const Program& program, const std::vector<PlacedLens>& lens
     program.set("lensAct", acts);
 }
 
-std::optional<int> lensOf(const std::vector<PlacedLens>& lenses, const std::string& name) {
-    if (name.empty()) return -1;
-    const int found = findLens(lenses, name);
-    return found < 0 ? std::nullopt : std::optional<int>(found);
-}
-
 } // namespace tessera::vis

@@ -10,7 +10,4 @@ namespace tessera::vis {
 void addLenses(ProgramRecipe& recipe, const std::vector<PlacedLens>& lenses, const Scene& scene);
 void setLensUniforms(const Program& program, const std::vector<PlacedLens>& lenses);
 
-/// Index of the lens a layer is drawn in: -1 for everywhere, nullopt if the lens does not exist.
-std::optional<int> lensOf(const std::vector<PlacedLens>& lenses, const std::string& name);
-
 } // namespace tessera::vis

@@ -2,14 +2,8 @@
 
 namespace tessera::vis {
 
-ChannelTransfer transferOf(const Scene& scene, const volume::DatasetInfo& info, const BoundField& field) {
-    const volume::Channel known = info.channel(field.channel);
-    const TransferFunction& function = transferFor(scene, field.transfer.empty() ? known.name : field.transfer);
-    return {function, effectiveRange(function, info.channelRange(known))};
-}
-
 glm::dvec2 transferMap(const BoundField& field, const Scene& scene, const volume::DatasetInfo& info) {
-    const Range range = transferOf(scene, info, field).range;
+    const Range range = drawnChannel(scene, info, field).range;
     const double width = range.hi - range.lo;
     if (width == 0) return {0, 0.5};
     return {field.encoding.scale / width, (field.encoding.offset - range.lo) / width};

@@ -1,8 +1,8 @@
 #include "vis/raycast/ray_plan.h"
 
 #include "vis/optics/surface_light.h"
-#include "vis/raycast/lens_uniforms.h"
 #include "vis/raycast/look_bits.h"
+#include "vis/scene/drawn_scene.h"
 #include "volume/bricks/parts_bricks.h"
 #include "volume/reconstruct/part_choice.h"
 
@@ -12,20 +12,19 @@ namespace tessera::vis {
 
 namespace {
 
-int fieldOf(RayPlan& plan, const volume::DatasetInfo& info, int channel, bool raw = false, const Layer& layer = {}) {
+int fieldOf(RayPlan& plan, const DrawnChannel& drawn, bool raw = false) {
     for (std::size_t i = 0; i < plan.fields.size(); ++i) {
         const BoundField& field = plan.fields[i];
-        if (field.channel == channel && field.raw == raw && field.transfer == layer.transfer &&
-            field.timeShift == layer.timeShift)
+        if (field.channel == drawn.channel && field.raw == raw && field.transfer == drawn.transfer &&
+            field.timeShift == drawn.timeShift)
             return int(i);
     }
     BoundField field;
-    field.channel = channel;
+    field.channel = drawn.channel;
     field.raw = raw;
-    field.transfer = layer.transfer;
-    field.timeShift = layer.timeShift;
-    const volume::Channel known = info.channel(channel);
-    field.categorical = field.nearest = info.parameters[std::size_t(known.parameter)].categorical;
+    field.transfer = drawn.transfer;
+    field.timeShift = drawn.timeShift;
+    field.categorical = field.nearest = drawn.categorical;
     plan.fields.push_back(field);
     return int(plan.fields.size()) - 1;
 }
@@ -84,101 +83,71 @@ std::string tooMany(const std::vector<std::string>& left) {
     return "too many parameters at once for the graphics driver: " + names + " left out; show fewer layers";
 }
 
-/// The channel that a layer shows.
-const std::string& channelOf(const Layer& layer) {
-    return std::visit([](const auto& technique) -> const std::string& { return technique.channel; }, layer.technique);
-}
-
 /// Adds a volume layer, its field and its page of the plane tables to a plan.
-RayLayer volumeUse(RayPlan& plan, int layer, const VolumeLayer& volume, int channel, const Scene& scene,
-                   const volume::DatasetInfo& info) {
-    const volume::Channel known = info.channel(channel);
-    const Layer& own = scene.layers[std::size_t(layer)];
-    RayLayer use;
-    use.layer = layer;
-    use.style = volume.style;
-    use.gradient = volume.quantity == Quantity::Gradient;
-    if (volume.style == RayStyle::Composite) {
-        const bool categorical = info.parameters[std::size_t(known.parameter)].categorical;
-        const Classification asked = use.gradient || categorical ? Classification::Post : volume.classification;
-        use.shaded = volume.shaded && !categorical;
-        use.look = lookBits(volume.look);
-        if (!use.gradient &&
-            transferFor(scene, own.transfer.empty() ? known.name : own.transfer).kind == TransferKind::Regions)
-            use.lookup = RayLookup::Plane;
-        else if (asked == Classification::Pre)
-            use.lookup = RayLookup::Lattice;
-        else if (asked == Classification::PreIntegrated)
-            use.lookup = RayLookup::Slab;
-    }
+RayLayer volumeUse(RayPlan& plan, const DrawnLayer& drawn, Filter filter) {
+    RayLayer use{.layer = drawn.layer,
+                 .style = drawn.volume->style,
+                 .shaded = drawn.shaded,
+                 .gradient = drawn.gradient,
+                 .look = drawn.look ? lookBits(*drawn.look) : 0};
+    if (drawn.byRegions)
+        use.lookup = RayLookup::Plane;
+    else if (drawn.classification == Classification::Pre)
+        use.lookup = RayLookup::Lattice;
+    else if (drawn.classification == Classification::PreIntegrated)
+        use.lookup = RayLookup::Slab;
     if (use.lookup == RayLookup::Plane || use.lookup == RayLookup::Slab) use.page = plan.pages++;
-    const bool raw = use.lookup == RayLookup::Lattice && scene.render.filter == Filter::AverageQuasi;
-    use.field = fieldOf(plan, info, channel, raw, own);
+    use.field = fieldOf(plan, drawn.shown, use.lookup == RayLookup::Lattice && filter == Filter::AverageQuasi);
     return use;
 }
 
-/// Adds a layer of the scene to the plan, with its fields, if rays intersect it.
-void planLayer(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info, int number) {
-    const Layer& layer = scene.layers[std::size_t(number)];
-    const std::optional<int> channel = info.findChannel(channelOf(layer));
-    const std::optional<int> lens = lensOf(plan.lenses, layer.lens);
-    if (!layer.visible || !channel || !lens) return;
-    const auto* surface = std::get_if<IsoLayer>(&layer.technique);
-    const std::optional<int> color =
-        colorByOf(layer.technique).empty() ? std::nullopt : info.findChannel(colorByOf(layer.technique));
-    // A layer's own transfer function applies to its channel or, for a surface coloured by another channel, to that
-    // one.
-    Layer shape = layer, colors = layer;
-    (surface && color ? shape : colors).transfer.clear();
-    if (surface && surface->method == SurfaceMethod::Polygons) return; // drawn as Scene::geometry
-    if (std::holds_alternative<FlowLayer>(layer.technique)) return;    // also drawn as Scene::geometry
-    if (std::holds_alternative<SliceLayer>(layer.technique)) {
-        plan.slices.push_back({number, fieldOf(plan, info, *channel, false, layer), *lens, layer.brushes, 0});
+/// Adds a layer to the plan, with its fields.
+void planLayer(RayPlan& plan, const DrawnLayer& drawn, Filter filter) {
+    if (drawn.slice) {
+        plan.slices.push_back({drawn.layer, fieldOf(plan, drawn.shown), drawn.lens, drawn.brushes, 0});
         return;
     }
-    if (const auto* volume = std::get_if<VolumeLayer>(&layer.technique))
-        plan.layers.push_back(volumeUse(plan, number, *volume, *channel, scene, info));
+    if (drawn.volume)
+        plan.layers.push_back(volumeUse(plan, drawn, filter));
     else
-        plan.layers.push_back({.layer = number,
+        plan.layers.push_back({.layer = drawn.layer,
                                .style = RayStyle::Iso,
-                               .field = fieldOf(plan, info, *channel, false, shape),
+                               .field = fieldOf(plan, drawn.shown),
                                .shaded = true,
-                               .look = lookBits(surface->look)});
-    plan.layers.back().lens = *lens;
-    plan.layers.back().brushes = layer.brushes;
-    if (color) plan.layers.back().color = fieldOf(plan, info, *color, false, colors);
+                               .look = lookBits(*drawn.look)});
+    plan.layers.back().lens = drawn.lens;
+    plan.layers.back().brushes = drawn.brushes;
+    if (drawn.colors) plan.layers.back().color = fieldOf(plan, *drawn.colors);
 }
 
-/// Adds the ray layers of a scene while there is room for their fields; returns the channels of the others.
-std::vector<std::string> planLayers(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
+/// Adds layers while there is room for their fields; returns the channels of the others.
+std::vector<std::string> planLayers(RayPlan& plan, const DrawnScene& drawn, const Scene& scene) {
     std::vector<std::string> left;
-    for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+    for (const DrawnLayer& layer : drawn.layers) {
         const RayPlan former = plan;
-        planLayer(plan, scene, info, int(i));
+        planLayer(plan, layer, scene.render.filter);
         if (int(plan.fields.size()) <= plan.mostFields) continue;
         plan = former;
-        left.push_back(channelOf(scene.layers[i]));
+        left.push_back(shownChannel(scene.layers[std::size_t(layer.layer)].technique));
     }
     return left;
 }
 
 /// Adds the brushes and their fields; channels without room are added to `left`.
-void planBrushes(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info, std::vector<std::string>& left) {
-    const std::vector<std::string> brushed = selectedChannels(scene.selection);
-    for (const std::string& name : brushed) {
-        const std::optional<int> channel = info.findChannel(name);
-        if (!channel) continue;
-        const int field = fieldOf(plan, info, *channel);
+void planBrushes(RayPlan& plan, const DrawnScene& drawn, const Scene& scene, const volume::DatasetInfo& info,
+                 std::vector<std::string>& left) {
+    for (const int channel : drawn.brushed) {
+        const int field = fieldOf(plan, drawnChannel(scene, info, channel));
         if (int(plan.fields.size()) > plan.mostFields) {
             plan.fields.pop_back();
-            left.push_back(name);
+            left.push_back(info.channel(channel).name);
             continue;
         }
         if (std::find(plan.brushFields.begin(), plan.brushFields.end(), field) == plan.brushFields.end())
             plan.brushFields.push_back(field);
     }
     // Brushes on unknown channels still have an effect, and the shader needs a field to sample.
-    if (plan.brushFields.empty() && !brushed.empty()) plan.brushFields.push_back(0);
+    if (plan.brushFields.empty() && !selectedChannels(scene.selection).empty()) plan.brushFields.push_back(0);
     std::vector<int> channels;
     for (const int field : plan.brushFields) channels.push_back(plan.fields[std::size_t(field)].channel);
     plan.brushes = brushTests(scene.selection, info, channels, plan.lenses);
@@ -211,12 +180,13 @@ int mostFields(int samplers, const Scene& scene, bool bricked) {
 RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info, int mostFields) {
     RayPlan plan;
     plan.mostFields = mostFields;
-    plan.lenses = placeLenses(scene, worldFrame(info.bounds, scene.stretch));
-    std::vector<std::string> left = planLayers(plan, scene, info);
+    const DrawnScene drawn = drawnScene(scene, info);
+    plan.lenses = drawn.lenses;
+    std::vector<std::string> left = planLayers(plan, drawn, scene);
     plan.peels = peelsOf(scene);
     if (plan.peels > 0 && plan.fields.empty() && !info.channels().empty())
-        fieldOf(plan, info, 0); // GLSL needs at least one field sampler
-    if (!plan.empty() && scene.selection.active()) planBrushes(plan, scene, info, left);
+        fieldOf(plan, drawnChannel(scene, info, 0)); // GLSL needs at least one field sampler
+    if (!plan.empty() && scene.selection.active()) planBrushes(plan, drawn, scene, info, left);
     addParts(plan, info, mostFields);
     if (!left.empty()) plan.limit += (plan.limit.empty() ? "" : "; ") + tooMany(left);
     for (RayLayer& layer : plan.layers) layer.row = plan.rows++;

@@ -52,11 +52,12 @@ std::vector<glm::vec4> planeTables(const RayPlan& plan, const Scene& scene, cons
     std::vector<glm::vec4> table;
     for (const RayLayer& layer : plan.layers) {
         if (layer.page < 0) continue;
-        const auto [function, range] = transferOf(scene, info, plan.fields[std::size_t(layer.field)]);
+        const DrawnChannel shown = drawnChannel(scene, info, plan.fields[std::size_t(layer.field)]);
         if (layer.lookup == RayLookup::Plane) {
-            addRegions(table, function, range);
+            addRegions(table, *shown.function, shown.range);
         } else {
-            const std::vector<glm::vec4> page = preintegrationTable(integralFunctions(function, range), kPlaneSize);
+            const std::vector<glm::vec4> page =
+                preintegrationTable(integralFunctions(*shown.function, shown.range), kPlaneSize);
             table.insert(table.end(), page.begin(), page.end());
         }
     }
@@ -66,10 +67,11 @@ std::vector<glm::vec4> planeTables(const RayPlan& plan, const Scene& scene, cons
 std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
     std::vector<glm::vec4> table;
     const auto add = [&](int field) {
-        const auto [function, range] = transferOf(scene, info, plan.fields[std::size_t(field)]);
+        const DrawnChannel shown = drawnChannel(scene, info, plan.fields[std::size_t(field)]);
+        const Range range = shown.range;
         for (int i = 0; i < kTableSize; ++i) {
             const double value = glm::mix(range.lo, range.hi, double(i) / (kTableSize - 1));
-            const glm::dvec4 at = evaluate(function, range, value);
+            const glm::dvec4 at = evaluate(*shown.function, range, value);
             table.emplace_back(glm::vec3(linearFromSrgb(glm::dvec3(at))), float(at.a));
         }
     };
@@ -81,7 +83,7 @@ std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, c
         const RayLayer& layer = plan.layers[row];
         std::vector<float> regions;
         if (layer.lookup == RayLookup::Plane)
-            regions = mostOpaque(transferOf(scene, info, plan.fields[std::size_t(layer.field)]).function);
+            regions = mostOpaque(*drawnChannel(scene, info, plan.fields[std::size_t(layer.field)]).function);
         for (int i = 0; i < kTableSize; ++i) {
             const std::size_t at = row * kTableSize + std::size_t(i), next = at + (i + 1 < kTableSize);
             const float own = regions.empty() ? table[at].a : regions[at - row * kTableSize];
@@ -189,7 +191,7 @@ std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& s
             value = toTexel(field, std::get<IsoLayer>(layer.technique).value);
         } else {
             map = transferMap(field, scene, info);
-            const TransferFunction& function = transferOf(scene, info, field).function;
+            const TransferFunction& function = *drawnChannel(scene, info, field).function;
             if (use.lookup == RayLookup::Plane) opacity = mostOpaque(function);
             for (int i = 0; use.lookup != RayLookup::Plane && i < kTableSize; ++i)
                 opacity.push_back(float(evaluate(function, {0, 1}, double(i) / (kTableSize - 1)).a));

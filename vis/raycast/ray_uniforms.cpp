@@ -40,12 +40,12 @@ void setLayers(const Program& program, const RayPlan& plan, const Scene& scene, 
         if (const auto* iso = std::get_if<IsoLayer>(&layer.technique)) {
             maps.emplace_back(1, 0, toTexel(field, iso->value), iso->opacity);
             colors.emplace_back(linearFromSrgb(glm::dvec3(iso->color)));
-            const double top = double(transferOf(scene, info, field).function.gradientTop);
+            const double top = double(drawnChannel(scene, info, field).function->gradientTop);
             more.emplace_back(std::abs(transferMap(field, scene, info).x) / top, 0);
         } else {
             const auto& volume = std::get<VolumeLayer>(layer.technique);
             const glm::dvec2 map = transferMap(field, scene, info);
-            const double top = double(transferOf(scene, info, field).function.gradientTop);
+            const double top = double(drawnChannel(scene, info, field).function->gradientTop);
             maps.emplace_back(map, volume.density, 1);
             colors.emplace_back(linearFromSrgb(glm::dvec3(kNoValueColor)));
             // A threshold below the range excludes nothing.

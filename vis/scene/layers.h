@@ -15,7 +15,7 @@
 namespace tessera::vis {
 
 /// How a layer's samples along a ray become a colour. All styles except composite and iso-surface are projections of
-/// the whole ray (vis/shaders/lib/layers/projections.glsl, vis/reference/projection.h). Shaders know them as
+/// the whole ray (vis/shaders/lib/layers/projections.glsl, tests/reference/projection.h). Shaders know them as
 /// STYLE_COMPOSITE and so on.
 enum class RayStyle { Composite, Maximum, Minimum, Average, XRay, LocalMaximum, Iso };
 inline constexpr std::string_view kRayStyleNames[] = {"composite", "maximum",      "minimum", "average",

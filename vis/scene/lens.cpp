@@ -94,4 +94,10 @@ int findLens(const std::vector<PlacedLens>& lenses, const std::string& name) {
     return -1;
 }
 
+std::optional<int> lensOf(const std::vector<PlacedLens>& lenses, const std::string& name) {
+    if (name.empty()) return -1;
+    const int found = findLens(lenses, name);
+    return found < 0 ? std::nullopt : std::optional<int>(found);
+}
+
 } // namespace tessera::vis

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "vis/formulas/lens_weight.h"
 #include "vis/scene/camera.h"
 #include "vis/scene/lens_shape.h"
 #include "volume/base/data_units.h"
 
 #include <algorithm>
 #include <glm/mat3x3.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -139,14 +141,11 @@ struct PlacedLens {
     double radius(glm::dvec3 world) const { return radius<double>(world); }
     /// 1 inside, 0 outside, smoothstep over the rim; reversed if inverted.
     template <class N> N weight(const glm::vec<3, N>& world) const {
-        const N inwards = N(1) - radius(world);
-        const N t = rim > 0 ? clamped(inwards * N(1 / rim), N(0), N(1)) : choose(inwards > N(0), N(1), N(0));
-        const N own = t * t * (N(3) - N(2) * t);
+        const N own = lensWeight(radius(world), rim);
         return inverted ? N(1) - own : own;
     }
     double weight(glm::dvec3 world) const { return weight<double>(world); }
-    /// The position whose data are shown at `world`: at radius r, the distance from the centre is multiplied by 1 / (1
-    /// + d (1 - r)), d = magnification - 1 (inverse of the graphical fisheye of M. Sarkar and M. Brown, 1992).
+    /// The position whose data are shown at `world`: nearer to the centre by lensShare().
     glm::dvec3 bend(glm::dvec3 world) const;
     /// Whether it changes opacity or saturation of the layers below.
     bool acts() const { return effect != LensEffect::Magnify && effect != LensEffect::Focus; }
@@ -158,6 +157,8 @@ std::vector<PlacedLens> placeLenses(const std::vector<Lens>& lenses, const World
 
 /// Index of the lens with a name, -1 if there is none.
 int findLens(const std::vector<PlacedLens>& lenses, const std::string& name);
+/// Index of the lens that a layer is drawn in: -1 for everywhere (""), nullopt if there is none of that name.
+std::optional<int> lensOf(const std::vector<PlacedLens>& lenses, const std::string& name);
 
 /// Effect of all lenses on a layer at a position; the layer belongs to lens `own` (-1: to none).
 template <class N> struct LensActionOf {

@@ -10,8 +10,7 @@ template <class N> glm::vec<3, N> bentBy(const PlacedLens& lens, const glm::vec<
     const auto times = [](const glm::dmat3& m, const glm::vec<3, N>& v) {
         return spreadOut<N>(m[0]) * v.x + spreadOut<N>(m[1]) * v.y + spreadOut<N>(m[2]) * v.z;
     };
-    const N inwards = larger(N(0), N(1) - lens.radius(world)); // 0 outside
-    const N share = N(1) / (N(1) + N(lens.magnification - 1) * inwards);
+    const N share = lensShare(lens.radius(world), lens.magnification);
     return world - times(lens.fromUnit, times(lens.toUnit, world - spreadOut<N>(lens.center))) * (N(1) - share);
 }
 

@@ -27,7 +27,7 @@ uniform vec2 tone;             // gain, white
 #endif
 
 #if BLUR
-#include "lib/shading/context_blur.glsl"
+#include "formulas/context_blur.glsl"
 uniform sampler2D seen;   // distance and degree of interest
 uniform float blurRadius; // pixels
 uniform int blurTaps;     // kBlurTaps; a uniform, so that the loop is not unrolled

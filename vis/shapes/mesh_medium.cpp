@@ -1,6 +1,7 @@
 #include "vis/shapes/mesh_medium.h"
 
 #include "vis/optics/ray_setup.h"
+#include "vis/scene/drawn_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,20 +34,19 @@ MeshCasters meshCasters(const Scene& scene, const volume::DatasetInfo& info) {
     out.frame = worldFrame(info.bounds, scene.stretch);
     out.clips = placeClips(scene.clips, out.frame);
     out.lenses = placeLenses(scene, out.frame);
-    for (const GeometryLayer& layer : scene.geometry) {
-        const int lens = layer.lens.empty() ? -1 : findLens(out.lenses, layer.lens);
-        if (!drawn(scene, layer) || (!layer.lens.empty() && lens < 0) || layer.geometry->mesh.triangles.empty())
-            continue;
+    for (const DrawnGeometry& drawn : drawnGeometry(scene, out.lenses)) {
+        const GeometryLayer& layer = scene.geometry[std::size_t(drawn.layer)];
+        if (layer.geometry->mesh.triangles.empty()) continue;
         MeshCasters::Caster caster;
         caster.geometry = layer.geometry;
         caster.color = linearFromSrgb(glm::dvec3(layer.style.color));
         caster.opacity = double(layer.style.opacity);
-        caster.lens = lens;
-        const std::optional<int> channel = info.findChannel(layer.channel);
-        caster.scalars = channel && !layer.geometry->mesh.scalars.empty();
+        caster.lens = drawn.lens;
+        const std::optional<DrawnChannel> colors = colorsOf(scene, info, layer);
+        caster.scalars = colors && !layer.geometry->mesh.scalars.empty();
         if (caster.scalars) {
-            caster.function = transferFor(scene, layer.transfer.empty() ? layer.channel : layer.transfer);
-            caster.range = effectiveRange(caster.function, info.channelRange(info.channel(*channel)));
+            caster.function = *colors->function;
+            caster.range = colors->range;
         }
         out.casters.push_back(std::move(caster));
     }

@@ -15,7 +15,8 @@ bool drawnByProxy(const Scene& scene) {
         return !layer.visible ||
                (volume && volume->style == RayStyle::Composite && volume->quantity == Quantity::Value &&
                 volume->classification == Classification::Post && !volume->look.any() &&
-                transferFor(scene, volume->channel).kind == TransferKind::Curve);
+                transferFor(scene, layer.transfer.empty() ? volume->channel : layer.transfer).kind ==
+                    TransferKind::Curve);
     });
 }
 

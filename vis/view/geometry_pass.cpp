@@ -5,6 +5,7 @@
 #include "vis/raycast/lens_uniforms.h"
 #include "vis/raycast/light_uniforms.h"
 #include "vis/raycast/look_bits.h"
+#include "vis/scene/drawn_scene.h"
 
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
@@ -118,19 +119,17 @@ void GeometryPass::table(const Scene& scene, const volume::DatasetInfo& info) {
     maps_.clear();
     for (const GeometryLayer& layer : scene.geometry) {
         const glm::dvec3 own = linearFromSrgb(glm::dvec3(layer.style.color));
-        const std::optional<int> channel = layer.channel.empty() ? std::nullopt : info.findChannel(layer.channel);
-        if (!channel) {
+        const std::optional<DrawnChannel> drawn = colorsOf(scene, info, layer);
+        if (!drawn) {
             maps_.emplace_back(0);
             colors.insert(colors.end(), kColors, glm::vec4(own, 1));
             continue;
         }
-        const volume::Channel known = info.channel(*channel);
-        const TransferFunction& function = transferFor(scene, layer.transfer.empty() ? known.name : layer.transfer);
-        const Range range = effectiveRange(function, info.channelRange(known));
+        const Range range = drawn->range;
         const double width = range.hi - range.lo;
         maps_.push_back(width == 0 ? glm::vec2(0, 0.5) : glm::vec2(1 / width, -range.lo / width));
         for (int i = 0; i < kColors; ++i) {
-            const glm::dvec4 srgb = evaluate(function, {0, 1}, double(i) / (kColors - 1));
+            const glm::dvec4 srgb = evaluate(*drawn->function, {0, 1}, double(i) / (kColors - 1));
             colors.emplace_back(linearFromSrgb(glm::dvec3(srgb)), 1);
         }
     }
@@ -229,17 +228,15 @@ void clear(GLuint framebuffer) {
 /// Collects the draw calls, with their common uniforms set.
 std::vector<GeometryPass::Draw> GeometryPass::collect(const GeometryJob& job, GrainTexture& grain) {
     std::vector<Draw> draws;
-    for (std::size_t i = 0; i < job.scene.geometry.size(); ++i) {
-        const GeometryLayer& layer = job.scene.geometry[i];
-        const std::optional<int> lens = lensOf(job.lenses, layer.lens);
-        if (!drawn(job.scene, layer) || !lens) continue;
+    for (const DrawnGeometry& drawn : drawnGeometry(job.scene, job.lenses)) {
+        const GeometryLayer& layer = job.scene.geometry[std::size_t(drawn.layer)];
         const Uploaded& up = upload(layer.geometry);
         if (layer.style.look.charcoal) glBindTextureUnit(kGrainUnit, grain.get());
         for (const bool lines : {false, true}) {
             if ((lines ? up.segmentCount : up.indexCount) == 0) continue;
             const Program& own = program(job, lines, lookBits(layer.style.look));
             setCommon(own, job);
-            draws.push_back({i, *lens, lines, &up, &own});
+            draws.push_back({std::size_t(drawn.layer), drawn.lens, lines, &up, &own});
         }
     }
     return draws;

@@ -34,10 +34,7 @@ int componentsOf(const DerivedRecipe& recipe) {
             return 1;
         }
     }
-    const bool vector = std::holds_alternative<GradientRecipe>(recipe) ||
-                        std::holds_alternative<VorticityRecipe>(recipe) ||
-                        std::holds_alternative<PositionRecipe>(recipe);
-    return vector ? 3 : 1;
+    return kindOf(recipe).components;
 }
 
 namespace {
@@ -71,18 +68,16 @@ struct Problem {
             return error.what();
         }
     }
-    std::string operator()(const MagnitudeRecipe& recipe) const {
-        for (const std::string& name : {recipe.x, recipe.y, recipe.z})
-            if (std::string problem = channel(name); !problem.empty()) return problem;
-        return {};
-    }
     std::string vector(const std::string& name) const {
         return findVector(info, name) ? "" : "no vector is named \"" + name + "\"";
     }
-    std::string operator()(const GradientRecipe& recipe) const { return channel(recipe.channel); }
-    std::string operator()(const DivergenceRecipe& recipe) const { return vector(recipe.vector); }
-    std::string operator()(const VorticityRecipe& recipe) const { return vector(recipe.vector); }
-    std::string operator()(const DeviationRecipe& recipe) const { return channel(recipe.channel); }
+    std::string operator()(const auto& recipe) const {
+        std::string problem;
+        forEachInput(recipe, [&](const std::string& name, bool isVector) {
+            if (problem.empty()) problem = isVector ? vector(name) : channel(name);
+        });
+        return problem;
+    }
     std::string operator()(const SmoothRecipe& recipe) const {
         if (!(recipe.width >= 0.1 && recipe.width <= 16)) return "the width must be between 0.1 and 16 cells";
         return channel(recipe.channel);
@@ -98,13 +93,7 @@ struct Problem {
         return own.name + " is in " + (own.unit.empty() ? "no unit" : own.unit) + ", in the other data in " +
                (other.unit.empty() ? "no unit" : other.unit) + ": they cannot be subtracted";
     }
-    std::string operator()(const PositionRecipe&) const { return {}; }
-    std::string operator()(const TimeRecipe&) const { return {}; }
 };
-
-} // namespace
-
-namespace {
 
 /// Names of the parameters that a recipe uses.
 struct Inputs {
@@ -119,15 +108,11 @@ struct Inputs {
         }
         return out;
     }
-    std::vector<std::string> operator()(const MagnitudeRecipe& recipe) const { return {recipe.x, recipe.y, recipe.z}; }
-    std::vector<std::string> operator()(const GradientRecipe& recipe) const { return {recipe.channel}; }
-    std::vector<std::string> operator()(const DivergenceRecipe& recipe) const { return {recipe.vector}; }
-    std::vector<std::string> operator()(const VorticityRecipe& recipe) const { return {recipe.vector}; }
-    std::vector<std::string> operator()(const DeviationRecipe& recipe) const { return {recipe.channel}; }
-    std::vector<std::string> operator()(const SmoothRecipe& recipe) const { return {recipe.channel}; }
-    std::vector<std::string> operator()(const DifferenceRecipe& recipe) const { return {recipe.channel}; }
-    std::vector<std::string> operator()(const PositionRecipe&) const { return {}; }
-    std::vector<std::string> operator()(const TimeRecipe&) const { return {}; }
+    std::vector<std::string> operator()(const auto& recipe) const {
+        std::vector<std::string> out;
+        forEachInput(recipe, [&](const std::string& name, bool) { out.push_back(name); });
+        return out;
+    }
 };
 
 /// Regions that belong to one part in both labels.
@@ -169,17 +154,19 @@ Parts partsOf(const DerivedRecipe& recipe, const DatasetInfo& info) {
 }
 
 bool isComputedBetween(const DerivedRecipe& recipe, const DatasetInfo& info, const std::function<bool(int)>& computed) {
-    if (std::holds_alternative<ExpressionRecipe>(recipe) || std::holds_alternative<MagnitudeRecipe>(recipe))
-        return true;
-    return std::ranges::any_of(std::visit(Inputs{info}, recipe), [&](const std::string& name) {
-        const Parameter* vector = findVector(info, name);
-        if (!vector ||
-            !(std::holds_alternative<DivergenceRecipe>(recipe) || std::holds_alternative<VorticityRecipe>(recipe))) {
-            const auto channel = info.findChannel(name);
-            return channel && computed(*channel);
-        }
-        return computed(info.channelIndex(int(vector - info.parameters.data()), 0));
-    });
+    if (!kindOf(recipe).linear) return true;
+    bool any = false;
+    std::visit(
+        [&](const auto& own) {
+            forEachInput(own, [&](const std::string& name, bool isVector) {
+                const Parameter* const vector = isVector ? findVector(info, name) : nullptr;
+                const std::optional<int> channel =
+                    vector ? info.channelIndex(int(vector - info.parameters.data()), 0) : info.findChannel(name);
+                any = any || (channel && computed(*channel));
+            });
+        },
+        recipe);
+    return any;
 }
 
 std::string derivedProblem(const DerivedParameter& parameter, const DatasetInfo& info) {

@@ -5,14 +5,36 @@
 
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 
-/// How parameters are computed from others.
+/// How parameters are computed from others. A new way is a struct here, with its kind and its description, and how its
+/// bricks are made (volume/derived/derived_bricks.cpp).
 namespace tessera::volume {
+
+/// The unit that a derived parameter has at first.
+enum class DerivedUnit { OfInput, InputPerLength, Length, Time };
+
+/// What is said of a way to compute parameters.
+struct DerivedKind {
+    std::string_view title;  ///< in menus
+    std::string_view doc;    ///< a sentence for the documentation
+    std::string_view words;  ///< by which its command is found; "": it has commands of its own
+    std::string_view prefix; ///< of the name at first, before that of its input
+    int components = 1;      ///< 3: a vector, with magnitude
+    DerivedUnit unit = DerivedUnit::OfInput;
+    /// Whether the parameter between two stored times is that of both times mixed, where its inputs are.
+    bool linear = true;
+};
 
 /// A formula over channels, position and time, point by point: "O2 / (O2 + H2O)", "T - at(T, first)". See Expression.
 struct ExpressionRecipe {
     static constexpr std::string_view kType = "expression";
+    static constexpr DerivedKind kKind{.title = "Formula",
+                                       .doc = "A formula.",
+                                       .words = "expression equation function",
+                                       .prefix = "new ",
+                                       .linear = false};
     std::string formula;
     bool operator==(const ExpressionRecipe&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -28,6 +50,11 @@ struct ExpressionRecipe {
 /// sqrt(x^2 + y^2 + z^2) of three channels.
 struct MagnitudeRecipe {
     static constexpr std::string_view kType = "magnitude";
+    static constexpr DerivedKind kKind{.title = "Magnitude",
+                                       .doc = "The length of a vector of three parameters.",
+                                       .words = "length norm absolute",
+                                       .prefix = "magnitude",
+                                       .linear = false};
     std::string x, y, z;
     bool operator==(const MagnitudeRecipe&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -43,6 +70,12 @@ inline constexpr FieldInfo kDerivedFrom{
 /// A vector, with magnitude: central differences within each sublattice, one-sided beside absent samples and borders.
 struct GradientRecipe {
     static constexpr std::string_view kType = "gradient";
+    static constexpr DerivedKind kKind{.title = "Gradient",
+                                       .doc = "A vector.",
+                                       .words = "grad derivative slope",
+                                       .prefix = "grad ",
+                                       .components = 3,
+                                       .unit = DerivedUnit::InputPerLength};
     std::string channel;
     bool operator==(const GradientRecipe&) const = default;
     static void describe(auto& self, auto&& visit) { visit(self.channel, kDerivedFrom); }
@@ -53,6 +86,11 @@ inline constexpr FieldInfo kDerivedVector{
 
 struct DivergenceRecipe {
     static constexpr std::string_view kType = "divergence";
+    static constexpr DerivedKind kKind{.title = "Divergence",
+                                       .doc = "The divergence of a vector.",
+                                       .words = "div sources",
+                                       .prefix = "div ",
+                                       .unit = DerivedUnit::InputPerLength};
     std::string vector;
     bool operator==(const DivergenceRecipe&) const = default;
     static void describe(auto& self, auto&& visit) { visit(self.vector, kDerivedVector); }
@@ -61,6 +99,12 @@ struct DivergenceRecipe {
 /// The curl of a vector: a vector, with magnitude.
 struct VorticityRecipe {
     static constexpr std::string_view kType = "vorticity";
+    static constexpr DerivedKind kKind{.title = "Vorticity",
+                                       .doc = "The curl of a vector: a vector.",
+                                       .words = "curl rotation",
+                                       .prefix = "curl ",
+                                       .components = 3,
+                                       .unit = DerivedUnit::InputPerLength};
     std::string vector;
     bool operator==(const VorticityRecipe&) const = default;
     static void describe(auto& self, auto&& visit) { visit(self.vector, kDerivedVector); }
@@ -72,6 +116,10 @@ inline constexpr std::string_view kTimeMeasureNames[] = {"fromMean", "standardDe
 /// Difference of a channel, at every point, from its mean over all times at which it is present.
 struct DeviationRecipe {
     static constexpr std::string_view kType = "deviation";
+    static constexpr DerivedKind kKind{.title = "Deviation over time",
+                                       .doc = "Deviation from the mean over time.",
+                                       .words = "fluctuation mean variance",
+                                       .prefix = "deviation "};
     std::string channel;
     TimeMeasure measure = TimeMeasure::FromMean;
     bool operator==(const DeviationRecipe&) const = default;
@@ -87,6 +135,10 @@ struct DeviationRecipe {
 /// A Gaussian over present samples of the same sublattice, cut at three widths.
 struct SmoothRecipe {
     static constexpr std::string_view kType = "smooth";
+    static constexpr DerivedKind kKind{.title = "Smoothed",
+                                       .doc = "A copy smoothed by a Gaussian.",
+                                       .words = "smooth filter blur gaussian average",
+                                       .prefix = "smooth "};
     std::string channel;
     double width = 1; ///< cells
     bool operator==(const SmoothRecipe&) const = default;
@@ -103,6 +155,12 @@ struct SmoothRecipe {
 /// The position of a sample: a vector "name.x", "name.y", "name.z" in the data's length unit.
 struct PositionRecipe {
     static constexpr std::string_view kType = "position";
+    static constexpr DerivedKind kKind{.title = "Position",
+                                       .doc = "The position of a sample: a vector.",
+                                       .words = "coordinates xyz",
+                                       .prefix = "position",
+                                       .components = 3,
+                                       .unit = DerivedUnit::Length};
     bool operator==(const PositionRecipe&) const = default;
     static void describe(auto&, auto&&) {}
 };
@@ -110,6 +168,8 @@ struct PositionRecipe {
 /// The time of a sample, the same everywhere.
 struct TimeRecipe {
     static constexpr std::string_view kType = "time";
+    static constexpr DerivedKind kKind{
+        .title = "Time", .doc = "The time of a sample.", .words = "clock", .prefix = "time", .unit = DerivedUnit::Time};
     bool operator==(const TimeRecipe&) const = default;
     static void describe(auto&, auto&&) {}
 };
@@ -118,6 +178,10 @@ struct TimeRecipe {
 /// either is.
 struct DifferenceRecipe {
     static constexpr std::string_view kType = "difference";
+    static constexpr DerivedKind kKind{.title = "Difference from another time",
+                                       .doc = "A parameter minus itself at another time or in other data.",
+                                       .words = "",
+                                       .prefix = ""};
     std::string channel;
     OtherTime from = OtherTime::First;
     double time = 0; ///< of OtherTime::Time
@@ -140,6 +204,23 @@ struct DifferenceRecipe {
 
 using DerivedRecipe = std::variant<ExpressionRecipe, MagnitudeRecipe, GradientRecipe, DivergenceRecipe, VorticityRecipe,
                                    DeviationRecipe, SmoothRecipe, PositionRecipe, TimeRecipe, DifferenceRecipe>;
+
+inline constexpr std::size_t kDerivedKinds = std::variant_size_v<DerivedRecipe>;
+
+/// Calls visit(name, whether it is that of a vector) for each parameter that a recipe names, but for those in formulas.
+void forEachInput(auto& recipe, auto&& visit) {
+    std::remove_cvref_t<decltype(recipe)>::describe(recipe, [&](auto& value, const FieldInfo& info) {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, std::string>)
+            if (!info.refersTo.empty()) visit(value, info.refersTo == "vector");
+    });
+}
+
+inline const DerivedKind& kindOf(const DerivedRecipe& recipe) {
+    return std::visit([](const auto& own) -> const DerivedKind& { return own.kKind; }, recipe);
+}
+
+/// A recipe of the kind with that index, which names no parameter yet.
+DerivedRecipe recipeOfKind(std::size_t kind);
 
 struct DerivedParameter {
     std::string name, unit;

@@ -247,7 +247,7 @@ std::shared_ptr<const BrickSource> otherOf(const BrickSource& source) {
     return with ? with->other() : nullptr;
 }
 
-std::shared_ptr<const BrickSource> besideOther(const BrickSource& source) {
+std::shared_ptr<const BrickSource> firstDataOf(const BrickSource& source) {
     const auto* with = dynamic_cast<const WithOther*>(&source);
     return with ? with->own() : nullptr;
 }

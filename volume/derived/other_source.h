@@ -47,7 +47,7 @@ std::shared_ptr<const BrickSource> withOther(std::shared_ptr<const BrickSource> 
 /// The other data set of a source made by withOther; null for other sources.
 std::shared_ptr<const BrickSource> otherOf(const BrickSource& source);
 /// The first data set of a source made by withOther.
-std::shared_ptr<const BrickSource> besideOther(const BrickSource& source);
+std::shared_ptr<const BrickSource> firstDataOf(const BrickSource& source);
 
 /// Whether two data sets have samples at the same positions, in any bricks. Throws Error when units of length cannot be
 /// converted.

@@ -11,7 +11,7 @@ std::string fileOfTime(const std::string& path, std::size_t number);
 
 /// The ParaView collection of these files: "out.vtp" gives "out.pvd".
 std::string collectionOf(const std::string& path);
-/// Writes it: files beside it, one for each time. Throws MachineError.
+/// Writes the collection of `files`, which lie beside it, one for each time. Throws MachineError.
 void writeCollection(const std::string& path, const std::vector<double>& times, const std::vector<std::string>& files);
 
 } // namespace tessera::volume

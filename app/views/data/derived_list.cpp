@@ -15,32 +15,6 @@ namespace tessera::app {
 
 namespace {
 
-volume::DerivedRecipe recipeOf(const volume::DatasetInfo& info, std::size_t kind, const std::string& channel) {
-    const std::string vector = firstVector(info);
-    switch (kind) {
-    case 1:
-        return volume::MagnitudeRecipe{channel, channel, channel};
-    case 2:
-        return volume::GradientRecipe{channel};
-    case 3:
-        return volume::DivergenceRecipe{vector};
-    case 4:
-        return volume::VorticityRecipe{vector};
-    case 5:
-        return volume::DeviationRecipe{channel};
-    case 6:
-        return volume::SmoothRecipe{channel};
-    case 7:
-        return volume::PositionRecipe{};
-    case 8:
-        return volume::TimeRecipe{};
-    case 9:
-        return volume::DifferenceRecipe{channel};
-    default:
-        return volume::ExpressionRecipe{channel};
-    }
-}
-
 /// Whether a formula can name a channel without back quotes.
 bool plainName(const std::string& name) {
     return std::all_of(name.begin(), name.end(),
@@ -90,7 +64,8 @@ void drawOne(ViewContext& context, DerivedDraft& draft, std::size_t index, int& 
     const volume::DatasetInfo& info = context.source->info();
     const WidgetContext widgets{.info = &info};
     const std::string title = (own.name.empty() ? "unnamed" : own.name) + "   " +
-                              (own.unit.empty() ? "" : own.unit + "   ") + kDerivedKinds[own.recipe.index()] + "###one";
+                              (own.unit.empty() ? "" : own.unit + "   ") +
+                              std::string(volume::kindOf(own.recipe).title) + "###one";
     const bool wrong = index < draft.problems.size() && !draft.problems[index].empty();
     if (wrong) ImGui::PushStyleColor(ImGuiCol_Text, palette().failure);
     const bool open =
@@ -134,18 +109,27 @@ std::string unitOfVector(const volume::DatasetInfo& info, const std::string& nam
 } // namespace
 
 volume::DerivedParameter newDerived(const volume::DatasetInfo& info, std::size_t kind, const std::string& channel) {
-    static constexpr const char* kPrefixes[] = {"new ",       "magnitude", "grad ",    "div ", "curl ",
-                                                "deviation ", "smooth ",   "position", "time", ""};
     volume::DerivedParameter made;
-    made.recipe = recipeOf(info, kind, kind == 0 && !plainName(channel) ? "`" + channel + "`" : channel);
-    const std::string unit = unitOf(info, channel);
-    std::string of = kind == 1 || kind >= 7 ? "" : channel;
+    made.recipe = volume::recipeOfKind(kind);
+    const volume::DerivedKind& traits = volume::kindOf(made.recipe);
+    std::string unit = unitOf(info, channel);
+    std::vector<std::string> inputs;
+    if (auto* const formula = std::get_if<volume::ExpressionRecipe>(&made.recipe)) {
+        formula->formula = plainName(channel) ? channel : "`" + channel + "`";
+        inputs = {channel};
+    }
+    std::visit(
+        [&](auto& recipe) {
+            volume::forEachInput(recipe, [&](std::string& name, bool isVector) {
+                name = isVector ? firstVector(info) : channel;
+                if (isVector) unit = unitOfVector(info, name);
+                inputs.push_back(name);
+            });
+        },
+        made.recipe);
+    std::string base = std::string(traits.prefix) + (inputs.size() == 1 ? inputs.front() : "");
     if (const auto* difference = std::get_if<volume::DifferenceRecipe>(&made.recipe))
-        of = differenceName(info, *difference);
-    for (const auto* vector : {std::get_if<volume::DivergenceRecipe>(&made.recipe)})
-        if (vector) of = vector->vector;
-    if (const auto* vorticity = std::get_if<volume::VorticityRecipe>(&made.recipe)) of = vorticity->vector;
-    const std::string base = kPrefixes[kind] + of;
+        base = differenceName(info, *difference);
     made.name = base;
     const auto taken = [&](const std::string& name) {
         return info.findChannel(name).has_value() ||
@@ -153,11 +137,10 @@ volume::DerivedParameter newDerived(const volume::DatasetInfo& info, std::size_t
                            [&](const volume::Parameter& own) { return own.name == name; });
     };
     for (int i = 2; taken(made.name); ++i) made.name = base + " " + std::to_string(i);
-    made.unit = kind == 2                ? perLength(info, unit)
-                : kind == 3 || kind == 4 ? perLength(info, unitOfVector(info, of))
-                : kind == 7              ? info.lengthUnit
-                : kind == 8              ? info.timeUnit
-                                         : unit;
+    made.unit = traits.unit == volume::DerivedUnit::InputPerLength ? perLength(info, unit)
+                : traits.unit == volume::DerivedUnit::Length       ? info.lengthUnit
+                : traits.unit == volume::DerivedUnit::Time         ? info.timeUnit
+                                                                   : unit;
     return made;
 }
 
@@ -244,8 +227,8 @@ void drawDerivedList(ViewContext& context, DerivedDraft& draft) {
         drawDifferences(context, draft, name);
     }
     if (ImGui::BeginPopup("add derived")) {
-        for (std::size_t kind = 0; kind < std::size(kDerivedKinds); ++kind)
-            if (ImGui::MenuItem(kDerivedKinds[kind])) {
+        for (std::size_t kind = 0; kind < volume::kDerivedKinds; ++kind)
+            if (ImGui::MenuItem(volume::kindOf(volume::recipeOfKind(kind)).title.data())) {
                 draft.parameters.push_back(newDerived(info, kind, name));
                 draft.edited = true;
             }

@@ -17,7 +17,8 @@ struct DerivedDraft {
 
 void drawDerivedList(ViewContext& context, DerivedDraft& draft);
 
-/// A derived parameter of this kind that can be computed at once where the data allow it, with a name that is free.
+/// A derived parameter of the kind with that index (volume::kDerivedKinds) that can be computed at once where the data
+/// allow it, with a name that is free.
 volume::DerivedParameter newDerived(const volume::DatasetInfo& info, std::size_t kind, const std::string& channel);
 
 /// Changes the name and unit that were given to a derived parameter as they follow from its recipe: the unit of a
@@ -32,13 +33,5 @@ volume::DerivedParameter newDifference(const volume::DatasetInfo& info, const st
 /// Adds a parameter to the session's derived ones and gives it colours; one computed alike is not added again. Returns
 /// its name.
 std::string addDerived(Session& session, const volume::DerivedParameter& wanted);
-
-/// Names of the kinds, in the order of volume::DerivedRecipe.
-inline constexpr const char* kDerivedKinds[] = {"Formula",   "Magnitude",
-                                                "Gradient",  "Divergence",
-                                                "Vorticity", "Deviation over time",
-                                                "Smoothed",  "Position",
-                                                "Time",      "Difference from another time"};
-static_assert(std::size(kDerivedKinds) == std::variant_size_v<volume::DerivedRecipe>);
 
 } // namespace tessera::app

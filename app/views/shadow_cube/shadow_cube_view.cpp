@@ -1,8 +1,7 @@
 #include "app/pane/axes3d.h"
 #include "app/pane/corner_legends.h"
 #include "app/pane/view_parts.h"
-#include "app/queries/flow_query.h"
-#include "app/queries/surface_query.h"
+#include "app/queries/geometry_query.h"
 #include "app/tools/brush_edit.h"
 #include "app/tools/brush_list.h"
 #include "app/ui/keys.h"
@@ -36,8 +35,7 @@ struct ShadowCubeCache : ViewCache {
     std::array<vis::ViewTargetPtr, 6> walls;
     LegendPlace legend; ///< where it stays while something moves
     FaceMenu menu;
-    AsyncSurfaces surfaces;
-    AsyncFlow flows;
+    AsyncGeometry geometry;
     CubeDrag drag = CubeDrag::None;
     ImVec2 last{0, 0}, pressed{0, 0};
     std::size_t face = 0;    ///< where a brush began
@@ -271,8 +269,7 @@ void drawObject(ViewContext& context, const std::string& pane, const CubeFrame& 
     request.size = {frame.size.x, frame.size.y};
     request.moving = moving;
     request.wait = context.headless;
-    scene.geometry = cache.surfaces.get(context, pane, moving);
-    for (vis::GeometryLayer& flow : cache.flows.get(context, pane)) scene.geometry.push_back(std::move(flow));
+    scene.geometry = cache.geometry.get(context, pane, moving);
     const vis::FrameStatus status = context.renderer.render(*cache.target, scene, request);
     context.follow(status);
     addPicture(draw, status.texture, frame.min, frame.max());

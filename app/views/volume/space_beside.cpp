@@ -24,8 +24,8 @@ bool shownInSpace(const vis::Layer& layer, const volume::DatasetInfo& space) {
 
 } // namespace
 
-std::shared_ptr<const volume::BrickSource> cutFrom(const ViewContext& context) {
-    return context.session.data.timeAxis ? context.origin.cutFrom : nullptr;
+std::shared_ptr<const volume::BrickSource> spaceOfPlane(const ViewContext& context) {
+    return context.session.data.timeAxis ? context.origin.spaceOfPlane : nullptr;
 }
 
 Session sessionInSpace(const Session& session, const volume::DatasetInfo& along, const volume::DatasetInfo& space) {

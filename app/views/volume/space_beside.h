@@ -8,7 +8,7 @@
 namespace tessera::app {
 
 /// The data in space that the plane is cut from; null where no time runs along an axis.
-std::shared_ptr<const volume::BrickSource> cutFrom(const ViewContext& context);
+std::shared_ptr<const volume::BrickSource> spaceOfPlane(const ViewContext& context);
 
 /// The session as the data in space are shown: at the time at which the cross-hair lies, the cross-hair in the plane.
 /// Without what the data in space do not have: layers of other parameters, and flow, brushes, lenses and lines whose

@@ -16,7 +16,7 @@
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "app/ui/widgets.h"
-#include "app/views/volume/chain.h"
+#include "app/views/volume/link_control.h"
 #include "app/views/volume/space_beside.h"
 #include "volume/import/files/upright.h"
 
@@ -334,7 +334,7 @@ private:
     float triad_;    ///< radius, pixels
     ImVec2 triadAt_; ///< its middle
     bool hasTriad_;  ///< or would have it: what is left out of a picture keeps its place
-    Chain chain_;
+    LinkControl chain_;
     ImDrawList* list_ = nullptr;
     std::optional<float> legendLeft_;              ///< of a legend at the bottom, pixels
     std::vector<std::pair<ImVec2, ImVec2>> taken_; ///< corners of what is drawn already, which labels keep clear of
@@ -391,10 +391,10 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
     }
     {
         const ShownScene shown(context.session, &view);
-        const auto space = view.inSpace ? cutFrom(context) : nullptr;
+        const auto space = view.inSpace ? spaceOfPlane(context) : nullptr;
         space ? drawBeside(context, pane, view, space) : drawSpace(context, pane, view);
     }
-    drawChainMenu(context, view);
+    drawLinkMenu(context, view);
 }
 
 } // namespace tessera::app

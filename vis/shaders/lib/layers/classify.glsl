@@ -1,6 +1,6 @@
 // Classification of composite layers: from samples to colour (linear, not premultiplied) and opacity of a layer
 // kReferenceLength thick. The kinds of classification are defined in vis/optics/ray_setup.h. Twin:
-// vis/reference/raycast.cpp.
+// tests/reference/raycast.cpp.
 
 // Gradient magnitude relative to the transfer function's maximum, 0..1 or above.
 float gradientPlace(int layer, vec3 gradient) {

@@ -1,8 +1,5 @@
 // Colour in linear light. Twins in vis/optics/ray_setup.h.
-
-float luminance(vec3 linearColor) {
-    return dot(linearColor, vec3(0.2126, 0.7152, 0.0722));
-}
+#include "formulas/colors.glsl"
 
 // Linear light to sRGB, both 0..1.
 vec3 srgbFromLinear(vec3 c) {

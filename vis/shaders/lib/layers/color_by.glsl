@@ -1,6 +1,6 @@
 // Layers coloured by another channel. COLORED: 1 if there is one; LAYER_COLORED(i): 1 if layer i is; LAYER_COLOR(i):
 // field of the other channel; LAYER_COLOR_ROW(i): its row of the transfer table. Twin: Prepared::tinted in
-// vis/reference/prepared.h.
+// tests/reference/prepared.h.
 #if LAYERS > 0
 
 // Colour (linear) of layer i for a value of that channel; the layer's plain colour where it is absent.

@@ -1,5 +1,5 @@
 // Intersections of the ray with slices and rasterised surfaces, sorted by distance.
-#include "lib/layers/contours.glsl"
+#include "formulas/colors.glsl"
 
 #define EVENTS (SLICES + GEOMETRY)
 
@@ -36,7 +36,7 @@ void findEvents() {
             width = (abs(dot(g, across)) + abs(dot(g, up))) * abs(sliceMap[i].x) * (sliceMap[i].z + 1.0);
         }
 #endif
-        if (sliceMap[i].z > 0.5) c = withContours(c, level, width, sliceMap[i].z);
+        if (sliceMap[i].z > 0.5) c = withContours(c, level, width, int(sliceMap[i].z));
         float tolerance = 1e-5;
         bool seen = ray.meets && abs(slope) > 1e-6 && t > ray.inside.x - tolerance && t < ray.inside.y + tolerance &&
                     present(s);

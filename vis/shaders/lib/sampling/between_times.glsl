@@ -1,6 +1,6 @@
 // Reconstruction of a channel at a position: interpolated between two stored times if necessary, and restricted to the
 // part that the position belongs to. Included by the reconstruction slots, which define reconstructFrame. Twins:
-// Samples in vis/reference/samples.h, volume/reconstruct/part_choice.h.
+// Samples in tests/reference/samples.h, volume/reconstruct/part_choice.h.
 //   LATER    field i + LATER holds the later time of field i; 0: all fields are at stored times
 //   PARTS    1 if a channel has several parts (volume/field/parts.h), each in its own field: FIELD_PARTS(i) of them,
 //            part j > 0 in field FIELD_MORE(i) + j - 1, all in the texel units of field i; PART_MARGIN: kPartMargin

@@ -96,7 +96,7 @@ vec3 lookColor(int i, vec3 albedo, vec3 lit, LookSample at) {
     float light = at.light;
 #if (LOOKS & LOOK_CARTOON)
     if ((LAYER_LOOK(i) & LOOK_CARTOON) != 0) {
-        light = lightStep(light, lookCartoon[i].y);
+        light = lightStep(light, int(lookCartoon[i].y));
         color = mix(color, albedo * mix(lookCartoon[i].z, 1.0, light), lookCartoon[i].x * at.weight * at.share);
     }
 #endif

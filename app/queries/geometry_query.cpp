@@ -1,0 +1,144 @@
+#include "app/queries/geometry_query.h"
+
+#include "app/pane/view_parts.h"
+#include "vis/shapes/flow_geometry.h"
+#include "volume/bricks/source_at_time.h"
+#include "volume/mesh/isosurface.h"
+
+#include <limits>
+#include <optional>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr std::size_t kMovingTriangles = 400'000; ///< more are slow on software GL
+constexpr double kCoarseSamples = 5e5;            ///< of the first level: extracted within a few milliseconds
+
+using SharedGeometry = std::shared_ptr<const vis::Geometry>;
+using SharedSource = std::shared_ptr<const volume::BrickSource>;
+
+/// Nothing where the data has no such parameter.
+std::optional<SurfaceQuery> surfaceQuery(const vis::IsoLayer& layer, const volume::DatasetInfo& info,
+                                         const volume::TimePair& time) {
+    const std::optional<int> channel = info.findChannel(layer.channel);
+    if (!channel) return std::nullopt;
+    SurfaceQuery query{*channel, -1, time, layer.value};
+    if (!layer.colorBy.empty()) query.colorBy = info.findChannel(layer.colorBy).value_or(-1);
+    return query;
+}
+
+FlowQuery flowQuery(const vis::FlowLayer& layer, const Session& session, const volume::DatasetInfo& info) {
+    FlowQuery query{layer, volume::timesAround(info.times, session.time), session.stretch};
+    // Pathlines cover all times; the time shown only decides which particles start.
+    if (layer.kind == vis::FlowKind::Pathlines) query.time = {query.time.nearest(), query.time.nearest(), 0};
+    query.layer.style = {}; // does not change the geometry
+    if (layer.seedBrushed && session.selection.active()) {
+        query.brushes.brushes = session.selection.brushes;
+        if (vis::selectsLens(session.selection)) query.lenses = lensSpace(session, info);
+    }
+    return query;
+}
+
+/// Nothing for layers that are drawn otherwise.
+std::optional<GeometryQuery> queryOf(const vis::Technique& technique, const Session& session,
+                                     const volume::DatasetInfo& info) {
+    if (const auto* flow = std::get_if<vis::FlowLayer>(&technique)) return flowQuery(*flow, session, info);
+    const auto* iso = std::get_if<vis::IsoLayer>(&technique);
+    if (!iso || iso->method != vis::SurfaceMethod::Polygons) return std::nullopt;
+    return surfaceQuery(*iso, info, volume::timesAround(info.times, session.time));
+}
+
+/// The surface at a level of detail, with the values of its colouring parameter at the vertices.
+SharedGeometry make(const SurfaceQuery& query, const SharedSource& source, int level, const Progress& progress) {
+    const volume::SourceAtTime shown = volume::sourceAt(source, query.time);
+    auto geometry = std::make_shared<vis::Geometry>();
+    const double share = query.colorBy < 0 ? 1 : 0.6;
+    geometry->mesh = volume::extractIsosurface(*shown.source, query.channel, shown.time, query.value, level,
+                                               progress.part(0, share));
+    if (query.colorBy >= 0)
+        volume::sampleAtVertices(geometry->mesh, *shown.source, query.colorBy, shown.time, level,
+                                 progress.part(share, 1));
+    return geometry;
+}
+
+/// Null where there is nothing to show.
+SharedGeometry make(const FlowQuery& query, const SharedSource& source, int, const Progress& progress) {
+    const volume::SourceAtTime shown = volume::sourceAt(source, query.time);
+    const vis::DoiFunction interest(query.brushes, query.lenses);
+    return vis::makeFlow(*shown.source, query.layer, shown.time, query.stretch, progress, &interest);
+}
+
+/// How the answer to a query is drawn: as the layer says now, coloured by what it was made for.
+vis::GeometryLayer drawnAs(const vis::Layer& layer, const GeometryQuery& made) {
+    vis::GeometryLayer drawn;
+    drawn.lens = layer.lens;
+    drawn.transfer = layer.transfer;
+    drawn.brushes = layer.brushes;
+    if (const auto* iso = std::get_if<vis::IsoLayer>(&layer.technique)) {
+        drawn.style = {.color = iso->color, .opacity = iso->opacity, .cutByBox = true, .look = iso->look};
+        if (const auto* surface = std::get_if<SurfaceQuery>(&made); surface && surface->colorBy >= 0)
+            drawn.channel = iso->colorBy;
+    }
+    if (const auto* flow = std::get_if<vis::FlowLayer>(&layer.technique)) {
+        drawn.style = flow->style;
+        if (const auto* lines = std::get_if<FlowQuery>(&made)) drawn.channel = lines->layer.channel;
+    }
+    return drawn;
+}
+
+AsyncOptions optionsFor(const vis::Layer& layer, const std::string& place, const volume::BrickSource& source) {
+    AsyncOptions options{.key = place, .title = "Flow of " + shownChannel(layer.technique), .quiet = true};
+    options.duringEdits = true;
+    if (!std::holds_alternative<vis::IsoLayer>(layer.technique)) return options;
+    options.title = "Surface of " + shownChannel(layer.technique);
+    options.firstLevel = source.grid().levelWithin(kCoarseSamples);
+    options.quiet = options.firstLevel == 0;
+    return options;
+}
+
+} // namespace
+
+std::shared_ptr<const vis::Geometry> extractLayer(const std::shared_ptr<const volume::BrickSource>& source,
+                                                  const vis::IsoLayer& layer, const volume::TimePair& time, int level,
+                                                  const Progress& progress) {
+    const std::optional<SurfaceQuery> query = surfaceQuery(layer, source->info(), time);
+    return query ? make(*query, source, level, progress) : nullptr;
+}
+
+AsyncGeometry::Query::Keep AsyncGeometry::keep() {
+    // About 1 GB with the copies on the GPU: a vertex with its two triangles has 100 bytes.
+    constexpr std::size_t kVertices = 10'000'000;
+    return {.answers = std::numeric_limits<std::size_t>::max(),
+            .size = kVertices,
+            .sizeOf =
+                [](const SharedGeometry& geometry) {
+                    constexpr std::size_t kLeast = 10'000; // so that small ones are not kept without end
+                    return kLeast + (geometry ? geometry->mesh.positions.size() + geometry->lines.positions.size() : 0);
+                },
+            .coarse = true};
+}
+
+std::vector<vis::GeometryLayer> AsyncGeometry::get(ViewContext& context, const std::string& pane, bool moving) {
+    std::vector<vis::GeometryLayer> out;
+    for (std::size_t i = 0; i < context.session.layers.size(); ++i) {
+        const vis::Layer& layer = context.session.layers[i];
+        if (!layer.visible) continue;
+        const auto query = queryOf(layer.technique, context.session, context.source->info());
+        if (!query) continue;
+        auto made = query_.answer(
+            context, context.source, optionsFor(layer, pane + ":geometry" + std::to_string(i), *context.source), *query,
+            [](const SharedSource& source, const GeometryQuery& asked, int level, const Progress& progress) {
+                return std::visit([&](const auto& of) { return make(of, source, level, progress); }, asked);
+            },
+            [](const GeometryQuery& former, const GeometryQuery& asked) { return former.index() == asked.index(); });
+        if (!made || !made->result || (!query_.failure().empty() && !(made->query == *query))) continue;
+        if (moving && made->result->mesh.triangles.size() > kMovingTriangles)
+            if (const auto coarse = query_.coarsest(made->query)) made = coarse;
+        vis::GeometryLayer& drawn = out.emplace_back(drawnAs(layer, made->query));
+        drawn.geometry = made->result;
+    }
+    return out;
+}
+
+} // namespace tessera::app

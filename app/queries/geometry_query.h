@@ -1,0 +1,55 @@
+#pragma once
+
+#include "app/queries/async_query.h"
+#include "volume/field/time_pair.h"
+
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+/// Layers that are drawn as geometry, polygonal surfaces and flow, computed in the background: with a coarse level of
+/// detail at once where there are several, the finest when it is done. Kept for a while, so that going back in time
+/// costs nothing. A new technique is a query here, with what answers it and how that is drawn.
+namespace tessera::app {
+
+/// What decides a surface; layers of equal queries share one.
+struct SurfaceQuery {
+    int channel = 0, colorBy = -1; ///< colorBy: of the values at the vertices, -1 for none
+    volume::TimePair time;
+    double value = 0;
+    bool operator==(const SurfaceQuery&) const = default;
+};
+
+/// What decides lines and glyphs of a vector; how they are drawn is left out.
+struct FlowQuery {
+    vis::FlowLayer layer;
+    volume::TimePair time;
+    glm::dvec3 stretch{1};
+    vis::Selection brushes = {}; ///< of seeds that follow them
+    vis::LensSpace lenses = {};
+    bool operator==(const FlowQuery&) const = default;
+};
+
+using GeometryQuery = std::variant<SurfaceQuery, FlowQuery>;
+
+class AsyncGeometry {
+public:
+    /// The session's visible layers of this sort as far as they are made; while one is not, its last shape. Sets
+    /// context.awaiting while better ones are on their way; headless, makes them to the end. `moving`: take coarse
+    /// shapes that draw fast. A failure is reported once and leaves the layer out.
+    std::vector<vis::GeometryLayer> get(ViewContext& context, const std::string& pane, bool moving);
+
+private:
+    using Query = AsyncQuery<GeometryQuery, std::shared_ptr<const vis::Geometry>>;
+    static Query::Keep keep();
+    Query query_{keep()};
+};
+
+/// The surface of an iso-layer at a level of detail, with the values of its colouring parameter at the vertices.
+/// Nothing where the data has no such parameter. Throws Error, Cancelled.
+std::shared_ptr<const vis::Geometry> extractLayer(const std::shared_ptr<const volume::BrickSource>& source,
+                                                  const vis::IsoLayer& layer, const volume::TimePair& time, int level,
+                                                  const Progress& progress);
+
+} // namespace tessera::app

@@ -1,0 +1,10 @@
+#include "bench/pictures/least_sample.h"
+#include "bench/pictures/least_sample_lanes.h"
+
+namespace tessera::app {
+
+float readPlain(const vis::packet::VolumeView& volume, int rounds, long& taken) {
+    return vis::packet::plain::readFirstBrick(volume, rounds, taken);
+}
+
+} // namespace tessera::app

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "vis/optics/light_maps.h"
+#include "tests/reference/samples.h"
+
+namespace tessera::vis::reference {
+
+struct Options {
+    Flaws flaws;                                      ///< none, except in tests
+    std::shared_ptr<const CubeMap> surroundings = {}; ///< of Environment::Picture
+};
+
+} // namespace tessera::vis::reference
