@@ -327,7 +327,7 @@ void drawCurvesView(ViewContext& context, const std::string& pane, CurvesView& v
                 return readCurves(*source, origin, asked, progress);
             },
             [](const PlotCurvesQuery& a, const PlotCurvesQuery& b) { return a.x == b.x && a.y == b.y; });
-    if (!context.figure && info.times.size() > 1) drawToolbar(context, cache, curves, query, view);
+    if (info.times.size() > 1) drawToolbar(context, cache, curves, query, view);
     if (info.times.size() < 2) return drawHint("One time", "Curves need several times: open a series.");
     if (failure.empty()) failure = cache.answers.failure();
     if (!curves && !failure.empty()) return drawHint("No values", failure.c_str());

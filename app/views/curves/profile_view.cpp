@@ -323,7 +323,7 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
         [](const ProfileQuery& a, const ProfileQuery& b) { return a.over == b.over && a.channels == b.channels; });
     const bool usable =
         profile && (query.over == ProfileOver::Time || (profile->distance.size() > 1 && profile->distance.back() > 0));
-    if (!context.figure) drawToolbar(context, usable ? profile : nullptr, view, shown);
+    drawToolbar(context, usable ? profile : nullptr, view, shown);
     if (usable) return ProfilePlots(context, cache, profile, query.over).draw();
     if (const std::string failure = cache.answers.failure(); !failure.empty())
         return drawHint("No values", failure.c_str());

@@ -231,7 +231,7 @@ void drawSections(ViewContext& context, const std::string& pane, ProfileView& vi
         [](const SectionCurvesQuery& a, const SectionCurvesQuery& b) {
             return a.channels == b.channels && a.axis == b.axis && a.line == b.line;
         });
-    if (!context.figure) drawToolbar(context, view, shown, curves);
+    drawToolbar(context, view, shown, curves);
     if (!curves) {
         if (const std::string failure = cache.answers.failure(); !failure.empty())
             return drawHint("No averages", failure.c_str());

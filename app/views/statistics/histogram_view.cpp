@@ -170,7 +170,7 @@ void drawHistogramView(ViewContext& context, const std::string& pane, HistogramV
     const HistogramBins bins = histogramBins(info, *index, paddedRange(info.channelRange(channel), 0.02), view.bins);
     const auto result = cache.answers.get(
         context, "histogram " + pane, brushedQuery(context.session, info, {*index}, {bins.range}, bins.count, false));
-    if (!context.figure) drawToolbar(context, view, channel, result);
+    drawToolbar(context, view, channel, result);
     drawPlot(context, cache, view, channel, bins.range, result.get());
     if (!cache.answers.failure().empty() && !result) ImGui::TextWrapped("%s", cache.answers.failure().c_str());
 }
