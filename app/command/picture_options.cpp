@@ -1,5 +1,6 @@
 #include "app/command/picture_options.h"
 
+#include "app/command/command.h"
 #include "app/data/apply_layout.h"
 #include "app/data/format.h"
 #include "app/data/import_options.h"
@@ -70,7 +71,8 @@ PictureForm formOf(const PictureOptions& options) {
     return form;
 }
 
-/// Size, ground and decoration of a picture.
+} // namespace
+
 void addFormOptions(CLI::App& command, PictureOptions& options) {
     PictureForm& form = options.form;
     detail::addPresets(command, form.size, "--preset");
@@ -97,8 +99,6 @@ void addFormOptions(CLI::App& command, PictureOptions& options) {
         ->take_all();
     command.add_flag("--no-decoration", options.undecorated, "Draw the data alone, without any decoration");
 }
-
-} // namespace
 
 std::string paneOf(const Session& session, const std::string& view) {
     if (session.views.contains(view)) return view;

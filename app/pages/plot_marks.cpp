@@ -37,7 +37,9 @@ public:
         if (form_.outlines)
             for (const PlotBand& each : plot_.brushed) band(each);
         for (const std::vector<glm::dvec2>& contour : plot_.contours) haloed(contour);
-        for (const PlotLabel& each : plot_.labels)
+        for (const PlotLabel& each : plot_.labels) {
+            // What stands alone in a cell that is too small for it is left out, as in a small pane.
+            if (!plot_.framed && pageTextWidth(each.text, text_) > x1_ - x0_ + 2 * place_.overhang) continue;
             out_.push_back({Words{.text = each.text,
                                   .at = at(each.at),
                                   .size = text_,
@@ -46,6 +48,7 @@ public:
                                   .angle = each.angle,
                                   .halo = plot_.framed ? kHaloWidth : 0,
                                   .middle = true}});
+        }
         if (form_.outlines)
             for (const PlotOutline& each : plot_.outlines) outline(each);
         for (const PlotSeries& series : plot_.series) series.bars ? bars(series) : line(series);

@@ -14,6 +14,29 @@ namespace tessera::app {
 
 namespace {
 
+/// Points of a page per pixel of a picture; on screens there are 96 pixels in an inch.
+double pointsPerPixel(const PictureRequest& request) {
+    constexpr double kOfScreens = 96;
+    return 72 / (request.dpi > 0 ? request.dpi : kOfScreens);
+}
+
+} // namespace
+
+PageForm pageForm(const PictureRequest& request, Theme theme) {
+    const double points = pointsPerPixel(request);
+    const Decoration& shown = request.decoration;
+    return {.size = glm::dvec2(request.size) * points,
+            .text = textPixels(request.scale) * points,
+            .dark = request.ground == PictureGround::Shown && theme == Theme::Dark,
+            .legend = shown.legend,
+            .axes = shown.axes,
+            .title = shown.title,
+            .cursor = shown.cursor,
+            .outlines = shown.outlines};
+}
+
+namespace {
+
 /// Installs a session in a workbench without a window, and calls `draw(workbench)`.
 template <class Draw>
 auto withWorkbench(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
@@ -42,26 +65,6 @@ auto withWorkbench(const SessionDocument& document, const Sources& sources, std:
     opened.take(sources);
     workbench.install(std::move(opened));
     return draw(workbench);
-}
-
-/// Points of a page per pixel of a picture; on screens there are 96 pixels in an inch.
-double pointsPerPixel(const PictureRequest& request) {
-    constexpr double kOfScreens = 96;
-    return 72 / (request.dpi > 0 ? request.dpi : kOfScreens);
-}
-
-/// The page that a request asks for, on the ground that a session shows or on white.
-PageForm pageForm(const PictureRequest& request, Theme theme) {
-    const double points = pointsPerPixel(request);
-    const Decoration& shown = request.decoration;
-    return {.size = glm::dvec2(request.size) * points,
-            .text = textPixels(request.scale) * points,
-            .dark = request.ground == PictureGround::Shown && theme == Theme::Dark,
-            .legend = shown.legend,
-            .axes = shown.axes,
-            .title = shown.title,
-            .cursor = shown.cursor,
-            .outlines = shown.outlines};
 }
 
 /// A view as a page: its own figure, else what ImGui draws of it.

@@ -6,6 +6,9 @@
 /// The workbench without a window: the same frames, drawn into memory.
 namespace tessera::app {
 
+/// The page that a request asks for, on the ground of a theme or on white.
+PageForm pageForm(const PictureRequest& request, Theme theme);
+
 /// Called with the workbench after it has drawn its picture.
 using Inspect = std::function<void(const Workbench&)>;
 
