@@ -120,7 +120,7 @@ TEST(Compare, EachNumberOfARowStandsInItsColumn) {
     row.data->samples = 90, row.data->differing = 17, row.data->largest = 18.5, row.data->rms = 9.5;
     CompareRow failed;
     failed.name = "other", failed.changes = "step 2", failed.failure = "too large";
-    const Table table = tableOf(compareCsv({row, failed}));
+    const CsvTable table = tableOf(compareCsv({row, failed}));
     ASSERT_EQ(table.rows.size(), 2u);
     const std::vector<std::pair<std::string, double>> wanted = {
         {"ms per picture", 1.25},    {"samples", 2000},
