@@ -51,6 +51,7 @@ bool ToolRow::fits(float width) const {
 }
 
 bool ToolRow::next(float width, float gap) {
+    if (context_.figure) return false; // nobody can press them there
     const float space = gap < 0 ? ImGui::GetStyle().ItemSpacing.x : gap;
     const ToolPlace place = places_.next(width, space);
     if (place == ToolPlace::SameRow) ImGui::SameLine(0, space);
