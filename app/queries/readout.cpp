@@ -229,8 +229,7 @@ void drawReadout(ViewContext& context, const Readout& readout) {
     const volume::DatasetInfo& info = context.numbers->info();
     const glm::ivec3 index = info.lattice.nearest(context.session.cursor);
     const Table table = readoutTable(info, readout);
-    std::vector<std::string> heads;
-    for (const TableColumn* column : shownColumns(table)) heads.push_back(headOf(*column));
+    std::vector<std::string> heads = headsOf(table);
     const std::vector<std::vector<std::string>> rows = cellsOf(table);
     const std::size_t columns = columnsThatFit(info, readout, rows, heads.size());
     if (columns == 0) return drawRunningReadout(context, readout, ImGui::GetContentRegionAvail().y);

@@ -12,14 +12,14 @@ namespace tessera::app {
 namespace {
 
 /// Begins the table and draws its heads.
-bool beginDrawnTable(const char* id, const std::vector<const TableColumn*>& columns, std::size_t names,
-                     std::size_t rows, const TableLook& look) {
+bool beginDrawnTable(const char* id, const Table& table, const TableLook& look) {
+    const std::vector<const TableColumn*> columns = shownColumns(table);
     std::vector<float> widths = look.widths;
     bool scrolls = look.scrolls;
     if (widths.empty()) {
         float wanted = ImGui::GetStyle().ScrollbarSize;
         for (const TableColumn* column : columns) {
-            widths.push_back(columnWidth(*column, rows) + em()); // with space for a mark
+            widths.push_back(columnWidth(*column, rowsOf(table)) + em()); // with space for a mark
             wanted += widths.back() + 2 * ImGui::GetStyle().CellPadding.x + 1;
         }
         scrolls = wanted > ImGui::GetContentRegionAvail().x;
@@ -32,14 +32,12 @@ bool beginDrawnTable(const char* id, const std::vector<const TableColumn*>& colu
     // ImGui stores the widths per table, so each layout has an id of its own.
     const std::string name = id + std::string(scrolls ? " scrolled " : " ") + std::to_string(columns.size());
     if (!beginScrolledTable(name.c_str(), static_cast<int>(columns.size()), flags, look.size)) return false;
-    ImGui::TableSetupScrollFreeze(static_cast<int>(names), 1);
-    std::vector<std::string> heads;
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-        heads.push_back(headOf(*columns[c]));
-        ImGui::TableSetupColumn((heads.back() + "##" + std::to_string(c)).c_str(),
+    ImGui::TableSetupScrollFreeze(static_cast<int>(table.names), 1);
+    const std::vector<std::string> heads = headsOf(table);
+    for (std::size_t c = 0; c < columns.size(); ++c)
+        ImGui::TableSetupColumn((heads[c] + "##" + std::to_string(c)).c_str(),
                                 widths[c] > 0 ? ImGuiTableColumnFlags_WidthFixed : ImGuiTableColumnFlags_None,
                                 widths[c]);
-    }
     const auto number = std::ranges::find_if(columns, [](const TableColumn* column) { return column->texts.empty(); });
     tableHeader(heads, static_cast<int>(number - columns.begin()));
     return true;
@@ -81,7 +79,7 @@ float columnWidth(const TableColumn& column, std::size_t rows) {
 std::optional<std::size_t> drawTable(const char* id, const Table& table, const TableLook& look) {
     const std::vector<const TableColumn*> columns = shownColumns(table);
     const std::vector<std::vector<std::string>> cells = cellsOf(table, true);
-    if (columns.empty() || !beginDrawnTable(id, columns, table.names, cells.size(), look)) return {};
+    if (columns.empty() || !beginDrawnTable(id, table, look)) return {};
     std::optional<std::size_t> clicked;
     for (std::size_t r = 0; r < cells.size(); ++r) {
         const TableRowLook row = look.row ? look.row(r) : TableRowLook{};

@@ -90,6 +90,12 @@ std::string headOf(const TableColumn& column) {
     return titleWithUnit(column.head.empty() ? column.name : column.head, own ? "" : column.unit);
 }
 
+std::vector<std::string> headsOf(const Table& table) {
+    std::vector<std::string> heads;
+    for (const TableColumn* column : shownColumns(table)) heads.push_back(headOf(*column));
+    return heads;
+}
+
 std::string cellOf(const TableColumn& column, std::size_t row) {
     if (const auto words = column.words.find(row); words != column.words.end()) return words->second;
     return column.texts.empty() ? numberCell(column, row) : column.texts[row];
@@ -126,8 +132,7 @@ std::string csvOf(const Table& table, bool head) {
 std::string textOf(const Table& table) {
     const std::vector<const TableColumn*> columns = shownColumns(table);
     std::vector<std::vector<std::string>> lines = cellsOf(table);
-    std::vector<std::string>& heads = *lines.emplace(lines.begin());
-    for (const TableColumn* column : columns) heads.push_back(headOf(*column));
+    lines.insert(lines.begin(), headsOf(table));
     std::vector<std::size_t> widths(columns.size());
     for (const auto& line : lines)
         for (std::size_t c = 0; c < line.size(); ++c) widths[c] = std::max(widths[c], lettersOf(line[c]));

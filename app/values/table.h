@@ -62,6 +62,8 @@ std::size_t rowsOf(const Table& table);
 std::vector<const TableColumn*> shownColumns(const Table& table);
 /// The head for people, with the unit where it is that of all numbers as shown: "In [mol/s]".
 std::string headOf(const TableColumn& column);
+/// The heads of the shown columns.
+std::vector<std::string> headsOf(const Table& table);
 /// A cell for people; "-" where a number is absent.
 std::string cellOf(const TableColumn& column, std::size_t row);
 /// The shown columns' cells by row. A cell of `names` that is that of the row above is empty if `once`, except in the

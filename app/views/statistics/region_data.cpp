@@ -277,7 +277,7 @@ Table tableOf(const BalanceTable& balance) {
     const auto addError = [&](const char* name, const char* head, const std::string& unit, double BalanceRow::*of) {
         add({.name = name, .head = head, .unit = unit, .kind = NumberKind::Bound}, of);
     };
-    addError("error", "In, out \u00b1", balance.unit, &BalanceRow::error);
+    addError("error", "Within \u00b1", balance.unit, &BalanceRow::error);
     addError("flowError", "Flow \u00b1", balance.flowUnit, &BalanceRow::flowError);
     addError("insideError", "Inside \u00b1", balance.insideUnit, &BalanceRow::insideError);
     return table;
