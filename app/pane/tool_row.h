@@ -46,8 +46,7 @@ public:
     ToolRow& operator=(const ToolRow&) = delete;
     ~ToolRow();
 
-    /// Goes to the place of a tool of this width, pixels. False where it is in the menu and that is closed, and in
-    /// figures, which have no tools.
+    /// Goes to the place of a tool of this width, pixels. False where it is in the menu and that is closed.
     /// `gap`: pixels to the one before it; negative: as the style has it.
     bool next(float width, float gap = -1);
     /// The width of the last tool, `least` so far, if it is widened to `most` as far as its row has room, pixels.

@@ -113,7 +113,7 @@ TEST_F(Commands, InfoSaysTheBytesOfEachLevel) {
 }
 
 TEST_F(Commands, StatsAreOfTheTimeAndRegions) {
-    const auto check = [&](const CsvTable& table, std::size_t row, double time) {
+    const auto check = [&](const TableText& table, std::size_t row, double time) {
         const std::string name = table.text(row, "parameter"), region = table.text(row, "region");
         SCOPED_TRACE(name + " " + region + " at " + std::to_string(time));
         const formula::Sum sum =
@@ -125,12 +125,12 @@ TEST_F(Commands, StatsAreOfTheTimeAndRegions) {
     };
     for (const double time : {0.0, 0.5, 0.875, 2.0}) {
         ASSERT_EQ(run({"stats", in("cell.tsr"), "--time", std::to_string(time), "-o", in("s.csv")}), 0);
-        const CsvTable table = tableOf(text("s.csv"));
+        const TableText table = tableOf(text("s.csv"));
         ASSERT_EQ(table.rows.size(), 8u);
         for (std::size_t row = 0; row < 8; ++row) check(table, row, time);
     }
     ASSERT_EQ(run({"stats", in("cell.tsr"), "--all-times", "--of", "T", "--regions", "east", "-o", in("s.csv")}), 0);
-    const CsvTable table = tableOf(text("s.csv"));
+    const TableText table = tableOf(text("s.csv"));
     ASSERT_EQ(table.rows.size() % 3, 0u);
     std::set<double> times;
     for (std::size_t row = 0; row < table.rows.size(); ++row) {
@@ -155,7 +155,7 @@ TEST_F(Commands, PlotMarksTheState) {
     };
     EXPECT_NE(ringAt("0"), ringAt("2"));
     ASSERT_EQ(run({"plot", in("cell.tsr"), "--x", "time", "--y", "mean(c)", "--region", "west", "-o", in("p.csv")}), 0);
-    const CsvTable table = tableOf(text("p.csv"));
+    const TableText table = tableOf(text("p.csv"));
     ASSERT_EQ(table.rows.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i)
         EXPECT_NEAR(std::stod(table.rows[i].back()),

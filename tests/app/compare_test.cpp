@@ -122,7 +122,7 @@ TEST(Compare, EachNumberOfARowStandsInItsColumn) {
     row.data->samples = 90, row.data->differing = 17, row.data->largest = 18.5, row.data->rms = 9.5;
     CompareRow failed;
     failed.name = "other", failed.changes = "step 2", failed.failure = "too large";
-    const CsvTable table = tableOf(csvOf(compareTable({row, failed})));
+    const TableText table = tableOf(csvOf(compareTable({row, failed})));
     ASSERT_EQ(table.rows.size(), 2u);
     const std::vector<std::pair<std::string, double>> wanted = {
         {"ms per picture", 1.25},  {"samples", 2000},

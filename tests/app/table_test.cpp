@@ -3,7 +3,7 @@
 #include "app/queries/readout.h"
 #include "app/ui/ticks.h"
 #include "app/values/table_json.h"
-#include "app/values/table_page.h"
+#include "app/pages/table_page.h"
 #include "app/views/compare/compare_questions.h"
 #include "app/views/compare/compare_table.h"
 #include "app/views/statistics/region_data.h"

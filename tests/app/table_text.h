@@ -11,7 +11,7 @@
 namespace tessera::app {
 
 /// A table as text and numbers: the first line that is no comment names the columns.
-struct CsvTable {
+struct TableText {
     std::vector<std::string> heads;
     std::vector<std::vector<std::string>> rows;
     std::size_t column(const std::string& head) const {
@@ -27,8 +27,8 @@ struct CsvTable {
     }
 };
 
-inline CsvTable tableOf(const std::string& csv) {
-    CsvTable table;
+inline TableText tableOf(const std::string& csv) {
+    TableText table;
     std::istringstream in(csv);
     for (std::string line; std::getline(in, line);) {
         if (line.starts_with("#")) continue;

@@ -50,7 +50,7 @@ Range plotted(const std::string& channel) {
 
 class ViewTables : public FormulaView {
 protected:
-    CsvTable shownAt(const Case& of) {
+    TableText shownAt(const Case& of) {
         Session session = start;
         session.time = of.time;
         if (of.brush) {
@@ -65,7 +65,7 @@ TEST_F(ViewTables, StatisticsAreThoseOfTheSamples) {
     install(StatisticsView{});
     for (const Case& of : cases()) {
         SCOPED_TRACE(of.time);
-        const CsvTable table = shownAt(of);
+        const TableText table = shownAt(of);
         ASSERT_EQ(table.rows.size(), of.brush ? 9u : 3u);
         for (std::size_t row = 0; row < table.rows.size(); ++row) {
             const std::string name = table.text(row, "parameter"), part = table.text(row, "region");
@@ -94,7 +94,7 @@ TEST_F(ViewTables, RegionsAreCountedEachByItself) {
     install(view);
     for (const Case& of : cases()) {
         SCOPED_TRACE(of.time);
-        const CsvTable table = shownAt(of);
+        const TableText table = shownAt(of);
         ASSERT_EQ(table.rows.size(), 8u); // T and |U| in west, east, all; c in west and all
         for (std::size_t row = 0; row < table.rows.size(); ++row) {
             const std::string name = table.text(row, "parameter"), region = table.text(row, "region");
@@ -119,7 +119,7 @@ TEST_F(ViewTables, HistogramsCountEachSampleInItsBin) {
         const Range range = plotted(channel);
         for (const Case& of : cases()) {
             SCOPED_TRACE(std::string(channel) + " at " + std::to_string(of.time));
-            const CsvTable table = shownAt(of);
+            const TableText table = shownAt(of);
             const std::string title = channel == std::string("T") ? "T [K]" : "c [mol/m³]";
             ASSERT_EQ(table.rows.size(), 37u);
             std::vector<double> count(37), focus(37);
@@ -160,7 +160,7 @@ TEST_F(ViewTables, ScatterplotsCountPairsInTheirBins) {
             auto& [count, focus] = wanted[{bin(*x, t), bin(*y, c)}];
             count += 1, focus += interest(of, at);
         });
-        const CsvTable table = shownAt(of);
+        const TableText table = shownAt(of);
         EXPECT_EQ(table.rows.size(), wanted.size());
         for (std::size_t row = 0; row < table.rows.size(); ++row) {
             EXPECT_EQ(table.text(row, "x parameter"), "T [K]");
@@ -184,7 +184,7 @@ TEST_F(ViewTables, ProfilesAreReadAlongTheirLine) {
     install(view);
     for (const Case& of : cases()) {
         SCOPED_TRACE(of.time);
-        const CsvTable table = shownAt(of);
+        const TableText table = shownAt(of);
         ASSERT_EQ(table.rows.size(), 33u);
         const double length = glm::distance(view.points[0], view.points[1]);
         for (std::size_t i = 0; i < 33; ++i) {
@@ -210,7 +210,7 @@ TEST_F(ViewTables, ProfilesOverTimeAreReadAtTheCursor) {
     install(view);
     Session session = start;
     session.cursor = {0.0137, 0.0066, 0.0003};
-    const CsvTable table = tableOf(this->table(session));
+    const TableText table = tableOf(this->table(session));
     ASSERT_EQ(table.rows.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_EQ(table.number(i, "time [s]"), formula::kTimes[i]);
@@ -226,7 +226,7 @@ TEST_F(ViewTables, SectionsAreOfTheirPlaneAndRegion) {
     install(view);
     for (const Case& of : cases()) {
         SCOPED_TRACE(of.time);
-        const CsvTable table = shownAt(of);
+        const TableText table = shownAt(of);
         std::size_t checked = 0;
         for (std::size_t row = 0; row < table.rows.size(); ++row) {
             EXPECT_NEAR(*table.number(row, "time [s]"), of.time, 1e-9);
@@ -257,7 +257,7 @@ TEST_F(ViewTables, PlanesAreReadWhereTheyStand) {
     install(view);
     for (const Case& of : cases()) {
         SCOPED_TRACE(of.time);
-        const CsvTable table = shownAt(of);
+        const TableText table = shownAt(of);
         ASSERT_GT(table.rows.size(), 1000u);
         for (const std::size_t row : {std::size_t(0), std::size_t(1), table.rows.size() / 3, table.rows.size() - 1}) {
             const glm::dvec3 at{*table.number(row, "x"), *table.number(row, "y"), *table.number(row, "z")};
@@ -271,7 +271,7 @@ TEST_F(ViewTables, CurvesAreStatisticsOfEveryTime) {
     view.x = "time";
     view.y = {"mean(T)", "max(T)", "voltage * current"};
     install(view);
-    const CsvTable table = shownAt({0.5, {}});
+    const TableText table = shownAt({0.5, {}});
     ASSERT_EQ(table.rows.size(), 3u);
     constexpr double kPower[] = {4200, 5580, 8500};
     for (std::size_t i = 0; i < 3; ++i) {

@@ -4,7 +4,7 @@
 #include "app/queries/async_query.h"
 #include "app/queries/statistics_query.h"
 #include "app/tables/table_view.h"
-#include "app/values/table_page.h"
+#include "app/pages/table_page.h"
 #include "app/views/statistics/region_data.h"
 #include "volume/flow/flow_channels.h"
 

@@ -1,4 +1,4 @@
-#include "app/values/table_page.h"
+#include "app/pages/table_page.h"
 
 #include <algorithm>
 #include <cmath>
