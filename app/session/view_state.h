@@ -162,6 +162,7 @@ inline constexpr std::tuple kViewKinds{
         {.title = "Statistics",
          .help = "Statistics of every parameter inside and outside the selection",
          .words = "mean average minimum maximum numbers table",
+         .figure = true,
          .csv = true,
          .leastWidth = 210,
          .leastHeight = 130},

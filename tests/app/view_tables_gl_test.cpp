@@ -68,7 +68,7 @@ TEST_F(ViewTables, StatisticsAreThoseOfTheSamples) {
         const TableText table = shownAt(of);
         ASSERT_EQ(table.rows.size(), of.brush ? 9u : 3u);
         for (std::size_t row = 0; row < table.rows.size(); ++row) {
-            const std::string name = table.text(row, "parameter"), part = table.text(row, "part");
+            const std::string name = table.text(row, "parameter"), part = table.text(row, "region");
             EXPECT_EQ(table.text(row, "unit"), name == "T" ? "K" : name == "c" ? "mol/m3" : "m/s");
             const Sum sum = summed(name, of.time, [&](Place at) {
                 return part == "all" || (part == "inside") == (interest(of, at) == 1);
@@ -105,7 +105,7 @@ TEST_F(ViewTables, RegionsAreCountedEachByItself) {
             EXPECT_NEAR(*table.number(row, "mean"), sum.mean, 2e-4);
             EXPECT_NEAR(*table.number(row, "min"), sum.least, 2e-4);
             EXPECT_NEAR(*table.number(row, "max"), sum.most, 2e-4);
-            EXPECT_NEAR(*table.number(row, "share of all samples"), sum.samples / (8 * 7 * 9), 1e-9);
+            EXPECT_NEAR(*table.number(row, "shareOfAll"), sum.samples / (8 * 7 * 9), 1e-9);
         }
     }
 }
