@@ -70,8 +70,8 @@ std::string cellOf(const TableColumn& column, std::size_t row);
 /// last of them.
 std::vector<std::vector<std::string>> cellsOf(const Table& table, bool once = false);
 
-/// A line of names with units in brackets, which `head` false leaves out, and a line for each row; absent numbers are
-/// empty.
+/// Notes after "# " and a line of names with units in brackets, which `head` false leaves out, and a line for each row;
+/// absent numbers are empty.
 std::string csvOf(const Table& table, bool head = true);
 
 /// For terminals: a line of heads and a line for each row, texts to the left and numbers to the right.
