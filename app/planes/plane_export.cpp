@@ -1,6 +1,6 @@
 #include "app/planes/plane_export.h"
 
-#include "app/pane/figure.h"
+#include "app/pages/plot_page.h"
 #include "app/planes/contour_labels.h"
 #include "app/ui/ticks.h"
 #include "volume/reconstruct/probe.h"
@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kCells = 96;       ///< along either edge of a picture
 constexpr float kOnWhite = 0.7f; ///< of light colours, which vanish on white
+constexpr glm::vec4 kEdge{0.267f, 0.267f, 0.267f, 1}, kEdgeOnDark{0.733f, 0.733f, 0.733f, 1};
 
 bool inside(const volume::Box& box, glm::dvec3 place) {
     for (int axis = 0; axis < 3; ++axis)
@@ -34,9 +35,9 @@ std::vector<glm::dvec3> rowOf(const PlanePicture& picture, int count, const Shar
 }
 
 /// The colours of the parameter in cells; clear where values are absent.
-FigureImage imageOf(const volume::BrickSource& source, const PlanePicture& picture, const Progress& progress) {
+PlotImage imageOf(const volume::BrickSource& source, const PlanePicture& picture, const Progress& progress) {
     const volume::Box& bounds = source.info().bounds;
-    FigureImage image{kCells, kCells, {}};
+    PlotImage image{kCells, kCells, {}};
     const auto middle = [](int i) { return (i + 0.5) / kCells; };
     for (int j = kCells - 1; j >= 0; --j) {
         progress.advance(middle(kCells - 1 - j));
@@ -54,12 +55,12 @@ FigureImage imageOf(const volume::BrickSource& source, const PlanePicture& pictu
     return image;
 }
 
-/// Contour lines, broken beneath the values written on them.
-void addLines(FigurePanel& panel, const Contours& contours, const PlanePicture& picture) {
+/// Contour lines, broken beneath the values written on them; `size`: of the plot on the page, points, `text` of texts.
+void addLines(Plot& plot, const Contours& contours, const PlanePicture& picture, glm::dvec2 size, double text) {
     // Placed in points, as the page has them, and kept in the units of the axes.
-    const glm::dvec2 size = kFigurePlot, from(panel.x.range.lo, panel.y.range.lo),
-                     span(panel.x.range.hi - panel.x.range.lo, panel.y.range.hi - panel.y.range.lo);
-    if (!(span.x > 0) || !(span.y > 0)) return;
+    const glm::dvec2 from(plot.x.range.lo, plot.y.range.lo),
+        span(plot.x.range.hi - plot.x.range.lo, plot.y.range.hi - plot.y.range.lo);
+    if (!(span.x > 0) || !(span.y > 0) || !(size.x > 0) || !(size.y > 0)) return;
     std::vector<PageLine> lines;
     for (const volume::ContourLine& line : contours.lines) {
         PageLine& own = lines.emplace_back(PageLine{contourText(line.level, picture.levels.step), {}});
@@ -70,57 +71,56 @@ void addLines(FigurePanel& panel, const Contours& contours, const PlanePicture& 
     }
     const auto data = [&](glm::dvec2 at) { return from + glm::dvec2(at.x / size.x, 1 - at.y / size.y) * span; };
     std::vector<LineLabel> labels;
-    if (picture.shows.lines.values) labels = placeLabels(lines, {{0, 0}, size, kFigureText, figureTextWidth});
+    if (picture.shows.lines.values)
+        labels = placeLabels(lines,
+                             {{0, 0}, size, text, [&](const std::string& word) { return pageTextWidth(word, text); }});
     for (const LineLabel& label : labels)
-        panel.labels.push_back({label.text, data(label.at), label.angle * 180 / std::numbers::pi});
+        plot.labels.push_back({label.text, data(label.at), label.angle * 180 / std::numbers::pi});
     for (const std::vector<glm::dvec2>& piece : linesAround(lines, labels)) {
-        panel.contours.emplace_back();
-        for (const glm::dvec2& point : piece) panel.contours.back().push_back(data(point));
+        plot.contours.emplace_back();
+        for (const glm::dvec2& point : piece) plot.contours.back().push_back(data(point));
     }
 }
 
 /// The edge of the data in a tilted plane, lenses and brushes.
-void addOutlines(FigurePanel& panel, const PlanePicture& picture, const PageForm& form) {
+void addOutlines(Plot& plot, const PlanePicture& picture, bool dark) {
     const glm::dvec2 perUnit = picture.perUnit();
     if (!picture.axes) {
-        FigureOutline edge{.points = {}, .color = {0.267f, 0.267f, 0.267f, 1}};
+        PlotOutline& edge = plot.outlines.emplace_back(PlotOutline{.points = {}, .color = dark ? kEdgeOnDark : kEdge});
         for (const glm::dvec3& corner : picture.corners) edge.points.push_back(picture.along(corner) * perUnit);
-        panel.outlines.push_back(std::move(edge));
     }
-    if (!form.outlines) return;
     for (const PlaneSection& section : picture.sections) {
-        FigureOutline outline;
+        PlotOutline& outline = plot.outlines.emplace_back();
         for (const glm::dvec2& point : section.outline) outline.points.push_back(point * perUnit);
-        outline.color = glm::vec4(section.color * (form.dark ? 1 : kOnWhite), section.faint ? 0.35f : 1.0f);
+        outline.color = glm::vec4(section.color * (dark ? 1 : kOnWhite), section.faint ? 0.35f : 1.0f);
         outline.dashed = section.dashed;
         if (section.middle) outline.dot = *section.middle * perUnit;
-        panel.outlines.push_back(std::move(outline));
     }
 }
 
-FigurePanel panelOf(const volume::BrickSource& source, const PlanePicture& picture, const PageForm& form,
-                    const Progress& progress) {
-    const volume::DatasetInfo& info = source.info();
+/// The picture as a plot without its contour lines, which its title tells of.
+Plot plotOf(const volume::DatasetInfo& info, const PlanePicture& picture, bool dark) {
     const volume::Channel own = info.channel(picture.shows.channel);
     const auto& [lo, hi] = picture.range;
     const double digits = (hi - lo) / 100;
     const std::string colors =
         own.name + " " + formatNumber(lo, digits) + " .. " + formatQuantity(hi, own.unit, digits);
-    FigurePanel panel;
-    panel.title = picture.axes ? picture.place + ", " + colors : colors;
-    panel.note = picture.axes ? "" : picture.place;
     const auto [right, up] = axisTexts(picture);
-    panel.x = {titleWithUnit(right, picture.right.unit.name), picture.shownX()};
-    panel.y = {titleWithUnit(up, picture.up.unit.name), picture.shownY()};
-    panel.image = imageOf(source, picture, progress.part(0, picture.lined ? 0.5 : 1));
-    if (picture.lined) {
-        // Below the title, or behind it where something else stands there.
-        const std::string text = contourTitle(info.channel(*picture.lined), picture.levels);
-        panel.note.empty() ? panel.note = text : panel.title += "; " + text;
-        addLines(panel, readContours(source, contourQuery(picture), progress.part(0.5, 1)), picture);
+    Plot plot;
+    plot.title = picture.axes ? picture.place + ", " + colors : colors;
+    plot.note = picture.axes ? "" : picture.place;
+    plot.x = {.title = right, .range = picture.shownX(), .unit = picture.right.unit.name};
+    plot.y = {.title = up, .range = picture.shownY(), .unit = picture.up.unit.name};
+    if (picture.cursor) {
+        plot.cursorX = picture.cursor->x * picture.right.unit.perUnit;
+        plot.cursorY = picture.cursor->y * picture.up.unit.perUnit;
     }
-    addOutlines(panel, picture, form);
-    return panel;
+    addOutlines(plot, picture, dark);
+    if (!picture.lined) return plot;
+    // Below the title, or behind it where something else stands there.
+    const std::string text = contourTitle(info.channel(*picture.lined), picture.levels);
+    plot.note.empty() ? plot.note = text : plot.title += "; " + text;
+    return plot;
 }
 
 /// Columns of numbers: along the picture, of the position, and of each channel.
@@ -157,13 +157,18 @@ void addSamples(PlaneColumns& columns, const volume::BrickSource& source, const 
 
 VectorPage planesPage(const volume::BrickSource& source, const std::vector<PlanePicture>& pictures, int columns,
                       const PageForm& form, const Progress& progress) {
-    std::vector<FigurePanel> panels;
+    std::vector<Plot> plots;
+    for (const PlanePicture& picture : pictures) plots.push_back(plotOf(source.info(), picture, form.dark));
+    const glm::dvec2 size = plotArea(plots, columns, form);
     const double each = 1.0 / static_cast<double>(std::max<std::size_t>(1, pictures.size()));
-    for (const PlanePicture& picture : pictures) {
-        const double done = static_cast<double>(panels.size()) * each;
-        panels.push_back(panelOf(source, picture, form, progress.part(done, done + each)));
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+        const PlanePicture& picture = pictures[i];
+        const Progress own = progress.part(static_cast<double>(i) * each, static_cast<double>(i + 1) * each);
+        plots[i].image = imageOf(source, picture, own.part(0, picture.lined ? 0.5 : 1));
+        if (picture.lined)
+            addLines(plots[i], readContours(source, contourQuery(picture), own.part(0.5, 1)), picture, size, form.text);
     }
-    return drawingOf(panels, columns);
+    return plotPage(plots, columns, form);
 }
 
 Table planesTable(const volume::BrickSource& source, const std::vector<PlanePicture>& pictures,

@@ -159,8 +159,10 @@ void drawOver(ViewContext& context, PlaneState& state, const PlanePicture& pictu
             drawHandles(draw, state.handles, frame, session, info);
         }
     }
-    const glm::dvec2 cursor = picture.along(session.cursor) * frame.perUnit;
-    if (shown.cursor && !shows.plain) drawCrosshair(draw, plot, cursor.x, cursor.y, true);
+    if (shown.cursor && picture.cursor) {
+        const glm::dvec2 at = *picture.cursor * frame.perUnit;
+        drawCrosshair(draw, plot, at.x, at.y, true);
+    }
     draw.PopClipRect();
 }
 

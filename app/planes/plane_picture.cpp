@@ -49,7 +49,9 @@ void show(PlanePicture& picture, const Session& session, const volume::DatasetIn
     picture.range = vis::effectiveRange(picture.function, info.channelRange(own));
     picture.lined = contourChannel(info, shows.lines, shows.channel);
     if (picture.lined) picture.levels = contourLevels(session, info, *picture.lined, shows.lines.count);
-    if (!shows.plain) picture.sections = planeSections(session, info, picture.plane);
+    if (shows.plain) return;
+    picture.sections = planeSections(session, info, picture.plane);
+    picture.cursor = picture.along(session.cursor);
 }
 
 } // namespace

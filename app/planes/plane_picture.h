@@ -39,6 +39,7 @@ struct PlanePicture {
     std::optional<int> lined;       ///< channel of the contour lines; nothing: there are none
     ContourLevels levels;           ///< of them
     std::vector<PlaneSection> sections;
+    std::optional<glm::dvec2> cursor; ///< the cross-hair, along right and up
 
     glm::dvec2 along(glm::dvec3 physical) const { return plane.along(physical); }
     glm::dvec3 placeAt(glm::dvec2 at) const { return plane.placeAt(at); }

@@ -1,5 +1,5 @@
 #include "app/drawing/line_pieces.h"
-#include "app/pane/figure.h"
+#include "app/pages/plot_page.h"
 #include "app/planes/plane_export.h"
 #include "app/session/session_json.h"
 #include "app/tools/plane_sections.h"
