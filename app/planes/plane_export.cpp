@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kCells = 96;       ///< along either edge of a picture
 constexpr float kOnWhite = 0.7f; ///< of light colours, which vanish on white
-constexpr glm::vec4 kEdge{0.267f, 0.267f, 0.267f, 1}, kEdgeOnDark{0.733f, 0.733f, 0.733f, 1};
+constexpr glm::vec4 kEdgeOnLight{0.267f, 0.267f, 0.267f, 1}, kEdgeOnDark{0.733f, 0.733f, 0.733f, 1};
 
 bool inside(const volume::Box& box, glm::dvec3 place) {
     for (int axis = 0; axis < 3; ++axis)
@@ -35,7 +35,7 @@ std::vector<glm::dvec3> rowOf(const PlanePicture& picture, int count, const Shar
 }
 
 /// The colours of the parameter in cells; clear where values are absent.
-PlotImage imageOf(const volume::BrickSource& source, const PlanePicture& picture, const Progress& progress) {
+PlotImage cellImage(const volume::BrickSource& source, const PlanePicture& picture, const Progress& progress) {
     const volume::Box& bounds = source.info().bounds;
     PlotImage image{kCells, kCells, {}};
     const auto middle = [](int i) { return (i + 0.5) / kCells; };
@@ -86,7 +86,8 @@ void addLines(Plot& plot, const Contours& contours, const PlanePicture& picture,
 void addOutlines(Plot& plot, const PlanePicture& picture, bool dark) {
     const glm::dvec2 perUnit = picture.perUnit();
     if (!picture.axes) {
-        PlotOutline& edge = plot.outlines.emplace_back(PlotOutline{.points = {}, .color = dark ? kEdgeOnDark : kEdge});
+        PlotOutline& edge =
+            plot.outlines.emplace_back(PlotOutline{.points = {}, .color = dark ? kEdgeOnDark : kEdgeOnLight});
         for (const glm::dvec3& corner : picture.corners) edge.points.push_back(picture.along(corner) * perUnit);
     }
     for (const PlaneSection& section : picture.sections) {
@@ -164,7 +165,7 @@ VectorPage planesPage(const volume::BrickSource& source, const std::vector<Plane
     for (std::size_t i = 0; i < pictures.size(); ++i) {
         const PlanePicture& picture = pictures[i];
         const Progress own = progress.part(static_cast<double>(i) * each, static_cast<double>(i + 1) * each);
-        plots[i].image = imageOf(source, picture, own.part(0, picture.lined ? 0.5 : 1));
+        plots[i].image = cellImage(source, picture, own.part(0, picture.lined ? 0.5 : 1));
         if (picture.lined)
             addLines(plots[i], readContours(source, contourQuery(picture), own.part(0.5, 1)), picture, size, form.text);
     }

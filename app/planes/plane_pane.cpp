@@ -36,7 +36,7 @@ void addInnerSlices(vis::Scene& scene, const Session& session, const vis::SliceL
 
 /// Camera and layer of the plane alone. Only the place along the normal matters: dragging within the plane leaves its
 /// picture as it is.
-vis::Scene sceneOf(const ViewContext& context, const PlanePicture& picture, const vis::WorldFrame& world) {
+vis::Scene planeScene(const ViewContext& context, const PlanePicture& picture, const vis::WorldFrame& world) {
     const volume::DatasetInfo& info = context.source->info();
     vis::Scene scene = sceneWithLimits(context);
     scene.paper.reset();
@@ -121,7 +121,7 @@ void useMouse(ViewContext& context, PlaneState& state, const PlanePicture& pictu
 
 void drawPicture(ViewContext& context, PlaneState& state, const PlanePicture& picture, const PlaneFrame& frame,
                  double share) {
-    const vis::Scene scene = sceneOf(context, picture, frame.world);
+    const vis::Scene scene = planeScene(context, picture, frame.world);
     if (!state.target) state.target = context.renderer.makeTarget();
     vis::FrameRequest request;
     request.size = {frame.plot.width(), frame.plot.height()};

@@ -13,7 +13,7 @@ namespace tessera::app {
 namespace {
 
 constexpr double kSameOffset = 1e-9; ///< of the box: closer planes are one
-constexpr double kMargin = 0.02;     ///< around the part in the box of a tilted plane
+constexpr double kTiltMargin = 0.02; ///< around the part in the box of a tilted plane
 constexpr double kAlong = 1 - 1e-8;  ///< cosine to an axis from which on a direction has its name
 constexpr double kLeastSpan = 1e-3;  ///< of the box, where the plane touches a corner only
 constexpr int kTableCells = 96;      ///< along the longer edge
@@ -21,12 +21,12 @@ constexpr int kTableCells = 96;      ///< along the longer edge
 /// What values span, with a margin and never less than `least`.
 Range spanOf(const std::vector<double>& values, double least) {
     const auto [lo, hi] = std::minmax_element(values.begin(), values.end());
-    const double margin = std::max(kMargin * (*hi - *lo), (least - (*hi - *lo)) / 2);
+    const double margin = std::max(kTiltMargin * (*hi - *lo), (least - (*hi - *lo)) / 2);
     return {*lo - margin, *hi + margin};
 }
 
 /// Of a direction along an axis its own name, else the other one.
-AxisLabel labelOf(glm::dvec3 direction, const char* other, const volume::DatasetInfo& info, Range span) {
+AxisLabel planeLabel(glm::dvec3 direction, const char* other, const volume::DatasetInfo& info, Range span) {
     const glm::dvec3 size = glm::abs(direction);
     return {std::max({size.x, size.y, size.z}) > kAlong ? directionText(direction) : other,
             suitableLength(info.lengthUnit, span.hi - span.lo)};
@@ -94,8 +94,8 @@ PlanePicture tiltedPlane(const Session& session, const volume::DatasetInfo& info
     picture.x = spanOf(across, kLeastSpan * size);
     picture.y = spanOf(upwards, kLeastSpan * size);
     picture.size = glm::dvec2(picture.x.hi - picture.x.lo, picture.y.hi - picture.y.lo) * axes.scale;
-    picture.right = labelOf(axes.right, "u", info, picture.x);
-    picture.up = labelOf(axes.up, "v", info, picture.y);
+    picture.right = planeLabel(axes.right, "u", info, picture.x);
+    picture.up = planeLabel(axes.up, "v", info, picture.y);
     const LengthUnit unit = suitableLength(info.lengthUnit, size);
     picture.place = "across " + directionText(way) + " at " +
                     formatQuantity(offset * unit.perUnit, unit.name, size * unit.perUnit / 1000);

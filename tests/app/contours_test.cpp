@@ -1,3 +1,4 @@
+#include "app/drawing/drawing.h"
 #include "app/planes/contour_data.h"
 #include "app/planes/contour_labels.h"
 #include "app/planes/plane_export.h"

@@ -292,12 +292,16 @@ TEST_F(ViewTables, ThreeSlicesAreReadAtTheCrossHair) {
             const double x = (at.x - formula::kOrigin[0]) / formula::kSpacing[0];
             if (x < 3) {
                 ASSERT_TRUE(c) << row;
-                if (row % 97 == 0) EXPECT_NEAR(*c, between("c", at, of.time), 3e-4) << row;
+                if (row % 97 == 0) {
+                    EXPECT_NEAR(*c, between("c", at, of.time), 3e-4) << row;
+                }
             } else if (x > 4) {
                 EXPECT_FALSE(c) << "absent in the east: " << row;
             }
             (c ? present : absent) += 1;
-            if (row % 97 == 0) EXPECT_NEAR(*table.number(row, "T [K]"), between("T", at, of.time), 3e-4) << row;
+            if (row % 97 == 0) {
+                EXPECT_NEAR(*table.number(row, "T [K]"), between("T", at, of.time), 3e-4) << row;
+            }
         }
         EXPECT_GT(present, 100u);
         EXPECT_GT(absent, 100u);

@@ -72,7 +72,7 @@ struct PictureRoom {
     std::optional<PlaneAxes> axes;
 };
 
-PictureRoom roomOf(const ObliqueLayout& layout, const PlanePicture& slice, bool axes) {
+PictureRoom roomOfPicture(const ObliqueLayout& layout, const PlanePicture& slice, bool axes) {
     PictureRoom room{{layout.picture.x, layout.picture.y + em() * (axes ? kTitleAbove : 1.35f)}, layout.pictureEnd, {}};
     if (!axes) return room;
     const float left = axisRoom(AxisSide::Left, slice.shownY(), TitlePlace::Elsewhere);
@@ -84,7 +84,7 @@ PictureRoom roomOf(const ObliqueLayout& layout, const PlanePicture& slice, bool 
 }
 
 /// Where the plane lies, above the picture.
-void drawPlace(const ObliqueLayout& layout, const PlanePicture& slice, const PlotFrame& plot) {
+void drawPlaneTitle(const ObliqueLayout& layout, const PlanePicture& slice, const PlotFrame& plot) {
     const std::string& whole = slice.place;
     const float room = layout.pictureEnd.x - layout.picture.x - em() * 4;
     const std::string text = firstThatFits({whole, whole.substr(whole.find(" at ") + 4)}, room);
@@ -96,7 +96,7 @@ void drawPlace(const ObliqueLayout& layout, const PlanePicture& slice, const Plo
 }
 
 /// Legend, axes in words, and the values at the cross-hair.
-void drawNumbers(ViewContext& context, const ObliqueView& view, const Readout& readout, const PlanePicture& slice) {
+void drawNumbersOf(ViewContext& context, const ObliqueView& view, const Readout& readout, const PlanePicture& slice) {
     drawPlaneLegend(context, slice, readout, true);
     if (const std::string axes = axesText(slice); !axes.empty() && context.decoration.title) {
         ImGui::PushTextWrapPos(0);
@@ -110,12 +110,13 @@ void drawNumbers(ViewContext& context, const ObliqueView& view, const Readout& r
 }
 
 /// The picture with its axes and what lies over it; takes the mouse. Returns the frame, nothing where there is no room.
-std::optional<PlaneFrame> drawSlice(ViewContext& context, PlaneState& state, const std::string& pane, ObliqueView& view,
-                                    const ObliqueLayout& layout, const PlaneContent& shows, bool axes) {
+std::optional<PlaneFrame> drawTiltedSlice(ViewContext& context, PlaneState& state, const std::string& pane,
+                                          ObliqueView& view, const ObliqueLayout& layout, const PlaneContent& shows,
+                                          bool axes) {
     const volume::DatasetInfo& info = context.source->info();
     Session& session = context.session;
     PlanePicture slice = tiltedPlane(session, info, view.normal, shows);
-    const PictureRoom room = roomOf(layout, slice, axes);
+    const PictureRoom room = roomOfPicture(layout, slice, axes);
     const double scale = planeScale(slice, room.lo, room.hi, em() * 2);
     if (!(scale > 0)) return std::nullopt;
     const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
@@ -124,7 +125,7 @@ std::optional<PlaneFrame> drawSlice(ViewContext& context, PlaneState& state, con
     slice = tiltedPlane(session, info, view.normal, shows); // the mouse may have moved the cross-hair or tilted it
     frame = planeFrame(slice, world, info.bounds, room.lo, planeScale(slice, room.lo, room.hi, 0));
     drawPicture(context, state, slice, frame, 2.0 / 3);
-    if (context.decoration.title) drawPlace(layout, slice, frame.plot);
+    if (context.decoration.title) drawPlaneTitle(layout, slice, frame.plot);
     if (context.decoration.axes && room.axes) drawPlaneAxes(slice, frame.plot, *room.axes);
     drawOver(context, state, slice, frame, "contours " + pane);
     return frame;
@@ -153,14 +154,14 @@ void drawObliqueView(ViewContext& context, const std::string& pane, ObliqueView&
     const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 6)};
     ObliqueLayout layout = layoutOf(ImGui::GetCursorScreenPos(), room, slice.size.x / slice.size.y, true);
     const bool axes = !context.takesInput() || (room.x > em() * 12 && room.y > em() * 9);
-    if (const auto frame = drawSlice(context, cache.plane, pane, view, layout, shows, axes))
+    if (const auto frame = drawTiltedSlice(context, cache.plane, pane, view, layout, shows, axes))
         if (layout.numbers.y < frame->plot.max.y)
             layout.numbers.x = std::min(layout.numbers.x, frame->plot.max.x + em() * 4);
     if (layout.numbersEnd.x - layout.numbers.x < em() || layout.numbersEnd.y - layout.numbers.y < em()) return;
     ImGui::SetCursorScreenPos(layout.numbers);
     ImGui::BeginChild("readout", {layout.numbersEnd.x - layout.numbers.x, layout.numbersEnd.y - layout.numbers.y},
                       false, context.takesInput() ? ImGuiWindowFlags_None : ImGuiWindowFlags_NoScrollbar);
-    drawNumbers(context, view, readout, slice);
+    drawNumbersOf(context, view, readout, slice);
     ImGui::EndChild();
 }
 

@@ -30,8 +30,8 @@ double planePosition(const volume::Box& bounds, int axis, int index, int count) 
     return bounds.lo[axis] + bounds.size()[axis] * (index + 0.5) / count;
 }
 
-PlanePicture sliceOf(const Session& session, const volume::DatasetInfo& info, const SliceMatrixView& view,
-                     const SliceAxes& axes, int channel, int plane) {
+PlanePicture matrixSlice(const Session& session, const volume::DatasetInfo& info, const SliceMatrixView& view,
+                         const SliceAxes& axes, int channel, int plane) {
     return axisPlane(session, info, axes, planePosition(info.bounds, axes.normal, plane, view.planes),
                      {.channel = channel, .plain = true});
 }
@@ -68,7 +68,7 @@ void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<
     std::vector<PlanePicture> slices; // with a row for each parameter
     for (const int channel : shown)
         for (int plane = 0; plane < view.planes; ++plane)
-            slices.push_back(sliceOf(context.session, context.numbers->info(), view, axes, channel, plane));
+            slices.push_back(matrixSlice(context.session, context.numbers->info(), view, axes, channel, plane));
     exportPlanes(context, tools, "slices", std::move(slices), view.planes, shown);
     if (tools.fits(ImGui::CalcTextSize(directions.c_str()).x)) drawNote(tools, directions);
 }
@@ -113,7 +113,7 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
     for (int plane = 0; plane < view.planes; ++plane)
         for (std::size_t row = 0; row < shown.size(); ++row) {
             const std::size_t index = row * static_cast<std::size_t>(view.planes) + static_cast<std::size_t>(plane);
-            const PlanePicture slice = sliceOf(context.session, info, view, axes, shown[row], plane);
+            const PlanePicture slice = matrixSlice(context.session, info, view, axes, shown[row], plane);
             PlaneFrame frame = planeFrame(slice, world, info.bounds, {}, planeScale(slice, {}, {cellX, cellY}, 0));
             const float wide = frame.plot.max.x, high = frame.plot.max.y;
             // Narrow slices stand close together, but not closer than their titles.

@@ -32,7 +32,7 @@ ThreeSlices slicesAtCursor(const Session& session, const volume::DatasetInfo& in
 }
 
 /// Parameter, contour lines and export, and a copy of the values at the cross-hair.
-void drawTools(ViewContext& context, SlicesView& view, const Readout& readout, const PlaneContent& shows) {
+void drawSlicesTools(ViewContext& context, SlicesView& view, const Readout& readout, const PlaneContent& shows) {
     ToolRow tools(context);
     choosePlaneChannel(tools, context.source->info(), shows.channel, view.channel);
     chooseContours(tools, context.source->info(), view.lines);
@@ -68,7 +68,7 @@ struct SliceRoom {
     ImVec2 lo, hi;
 };
 
-SliceRoom roomOf(const ThreeSlices& slices, const SliceLayout& layout, std::size_t index) {
+SliceRoom roomOfSlice(const ThreeSlices& slices, const SliceLayout& layout, std::size_t index) {
     const auto& [min, max] = layout.planes[index];
     SliceRoom room{.axes = {.min = min, .max = max, .beside = layout.beside[index], .below = !layout.shared[index]},
                    .lo = {},
@@ -87,9 +87,9 @@ SliceRoom roomOf(const ThreeSlices& slices, const SliceLayout& layout, std::size
 }
 
 /// Pixels per world length of a slice; those that share an axis have one scale.
-double scaleOf(const ThreeSlices& slices, const SliceLayout& layout, std::size_t index) {
+double scaleOfSlice(const ThreeSlices& slices, const SliceLayout& layout, std::size_t index) {
     const auto own = [&](std::size_t i) {
-        const SliceRoom room = roomOf(slices, layout, i);
+        const SliceRoom room = roomOfSlice(slices, layout, i);
         return planeScale(slices[i], room.lo, room.hi, leastPicture(layout, em()));
     };
     double scale = own(index);
@@ -126,11 +126,11 @@ void drawSliceTitle(SliceRoom& room, const PlanePicture& slice, const volume::Da
     tellWhole(from, {from.x + size.x, from.y + size.y}, whole, place);
 }
 
-void drawSlice(ViewContext& context, PlaneState& state, const std::string& pane, const ThreeSlices& slices,
-               const SliceLayout& layout, std::size_t index) {
+void drawSliceAtCursor(ViewContext& context, PlaneState& state, const std::string& pane, const ThreeSlices& slices,
+                       const SliceLayout& layout, std::size_t index) {
     const volume::DatasetInfo& info = context.source->info();
-    SliceRoom room = roomOf(slices, layout, index);
-    const double scale = scaleOf(slices, layout, index);
+    SliceRoom room = roomOfSlice(slices, layout, index);
+    const double scale = scaleOfSlice(slices, layout, index);
     if (!(scale > 0)) {
         const PlanePicture& slice = slices[index];
         if (context.decoration.title && !layout.beside[index]) drawSliceTitle(room, slice, info, nullptr, layout.axes);
@@ -203,7 +203,7 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     SlicesCache& cache = cacheOf<SlicesCache>(context, pane);
     const Readout& readout = sharedReadout(context);
     const PlaneContent shows{.channel = *channel, .lines = view.lines};
-    drawTools(context, view, readout, shows);
+    drawSlicesTools(context, view, readout, shows);
     drawStretch(context);
 
     const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 6)};
@@ -211,7 +211,7 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
         sliceLayout(ImGui::GetCursorScreenPos(), room, vis::worldFrame(info.bounds, context.session.stretch).halfSize,
                     em(), !context.takesInput());
     const ThreeSlices slices = slicesAtCursor(context.session, info, layout.turned, shows);
-    for (std::size_t i = 0; i < 3; ++i) drawSlice(context, cache.planes[i], pane, slices, layout, i);
+    for (std::size_t i = 0; i < 3; ++i) drawSliceAtCursor(context, cache.planes[i], pane, slices, layout, i);
     drawNumbers(context, view, readout, slices[0], layout);
 }
 
