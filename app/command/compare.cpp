@@ -3,10 +3,9 @@
 #include "app/command/picture_options.h"
 #include "app/data/sources.h"
 #include "app/edits/compare_files.h"
-#include "app/pane/figure.h"
-#include "app/ui/ticks.h"
 #include "app/views/compare/compare_offers.h"
 #include "app/views/compare/compare_panes.h"
+#include "app/views/compare/compare_table.h"
 #include "app/views/compare/compare_view.h"
 #include "codec/blocks/share_results.h"
 #include "volume/base/error.h"
@@ -160,15 +159,15 @@ void run(const CompareOptions& options) {
     };
     if (!options.allTimes) {
         const auto rows = drawOne(options.time ? atTime(*options.time) : opened.document, options.output);
-        if (!options.csv.empty()) writeAtomically(options.csv, compareCsv(rows));
+        if (!options.csv.empty()) writeAtomically(options.csv, csvOf(compareTable(rows)));
         return progress.advance(1);
     }
-    const std::string timeTitle = titleWithUnit(info.timeName, info.timeUnit);
     const auto figure = [&](std::size_t t, const Progress& part) {
         part.advance(0, std::to_string(t + 1));
         const double time = info.times[t];
-        return compareCsv(drawOne(atTime(time), volume::fileOfTime(options.output, t)), timeTitle, csvNumber(time),
-                          t == 0);
+        Table table = compareTable(drawOne(atTime(time), volume::fileOfTime(options.output, t)));
+        addTime(table, info.timeName, info.timeUnit, time);
+        return csvOf(table, t == 0);
     };
     const auto finish = [&](const std::vector<std::string>& tables, const Progress&) {
         std::string csv;

@@ -4,10 +4,10 @@
 #include "app/data/format.h"
 #include "app/data/import_options.h"
 #include "app/data/open.h"
-#include "codec/container/json_text.h"
+#include "app/ui/ticks.h"
+#include "app/values/table.h"
 #include "codec/pack/pack.h"
 #include "vis/image/image_io.h"
-#include "volume/base/csv_text.h"
 #include "volume/base/error.h"
 #include "volume/base/terminal.h"
 #include "volume/derived/other_source.h"
@@ -145,37 +145,44 @@ std::vector<DiffRow> compare(const volume::BrickSource& source, const std::vecto
     return rows;
 }
 
-void print(const std::vector<DiffRow>& rows, const DiffRequest& request, const std::string& how) {
-    say("%s minus %s, %s, over all times\n", request.first.c_str(), request.second.c_str(), how.c_str());
-    say("  %-16s %-8s %12s %12s %12s %12s %10s %10s %10s\n", "parameter", "unit", "min", "mean", "RMS", "max",
-        "samples", "differ", "in one");
-    bool equal = true;
-    for (std::size_t i = 0; i < rows.size();) {
-        DiffRow all = rows[i];
-        for (++i; i < rows.size() && rows[i].channel == all.channel; ++i) all.add(rows[i]);
-        const auto number = [&](double value) {
-            return all.samples > 0 && !all.label ? numberText(value) : std::string("-");
-        };
-        say("  %-16s %-8s %12s %12s %12s %12s %10zu %10zu %10zu\n", all.channel.name.c_str(),
-            all.label ? "label" : all.channel.unit.c_str(), number(all.least).c_str(), number(all.mean()).c_str(),
-            number(all.rms()).c_str(), number(all.most).c_str(), all.samples, all.differing, all.alone);
-        equal = equal && all.samples > 0 && all.alone == 0 && all.differing == 0;
-    }
-    if (equal) say("  no sample differs\n");
+/// A row for each channel, over all times or at each.
+Table diffTable(const std::vector<DiffRow>& rows, const volume::DatasetInfo& info, bool ofTimes) {
+    Table table;
+    const auto add = [&](TableColumn column, auto of) -> TableColumn& {
+        return addColumn(table, rows, std::move(column), of);
+    };
+    const auto ofValues = [](auto of) {
+        return [of](const DiffRow& row) { return row.samples > 0 && !row.label ? std::invoke(of, row) : std::nan(""); };
+    };
+    TableColumn& parameter =
+        add({.name = "parameter", .head = "Parameter"}, [](const DiffRow& row) { return row.channel.name; });
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        parameter.words[i] = rows[i].label ? rows[i].channel.name + " (label)"
+                                           : titleWithUnit(rows[i].channel.name, rows[i].channel.unit);
+    add({.name = "unit", .shown = false}, [](const DiffRow& row) { return row.channel.unit; });
+    if (ofTimes) add({.name = info.timeName, .unit = info.timeUnit}, &DiffRow::time);
+    add({.name = "min", .head = "Minimum"}, ofValues(&DiffRow::least));
+    add({.name = "mean", .head = "Mean"}, ofValues(&DiffRow::mean));
+    add({.name = "RMS"}, ofValues(&DiffRow::rms));
+    add({.name = "max", .head = "Maximum"}, ofValues(&DiffRow::most));
+    add({.name = "samples", .head = "Samples", .kind = NumberKind::Count}, &DiffRow::samples);
+    add({.name = "in one only", .head = "In one only", .kind = NumberKind::Count}, &DiffRow::alone);
+    add({.name = "differing", .head = "Differing", .kind = NumberKind::Count}, &DiffRow::differing);
+    return table;
 }
 
-std::string csv(const std::vector<DiffRow>& rows, const volume::DatasetInfo& info, const NumberOrigin& origin) {
-    std::string text = originLine(origin, info) + "parameter,unit," +
-                       csvField(info.timeName + (info.timeUnit.empty() ? "" : " [" + info.timeUnit + "]")) +
-                       ",min,mean,RMS,max,samples,in one only,differing\n";
-    for (const DiffRow& row : rows) {
-        text += csvField(row.channel.name) + "," + csvField(row.channel.unit) + "," + jsonText(toJson(row.time));
-        for (const double value : {row.least, row.mean(), row.rms(), row.most})
-            text += "," + (row.samples > 0 && !row.label ? jsonText(toJson(value)) : std::string());
-        text += "," + std::to_string(row.samples) + "," + std::to_string(row.alone) + "," +
-                std::to_string(row.differing) + "\n";
-    }
-    return text;
+void print(const std::vector<DiffRow>& rows, const DiffRequest& request, const volume::DatasetInfo& info,
+           const std::string& how) {
+    std::vector<DiffRow> sums;
+    for (const DiffRow& row : rows)
+        if (!sums.empty() && sums.back().channel == row.channel)
+            sums.back().add(row);
+        else
+            sums.push_back(row);
+    say("%s minus %s, %s, over all times\n%s", request.first.c_str(), request.second.c_str(), how.c_str(),
+        textOf(diffTable(sums, info, false)).c_str());
+    if (std::ranges::all_of(sums, [](const DiffRow& row) { return row.samples > 0 && row.alone + row.differing == 0; }))
+        say("no sample differs\n");
 }
 
 /// The differences as a data set, with the names that the window gives them.
@@ -219,7 +226,7 @@ void run(const DiffRequest& request) {
     const auto& source = sources.numbers;
     const std::vector<int> channels = comparable(source->info(), request);
     const std::vector<DiffRow> rows = compare(*source, channels, progress.part(0.3, 0.6));
-    print(rows, request, originText(sources.origin, source->info()));
+    print(rows, request, source->info(), originText(sources.origin, source->info()));
     for (const int channel : channels) {
         if (isLabel(source->info(), channel)) continue;
         const volume::Channel of = source->info().channel(channel);
@@ -230,7 +237,7 @@ void run(const DiffRequest& request) {
     const Progress rest = progress.part(0.6, 1);
     if (hasEnding(request.output, ".csv")) {
         AtomicFile file(request.output);
-        file.write(csv(rows, source->info(), sources.origin));
+        file.write(originLine(sources.origin, source->info()) + csvOf(diffTable(rows, source->info(), true)));
         file.commit();
     } else if (data.derived.empty()) {
         throw Error("labels have no difference: write a table (.csv)", request.output);

@@ -72,7 +72,8 @@ PictureForm formOf(const PictureOptions& options) {
     return form;
 }
 
-/// Size, ground and decoration of a picture.
+} // namespace
+
 void addFormOptions(CLI::App& command, PictureOptions& options) {
     PictureForm& form = options.form;
     detail::addPresets(command, form.size, "--preset");
@@ -99,8 +100,6 @@ void addFormOptions(CLI::App& command, PictureOptions& options) {
         ->take_all();
     command.add_flag("--no-decoration", options.undecorated, "Draw the data alone, without any decoration");
 }
-
-} // namespace
 
 std::string paneOf(const Session& session, const std::string& view) {
     if (session.views.contains(view)) return view;

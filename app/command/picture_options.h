@@ -35,6 +35,9 @@ void addTransferOption(CLI::App& command, std::vector<std::string>& transfer);
 /// Adds them to a command; `options` must outlive the parsing.
 void addPictureOptions(CLI::App& command, PictureOptions& options);
 
+/// Size, ground and decoration of a picture alone; `options` must outlive the parsing.
+void addFormOptions(CLI::App& command, PictureOptions& options);
+
 /// The option --time, for showTime().
 void addTimeOption(CLI::App& command, std::optional<double>& time);
 

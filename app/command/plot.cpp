@@ -1,4 +1,5 @@
 #include "app/command/command.h"
+#include "app/command/picture_options.h"
 #include "app/data/format.h"
 #include "app/data/import_options.h"
 #include "app/data/open.h"
@@ -10,7 +11,6 @@
 #include "volume/system/atomic_file.h"
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <memory>
 
 namespace tessera::app {
@@ -23,7 +23,7 @@ struct PlotRequest {
     CurvesView view;
     std::string axis;
     std::optional<double> time;
-    std::string size = "1000x700";
+    PictureOptions picture;
     volume::ImportOptions import;
 };
 
@@ -48,12 +48,9 @@ SessionDocument plotDocument(const PlotRequest& request, const DataRef& data, co
 
 /// Draws the plot as the window does.
 void drawPicture(const PlotRequest& request, const DataRef& data, const Sources& sources) {
-    PictureRequest picture;
+    PictureRequest picture = pictureRequest(request.picture, Session{});
     picture.decoration.cursor = request.time.has_value();
     const SessionDocument document = plotDocument(request, data, sources.pictures->info(), picture.pane);
-    if (std::sscanf(request.size.c_str(), "%dx%d", &picture.size.x, &picture.size.y) != 2 || picture.size.x < 64 ||
-        picture.size.y < 64 || picture.size.x > 16384 || picture.size.y > 16384)
-        throw Error("needs WIDTHxHEIGHT, 64 to 16384 each", {}, "--size");
     PictureMaker maker;
     vis::writePng(request.output, maker.render(document, sources, picture),
                   {{vis::kSessionTextKey, printSession(document, request.output)}});
@@ -64,6 +61,7 @@ void run(const PlotRequest& request) {
                figure = pdf || hasEnding(request.output, ".svg");
     if (!csv && !figure && !hasEnding(request.output, ".png"))
         throw Error("plots are written as .csv, .svg, .pdf or .png", request.output);
+    pictureRequest(request.picture, Session{}); // reports a wrong size before the work starts
     const Progress progress = terminalProgress("plot");
     std::vector<std::string> messages;
     const DataRef data = dataRef(request);
@@ -77,10 +75,12 @@ void run(const PlotRequest& request) {
     const volume::Curves curves = readCurves(*sources.numbers, sources.origin, query, progress.part(0.4, 1));
     AtomicFile file(request.output);
     if (csv) {
-        file.write("# numbers: " + curvesOrigin(info, sources.origin, query) + "\n" + curvesCsv(curves));
+        file.write("# numbers: " + curvesOrigin(info, sources.origin, query) + "\n" + csvOf(curvesTable(curves)));
     } else {
         std::string pane;
-        VectorPage page = curvesDrawing(curves, request.time);
+        VectorPage page =
+            curvesDrawing(curves, request.time, pageForm(pictureRequest(request.picture, Session{}), Theme::Light));
+        page.numbers = curvesOrigin(info, sources.origin, query);
         page.session = printSession(plotDocument(request, data, info, pane), request.output);
         file.write(fileOf(page, pdf ? "pdf" : "svg"));
     }
@@ -93,6 +93,7 @@ void addPlotCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "plot", "Draw or list quantities and statistics over time, or against each other: .csv, .svg, .pdf or .png");
     const auto request = std::make_shared<PlotRequest>();
+    request->picture.form.size = {.width = 1000, .height = 700};
     command->add_option("IN", request->inputs, "Archive, data files that belong together, or a built-in model")
         ->required();
     command->add_option("-o,--output", request->output, "File to write; its ending chooses the format")->required();
@@ -110,7 +111,7 @@ void addPlotCommand(CLI::App& app) {
                         "Compute statistics in this region only: its name, or region=1 (default: everywhere)");
     command->add_option("--by", request->axis, "Quantity over time to use as the time axis");
     command->add_option("--time", request->time, "Time to mark in a picture");
-    command->add_option("--size", request->size, "Size of a .png: WIDTHxHEIGHT in pixels")->capture_default_str();
+    addFormOptions(*command, request->picture);
     addImportOptions(*command, request->import);
     command->callback([request] { run(*request); });
 }

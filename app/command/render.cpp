@@ -53,10 +53,9 @@ void addRenderCommand(CLI::App& app) {
         opened.document.history.reset(session);
         PictureMaker maker;
         const PictureRequest request = pictureRequest(options->picture, session);
-        if (ending.empty() || request.pane.empty())
-            return maker.write(opened.document, opened.sources(), request, options->output);
+        if (ending != "csv") return maker.write(opened.document, opened.sources(), request, options->output);
         AtomicFile file(options->output);
-        file.write(maker.exportText(opened.document, opened.sources(), request, options->output, progress));
+        file.write(maker.table(opened.document, opened.sources(), request, progress));
         file.commit();
     });
 }

@@ -82,6 +82,7 @@ std::string jsonOf(const Question& question, const Answer& answer) {
                      {"samples", stateOf(question)},
                      {"lengthUnit", question.info().lengthUnit},
                      {"timeUnit", question.info().timeUnit},
+                     {"units", answer.units},
                      {"notes", answer.notes},
                      {"rows", answer.json}},
                     1) +

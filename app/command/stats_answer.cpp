@@ -1,9 +1,9 @@
 #include "app/command/stats_answer.h"
 
-#include "app/data/format.h"
 #include "app/pane/view_parts.h"
 #include "app/session/label_colors.h"
 #include "app/ui/ticks.h"
+#include "app/values/table_json.h"
 #include "app/views/curves/section_data.h"
 #include "app/views/statistics/region_data.h"
 #include "codec/container/json_text.h"
@@ -62,17 +62,15 @@ Answer sectionsAt(const StatsRequest& request, const Question& question, double 
     const auto& places = curves.sections.place;
     const LengthUnit length =
         suitableLength(info.lengthUnit, places.empty() ? 0 : std::abs(places.back() - places.front()));
-    std::vector<std::string> heads{titleWithUnit(placeTitle(curves.query), length.name)};
-    std::vector<std::vector<std::string>> rows(places.size());
-    for (std::size_t p = 0; p < places.size(); ++p) rows[p] = {numberText(places[p] * length.perUnit)};
+    Table shown;
+    addColumn(shown, places, {.name = placeTitle(curves.query), .unit = length.name},
+              [&](double place) { return place * length.perUnit; });
     for (std::size_t c = 0; c < curves.query.channels.size(); ++c)
         for (std::size_t r = 0; r < looks.size(); ++r) {
             const auto& values = curves.sections.values[r][c];
             if (std::ranges::none_of(values, [](const auto& value) { return value.area > 0; })) continue;
             const volume::ComposedUnit unit = measureUnit(info, curves.query.channels[c], curves.velocity, show);
             const std::string& name = channels[static_cast<std::size_t>(curves.query.channels[c])].name;
-            heads.push_back(titleWithUnit(name + (looks.size() > 1 ? " " + looks[r].name : ""), unit.unit));
-            if (!curves.errors.empty()) heads.emplace_back("\u00b1");
             Json entry{{"time", time}, {"parameter", name}, {"region", looks[r].name}, {"place", places}};
             for (std::size_t m = 0; m < std::size(kSectionMeasureNames); ++m) {
                 const volume::ComposedUnit own =
@@ -88,76 +86,47 @@ Answer sectionsAt(const StatsRequest& request, const Question& question, double 
                     of["errors"].push_back(numberOrNull(errorOf(curves, c, value, SectionMeasure(m), own.factor)));
             }
             answer.json.push_back(std::move(entry));
-            for (std::size_t p = 0; p < places.size(); ++p) {
-                const double value = values[p].area > 0 ? measured(values[p], show, unit.factor) : std::nan("");
-                rows[p].push_back(std::isfinite(value) ? numberText(value) : "-");
-                if (curves.errors.empty()) continue;
-                const double error = errorOf(curves, c, values[p], show, unit.factor);
-                rows[p].push_back(std::isfinite(value) && std::isfinite(error) ? numberText(error) : "-");
-            }
+            const auto valueOf = [&](const auto& plane) {
+                return plane.area > 0 ? measured(plane, show, unit.factor) : std::nan("");
+            };
+            addColumn(shown, values, {.name = name + (looks.size() > 1 ? " " + looks[r].name : ""), .unit = unit.unit},
+                      valueOf);
+            if (curves.errors.empty()) continue;
+            addColumn(shown, values, {.name = "error of " + name, .head = "\u00b1"}, [&](const auto& plane) {
+                const double error = errorOf(curves, c, plane, show, unit.factor);
+                return std::isfinite(valueOf(plane)) && std::isfinite(error) ? error : std::nan("");
+            });
         }
-    answer.text = alignedTable(heads, rows, 0);
+    answer.text = textOf(shown);
+    return answer;
+}
+
+/// A table as text, CSV and JSON; the last two state the time.
+Answer answerOf(Table table, const Question& question, double time, bool first) {
+    Answer answer;
+    answer.text = textOf(table);
+    answer.notes = table.notes;
+    answer.json = jsonOf(table);
+    answer.units = unitsOf(table);
+    for (Json& row : answer.json) row["time"] = time;
+    if (question.several()) addTime(table, question.info().timeName, question.info().timeUnit, time);
+    answer.csv = csvOf(table, first);
     return answer;
 }
 
 Answer balanceAt(const StatsRequest& request, const Question& question, double time, bool first,
                  const Progress& progress) {
-    Answer answer;
     const RegionBalanceQuery query{question.balance, request.options.velocity, question.label, question.at(time)};
-    BalanceTable table = balanceTable(question.info(), readBalance(question.source, question.from, query, progress));
-    table.errors = question.errors;
-    answer.csv = balanceCsv(table, question.timeTitle(), question.several() ? csvNumber(time) : "", first);
-    answer.notes = table.notes;
-    std::vector<std::vector<std::string>> rows;
-    for (const BalanceRow& row : table.rows) {
-        rows.push_back(balanceCells(table, row));
-        answer.json.push_back({{"time", time},
-                               {"parameter", table.parameter},
-                               {"unit", table.unit},
-                               {"region", row.region},
-                               {"surface", row.surface},
-                               {"total", row.total},
-                               {"in", row.in},
-                               {"out", row.out},
-                               {"net", row.net},
-                               {"relative", numberOrNull(row.relative)},
-                               {"flow", row.flow},
-                               {"area", row.area},
-                               {"inside", numberOrNull(row.inside)}});
-        if (table.errors)
-            answer.json.back().update({{"error", numberOrNull(row.error)},
-                                       {"flowError", numberOrNull(row.flowError)},
-                                       {"insideError", numberOrNull(row.insideError)}});
-    }
-    answer.text = table.parameter + "\n" + alignedTable(balanceHeads(table), rows, 2);
+    BalanceTable balance = balanceTable(question.info(), readBalance(question.source, question.from, query, progress));
+    balance.errors = question.errors;
+    Answer answer = answerOf(tableOf(balance), question, time, first);
+    answer.text.insert(0, balance.parameter + "\n");
     return answer;
 }
 
 Answer regionsAt(const Question& question, double time, bool first, const Progress& progress) {
-    Answer answer;
     const std::vector<RegionRow> rows = regionRowsAt(question, time, progress);
-    const std::string& unit = question.info().lengthUnit;
-    answer.csv =
-        regionCsv(rows, unit, question.timeTitle(), question.several() ? csvNumber(time) : "", first, question.errors);
-    std::vector<std::vector<std::string>> cells;
-    for (const RegionRow& row : rows) {
-        cells.push_back(regionCells(row, unit, question.errors));
-        answer.json.push_back({{"time", time},
-                               {"parameter", row.parameter},
-                               {"unit", row.unit},
-                               {"region", row.region},
-                               {"samples", row.summary.samples},
-                               {"shareOfAll", row.ofAll},
-                               {"shareOfExisting", row.ofExisting},
-                               {"volume", row.summary.volume},
-                               {"mean", numberOrNull(row.summary.mean)},
-                               {"deviation", numberOrNull(row.summary.deviation)},
-                               {"min", numberOrNull(row.summary.min)},
-                               {"max", numberOrNull(row.summary.max)}});
-        if (question.errors) answer.json.back()["error"] = numberOrNull(row.error);
-    }
-    answer.text = alignedTable(regionHeads(question.errors), cells, 2);
-    return answer;
+    return answerOf(regionTable(rows, question.info().lengthUnit, question.errors), question, time, first);
 }
 
 /// Colour of a region as views draw it.
@@ -201,7 +170,11 @@ Answer answerAt(const StatsRequest& request, const Question& question, double ti
 }
 
 std::string textOf(const Answer& answer) {
-    const Json json{{"text", answer.text}, {"csv", answer.csv}, {"rows", answer.json}, {"notes", answer.notes}};
+    const Json json{{"text", answer.text},
+                    {"csv", answer.csv},
+                    {"rows", answer.json},
+                    {"units", answer.units},
+                    {"notes", answer.notes}};
     return jsonText(json);
 }
 
@@ -210,6 +183,7 @@ void addAnswer(Answer& sum, const std::string& later) {
     sum.text += answer["text"].get<std::string>();
     sum.csv += answer["csv"].get<std::string>();
     for (Json& row : answer["rows"]) sum.json.push_back(std::move(row));
+    sum.units = std::move(answer["units"]);
     sum.notes = answer["notes"].get<std::vector<std::string>>();
 }
 

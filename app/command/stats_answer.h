@@ -14,7 +14,7 @@ namespace tessera::app {
 /// Numbers as rows of a text, of CSV, and of JSON.
 struct Answer {
     std::string text, csv;
-    Json json = Json::array();
+    Json json = Json::array(), units = Json::object(); ///< units: by the keys of the rows
     std::vector<std::string> notes;
     std::vector<FigurePanel> panels;
 };

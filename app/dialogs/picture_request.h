@@ -16,7 +16,6 @@ struct PictureRequest {
     int columns = 0;             ///< of panels; 0: usualColumns
     glm::ivec2 size{1920, 1080}; ///< pixels
     float scale = 1;             ///< pixels per design pixel
-    bool controls = false;       ///< one pane with its rows of tools
     double dpi = 0; ///< pixels per inch on paper, where text has a size whatever that of the window; 0: none
     PictureGround ground = PictureGround::Shown;
     Decoration decoration = {};

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+
 /// The fonts of windows, pictures and figures.
 namespace tessera::app {
 
@@ -13,5 +15,9 @@ struct Typeface {
 };
 
 const Typeface& typeface(Face face);
+
+/// The width of a line of text in ems; characters that the font lacks, and all where it is not installed, are 0.56
+/// wide.
+double textWidth(std::string_view text, Face face = Face::Text);
 
 } // namespace tessera::app

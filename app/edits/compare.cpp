@@ -5,7 +5,6 @@
 #include "app/session/session_json.h"
 #include "codec/container/json_text.h"
 #include "codec/remote/address.h"
-#include "volume/base/csv_text.h"
 #include "volume/base/error.h"
 #include "volume/derived/other_source.h"
 
@@ -163,39 +162,6 @@ GridShape gridFor(int count, double width, double height) {
         best = {columns, rows};
     }
     return best;
-}
-
-std::string questionsCsv(const std::vector<CompareQuestion>& questions) {
-    std::string csv = "question,answer,seconds\n";
-    for (const CompareQuestion& each : questions)
-        csv += csvField(each.text) + "," + csvField(each.answer) + "," +
-               (each.seconds > 0 ? jsonText(toJson(each.seconds)) : std::string()) + "\n";
-    return csv;
-}
-
-std::string compareCsv(const std::vector<CompareRow>& rows, const std::string& timeTitle, const std::string& time,
-                       bool head) {
-    const auto number = [](double value) {
-        return std::isfinite(value) ? jsonText(toJson(value)) : std::string("inf");
-    };
-    std::string csv;
-    if (head)
-        csv += (time.empty() ? "" : csvField(timeTitle) + ",") +
-               "variant,differs,reference,ms per picture,samples,texture bytes,stored bytes,maximum (of 255),RMSE (of "
-               "255),PSNR (dB),SSIM,samples that differ,largest error of a sample,RMSE of samples,failure\n";
-    for (const CompareRow& row : rows) {
-        csv += (time.empty() ? "" : time + ",") + csvField(row.name) + "," + csvField(row.changes) + "," +
-               (row.reference ? "yes" : "no");
-        for (const double value : {row.milliseconds, row.samples, row.bytes, row.storedBytes})
-            csv += "," + number(value);
-        for (const double value : {row.maximum, row.rmse, row.psnr, row.ssim})
-            csv += "," + (row.measured ? number(value) : std::string());
-        for (const double value : {row.data ? double(row.data->differing) : 0, row.data ? row.data->largest : 0,
-                                   row.data ? row.data->rms : 0})
-            csv += "," + (row.data ? number(value) : std::string());
-        csv += "," + csvField(row.failure) + "\n";
-    }
-    return csv;
 }
 
 } // namespace tessera::app

@@ -46,10 +46,5 @@ struct CompareRow {
     double maximum = 0, rmse = 0, psnr = 0, ssim = 0;
     std::optional<volume::SourceDifference> data; ///< of the first layer's samples, where both have them
 };
-/// One line per variant. `time` as text stands first where it is not empty, with the head `timeTitle`.
-std::string compareCsv(const std::vector<CompareRow>& rows, const std::string& timeTitle = {},
-                       const std::string& time = {}, bool head = true);
-/// Questions, answers and the seconds they took.
-std::string questionsCsv(const std::vector<CompareQuestion>& questions);
 
 } // namespace tessera::app

@@ -57,6 +57,10 @@ PicturePlane planeAcross(int right, int up, int normal, double position) {
     return plane;
 }
 
+ImVec2 PlaneFrame::pixel(glm::dvec2 at) const {
+    return plot.pixel(at.x * perUnit.x, at.y * perUnit.y);
+}
+
 std::vector<glm::dvec3> planeSection(const SpacePlane& plane, const volume::Box& box) {
     std::vector<glm::dvec3> corners;
     const double tiny = 1e-12 * glm::length(box.size());

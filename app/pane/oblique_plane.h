@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/pane/plot.h"
 #include "app/session/session.h"
 #include "vis/scene/camera.h"
 #include "volume/field/lattice.h"
@@ -41,6 +42,20 @@ struct PicturePlane {
 };
 /// The plane across an axis at a position along it, as the axes `right` and `up` run in its picture.
 PicturePlane planeAcross(int right, int up, int normal, double position);
+
+/// The picture of a plane on screen, as SpaceFrame (app/pane/axes3d.h) is of space: the values of the plot are
+/// distances along the plane's directions times the factors.
+struct PlaneFrame {
+    PlotFrame plot;
+    PicturePlane plane;
+    glm::dvec2 perUnit{1};
+    vis::WorldFrame world;
+    volume::Box bounds; ///< physical
+
+    ImVec2 pixel(glm::dvec2 along) const;
+    ImVec2 pixel(glm::dvec3 physical) const { return pixel(plane.along(physical)); }
+    glm::dvec2 along(ImVec2 pixel) const { return plot.data(pixel) / perUnit; }
+};
 
 /// Corners of the part of the plane in the box, in order around it; empty where the plane misses the box.
 std::vector<glm::dvec3> planeSection(const SpacePlane& plane, const volume::Box& box);

@@ -25,21 +25,13 @@ TickLabels labelsOf(Range range, int most, bool noted) {
 }
 
 /// As many ticks as fit without the labels touching. `noted`: numbers may be shortened, which the note says.
-TickLabels fittingTicks(AxisSide side, Range range, float length, bool noted) {
-    const float gap = em() * (side == AxisSide::Bottom ? 0.9f : 0.1f);
-    TickLabels ticks;
-    for (int most : {10, 8, 6, 5, 4, 3, 2, 1}) {
-        ticks = labelsOf(range, most, noted);
-        float extent = 0;
-        for (const std::string& text : ticks.texts) {
-            const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-            extent = std::max(extent, side == AxisSide::Bottom ? size.x : size.y);
-        }
-        const double span = range.hi - range.lo;
-        const double step = ticks.values.size() > 1 ? ticks.values[1] - ticks.values[0] : span;
-        if (span <= 0 || step / span * length >= extent + gap) break;
-    }
-    return ticks;
+TickLabels ticksOn(AxisSide side, Range range, float length, bool noted) {
+    const bool bottom = side == AxisSide::Bottom;
+    return fittingTicks(range, double(length), double(em() * (bottom ? 0.9f : 0.1f)), noted,
+                        [&](const std::string& text) {
+                            const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+                            return double(bottom ? size.x : size.y);
+                        });
 }
 
 } // namespace
@@ -112,7 +104,7 @@ float axisRoom(AxisSide side, Range range, TitlePlace title) {
 }
 
 std::string axisNote(AxisSide side, Range range, float length) {
-    return fittingTicks(side, range, length, true).note;
+    return ticksOn(side, range, length, true).note;
 }
 
 ColumnHeights columnHeights(float room, std::size_t plots) {
@@ -132,7 +124,7 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
     const Range range = bottom ? frame.x : frame.y;
     const bool titled = !title.empty() || !unit.empty();
     const TickLabels ticks =
-        fittingTicks(side, range, bottom ? frame.width() : frame.height(), titled || options.noteElsewhere);
+        ticksOn(side, range, bottom ? frame.width() : frame.height(), titled || options.noteElsewhere);
     const PlotColors colors = plotColors();
     // If not all fits: the note comes first, since the numbers are wrong without it; then the title, then the unit; of
     // a title that does not fit alone, the unit comes before its last letters.

@@ -1,6 +1,8 @@
 #include "app/pane/tool_row.h"
 
+#include "app/drawing/drawing.h"
 #include "app/pane/controls.h"
+#include "app/ui/time_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,10 +49,11 @@ ToolRow::~ToolRow() {
 }
 
 bool ToolRow::fits(float width) const {
-    return places_.fits(width, ImGui::GetStyle().ItemSpacing.x);
+    return !context_.figure && places_.fits(width, ImGui::GetStyle().ItemSpacing.x);
 }
 
 bool ToolRow::next(float width, float gap) {
+    if (context_.figure) return false;
     const float space = gap < 0 ? ImGui::GetStyle().ItemSpacing.x : gap;
     const ToolPlace place = places_.next(width, space);
     if (place == ToolPlace::SameRow) ImGui::SameLine(0, space);
@@ -64,6 +67,52 @@ bool ToolRow::next(float width, float gap) {
     // In rows of its own.
     if (menuPlaces_.next(width, space) == ToolPlace::SameRow && menu_ == Menu::Open) ImGui::SameLine(0, space);
     return menu_ == Menu::Open;
+}
+
+void exportMenu(ViewContext& context, ToolRow& tools, ViewExport asked, bool atOneTime, const std::string& numbers) {
+    std::string& name = asked.name; // as a file
+    const std::string title = name;
+    std::replace(name.begin(), name.end(), '/', '_');
+    if (asked.table && !asked.csv)
+        asked.csv = [table = asked.table](const Progress& progress) { return csvOf(table(progress)); };
+    const auto described = [&]() -> ViewExport { // tables and pictures state the origin of their numbers
+        if (!context.numbers) return asked;
+        const volume::DatasetInfo& info = context.numbers->info();
+        std::string origin = numbers.empty() ? originText(context.origin, info) : numbers;
+        if (atOneTime && info.times.size() > 1) origin += ", at " + timeText(info, context.session.time);
+        ViewExport made = asked;
+        if (asked.csv)
+            made.csv = [csv = asked.csv, origin](const Progress& progress) {
+                return "# numbers: " + origin + "\n" + csv(progress);
+            };
+        if (asked.figure)
+            made.figure = [figure = asked.figure, origin](const PageForm& form, const Progress& progress) {
+                VectorPage drawing = figure(form, progress);
+                drawing.numbers = origin;
+                return drawing;
+            };
+        return made;
+    };
+    if (context.offerExport) context.offerExport(described());
+    if (!tools.next(buttonWidth("Export"))) return;
+    ImGui::BeginDisabled(!context.exportText);
+    if (ImGui::Button("Export")) ImGui::OpenPopup("export");
+    ImGui::EndDisabled();
+    if (!ImGui::BeginPopup("export")) return;
+    const ViewExport made = described();
+    if (ImGui::MenuItem("Picture (PNG)...") && context.runCommand) context.runCommand("Save picture...");
+    for (const auto& [item, suffix] :
+         {std::pair{"Vector graphics (SVG)...", "svg"}, {"Vector graphics (PDF)...", "pdf"}})
+        if (made.figure && context.exportFigure && ImGui::MenuItem(item))
+            context.exportFigure(name + "." + suffix,
+                                 [figure = made.figure](const Progress& progress) { return figure({}, progress); });
+    if (made.csv && ImGui::MenuItem("Copy table (CSV)"))
+        context.jobs.start("copy " + title, "Copying " + title,
+                           [csv = made.csv](const Progress& progress) -> Jobs::Finish {
+                               return [text = csv(progress)] { ImGui::SetClipboardText(text.c_str()); };
+                           });
+    if (made.csv && ImGui::MenuItem("Table (CSV)...")) context.exportText(name + ".csv", made.csv);
+    ImGui::EndPopup();
 }
 
 } // namespace tessera::app

@@ -38,7 +38,7 @@ private:
     bool full_ = false;
 };
 
-/// The tools of one frame, drawn in sequence: each only where next() says so.
+/// The tools of one frame, drawn in sequence: each only where next() says so. A figure has none, nor room for them.
 class ToolRow {
 public:
     explicit ToolRow(const ViewContext& context);
@@ -46,7 +46,8 @@ public:
     ToolRow& operator=(const ToolRow&) = delete;
     ~ToolRow();
 
-    /// Goes to the place of a tool of this width, pixels. False where it is in the menu and that is closed.
+    /// Goes to the place of a tool of this width, pixels. False where it is in the menu and that is closed, and in a
+    /// figure.
     /// `gap`: pixels to the one before it; negative: as the style has it.
     bool next(float width, float gap = -1);
     /// The width of the last tool, `least` so far, if it is widened to `most` as far as its row has room, pixels.
@@ -70,5 +71,11 @@ private:
     ToolPlaces places_;
     enum class Menu { None, Closed, Open } menu_ = Menu::None;
 };
+
+/// A tool whose menu exports what a view shows: its picture, vector graphics, a table. Offers them also where there is
+/// no menu. `atOneTime`: it shows the time of the session alone, which tables then state. `numbers`: where they come
+/// from, if not all from the samples.
+void exportMenu(ViewContext& context, ToolRow& tools, ViewExport made, bool atOneTime = true,
+                const std::string& numbers = {});
 
 } // namespace tessera::app

@@ -89,6 +89,8 @@ struct ViewContext {
     bool compiling = false;   ///< set by a view whose picture waits for a program of the renderer
     bool interacting = false; ///< some edit is in progress (mouse held on a control): draw at reduced size
 
+    /// Whether anybody can point at the pane, press and drag there: not so in a picture for a page.
+    bool takesInput() const { return !figure; }
     /// Whether what is shown is not final.
     bool unfinished() const { return busy || awaiting; }
     /// Takes the flags of a context for a part of the view over.

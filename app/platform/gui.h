@@ -73,12 +73,12 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Runs frames of a workbench in a framebuffer of its own, as a window of this size would, until nothing is busy, and
-/// reads the last one. Needs what OffscreenFrames does. Throws MachineError when the size is too large,
-/// Cancelled.
+/// Draws frames of a workbench until nothing is busy. Throws MachineError, Cancelled.
+void drawUntilDone(OffscreenFrames& target, Workbench& workbench, float scale);
+
+/// The same in a framebuffer of its own, as a window of this size would, and reads the last frame. Needs what
+/// OffscreenFrames does. Throws MachineError also when the size is too large.
 vis::Image drawUntilDone(Workbench& workbench, glm::ivec2 size, float scale);
 
-/// The same as vector graphics, `points` of the page per pixel.
-VectorPage drawPageUntilDone(Workbench& workbench, glm::ivec2 size, float scale, double points);
 
 } // namespace tessera::app

@@ -14,6 +14,29 @@ namespace tessera::app {
 
 namespace {
 
+/// Points of a page per pixel of a picture; on screens there are 96 pixels in an inch.
+double pointsPerPixel(const PictureRequest& request) {
+    constexpr double kOfScreens = 96;
+    return 72 / (request.dpi > 0 ? request.dpi : kOfScreens);
+}
+
+} // namespace
+
+PageForm pageForm(const PictureRequest& request, Theme theme) {
+    const double points = pointsPerPixel(request);
+    const Decoration& shown = request.decoration;
+    return {.size = glm::dvec2(request.size) * points,
+            .text = textPixels(request.scale) * points,
+            .dark = request.ground == PictureGround::Shown && theme == Theme::Dark,
+            .legend = shown.legend,
+            .axes = shown.axes,
+            .title = shown.title,
+            .cursor = shown.cursor,
+            .outlines = shown.outlines};
+}
+
+namespace {
+
 /// Installs a session in a workbench without a window, and calls `draw(workbench)`.
 template <class Draw>
 auto withWorkbench(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
@@ -28,7 +51,6 @@ auto withWorkbench(const SessionDocument& document, const Sources& sources, std:
     Workbench workbench({.renderer = std::move(renderer),
                          .headless = true,
                          .onlyPane = request.pane,
-                         .controls = request.controls,
                          .decoration = request.decoration,
                          .whiteGround = white});
     Opened opened;
@@ -45,17 +67,17 @@ auto withWorkbench(const SessionDocument& document, const Sources& sources, std:
     return draw(workbench);
 }
 
-/// Points of a page per pixel of a picture; on screens there are 96 pixels in an inch.
-double pointsPerPixel(const PictureRequest& request) {
-    constexpr double kOfScreens = 96;
-    return 72 / (request.dpi > 0 ? request.dpi : kOfScreens);
-}
-
+/// A view as a page: its own figure, else what ImGui draws of it.
 VectorPage pageOfPane(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
                       const PictureRequest& request, const Inspect& inspect) {
     return withWorkbench(document, sources, std::move(renderer), request, [&](Workbench& workbench) {
-        VectorPage page = drawPageUntilDone(workbench, request.size, request.scale, pointsPerPixel(request));
+        OffscreenFrames target(request.size, false);
+        drawUntilDone(target, workbench, request.scale);
         if (inspect) inspect(workbench);
+        const ViewExport* offered = workbench.exported(request.pane);
+        if (offered && offered->figure)
+            return offered->figure(pageForm(request, document.session.appearance.theme), {});
+        VectorPage page = target.page(workbench, pointsPerPixel(request));
         page.numbers = originText(sources.origin, sources.numbers->info());
         return page;
     });
@@ -159,26 +181,15 @@ PictureMaker::PictureMaker(const vis::RendererOptions& options) : impl_(std::mak
 
 PictureMaker::~PictureMaker() = default;
 
-std::string PictureMaker::exportText(const SessionDocument& document, const Sources& sources, PictureRequest request,
-                                     const std::string& path, const Progress& progress) {
-    const std::string suffix = vectorSuffix(path);
-    const bool table = suffix.empty();
+std::string PictureMaker::table(const SessionDocument& document, const Sources& sources, const PictureRequest& request,
+                                const Progress& progress) {
     std::string text;
-    request.controls = true;
     renderAndInspect(document, sources, impl_->renderer, request, [&](const Workbench& workbench) {
         const ViewExport* offered = workbench.exported(request.pane);
-        if (offered && table && offered->csv) text = offered->csv(progress);
-        if (!offered || table || !offered->figure) return;
-        VectorPage page = offered->figure({}, progress);
-        page.session = printSession(document, path);
-        text = fileOf(page, suffix);
+        if (offered && offered->csv) text = offered->csv(progress);
     });
-    if (!text.empty()) return text;
-    if (table) throw Error("has no table of what it shows", "--view", request.pane);
-    request.controls = false;
-    VectorPage page = pageOfRequest(document, sources, impl_->renderer, request, {});
-    page.session = printSession(document, path);
-    return fileOf(page, suffix);
+    if (text.empty()) throw Error("has no table of what it shows", "--view", request.pane);
+    return text;
 }
 
 VectorPage PictureMaker::page(const SessionDocument& document, const Sources& sources, const PictureRequest& request) {

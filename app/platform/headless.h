@@ -6,12 +6,14 @@
 /// The workbench without a window: the same frames, drawn into memory.
 namespace tessera::app {
 
+/// The page that a request asks for, on the ground of a theme or on white.
+PageForm pageForm(const PictureRequest& request, Theme theme);
+
 /// Called with the workbench after it has drawn its picture.
 using Inspect = std::function<void(const Workbench&)>;
 
 /// Writes a picture of a session to a file, in the GL context that is current if the renderer needs one: what the
-/// window would show. Its suffix
-/// says the form; its file contains the session. Throws Error, MachineError.
+/// window would show (.png), or the page of it (.svg, .pdf). Its file contains the session. Throws Error, MachineError.
 void writePicture(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
                   const PictureRequest& request, const std::string& path, const Inspect& inspect = {});
 
@@ -25,12 +27,12 @@ public:
     PictureMaker(const PictureMaker&) = delete;
     PictureMaker& operator=(const PictureMaker&) = delete;
 
-    /// What Export in the view of request.pane writes to a path: a figure (.svg, .pdf), which contains the session,
-    /// else a table; figures of views that have none of their own are their page. Throws Error where there is no table.
-    std::string exportText(const SessionDocument& document, const Sources& sources, PictureRequest request,
-                           const std::string& path, const Progress& progress = {});
+    /// The table of the view of request.pane as CSV. Throws Error where it has none.
+    std::string table(const SessionDocument& document, const Sources& sources, const PictureRequest& request,
+                      const Progress& progress = {});
 
-    /// What render() would draw, as vector graphics.
+    /// The page that write() writes as SVG or PDF, of the size that is asked for: the figures of views that have one of
+    /// their own, else what render() would draw, as vector graphics.
     VectorPage page(const SessionDocument& document, const Sources& sources, const PictureRequest& request);
 
     /// writePicture.

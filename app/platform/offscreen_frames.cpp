@@ -92,9 +92,7 @@ void OffscreenFrames::finish() {
     if (Gui::textures() == vis::TexturesIn::OpenGl) glFinish();
 }
 
-namespace {
-
-void drawUntilQuiet(OffscreenFrames& target, Workbench& workbench, float scale) {
+void drawUntilDone(OffscreenFrames& target, Workbench& workbench, float scale) {
     // Several quiet frames in a row: sizes that ImGui learns in one frame are right in the next.
     int quiet = 0;
     for (int frames = 0; quiet < 3; ++frames) {
@@ -109,18 +107,10 @@ void drawUntilQuiet(OffscreenFrames& target, Workbench& workbench, float scale) 
     }
 }
 
-} // namespace
-
 vis::Image drawUntilDone(Workbench& workbench, glm::ivec2 size, float scale) {
     OffscreenFrames target(size);
-    drawUntilQuiet(target, workbench, scale);
+    drawUntilDone(target, workbench, scale);
     return target.read();
-}
-
-VectorPage drawPageUntilDone(Workbench& workbench, glm::ivec2 size, float scale, double points) {
-    OffscreenFrames target(size, false);
-    drawUntilQuiet(target, workbench, scale);
-    return target.page(workbench, points);
 }
 
 } // namespace tessera::app

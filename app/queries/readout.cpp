@@ -1,7 +1,6 @@
 #include "app/queries/readout.h"
 
 #include "app/pane/axis_label.h"
-#include "app/pane/figure.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/fitted_text.h"
 #include "app/ui/ticks.h"
@@ -21,12 +20,6 @@ namespace {
 
 constexpr std::size_t kCacheBytes = std::size_t(64) << 20;
 
-std::string labelName(const volume::Parameter& parameter, double value) {
-    for (const volume::Label& label : parameter.labels)
-        if (label.value == static_cast<int>(std::lround(value))) return label.name;
-    return formatNumber(value);
-}
-
 /// The region of the point by the label of a parameter's parts, else by the first label; "" if there is none.
 std::string regionText(const volume::DatasetInfo& info, const Readout& readout, int parameter) {
     const volume::Parameter& own = info.parameters[static_cast<std::size_t>(parameter)];
@@ -39,13 +32,26 @@ std::string regionText(const volume::DatasetInfo& info, const Readout& readout, 
     return value ? volume::labelName(volume::parameterOf(info, *label), static_cast<int>(std::lround(*value))) : "";
 }
 
-std::string valueText(const volume::DatasetInfo& info, const volume::Channel& channel,
-                      const std::optional<double>& value) {
-    if (!value) return "absent";
-    const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channel.parameter)];
-    if (parameter.categorical) return labelName(parameter, *value);
-    const Range range = info.channelRange(channel);
-    return formatNumber(*value, (range.hi - range.lo) / 1000);
+/// Values of a column of the table, by channel: interpolated or nearest.
+TableColumn valuesColumn(TableColumn column, const volume::DatasetInfo& info, const Readout& readout,
+                         std::optional<double> volume::ProbeValue::*of) {
+    for (std::size_t i = 0; i < readout.channels.size() && i < readout.values.size(); ++i) {
+        const volume::Channel& channel = readout.channels[i];
+        const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channel.parameter)];
+        const std::optional<double> value = readout.values[i].*of;
+        const Range range = info.channelRange(channel);
+        column.numbers.push_back(value.value_or(std::nan("")));
+        column.resolutions.push_back(parameter.categorical ? 0 : (range.hi - range.lo) / 1000);
+        if (!value) column.words[i] = "absent";
+        if (!value || !parameter.categorical) continue;
+        for (const volume::Label& label : parameter.labels)
+            if (label.value == static_cast<int>(std::lround(*value))) column.words.try_emplace(i, label.name);
+    }
+    return column;
+}
+
+TableColumn valuesColumn(const volume::DatasetInfo& info, const Readout& readout) {
+    return valuesColumn({.name = "interpolated", .head = "Value"}, info, readout, &volume::ProbeValue::interpolated);
 }
 
 } // namespace
@@ -117,12 +123,13 @@ std::vector<std::string> placeTexts(const ViewContext& context) {
 std::vector<std::string> valueTexts(const volume::DatasetInfo& info, const Readout& readout, bool units,
                                     float room = 1e6f) {
     std::vector<std::string> values;
-    for (std::size_t i = 0; i < readout.channels.size() && i < readout.values.size(); ++i) {
+    const TableColumn column = valuesColumn(info, readout);
+    for (std::size_t i = 0; i < column.numbers.size(); ++i) {
         const volume::Channel& channel = readout.channels[i];
         const std::optional<double>& value = readout.values[i].interpolated;
         // Components say little beside the magnitude.
         if (!value || channel.name.find('.') != std::string::npos) continue;
-        const std::string text = valueText(info, channel, value);
+        const std::string text = cellOf(column, i);
         const std::string unit = units && !channel.unit.empty() ? " " + prettyUnit(channel.unit) : std::string();
         // Labels without a name of their own are called "region 1".
         if (text.starts_with(channel.name + " ")) {
@@ -221,8 +228,9 @@ void drawRunningReadout(const ViewContext& context, const Readout& readout, floa
 void drawReadout(ViewContext& context, const Readout& readout) {
     const volume::DatasetInfo& info = context.numbers->info();
     const glm::ivec3 index = info.lattice.nearest(context.session.cursor);
-    const std::vector<std::string> heads = readoutHeads(info);
-    const std::vector<std::vector<std::string>> rows = readoutRows(info, readout);
+    const Table table = readoutTable(info, readout);
+    std::vector<std::string> heads = headsOf(table);
+    const std::vector<std::vector<std::string>> rows = cellsOf(table);
     const std::size_t columns = columnsThatFit(info, readout, rows, heads.size());
     if (columns == 0) return drawRunningReadout(context, readout, ImGui::GetContentRegionAvail().y);
     drawFlowing(placeTexts(context));
@@ -244,10 +252,8 @@ void drawReadout(ViewContext& context, const Readout& readout) {
         return;
     for (std::size_t c = 0; c < columns; ++c)
         ImGui::TableSetupColumn(heads[c].c_str(), ImGuiTableColumnFlags_WidthStretch, kColumnWeights[c]);
-    if (columns > 3)
-        tableHeader({"Parameter", "Value", "Nearest", "Region"});
-    else
-        tableHeader({"Parameter", "Value", "Nearest"});
+    heads.resize(columns);
+    tableHeader(heads);
     const auto cell = [](const std::string& text, bool faint) {
         const std::string shown = fitText(text, ImGui::GetContentRegionAvail().x);
         textRight(shown, faint);
@@ -269,53 +275,45 @@ void drawReadout(ViewContext& context, const Readout& readout) {
     ImGui::EndTable();
 }
 
-std::vector<std::string> readoutHeads(const volume::DatasetInfo& info) {
-    std::vector<std::string> heads{"Parameter", "Value", "Nearest"};
-    if (volume::labelChannel(info)) heads.emplace_back("Region");
-    return heads;
-}
-
-std::vector<std::vector<std::string>> readoutRows(const volume::DatasetInfo& info, const Readout& readout) {
-    const bool regions = volume::labelChannel(info).has_value();
-    std::vector<std::vector<std::string>> rows;
+Table readoutTable(const volume::DatasetInfo& info, const Readout& readout) {
+    Table table;
+    TableColumn parameter{.name = "parameter", .head = "Parameter"}, unit{.name = "unit", .shown = false},
+        region{.name = "region", .head = "Region"};
     for (std::size_t i = 0; i < readout.channels.size() && i < readout.values.size(); ++i) {
         const volume::Channel& channel = readout.channels[i];
-        const volume::ProbeValue& value = readout.values[i];
-        rows.push_back({titleWithUnit(channel.name, channel.unit), valueText(info, channel, value.interpolated),
-                        valueText(info, channel, value.nearest)});
-        if (regions) rows.back().push_back(regionText(info, readout, channel.parameter));
+        parameter.texts.push_back(channel.name);
+        parameter.words[i] = titleWithUnit(channel.name, channel.unit);
+        unit.texts.push_back(channel.unit);
+        region.texts.push_back(regionText(info, readout, channel.parameter));
     }
-    return rows;
+    table.columns = {parameter, unit, valuesColumn(info, readout),
+                     valuesColumn({.name = "nearest", .head = "Nearest"}, info, readout, &volume::ProbeValue::nearest)};
+    if (volume::labelChannel(info)) table.columns.push_back(region);
+    return table;
 }
 
 std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, const Readout& readout) {
-    const auto number = [](const std::optional<double>& value) {
-        char text[32] = "";
-        if (value) std::snprintf(text, sizeof text, "%.9g", *value);
-        return std::string(text);
+    Table table = readoutTable(info, readout);
+    std::ptrdiff_t at = 0;
+    const auto put = [&](const std::string& name, const std::string& unit, double value) {
+        std::vector<TableColumn>& columns = table.columns;
+        columns[0].texts.insert(columns[0].texts.begin() + at, name);
+        columns[1].texts.insert(columns[1].texts.begin() + at, unit);
+        columns[2].numbers.insert(columns[2].numbers.begin() + at, value);
+        columns[3].numbers.insert(columns[3].numbers.begin() + at, std::nan(""));
+        if (columns.size() > 4) columns[4].texts.insert(columns[4].texts.begin() + at, "");
+        ++at;
     };
-    const bool regions = volume::labelChannel(info).has_value();
-    std::string csv =
-        regions ? "parameter,unit,interpolated,nearest,region\n" : "parameter,unit,interpolated,nearest\n";
-    const std::string end = regions ? ",\n" : "\n";
     const AxisLabels labels = axisLabels(session, info);
     for (int axis = 0; axis < 3; ++axis) {
         const bool time = session.data.timeAxis && static_cast<int>(session.data.timeAxis->axis) == axis;
         const auto& [name, unit] = labels[static_cast<std::size_t>(axis)];
-        csv += std::string(name) + "," + csvField(time ? unit.name : info.lengthUnit) + "," +
-               number(session.cursor[axis] * (time ? unit.perUnit : 1)) + "," + end;
+        put(name, time ? unit.name : info.lengthUnit, session.cursor[axis] * (time ? unit.perUnit : 1));
     }
-    csv += csvField(info.timeName) + "," + csvField(info.timeUnit) + "," + number(session.time) + "," + end;
+    put(info.timeName, info.timeUnit, session.time);
     for (const volume::Quantity& quantity : info.quantities)
-        csv += csvField(quantity.name) + "," + csvField(quantity.unit) + "," +
-               number(volume::valueAt(info.times, quantity.values, session.time)) + "," + end;
-    for (std::size_t i = 0; i < readout.channels.size() && i < readout.values.size(); ++i) {
-        const volume::ProbeValue& value = readout.values[i];
-        csv += csvField(readout.channels[i].name) + "," + csvField(readout.channels[i].unit) + "," +
-               number(value.interpolated) + "," + number(value.nearest) +
-               (regions ? "," + csvField(regionText(info, readout, readout.channels[i].parameter)) : "") + "\n";
-    }
-    return csv;
+        put(quantity.name, quantity.unit, volume::valueAt(info.times, quantity.values, session.time));
+    return csvOf(table);
 }
 
 } // namespace tessera::app

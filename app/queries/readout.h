@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/queries/async_query.h"
+#include "app/values/table.h"
 #include "volume/bricks/brick_cache.h"
 #include "volume/field/time_pair.h"
 #include "volume/reconstruct/probe.h"
@@ -45,13 +46,10 @@ std::string readoutText(const ViewContext& context, const Readout& readout);
 /// Pixels that the table needs.
 float readoutHeight(const Readout& readout);
 
-/// The table as texts: parameter with unit, value, nearest and, where a label says regions, the region that the point
-/// lies in (of a parameter whose regions are kept apart, by their label).
-std::vector<std::string> readoutHeads(const volume::DatasetInfo& info);
-std::vector<std::vector<std::string>> readoutRows(const volume::DatasetInfo& info, const Readout& readout);
-
-/// The same as comma-separated text: parameter, unit, interpolated, nearest and, where a label says it, region; absent
-/// values are empty.
+/// Every parameter's value, the nearest sample's and, where a label says regions, the region that the point lies in (of
+/// a parameter whose regions are kept apart, by their label).
+Table readoutTable(const volume::DatasetInfo& info, const Readout& readout);
+/// The same as CSV, after rows for the place, the time and the quantities over time.
 std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, const Readout& readout);
 
 } // namespace tessera::app

@@ -122,6 +122,7 @@ inline constexpr std::tuple kViewKinds{
                                           .help = "Three orthogonal slices, with the values at the cross-hair",
                                           .words = "planes cuts sections 2d contour contours isolines",
                                           .figure = true,
+                                          .csv = true,
                                           .leastWidth = 220,
                                           .leastHeight = 170}},
     ViewKind<ScatterMatrixView, drawScatterMatrixView>{
@@ -162,6 +163,7 @@ inline constexpr std::tuple kViewKinds{
         {.title = "Statistics",
          .help = "Statistics of every parameter inside and outside the selection",
          .words = "mean average minimum maximum numbers table",
+         .figure = true,
          .csv = true,
          .leastWidth = 210,
          .leastHeight = 130},

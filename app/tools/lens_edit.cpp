@@ -233,59 +233,47 @@ LensPicture lensesInSpace(const SpaceFrame& frame, const Session& session) {
                 }};
 }
 
-/// The picture of a slice.
-struct LensSlice {
-    PlotFrame frame;
-    PicturePlane plane;
-    glm::dvec2 perUnit;
+bool cutsLens(const PlaneFrame& frame, const vis::PlacedLens& lens) {
+    const glm::dvec3 right = glm::normalize(frame.plane.right * frame.world.scale),
+                     up = glm::normalize(frame.plane.up * frame.world.scale);
+    return !lensSection(lens, frame.world.toWorld(frame.plane.at), right, up).empty();
+}
 
-    ImVec2 pixel(glm::dvec3 physical) const {
-        const glm::dvec2 at = plane.along(physical) * perUnit;
-        return frame.pixel(at.x, at.y);
-    }
-    glm::dvec3 place(ImVec2 pixel) const { return plane.placeAt(frame.data(pixel) / perUnit); }
-    bool shows(const vis::WorldFrame& world, const vis::PlacedLens& lens) const {
-        const glm::dvec3 right = glm::normalize(plane.right * world.scale), up = glm::normalize(plane.up * world.scale);
-        return !lensSection(lens, world.toWorld(plane.at), right, up).empty();
-    }
-};
-
-LensHandles handlesInSlice(const LensSlice& slice, const vis::WorldFrame& world, const vis::PlacedLens& lens) {
+LensHandles lensHandles(const PlaneFrame& frame, const vis::PlacedLens& lens) {
     LensHandles handles;
-    const ImVec2 middle = slice.pixel(world.toPhysical(lens.center));
+    const ImVec2 middle = frame.pixel(frame.world.toPhysical(lens.center));
     handles.middle = middle;
     for (int i = 0; i < (lens.shape == vis::LensShape::Disc ? 2 : 3); ++i) {
-        const ImVec2 end = slice.pixel(world.toPhysical(lens.center + lens.fromUnit[i]));
+        const ImVec2 end = frame.pixel(frame.world.toPhysical(lens.center + lens.fromUnit[i]));
         if (distance(end, middle) > em() * kShortest) handles.axes[i] = end;
     }
     return handles;
 }
 
 /// The topmost enabled lens that a slice shows at a pixel, or whose dot is there; -1 for none.
-int lensInSlice(const LensSlice& slice, const Session& session, const vis::WorldFrame& world, ImVec2 at) {
+int lensUnder(const PlaneFrame& frame, const Session& session, ImVec2 at) {
     for (int i = static_cast<int>(session.lenses.size()) - 1; i >= 0; --i) {
-        const auto lens = placed(world, session, i);
+        const auto lens = placed(frame.world, session, i);
         if (!lens) continue;
-        if (lens->radius(world.toWorld(slice.place(at))) < 1) return i;
-        const bool onDot = distance(slice.pixel(world.toPhysical(lens->center)), at) < em() * kGrip;
-        if (onDot && slice.shows(world, *lens)) return i;
+        if (lens->radius(frame.world.toWorld(frame.plane.placeAt(frame.along(at)))) < 1) return i;
+        const bool onDot = distance(frame.pixel(frame.world.toPhysical(lens->center)), at) < em() * kGrip;
+        if (onDot && cutsLens(frame, *lens)) return i;
     }
     return -1;
 }
 
-LensPicture lensesInSlice(const LensSlice& slice, const Session& session, const volume::Box& bounds) {
-    const vis::WorldFrame world = vis::worldFrame(bounds, session.stretch);
-    return {.world = world,
-            .bounds = bounds,
+LensPicture lensesInSlice(const PlaneFrame& frame, const Session& session) {
+    return {.world = frame.world,
+            .bounds = frame.bounds,
             .handles =
-                [slice, world](const vis::PlacedLens& lens) {
-                    return slice.shows(world, lens) ? handlesInSlice(slice, world, lens) : LensHandles{};
+                [&frame](const vis::PlacedLens& lens) {
+                    return cutsLens(frame, lens) ? lensHandles(frame, lens) : LensHandles{};
                 },
-            .under = [slice, world, &session](ImVec2 at) { return lensInSlice(slice, session, world, at); },
+            .under = [&frame, &session](ImVec2 at) { return lensUnder(frame, session, at); },
             .dragged =
-                [slice](glm::dvec3 from, ImVec2 start, ImVec2 mouse) {
-                    const glm::dvec2 by = (slice.frame.data(mouse) - slice.frame.data(start)) / slice.perUnit;
-                    return from + slice.plane.right * by.x + slice.plane.up * by.y;
+                [&frame](glm::dvec3 from, ImVec2 start, ImVec2 mouse) {
+                    const glm::dvec2 by = frame.along(mouse) - frame.along(start);
+                    return from + frame.plane.right * by.x + frame.plane.up * by.y;
                 }};
 }
 
@@ -332,22 +320,20 @@ bool followPointer(Session& session, const SpaceFrame& frame, bool hovered) {
     return hovered && followWith(session, frame.bounds, under, to);
 }
 
-bool followPointer(Session& session, const volume::Box& bounds, const PlotFrame& frame, const PicturePlane& plane,
-                   glm::dvec2 perUnit, bool hovered) {
-    const LensSlice slice{frame, plane, perUnit};
-    const vis::WorldFrame world = vis::worldFrame(bounds, session.stretch);
-    const auto to = [&](const vis::Lens&) { return std::optional(slice.place(ImGui::GetIO().MousePos)); };
-    const auto under = [&](ImVec2 at) { return lensInSlice(slice, session, world, at); };
-    return hovered && followWith(session, bounds, under, to);
+bool followPointer(Session& session, const PlaneFrame& frame, bool hovered) {
+    const auto to = [&](const vis::Lens&) {
+        return std::optional(frame.plane.placeAt(frame.along(ImGui::GetIO().MousePos)));
+    };
+    const auto under = [&](ImVec2 at) { return lensUnder(frame, session, at); };
+    return hovered && followWith(session, frame.bounds, under, to);
 }
 
 bool editLenses(LensDrag& drag, Session& session, const SpaceFrame& frame, bool hovered) {
     return editIn(drag, session, lensesInSpace(frame, session), hovered);
 }
 
-bool editLenses(LensDrag& drag, Session& session, const volume::Box& bounds, const PlotFrame& frame,
-                const PicturePlane& plane, glm::dvec2 perUnit, bool hovered) {
-    return editIn(drag, session, lensesInSlice({frame, plane, perUnit}, session, bounds), hovered);
+bool editLenses(LensDrag& drag, Session& session, const PlaneFrame& frame, bool hovered) {
+    return editIn(drag, session, lensesInSlice(frame, session), hovered);
 }
 
 void drawLensHandles(ImDrawList& draw, const LensDrag& drag, const SpaceFrame& frame, const Session& session) {
@@ -355,12 +341,9 @@ void drawLensHandles(ImDrawList& draw, const LensDrag& drag, const SpaceFrame& f
         drawHandlesOf(draw, drag, lensHandles(frame, *lens), session, true);
 }
 
-void drawLensHandles(ImDrawList& draw, const LensDrag& drag, const PlotFrame& frame, const Session& session,
-                     const volume::Box& bounds, const PicturePlane& plane, glm::dvec2 perUnit) {
-    const vis::WorldFrame world = vis::worldFrame(bounds, session.stretch);
-    if (const auto lens = placed(world, session, drag.lens))
-        drawHandlesOf(draw, drag, handlesInSlice({frame, plane, perUnit}, world, *lens), session,
-                      drag.grip != LensGrip::None);
+void drawLensHandles(ImDrawList& draw, const LensDrag& drag, const PlaneFrame& frame, const Session& session) {
+    if (const auto lens = placed(frame.world, session, drag.lens))
+        drawHandlesOf(draw, drag, lensHandles(frame, *lens), session, drag.grip != LensGrip::None);
 }
 
 } // namespace tessera::app

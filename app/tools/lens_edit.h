@@ -35,21 +35,18 @@ int lensUnder(const SpaceFrame& frame, const Session& session, ImVec2 at);
 /// the mouse. A lens that follows the cross-hair takes the cross-hair along.
 bool editLenses(LensDrag& drag, Session& session, const SpaceFrame& frame, bool hovered);
 
-/// The same in the picture of a slice, whose values are distances along its directions times the factors.
-bool editLenses(LensDrag& drag, Session& session, const volume::Box& bounds, const PlotFrame& frame,
-                const PicturePlane& plane, glm::dvec2 perUnit, bool hovered);
+/// The same in the picture of a slice.
+bool editLenses(LensDrag& drag, Session& session, const PlaneFrame& frame, bool hovered);
 
 /// Lenses that follow the pointer move with it, in the plane through their middle that faces the viewer; F pins those
 /// that follow, or lets the one under the mouse (else the last one) follow. True while something changes.
 bool followPointer(Session& session, const SpaceFrame& frame, bool hovered);
 /// In a slice they come to the place under the mouse.
-bool followPointer(Session& session, const volume::Box& bounds, const PlotFrame& frame, const PicturePlane& plane,
-                   glm::dvec2 perUnit, bool hovered);
+bool followPointer(Session& session, const PlaneFrame& frame, bool hovered);
 
 /// The handles of the lens under the mouse, and its name.
 void drawLensHandles(ImDrawList& draw, const LensDrag& drag, const SpaceFrame& frame, const Session& session);
 /// In a slice, the name only where the mouse is on a handle.
-void drawLensHandles(ImDrawList& draw, const LensDrag& drag, const PlotFrame& frame, const Session& session,
-                     const volume::Box& bounds, const PicturePlane& plane, glm::dvec2 perUnit);
+void drawLensHandles(ImDrawList& draw, const LensDrag& drag, const PlaneFrame& frame, const Session& session);
 
 } // namespace tessera::app

@@ -92,13 +92,11 @@ std::vector<PlaneSection> planeSections(const Session& session, const volume::Da
     return sections;
 }
 
-void drawPlaneSections(ImDrawList& draw, const PlotFrame& frame, const std::vector<PlaneSection>& sections,
-                       glm::dvec2 perUnit) {
+void drawPlaneSections(ImDrawList& draw, const PlaneFrame& frame, const std::vector<PlaneSection>& sections) {
     const float width = std::max(1.0f, em() * 0.1f);
     for (const PlaneSection& section : sections) {
         std::vector<ImVec2> outline;
-        for (const glm::dvec2& point : section.outline)
-            outline.push_back(frame.pixel(point.x * perUnit.x, point.y * perUnit.y));
+        for (const glm::dvec2& point : section.outline) outline.push_back(frame.pixel(point));
         if (!section.dashed) {
             draw.AddPolyline(outline.data(), static_cast<int>(outline.size()),
                              brushColor(section.color, section.faint ? 0.35f : 0.9f), ImDrawFlags_Closed, width);
@@ -108,9 +106,7 @@ void drawPlaneSections(ImDrawList& draw, const PlotFrame& frame, const std::vect
         LensDashes dashes(draw, width);
         for (std::size_t i = 0; i < outline.size(); ++i)
             dashes.line(outline[i], outline[(i + 1) % outline.size()], color);
-        if (section.middle)
-            draw.AddCircleFilled(frame.pixel(section.middle->x * perUnit.x, section.middle->y * perUnit.y),
-                                 em() * 0.28f, color);
+        if (section.middle) draw.AddCircleFilled(frame.pixel(*section.middle), em() * 0.28f, color);
     }
 }
 

@@ -31,8 +31,6 @@ std::vector<glm::dvec3> lensSection(const vis::PlacedLens& lens, glm::dvec3 at, 
 std::vector<PlaneSection> planeSections(const Session& session, const volume::DatasetInfo& info,
                                         const PicturePlane& plane);
 
-/// Draws them; the frame's values are distances along the plane's directions times the factors.
-void drawPlaneSections(ImDrawList& draw, const PlotFrame& frame, const std::vector<PlaneSection>& sections,
-                       glm::dvec2 perUnit);
+void drawPlaneSections(ImDrawList& draw, const PlaneFrame& frame, const std::vector<PlaneSection>& sections);
 
 } // namespace tessera::app

@@ -38,12 +38,8 @@ void drawProfileLines(ImDrawList& draw, const SpaceFrame& frame, const Session& 
     drawLines(draw, session, [&](glm::dvec3 at) { return frame.pixel(at); });
 }
 
-void drawProfileLines(ImDrawList& draw, const PlotFrame& frame, const Session& session, const PicturePlane& plane,
-                      glm::dvec2 perUnit) {
-    drawLines(draw, session, [&](glm::dvec3 at) {
-        const glm::dvec2 place = plane.along(at) * perUnit;
-        return std::optional<ImVec2>(frame.pixel(place.x, place.y));
-    });
+void drawProfileLines(ImDrawList& draw, const PlaneFrame& frame, const Session& session) {
+    drawLines(draw, session, [&](glm::dvec3 at) { return std::optional(frame.pixel(at)); });
 }
 
 } // namespace tessera::app

@@ -12,8 +12,7 @@ std::vector<glm::dvec3> profileCorners(const ProfileView& view, const Session& s
 
 /// Every profile's line that has corners of its own, with a dot at each.
 void drawProfileLines(ImDrawList& draw, const SpaceFrame& frame, const Session& session);
-/// The same seen across a plane; the frame's values are distances along its directions times the factors.
-void drawProfileLines(ImDrawList& draw, const PlotFrame& frame, const Session& session, const PicturePlane& plane,
-                      glm::dvec2 perUnit);
+/// The same seen across a plane.
+void drawProfileLines(ImDrawList& draw, const PlaneFrame& frame, const Session& session);
 
 } // namespace tessera::app

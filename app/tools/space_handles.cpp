@@ -135,33 +135,21 @@ PixelOf inSpace(const SpaceFrame& frame) {
     return [&frame](const SpaceHandle& handle) { return frame.pixel(handle.at); };
 }
 
-/// Pixels of the picture of a slice.
-struct SlicePixels {
-    const PlotFrame& frame;
-    const PicturePlane& plane;
-    glm::dvec2 perUnit;
-    glm::dvec3 scale; ///< of the world
+/// Pixels by which a place moves with the line of a dot; nothing where that stands (nearly) upright on the slice, as it
+/// is seen.
+std::optional<glm::dvec2> pixelsAlong(const PlaneFrame& frame, glm::dvec3 way) {
+    const auto& [plot, plane, perUnit, world, bounds] = frame;
+    const glm::dvec3 seen = glm::normalize(way * world.scale);
+    const glm::dvec2 across(glm::dot(seen, glm::normalize(plane.right * world.scale)),
+                            glm::dot(seen, glm::normalize(plane.up * world.scale)));
+    if (glm::dot(across, across) < kSteep) return std::nullopt;
+    return plane.along(way) * perUnit / glm::dvec2(plot.perPixelX(), -plot.perPixelY());
+}
 
-    ImVec2 of(glm::dvec3 place) const {
-        const glm::dvec2 at = plane.along(place) * perUnit;
-        return frame.pixel(at.x, at.y);
-    }
-    /// Pixels by which a place moves with the line of a dot; nothing where that stands (nearly) upright on the slice,
-    /// as it is seen.
-    std::optional<glm::dvec2> along(glm::dvec3 way) const {
-        const glm::dvec3 seen = glm::normalize(way * scale);
-        const glm::dvec2 across(glm::dot(seen, glm::normalize(plane.right * scale)),
-                                glm::dot(seen, glm::normalize(plane.up * scale)));
-        if (glm::dot(across, across) < kSteep) return std::nullopt;
-        return glm::dvec2(glm::dot(way, plane.right), glm::dot(way, plane.up)) * perUnit /
-               glm::dvec2(frame.perPixelX(), -frame.perPixelY());
-    }
-};
-
-PixelOf inSlice(const SlicePixels& pixels) {
-    return [pixels](const SpaceHandle& handle) -> std::optional<ImVec2> {
-        if (const auto rail = railOf(handle); rail && !pixels.along(*rail)) return std::nullopt;
-        return pixels.of(handle.at);
+PixelOf inSlice(const PlaneFrame& frame) {
+    return [&frame](const SpaceHandle& handle) -> std::optional<ImVec2> {
+        if (const auto rail = railOf(handle); rail && !pixelsAlong(frame, *rail)) return std::nullopt;
+        return frame.pixel(handle.at);
     };
 }
 
@@ -301,18 +289,17 @@ bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& 
                     });
 }
 
-bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const PlotFrame& frame,
-                 const PicturePlane& plane, glm::dvec2 perUnit, bool hovered) {
-    const SlicePixels pixels{frame, plane, perUnit, vis::worldFrame(info.bounds, session.stretch).scale};
-    return editWith(drag, session, info, objectsInSlice(session, info, plane), hovered, inSlice(pixels),
+bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const PlaneFrame& frame,
+                 bool hovered) {
+    return editWith(drag, session, info, objectsInSlice(session, info, frame.plane), hovered, inSlice(frame),
                     [&](const SpaceHandle& handle, ImVec2 mouse) {
                         const auto rail = railOf(handle);
-                        if (const auto way = rail ? pixels.along(*rail) : std::nullopt) {
+                        if (const auto way = rail ? pixelsAlong(frame, *rail) : std::nullopt) {
                             const glm::dvec2 by(mouse.x - drag.start.x, mouse.y - drag.start.y);
                             return handle.at + *rail * (glm::dot(by, *way) / glm::dot(*way, *way));
                         }
-                        const glm::dvec2 by = (frame.data(mouse) - frame.data(drag.start)) / perUnit;
-                        return handle.at + plane.right * by.x + plane.up * by.y;
+                        const glm::dvec2 by = frame.along(mouse) - frame.along(drag.start);
+                        return handle.at + frame.plane.right * by.x + frame.plane.up * by.y;
                     });
 }
 
@@ -323,15 +310,14 @@ void drawHandles(ImDrawList& draw, const HandleDrag& drag, const SpaceFrame& fra
                    [&](glm::dvec3 at) { return frame.pixel(at); });
 }
 
-void drawHandles(ImDrawList& draw, const HandleDrag& drag, const PlotFrame& frame, const Session& session,
-                 const volume::DatasetInfo& info, const PicturePlane& plane, glm::dvec2 perUnit) {
-    const SlicePixels pixels{frame, plane, perUnit, vis::worldFrame(info.bounds, session.stretch).scale};
-    for (HandledObject& object : objectsInSlice(session, info, plane)) {
-        if (object.plane) object.lines = planeCrossing(object, info.bounds, plane.plane());
-        if (object.section) object.lines = object.section(plane);
+void drawHandles(ImDrawList& draw, const HandleDrag& drag, const PlaneFrame& frame, const Session& session,
+                 const volume::DatasetInfo& info) {
+    for (HandledObject& object : objectsInSlice(session, info, frame.plane)) {
+        if (object.plane) object.lines = planeCrossing(object, info.bounds, frame.plane.plane());
+        if (object.section) object.lines = object.section(frame.plane);
         const bool shown = object.plane || (object.section && !object.lines.empty());
-        drawObject(draw, drag, object, !shown, inSlice(pixels),
-                   [&](glm::dvec3 at) { return std::optional(pixels.of(at)); });
+        drawObject(draw, drag, object, !shown, inSlice(frame),
+                   [&](glm::dvec3 at) { return std::optional(frame.pixel(at)); });
     }
 }
 

@@ -88,15 +88,14 @@ struct HandleDrag {
 bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const SpaceFrame& frame,
                  bool hovered, bool lights = false);
 
-/// The same in the picture of a slice: values of the frame are distances along its directions times the factors. What
-/// is the plane of the slice itself has no dots there.
-bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const PlotFrame& frame,
-                 const PicturePlane& plane, glm::dvec2 perUnit, bool hovered);
+/// The same in the picture of a slice. What is the plane of the slice itself has no dots there.
+bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const PlaneFrame& frame,
+                 bool hovered);
 
 /// Dots, lines of what is not drawn elsewhere, and the name of what is under the mouse.
 void drawHandles(ImDrawList& draw, const HandleDrag& drag, const SpaceFrame& frame, const Session& session,
                  const volume::DatasetInfo& info, bool lights = false);
-void drawHandles(ImDrawList& draw, const HandleDrag& drag, const PlotFrame& frame, const Session& session,
-                 const volume::DatasetInfo& info, const PicturePlane& plane, glm::dvec2 perUnit);
+void drawHandles(ImDrawList& draw, const HandleDrag& drag, const PlaneFrame& frame, const Session& session,
+                 const volume::DatasetInfo& info);
 
 } // namespace tessera::app

@@ -186,6 +186,20 @@ TickLabels fullTickLabels(Range range, int most) {
     return out;
 }
 
+TickLabels fittingTicks(Range range, double length, double gap, bool noted,
+                        const std::function<double(const std::string&)>& extent) {
+    TickLabels ticks;
+    for (const int most : {10, 8, 6, 5, 4, 3, 2, 1}) {
+        ticks = noted ? tickLabels(range, most) : fullTickLabels(range, most);
+        double widest = 0;
+        for (const std::string& text : ticks.texts) widest = std::max(widest, extent(text));
+        const double span = range.hi - range.lo;
+        const double step = ticks.values.size() > 1 ? ticks.values[1] - ticks.values[0] : span;
+        if (span <= 0 || step / span * length >= widest + gap) break;
+    }
+    return ticks;
+}
+
 LengthUnit suitableLength(std::string_view unit, double size) {
     static constexpr std::array<std::pair<std::string_view, double>, 5> kUnits{
         {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}}};

@@ -2,6 +2,7 @@
 
 #include "volume/base/describe.h"
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,6 +47,11 @@ struct TickLabels {
 TickLabels tickLabels(Range range, int most, int maxDigits = 6);
 /// The same with numbers in full, for axes beside which no note has a place.
 TickLabels fullTickLabels(Range range, int most);
+
+/// As many ticks as fit on an axis of this length with a gap between their texts, as tickLabels or, without `noted`,
+/// fullTickLabels has them. `extent`: of a text along the axis.
+TickLabels fittingTicks(Range range, double length, double gap, bool noted,
+                        const std::function<double(const std::string&)>& extent);
 
 /// A length unit that suits a box of this size: the name and how many of it make one of `unit` (m, cm, mm, um and nm
 /// are known; others stay as they are).

@@ -19,34 +19,42 @@ std::vector<CompareRow> rowsOfThree() {
     return {first, second, third};
 }
 
-std::vector<std::string> titlesOf(const std::vector<CompareColumn>& columns) {
-    std::vector<std::string> titles;
-    for (const CompareColumn& column : columns) titles.push_back(column.title);
-    return titles;
-}
-
 using Titles = std::vector<std::string>;
 
+/// The heads of the numbers that are shown.
+Titles numbersOf(const Table& table) {
+    Titles heads;
+    for (const TableColumn* column : shownColumns(table))
+        if (column->texts.empty()) heads.push_back(headOf(*column));
+    return heads;
+}
+
 TEST(CompareTable, HasTheNumbersThatThereAre) {
-    CompareView view;
-    const auto columns = compareColumns(view, rowsOfThree());
-    EXPECT_EQ(titlesOf(columns), (Titles{"ms", "Samples", "Texture", "File", "Max.", "RMSE", "PSNR [dB]", "SSIM"}));
-    const auto cells = [&](std::size_t column) { return columns[column].cells; };
-    EXPECT_EQ(cells(0), (Titles{"166", "8.9", "-"}));
-    EXPECT_EQ(cells(3), (Titles{"-", "545 kB", "10.5 kB"})) << "a small file is not of 0.01 MB";
-    EXPECT_EQ(cells(4), (Titles{"", "0", "12"}));
-    EXPECT_EQ(cells(5), (Titles{"reference", "0.00", "1.23"}));
-    EXPECT_EQ(cells(6), (Titles{"", "equal", "38.3"}));
-    EXPECT_EQ(cells(7), (Titles{"", "1.0000", "0.9877"}));
-    view.shows = "slices"; // other panes have no errors of pictures
-    EXPECT_EQ(titlesOf(compareColumns(view, rowsOfThree())), (Titles{"File"}));
+    const Table table = compareTable(rowsOfThree());
+    EXPECT_EQ(numbersOf(table), (Titles{"ms", "Samples", "Texture", "File", "Max.", "RMSE", "PSNR [dB]", "SSIM"}));
+    const auto cells = [&](const char* head) {
+        Titles out;
+        for (const TableColumn* column : shownColumns(table))
+            for (std::size_t row = 0; headOf(*column) == head && row < 3; ++row) out.push_back(cellOf(*column, row));
+        return out;
+    };
+    EXPECT_EQ(cells("ms"), (Titles{"166", "8.9", "-"}));
+    EXPECT_EQ(cells("File"), (Titles{"-", "545 kB", "10.5 kB"})) << "a small file is not of 0.01 MB";
+    EXPECT_EQ(cells("Max."), (Titles{"", "0", "12"}));
+    EXPECT_EQ(cells("RMSE"), (Titles{"reference", "0.00", "1.23"}));
+    EXPECT_EQ(cells("PSNR [dB]"), (Titles{"", "equal", "38.3"}));
+    EXPECT_EQ(cells("SSIM"), (Titles{"", "1.0000", "0.9877"}));
+    EXPECT_EQ(numbersOf(compareTable(rowsOfThree(), false)), (Titles{"File"}))
+        << "other panes have no errors of pictures";
 }
 
 TEST(CompareTable, WhereNotAllFitTheErrorsAndTheSizeOfTheFileStay) {
-    const auto columns = compareColumns({}, rowsOfThree());
-    const std::vector<float> widths(columns.size(), 10);
-    const auto fitting = [&](float room) { return titlesOf(columnsThatFit(columns, widths, room)); };
-    EXPECT_EQ(fitting(80), titlesOf(columns));
+    const auto fitting = [&](float room) {
+        Table table = compareTable(rowsOfThree());
+        hideNumbersWithoutRoom(table, room, [](const TableColumn&) { return 10.0f; });
+        return numbersOf(table);
+    };
+    EXPECT_EQ(fitting(80), numbersOf(compareTable(rowsOfThree())));
     EXPECT_EQ(fitting(30), (Titles{"File", "RMSE", "PSNR [dB]"}));
     EXPECT_EQ(fitting(45), (Titles{"File", "RMSE", "PSNR [dB]", "SSIM"}));
     EXPECT_EQ(fitting(3), (Titles{"RMSE"})) << "one at least";

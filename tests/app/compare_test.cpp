@@ -2,6 +2,8 @@
 
 #include "app/history/history.h"
 #include "app/history/session_file.h"
+#include "app/views/compare/compare_questions.h"
+#include "app/views/compare/compare_table.h"
 #include "tests/app/table_text.h"
 #include "volume/base/error.h"
 
@@ -18,8 +20,8 @@ Session withLayer() {
 }
 
 TEST(CompareQuestions, AnswersAreATable) {
-    EXPECT_EQ(questionsCsv({{.text = "Where, and \"why\"?", .answer = "volume", .seconds = 12.5},
-                            {.text = "Else?", .answer = "", .seconds = 0}}),
+    EXPECT_EQ(csvOf(questionsTable({{.text = "Where, and \"why\"?", .answer = "volume", .seconds = 12.5},
+                                    {.text = "Else?", .answer = "", .seconds = 0}})),
               "question,answer,seconds\n\"Where, and \"\"why\"\"?\",volume,12.5\nElse?,,\n");
 }
 
@@ -106,7 +108,7 @@ TEST(Compare, TheTableIsCsv) {
     row.measured = true;
     row.psnr = std::numeric_limits<double>::infinity();
     row.rmse = 1.5;
-    const std::string csv = compareCsv({row});
+    const std::string csv = csvOf(compareTable({row}));
     EXPECT_NE(csv.find("\"a, \"\"b\"\"\",x,no,"), std::string::npos) << csv;
     EXPECT_NE(csv.find(",1.5,inf,"), std::string::npos) << csv;
 }
@@ -120,14 +122,14 @@ TEST(Compare, EachNumberOfARowStandsInItsColumn) {
     row.data->samples = 90, row.data->differing = 17, row.data->largest = 18.5, row.data->rms = 9.5;
     CompareRow failed;
     failed.name = "other", failed.changes = "step 2", failed.failure = "too large";
-    const TableText table = tableOf(compareCsv({row, failed}));
+    const TableText table = tableOf(csvOf(compareTable({row, failed})));
     ASSERT_EQ(table.rows.size(), 2u);
     const std::vector<std::pair<std::string, double>> wanted = {
-        {"ms per picture", 1.25},    {"samples", 2000},
-        {"texture bytes", 3000},     {"stored bytes", 4000},
-        {"maximum (of 255)", 5.5},   {"RMSE (of 255)", 6.5},
-        {"PSNR (dB)", 7.5},          {"SSIM", 0.875},
-        {"samples that differ", 17}, {"largest error of a sample", 18.5},
+        {"ms per picture", 1.25},  {"samples", 2000},
+        {"texture bytes", 3000},   {"stored bytes", 4000},
+        {"maximum (of 255)", 5.5}, {"RMSE (of 255)", 6.5},
+        {"PSNR [dB]", 7.5},        {"SSIM", 0.875},
+        {"differing", 17},         {"largest error of a sample", 18.5},
         {"RMSE of samples", 9.5}};
     for (const auto& [head, value] : wanted) EXPECT_EQ(table.number(0, head), value) << head;
     for (std::size_t i = 4; i < wanted.size(); ++i) EXPECT_EQ(table.text(1, wanted[i].first), "") << wanted[i].first;

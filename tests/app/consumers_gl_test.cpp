@@ -48,7 +48,7 @@ const std::map<std::string, Input> kSessionParts = {
     {"layoutBrushes", kInputs}};
 
 /// By kind of view: F where what it shows follows the input, a dot where it must stay as it is. Of views that can be
-/// exported that is the table, of the others the picture.
+/// exported that is the table, of the others and of slices the picture.
 struct Consumer {
     const char* kind;
     const char* effects;
@@ -208,7 +208,7 @@ protected:
                                                   : several ? glm::ivec2(520, 300)
                                                             : glm::ivec2(420, 640));
         const ViewExport* offered = workbench.exported("pane");
-        if (offered && offered->csv && !several) return offered->csv({});
+        if (offered && offered->csv && !several && kind != "slices") return offered->csv({});
         return {image.rgba.begin(), image.rgba.end()};
     }
 };

@@ -1,7 +1,9 @@
+#include "app/drawing/drawing.h"
+#include "app/planes/contour_data.h"
+#include "app/planes/contour_labels.h"
+#include "app/planes/plane_export.h"
 #include "app/session/session_json.h"
-#include "app/views/slices/contour_data.h"
-#include "app/views/slices/contour_labels.h"
-#include "app/views/slices/slice_figure.h"
+#include "app/views/slices/slice_layout.h"
 #include "tests/volume/regions.h"
 #include "volume/sources/memory_source.h"
 
@@ -44,7 +46,8 @@ struct Page {
     Page() {
         levels = contourLevels({300, 477.5}, 12);
         const volume::Box& box = source->info().bounds;
-        const ContourQuery query = contourQuery(source->info(), 1, {}, box.center().z, {}, levels.values);
+        const ContourQuery query{
+            1, planeAcross(0, 1, 2, box.center().z), {box.lo.x, box.hi.x}, {box.lo.y, box.hi.y}, {}, levels.values};
         for (const volume::ContourLine& line : readContours(*source, query).lines) {
             lines.push_back({contourText(line.level, levels.step), {}});
             for (const glm::dvec2& point : line.points) lines.back().points.push_back(onPage(point));
@@ -161,7 +164,9 @@ TEST(Contours, StayInTheirRegion) {
     data.info.parameters[0].ranges = {{-2, 70}};
     const auto source = volume::makeMemorySource(std::move(data), {});
     // 30 lies in neither region, only between them.
-    const ContourQuery query = contourQuery(source->info(), 0, {0, 2, 1}, 9.5, {}, {4, 5, 30, 57});
+    const volume::Box& box = source->info().bounds;
+    const ContourQuery query{
+        0, planeAcross(0, 2, 1, 9.5), {box.lo.x, box.hi.x}, {box.lo.z, box.hi.z}, {}, {4, 5, 30, 57}};
     const Contours contours = readContours(*source, query);
     std::size_t air = 0, fuel = 0;
     for (const volume::ContourLine& line : contours.lines) {
@@ -184,14 +189,20 @@ TEST(Contours, AreInTheSvgWithTheirValuesAndBothNames) {
     SlicesView view;
     view.lines.count = 10;
     view.lines.channel = "B";
-    const std::string plain = svgOf(slicesDrawing(*source, session, view, 0));
+    const auto page = [&](const Progress& progress) {
+        std::vector<PlanePicture> slices;
+        for (const SliceAxes& axes : kSlicePlanes)
+            slices.push_back(axisPlane(session, source->info(), axes, session.cursor[axes.normal], {0, view.lines}));
+        return svgOf(planesPage(*source, slices, 2, {}, progress));
+    };
+    const std::string plain = page({});
     EXPECT_EQ(plain.find("paint-order"), std::string::npos);
     EXPECT_NE(plain.find("<path"), std::string::npos);
     view.lines.values = true;
     std::vector<double> told;
     Progress progress;
     progress.report = [&](double fraction, const std::string&) { told.push_back(fraction); };
-    const std::string svg = svgOf(slicesDrawing(*source, session, view, 0, progress));
+    const std::string svg = page(progress);
     EXPECT_GT(told.size(), 3u);
     EXPECT_TRUE(std::ranges::is_sorted(told)) << "progress never goes back";
     EXPECT_NE(svg.find("lines: B [K], 20 apart"), std::string::npos);
@@ -205,7 +216,7 @@ TEST(Contours, AreInTheSvgWithTheirValuesAndBothNames) {
         const glm::dvec2 share((x - 300 * (panel % 2) - 62) / 226, 1 - (y - 240 * (panel / 2) - 22) / 176);
         // kSlicePlanes: (x, y), (z, y), (x, z); the axes are in the data's unit times what suits it.
         glm::dvec3 place = session.cursor;
-        const SliceAxes& axes = kSlicePlanes[panel];
+        const SliceAxes& axes = kSlicePlanes[std::size_t(panel)];
         const glm::dvec3 size = source->info().bounds.size();
         place[axes.right] = share.x * size[axes.right];
         place[axes.up] = share.y * size[axes.up];
@@ -234,12 +245,14 @@ TEST(Contours, SettingsAreKeptInASession) {
     EXPECT_EQ(contourChannel(source->info(), lines, 0), 1);
     lines.channel = "gone";
     EXPECT_FALSE(contourChannel(source->info(), lines, 0));
-    EXPECT_EQ(contourNote(source->info(), lines, drawnContours(session, source->info(), lines, 0)),
-              "no contour lines: there is no gone");
+    const auto note = [&] {
+        return contourNote(source->info(), axisPlane(session, source->info(), {}, session.cursor.z, {0, lines}));
+    };
+    EXPECT_EQ(note(), "no contour lines: there is no gone");
     lines.channel = "";
     EXPECT_EQ(contourChannel(source->info(), lines, 0), 0);
     lines.values = false;
-    EXPECT_FALSE(drawnContours(session, source->info(), lines, 0).channel) << "the renderer draws them";
+    EXPECT_EQ(note(), "") << "the renderer draws them";
     lines.count = 0;
     EXPECT_FALSE(contourChannel(source->info(), lines, 0));
 }

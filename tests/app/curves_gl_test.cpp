@@ -113,7 +113,7 @@ TEST_F(CurvesViewTest, TablesAndFiguresHoldTheCurves) {
     curvesView.x = "current_density";
     curvesView.y = {"voltage", "voltage*current_density"};
     const volume::Curves curves = readCurves(*source, {}, plotCurvesQuery(curvesView, session, source->info()));
-    const std::string csv = curvesCsv(curves);
+    const std::string csv = csvOf(curvesTable(curves));
     EXPECT_EQ(csv.substr(0, csv.find('\n')),
               "time [s],current_density [A/m2],voltage [V],voltage*current_density [W/m2]");
     EXPECT_NE(csv.find(",17000,0.5,8500\n"), std::string::npos);
@@ -151,7 +151,7 @@ TEST_F(CurvesViewTest, APictureSaysWhatItsAxisIsAndWhichCurveIsWhich) {
     for (const bool dark : {false, true})
         for (std::size_t a = 0; a < 6; ++a)
             for (std::size_t b = 0; b < a; ++b)
-                EXPECT_GT(glm::distance(curveInk(a, dark), curveInk(b, dark)), 0.2f) << a << " " << b << " " << dark;
+                EXPECT_GT(glm::distance(plotInk(a, dark), plotInk(b, dark)), 0.2f) << a << " " << b << " " << dark;
 }
 
 } // namespace

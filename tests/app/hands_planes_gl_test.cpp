@@ -1,7 +1,7 @@
 #include "app/pane/axes3d.h"
 #include "app/pane/oblique_plane.h"
+#include "app/planes/plane_picture.h"
 #include "app/tools/camera_controller.h"
-#include "app/views/slices/flat_slice.h"
 #include "tests/app/hands_fixture.h"
 #include "vis/optics/surface_light.h"
 
@@ -332,7 +332,7 @@ TEST_F(TiltedPlaneHands, InTheFlatViewALensIsDraggedByItsMiddleAlongThePlane) {
     });
     const ImRect flat = pictures().back();
     const Session before = session();
-    const FlatSlice slice = flatSlice(before, workbench.source()->info(), {-0.8, 0, 0.6});
+    const PlanePicture slice = tiltedPlane(before, workbench.source()->info(), {-0.8, 0, 0.6}, {});
     const auto pixelOf = [&](glm::dvec3 place) {
         const glm::dvec2 at = slice.along(place);
         return within(flat, (at.x - slice.x.lo) / (slice.x.hi - slice.x.lo),
@@ -342,7 +342,7 @@ TEST_F(TiltedPlaneHands, InTheFlatViewALensIsDraggedByItsMiddleAlongThePlane) {
     drag(from, {from.x + 24, from.y - 16});
     const glm::dvec3 center = session().lenses[0].center;
     EXPECT_EQ(session().cursor, before.cursor);
-    EXPECT_NEAR(slice.plane.distance(center), 0, 1e-9) << "in the plane it was in";
+    EXPECT_NEAR(slice.plane.plane().distance(center), 0, 1e-9) << "in the plane it was in";
     EXPECT_NEAR(pixelOf(center).x, from.x + 24, 2);
     EXPECT_NEAR(pixelOf(center).y, from.y - 16, 2);
     settle();
@@ -361,7 +361,7 @@ TEST_F(TiltedPlaneHands, InTheFlatViewALensIsDraggedByItsMiddleAlongThePlane) {
     press('F');
     moveTo({middle.x - 30, middle.y + 20});
     const glm::dvec3 followed = session().lenses[0].center;
-    EXPECT_NEAR(slice.plane.distance(followed), 0, 1e-9);
+    EXPECT_NEAR(slice.plane.plane().distance(followed), 0, 1e-9);
     EXPECT_NEAR(pixelOf(followed).x, mouse.x, 1.5);
     EXPECT_NEAR(pixelOf(followed).y, mouse.y, 1.5);
     press('F');
@@ -384,7 +384,7 @@ TEST_F(TiltedPlaneHands, InTheFlatViewSeedsLinesAndBrushesAreDraggedByTheirDots)
         edited.views["line"] = line;
     });
     const ImRect flat = pictures().back();
-    const FlatSlice slice = flatSlice(session(), workbench.source()->info(), upright);
+    const PlanePicture slice = tiltedPlane(session(), workbench.source()->info(), upright, {});
     const auto pixelOf = [&](glm::dvec3 place) {
         const glm::dvec2 at = slice.along(place);
         return within(flat, (at.x - slice.x.lo) / (slice.x.hi - slice.x.lo),
@@ -398,7 +398,8 @@ TEST_F(TiltedPlaneHands, InTheFlatViewSeedsLinesAndBrushesAreDraggedByTheirDots)
         drag(from, {from.x + 22, from.y - 14});
         EXPECT_NEAR(pixelOf(dot()).x, from.x + 22, 1.5) << what;
         EXPECT_NEAR(pixelOf(dot()).y, from.y - 14, 1.5) << what;
-        EXPECT_NEAR(slice.plane.distance(dot()), slice.plane.distance(before), 1e-6 * glm::length(size)) << what;
+        EXPECT_NEAR(slice.plane.plane().distance(dot()), slice.plane.plane().distance(before), 1e-6 * glm::length(size))
+            << what;
         EXPECT_EQ(session().cursor, cursor) << what;
     };
     dragDot(

@@ -1,3 +1,5 @@
+#include "app/drawing/drawing.h"
+#include "app/tools/brush_edit.h"
 #include "tests/app/drawn_text.h"
 #include "tests/app/hands_fixture.h"
 
@@ -21,6 +23,7 @@ protected:
         ASSERT_EQ(planes.size(), 3u);
     }
     std::vector<ImRect> planes;
+    std::vector<vis::Image> images;
 };
 
 TEST_F(SliceHands, TitlesGiveUpDigitsBeforeTheAxisAndItsUnit) {
@@ -307,6 +310,75 @@ TEST_F(SliceHands, TheRightButtonOpensTheMenuAndMovesNothing) {
     EXPECT_TRUE(session() == before) << "nor does the middle one";
 }
 
+TEST_F(SliceHands, ALensAtTheCrossHairShowsItsLayerThere) {
+    for (const bool follows : {false, true}) {
+        showSlices([&](Session& edited) {
+            edited.lenses = {{.name = "inner", .effect = vis::LensEffect::Replace, .size = glm::vec3(0.25f)}};
+            edited.lenses[0].followsCursor = follows;
+            if (!follows) edited.lenses[0].center = edited.cursor;
+            edited.layers.push_back({"c", true, vis::VolumeLayer{.channel = "c"}, "inner"});
+        });
+        const vis::Image shown = frames->read();
+        if (!follows) {
+            images.push_back(shown);
+            continue;
+        }
+        EXPECT_TRUE(shown.rgba == images.front().rgba) << "as one that is put there";
+        session().lenses.clear();
+        settle();
+        EXPECT_FALSE(frames->read().rgba == shown.rgba);
+    }
+}
+
+TEST_F(SliceHands, OutlinesAndLinesLieOnAPageAsOnScreen) {
+    showSlices([&](Session& edited) {
+        SlicesView& slices = std::get<SlicesView>(edited.views.at("pane"));
+        slices.lines = {.count = 6, .channel = "U.x", .values = false}; // which rises along x alone
+        edited.selection.brushes.resize(1);
+        edited.selection.brushes[0].color = {1, 0, 0};
+        edited.selection.brushes[0].region = vis::SphereRegion{.center = edited.cursor, .radius = {1e-3, 2e-3, 6e-4}};
+    });
+    const ViewExport* offered = workbench.exported("pane");
+    ASSERT_TRUE(offered && offered->figure);
+    const auto outlines = [&](const PageForm& form) {
+        std::vector<ImRect> boxes;
+        for (const shapes::Mark& mark : offered->figure(form, {}).marks)
+            if (const auto* line = std::get_if<shapes::Stroke>(&mark.shape); line && line->color.r > 0.6f)
+                if (line->color.g < 0.1f) {
+                    ImRect box(1e9f, 1e9f, -1e9f, -1e9f);
+                    for (const glm::dvec2& point : line->points) box.Add(ImVec2(float(point.x), float(point.y)));
+                    boxes.push_back(box);
+                }
+        return boxes;
+    };
+    std::vector<ImRect> pages; // the pictures
+    for (const shapes::Mark& mark : offered->figure({}, {}).marks)
+        if (const auto* picture = std::get_if<shapes::Picture>(&mark.shape))
+            pages.emplace_back(float(picture->box.lo.x), float(picture->box.lo.y), float(picture->box.hi.x),
+                               float(picture->box.hi.y));
+    const std::vector<ImRect> drawn = outlines({});
+    ASSERT_EQ(pages.size(), 3u);
+    ASSERT_EQ(drawn.size(), 3u);
+    const ImRect all = inked(brushColor({1, 0, 0}, 0.9f)); // of the three together
+    EXPECT_NEAR(all.Min.x,
+                planes[0].Min.x + (drawn[0].Min.x - pages[0].Min.x) / pages[0].GetWidth() * planes[0].GetWidth(), 2.5);
+    EXPECT_NEAR(all.Max.x,
+                planes[1].Min.x + (drawn[1].Max.x - pages[1].Min.x) / pages[1].GetWidth() * planes[1].GetWidth(), 2.5);
+    EXPECT_NEAR(all.Max.y,
+                planes[2].Min.y + (drawn[2].Max.y - pages[2].Min.y) / pages[2].GetHeight() * planes[2].GetHeight(),
+                2.5);
+    double first = 1e9; // line on the page, in the first picture
+    for (const shapes::Mark& mark : offered->figure({}, {}).marks)
+        if (const auto* line = std::get_if<shapes::Stroke>(&mark.shape); line && line->color.r < 0.2f)
+            for (const glm::dvec2& point : line->points) first = std::min(first, point.x);
+    EXPECT_NEAR(inked(IM_COL32(12, 12, 12, 245)).Min.x,
+                planes[0].Min.x +
+                    (first - double(pages[0].Min.x)) / double(pages[0].GetWidth()) * double(planes[0].GetWidth()),
+                2.5)
+        << "the line of the least value";
+    EXPECT_TRUE(outlines({.outlines = false}).empty()) << "where they are left out";
+}
+
 class PlaneHands : public Hands {};
 
 TEST_F(PlaneHands, AClickInASliceOfTheMatrixGoesThere) {
@@ -339,7 +411,15 @@ TEST_F(PlaneHands, AClickInASliceOfTheMatrixGoesThere) {
             EXPECT_NEAR(session().cursor[right], across(slice, extent(right), mouse), pixels(right, slice.GetWidth()));
             EXPECT_NEAR(session().cursor[up], upwards(slice, extent(up), mouse), pixels(up, slice.GetHeight()));
         }
+        drag(within(slices[2], 0.3, 0.3), within(slices[2], 0.7, 0.6));
+        const Range deep = extent(int(normal));
+        EXPECT_NEAR(session().cursor[int(normal)], (deep.lo + deep.hi) / 2, kTiny) << "a drag stays in its plane";
+        EXPECT_NEAR(session().cursor[right], across(slices[2], extent(right), mouse), kTiny);
+        EXPECT_NEAR(session().cursor[up], upwards(slices[2], extent(up), mouse), kTiny);
+        moveTo(within(slices[0], 0.5, 0.5));
         const glm::dvec3 before = session().cursor;
+        turnWheel(1);
+        EXPECT_EQ(session().cursor, before) << "planes of the matrix stand where they are";
         click({slices[0].Min.x + 10, slices[0].Min.y - 8});
         EXPECT_EQ(session().cursor, before) << "the head line is no slice";
     }

@@ -1,5 +1,5 @@
 #include "app/pane/oblique_plane.h"
-#include "app/views/slices/flat_slice.h"
+#include "app/planes/plane_export.h"
 #include "tests/app/formula_cell.h"
 #include "volume/sources/memory_source.h"
 
@@ -135,51 +135,54 @@ TEST(ObliquePlane, DirectionsInWords) {
     EXPECT_EQ(directionText(unitNormal({3, -4, 0})), "0.60 x - 0.80 y");
 }
 
-TEST(FlatSlice, SpansThePartInTheBoxInTheDatasUnit) {
-    volume::DatasetInfo info;
+TEST(TiltedPlane, SpansThePartInTheBoxInTheDatasUnit) {
+    volume::DatasetInfo info = volume::makeMemorySource(formula::makeCell(), {})->info();
     info.bounds = {glm::dvec3(0), {0.004, 0.001, 0.04}};
     info.lengthUnit = "m";
     Session session;
     session.cursor = {0.001, 0.0004, 0.02};
-    const FlatSlice flat = flatSlice(session, info, {-1, 0, 1});
+    const PlanePicture flat = tiltedPlane(session, info, {-1, 0, 1}, {});
     // u = (x + z) / sqrt 2 from the lower to the upper end of x, where z - x is 0.019.
     const double root = std::sqrt(2);
     EXPECT_NEAR(flat.x.lo, (0.0 + 0.019) / root, 2e-4);
     EXPECT_NEAR(flat.x.hi, (0.004 + 0.023) / root, 2e-4);
     EXPECT_NEAR(flat.y.hi - flat.y.lo, 0.001, 1e-4);
-    EXPECT_EQ(flat.nameX, "u");
-    EXPECT_EQ(flat.nameY, "y");
-    EXPECT_EQ(flat.unitX.name, "mm");
+    EXPECT_EQ(flat.right.name, "u");
+    EXPECT_EQ(flat.up.name, "y");
+    EXPECT_EQ(flat.right.unit.name, "mm");
     EXPECT_EQ(axesText(flat), "u = 0.71 x + 0.71 z");
-    EXPECT_EQ(placeText(flat, info).substr(0, 35), "across -0.71 x + 0.71 z at 13.44 mm"); // 19 / sqrt 2
+    EXPECT_EQ(flat.place.substr(0, 35), "across -0.71 x + 0.71 z at 13.44 mm"); // 19 / sqrt 2
     const glm::dvec2 at = flat.along(session.cursor);
     EXPECT_LT(glm::length(flat.placeAt(at) - session.cursor), 1e-9);
     Session moved = session;
     moved.cursor = flat.placeAt(at + glm::dvec2(0.0004, 0.0002));
-    EXPECT_EQ(flatSlice(moved, info, {-1, 0, 1}).plane.at, flat.plane.at) << "in one plane there is one picture";
-    const FlatSlice across = flatSlice(session, info, {0, 0, 1});
-    EXPECT_EQ(across.nameX, "x");
+    EXPECT_EQ(tiltedPlane(moved, info, {-1, 0, 1}, {}).plane.at, flat.plane.at) << "in one plane there is one picture";
+    const PlanePicture across = tiltedPlane(session, info, {0, 0, 1}, {});
+    EXPECT_EQ(across.right.name, "x");
     EXPECT_EQ(axesText(across), "");
 }
 
 /// U.x of the formula cell rises along x alone, by 1 over its extent: so do values between the samples.
-TEST(FlatSlice, ExportsInterpolatedValuesInThePlane) {
+TEST(TiltedPlane, ExportsInterpolatedValuesInThePlane) {
     const auto source = volume::makeMemorySource(formula::makeCell(), {});
     Session session;
     session.cursor = {0.0123, 0.0041, -0.0009};
     const glm::dvec3 normal = unitNormal({-0.8, 0.1, 0.6});
-    const FlatSlice flat = flatSlice(session, source->info(), normal);
-    std::istringstream lines(flatCsv(*source, session, flat, {*source->info().findChannel("U.x")}));
+    const PlanePicture flat = tiltedPlane(session, source->info(), normal, {});
+    std::istringstream lines(csvOf(planesTable(*source, {flat}, {*source->info().findChannel("U.x")})));
     std::string line;
     std::getline(lines, line);
     EXPECT_NE(line.find("interpolated"), std::string::npos);
     std::getline(lines, line);
-    EXPECT_EQ(line.substr(0, 13), "u,v,x,y,z,U.x");
+    EXPECT_EQ(line, "# u = 0.60 x + 0.80 z, v = 0.08 x + 0.99 y - 0.06 z");
+    std::getline(lines, line);
+    EXPECT_EQ(line, "u [mm],v [mm],x [mm],y [mm],z [mm],U.x [m/s]");
     int rows = 0;
     for (double u, v, x, y, z, value; std::getline(lines, line); ++rows) {
         ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf", &u, &v, &x, &y, &z, &value), 6) << line;
+        x /= 1000, y /= 1000, z /= 1000;
         EXPECT_NEAR(glm::dot(glm::dvec3(x, y, z) - session.cursor, normal), 0, 1e-10);
-        EXPECT_LT(glm::length(flat.placeAt({u, v}) - glm::dvec3(x, y, z)), 1e-9);
+        EXPECT_LT(glm::length(flat.placeAt(glm::dvec2(u, v) / 1000.0) - glm::dvec3(x, y, z)), 1e-9);
         EXPECT_NEAR(value, 0.1 + (x - formula::kOrigin[0]) / (7 * formula::kSpacing[0]), 1e-5);
     }
     EXPECT_GT(rows, 1000);

@@ -1,8 +1,9 @@
 #include "app/drawing/line_pieces.h"
+#include "app/pages/plot_page.h"
+#include "app/planes/plane_export.h"
 #include "app/session/session_json.h"
 #include "app/tools/plane_sections.h"
-#include "app/views/slices/flat_slice.h"
-#include "app/views/slices/slice_figure.h"
+#include "app/views/slices/slice_layout.h"
 #include "tests/app/fed_imgui.h"
 #include "tests/volume/regions.h"
 #include "volume/sources/memory_source.h"
@@ -194,8 +195,8 @@ TEST(ObliqueContours, RunToTheFacesOfTheDataAtTheirValue) {
     Session session = defaultSession(source->info(), {});
     session.cursor = box.center();
     for (const glm::dvec3 normal : {glm::dvec3(-1, 0, 1), glm::dvec3(0.5, 0.7, 0.3), glm::dvec3(1, 1, 1)}) {
-        const FlatSlice flat = flatSlice(session, source->info(), normal);
-        const ContourQuery query{0, flat.page(), flat.x, flat.y, {}, {2, 4, 6}};
+        const PlanePicture flat = tiltedPlane(session, source->info(), normal, {});
+        const ContourQuery query{0, flat.plane, flat.x, flat.y, {}, {2, 4, 6}};
         const Contours contours = readContours(*source, query);
         std::size_t levels = 0;
         for (const double level : query.levels) {
@@ -240,9 +241,17 @@ TEST(ObliqueContours, AFigureHasThemWithValuesAndTheOutlinesOfLensesAndBrushes) 
     const auto source = linearData();
     Session session = defaultSession(source->info(), {});
     session.cursor = source->info().bounds.center();
-    const FlatSlice flat = flatSlice(session, source->info(), {-1, 0.3, 1});
-    ContourSettings lines{12, "", true};
-    std::string svg = svgOf(flatDrawing(*source, session, flat, lines, 0));
+    const PlanePicture flat = tiltedPlane(session, source->info(), {-1, 0.3, 1}, {0, {12, "", true}});
+    const auto plain = [&] { // with what the session has then
+        return svgOf(planesPage(*source, {tiltedPlane(session, source->info(), {-1, 0.3, 1}, {})}, 1, {}));
+    };
+    const auto slices = [&] {
+        std::vector<PlanePicture> pictures;
+        for (const SliceAxes& axes : kSlicePlanes)
+            pictures.push_back(axisPlane(session, source->info(), axes, session.cursor[axes.normal], {}));
+        return svgOf(planesPage(*source, pictures, 2, {}));
+    };
+    std::string svg = svgOf(planesPage(*source, {flat}, 1, {}));
     EXPECT_NE(svg.find("lines: A, 2 apart"), std::string::npos);
     const auto labels = labelsIn(svg, flat.x, flat.y);
     EXPECT_GT(labels.size(), 3u);
@@ -260,16 +269,16 @@ TEST(ObliqueContours, AFigureHasThemWithValuesAndTheOutlinesOfLensesAndBrushes) 
     session.lenses = {vis::Lens{}};
     session.lenses[0].color = {0, 0, 1};
     session.lenses[0].center = session.cursor;
-    svg = svgOf(flatDrawing(*source, session, flat, {}, 0));
+    svg = plain();
     EXPECT_EQ(count(brushed), 1u) << "one whole line";
     EXPECT_GT(count(lensed), 10u) << "dashes";
     EXPECT_EQ(count("fill=\"#0000b3\""), 1u) << "its middle";
-    svg = svgOf(slicesDrawing(*source, session, SlicesView{}, 0));
+    svg = slices();
     EXPECT_EQ(count(brushed), 3u) << "in each of the three slices";
     EXPECT_EQ(count("fill=\"#0000b3\""), 3u);
     // A ball beyond the edge of the data ends at the edge of the picture.
     session.selection.brushes[0].region = vis::SphereRegion{.center = session.cursor, .radius = glm::dvec3(50)};
-    svg = svgOf(slicesDrawing(*source, session, SlicesView{}, 0));
+    svg = slices();
     EXPECT_EQ(count(brushed), 0u);
 }
 

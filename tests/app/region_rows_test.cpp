@@ -42,13 +42,14 @@ Readout readAt(const volume::BrickSource& source, glm::dvec3 position) {
 
 TEST(RegionRows, ReadOutNamesTheRegionOfThePoint) {
     const auto source = twoSides();
-    EXPECT_EQ(readoutHeads(source->info()), (std::vector<std::string>{"Parameter", "Value", "Nearest", "Region"}));
+    const auto at = [&](double x) { return readoutTable(source->info(), readAt(*source, {x, 1, 1})); };
+    EXPECT_EQ(headsOf(at(2)), (std::vector<std::string>{"Parameter", "Value", "Nearest", "Region"}));
     EXPECT_EQ(
-        readoutRows(source->info(), readAt(*source, {2, 1, 1})),
+        cellsOf(at(2)),
         (Rows{{"p [Pa]", "1.000", "1.000", "air"}, {"region", "air", "air", ""}, {"O2", "2.000", "2.000", "air"}}));
-    EXPECT_EQ(readoutRows(source->info(), readAt(*source, {7, 1, 1})), (Rows{{"p [Pa]", "2.000", "2.000", "region 3"},
-                                                                             {"region", "3", "3", ""},
-                                                                             {"O2", "absent", "absent", "region 3"}}));
+    EXPECT_EQ(cellsOf(at(7)), (Rows{{"p [Pa]", "2.000", "2.000", "region 3"},
+                                    {"region", "3", "3", ""},
+                                    {"O2", "absent", "absent", "region 3"}}));
     Session session;
     const std::string csv = readoutCsv(session, source->info(), readAt(*source, {2, 1, 1}));
     EXPECT_TRUE(csv.starts_with("parameter,unit,interpolated,nearest,region\n"));
@@ -59,8 +60,7 @@ TEST(RegionRows, ReadOutWithoutLabelHasNoSuchColumn) {
     volume::Dataset data = volume::test::datasetOf(
         {volume::test::sampled<float>(volume::test::ccLattice({4, 4, 4}), [](glm::dvec3 p) { return p.x; })});
     const auto source = volume::makeMemorySource(std::move(data), {});
-    EXPECT_EQ(readoutHeads(source->info()).size(), 3u);
-    const Rows rows = readoutRows(source->info(), readAt(*source, {1, 1, 1}));
+    const Rows rows = cellsOf(readoutTable(source->info(), readAt(*source, {1, 1, 1})));
     ASSERT_EQ(rows.size(), 1u);
     EXPECT_EQ(rows[0].size(), 3u);
     EXPECT_TRUE(readoutCsv({}, source->info(), readAt(*source, {1, 1, 1}))

@@ -208,8 +208,8 @@ TEST(Scenarios, OxygenFallsAlongTheChannelWhileWaterRises) {
     EXPECT_LT(profile.values[0].back(), 0.8 * profile.values[0].front());
 
     // As a table, with units; the row at the cursor holds what the read-out says.
-    const std::string csv = profileCsv(task.info(), session, profile);
-    EXPECT_EQ(csv.substr(0, csv.find('\n')), "distance [m],x,y,z,O2 [mol/m\u00b3],H2O [mol/m\u00b3],T [K]");
+    const std::string csv = csvOf(profileTable(task.info(), session, profile));
+    EXPECT_EQ(csv.substr(0, csv.find('\n')), "distance [m],x [m],y [m],z [m],O2 [mol/m3],H2O [mol/m3],T [K]");
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 201);
     std::size_t nearest = 0;
     for (std::size_t i = 0; i < profile.positions.size(); ++i)

@@ -41,9 +41,13 @@ protected:
         ImGui::InvisibleButton("picture", {400, 300});
         if (slice) {
             // x to the right, y up; the frame's values are centimetres.
-            const PlotFrame plot{{50, 50}, {450, 350}, {0, 200}, {0, 100}};
-            edited = editHandles(drag, session, info, plot, page, glm::dvec2(100), ImGui::IsItemHovered());
-            drawHandles(*ImGui::GetWindowDrawList(), drag, plot, session, info, page, glm::dvec2(100));
+            const PlaneFrame cut{{{50, 50}, {450, 350}, {0, 200}, {0, 100}},
+                                 page,
+                                 glm::dvec2(100),
+                                 vis::worldFrame(info.bounds, session.stretch),
+                                 info.bounds};
+            edited = editHandles(drag, session, info, cut, ImGui::IsItemHovered());
+            drawHandles(*ImGui::GetWindowDrawList(), drag, cut, session, info);
         } else {
             edited = editHandles(drag, session, info, space(), ImGui::IsItemHovered());
             drawHandles(*ImGui::GetWindowDrawList(), drag, space(), session, info);

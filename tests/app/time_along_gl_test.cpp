@@ -163,8 +163,10 @@ TEST_F(TimeAlong, ProfilesAlongTimeAreInItsUnit) {
     ASSERT_EQ(time.values.size(), 5u);
     for (std::size_t i = 0; i < 5; ++i)
         EXPECT_NEAR(time.values[i], times.front() + (times.back() - times.front()) * double(i) / 4, 1e-9);
-    EXPECT_TRUE(profileCsv(info, session, profile).starts_with(timeWord(info) + " [s],x,y," + timeWord(info) + " [s],"))
-        << profileCsv(info, session, profile);
+    const std::string csv = csvOf(profileTable(info, session, profile)), word = timeWord(info) + " [s],";
+    EXPECT_TRUE(csv.starts_with(word + titleWithUnit("x", info.lengthUnit) + "," + titleWithUnit("y", info.lengthUnit) +
+                                "," + word))
+        << csv;
     const LineAxis across = lineAxis(session, info, alongAxis(1));
     EXPECT_EQ(across.title, "distance");
     EXPECT_TRUE(across.unit == "mm" || across.unit == "um" || across.unit == "cm") << across.unit;

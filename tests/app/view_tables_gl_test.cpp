@@ -68,7 +68,7 @@ TEST_F(ViewTables, StatisticsAreThoseOfTheSamples) {
         const TableText table = shownAt(of);
         ASSERT_EQ(table.rows.size(), of.brush ? 9u : 3u);
         for (std::size_t row = 0; row < table.rows.size(); ++row) {
-            const std::string name = table.text(row, "parameter"), part = table.text(row, "part");
+            const std::string name = table.text(row, "parameter"), part = table.text(row, "region");
             EXPECT_EQ(table.text(row, "unit"), name == "T" ? "K" : name == "c" ? "mol/m3" : "m/s");
             const Sum sum = summed(name, of.time, [&](Place at) {
                 return part == "all" || (part == "inside") == (interest(of, at) == 1);
@@ -105,7 +105,7 @@ TEST_F(ViewTables, RegionsAreCountedEachByItself) {
             EXPECT_NEAR(*table.number(row, "mean"), sum.mean, 2e-4);
             EXPECT_NEAR(*table.number(row, "min"), sum.least, 2e-4);
             EXPECT_NEAR(*table.number(row, "max"), sum.most, 2e-4);
-            EXPECT_NEAR(*table.number(row, "share of all samples"), sum.samples / (8 * 7 * 9), 1e-9);
+            EXPECT_NEAR(*table.number(row, "shareOfAll"), sum.samples / (8 * 7 * 9), 1e-9);
         }
     }
 }
@@ -250,6 +250,12 @@ TEST_F(ViewTables, SectionsAreOfTheirPlaneAndRegion) {
     }
 }
 
+/// A place in a row of a table of planes, metres; the rows have 9 digits of millimetres.
+glm::dvec3 placeIn(const TableText& table, std::size_t row) {
+    return glm::dvec3(*table.number(row, "x [mm]"), *table.number(row, "y [mm]"), *table.number(row, "z [mm]")) /
+           1000.0;
+}
+
 TEST_F(ViewTables, PlanesAreReadWhereTheyStand) {
     SliceMatrixView view;
     view.channels = {"T"};
@@ -260,9 +266,78 @@ TEST_F(ViewTables, PlanesAreReadWhereTheyStand) {
         const TableText table = shownAt(of);
         ASSERT_GT(table.rows.size(), 1000u);
         for (const std::size_t row : {std::size_t(0), std::size_t(1), table.rows.size() / 3, table.rows.size() - 1}) {
-            const glm::dvec3 at{*table.number(row, "x"), *table.number(row, "y"), *table.number(row, "z")};
+            const glm::dvec3 at = placeIn(table, row);
             EXPECT_NEAR(*table.number(row, "T [K]"), between("T", at, of.time), 3e-4) << row;
         }
+    }
+}
+
+TEST_F(ViewTables, ThreeSlicesAreReadAtTheCrossHair) {
+    SlicesView view;
+    view.channel = "c";
+    install(view);
+    for (const Case& of : cases()) {
+        SCOPED_TRACE(of.time);
+        const TableText table = shownAt(of);
+        EXPECT_EQ(table.heads, (std::vector<std::string>{"plane", "x [mm]", "y [mm]", "z [mm]", "T [K]", "c [mol/m3]",
+                                                         "|U| [m/s]"}));
+        std::map<std::string, glm::dvec3> least, most; // of each plane
+        std::size_t absent = 0, present = 0;
+        for (std::size_t row = 0; row < table.rows.size(); ++row) {
+            const glm::dvec3 at = placeIn(table, row);
+            const std::string plane = table.text(row, "plane");
+            least.try_emplace(plane, at), most.try_emplace(plane, at);
+            least[plane] = glm::min(least[plane], at), most[plane] = glm::max(most[plane], at);
+            const auto c = table.number(row, "c [mol/m3]");
+            const double x = (at.x - formula::kOrigin[0]) / formula::kSpacing[0];
+            if (x < 3) {
+                ASSERT_TRUE(c) << row;
+                if (row % 97 == 0) {
+                    EXPECT_NEAR(*c, between("c", at, of.time), 3e-4) << row;
+                }
+            } else if (x > 4) {
+                EXPECT_FALSE(c) << "absent in the east: " << row;
+            }
+            (c ? present : absent) += 1;
+            if (row % 97 == 0) {
+                EXPECT_NEAR(*table.number(row, "T [K]"), between("T", at, of.time), 3e-4) << row;
+            }
+        }
+        EXPECT_GT(present, 100u);
+        EXPECT_GT(absent, 100u);
+        ASSERT_EQ(least.size(), 3u);
+        const std::map<std::string, int> normals{{"x = 12.30 mm", 0}, {"y = 4.1 mm", 1}, {"z = -0.90 mm", 2}};
+        for (const auto& [plane, normal] : normals) {
+            ASSERT_TRUE(least.contains(plane)) << least.begin()->first << ", " << least.rbegin()->first;
+            for (int axis = 0; axis < 3; ++axis) {
+                const double lo = formula::kOrigin[axis],
+                             hi = lo + formula::kSpacing[axis] * (formula::kSize[axis] - 1);
+                const double place = start.cursor[axis];
+                EXPECT_NEAR(least[plane][axis], axis == normal ? place : lo, 1e-11) << plane;
+                EXPECT_NEAR(most[plane][axis], axis == normal ? place : hi, 1e-11) << plane;
+            }
+        }
+    }
+}
+
+TEST_F(ViewTables, EveryViewOfPlanesHasTheSameValueAtAPlace) {
+    SliceMatrixView matrix;
+    matrix.channels = {"T"};
+    matrix.planes = 3;
+    ObliqueView across;
+    across.normal = {0, 0, 1};
+    for (const ViewState& view : {ViewState(SlicesView{}), ViewState(matrix), ViewState(across)}) {
+        install(view);
+        start.cursor.z = formula::kOrigin[2] + formula::kSpacing[2] * 4; // that of the second of three planes
+        const TableText table = shownAt({0.875, {}});
+        std::size_t found = 0;
+        for (std::size_t row = 0; row < table.rows.size(); ++row) {
+            const glm::dvec3 at = placeIn(table, row);
+            if (std::abs(at.z - start.cursor.z) > 1e-11) continue;
+            ++found;
+            ASSERT_NEAR(*table.number(row, "T [K]"), between("T", at, 0.875), 3e-4) << row;
+        }
+        EXPECT_GT(found, 3000u) << view.index();
     }
 }
 

@@ -172,12 +172,16 @@ protected:
     void frame() {
         feedWindow([&] {
             surface({50, 50}, {450, 150});
-            const PlotFrame plot{{50, 50}, {450, 150}, {0, 200}, {0, 100}}; // centimetres
             const volume::Box box{glm::dvec3(0), {2, 1, 1}};
-            taken = editLenses(drag, session, box, plot, page, glm::dvec2(100), ImGui::IsItemHovered());
+            const PlaneFrame slice{{{50, 50}, {450, 150}, {0, 200}, {0, 100}}, // centimetres
+                                   page,
+                                   glm::dvec2(100),
+                                   vis::worldFrame(box, session.stretch),
+                                   box};
+            taken = editLenses(drag, session, slice, ImGui::IsItemHovered());
             ImDrawList& draw = *ImGui::GetWindowDrawList();
             const int before = draw.VtxBuffer.Size;
-            drawLensHandles(draw, drag, plot, session, box, page, glm::dvec2(100));
+            drawLensHandles(draw, drag, slice, session);
             drawn = draw.VtxBuffer.Size > before;
         });
     }

@@ -4,11 +4,14 @@
 #include "tests/volume/cell_data.h"
 #include "vis/gl/headless.h"
 
+#include "app/drawing/drawing.h"
 #include "app/pane/view_context.h"
 #include "app/ui/theme.h"
 
 #include <gtest/gtest.h>
+#include <iterator>
 #include <set>
+#include <sstream>
 
 /// Statistics by region, balances and averages over planes in their views.
 namespace tessera::app {
@@ -32,6 +35,7 @@ protected:
             ViewContext context{session, source, renderer, jobs, caches};
             context.numbers = source;
             context.headless = true;
+            context.offerExport = [&](ViewExport made) { offered = std::move(made); };
             ImGui::SetNextWindowPos({0, 0});
             ImGui::SetNextWindowSize(size);
             ImGui::Begin("view", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
@@ -52,6 +56,7 @@ protected:
     Session session;
     int drawn = 0;
     bool busy = false;
+    ViewExport offered;
 };
 
 TEST_F(RegionViews, DrawEveryMeasureAcrossEveryAxis) {
@@ -119,6 +124,50 @@ TEST_F(RegionViews, TablesAreNeverCutWithin) {
             ++read;
         }
         EXPECT_GT(read, 6);
+    }
+}
+
+/// The words of a text, each as often as it is there.
+std::multiset<std::string> wordsOf(const std::string& text) {
+    std::istringstream in(text);
+    return {std::istream_iterator<std::string>(in), {}};
+}
+
+TEST_F(RegionViews, WhatATableShowsStandsOnItsPage) {
+    vis::Brush brush;
+    brush.region = vis::BoxRegion{.center = {4e-3, 5e-3, 18e-3}, .radius = {2e-3, 9e-3, 9e-3}};
+    session.selection.brushes = {brush};
+    StatisticsView view;
+    for (const char* shown : {"statistics", "regions", "balance"}) {
+        view.byRegion = shown != std::string("statistics");
+        view.balance = shown == std::string("balance") ? "O2" : "";
+        for (int i = 0; i < 3; ++i) draw(view, drawStatisticsView, {1270, 790});
+        std::vector<std::string> texts;
+        float head = 1e9f;
+        for (const DrawnText& text : drawnTexts()) {
+            if (text.text == "Region") head = text.min.y;
+            if (text.min.y > head - 2 && !text.text.starts_with("convection only")) texts.push_back(text.text);
+        }
+        ASSERT_GT(texts.size(), 25u) << shown;
+        ASSERT_EQ(offered.name, shown);
+        ASSERT_TRUE(offered.figure);
+        for (const double millimetres : {0.0, 85.0, 174.0})
+            for (const double points : {9.0, 14.0}) {
+                SCOPED_TRACE(shown + std::string(" on ") + std::to_string(millimetres) + " mm");
+                const VectorPage page =
+                    offered.figure({.size = {millimetres / 25.4 * 72, 0}, .text = points}, Progress{});
+                if (millimetres > 0) {
+                    EXPECT_NEAR(page.size.x, millimetres / 25.4 * 72, 1e-9);
+                }
+                std::string all;
+                for (const shapes::Mark& mark : page.marks)
+                    if (const auto* words = std::get_if<shapes::Words>(&mark.shape)) all += words->text + " ";
+                const std::multiset<std::string> printed = wordsOf(all);
+                for (const std::string& text : texts)
+                    for (const std::string& word : wordsOf(text))
+                        EXPECT_TRUE(printed.contains(word)) << word << " of " << text;
+                for (const char* gone : {"Export", "parameters"}) EXPECT_FALSE(printed.contains(gone)) << gone;
+            }
     }
 }
 

@@ -206,7 +206,7 @@ TEST_F(SaidViews, TheReadOutHasWholeNumbersInAnyWidth) {
     EXPECT_THAT(narrower, Not(HasSubstr("Region")));
     EXPECT_THAT(narrow, Not(HasSubstr("Nearest")));
     EXPECT_THAT(narrow, HasSubstr("T 35"));
-    const auto row = readoutRows(source->info(), readout);
+    const auto row = cellsOf(readoutTable(source->info(), readout));
     for (const std::vector<std::string>& each : row)
         if (each[0] != "region") {
             EXPECT_THAT(narrower, HasSubstr(each[1])) << each[0];

@@ -1,14 +1,23 @@
 #include "app/views/compare/compare_questions.h"
 
-#include "app/edits/compare.h"
 #include "app/pane/plot.h"
 #include "app/ui/ticks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
 namespace tessera::app {
+
+Table questionsTable(const std::vector<CompareQuestion>& questions) {
+    Table table;
+    addColumn(table, questions, {.name = "question"}, &CompareQuestion::text);
+    addColumn(table, questions, {.name = "answer"}, &CompareQuestion::answer);
+    addColumn(table, questions, {.name = "seconds"},
+              [](const CompareQuestion& each) { return each.seconds > 0 ? each.seconds : std::nan(""); });
+    return table;
+}
 
 float questionsHeight(const CompareView& view) {
     if (view.questions.empty()) return 0;
@@ -63,7 +72,8 @@ void drawQuestions(const ViewContext& context, CompareView& view, QuestionClock&
     }
     if (removed < view.questions.size())
         view.questions.erase(view.questions.begin() + static_cast<std::ptrdiff_t>(removed));
-    if (ImGui::SmallButton("Copy answers as CSV")) ImGui::SetClipboardText(questionsCsv(view.questions).c_str());
+    if (ImGui::SmallButton("Copy answers as CSV"))
+        ImGui::SetClipboardText(csvOf(questionsTable(view.questions)).c_str());
     ImGui::SameLine(0, em() * 0.5f);
     if (ImGui::SmallButton("Clear answers")) {
         for (CompareQuestion& question : view.questions) question.answer.clear(), question.seconds = 0;

@@ -2,6 +2,7 @@
 
 #include "app/pane/controls.h"
 #include "app/session/view_state.h"
+#include "app/values/table.h"
 
 #include <string>
 #include <vector>
@@ -14,6 +15,9 @@ namespace tessera::app {
 struct QuestionClock {
     double shown = -1; ///< s, of ImGui's clock
 };
+
+/// Questions, answers and the seconds they took.
+Table questionsTable(const std::vector<CompareQuestion>& questions);
 
 /// Height in pixels of the questions of a view, 0 where there are none.
 float questionsHeight(const CompareView& view);

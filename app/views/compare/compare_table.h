@@ -2,26 +2,21 @@
 
 #include "app/edits/compare.h"
 #include "app/session/view_state_compare.h"
+#include "app/values/table.h"
 
-#include <string>
+#include <functional>
 #include <vector>
 
-/// The table of a comparison as a view shows it.
+/// The table of a comparison.
 namespace tessera::app {
 
-/// A column of numbers. Where not all have room, those of the lowest rank stay.
-struct CompareColumn {
-    std::string title;
-    int rank = 0;
-    std::vector<std::string> cells; ///< by row
-};
+/// A row for each variant: its name and what it changes, what it costs, and how far its picture and its samples are
+/// from those of the reference. `pictures`: it is drawn by the renderer, so that there are costs and errors of
+/// pictures.
+Table compareTable(const std::vector<CompareRow>& rows, bool pictures = true);
 
-/// The columns that a comparison has besides the names of the variants and what they change.
-std::vector<CompareColumn> compareColumns(const CompareView& view, const std::vector<CompareRow>& rows);
-
-/// The columns that fit into `room` together, in their order, at least one; `width` of each in pixels.
-std::vector<CompareColumn> columnsThatFit(const std::vector<CompareColumn>& columns, const std::vector<float>& width,
-                                          float room);
+/// Hides the numbers that have no room together, the least important first; one at least stays.
+void hideNumbersWithoutRoom(Table& table, float room, const std::function<float(const TableColumn&)>& width);
 
 /// The table under the pictures; a click on a row makes it the one swiped or, with Ctrl, the reference. In a narrow
 /// window what variants change is left out, and the rest scrolls; a figure has the columns that fit.

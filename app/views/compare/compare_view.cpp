@@ -341,7 +341,7 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
         ToolRow tools(context);
         drawCompareToolbar(context, tools, view, variants);
         exportMenu(context, tools,
-                   {.name = "comparison", .csv = [rows = cache.rows](const Progress&) { return compareCsv(rows); }},
+                   {.name = "comparison", .table = [rows = cache.rows](const Progress&) { return compareTable(rows); }},
                    false);
     }
     Frame frame{context, view, cache, variants};

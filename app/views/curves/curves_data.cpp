@@ -7,7 +7,6 @@
 #include "volume/field/time_pair.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -16,14 +15,6 @@ namespace tessera::app {
 namespace {
 
 constexpr std::size_t kMostQuantities = 8; ///< where the user has not chosen
-/// By theme: light, dark.
-constexpr std::array<std::array<glm::vec3, 2>, 6> kInks{{{{{0.1f, 0.36f, 0.62f}, {0.45f, 0.68f, 0.98f}}},
-                                                         {{{0.8f, 0.33f, 0.1f}, {1, 0.62f, 0.3f}}},
-                                                         {{{0.15f, 0.5f, 0.25f}, {0.45f, 0.78f, 0.5f}}},
-                                                         {{{0.5f, 0.25f, 0.6f}, {0.78f, 0.6f, 0.92f}}},
-                                                         {{{0.5f, 0.4f, 0.1f}, {0.85f, 0.78f, 0.4f}}},
-                                                         {{{0, 0, 0}, {0.95f, 0.95f, 0.95f}}}}};
-
 /// What stands between the parentheses of "mean(T)"; "" of other formulas.
 std::string argumentOf(const std::string& formula) {
     const std::size_t open = formula.find('(');
@@ -183,10 +174,6 @@ std::vector<std::vector<std::size_t>> curveGroups(const volume::Curves& curves) 
     return groups;
 }
 
-glm::vec3 curveInk(std::size_t n, bool dark) {
-    return kInks[n % kInks.size()][dark ? 1 : 0];
-}
-
 std::string groupTitle(const volume::Curves& curves, const std::vector<std::size_t>& group) {
     std::string names, shared = argumentOf(curves.y[group.front()].name);
     for (const std::size_t y : group) {
@@ -206,67 +193,47 @@ glm::dvec2 curvePoint(const volume::Curves& curves, std::size_t y, double time) 
     return {value(curves.x.values), value(curves.y[y].values)};
 }
 
-std::string curveTitle(const volume::Curve& curve) {
-    return titleWithUnit(curve.name == "time" ? "t" : curve.name, curve.unit);
+Table curvesTable(const volume::Curves& curves) {
+    Table table;
+    table.columns.push_back({.name = curves.timeName, .unit = curves.timeUnit});
+    if (!sameAxis(curves)) table.columns.push_back({.name = curves.x.name, .unit = curves.x.unit});
+    for (const volume::Curve& curve : curves.y) table.columns.push_back({.name = curve.name, .unit = curve.unit});
+    for (const std::vector<double>& row : volume::curveRows(curves))
+        for (std::size_t i = 0; i < row.size(); ++i) table.columns[i].numbers.push_back(row[i]);
+    return table;
 }
 
-std::string curvesCsv(const volume::Curves& curves) {
-    const auto heading = [](const std::string& name, const std::string& unit) {
-        return csvField(unit.empty() ? name : name + " [" + unit + "]");
-    };
-    std::string csv = heading(curves.timeName, curves.timeUnit);
-    if (!sameAxis(curves)) csv += "," + heading(curves.x.name, curves.x.unit);
-    for (const volume::Curve& curve : curves.y) csv += "," + heading(curve.name, curve.unit);
-    csv += "\n";
-    for (const std::vector<double>& row : volume::curveRows(curves)) {
-        for (std::size_t i = 0; i < row.size(); ++i) csv += (i > 0 ? "," : "") + csvNumber(row[i]);
-        csv += "\n";
-    }
-    return csv;
-}
-
-namespace {
-
-/// The title of a group with its unit, no longer than the axis of a figure.
-std::string axisTitle(const volume::Curves& curves, const std::vector<std::size_t>& group) {
-    const std::string& unit = curves.y[group.front()].unit;
-    if (group.size() == 1) return curveTitle(curves.y[group.front()]);
-    const std::string title = groupTitle(curves, group);
-    const auto fits = [&](const std::string& text) {
-        return figureTextWidth(titleWithUnit(text, unit)) <= kFigurePlot.y;
-    };
-    if (fits(title)) return titleWithUnit(title, unit);
-    std::string shown = title;
-    while (!shown.empty() && !fits(shown + "...")) {
-        while ((static_cast<unsigned char>(shown.back()) & 0xc0) == 0x80) shown.pop_back(); // whole UTF-8 characters
-        shown.pop_back();
-    }
-    return titleWithUnit(shown + "...", unit);
-}
-
-} // namespace
-
-VectorPage curvesDrawing(const volume::Curves& curves, std::optional<double> time) {
+std::vector<Plot> curvesPlots(const volume::Curves& curves, std::optional<double> time, bool dark) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    std::vector<FigurePanel> panels;
+    std::vector<Plot> plots;
     for (const std::vector<std::size_t>& group : curveGroups(curves)) {
-        FigurePanel panel;
-        panel.x = {curveTitle(curves.x), paddedRange(rangeOf(curves.x.values, {kInfinity, -kInfinity}), 0.04)};
+        Plot& plot = plots.emplace_back();
+        plot.x = {.title = curves.x.name == "time" ? "t" : curves.x.name,
+                  .range = paddedRange(rangeOf(curves.x.values, {kInfinity, -kInfinity}), 0.04),
+                  .unit = curves.x.unit};
         Range range{kInfinity, -kInfinity};
         for (std::size_t n = 0; n < group.size(); ++n) {
             const volume::Curve& curve = curves.y[group[n]];
             range = rangeOf(curve.values, range);
-            FigureSeries line{curve.name, {}, curveInk(n, false)};
+            PlotSeries& line = plot.series.emplace_back();
+            line.name = titleWithUnit(curve.name, curve.unit);
+            line.color = plotInk(n, dark);
+            line.dots = true;
             for (std::size_t t = 0; t < curves.times.size(); ++t)
                 line.points.push_back({curves.x.values[t], curve.values[t]});
-            line.dots = true;
-            panel.series.push_back(std::move(line));
-            if (time) panel.marks.push_back(curvePoint(curves, group[n], *time));
+            if (!time) continue;
+            plot.marks.push_back(curvePoint(curves, group[n], *time));
+            if (std::isfinite(plot.marks.back().y)) line.value = groupedNumber(plot.marks.back().y);
         }
-        panel.y = {axisTitle(curves, group), paddedRange(range, 0.06)};
-        panels.push_back(std::move(panel));
+        plot.y = {.title = groupTitle(curves, group),
+                  .range = paddedRange(range, 0.06),
+                  .unit = curves.y[group.front()].unit};
     }
-    return drawingOf(panels, 2);
+    return plots;
+}
+
+VectorPage curvesDrawing(const volume::Curves& curves, std::optional<double> time, const PageForm& form) {
+    return plotPage(curvesPlots(curves, time, form.dark), 0, form);
 }
 
 } // namespace tessera::app

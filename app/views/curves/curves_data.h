@@ -1,8 +1,9 @@
 #pragma once
 
 #include "app/data/number_origin.h"
-#include "app/pane/figure.h"
+#include "app/pages/plot_page.h"
 #include "app/queries/statistics_query.h"
+#include "app/values/table.h"
 #include "volume/analysis/curves.h"
 
 #include <optional>
@@ -51,16 +52,12 @@ Range rangeOf(const std::vector<double>& values, Range range);
 std::vector<std::vector<std::size_t>> curveGroups(const volume::Curves& curves);
 /// Title of their vertical axis without its unit: "T" of mean(T) and max(T), else their names.
 std::string groupTitle(const volume::Curves& curves, const std::vector<std::size_t>& group);
-/// Colour of the nth curve of a plot with several, on a light or dark ground.
-glm::vec3 curveInk(std::size_t n, bool dark);
 /// Where a time lies on a curve: between stored times in between. NaN where not known.
 glm::dvec2 curvePoint(const volume::Curves& curves, std::size_t y, double time);
-/// Title of a curve with its unit.
-std::string curveTitle(const volume::Curve& curve);
-
-/// One line per time.
-std::string curvesCsv(const volume::Curves& curves);
-/// A panel per unit, the state at `time` marked.
-VectorPage curvesDrawing(const volume::Curves& curves, std::optional<double> time);
+/// A row for each time.
+Table curvesTable(const volume::Curves& curves);
+/// A plot for each unit, the state at `time` marked.
+std::vector<Plot> curvesPlots(const volume::Curves& curves, std::optional<double> time, bool dark);
+VectorPage curvesDrawing(const volume::Curves& curves, std::optional<double> time, const PageForm& form = {});
 
 } // namespace tessera::app

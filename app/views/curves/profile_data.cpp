@@ -1,7 +1,6 @@
 #include "app/views/curves/profile_data.h"
 
 #include "app/pane/axis_label.h"
-#include "app/pane/figure.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
@@ -66,35 +65,34 @@ LineAxis lineAxis(const Session& session, const volume::DatasetInfo& info, const
     return out;
 }
 
-std::string profileCsv(const volume::DatasetInfo& info, const Session& session, const Profile& profile) {
-    const std::vector<volume::Channel> channels = info.channels();
+Table profileTable(const volume::DatasetInfo& info, const Session& session, const Profile& profile) {
     const bool timed = profile.query.over != ProfileOver::Line;
     const LineAxis along = lineAxis(session, info, profile);
-    std::string csv = timed ? csvField(titleWithUnit(info.timeName, info.timeUnit)) + "," : std::string();
-    csv += along.distance ? csvField(titleWithUnit("distance", info.lengthUnit))
-                          : csvField(titleWithUnit(along.title, along.unit));
+    Table table;
+    if (timed) table.columns.push_back({.name = info.timeName, .unit = info.timeUnit});
+    table.columns.push_back(along.distance ? TableColumn{.name = "distance", .unit = info.lengthUnit}
+                                           : TableColumn{.name = along.title, .unit = along.unit});
     glm::dvec3 perUnit(1); // shown in the unit of the data, times as times
     for (int axis = 0; axis < 3; ++axis) {
         const bool time = session.data.timeAxis && static_cast<int>(session.data.timeAxis->axis) == axis;
         const AxisLabel label = time ? axisLabels(session, info)[std::size_t(axis)] : AxisLabel{};
         if (time) perUnit[axis] = label.unit.perUnit;
-        csv += "," + (time ? csvField(titleWithUnit(label.name, label.unit.name)) : std::string(1, "xyz"[axis]));
+        table.columns.push_back({.name = time ? label.name : std::string(1, "xyz"[axis]),
+                                 .unit = time ? label.unit.name : info.lengthUnit});
     }
-    for (const int channel : profile.query.channels) {
-        const volume::Channel& own = channels[static_cast<std::size_t>(channel)];
-        csv += "," + csvField(titleWithUnit(own.name, own.unit));
-    }
-    csv += "\n";
-    const std::size_t places = profile.positions.size(), rows = timed ? profile.times.size() : 1;
-    for (std::size_t row = 0; row < rows; ++row)
+    const std::size_t first = table.columns.size(), places = profile.positions.size();
+    for (const int channel : profile.query.channels)
+        table.columns.push_back({.name = info.channel(channel).name, .unit = info.channel(channel).unit});
+    for (std::size_t row = 0; row < (timed ? profile.times.size() : 1); ++row)
         for (std::size_t i = 0; i < places; ++i) {
-            if (timed) csv += csvNumber(profile.times[row]) + ",";
-            csv += csvNumber(along.distance ? profile.distance[i] : along.values[i]);
-            for (int axis = 0; axis < 3; ++axis) csv += "," + csvNumber(profile.positions[i][axis] * perUnit[axis]);
-            for (const std::vector<double>& values : profile.values) csv += "," + csvNumber(values[row * places + i]);
-            csv += "\n";
+            std::size_t column = 0;
+            const auto add = [&](double value) { table.columns[column++].numbers.push_back(value); };
+            if (timed) add(profile.times[row]);
+            add(along.distance ? profile.distance[i] : along.values[i]);
+            for (int axis = 0; axis < 3; ++axis) add(profile.positions[i][axis] * perUnit[axis]);
+            for (; column < first + profile.values.size();) add(profile.values[column - first][row * places + i]);
         }
-    return csv;
+    return table;
 }
 
 std::vector<std::uint8_t> profileImage(const volume::DatasetInfo& info, const Session& session, const Profile& profile,
@@ -123,12 +121,12 @@ constexpr int kLeastRows = 256; ///< of a figure over time: as even as a line's 
 
 /// The picture of a parameter along the line at every time, each as high as the time axis has it: half way to the times
 /// before and after it.
-FigureImage imageOverTime(const volume::DatasetInfo& info, const Session& session, const Profile& profile,
-                          std::size_t channel) {
+PlotImage imageOverTime(const volume::DatasetInfo& info, const Session& session, const Profile& profile,
+                        std::size_t channel) {
     const std::vector<std::uint8_t> rows = profileImage(info, session, profile, channel);
     const std::vector<double>& times = profile.times;
     const std::size_t bytes = profile.positions.size() * 4;
-    FigureImage image{
+    PlotImage image{
         static_cast<int>(profile.positions.size()), std::max(kLeastRows, static_cast<int>(times.size())), {}};
     for (int row = 0; row < image.height; ++row) {
         const double time = std::lerp(times.back(), times.front(), (row + 0.5) / image.height);
@@ -141,50 +139,71 @@ FigureImage imageOverTime(const volume::DatasetInfo& info, const Session& sessio
 
 } // namespace
 
-VectorPage profileDrawing(const volume::DatasetInfo& info, const Session& session, const Profile& profile) {
-    const std::vector<volume::Channel> channels = info.channels();
-    const bool overTime = profile.query.over == ProfileOver::Time;
+std::vector<Plot> profilePlots(const volume::DatasetInfo& info, const Session& session, const Profile& profile,
+                               bool dark) {
+    const ProfileOver over = profile.query.over;
     const LineAxis along = lineAxis(session, info, profile);
     const auto [least, most] = std::ranges::minmax(along.values);
-    const FigureAxis distance{titleWithUnit(along.title, along.unit), {least, most}};
-    const auto timeAxis = [&] { return FigureAxis{timeTitle(info), {info.times.front(), info.times.back()}}; };
-    std::vector<FigurePanel> panels;
+    const PlotAxis distance{.title = along.title, .range = {least, most}, .unit = along.unit};
+    const PlotAxis time{
+        .title = timeWord(info), .range = {info.times.front(), info.times.back()}, .unit = info.timeUnit};
+    std::vector<Plot> plots;
     for (std::size_t c = 0; c < profile.values.size(); ++c) {
-        const volume::Channel& own = channels[static_cast<std::size_t>(profile.query.channels[c])];
-        const Range range = info.channelRange(own);
-        FigurePanel panel;
-        panel.x = overTime ? timeAxis() : distance;
-        if (profile.query.over == ProfileOver::LineAndTime) {
-            panel.title = titleWithUnit(own.name, own.unit);
-            panel.y = timeAxis();
-            panel.image = imageOverTime(info, session, profile, c);
-        } else {
-            panel.y = {titleWithUnit(own.name, own.unit), paddedRange(range, 0.03)};
-            FigureSeries line{own.name, {}, {0.1f, 0.36f, 0.62f}};
-            const std::vector<double>& across = profile.across();
-            for (std::size_t i = 0; i < across.size(); ++i)
-                line.points.push_back({overTime ? across[i] : along.values[i], profile.values[c][i]});
-            panel.series.push_back(std::move(line));
+        const volume::Channel own = info.channel(profile.query.channels[c]);
+        Plot& plot = plots.emplace_back();
+        plot.x = over == ProfileOver::Time ? time : distance;
+        if (over == ProfileOver::LineAndTime) {
+            plot.title = titleWithUnit(own.name, own.unit);
+            plot.y = time;
+            continue;
         }
-        panels.push_back(std::move(panel));
+        plot.y = {.title = own.name, .range = paddedRange(info.channelRange(own), 0.05), .unit = own.unit};
+        PlotSeries& line = plot.series.emplace_back(PlotSeries{own.name, {}, plotInk(0, dark)});
+        for (std::size_t i = 0; i < profile.values[c].size(); ++i)
+            line.points.push_back(
+                {over == ProfileOver::Time ? profile.times[i] : along.values[i], profile.values[c][i]});
     }
-    return drawingOf(panels, 2);
+    return plots;
 }
 
-ImVec2 freeCorner(const PlotFrame& frame, ImVec2 size, const std::vector<ImVec2>& line) {
-    ImVec2 best{0, 0};
-    std::ptrdiff_t least = std::numeric_limits<std::ptrdiff_t>::max();
-    for (const ImVec2 corner : {ImVec2{0, 0}, {0, 1}, {1, 0}, {1, 1}}) {
-        const ImVec2 lo{frame.min.x + (frame.width() - size.x) * corner.x,
-                        frame.min.y + (frame.height() - size.y) * corner.y};
-        const auto hidden = std::ranges::count_if(line, [&](ImVec2 at) {
-            return at.x >= lo.x && at.y >= lo.y && at.x <= lo.x + size.x && at.y <= lo.y + size.y;
-        });
-        if (hidden >= least) continue;
-        least = hidden;
-        best = corner;
+std::optional<std::size_t> markedPlace(const volume::DatasetInfo& info, const Session& session,
+                                       const Profile& profile) {
+    if (profile.query.over == ProfileOver::Time) return static_cast<std::size_t>(info.nearestTime(session.time));
+    std::optional<std::size_t> place;
+    double nearest = profile.distance.back() / static_cast<double>(profile.distance.size());
+    for (std::size_t i = 0; i < profile.positions.size(); ++i)
+        if (const double away = glm::distance(profile.positions[i], session.cursor); away <= nearest) {
+            nearest = away;
+            place = i;
+        }
+    return place;
+}
+
+void markPlots(std::vector<Plot>& plots, const volume::DatasetInfo& info, const Session& session,
+               const Profile& profile, std::optional<std::size_t> place) {
+    for (Plot& plot : plots) {
+        const bool picture = plot.series.empty();
+        if (picture) plot.cursorY = session.time;
+        if (!place) continue;
+        if (picture) {
+            plot.cursorX = lineAxis(session, info, profile).values[*place];
+            continue;
+        }
+        PlotSeries& line = plot.series.front();
+        const glm::dvec2 at = line.points[*place];
+        plot.cursorX = at.x;
+        plot.cursorY = at.y;
+        line.value = formatNumber(at.y, (plot.y.range.hi - plot.y.range.lo) / 1100);
     }
-    return best;
+}
+
+VectorPage profileDrawing(const volume::DatasetInfo& info, const Session& session, const Profile& profile,
+                          const PageForm& form) {
+    std::vector<Plot> plots = profilePlots(info, session, profile, form.dark);
+    for (std::size_t c = 0; c < plots.size() && profile.query.over == ProfileOver::LineAndTime; ++c)
+        plots[c].image = imageOverTime(info, session, profile, c);
+    markPlots(plots, info, session, profile, markedPlace(info, session, profile));
+    return plotPage(plots, 0, form);
 }
 
 } // namespace tessera::app

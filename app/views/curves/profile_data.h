@@ -1,12 +1,13 @@
 #pragma once
 
-#include "app/drawing/drawing.h"
-#include "app/pane/plot.h"
+#include "app/pages/plot_page.h"
 #include "app/session/session.h"
+#include "app/values/table.h"
 #include "volume/base/progress.h"
 #include "volume/bricks/brick_source.h"
 #include "volume/field/time_pair.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,18 +48,23 @@ struct LineAxis {
 };
 LineAxis lineAxis(const Session& session, const volume::DatasetInfo& info, const Profile& profile);
 
-/// One line per place, or per time, or per time and place.
-std::string profileCsv(const volume::DatasetInfo& info, const Session& session, const Profile& profile);
-/// A panel per channel: curves, or pictures coloured by the session's transfer functions.
-VectorPage profileDrawing(const volume::DatasetInfo& info, const Session& session, const Profile& profile);
+/// A row for each place, or time, or time and place.
+Table profileTable(const volume::DatasetInfo& info, const Session& session, const Profile& profile);
+/// A plot for each channel: curves, or over distance and time a plot without its picture.
+std::vector<Plot> profilePlots(const volume::DatasetInfo& info, const Session& session, const Profile& profile,
+                               bool dark);
+/// The element of Profile::across() at the session's time, or nearest to its cursor where that lies near the line.
+std::optional<std::size_t> markedPlace(const volume::DatasetInfo& info, const Session& session, const Profile& profile);
+/// Marks an element of Profile::across() in the plots, and the session's time in pictures.
+void markPlots(std::vector<Plot>& plots, const volume::DatasetInfo& info, const Session& session,
+               const Profile& profile, std::optional<std::size_t> place);
+/// The plots on a page, those over distance and time with pictures coloured by the session's transfer functions.
+VectorPage profileDrawing(const volume::DatasetInfo& info, const Session& session, const Profile& profile,
+                          const PageForm& form = {});
 
 /// A picture of a channel over distance (to the right) and time (upwards, row 0 at the top is the last time): RGBA,
 /// a row per stored time, transparent where absent.
 std::vector<std::uint8_t> profileImage(const volume::DatasetInfo& info, const Session& session, const Profile& profile,
                                        std::size_t channel);
-
-/// The corner of a plot, as shares of its width and height, in which a text of a size in pixels hides the fewest points
-/// of a line: the upper left one if no other is better, then the lower left one.
-ImVec2 freeCorner(const PlotFrame& frame, ImVec2 size, const std::vector<ImVec2>& line);
 
 } // namespace tessera::app

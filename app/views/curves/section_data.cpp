@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace tessera::app {
 
@@ -169,73 +170,72 @@ std::string placeTitle(const SectionCurvesQuery& asked) {
                                   : std::string(volume::kSpaceAxisNames[static_cast<std::size_t>(asked.axis)]);
 }
 
-std::string sectionCsv(const volume::DatasetInfo& info, const SectionCurves& curves, bool head) {
+Table sectionTable(const volume::DatasetInfo& info, const SectionCurves& curves) {
     const auto& [asked, sections, velocity, errors] = curves;
-    const bool several = info.times.size() > 1;
-    std::string csv;
-    if (head) {
-        if (several)
-            csv +=
-                csvField(titleWithUnit(info.timeName, "") + (info.timeUnit.empty() ? "" : " [" + info.timeUnit + "]")) +
-                ",";
-        csv += csvField(placeTitle(asked) + (info.lengthUnit.empty() ? "" : " [" + info.lengthUnit + "]"));
-        csv += ",region,parameter,unit,weight,samples,mean,min,max,integral,integral unit,flux,flux unit,flow,flow "
-               "unit,area,area unit";
-        for (const SectionMeasure measure : kMeasures)
-            if (!errors.empty() && measure != SectionMeasure::Area)
-                csv += ",error of " + std::string(kSectionMeasureNames[std::size_t(measure)]);
-        csv += "\n";
-    }
+    Table table;
+    std::map<std::string, std::size_t> places;
+    const auto column = [&](const std::string& name, const std::string& unit = {}) -> TableColumn& {
+        const auto [at, added] = places.try_emplace(name, table.columns.size());
+        if (added) table.columns.push_back({.name = name, .unit = unit});
+        return table.columns[at->second];
+    };
     const double weight = asked.time.weight;
     const double time = info.times[static_cast<std::size_t>(asked.time.earlier)] * (1 - weight) +
                         info.times[static_cast<std::size_t>(asked.time.later)] * weight;
     const std::vector<CurveLook> looks = curveLooks(info, asked);
+    const auto add = [&](std::size_t r, std::size_t c, std::size_t p, const std::vector<volume::ComposedUnit>& units) {
+        const volume::Channel channel = channelOf(info, asked.channels[c]);
+        const volume::SectionValues& values = sections.values[r][c][p];
+        if (info.times.size() > 1) column(info.timeName, info.timeUnit).numbers.push_back(time);
+        column(placeTitle(asked), info.lengthUnit).numbers.push_back(sections.place[p]);
+        column("region").texts.push_back(looks[r].name);
+        column("parameter").texts.push_back(channel.name);
+        column("unit").texts.push_back(channel.unit);
+        column("weight").texts.emplace_back(volume::kSectionWeightNames[static_cast<std::size_t>(asked.weight)]);
+        column("samples").numbers.push_back(values.samples);
+        for (std::size_t m = 0; m < std::size(kMeasures); ++m) {
+            const std::string name(m == 1 ? "min" : m == 2 ? "max" : kSectionMeasureNames[std::size_t(kMeasures[m])]);
+            const bool carried = kMeasures[m] == SectionMeasure::Flux || kMeasures[m] == SectionMeasure::Flow;
+            column(name).numbers.push_back(
+                carried && velocity.empty() ? std::nan("") : measured(values, kMeasures[m], units[m].factor));
+            if (kMeasures[m] > SectionMeasure::Most) column(name + " unit").texts.push_back(units[m].unit);
+        }
+        for (std::size_t m = 0; m < std::size(kMeasures); ++m)
+            if (!errors.empty() && kMeasures[m] != SectionMeasure::Area)
+                column("error of " + std::string(kSectionMeasureNames[std::size_t(kMeasures[m])]))
+                    .numbers.push_back(errorOf(curves, c, values, kMeasures[m], units[m].factor));
+    };
     for (std::size_t r = 0; r < looks.size(); ++r)
         for (std::size_t c = 0; c < asked.channels.size(); ++c) {
-            const volume::Channel channel = channelOf(info, asked.channels[c]);
             if (std::ranges::none_of(sections.values[r][c], [](const auto& plane) { return plane.area > 0; })) continue;
-            const std::string before =
-                "," + csvField(looks[r].name) + "," + csvField(channel.name) + "," + csvField(channel.unit) + "," +
-                std::string(volume::kSectionWeightNames[static_cast<std::size_t>(asked.weight)]) + ",";
             std::vector<volume::ComposedUnit> units;
             for (const SectionMeasure measure : kMeasures)
                 units.push_back(measureUnit(info, asked.channels[c], velocity, measure));
-            for (std::size_t p = 0; p < sections.place.size(); ++p) {
-                const volume::SectionValues& values = sections.values[r][c][p];
-                if (several) csv += csvNumber(time) + ",";
-                csv += csvNumber(sections.place[p]) + before + csvNumber(values.samples);
-                for (std::size_t m = 0; m < std::size(kMeasures); ++m) {
-                    const bool carried = kMeasures[m] == SectionMeasure::Flux || kMeasures[m] == SectionMeasure::Flow;
-                    csv += ",";
-                    if (!carried || !velocity.empty())
-                        csv += csvNumber(measured(values, kMeasures[m], units[m].factor));
-                    if (kMeasures[m] > SectionMeasure::Most) csv += "," + csvField(units[m].unit);
-                }
-                for (std::size_t m = 0; m < std::size(kMeasures); ++m)
-                    if (!errors.empty() && kMeasures[m] != SectionMeasure::Area)
-                        csv += "," + csvNumber(errorOf(curves, c, values, kMeasures[m], units[m].factor));
-                csv += "\n";
-            }
+            for (std::size_t p = 0; p < sections.place.size(); ++p) add(r, c, p, units);
         }
-    return csv;
+    return table;
 }
 
-std::vector<FigurePanel> sectionPanels(const volume::DatasetInfo& info, const SectionCurves& curves,
-                                       SectionMeasure measure) {
+std::string sectionCsv(const volume::DatasetInfo& info, const SectionCurves& curves, bool head) {
+    const std::string csv = csvOf(sectionTable(info, curves));
+    return head ? csv : csv.substr(csv.find('\n') + 1);
+}
+
+std::vector<Plot> sectionPanels(const volume::DatasetInfo& info, const SectionCurves& curves, SectionMeasure measure) {
     const auto& [asked, sections, velocity, errors] = curves;
     if (velocity.empty() && (measure == SectionMeasure::Flux || measure == SectionMeasure::Flow))
         throw Error("a flux needs a velocity, and no vector has the name or unit of one");
     const LengthUnit length = suitableLength(
         info.lengthUnit, sections.place.empty() ? 0 : std::abs(sections.place.back() - sections.place.front()));
     const std::vector<CurveLook> looks = curveLooks(info, asked);
-    std::vector<FigurePanel> panels;
+    std::vector<Plot> panels;
     for (std::size_t c = 0; c < asked.channels.size(); ++c) {
         const volume::Channel channel = channelOf(info, asked.channels[c]);
         const volume::ComposedUnit unit = measureUnit(info, asked.channels[c], velocity, measure);
-        FigurePanel panel;
+        Plot panel;
         Range range{HUGE_VAL, -HUGE_VAL};
         for (std::size_t r = 0; r < looks.size(); ++r) {
-            FigureSeries series{looks[r].name, {}, looks[r].color};
+            PlotSeries series{looks[r].name, {}, looks[r].color};
             bool any = false;
             for (std::size_t p = 0; p < sections.place.size(); ++p) {
                 const volume::SectionValues& values = sections.values[r][c][p];

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "app/data/number_origin.h"
-#include "app/pane/figure.h"
 #include "app/session/section_settings.h"
+#include "app/values/plot.h"
+#include "app/values/table.h"
 #include "vis/scene/selection.h"
 #include "volume/base/progress.h"
 #include "volume/base/unit_product.h"
@@ -72,12 +73,12 @@ std::vector<CurveLook> curveLooks(const volume::DatasetInfo& info, const Section
 /// The title of the places along the axis or line, without unit.
 std::string placeTitle(const SectionCurvesQuery& query);
 
-/// One line per region, parameter (where the region has it) and plane, with every measure; `head` false leaves the
-/// first line out, as of further times.
+/// A row for each region, parameter (where the region has it) and plane, with every measure.
+Table sectionTable(const volume::DatasetInfo& info, const SectionCurves& curves);
+/// The same as CSV; `head` false leaves the first line out, as of further times.
 std::string sectionCsv(const volume::DatasetInfo& info, const SectionCurves& curves, bool head = true);
-/// A panel for each parameter, a line for each region.
-std::vector<FigurePanel> sectionPanels(const volume::DatasetInfo& info, const SectionCurves& curves,
-                                       SectionMeasure measure);
+/// A plot for each parameter, a line for each region.
+std::vector<Plot> sectionPanels(const volume::DatasetInfo& info, const SectionCurves& curves, SectionMeasure measure);
 
 /// Notes on how the numbers were computed, one sentence each.
 std::vector<std::string> sectionNotes(const volume::DatasetInfo& info, const SectionCurves& curves);

@@ -1,8 +1,8 @@
 #include "app/views/curves/section_view.h"
 
-#include "app/pane/figure.h"
-#include "app/pane/plot.h"
+#include "app/pages/plot_page.h"
 #include "app/pane/view_parts.h"
+#include "app/plots/plot_view.h"
 #include "app/queries/async_query.h"
 #include "app/queries/statistics_query.h"
 #include "app/tools/profile_line.h"
@@ -97,6 +97,32 @@ SectionCurvesQuery queryOf(const ViewContext& context, const ProfileView& view, 
     return query;
 }
 
+/// What one unit of the data is in the unit of the axis of the plots.
+double axisPerUnit(const SectionCurves& curves, const std::vector<Plot>& plots) {
+    const auto& places = curves.sections.place;
+    const Range across = plots.front().x.range;
+    return places.back() != places.front() ? (across.hi - across.lo) / (places.back() - places.front()) : 1;
+}
+
+/// Where the cursor lies on the axis of the plots; nothing for planes across a line.
+std::optional<double> placeOfCursor(const SectionCurves& curves, const std::vector<Plot>& plots, glm::dvec3 cursor) {
+    if (!curves.query.line.empty() || curves.sections.place.empty() || plots.empty()) return std::nullopt;
+    return cursor[static_cast<int>(curves.query.axis)] * axisPerUnit(curves, plots);
+}
+
+/// Marks a place of the axis, with the value of each line at the plane nearest to it.
+void markSections(std::vector<Plot>& plots, std::optional<double> place) {
+    for (Plot& plot : plots) {
+        plot.cursorX = place;
+        for (PlotSeries& series : plot.series) {
+            const auto away = [&](const glm::dvec2& point) { return std::abs(point.x - place.value_or(0)); };
+            const auto nearest = std::ranges::min_element(series.points, {}, away);
+            if (place && nearest != series.points.end())
+                series.value = formatNumber(nearest->y, (plot.y.range.hi - plot.y.range.lo) / 1000);
+        }
+    }
+}
+
 void drawToolbar(ViewContext& context, ProfileView& view, const std::vector<int>& shown,
                  const std::shared_ptr<const SectionCurves>& curves) {
     static constexpr const char* kAcross[] = {"across x", "across y", "across z", "across the line"};
@@ -126,70 +152,14 @@ void drawToolbar(ViewContext& context, ProfileView& view, const std::vector<int>
     exportMenu(context, tools,
                {.name = "sections",
                 .figure =
-                    [info, curves, measure = view.sections.measure](const PageForm&, const Progress&) {
-                        return drawingOf(sectionPanels(info, *curves, measure), 2);
+                    [info, curves, measure = view.sections.measure,
+                     cursor = context.session.cursor](const PageForm& form, const Progress&) {
+                        std::vector<Plot> plots = sectionPanels(info, *curves, measure);
+                        markSections(plots, placeOfCursor(*curves, plots, cursor));
+                        return plotPage(plots, 0, form);
                     },
-                .csv = [info, curves](const Progress&) { return sectionCsv(info, *curves); }});
+                .table = [info, curves](const Progress&) { return sectionTable(info, *curves); }});
     drawOrigin(context, tools, shown);
-}
-
-/// The point of a series nearest to a place; nothing where it is not finite.
-std::optional<std::size_t> nearestPoint(const FigureSeries& series, double place) {
-    std::optional<std::size_t> best;
-    for (std::size_t i = 0; i < series.points.size(); ++i)
-        if (!best || std::abs(series.points[i].x - place) < std::abs(series.points[*best].x - place)) best = i;
-    return best;
-}
-
-/// What the panel shows, and the values at the place that is marked. The curves are drawn over it.
-void writeTitles(const FigurePanel& panel, const PlotFrame& frame, std::optional<double> marked) {
-    ImDrawList& draw = *ImGui::GetWindowDrawList();
-    ImVec2 at{frame.min.x + em() * 0.4f, frame.min.y + em() * 0.2f};
-    const auto write = [&](const std::string& text, ImU32 color) {
-        const float width = ImGui::CalcTextSize(text.c_str()).x;
-        if (at.x + width > frame.max.x && at.x > frame.min.x + em())
-            at = {frame.min.x + em() * 0.4f, at.y + em() * 1.1f};
-        if (at.y + em() > frame.max.y) return;
-        addTextWithBackdrop(draw, at, {0, 0}, color, text.c_str());
-        at.x += width + em() * 0.8f;
-    };
-    write(panel.y.title, plotColors().text);
-    for (const FigureSeries& series : panel.series) {
-        std::string text = series.name;
-        if (marked)
-            if (const auto point = nearestPoint(series, *marked))
-                text += "  " + formatNumber(series.points[*point].y, (panel.y.range.hi - panel.y.range.lo) / 1000);
-        write(text, toColor({series.color.r, series.color.g, series.color.b}));
-    }
-}
-
-void drawPanel(const FigurePanel& panel, const PlotFrame& frame, std::optional<double> marked) {
-    ImDrawList& draw = *ImGui::GetWindowDrawList();
-    const PlotColors colors = plotColors();
-    writeTitles(panel, frame, marked);
-    draw.PushClipRect(frame.min, frame.max, true);
-    std::vector<ImVec2> run;
-    for (const FigureSeries& series : panel.series) {
-        const ImU32 color = toColor({series.color.r, series.color.g, series.color.b});
-        const auto flush = [&] {
-            if (run.size() > 1)
-                draw.AddPolyline(run.data(), static_cast<int>(run.size()), color, 0, std::max(1.2f, em() * 0.12f));
-            else if (run.size() == 1)
-                draw.AddCircleFilled(run.front(), em() * 0.14f, color);
-            run.clear();
-        };
-        for (const glm::dvec2& point : series.points) {
-            if (std::isfinite(point.y))
-                run.push_back(frame.pixel(point.x, point.y));
-            else
-                flush();
-        }
-        flush();
-    }
-    if (marked) drawCrosshair(draw, frame, *marked, std::nan(""));
-    draw.PopClipRect();
-    draw.AddRect(frame.min, frame.max, colors.frame);
-    drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
 }
 
 } // namespace
@@ -231,7 +201,7 @@ void drawSections(ViewContext& context, const std::string& pane, ProfileView& vi
         [](const SectionCurvesQuery& a, const SectionCurvesQuery& b) {
             return a.channels == b.channels && a.axis == b.axis && a.line == b.line;
         });
-    if (!context.figure) drawToolbar(context, view, shown, curves);
+    drawToolbar(context, view, shown, curves);
     if (!curves) {
         if (const std::string failure = cache.answers.failure(); !failure.empty())
             return drawHint("No averages", failure.c_str());
@@ -240,45 +210,25 @@ void drawSections(ViewContext& context, const std::string& pane, ProfileView& vi
     const SectionMeasure measure = view.sections.measure;
     if (curves->velocity.empty() && (measure == SectionMeasure::Flux || measure == SectionMeasure::Flow))
         return drawHint("No flux", "The data have no vector with the name or unit of a velocity.");
-    const std::vector<FigurePanel> panels = sectionPanels(info, *curves, measure);
-    const ImVec2 origin = ImGui::GetCursorScreenPos();
-    float left = 0;
-    for (const FigurePanel& panel : panels)
-        left = std::max(left, axisRoom(AxisSide::Left, panel.y.range, TitlePlace::Nowhere));
-    const ColumnHeights heights = columnHeights(ImGui::GetContentRegionAvail().y, panels.size());
-    const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(heights.all)};
-    const float height = heights.each;
-    if (room.x - left < em() * 4) return drawHint("Not enough room", "Enlarge the pane.");
-    const float x0 = origin.x + left, x1 = origin.x + room.x - em() * 0.6f;
-    const Range across = panels.front().x.range;
-    ImGui::SetCursorScreenPos({x0, origin.y});
-    mouseArea("plots", {x1 - x0, room.y - heights.bottom});
-    const bool taken = ImGui::IsItemActive();
-    const double share = std::clamp(double((ImGui::GetIO().MousePos.x - x0) / (x1 - x0)), 0.0, 1.0);
+    std::vector<Plot> plots = sectionPanels(info, *curves, measure);
+    const std::optional<PlotColumn> column = placePlots(plots);
+    if (!column) return;
     // What is under the mouse is read; a click or drag takes the cursor to that plane.
+    const Range across = plots.front().x.range;
+    std::optional<double> marked = placeOfCursor(*curves, plots, session.cursor);
     const bool line = !curves->query.line.empty();
-    const int axis = static_cast<int>(curves->query.axis);
-    const auto& places = curves->sections.place;
-    const double perUnit =
-        places.back() != places.front() ? (across.hi - across.lo) / (places.back() - places.front()) : 1;
-    std::optional<double> marked;
-    if (ImGui::IsItemHovered() || taken)
-        marked = across.lo + (across.hi - across.lo) * share;
-    else if (!line)
-        marked = session.cursor[axis] * perUnit;
-    if (taken && marked && !line) {
-        session.cursor[axis] = std::clamp(*marked / perUnit, info.bounds.lo[axis], info.bounds.hi[axis]);
+    if (column->hovered) marked = across.lo + (across.hi - across.lo) * column->share;
+    if (column->taken && !line) {
+        const int axis = static_cast<int>(curves->query.axis);
+        session.cursor[axis] =
+            std::clamp(*marked / axisPerUnit(*curves, plots), info.bounds.lo[axis], info.bounds.hi[axis]);
         context.interacting = true;
     }
-    for (std::size_t i = 0; i < panels.size(); ++i) {
-        const float top = origin.y + em() * 0.2f + height * static_cast<float>(i);
-        const PlotFrame frame{
-            {x0, std::round(top)}, {x1, std::round(top + height - em() * 0.4f)}, across, panels[i].y.range};
-        drawPanel(panels[i], frame, marked);
-        if (i + 1 == panels.size())
-            drawAxis(*ImGui::GetWindowDrawList(), frame, AxisSide::Bottom, panels[i].x.title, "", origin.x,
-                     origin.x + room.x, {.inlineTitle = !heights.titled});
-    }
+    if (context.decoration.cursor) markSections(plots, marked);
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    for (std::size_t i = 0; i < plots.size(); ++i)
+        drawPlot(draw, plots[i], column->frames[i], column->titled, column->left);
+    drawPlotBottom(draw, plots.back(), *column);
 }
 
 } // namespace tessera::app

@@ -321,7 +321,7 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
     query.meanOf = meanChannel(query, info, view.colorBy);
     const std::shared_ptr<const StatisticsResult> result = cache.answers.get(context, "statistics " + pane, query);
 
-    if (!context.figure) drawScatterToolbar(context, view, matrix.channels, result);
+    drawScatterToolbar(context, view, matrix.channels, result);
     const auto n = static_cast<float>(matrix.size());
     const ImVec2 origin = ImGui::GetCursorScreenPos();
     const ImVec2 room{ImGui::GetContentRegionAvail().x,

@@ -1,6 +1,5 @@
 #include "app/views/scatter/scatter_toolbar.h"
 
-#include "app/pane/figure.h"
 #include "app/pane/view_parts.h"
 #include "app/queries/focus_share.h"
 #include "app/tools/brush_edit.h"
@@ -9,6 +8,7 @@
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
 #include "app/views/data/derived_list.h"
+#include "app/views/scatter/scatter_page.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,52 +58,6 @@ void addAxis(ViewContext& context, ScatterMatrixView& view, const std::vector<in
         show(wanted.name);
 }
 
-std::string matrixCsv(const volume::DatasetInfo& info, const StatisticsResult& result) {
-    const std::vector<volume::Channel> channels = info.channels();
-    const auto nameOf = [&](int position) {
-        const volume::Channel& own =
-            channels[static_cast<std::size_t>(result.query.channels[static_cast<std::size_t>(position)])];
-        return csvField(titleWithUnit(own.name, own.unit));
-    };
-    std::string csv = "x parameter,y parameter,x,y,samples,in focus\n";
-    for (const volume::JointHistogram& joint : result.statistics.joint)
-        for (int y = 0; y < joint.bins; ++y)
-            for (int x = 0; x < joint.bins; ++x) {
-                const auto i = static_cast<std::size_t>(y * joint.bins + x);
-                if (joint.count[i] == 0) continue;
-                const auto middle = [&](Range range, int bin) {
-                    return range.lo + (range.hi - range.lo) * (bin + 0.5) / joint.bins;
-                };
-                csv += nameOf(joint.x) + "," + nameOf(joint.y) + "," + csvNumber(middle(joint.xRange, x)) + "," +
-                       csvNumber(middle(joint.yRange, y)) + "," + csvNumber(static_cast<double>(joint.count[i])) + "," +
-                       csvNumber(joint.focus[i]) + "\n";
-            }
-    return csv;
-}
-
-VectorPage matrixDrawing(const volume::DatasetInfo& info, const StatisticsResult& result, bool logDensity,
-                         ImU32 focus) {
-    const std::vector<volume::Channel> channels = info.channels();
-    std::vector<FigurePanel> panels;
-    for (const volume::JointHistogram& joint : result.statistics.joint) {
-        const auto titleOf = [&](int position) {
-            const volume::Channel& own =
-                channels[static_cast<std::size_t>(result.query.channels[static_cast<std::size_t>(position)])];
-            return titleWithUnit(own.name, own.unit);
-        };
-        FigurePanel panel;
-        panel.x = {titleOf(joint.x), joint.xRange};
-        panel.y = {titleOf(joint.y), joint.yRange};
-        if (!std::isnan(joint.correlation)) panel.title = "r = " + formatNumber(joint.correlation, 0.001);
-        const int size =
-            densityImage(joint.count, result.brushed ? std::span<const double>(joint.focus) : std::span<const double>(),
-                         joint.bins, 1, logDensity, false, focus, panel.image.rgba);
-        panel.image.width = panel.image.height = size;
-        panels.push_back(std::move(panel));
-    }
-    return drawingOf(panels, 3);
-}
-
 /// The menu of rarely changed settings: colours, derived axes, exports.
 void drawMore(ViewContext& context, ToolRow& tools, ScatterMatrixView& view, const std::vector<int>& shown,
               const std::shared_ptr<const StatisticsResult>& result) {
@@ -129,12 +83,17 @@ void drawMore(ViewContext& context, ToolRow& tools, ScatterMatrixView& view, con
         ImGui::EndPopup();
     }
     if (!result) return;
+    ScatterPageLook look{.logDensity = view.logDensity, .focus = focusColor(context.session)};
+    if (const auto third = info.findChannel(view.colorBy); third && !view.colorBy.empty()) {
+        look.mean = transferOf(context.session, view.colorBy);
+        look.meanRange = vis::effectiveRange(look.mean, info.channelRange(info.channel(*third)));
+    }
     exportMenu(
         context, tools,
         {.name = "scatterplots",
-         .figure = [info, result, logDensity = view.logDensity, focus = focusColor(context.session)](
-                       const PageForm&, const Progress&) { return matrixDrawing(info, *result, logDensity, focus); },
-         .csv = [info, result](const Progress&) { return matrixCsv(info, *result); }});
+         .figure = [info, result, look, count = shown.size()](
+                       const PageForm& form, const Progress&) { return matrixPage(info, *result, count, look, form); },
+         .table = [info, result](const Progress&) { return matrixTable(info, *result); }});
 }
 
 /// The end of the line: the share in focus, and the button that clears the brushes. Their space is reserved even

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/views/slices/slice_figure.h"
+#include "app/planes/contour_data.h"
 
 #include <array>
 #include <glm/vec3.hpp>
@@ -8,6 +8,9 @@
 
 /// Where the three slices of a pane lie, and the numbers at the cross-hair.
 namespace tessera::app {
+
+/// The three slices of a view, in its order.
+inline constexpr std::array<SliceAxes, 3> kSlicePlanes{{{0, 1, 2}, {2, 1, 0}, {0, 2, 1}}};
 
 enum class SliceOrder { Quarters, Row, Column, Rows, Columns };
 
@@ -22,9 +25,9 @@ struct SliceLayout {
     std::array<SliceArea, 3> planes; ///< by index of kSlicePlanes
     SliceArea numbers, values = {};  ///< values have a room apart from the legend where they have an extent
     bool axes = true;                ///< numbers along the slices
-    std::array<SliceAxes, 3> turned{kSlicePlanes[0], kSlicePlanes[1], kSlicePlanes[2]}; ///< to the right and up
-    std::array<bool, 3> beside{}; ///< the place of the slice stands at the right of it, not above
-    std::array<bool, 3> shared{}; ///< the slice below has the numbers of its lower axis
+    std::array<SliceAxes, 3> turned = kSlicePlanes; ///< to the right and up
+    std::array<bool, 3> beside{};                   ///< the place of the slice stands at the right of it, not above
+    std::array<bool, 3> shared{};                   ///< the slice below has the numbers of its lower axis
 };
 
 /// Places them in a pane of `room` pixels whose box has these half sizes. Quarters, so that slices share their axes. A

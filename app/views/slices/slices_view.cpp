@@ -1,51 +1,52 @@
 #include "app/pane/axes3d.h"
 #include "app/pane/view_parts.h"
-#include "app/queries/readout.h"
+#include "app/planes/plane_export.h"
+#include "app/planes/plane_pane.h"
+#include "app/tools/brush_list.h"
 #include "app/ui/widgets.h"
-#include "app/views/slices/slice_figure.h"
 #include "app/views/slices/slice_layout.h"
-#include "app/views/slices/slice_plane.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tessera::app {
 
 namespace {
 
+using ThreeSlices = std::array<PlanePicture, 3>; ///< by index of kSlicePlanes
+
 struct SlicesCache : ViewCache {
-    SlicePlanes planes;
+    std::array<PlaneState, 3> planes;
 };
 
-/// Parameter, contour lines and export, and a copy of the values at the cross-hair.
-void chooseShown(ViewContext& context, ToolRow& tools, SlicesView& view, const Readout& readout, int channel,
-                 std::string& name) {
-    const volume::DatasetInfo& info = context.source->info();
-    const float width = std::min(em() * 11, tools.room() * 0.4f);
-    if (tools.next(width)) {
-        ImGui::SetNextItemWidth(width);
-        if (chooseChannel("##channel", &info, name)) view.channel = name;
-        if (ImGui::IsItemHovered()) tooltip("Parameter that colours the slices");
-    }
-    chooseContours(tools, info, view.lines);
-    exportMenu(context, tools,
-               {.name = "slices",
-                .figure = [source = context.numbers, session = context.session, view,
-                           channel](const PageForm&, const Progress& progress) {
-                    return slicesDrawing(*source, session, view, channel, progress);
-                }});
-    if (!view.showReadout || !tools.next(iconButtonWidth(context, icons::kCopy))) return;
-    if (iconButton(context, "copy", icons::kCopy, "Copy the values at the cross-hair as CSV"))
-        ImGui::SetClipboardText((originLine(context.origin, context.numbers->info()) +
-                                 readoutCsv(context.session, context.numbers->info(), readout))
-                                    .c_str());
+PlanePicture sliceAtCursor(const Session& session, const volume::DatasetInfo& info, const SliceAxes& axes,
+                           const PlaneContent& shows) {
+    return axisPlane(session, info, axes, session.cursor[axes.normal], shows);
 }
 
-/// The stretch of the box, if it has one, at the end of the line.
+ThreeSlices slicesAtCursor(const Session& session, const volume::DatasetInfo& info,
+                           const std::array<SliceAxes, 3>& axes, const PlaneContent& shows) {
+    return {sliceAtCursor(session, info, axes[0], shows), sliceAtCursor(session, info, axes[1], shows),
+            sliceAtCursor(session, info, axes[2], shows)};
+}
+
+/// Parameter, contour lines and export, and a copy of the values at the cross-hair.
+void drawSlicesTools(ViewContext& context, SlicesView& view, const Readout& readout, const PlaneContent& shows) {
+    ToolRow tools(context);
+    choosePlaneChannel(tools, context.source->info(), shows.channel, view.channel);
+    chooseContours(tools, context.source->info(), view.lines);
+    const volume::DatasetInfo& info = context.numbers->info();
+    const ThreeSlices slices = slicesAtCursor(context.session, info, kSlicePlanes, shows);
+    exportPlanes(context, tools, "slices", {slices.begin(), slices.end()}, 2, comparedChannels(info));
+    if (view.showReadout) copyReadout(context, tools, readout);
+}
+
+/// The stretch of the box, if it has one, at the end of the line of tools.
 void drawStretch(const ViewContext& context) {
     const std::string whole = stretchText(context.session.stretch);
     if (whole.empty()) return;
-    if (!context.figure) ImGui::SameLine();
+    if (ImGui::GetCursorPosY() > ImGui::GetCursorStartPos().y) ImGui::SameLine();
     const float room = ImGui::GetContentRegionAvail().x - em();
     const std::string text = firstThatFits({whole, whole.substr(whole.find(' ') + 1), ""}, room);
     const float width = ImGui::CalcTextSize(text.c_str()).x;
@@ -61,21 +62,103 @@ void drawStretch(const ViewContext& context) {
     }
 }
 
-void drawSliceLegend(const ViewContext& context, const SlicesView& view, const Readout& readout, int channel,
-                     const DrawnContours& lines) {
+/// The room of a slice in the pane, and that of its picture between its axes.
+struct SliceRoom {
+    PlaneAxes axes;
+    ImVec2 lo, hi;
+};
+
+SliceRoom roomOfSlice(const ThreeSlices& slices, const SliceLayout& layout, std::size_t index) {
+    const auto& [min, max] = layout.planes[index];
+    SliceRoom room{.axes = {.min = min, .max = max, .beside = layout.beside[index], .below = !layout.shared[index]},
+                   .lo = {},
+                   .hi = {}};
+    // Slices below each other begin at the same pixel, whatever their numbers. Where their place stands at the right,
+    // the title of the vertical axis stands upright at the left: nothing is above them.
+    const TitlePlace title = layout.beside[index] ? TitlePlace::Beside : TitlePlace::Elsewhere;
+    for (const PlanePicture& each : slices)
+        for (const TitlePlace place : {title, TitlePlace::Nowhere}) // the title may find no room
+            room.axes.left = std::max(room.axes.left, axisRoom(AxisSide::Left, each.shownY(), place));
+    const float below = axisRoom(AxisSide::Bottom, slices[index].shownX(), TitlePlace::Elsewhere);
+    const SliceMargins around = sliceMargins(layout, static_cast<int>(index), room.axes.left / em(), below / em());
+    room.lo = {min.x + around.left * em(), min.y + around.top * em()};
+    room.hi = {max.x - around.right * em(), max.y - around.bottom * em()};
+    return room;
+}
+
+/// Pixels per world length of a slice; those that share an axis have one scale.
+double scaleOfSlice(const ThreeSlices& slices, const SliceLayout& layout, std::size_t index) {
+    const auto own = [&](std::size_t i) {
+        const SliceRoom room = roomOfSlice(slices, layout, i);
+        return planeScale(slices[i], room.lo, room.hi, leastPicture(layout, em()));
+    };
+    double scale = own(index);
+    for (std::size_t other = 0; other < slices.size(); ++other)
+        if (layout.order == SliceOrder::Rows && layout.turned[other].right == layout.turned[index].right)
+            if (const double its = own(other); its > 0) scale = std::min(scale, its);
+    return scale;
+}
+
+/// The head line, or the line beside the picture, names the slice and its place, in the colour of the axis it is
+/// perpendicular to. `plot`: null where there is no picture.
+void drawSliceTitle(SliceRoom& room, const PlanePicture& slice, const volume::DatasetInfo& info, const PlotFrame* plot,
+                    bool numbered) {
+    const int axis = slice.axes->normal;
+    const auto& [name, unit] = slice.positions[static_cast<std::size_t>(axis)];
+    const double at = slice.plane.at[axis] * unit.perUnit, digits = info.bounds.size()[axis] * unit.perUnit / 1000;
+    const std::string whole = name + " = " + formatQuantity(at, unit.name, digits);
+    const bool beside = room.axes.beside && plot;
+    const float left = beside ? plot->max.x + em() * 0.5f : room.axes.min.x; // where it stands beside the picture
+    // The name of the axis and its unit stay longest: a narrow slice has few pixels to tell places apart.
+    const auto shorter = [&](double fewer) { return name + " " + formatQuantity(at, unit.name, digits * fewer); };
+    // The title of the axis at the left stands at the other end of the head line; the unit matters more.
+    const auto widthOf = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
+    const float axisTitle = numbered ? widthOf(titleWithUnit(slice.up.name, slice.up.unit.name)) + em() * 0.6f : 0;
+    const float all = beside ? room.axes.max.x - left : room.hi.x - left + 1;
+    const float width = beside ? all : std::max(all - axisTitle, std::min(all, widthOf(shorter(100)) + 1));
+    const std::string place = firstThatFits(
+        {whole, shorter(1), shorter(10), shorter(100), name + " " + formatNumber(at, digits * 100), name}, width);
+    const ImVec2 size = ImGui::CalcTextSize(place.c_str());
+    const ImVec2 from =
+        beside ? ImVec2{std::round(left), plot->min.y} : ImVec2{std::round(room.hi.x - size.x), room.axes.min.y};
+    if (!beside) room.axes.title = from.x - left - em() * 0.4f;
+    ImGui::GetWindowDrawList()->AddText(from, axisColor(axis), place.c_str());
+    tellWhole(from, {from.x + size.x, from.y + size.y}, whole, place);
+}
+
+void drawSliceAtCursor(ViewContext& context, PlaneState& state, const std::string& pane, const ThreeSlices& slices,
+                       const SliceLayout& layout, std::size_t index) {
     const volume::DatasetInfo& info = context.source->info();
-    LegendEntry legend = legendOf(context.session, info, channel);
-    if (const auto value = readout.value(info.channel(channel).name); value && context.decoration.cursor)
-        legend.marker = *value;
-    if (ImGui::GetContentRegionAvail().y < legendBarHeight()) legend.title = legend.unit = ""; // the tools have it
-    // What is left out keeps its place: the rest stays where it is.
-    legendBarItem(legend, context.decoration.legend);
-    if (context.decoration.legend) drawContourNote(contourNote(info, view.lines, lines));
+    SliceRoom room = roomOfSlice(slices, layout, index);
+    const double scale = scaleOfSlice(slices, layout, index);
+    if (!(scale > 0)) {
+        const PlanePicture& slice = slices[index];
+        if (context.decoration.title && !layout.beside[index]) drawSliceTitle(room, slice, info, nullptr, layout.axes);
+        const bool flatX = !(slice.size.x > 0), flatY = !(slice.size.y > 0);
+        const std::string text = "no extent along " + (flatX ? slice.right : slice.up).name;
+        if (flatX || flatY) ImGui::GetWindowDrawList()->AddText(room.lo, plotColors().faint, text.c_str());
+        return;
+    }
+    const auto now = [&] { // the mouse may have moved the cross-hair, here or in another slice
+        return sliceAtCursor(context.session, info, layout.turned[index], slices[index].shows);
+    };
+    PlanePicture slice = now();
+    PlaneFrame frame =
+        planeFrame(slice, vis::worldFrame(info.bounds, context.session.stretch), info.bounds, room.lo, scale);
+    ImGui::PushID(static_cast<int>(index));
+    useMouse(context, state, slice, frame, [&] { drawBrushMenu(context); });
+    ImGui::PopID();
+    slice = now();
+    frame.plane = slice.plane;
+    if (context.decoration.title) drawSliceTitle(room, slice, info, &frame.plot, layout.axes);
+    drawPicture(context, state, slice, frame, 1.0 / 3); // three pictures share a frame
+    if (context.decoration.axes && layout.axes) drawPlaneAxes(slice, frame.plot, room.axes);
+    drawOver(context, state, slice, frame, "contours " + pane + std::to_string(index));
 }
 
 /// Legend and read-out in the room that the three slices leave, or the read-out in one of its own.
-void drawNumbers(ViewContext& context, const SlicesView& view, const Readout& values, int channel,
-                 const DrawnContours& lines, const SliceLayout& layout) {
+void drawNumbers(ViewContext& context, const SlicesView& view, const Readout& values, const PlanePicture& slice,
+                 const SliceLayout& layout) {
     const bool readout = view.showReadout && context.decoration.cursor;
     const auto within = [&](const char* id, const SliceArea& room, const auto& body) {
         const ImVec2 size = room.size();
@@ -85,22 +168,24 @@ void drawNumbers(ViewContext& context, const SlicesView& view, const Readout& va
         body(size.y);
         ImGui::EndChild();
     };
-    const auto legend = [&] { drawSliceLegend(context, view, values, channel, lines); };
+    const auto legend = [&] { // in a low room the tools have the name
+        drawPlaneLegend(context, slice, values, ImGui::GetContentRegionAvail().y >= legendBarHeight());
+    };
     const bool apart = layout.values.size().x > 0;
     within("legend", layout.numbers, [&](float room) {
         if (!readout || apart) return legend();
-        const std::string note = contourNote(context.source->info(), view.lines, lines);
+        const std::string note = contourNote(context.source->info(), slice);
         const float left = room - legendBarHeight() - em() * 0.3f - ImGui::GetStyle().ItemSpacing.y -
                            (note.empty() ? 0 : ImGui::GetTextLineHeightWithSpacing());
         if (readoutHeight(values) <= left) {
             legend();
             return drawReadout(context, values);
         }
-        // Values in running lines change their number of lines, so that the legend comes after them; but in figures.
-        if (context.figure) legend();
+        // Values in running lines change their number of lines with the cross-hair: the legend comes after them.
+        if (!context.takesInput()) legend();
         const bool any = left >= ImGui::GetTextLineHeight();
         if (any) drawRunningReadout(context, values, left);
-        if (!context.figure) legend();
+        if (context.takesInput()) legend();
         const ImVec2 max = layout.numbers.max;
         if (!any) tellWhole(layout.numbers.min, max, readoutText(context, values), "");
     });
@@ -111,32 +196,23 @@ void drawNumbers(ViewContext& context, const SlicesView& view, const Readout& va
 } // namespace
 
 void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& view) {
-    if (!context.source) {
-        drawHint("No data", "Shows three slices through the cross-hair.");
-        return;
-    }
+    if (!context.source) return drawHint("No data", "Shows three slices through the cross-hair.");
     const volume::DatasetInfo& info = context.source->info();
     const auto channel = resolveChannel(info, context.session, view.channel);
-    if (!channel) {
-        drawHint("No parameters", "This data set has no parameter to show.");
-        return;
-    }
+    if (!channel) return drawHint("No parameters", "This data set has no parameter to show.");
     SlicesCache& cache = cacheOf<SlicesCache>(context, pane);
     const Readout& readout = sharedReadout(context);
-    std::string name = info.channel(*channel).name;
-    if (!context.figure) {
-        ToolRow tools(context);
-        chooseShown(context, tools, view, readout, *channel, name);
-    }
-    const DrawnContours lines = drawnContours(context.session, info, view.lines, *channel);
+    const PlaneContent shows{.channel = *channel, .lines = view.lines};
+    drawSlicesTools(context, view, readout, shows);
     drawStretch(context);
 
     const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 6)};
     const SliceLayout layout =
         sliceLayout(ImGui::GetCursorScreenPos(), room, vis::worldFrame(info.bounds, context.session.stretch).halfSize,
-                    em(), context.figure);
-    for (int i = 0; i < 3; ++i) drawSlicePlane(context, cache.planes, pane, view, name, lines, i, layout);
-    drawNumbers(context, view, readout, *channel, lines, layout);
+                    em(), !context.takesInput());
+    const ThreeSlices slices = slicesAtCursor(context.session, info, layout.turned, shows);
+    for (std::size_t i = 0; i < 3; ++i) drawSliceAtCursor(context, cache.planes[i], pane, slices, layout, i);
+    drawNumbers(context, view, readout, slices[0], layout);
 }
 
 } // namespace tessera::app

@@ -1,5 +1,6 @@
-#include "app/pane/figure.h"
+#include "app/pages/plot_page.h"
 #include "app/pane/view_parts.h"
+#include "app/plots/plot_view.h"
 #include "app/queries/readout.h"
 #include "app/queries/statistics_query.h"
 #include "app/tools/brush_edit.h"
@@ -17,37 +18,76 @@ struct HistogramCache : ViewCache {
     BrushDrag drag;
 };
 
-std::string histogramCsv(const volume::Channel& channel, const volume::Histogram& histogram, bool brushed) {
-    std::string csv = "from,to," + csvField(titleWithUnit(channel.name, channel.unit)) + " samples" +
-                      (brushed ? ",in focus\n" : "\n");
+Table histogramTable(const volume::Channel& channel, const volume::Histogram& histogram, bool brushed) {
+    Table table{.columns = {{.name = "parameter"},
+                            {.name = "from", .unit = channel.unit},
+                            {.name = "to", .unit = channel.unit},
+                            {.name = "samples"}}};
+    if (brushed) table.columns.push_back({.name = "in focus"});
     const auto n = static_cast<double>(histogram.count.size());
     const double width = (histogram.range.hi - histogram.range.lo) / n;
     for (std::size_t i = 0; i < histogram.count.size(); ++i) {
         const double from = histogram.range.lo + width * static_cast<double>(i);
-        csv +=
-            csvNumber(from) + "," + csvNumber(from + width) + "," + csvNumber(static_cast<double>(histogram.count[i]));
-        csv += brushed ? "," + csvNumber(histogram.focus[i]) + "\n" : "\n";
+        table.columns[0].texts.push_back(channel.name);
+        table.columns[1].numbers.push_back(from);
+        table.columns[2].numbers.push_back(from + width);
+        table.columns[3].numbers.push_back(static_cast<double>(histogram.count[i]));
+        if (brushed) table.columns[4].numbers.push_back(histogram.focus[i]);
     }
-    return csv;
+    return table;
 }
 
-FigurePanel histogramFigure(const volume::Channel& channel, const volume::Histogram& histogram, bool brushed) {
-    FigurePanel panel;
-    panel.title = channel.name;
-    panel.x = {titleWithUnit(channel.name, channel.unit), histogram.range};
-    panel.series = {{"all", {}, {0.53f, 0.57f, 0.64f}, true}};
-    if (brushed) panel.series.push_back({"in focus", {}, {0.84f, 0.42f, 0}, true});
-    const double width = (histogram.range.hi - histogram.range.lo) / static_cast<double>(histogram.count.size());
+/// Bars of all samples, and over them of those in focus.
+struct HistogramLook {
+    bool logCounts = false, brushed = false;
+    glm::vec3 all{0}, focus{0};
+};
+
+Plot histogramPlot(const volume::Channel& channel, Range range, const volume::Histogram* histogram,
+                   const HistogramLook& look) {
+    Plot plot;
+    plot.x = {.title = channel.name, .range = range, .unit = channel.unit};
+    const auto height = [&](double count) { return look.logCounts ? std::log10(1 + std::max(0.0, count)) : count; };
     double most = 1;
-    for (std::size_t i = 0; i < histogram.count.size(); ++i) {
-        const double at = histogram.range.lo + (static_cast<double>(i) + 0.5) * width;
-        const auto count = static_cast<double>(histogram.count[i]);
-        most = std::max(most, count);
-        panel.series[0].points.push_back({at, count});
-        if (brushed) panel.series[1].points.push_back({at, histogram.focus[i]});
+    if (histogram) {
+        plot.series.push_back({.name = "all", .points = {}, .color = look.all, .bars = true});
+        if (look.brushed) plot.series.push_back({.name = "in focus", .points = {}, .color = look.focus, .bars = true});
+        const double width = (histogram->range.hi - histogram->range.lo) / double(histogram->count.size());
+        for (std::size_t i = 0; i < histogram->count.size(); ++i) {
+            const double at = histogram->range.lo + (static_cast<double>(i) + 0.5) * width;
+            const auto count = static_cast<double>(histogram->count[i]);
+            most = std::max(most, count);
+            plot.series[0].points.push_back({at, height(count)});
+            if (look.brushed) plot.series[1].points.push_back({at, height(histogram->focus[i])});
+        }
     }
-    panel.y = {"samples", {0, most * 1.05}};
-    return panel;
+    plot.y = {.title = look.logCounts ? "log10(1 + samples)" : "samples", .range = {0, height(most) * 1.04}};
+    return plot;
+}
+
+/// The ranges of the parameter that brushes select.
+std::vector<PlotBand> brushedBands(const vis::Selection& selection, const PlotChannels& channels) {
+    std::vector<PlotBand> bands;
+    for (const vis::Brush& brush : selection.brushes) {
+        const auto* region = std::get_if<vis::RangeRegion>(&brush.region);
+        if (!region || !brushFits(brush, channels)) continue;
+        for (const vis::BrushInterval& each : region->intervals) {
+            const ImVec4 ink = ImGui::ColorConvertU32ToFloat4(brushColor(brush));
+            bands.push_back({{each.lo, each.hi},
+                             {-HUGE_VAL, HUGE_VAL},
+                             {ink.x, ink.y, ink.z},
+                             !brush.enabled || brush.inverted != (brush.combine == vis::BrushCombine::Minus)});
+        }
+    }
+    return bands;
+}
+
+HistogramLook lookOf(const ViewContext& context, const HistogramView& view, bool brushed) {
+    const auto ink = [](ImU32 color) {
+        const ImVec4 c = ImGui::ColorConvertU32ToFloat4(color);
+        return glm::vec3(c.x, c.y, c.z);
+    };
+    return {view.logCounts, brushed, ink(plotColors().bars), ink(focusColor(context.session))};
 }
 
 void hover(const volume::Channel& channel, const StatisticsResult& result, const PlotFrame& frame) {
@@ -66,31 +106,22 @@ void hover(const volume::Channel& channel, const StatisticsResult& result, const
     ImGui::SetTooltip("%s", text.c_str());
 }
 
-void drawPlot(ViewContext& context, HistogramCache& cache, const HistogramView& view, const volume::Channel& channel,
-              Range range, const StatisticsResult* result) {
+void drawHistogramPlot(ViewContext& context, HistogramCache& cache, const HistogramView& view,
+                       const volume::Channel& channel, Range range, const StatisticsResult* result) {
     const ImVec2 origin = ImGui::GetCursorScreenPos(),
                  room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 4.5f)};
     const bool tall = room.y > em() * 8; // else without titles
-    double most = 1;
-    if (result)
-        for (const std::uint64_t count : result->statistics.channels.front().histogram.count)
-            most = std::max(most, static_cast<double>(count));
-    const auto height = [&](double count) { return view.logCounts ? std::log10(1 + count) : count; };
-    const Range up{0, height(most) * 1.04};
+    Plot plot = histogramPlot(channel, range, result ? &result->statistics.channels.front().histogram : nullptr,
+                              lookOf(context, view, result && result->brushed));
+    if (context.decoration.cursor) plot.cursorX = sharedReadout(context).value(channel.name);
     const TitlePlace title = tall ? TitlePlace::Beside : TitlePlace::Nowhere;
     const PlotFrame frame{
-        {origin.x + axisRoom(AxisSide::Left, up, title), origin.y + em() * 0.4f},
+        {origin.x + axisRoom(AxisSide::Left, plot.y.range, title), origin.y + em() * 0.4f},
         {origin.x + room.x - em() * 0.6f, origin.y + room.y - axisRoom(AxisSide::Bottom, range, title)},
         range,
-        up};
+        plot.y.range};
     if (frame.width() < em() * 4) return drawHint("Not enough room", "Enlarge the pane.");
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    const PlotColors colors = plotColors();
-    drawAxis(draw, frame, AxisSide::Left,
-             !tall            ? ""
-             : view.logCounts ? "log10(1 + samples)"
-                              : "samples",
-             "", frame.min.y, frame.max.y + em() * 0.5f, {.grid = true});
     ImGui::SetCursorScreenPos(frame.min);
     mouseArea("plot", {frame.width(), frame.height()},
               ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
@@ -99,22 +130,8 @@ void drawPlot(ViewContext& context, HistogramCache& cache, const HistogramView& 
     editBrushes(cache.drag, context.session.selection, frame, channels, {BrushTool::Rectangle, view.softness});
     clearAfterQuestion(cache.drag, context);
     if (cache.drag.active) context.interacting = true;
-    draw.PushClipRect(frame.min, frame.max, true);
-    if (result) {
-        const volume::Histogram& histogram = result->statistics.channels.front().histogram;
-        std::vector<float> all, focus;
-        for (std::size_t i = 0; i < histogram.count.size(); ++i) {
-            all.push_back(static_cast<float>(height(static_cast<double>(histogram.count[i])) / up.hi));
-            if (result->brushed)
-                focus.push_back(histogram.focus[i] > 0 ? static_cast<float>(height(histogram.focus[i]) / up.hi) : 0.0f);
-        }
-        drawBars(draw, frame, all, colors.bars);
-        if (result->brushed) drawBars(draw, frame, focus, focusColor(context.session));
-    }
-    if (const auto value = sharedReadout(context).value(channel.name)) drawCrosshair(draw, frame, *value, std::nan(""));
-    draw.PopClipRect();
+    drawPlot(draw, plot, frame, tall);
     drawBrushes(draw, context.session.selection, frame, channels);
-    draw.AddRect(frame.min, frame.max, colors.frame);
     drawAxis(draw, frame, AxisSide::Bottom, tall ? channel.name : "", tall ? channel.unit : "", origin.x,
              origin.x + room.x);
     if (hovered && !cache.drag.active && result) hover(channel, *result, frame);
@@ -135,18 +152,23 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
         if (ImGui::IsItemHovered()) tooltip("Logarithmic number of samples");
     }
     if (result) {
-        exportMenu(
-            context, tools,
-            {.name = channel.name + "-histogram",
-             .figure =
-                 [result, channel](const PageForm&, const Progress&) {
-                     return drawingOf(
-                         {histogramFigure(channel, result->statistics.channels.front().histogram, result->brushed)}, 1);
-                 },
-             .csv =
-                 [result, channel](const Progress&) {
-                     return histogramCsv(channel, result->statistics.channels.front().histogram, result->brushed);
-                 }});
+        exportMenu(context, tools,
+                   {.name = channel.name + "-histogram",
+                    .figure =
+                        [result, channel, look = lookOf(context, view, result->brushed),
+                         bands = brushedBands(context.session.selection, {channel.name, {}}),
+                         at = sharedReadout(context).value(channel.name)](const PageForm& form, const Progress&) {
+                            const volume::Histogram& histogram = result->statistics.channels.front().histogram;
+                            Plot plot = histogramPlot(channel, histogram.range, &histogram, look);
+                            plot.brushed = bands;
+                            plot.cursorX = at;
+                            return plotPage({plot}, 1, form);
+                        },
+                    .table =
+                        [result, channel](const Progress&) {
+                            return histogramTable(channel, result->statistics.channels.front().histogram,
+                                                  result->brushed);
+                        }});
     }
     if (result) drawOrigin(context, tools, {result->query.channels.front()});
     if (context.session.selection.brushes.empty()) drawNote(tools, "drag to brush");
@@ -170,8 +192,8 @@ void drawHistogramView(ViewContext& context, const std::string& pane, HistogramV
     const HistogramBins bins = histogramBins(info, *index, paddedRange(info.channelRange(channel), 0.02), view.bins);
     const auto result = cache.answers.get(
         context, "histogram " + pane, brushedQuery(context.session, info, {*index}, {bins.range}, bins.count, false));
-    if (!context.figure) drawToolbar(context, view, channel, result);
-    drawPlot(context, cache, view, channel, bins.range, result.get());
+    drawToolbar(context, view, channel, result);
+    drawHistogramPlot(context, cache, view, channel, bins.range, result.get());
     if (!cache.answers.failure().empty() && !result) ImGui::TextWrapped("%s", cache.answers.failure().c_str());
 }
 

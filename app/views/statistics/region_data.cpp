@@ -1,7 +1,5 @@
 #include "app/views/statistics/region_data.h"
 
-#include "app/data/format.h"
-#include "app/pane/figure.h"
 #include "app/session/label_colors.h"
 #include "app/ui/ticks.h"
 #include "volume/base/error.h"
@@ -14,26 +12,6 @@
 #include <cmath>
 
 namespace tessera::app {
-
-namespace {
-
-std::size_t columnsOf(const std::string& text) { // of UTF-8
-    return static_cast<std::size_t>(
-        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
-}
-
-std::string scientific(double value) {
-    return std::isfinite(value) ? numberText(value) : "-";
-}
-
-/// A bound with two digits, rounded up.
-std::string errorText(double error) {
-    if (!(error > 0) || !std::isfinite(error)) return error == 0 ? "0" : "-";
-    const double unit = std::pow(10.0, std::floor(std::log10(error)) - 1);
-    return numberText(std::ceil(error / unit * (1 - 1e-12)) * unit);
-}
-
-} // namespace
 
 namespace {
 
@@ -149,49 +127,42 @@ bool showsErrors(const std::vector<RegionRow>& rows) {
     return std::ranges::any_of(rows, [](const RegionRow& row) { return row.error > 0; });
 }
 
-std::vector<std::string> regionHeads(bool errors) {
-    std::vector<std::string> heads{"Parameter", "Region", "Samples",        "Of all",  "Of its own",
-                                   "Volume",    "Mean",   "Std. deviation", "Minimum", "Maximum"};
-    if (errors) heads.emplace_back("Within \u00b1");
-    return heads;
-}
-
-std::vector<std::string> regionCells(const RegionRow& row, const std::string& lengthUnit, bool errors) {
-    const double digits = (row.range.hi - row.range.lo) / 10000;
-    const volume::Summary& of = row.summary;
-    const auto number = [&](double value) { return std::isfinite(value) ? formatNumber(value, digits) : "-"; };
-    std::vector<std::string> cells{titleWithUnit(row.parameter, row.unit),
-                                   row.region,
-                                   formatCount(of.samples),
-                                   formatShare(row.ofAll),
-                                   formatShare(row.ofExisting),
-                                   formatVolume(of.volume, lengthUnit),
-                                   number(of.mean),
-                                   number(of.deviation),
-                                   number(of.min),
-                                   number(of.max)};
-    if (errors) cells.push_back(row.error == 0 ? "as computed" : errorText(row.error));
-    return cells;
-}
-
-std::string regionCsv(const std::vector<RegionRow>& rows, const std::string& lengthUnit, const std::string& timeTitle,
-                      const std::string& time, bool head, bool errors) {
-    std::string csv;
-    if (head)
-        csv += (time.empty() ? "" : csvField(timeTitle) + ",") +
-               "parameter,unit,region,samples,share of all samples,share of the samples where it exists,volume" +
-               (lengthUnit.empty() ? "" : " [" + lengthUnit + "3]") + ",mean,deviation,min,max" +
-               (errors ? ",error\n" : "\n");
-    for (const RegionRow& row : rows) {
-        if (!time.empty()) csv += time + ",";
-        csv += csvField(row.parameter) + "," + csvField(row.unit) + "," + csvField(row.region);
-        const volume::Summary& of = row.summary;
-        for (const double value :
-             {of.samples, row.ofAll, row.ofExisting, of.volume, of.mean, of.deviation, of.min, of.max})
-            csv += "," + csvNumber(value);
-        csv += (errors ? "," + csvNumber(row.error) : "") + "\n";
+Table regionTable(const std::vector<RegionRow>& rows, const std::string& lengthUnit, bool errors, bool shares) {
+    Table table{.columns = {}, .names = 2};
+    const auto add = [&](TableColumn column, auto of) -> TableColumn& {
+        return addColumn(table, rows, std::move(column), of);
+    };
+    const auto ofSummary = [](double volume::Summary::*member) {
+        return [member](const RegionRow& row) { return row.summary.*member; };
+    };
+    TableColumn& parameter = add({.name = "parameter", .head = "Parameter"}, &RegionRow::parameter);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (!rows[i].unit.empty()) parameter.words[i] = titleWithUnit(rows[i].parameter, rows[i].unit);
+    add({.name = "unit", .shown = false}, &RegionRow::unit);
+    add({.name = "region", .head = "Region"}, &RegionRow::region);
+    add({.name = "samples", .head = "Samples", .kind = NumberKind::Count}, ofSummary(&volume::Summary::samples));
+    if (shares) {
+        add({.name = "shareOfAll", .head = "Of all", .kind = NumberKind::Share}, &RegionRow::ofAll);
+        add({.name = "shareOfExisting", .head = "Of its own", .kind = NumberKind::Share}, &RegionRow::ofExisting);
     }
-    return csv;
+    add({.name = "volume",
+         .head = "Volume",
+         .unit = lengthUnit.empty() ? "" : lengthUnit + "3",
+         .kind = NumberKind::Volume},
+        ofSummary(&volume::Summary::volume));
+    const auto addValue = [&](const char* name, const char* head, double volume::Summary::*member) {
+        TableColumn& column = add({.name = name, .head = head}, ofSummary(member));
+        for (const RegionRow& row : rows) column.resolutions.push_back((row.range.hi - row.range.lo) / 10000);
+    };
+    addValue("mean", "Mean", &volume::Summary::mean);
+    addValue("deviation", "Std. deviation", &volume::Summary::deviation);
+    addValue("min", "Minimum", &volume::Summary::min);
+    addValue("max", "Maximum", &volume::Summary::max);
+    if (!errors) return table;
+    TableColumn& error = add({.name = "error", .head = "Within \u00b1", .kind = NumberKind::Bound}, &RegionRow::error);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (rows[i].error == 0) error.words[i] = "as computed";
+    return table;
 }
 
 bool isKnown(const NumberOrigin& origin, const volume::DatasetInfo& info, const RegionBalanceQuery& asked) {
@@ -287,77 +258,29 @@ BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balanc
     return table;
 }
 
-std::vector<std::string> balanceHeads(const BalanceTable& table) {
-    std::vector<std::string> heads{"Region",
-                                   "Surface",
-                                   titleWithUnit("In", table.unit),
-                                   titleWithUnit("Out", table.unit),
-                                   titleWithUnit("Out - in", table.unit),
-                                   "Of in",
-                                   titleWithUnit("Volume flow", table.flowUnit),
-                                   titleWithUnit("Area", table.areaUnit),
-                                   titleWithUnit("Inside", table.insideUnit)};
-    if (table.errors) {
-        heads.push_back("In, out \u00b1");
-        heads.push_back("Flow \u00b1");
-        heads.push_back("Inside \u00b1");
-    }
-    return heads;
-}
-
-std::vector<std::string> balanceCells(const BalanceTable& table, const BalanceRow& row) {
-    char share[32] = "-";
-    if (std::isfinite(row.relative)) std::snprintf(share, sizeof share, "%+.4f %%", 100 * row.relative);
-    std::vector<std::string> cells{row.region,           row.surface,          scientific(row.in),
-                                   scientific(row.out),  scientific(row.net),  share,
-                                   scientific(row.flow), scientific(row.area), scientific(row.inside)};
-    if (table.errors)
-        for (const double error : {row.error, row.flowError, row.insideError}) cells.push_back(errorText(error));
-    return cells;
-}
-
-std::string balanceCsv(const BalanceTable& table, const std::string& timeTitle, const std::string& time, bool head) {
-    const auto title = [](const char* name, const std::string& unit) {
-        return csvField(std::string(name) + (unit.empty() ? "" : " [" + unit + "]"));
+Table tableOf(const BalanceTable& balance) {
+    Table table{.columns = {}, .names = 2, .notes = balance.notes};
+    const auto add = [&](TableColumn column, auto of) { addColumn(table, balance.rows, std::move(column), of); };
+    add({.name = "parameter", .shown = false}, [&](const BalanceRow&) { return balance.parameter; });
+    add({.name = "unit", .shown = false}, [&](const BalanceRow&) { return balance.unit; });
+    add({.name = "region", .head = "Region"}, &BalanceRow::region);
+    add({.name = "surface", .head = "Surface"}, &BalanceRow::surface);
+    add({.name = "total", .kind = NumberKind::Flag, .shown = false}, &BalanceRow::total);
+    add({.name = "in", .head = "In", .unit = balance.unit}, &BalanceRow::in);
+    add({.name = "out", .head = "Out", .unit = balance.unit}, &BalanceRow::out);
+    add({.name = "net", .head = "Out - in", .unit = balance.unit}, &BalanceRow::net);
+    add({.name = "relative", .head = "Of in", .kind = NumberKind::Change}, &BalanceRow::relative);
+    add({.name = "flow", .head = "Volume flow", .unit = balance.flowUnit}, &BalanceRow::flow);
+    add({.name = "area", .head = "Area", .unit = balance.areaUnit}, &BalanceRow::area);
+    add({.name = "inside", .head = "Inside", .unit = balance.insideUnit}, &BalanceRow::inside);
+    if (!balance.errors) return table;
+    const auto addError = [&](const char* name, const char* head, const std::string& unit, double BalanceRow::*of) {
+        add({.name = name, .head = head, .unit = unit, .kind = NumberKind::Bound}, of);
     };
-    std::string csv;
-    if (head)
-        csv += (time.empty() ? "" : csvField(timeTitle) + ",") + "parameter,region,surface," + title("in", table.unit) +
-               "," + title("out", table.unit) + "," + title("out - in", table.unit) + ",share of in," +
-               title("volume flow", table.flowUnit) + "," + title("area", table.areaUnit) + "," +
-               title("inside", table.insideUnit) +
-               (table.errors ? ",error of in and out,error of volume flow,error of inside\n" : "\n");
-    for (const BalanceRow& row : table.rows) {
-        if (!time.empty()) csv += time + ",";
-        csv += csvField(table.parameter) + "," + csvField(row.region) + "," + csvField(row.surface);
-        for (const double value : {row.in, row.out, row.net, row.relative, row.flow, row.area, row.inside})
-            csv += "," + csvNumber(value);
-        if (table.errors)
-            for (const double error : {row.error, row.flowError, row.insideError}) csv += "," + csvNumber(error);
-        csv += "\n";
-    }
-    return csv;
-}
-
-std::string alignedTable(const std::vector<std::string>& heads, const std::vector<std::vector<std::string>>& rows,
-                         std::size_t texts) {
-    std::vector<std::size_t> widths;
-    for (const std::string& head : heads) widths.push_back(columnsOf(head));
-    for (const auto& row : rows)
-        for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], columnsOf(row[c]));
-    std::string out;
-    const auto line = [&](const std::vector<std::string>& cells) {
-        std::string text;
-        for (std::size_t c = 0; c < cells.size(); ++c) {
-            const std::string pad(widths[c] - columnsOf(cells[c]), ' ');
-            text += (c > 0 ? "  " : "") + (c < texts ? cells[c] + pad : pad + cells[c]);
-        }
-        while (!text.empty() && text.back() == ' ') text.pop_back();
-        out += text + "\n";
-    };
-    line(heads);
-    for (const auto& row : rows) line(row);
-    return out;
+    addError("error", "Within \u00b1", balance.unit, &BalanceRow::error);
+    addError("flowError", "Flow \u00b1", balance.flowUnit, &BalanceRow::flowError);
+    addError("insideError", "Inside \u00b1", balance.insideUnit, &BalanceRow::insideError);
+    return table;
 }
 
 } // namespace tessera::app

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/data/number_origin.h"
+#include "app/values/table.h"
 #include "volume/analysis/region_statistics.h"
 #include "volume/field/time_pair.h"
 #include "volume/flow/balance.h"
@@ -57,14 +58,9 @@ std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionQ
 /// Whether some of the rows have a bound on their errors, so that tables have a column of these.
 bool showsErrors(const std::vector<RegionRow>& rows);
 
-/// Heads of the columns of regionCells(): parameter, region, samples, share, volume, mean, spread, least, most;
-/// `errors`: and the bound on the errors of these four.
-std::vector<std::string> regionHeads(bool errors = false);
-std::vector<std::string> regionCells(const RegionRow& row, const std::string& lengthUnit, bool errors = false);
-
-/// One line per row; `time` as text stands first where it is not empty, with the head `timeTitle`.
-std::string regionCsv(const std::vector<RegionRow>& rows, const std::string& lengthUnit, const std::string& timeTitle,
-                      const std::string& time, bool head = true, bool errors = false);
+/// Parameter, unit, region, samples, shares of them, volume, mean, deviation, least and most; `errors`: and the bound
+/// on the errors of these four. `shares` false: without shares.
+Table regionTable(const std::vector<RegionRow>& rows, const std::string& lengthUnit, bool errors, bool shares = true);
 
 struct RegionBalanceQuery {
     int channel = 0;
@@ -101,19 +97,13 @@ struct BalanceRow {
 struct BalanceTable {
     std::string parameter, unit, flowUnit, areaUnit, insideUnit;
     std::vector<BalanceRow> rows;
-    bool errors = false;            ///< tables have columns of errors
+    bool errors = false;            ///< the table has columns of errors
     std::vector<std::string> notes; ///< what is approximate
 };
 /// Surfaces that nothing touches are left out.
 BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balance);
 
-std::vector<std::string> balanceHeads(const BalanceTable& table);
-std::vector<std::string> balanceCells(const BalanceTable& table, const BalanceRow& row);
-std::string balanceCsv(const BalanceTable& table, const std::string& timeTitle, const std::string& time,
-                       bool head = true);
-
-/// Rows under heads, columns aligned: the first `texts` columns to the left, numbers to the right.
-std::string alignedTable(const std::vector<std::string>& heads, const std::vector<std::vector<std::string>>& rows,
-                         std::size_t texts);
+/// What flows in, out and is inside, a row for each surface, with the notes.
+Table tableOf(const BalanceTable& balance);
 
 } // namespace tessera::app

@@ -3,13 +3,14 @@
 #include "app/pane/view_parts.h"
 #include "app/queries/async_query.h"
 #include "app/queries/statistics_query.h"
-#include "app/ui/ticks.h"
-#include "app/ui/widgets.h"
+#include "app/tables/table_view.h"
+#include "app/pages/table_page.h"
 #include "app/views/statistics/region_data.h"
 #include "volume/flow/flow_channels.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace tessera::app {
 
@@ -24,19 +25,12 @@ struct StatisticsCache : ViewCache {
 /// Count and volume are of samples weighted by their degree of interest, like everything else.
 struct Part {
     const char* name;
-    volume::Summary summary;
+    volume::Summary volume::ChannelStatistics::*summary;
+    double volume::JointHistogram::*correlation;
 };
-
-std::vector<Part> partsOf(const volume::ChannelStatistics& channel, bool brushed) {
-    if (!brushed) return {{"all", channel.all}};
-    return {{"inside", channel.inside}, {"outside", channel.outside}};
-}
-
-double correlationOf(const volume::JointHistogram& joint, const char* part) {
-    return std::string_view(part) == "inside"    ? joint.focusCorrelation
-           : std::string_view(part) == "outside" ? joint.outsideCorrelation
-                                                 : joint.correlation;
-}
+constexpr Part kAll{"all", &volume::ChannelStatistics::all, &volume::JointHistogram::correlation};
+constexpr Part kInside{"inside", &volume::ChannelStatistics::inside, &volume::JointHistogram::focusCorrelation};
+constexpr Part kOutside{"outside", &volume::ChannelStatistics::outside, &volume::JointHistogram::outsideCorrelation};
 
 /// The joint histogram of two positions, null for a channel with itself.
 const volume::JointHistogram* jointOf(const volume::Statistics& statistics, std::size_t a, std::size_t b) {
@@ -69,181 +63,76 @@ std::string tableOrigin(const NumberOrigin& origin, const volume::DatasetInfo& i
     return text == read ? text : text + "; r of samples " + read;
 }
 
-/// Everything at full resolution: summaries and all correlations.
-std::string statisticsCsv(const std::shared_ptr<const volume::BrickSource>& source, const NumberOrigin& origin,
-                          BrushedQuery query, std::size_t shown, const Progress& progress) {
-    const volume::DatasetInfo& info = source->info();
-    const bool brushed = query.selection.active();
-    query.pairs = volume::allPairs(static_cast<int>(shown));
-    query.bins = 1;
-    volume::Statistics statistics = readStatistics(source, query, 0, progress);
-    useKnown(origin, info, query, statistics);
-    const std::vector<volume::Channel> channels = info.channels();
-    const auto nameOf = [&](std::size_t i) { return channels[static_cast<std::size_t>(query.channels[i])].name; };
-    const std::string cubes = info.lengthUnit.empty() ? "" : " [" + info.lengthUnit + "3]";
-    std::string csv = "parameter,unit,part,samples,volume" + cubes + ",mean,deviation,min,max";
-    for (std::size_t i = 0; i < shown; ++i) csv += "," + csvField("correlation with " + nameOf(i));
-    csv += "\n";
-    for (std::size_t i = 0; i < shown; ++i) {
-        std::vector<Part> parts = partsOf(statistics.channels[i], brushed);
-        if (brushed) parts.insert(parts.begin(), {"all", statistics.channels[i].all});
+/// Which of the statistics a table has.
+struct TableForm {
+    std::size_t shown = 0;         ///< positions in the query's channels before this one
+    std::vector<std::size_t> with; ///< positions of those that all are correlated with
+    bool whole = false;            ///< beside what is inside and outside of the selection
+};
+
+Table statisticsTable(const volume::DatasetInfo& info, const StatisticsResult& result, const TableForm& form) {
+    std::vector<Part> parts{kAll};
+    if (result.brushed) parts = form.whole ? std::vector{kAll, kInside, kOutside} : std::vector{kInside, kOutside};
+    const auto channelAt = [&](std::size_t i) { return info.channel(result.query.channels[i]); };
+    std::vector<RegionRow> rows;
+    for (std::size_t i = 0; i < form.shown; ++i)
         for (const Part& part : parts) {
-            csv += csvField(nameOf(i)) + "," + csvField(channels[static_cast<std::size_t>(query.channels[i])].unit) +
-                   "," + csvField(part.name);
-            const volume::Summary& of = part.summary;
-            for (const double value : {of.samples, of.volume, of.mean, of.deviation, of.min, of.max})
-                csv += "," + csvNumber(value);
-            for (std::size_t k = 0; k < shown; ++k) {
-                const volume::JointHistogram* joint = jointOf(statistics, i, k);
-                csv += "," + (joint ? csvNumber(correlationOf(*joint, part.name)) : std::string("1"));
+            RegionRow& row = rows.emplace_back();
+            row.parameter = channelAt(i).name;
+            row.unit = channelAt(i).unit;
+            row.region = part.name;
+            row.summary = result.statistics.channels[i].*part.summary;
+            row.range = info.channelRange(channelAt(i));
+        }
+    Table table = regionTable(rows, info.lengthUnit, false, false);
+    for (const std::size_t with : form.with) {
+        const std::string& other = channelAt(with).name;
+        TableColumn& column =
+            table.columns.emplace_back(TableColumn{.name = "correlation with " + other, .head = "r with " + other});
+        for (std::size_t i = 0; i < form.shown; ++i)
+            for (const Part& part : parts) {
+                const volume::JointHistogram* joint = jointOf(result.statistics, i, with);
+                column.numbers.push_back(i == with ? 1 : joint ? joint->*part.correlation : std::nan(""));
             }
-            csv += "\n";
-        }
+        column.resolutions.assign(column.numbers.size(), 0.001);
     }
-    return csv;
+    if (result.brushed)
+        table.notes = {"inside and outside of the selection, samples weighted by their degree of interest"};
+    return table;
 }
 
-/// Begins a table whose heads stay, with the first `frozen` columns: stretched to the width if all texts fit, else as
-/// wide as its texts with a scroll bar: a truncated number would be wrong.
-bool beginTable(const char* id, const std::vector<std::string>& heads,
-                const std::vector<std::vector<std::string>>& rows, int frozen, ImVec2 size) {
-    std::vector<float> widths;
-    float wanted = ImGui::GetStyle().ScrollbarSize;
-    for (std::size_t c = 0; c < heads.size(); ++c) {
-        float width = ImGui::CalcTextSize(heads[c].c_str()).x;
-        for (const std::vector<std::string>& row : rows) width = std::max(width, ImGui::CalcTextSize(row[c].c_str()).x);
-        widths.push_back(width + em()); // space for the mark in the region's colour
-        wanted += widths.back() + 2 * ImGui::GetStyle().CellPadding.x + 1;
-    }
-    const bool room = wanted <= ImGui::GetContentRegionAvail().x;
-    const ImGuiTableFlags flags =
-        ImGuiTableFlags_RowBg | ImGuiTableFlags_PadOuterX | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerV |
-        (room ? ImGuiTableFlags_SizingStretchProp : ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX);
-    // ImGui stores the widths per table, so each layout has an id of its own.
-    const std::string name = id + std::string(room ? "" : " scrolled");
-    if (!beginScrolledTable(name.c_str(), static_cast<int>(heads.size()), flags, size)) return false;
-    ImGui::TableSetupScrollFreeze(frozen, 1);
-    for (std::size_t c = 0; c < heads.size(); ++c)
-        ImGui::TableSetupColumn(heads[c].c_str(), room ? ImGuiTableColumnFlags_None : ImGuiTableColumnFlags_WidthFixed,
-                                room ? 0 : widths[c]);
-    return true;
+/// The same of all samples, whatever level of detail the view has so far.
+Table exactTable(const std::shared_ptr<const volume::BrickSource>& source, const NumberOrigin& origin,
+                 const BrushedQuery& query, const TableForm& form, const Progress& progress) {
+    StatisticsResult result{query, readStatistics(source, query, 0, progress), query.selection.active()};
+    useKnown(origin, source->info(), query, result.statistics);
+    return statisticsTable(source->info(), result, form);
 }
 
-/// Rows of the table: parameter, part, samples, volume, mean, deviation, least, most, correlation.
-std::vector<std::vector<std::string>> statisticsRows(const volume::DatasetInfo& info, const StatisticsResult& result,
-                                                     std::size_t shown, std::size_t with) {
-    const std::vector<volume::Channel> channels = info.channels();
-    std::vector<std::vector<std::string>> rows;
-    for (std::size_t i = 0; i < shown; ++i) {
-        const volume::Channel& channel = channels[static_cast<std::size_t>(result.query.channels[i])];
-        const Range range = info.channelRange(channel);
-        const double digits = (range.hi - range.lo) / 10000;
-        for (const Part& part : partsOf(result.statistics.channels[i], result.brushed)) {
-            const volume::Summary& of = part.summary;
-            const volume::JointHistogram* joint = jointOf(result.statistics, i, with);
-            const double r = joint ? correlationOf(*joint, part.name) : std::nan("");
-            std::vector<std::string> row{titleWithUnit(channel.name, channel.unit), part.name};
-            for (const std::string& text :
-                 {formatCount(std::round(of.samples)), formatVolume(of.volume, info.lengthUnit),
-                  formatNumber(of.mean, digits), formatNumber(of.deviation, digits), formatNumber(of.min, digits),
-                  formatNumber(of.max, digits),
-                  i == with       ? std::string("1")
-                  : std::isnan(r) ? std::string("-")
-                                  : formatNumber(r, 0.001)})
-                row.push_back(of.samples > 0 ? text : "-");
-            rows.push_back(std::move(row));
-        }
-    }
-    return rows;
-}
-
-void drawTable(const volume::DatasetInfo& info, const StatisticsResult& result, std::size_t shown, std::size_t with) {
-    const std::string other = "r with " + info.channel(result.query.channels[with]).name;
-    const std::vector<std::vector<std::string>> rows = statisticsRows(info, result, shown, with);
-    if (!beginTable("statistics",
-                    {"Parameter", "Part", "Samples", "Volume", "Mean", "Std. deviation", "Minimum", "Maximum", other},
-                    rows, 2, {}))
-        return;
-    tableHeader(
-        {"Parameter", "Part", "Samples", "Volume", "Mean", "Std. deviation", "Minimum", "Maximum", other.c_str()}, 2);
-    std::string last;
-    for (const std::vector<std::string>& row : rows) {
-        ImGui::TableNextRow();
-        ImGui::TableNextColumn();
-        if (row[0] != last) ImGui::TextUnformatted(row[0].c_str());
-        last = row[0];
-        ImGui::TableNextColumn();
-        ImGui::TextDisabled("%s", row[1].c_str());
-        for (std::size_t c = 2; c < row.size(); ++c) {
-            ImGui::TableNextColumn();
-            textRight(row[c]);
-        }
-    }
-    ImGui::EndTable();
+/// A table that is there already, as files and pages.
+ViewExport exportOf(const std::string& name, const std::shared_ptr<const Table>& table) {
+    return {.name = name,
+            .figure = [table](const PageForm& form, const Progress&) { return tablePage(*table, form); },
+            .table = [table](const Progress&) { return *table; }};
 }
 
 /// The table of every region, without any brush.
-void drawRegionTable(Session& session, const volume::DatasetInfo& info, const volume::Parameter& label,
-                     const std::vector<RegionRow>& rows) {
-    const std::vector<std::string> heads = regionHeads(showsErrors(rows));
-    std::vector<std::vector<std::string>> texts;
-    for (const RegionRow& row : rows) texts.push_back(regionCells(row, info.lengthUnit, showsErrors(rows)));
-    if (!beginTable("regions", heads, texts, 2, {})) return;
-    tableHeader(heads, 2);
-    std::string last;
-    for (const RegionRow& row : rows) {
-        const std::vector<std::string>& cells = texts[static_cast<std::size_t>(&row - rows.data())];
-        ImGui::TableNextRow();
-        for (std::size_t c = 0; c < cells.size(); ++c) {
-            ImGui::TableNextColumn();
-            if (c == 0) {
-                if (cells[0] != last) ImGui::TextUnformatted(cells[0].c_str());
-            } else if (c == 1) {
-                const ImVec2 at = ImGui::GetCursorScreenPos();
-                const glm::vec3 color = row.color;
-                if (!row.all)
-                    ImGui::GetWindowDrawList()->AddRectFilled({at.x, at.y + em() * 0.15f},
-                                                              {at.x + em() * 0.7f, at.y + em() * 0.85f},
-                                                              toColor({color.r, color.g, color.b}));
-                ImGui::SetCursorPosX(ImGui::GetCursorPosX() + em());
-                if (row.all)
-                    ImGui::TextDisabled("%s", cells[1].c_str());
-                else if (ImGui::Selectable((cells[1] + "##" + std::to_string(&row - rows.data())).c_str(),
-                                           regionBrushed(session, label, row.value)))
-                    toggleRegionBrush(session, label, row.value);
-                if (!row.all && ImGui::IsItemHovered()) tooltip("Click to brush this region, or to remove the brush");
-            } else {
-                textRight(cells[c], row.all);
-            }
-        }
-        last = cells[0];
-    }
-    ImGui::EndTable();
+void drawRegionTable(Session& session, const volume::Parameter& label, const std::vector<RegionRow>& rows,
+                     const Table& table) {
+    const auto look = [&](std::size_t row) -> TableRowLook {
+        if (rows[row].all) return {.faint = true};
+        return {.color = rows[row].color,
+                .selected = regionBrushed(session, label, rows[row].value),
+                .tip = "Click to brush this region, or to remove the brush"};
+    };
+    if (const auto clicked = drawTable("regions", table, {.row = look}))
+        toggleRegionBrush(session, label, rows[*clicked].value);
 }
 
 /// What flows through every surface of every region.
-void drawBalanceTable(const BalanceTable& table) {
-    const std::vector<std::string> heads = balanceHeads(table);
-    std::vector<std::vector<std::string>> texts;
-    for (const BalanceRow& row : table.rows) texts.push_back(balanceCells(table, row));
+void drawBalanceTable(const Table& table) {
     const float notes = ImGui::GetTextLineHeightWithSpacing() * 1.2f;
-    if (beginTable("balance", heads, texts, 2, {0, -notes})) {
-        ImGui::TableHeadersRow();
-        std::string last;
-        for (const BalanceRow& row : table.rows) {
-            const std::vector<std::string>& cells = texts[static_cast<std::size_t>(&row - table.rows.data())];
-            ImGui::TableNextRow();
-            for (std::size_t c = 0; c < cells.size(); ++c) {
-                ImGui::TableNextColumn();
-                if (c > 1)
-                    textRight(cells[c], !row.total && c == 4);
-                else if (c == 1 || cells[0] != last)
-                    ImGui::TextUnformatted(cells[c].c_str());
-            }
-            last = cells[0];
-        }
-        ImGui::EndTable();
-    }
+    drawTable("balance", table, {.size = {0, -notes}});
     std::string text;
     for (const std::string& note : table.notes) text += (text.empty() ? "" : "\n") + note;
     ImGui::TextDisabled("convection only, midpoint rule (hover)");
@@ -282,11 +171,9 @@ void drawBalance(ViewContext& context, ToolRow& tools, const std::string& pane, 
         const std::string failure = cache.balance.failure();
         return failure.empty() ? ImGui::TextDisabled("Computing...") : drawHint("No balance", failure.c_str());
     }
-    const auto table = std::make_shared<BalanceTable>(balanceTable(info, *balance));
+    const auto table = std::make_shared<Table>(tableOf(balanceTable(info, *balance)));
     const std::string origin = originText(context.origin, info, {channel}, {isKnown(context.origin, info, query)});
-    exportMenu(context, tools,
-               {.name = "balance", .csv = [table](const Progress&) { return balanceCsv(*table, "", ""); }}, true,
-               origin);
+    exportMenu(context, tools, exportOf("balance", table), true, origin);
     drawOriginText(context, tools, origin);
     drawBalanceTable(*table);
 }
@@ -321,17 +208,14 @@ bool drawRegions(ViewContext& context, ToolRow& tools, const std::string& pane, 
         ImGui::TextDisabled("%s", cache.regions.failure().empty() ? "Counting..." : cache.regions.failure().c_str());
         return true;
     }
-    const auto rows = std::make_shared<std::vector<RegionRow>>(regionRows(info, query, *numbers));
+    const std::vector<RegionRow> rows = regionRows(info, query, *numbers);
+    const auto table = std::make_shared<Table>(regionTable(rows, info.lengthUnit, showsErrors(rows)));
     std::vector<bool> known;
     for (const int channel : shown) known.push_back(isKnown(context.origin, info, {{channel}, *label, query.time}));
     const std::string origin = originText(context.origin, info, shown, known);
-    exportMenu(context, tools,
-               {.name = "regions",
-                .csv = [rows, unit = info.lengthUnit](
-                           const Progress&) { return regionCsv(*rows, unit, "", "", true, showsErrors(*rows)); }},
-               true, origin);
+    exportMenu(context, tools, exportOf("regions", table), true, origin);
     drawOriginText(context, tools, origin);
-    drawRegionTable(context.session, info, volume::parameterOf(info, *label), *rows);
+    drawRegionTable(context.session, volume::parameterOf(info, *label), rows, *table);
     return true;
 }
 
@@ -376,11 +260,23 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
             tooltip("Parameter with which the correlation of the others is shown (Pearson's r)");
     }
     const std::string origin = tableOrigin(context.origin, info, query, shown);
-    exportMenu(context, tools,
-               {.name = "statistics",
-                .csv = [source = context.numbers, from = context.origin, query, count = shown.size()](
-                           const Progress& progress) { return statisticsCsv(source, from, query, count, progress); }},
-               true, origin);
+    const auto exact = [source = context.numbers, from = context.origin](const BrushedQuery& of, const TableForm& form,
+                                                                         const Progress& progress) {
+        return exactTable(source, from, of, form, progress);
+    };
+    BrushedQuery everyPair = query; // which files have
+    everyPair.pairs = volume::allPairs(static_cast<int>(shown.size()));
+    TableForm whole{shown.size(), std::vector<std::size_t>(shown.size()), true};
+    std::iota(whole.with.begin(), whole.with.end(), std::size_t(0));
+    exportMenu(
+        context, tools,
+        {.name = "statistics",
+         .figure =
+             [exact, query, as = TableForm{shown.size(), {with}}](const PageForm& form, const Progress& progress) {
+                 return tablePage(exact(query, as, progress), form);
+             },
+         .table = [exact, everyPair, whole](const Progress& progress) { return exact(everyPair, whole, progress); }},
+        true, origin);
     if (!result) {
         ImGui::TextDisabled("%s", cache.answers.failure().empty() ? "Counting..." : cache.answers.failure().c_str());
         return;
@@ -392,8 +288,9 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
     drawOriginText(context, tools, origin);
     StatisticsResult numbers = *result;
     useKnown(context.origin, info, numbers.query, numbers.statistics);
-    drawTable(info, numbers, std::min(shown.size(), result->statistics.channels.size()),
-              std::min(with, result->query.channels.size() - 1));
+    const TableForm form{std::min(shown.size(), numbers.statistics.channels.size()),
+                         {std::min(with, numbers.query.channels.size() - 1)}};
+    drawTable("statistics", statisticsTable(info, numbers, form));
 }
 
 } // namespace tessera::app

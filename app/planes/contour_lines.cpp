@@ -1,4 +1,4 @@
-#include "app/views/slices/contour_lines.h"
+#include "app/planes/contour_lines.h"
 
 #include "app/pane/controls.h"
 #include "app/ui/number_field.h"
@@ -14,20 +14,20 @@ namespace {
 constexpr ImU32 kInk = IM_COL32(12, 12, 12, 245), kHalo = IM_COL32(255, 255, 255, 110),
                 kTextHalo = IM_COL32(255, 255, 255, 150); // drawn several times around the text
 
-void layOut(ContourCache& cache, const Contours& contours, double step, const PlotFrame& frame, glm::dvec2 perUnit) {
+void layOut(ContourCache& cache, const Contours& contours, double step, const PlaneFrame& frame) {
     std::vector<PageLine> lines;
     for (const volume::ContourLine& line : contours.lines) {
         PageLine& own = lines.emplace_back(PageLine{contourText(line.level, step), {}});
         for (const glm::dvec2& point : line.points) {
-            const ImVec2 at = frame.pixel(point.x * perUnit.x, point.y * perUnit.y);
+            const ImVec2 at = frame.pixel(point);
             own.points.emplace_back(at.x, at.y);
         }
     }
     cache.labels.clear();
     if (cache.values)
         cache.labels = placeLabels(
-            lines, {{frame.min.x, frame.min.y},
-                    {frame.max.x, frame.max.y},
+            lines, {{frame.plot.min.x, frame.plot.min.y},
+                    {frame.plot.max.x, frame.plot.max.y},
                     static_cast<double>(em()),
                     [](const std::string& text) { return static_cast<double>(ImGui::CalcTextSize(text.c_str()).x); }});
     cache.pieces.clear();
@@ -67,7 +67,7 @@ void drawContourNote(const std::string& note) {
 }
 
 void drawContours(ViewContext& context, ContourCache& cache, const std::string& jobKey, const ContourQuery& query,
-                  double step, bool values, const PlotFrame& frame, glm::dvec2 perUnit) {
+                  double step, bool values, const PlaneFrame& frame) {
     const auto contours = cache.answers.get(
         context, context.numbers, {.key = jobKey, .title = "Contour lines", .quiet = true}, query,
         [](const auto& source, const ContourQuery& asked, int, const Progress& progress) {
@@ -75,12 +75,12 @@ void drawContours(ViewContext& context, ContourCache& cache, const std::string& 
         },
         std::equal_to<>());
     if (!contours) return;
-    const std::array<double, 5> page{frame.min.x, frame.min.y, frame.max.x, frame.max.y, em()};
+    const std::array<double, 5> page{frame.plot.min.x, frame.plot.min.y, frame.plot.max.x, frame.plot.max.y, em()};
     if (cache.drawn != contours || cache.page != page || cache.values != values) {
         cache.drawn = contours;
         cache.page = page;
         cache.values = values;
-        layOut(cache, *contours, step, frame, perUnit);
+        layOut(cache, *contours, step, frame);
     }
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const float width = std::max(1.2f, em() * 0.09f);

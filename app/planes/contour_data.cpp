@@ -1,4 +1,4 @@
-#include "app/views/slices/contour_data.h"
+#include "app/planes/contour_data.h"
 
 #include "app/drawing/line_pieces.h"
 #include "app/pane/view_parts.h"
@@ -88,17 +88,6 @@ std::string contourText(double level, double step) {
     return std::abs(level) < step * 1e-6 ? "0" : formatNumber(level, step);
 }
 
-ContourQuery contourQuery(const volume::DatasetInfo& info, int channel, const SliceAxes& axes, double position,
-                          const volume::TimePair& time, std::vector<double> levels) {
-    const auto& [right, up, normal] = axes;
-    return {channel,
-            planeAcross(right, up, normal, position),
-            {info.bounds.lo[right], info.bounds.hi[right]},
-            {info.bounds.lo[up], info.bounds.hi[up]},
-            time,
-            std::move(levels)};
-}
-
 Contours readContours(const volume::BrickSource& source, const ContourQuery& query, const Progress& progress) {
     const volume::DatasetInfo& info = source.info();
     const ContourNodes nodes = nodesOf(info, query);
@@ -171,21 +160,6 @@ std::string contourTitle(const volume::Channel& channel, const ContourLevels& le
     if (levels.values.empty()) return title + ", none in the range";
     if (levels.values.size() == 1) return title + ", at " + contourText(levels.values[0], levels.step);
     return title + ", " + contourText(levels.step, levels.step) + " apart";
-}
-
-DrawnContours drawnContours(const Session& session, const volume::DatasetInfo& info, const ContourSettings& settings,
-                            int shown) {
-    DrawnContours lines;
-    if (settings.drawn()) lines.channel = contourChannel(info, settings, shown);
-    if (lines.channel) lines.levels = contourLevels(session, info, *lines.channel, settings.count);
-    return lines;
-}
-
-std::string contourNote(const volume::DatasetInfo& info, const ContourSettings& settings, const DrawnContours& lines) {
-    if (settings.count == 0 || !settings.drawn()) return {};
-    if (lines.channel) return contourTitle(info.channel(*lines.channel), lines.levels);
-    return "no contour lines: " +
-           (info.findChannel(settings.channel) ? "labels have none" : "there is no " + settings.channel);
 }
 
 } // namespace tessera::app

@@ -1,10 +1,9 @@
 #pragma once
 
-#include "app/pane/plot.h"
 #include "app/pane/tool_row.h"
+#include "app/planes/contour_data.h"
+#include "app/planes/contour_labels.h"
 #include "app/queries/async_query.h"
-#include "app/views/slices/contour_data.h"
-#include "app/views/slices/contour_labels.h"
 
 #include <array>
 #include <memory>
@@ -30,8 +29,8 @@ void chooseContours(ToolRow& tools, const volume::DatasetInfo& info, ContourSett
 void drawContourNote(const std::string& note);
 
 /// The lines of a query with, if wanted, their values on them. While other lines are read there are none: those of
-/// another place or time would lie where the value is another. `perUnit`: of the frame's axes, by length of the data.
+/// another place or time would lie where the value is another.
 void drawContours(ViewContext& context, ContourCache& cache, const std::string& jobKey, const ContourQuery& query,
-                  double step, bool values, const PlotFrame& frame, glm::dvec2 perUnit);
+                  double step, bool values, const PlaneFrame& frame);
 
 } // namespace tessera::app

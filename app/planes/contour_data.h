@@ -41,10 +41,6 @@ struct ContourQuery {
     bool operator==(const ContourQuery&) const = default;
 };
 
-/// The slice across axes.normal at a position, as wide as the data.
-ContourQuery contourQuery(const volume::DatasetInfo& info, int channel, const SliceAxes& axes, double position,
-                          const volume::TimePair& time, std::vector<double> levels);
-
 struct Contours {
     std::vector<volume::ContourLine> lines; ///< points: distances along the plane's directions
 };
@@ -62,16 +58,5 @@ ContourLevels contourLevels(const Session& session, const volume::DatasetInfo& i
 
 /// Which parameter the lines are of and how far apart they lie, e.g. "lines: T [K], 10 apart".
 std::string contourTitle(const volume::Channel& channel, const ContourLevels& levels);
-
-/// The lines that a view draws instead of the renderer: those of another parameter and those with values.
-struct DrawnContours {
-    std::optional<int> channel; ///< nothing: none
-    ContourLevels levels;
-};
-DrawnContours drawnContours(const Session& session, const volume::DatasetInfo& info, const ContourSettings& settings,
-                            int shown);
-
-/// What the legend says of them; "" where the renderer draws the lines or none are wanted.
-std::string contourNote(const volume::DatasetInfo& info, const ContourSettings& settings, const DrawnContours& lines);
 
 } // namespace tessera::app

@@ -1,4 +1,4 @@
-#include "app/views/slices/contour_labels.h"
+#include "app/planes/contour_labels.h"
 
 #include <algorithm>
 #include <array>

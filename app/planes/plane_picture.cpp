@@ -1,0 +1,147 @@
+#include "app/planes/plane_picture.h"
+
+#include "app/pane/view_parts.h"
+#include "app/ui/ticks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr double kSameOffset = 1e-9; ///< of the box: closer planes are one
+constexpr double kTiltMargin = 0.02; ///< around the part in the box of a tilted plane
+constexpr double kAlong = 1 - 1e-8;  ///< cosine to an axis from which on a direction has its name
+constexpr double kLeastSpan = 1e-3;  ///< of the box, where the plane touches a corner only
+constexpr int kTableCells = 96;      ///< along the longer edge
+
+/// What values span, with a margin and never less than `least`.
+Range spanOf(const std::vector<double>& values, double least) {
+    const auto [lo, hi] = std::minmax_element(values.begin(), values.end());
+    const double margin = std::max(kTiltMargin * (*hi - *lo), (least - (*hi - *lo)) / 2);
+    return {*lo - margin, *hi + margin};
+}
+
+/// Of a direction along an axis its own name, else the other one.
+AxisLabel planeLabel(glm::dvec3 direction, const char* other, const volume::DatasetInfo& info, Range span) {
+    const glm::dvec3 size = glm::abs(direction);
+    return {std::max({size.x, size.y, size.z}) > kAlong ? directionText(direction) : other,
+            suitableLength(info.lengthUnit, span.hi - span.lo)};
+}
+
+/// As many samples along both edges as suit their lengths; lengths and times have no proportion.
+glm::ivec2 tableCells(const Session& session, const volume::DatasetInfo& info, glm::dvec2 edges) {
+    const double longer = std::max(edges.x, edges.y);
+    if (!(longer > 0) || timeAxisOf(session, info)) return glm::ivec2(kTableCells);
+    return glm::max(glm::ivec2(glm::round(edges / longer * static_cast<double>(kTableCells))), glm::ivec2(2));
+}
+
+void show(PlanePicture& picture, const Session& session, const volume::DatasetInfo& info, const PlaneContent& shows) {
+    const volume::Channel own = info.channel(shows.channel);
+    picture.positions = axisLabels(session, info);
+    picture.cells = tableCells(session, info, {picture.x.hi - picture.x.lo, picture.y.hi - picture.y.lo});
+    picture.shows = shows;
+    picture.time = volume::timesAround(info.times, session.time);
+    picture.function = transferOf(session, own.name);
+    picture.range = vis::effectiveRange(picture.function, info.channelRange(own));
+    picture.lined = contourChannel(info, shows.lines, shows.channel);
+    if (picture.lined) picture.levels = contourLevels(session, info, *picture.lined, shows.lines.count);
+    if (shows.plain) return;
+    picture.sections = planeSections(session, info, picture.plane);
+    picture.cursor = picture.along(session.cursor);
+}
+
+} // namespace
+
+PlanePicture axisPlane(const Session& session, const volume::DatasetInfo& info, const SliceAxes& axes, double position,
+                       const PlaneContent& shows) {
+    const auto& [right, up, normal] = axes;
+    const AxisLabels labels = axisLabels(session, info);
+    const auto& [name, unit] = labels[static_cast<std::size_t>(normal)];
+    PlanePicture picture;
+    picture.plane = planeAcross(right, up, normal, position);
+    picture.axes = axes;
+    picture.x = {info.bounds.lo[right], info.bounds.hi[right]};
+    picture.y = {info.bounds.lo[up], info.bounds.hi[up]};
+    const glm::dvec3 half = vis::worldFrame(info.bounds, session.stretch).halfSize;
+    picture.size = 2.0 * glm::dvec2(half[right], half[up]);
+    picture.corners = planeSection(picture.plane.plane(), info.bounds);
+    picture.right = labels[static_cast<std::size_t>(right)];
+    picture.up = labels[static_cast<std::size_t>(up)];
+    picture.place = name + " = " +
+                    formatQuantity(position * unit.perUnit, unit.name, info.bounds.size()[normal] * unit.perUnit / 100);
+    show(picture, session, info, shows);
+    return picture;
+}
+
+PlanePicture tiltedPlane(const Session& session, const volume::DatasetInfo& info, glm::dvec3 normal,
+                         const PlaneContent& shows) {
+    const double size = glm::length(info.bounds.size()), same = kSameOffset * std::max(size, 1e-300);
+    const FlatAxes axes = flatAxes(normal, vis::worldFrame(info.bounds, session.stretch));
+    const glm::dvec3 way = unitNormal(normal);
+    const double offset = std::round(glm::dot(way, session.cursor) / same) * same;
+    PlanePicture picture;
+    picture.plane = {way * offset, axes.right, axes.up};
+    picture.corners = planeSection(picture.plane.plane(), info.bounds);
+    std::vector<double> across, upwards;
+    for (const glm::dvec3& corner : picture.corners.empty() ? std::vector{session.cursor} : picture.corners) {
+        across.push_back(picture.along(corner).x);
+        upwards.push_back(picture.along(corner).y);
+    }
+    picture.x = spanOf(across, kLeastSpan * size);
+    picture.y = spanOf(upwards, kLeastSpan * size);
+    picture.size = glm::dvec2(picture.x.hi - picture.x.lo, picture.y.hi - picture.y.lo) * axes.scale;
+    picture.right = planeLabel(axes.right, "u", info, picture.x);
+    picture.up = planeLabel(axes.up, "v", info, picture.y);
+    const LengthUnit unit = suitableLength(info.lengthUnit, size);
+    picture.place = "across " + directionText(way) + " at " +
+                    formatQuantity(offset * unit.perUnit, unit.name, size * unit.perUnit / 1000);
+    show(picture, session, info, shows);
+    return picture;
+}
+
+std::array<std::string, 2> axisTexts(const PlanePicture& picture) {
+    const auto text = [&](const AxisLabel& label, const char* other, glm::dvec3 direction) {
+        return !picture.axes && label.name == other ? label.name + " = " + directionText(direction) : label.name;
+    };
+    return {text(picture.right, "u", picture.plane.right), text(picture.up, "v", picture.plane.up)};
+}
+
+std::string axesText(const PlanePicture& picture) {
+    const auto [right, up] = axisTexts(picture);
+    const bool named = right != picture.right.name, both = named && up != picture.up.name;
+    return both ? right + ", " + up : named ? right : up != picture.up.name ? up : "";
+}
+
+ContourQuery contourQuery(const PlanePicture& picture) {
+    return {picture.lined.value_or(0), picture.plane, picture.x, picture.y, picture.time, picture.levels.values};
+}
+
+std::string contourNote(const volume::DatasetInfo& info, const PlanePicture& picture) {
+    const ContourSettings& lines = picture.shows.lines;
+    if (lines.count == 0 || !lines.drawn()) return {};
+    if (picture.lined) return contourTitle(info.channel(*picture.lined), picture.levels);
+    return "no contour lines: " +
+           (info.findChannel(lines.channel) ? "labels have none" : "there is no " + lines.channel);
+}
+
+glm::dvec3 nearestPlace(const PlanePicture& picture, const volume::Box& box, glm::dvec2 along) {
+    if (picture.axes)
+        return picture.placeAt(
+            {std::clamp(along.x, picture.x.lo, picture.x.hi), std::clamp(along.y, picture.y.lo, picture.y.hi)});
+    return nearestInPlane(picture.plane.plane(), box, picture.placeAt(along));
+}
+
+void stepAcross(Session& session, const volume::DatasetInfo& info, const PlanePicture& picture, double samples) {
+    glm::dvec3 way = picture.plane.plane().normal;
+    if (picture.axes) way = glm::abs(way); // towards larger coordinates
+    const double cell = info.lattice.kind == volume::LatticeKind::BCC ? 0.5 : 1;
+    const glm::dvec3 to = session.cursor + way * (samples * cell / glm::length(way / info.lattice.spacing));
+    session.cursor =
+        picture.axes ? glm::clamp(to, info.bounds.lo, info.bounds.hi) : nearestInPlane({way, to}, info.bounds, to);
+}
+
+} // namespace tessera::app

@@ -1,0 +1,196 @@
+#include "app/plots/plot_view.h"
+
+#include "app/pane/view_parts.h"
+#include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tessera::app {
+
+namespace {
+
+// Widths and radii in em, as pages have them in sizes of text.
+constexpr float kLine = 0.13f, kDot = 0.2f, kRing = 0.5f;
+
+ImU32 inkOf(glm::vec3 color) {
+    return toColor({double(color.r), double(color.g), double(color.b)});
+}
+
+/// Points along the lines of a plot, close enough to find out what they cross.
+std::vector<ImVec2> pointsAlong(const Plot& plot, const PlotFrame& frame) {
+    constexpr int kParts = 16;
+    std::vector<ImVec2> along;
+    for (const PlotSeries& series : plot.series)
+        for (std::size_t i = 0; i < series.points.size(); ++i) {
+            if (!std::isfinite(series.points[i].y)) continue;
+            const ImVec2 to = frame.pixel(series.points[i].x, series.points[i].y);
+            const bool joined = !series.bars && i > 0 && std::isfinite(series.points[i - 1].y);
+            const ImVec2 from = joined        ? frame.pixel(series.points[i - 1].x, series.points[i - 1].y)
+                                : series.bars ? ImVec2{to.x, frame.max.y}
+                                              : to;
+            for (int part = 1; part <= kParts; ++part) {
+                const float share = float(part) / kParts;
+                along.push_back({std::lerp(from.x, to.x, share), std::lerp(from.y, to.y, share)});
+            }
+        }
+    return along;
+}
+
+void drawSeriesBars(ImDrawList& draw, const PlotSeries& series, const PlotFrame& frame) {
+    if (series.points.size() < 2) return;
+    const double half = (series.points[1].x - series.points[0].x) / 2;
+    const float zero = frame.pixel(frame.x.lo, std::clamp(0.0, frame.y.lo, frame.y.hi)).y;
+    for (const glm::dvec2& bar : series.points) {
+        if (!(bar.y > 0 || bar.y < 0)) continue;
+        const float left = std::round(frame.pixel(bar.x - half, 0).x),
+                    right = std::round(frame.pixel(bar.x + half, 0).x);
+        // What is not 0 is at least visible.
+        const float end = frame.pixel(bar.x, bar.y).y, top = bar.y > 0 ? std::min(zero - 1, end) : zero;
+        draw.AddRectFilled({left, top}, {std::max(right, left + 1), bar.y > 0 ? zero : std::max(zero + 1, end)},
+                           inkOf(series.color));
+    }
+}
+
+void drawSeriesLine(ImDrawList& draw, const PlotSeries& series, const PlotFrame& frame) {
+    const ImU32 color = inkOf(series.color);
+    std::vector<ImVec2> run;
+    const auto flush = [&] {
+        if (run.size() > 1)
+            draw.AddPolyline(run.data(), static_cast<int>(run.size()), color, 0, std::max(1.2f, em() * kLine));
+        if (series.dots || run.size() == 1)
+            for (const ImVec2 at : run) draw.AddCircleFilled(at, em() * kDot, color);
+        run.clear();
+    };
+    for (const glm::dvec2& point : series.points)
+        if (std::isfinite(point.x) && std::isfinite(point.y))
+            run.push_back(frame.pixel(point.x, point.y));
+        else
+            flush();
+    flush();
+}
+
+} // namespace
+
+std::optional<PlotColumn> placePlots(const std::vector<Plot>& plots, float beside) {
+    PlotColumn column;
+    column.origin = ImGui::GetCursorScreenPos();
+    const ImVec2 all = ImGui::GetContentRegionAvail();
+    const ColumnHeights heights = columnHeights(all.y, plots.size());
+    column.room = {all.x, heightAtLeast(heights.all)};
+    column.titledBelow = heights.titled;
+    column.titled = all.x > em() * 24;
+    for (const Plot& plot : plots)
+        column.titled =
+            column.titled && ImGui::CalcTextSize(titleWithUnit(plot.y.title, plot.y.unit).c_str()).x < heights.each;
+    for (const Plot& plot : plots)
+        column.left = std::max(column.left, axisRoom(AxisSide::Left, plot.y.range,
+                                                     column.titled ? TitlePlace::Beside : TitlePlace::Nowhere));
+    if (column.room.x - column.left < em() * 4) {
+        drawHint("Not enough room", "Enlarge the pane.");
+        return std::nullopt;
+    }
+    const float x0 = column.origin.x + column.left;
+    float x1 = column.origin.x + column.room.x - em() * 0.6f;
+    if (beside > 0 && x1 - x0 - beside > em() * 8) column.beside = beside;
+    x1 -= column.beside;
+    ImGui::SetCursorScreenPos({x0, column.origin.y});
+    mouseArea("plots", {x1 - x0, column.room.y - heights.bottom});
+    column.taken = ImGui::IsItemActive();
+    column.hovered = ImGui::IsItemHovered() || column.taken;
+    column.share = std::clamp(double((ImGui::GetIO().MousePos.x - x0) / (x1 - x0)), 0.0, 1.0);
+    for (std::size_t i = 0; i < plots.size(); ++i) {
+        const float top = column.origin.y + em() * 0.2f + heights.each * static_cast<float>(i);
+        column.frames.push_back({{x0, std::round(top)},
+                                 {x1, std::round(top + heights.each - em() * 0.4f)},
+                                 plots[i].x.range,
+                                 plots[i].y.range});
+    }
+    return column;
+}
+
+void drawPlotNames(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, bool titled) {
+    const bool single = plot.series.size() == 1;
+    std::vector<std::pair<std::string, ImU32>> names;
+    const std::string up = titleWithUnit(plot.y.title, plot.y.unit);
+    if (plot.series.empty())
+        names.emplace_back(plot.title + (titled ? "" : ", up: " + up), plotColors().text);
+    else if (!plot.title.empty())
+        names.emplace_back(plot.title, plotColors().text);
+    if (!titled && plot.series.size() > 1) names.emplace_back(up, plotColors().text);
+    for (const PlotSeries& series : plot.series) {
+        if (single && titled && series.value.empty()) continue;
+        names.emplace_back((single ? up : series.name) + (series.value.empty() ? "" : "  " + series.value),
+                           single ? plotColors().text : inkOf(series.color));
+    }
+    if (names.empty()) return;
+    // A list, or where that is too high, in lines as wide as the plot.
+    const float line = em() * 1.15f, most = frame.width() - em(), gap = em() * 0.8f;
+    float widest = 0;
+    for (const auto& [text, color] : names)
+        widest = std::max(widest, std::min(most, ImGui::CalcTextSize(text.c_str()).x));
+    const bool list = line * static_cast<float>(names.size()) <= frame.height() * 0.6f;
+    std::vector<ImVec2> at;
+    ImVec2 pen{0, 0}, size{0, line};
+    for (const auto& [text, color] : names) {
+        const float width = std::min(most, ImGui::CalcTextSize(text.c_str()).x);
+        if (!at.empty() && (list || pen.x + width > most)) pen = {0, pen.y + line};
+        at.push_back(pen);
+        pen.x += width + gap;
+        size = {std::max(size.x, pen.x - gap), pen.y + line};
+    }
+    const ImVec2 corner = freeCorner(frame, {size.x + gap, size.y + em() * 0.4f}, pointsAlong(plot, frame));
+    const ImVec2 from{corner.x > 0 ? frame.max.x - em() * 0.4f - size.x : frame.min.x + em() * 0.4f,
+                      corner.y > 0 ? std::max(frame.min.y, frame.max.y - size.y) : frame.min.y + em() * 0.2f};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const bool right = list && corner.x > 0;
+        addFittedWithBackdrop(draw, {from.x + (right ? size.x : at[i].x), from.y + at[i].y}, {right ? 1.0f : 0.0f, 0},
+                              names[i].second, names[i].first, most);
+    }
+}
+
+void drawPlot(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, bool titled, float left) {
+    const PlotColors colors = plotColors();
+    drawPlotNames(draw, plot, frame, titled); // below the lines: a low plot has no room beside them
+    draw.PushClipRect({frame.min.x - em(), frame.min.y}, {frame.max.x + em(), frame.max.y}, true);
+    for (const PlotSeries& series : plot.series)
+        series.bars ? drawSeriesBars(draw, series, frame) : drawSeriesLine(draw, series, frame);
+    if (plot.cursorX || plot.cursorY)
+        drawCrosshair(draw, frame, plot.cursorX.value_or(std::nan("")), plot.cursorY.value_or(std::nan("")),
+                      plot.series.empty());
+    for (const glm::dvec2& mark : plot.marks) {
+        if (!std::isfinite(mark.x) || !std::isfinite(mark.y)) continue;
+        const ImVec2 at = frame.pixel(mark.x, mark.y);
+        draw.AddCircle(at, em() * kRing, colors.backdrop, 24, em() * 0.25f);
+        draw.AddCircle(at, em() * kRing, colors.cursor, 24, em() * kLine);
+    }
+    draw.PopClipRect();
+    draw.AddRect(frame.min, frame.max, colors.frame);
+    drawAxis(draw, frame, AxisSide::Left, titled ? plot.y.title : "", titled ? plot.y.unit : "",
+             frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f, {.room = left});
+}
+
+void drawPlotBottom(ImDrawList& draw, const Plot& last, const PlotColumn& column) {
+    drawAxis(draw, column.frames.back(), AxisSide::Bottom, last.x.title, last.x.unit, column.origin.x,
+             column.origin.x + column.room.x, {.inlineTitle = !column.titledBelow});
+}
+
+ImVec2 freeCorner(const PlotFrame& frame, ImVec2 size, const std::vector<ImVec2>& line) {
+    ImVec2 best{0, 0};
+    std::ptrdiff_t least = std::numeric_limits<std::ptrdiff_t>::max();
+    for (const ImVec2 corner : {ImVec2{0, 0}, {0, 1}, {1, 0}, {1, 1}}) {
+        const ImVec2 lo{frame.min.x + (frame.width() - size.x) * corner.x,
+                        frame.min.y + (frame.height() - size.y) * corner.y};
+        const auto hidden = std::ranges::count_if(line, [&](ImVec2 at) {
+            return at.x >= lo.x && at.y >= lo.y && at.x <= lo.x + size.x && at.y <= lo.y + size.y;
+        });
+        if (hidden >= least) continue;
+        least = hidden;
+        best = corner;
+    }
+    return best;
+}
+
+} // namespace tessera::app
