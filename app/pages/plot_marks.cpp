@@ -19,7 +19,7 @@ constexpr double kDash = 5, kDashPeriod = 8, kDot = 2.2;
 /// The ticks of an axis that have room: their texts lie along it, or each takes a line.
 TickLabels ticksAlong(const PlotAxis& axis, double length, bool lines, double text) {
     if (!axis.numbered) return {};
-    return fittingTicks(axis.range, length, text * (lines ? 1.4 : 1.2), true,
+    return fittingTicks(axis.range, length, text * (lines ? 0.8 : 1.2), true,
                         [&](const std::string& each) { return lines ? text : pageTextWidth(each, text); });
 }
 
@@ -134,11 +134,12 @@ private:
             free = y - text_;
         }
         if (!place_.numbersBeside) return;
+        const double start = x0_ - place_.left + points(4); // of what reads along
         if (place_.up == UpTitle::Above)
-            words(x0_, y1_ - points(4), noted(plot_.y, ticks, x1_ - x0_, text_), 0);
+            words(start, y1_ - points(4), noted(plot_.y, ticks, x1_ - start, text_), 0);
         else if (place_.up == UpTitle::Across)
-            words(x0_ - points(10) - widest, (y0_ + y1_) / 2 + points(3),
-                  noted(plot_.y, ticks, place_.left - points(10) - widest, text_), 1);
+            words(start, (y0_ + y1_) / 2 + points(3), noted(plot_.y, ticks, place_.left - points(12) - widest, text_),
+                  0);
         else
             words(x0_ - place_.left + points(16), (y0_ + y1_) / 2, noted(plot_.y, ticks, y0_ - y1_, text_), 0.5, -90);
     }
@@ -256,7 +257,8 @@ std::string fittedTitle(const PlotAxis& axis, double length, double text) {
         while ((static_cast<unsigned char>(shown.back()) & 0xc0) == 0x80) shown.pop_back(); // whole UTF-8 characters
         shown.pop_back();
     }
-    return titleWithUnit(shown + "...", axis.unit);
+    if (!shown.empty() || axis.unit.empty()) return titleWithUnit(shown + "...", axis.unit);
+    return fittedTitle({.title = axis.title, .range = axis.range}, length, text); // rather the name than the unit alone
 }
 
 double titleLine(std::size_t lines, const PageForm& form) {

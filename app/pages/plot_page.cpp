@@ -181,7 +181,7 @@ private:
 PlotPlace placeOf(const std::vector<Plot>& plots, const Grid& grid, int i, const PageForm& form) {
     PlotPlace place{
         .box = grid.box(i), .acrossBelow = grid.acrossBelow, .up = grid.up, .left = grid.left, .bottom = grid.bottom};
-    place.overhang = grid.sharedY ? grid.gap / 2 : kRight * form.text / kFigureText;
+    place.overhang = grid.sharedY ? 0 : kRight * form.text / kFigureText;
     place.above = grid.up == UpTitle::Above && form.axes ? form.text * kLineHeight : 0;
     if (grid.sharedX) // the last of its column
         for (int later = i + grid.columns; later < int(plots.size()); later += grid.columns)
@@ -255,7 +255,8 @@ Lists placeLists(const std::vector<Plot>& plots, const Grid& grid, const PageFor
     } else {
         for (const Plot& plot : plots)
             if (plot.series.size() > 1)
-                lists.above = std::max(lists.above, listSeries(plot.series, grid.plot.x, form, {}, nullptr).y);
+                lists.above = std::max(lists.above, listSeries(plot.series, grid.plot.x, form, {}, nullptr).y +
+                                                        2 * form.text / kFigureText);
     }
     return lists;
 }

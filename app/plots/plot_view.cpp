@@ -119,7 +119,10 @@ void drawPlotNames(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, b
         names.emplace_back(plot.title + (titled ? "" : ", up: " + up), plotColors().text);
     else if (!plot.title.empty())
         names.emplace_back(plot.title, plotColors().text);
-    if (!titled && plot.series.size() > 1) names.emplace_back(up, plotColors().text);
+    const bool told = std::ranges::all_of(plot.series, [&](const PlotSeries& series) { // names with the unit
+        return !plot.y.unit.empty() && series.name.ends_with(titleWithUnit("", plot.y.unit));
+    });
+    if (!titled && plot.series.size() > 1 && !told) names.emplace_back(up, plotColors().text);
     for (const PlotSeries& series : plot.series) {
         if (single && titled && series.value.empty()) continue;
         names.emplace_back((single ? up : series.name) + (series.value.empty() ? "" : "  " + series.value),

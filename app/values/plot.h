@@ -79,8 +79,8 @@ struct Plot {
 
 /// Colour of the nth series of a plot, on a light or dark ground.
 inline glm::vec3 plotInk(std::size_t n, bool dark) {
-    static constexpr std::array<std::array<glm::vec3, 2>, 6> kInks{{{{{0.1f, 0.36f, 0.62f}, {0.45f, 0.68f, 0.98f}}},
-                                                                    {{{0.8f, 0.33f, 0.1f}, {1, 0.62f, 0.3f}}},
+    static constexpr std::array<std::array<glm::vec3, 2>, 6> kInks{{{{{0.8f, 0.33f, 0.1f}, {1, 0.62f, 0.3f}}},
+                                                                    {{{0.1f, 0.36f, 0.62f}, {0.45f, 0.68f, 0.98f}}},
                                                                     {{{0.15f, 0.5f, 0.25f}, {0.45f, 0.78f, 0.5f}}},
                                                                     {{{0.5f, 0.25f, 0.6f}, {0.78f, 0.6f, 0.92f}}},
                                                                     {{{0.5f, 0.4f, 0.1f}, {0.85f, 0.78f, 0.4f}}},
