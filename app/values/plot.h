@@ -40,6 +40,12 @@ struct PlotImage {
     std::vector<std::uint8_t> rgba;
 };
 
+/// What the colours of a picture stand for.
+struct PlotColorKey {
+    std::vector<std::uint8_t> rgba; ///< from the highest value to the lowest; none: there is no key
+    std::string highest = {}, lowest = {};
+};
+
 /// A text on a line, with a halo.
 struct PlotLabel {
     std::string text;
@@ -74,7 +80,8 @@ struct Plot {
     std::vector<PlotOutline> outlines = {};
     std::optional<double> cursorX = {}, cursorY = {}; ///< lines across the plot
     std::vector<PlotBand> brushed = {};
-    bool framed = true; ///< else what it holds stands without frame and axes
+    PlotColorKey key = {}; ///< of the picture
+    bool framed = true;    ///< else what it holds stands without frame and axes
 };
 
 /// Colour of the nth series of a plot, on a light or dark ground.
