@@ -76,6 +76,7 @@ public:
         double key = 0;
         for (const Plot& plot : plots_) key = std::max(key, keyRoom(plot, form_));
         grid.gap = kPageGap * scale_;
+        if (!natural()) grid.gap = std::min({grid.gap, size_.x / grid.columns / 8, size_.y / grid.rows / 8});
         grid.between = grid.gap + key;
         if (natural() && !shared_) {
             grid.left = kPageLeft * scale_;
@@ -149,7 +150,7 @@ private:
         for (const Plot& plot : plots_)
             lines = std::max(lines, titleLines(plot, std::max(grid.plot.x, 8 * form_.text), form_).size());
         const double titles =
-            lines > 0 ? (7 * scale_ + form_.text + double(lines - 1) * titleLine(lines, form_)) : kPageGap * scale_;
+            lines > 0 ? (7 * scale_ + form_.text + double(lines - 1) * titleLine(lines, form_)) : 0.8 * grid.gap;
         return titles + (grid.up == UpTitle::Above ? form_.text * kLineHeight : 0);
     }
     /// Where the titles of axes have room, once it is known how large plots are.
@@ -158,7 +159,7 @@ private:
         const double most = 0.45;
         if (!last && up > grid.plot.y && grid.plot.y < 12 * text) {
             grid.up = !grid.sharedY && grid.plot.y > 4.5 * text ? UpTitle::Above : UpTitle::Across;
-            grid.left = numbersBeside() + 4 * scale_;
+            grid.left = numbersBeside() + 8 * scale_;
             if (grid.up == UpTitle::Across)
                 grid.left = std::min(grid.left + up, std::max(grid.left + 4 * text, naturalOr(size_.x, up) * most));
         }
