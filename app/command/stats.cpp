@@ -5,6 +5,7 @@
 #include "app/data/import_options.h"
 #include "app/data/open.h"
 #include "app/described/describe_cli.h"
+#include "app/pages/plot_page.h"
 #include "app/ui/ticks.h"
 #include "app/user_files/import_memory.h"
 #include "codec/blocks/share_results.h"
@@ -96,7 +97,7 @@ void write(const StatsRequest& request, const Question& question, const Answer& 
     const std::string origin = question.origin(), line = "# numbers: " + origin + "\n";
     const auto figure = [&] {
         VectorPage drawing =
-            drawingOf(request.options.planesAcross() ? answer.panels : figureOf(question, answer.json), 2);
+            plotPage(request.options.planesAcross() ? answer.panels : figureOf(question, answer.json), 2, {});
         drawing.numbers = origin;
         return fileOf(drawing, hasEnding(path, ".pdf") ? "pdf" : "svg");
     };

@@ -143,18 +143,17 @@ double numberOf(const Json& number) {
 }
 
 /// The panel of that key; a new one begins with these axes.
-FigurePanel& panelOf(std::vector<std::pair<std::string, FigurePanel>>& panels, const std::string& key,
-                     const FigurePanel& begin) {
-    const auto at = std::ranges::find(panels, key, &std::pair<std::string, FigurePanel>::first);
+Plot& panelOf(std::vector<std::pair<std::string, Plot>>& panels, const std::string& key, const Plot& begin) {
+    const auto at = std::ranges::find(panels, key, &std::pair<std::string, Plot>::first);
     return at != panels.end() ? at->second : panels.emplace_back(key, begin).second;
 }
 
-FigureSeries& lineOf(FigurePanel& panel, const std::string& name, const FigureSeries& begin) {
-    const auto at = std::ranges::find(panel.series, name, &FigureSeries::name);
+PlotSeries& lineOf(Plot& panel, const std::string& name, const PlotSeries& begin) {
+    const auto at = std::ranges::find(panel.series, name, &PlotSeries::name);
     return at != panel.series.end() ? *at : panel.series.emplace_back(begin);
 }
 
-void addPoint(FigurePanel& panel, FigureSeries& line, double x, double y) {
+void addPoint(Plot& panel, PlotSeries& line, double x, double y) {
     line.points.push_back({x, y});
     if (std::isfinite(y)) panel.y.range = {std::min(panel.y.range.lo, y), std::max(panel.y.range.hi, y)};
 }
@@ -188,30 +187,30 @@ void addAnswer(Answer& sum, const std::string& later) {
     sum.notes = answer["notes"].get<std::vector<std::string>>();
 }
 
-std::vector<FigurePanel> figureOf(const Question& question, const Json& rows) {
+std::vector<Plot> figureOf(const Question& question, const Json& rows) {
     const std::vector<double>& times = question.times;
     const bool balance = question.balance >= 0, bars = balance && times.size() == 1;
-    const FigureAxis overTime{question.timeTitle(), {times.front(), times.back()}};
-    std::vector<std::pair<std::string, FigurePanel>> panels;
+    const PlotAxis overTime{question.timeTitle(), {times.front(), times.back()}};
+    std::vector<std::pair<std::string, Plot>> panels;
     for (const Json& row : rows) {
         const std::string parameter = row["parameter"], unit = row["unit"], region = row["region"];
         const double time = row["time"];
         if (balance) {
             const std::string surface = row["surface"];
-            FigurePanel& panel = panelOf(
+            Plot& panel = panelOf(
                 panels, region, {region, overTime, {titleWithUnit("out - in of " + parameter, unit), {0, 0}}, {}, {}});
-            FigureSeries& line = lineOf(panel, surface, {surface, {}, labelColor({}, int(panel.series.size()) + 1)});
+            PlotSeries& line = lineOf(panel, surface, {surface, {}, labelColor({}, int(panel.series.size()) + 1)});
             line.bars = bars;
             addPoint(panel, line, bars ? double(&line - panel.series.data()) + 1 : time, numberOf(row["net"]));
         } else {
-            FigurePanel& panel =
+            Plot& panel =
                 panelOf(panels, parameter,
                         {{}, overTime, {titleWithUnit("mean of " + parameter, unit), {HUGE_VAL, -HUGE_VAL}}, {}, {}});
             addPoint(panel, lineOf(panel, region, {region, {}, colorOf(question, region)}), time,
                      numberOf(row["mean"]));
         }
     }
-    std::vector<FigurePanel> out;
+    std::vector<Plot> out;
     for (auto& [key, panel] : panels) {
         if (bars) panel.x = {"surface", {0.5, double(panel.series.size()) + 0.5}, false};
         panel.y.range = paddedRange(panel.y.range, 0.05);

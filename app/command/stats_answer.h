@@ -2,7 +2,7 @@
 
 #include "app/command/stats_question.h"
 #include "app/described/describe_json.h"
-#include "app/pane/figure.h"
+#include "app/values/plot.h"
 #include "volume/base/progress.h"
 
 #include <string>
@@ -16,7 +16,7 @@ struct Answer {
     std::string text, csv;
     Json json = Json::array(), units = Json::object(); ///< units: by the keys of the rows
     std::vector<std::string> notes;
-    std::vector<FigurePanel> panels;
+    std::vector<Plot> panels;
 };
 
 /// The requested numbers at one time: averages over planes, a balance, or statistics of regions. `first`: the CSV has
@@ -32,6 +32,6 @@ void addAnswer(Answer& sum, const std::string& later);
 /// The figure of a request without planes, from the rows of all requested times. Means over times: a panel for each
 /// parameter with a line for each region. Balances: a panel for each region with a line for each surface over the
 /// times, or a bar if that is one time.
-std::vector<FigurePanel> figureOf(const Question& question, const Json& rows);
+std::vector<Plot> figureOf(const Question& question, const Json& rows);
 
 } // namespace tessera::app

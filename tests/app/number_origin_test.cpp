@@ -1,6 +1,6 @@
 #include "app/data/number_origin.h"
 
-#include "app/pane/figure.h"
+#include "app/pages/plot_page.h"
 #include "app/queries/focus_share.h"
 #include "codec/container/metadata.h"
 #include "volume/field/mesh_origin.h"
@@ -100,7 +100,7 @@ TEST(NumberOrigin, TellsDerivedParametersAndOriginalsFromWhatIsRead) {
 }
 
 TEST(NumberOrigin, StandsInVectorGraphics) {
-    VectorPage drawing = drawingOf({}, 1);
+    VectorPage drawing = plotPage({}, 1, {});
     drawing.numbers = "as computed & < 1 %";
     const std::string svg = svgOf(drawing);
     EXPECT_NE(svg.find("<desc>numbers: as computed &amp; &lt; 1 %</desc>\n<rect "), std::string::npos) << svg;

@@ -2,7 +2,6 @@
 
 #include "app/history/edit_titles.h"
 #include "app/history/parameter_path.h"
-#include "app/pane/figure.h"
 #include "app/pane/plot.h"
 #include "app/pane/view_parts.h"
 #include "app/session/session_json.h"

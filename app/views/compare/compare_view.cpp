@@ -2,7 +2,6 @@
 
 #include "app/edits/compare_files.h"
 #include "app/pane/axes3d.h"
-#include "app/pane/figure.h"
 #include "app/pane/view_parts.h"
 #include "app/tools/brush_list.h"
 #include "app/tools/camera_controller.h"

@@ -1,6 +1,5 @@
 #include "app/edits/label_names.h"
 #include "app/pages/table_page.h"
-#include "app/pane/figure.h"
 #include "app/pane/view_parts.h"
 #include "app/queries/async_query.h"
 #include "app/queries/statistics_query.h"
