@@ -117,8 +117,7 @@ std::vector<std::vector<std::string>> cellsOf(const Table& table, bool once) {
 std::string csvOf(const Table& table, bool head) {
     std::string csv;
     for (const std::string& note : table.notes)
-        if (head) csv += "# " + note + "
-";
+        if (head) csv += "# " + note + "\n";
     const std::size_t rows = rowsOf(table);
     for (const TableColumn& column : table.columns) {
         assert(column.texts.size() == rows || column.numbers.size() == rows);
