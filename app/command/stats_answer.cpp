@@ -92,10 +92,11 @@ Answer sectionsAt(const StatsRequest& request, const Question& question, double 
             addColumn(shown, values, {.name = name + (looks.size() > 1 ? " " + looks[r].name : ""), .unit = unit.unit},
                       valueOf);
             if (curves.errors.empty()) continue;
-            addColumn(shown, values, {.name = "error of " + name, .head = "\u00b1"}, [&](const auto& plane) {
-                const double error = errorOf(curves, c, plane, show, unit.factor);
-                return std::isfinite(valueOf(plane)) && std::isfinite(error) ? error : std::nan("");
-            });
+            addColumn(shown, values, {.name = "error of " + name, .head = "\u00b1", .kind = NumberKind::Bound},
+                      [&](const auto& plane) {
+                          const double error = errorOf(curves, c, plane, show, unit.factor);
+                          return std::isfinite(valueOf(plane)) && std::isfinite(error) ? error : std::nan("");
+                      });
         }
     answer.text = textOf(shown);
     return answer;

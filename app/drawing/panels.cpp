@@ -83,7 +83,8 @@ VectorPage figureOfPanels(glm::dvec2 size, const std::vector<PanelPlace>& places
     figure.marks.push_back({Rect{.box = {{0, 0}, size}, .color = ground}});
     for (std::size_t i = 0; i < pages.size(); ++i) {
         const PanelPlace& place = places[i];
-        const Placed placed{glm::dvec2(place.lo) * points, double(place.hi.x - place.lo.x) * points / pages[i].size.x};
+        const glm::dvec2 scales = glm::dvec2(place.hi - place.lo) * points / pages[i].size;
+        const Placed placed{glm::dvec2(place.lo) * points, std::min(scales.x, scales.y)};
         for (Mark mark : pages[i].marks) {
             std::visit([&](auto& shape) { placed.move(shape); }, mark.shape);
             figure.marks.push_back(std::move(mark));

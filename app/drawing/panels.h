@@ -24,8 +24,8 @@ std::vector<PanelPlace> panelPlaces(glm::ivec2 size, int panels, int columns, do
 /// The letters of panels: a to z, then aa.
 std::string panelLetter(int panel);
 
-/// A figure of `size` points with pages at their places, `points` per pixel, and letters of `text` points. Pages are as
-/// large as their places.
+/// A figure of `size` points with pages at their places, `points` per pixel, and letters of `text` points. Pages fill
+/// their places in one direction.
 VectorPage figureOfPanels(glm::dvec2 size, const std::vector<PanelPlace>& places, const std::vector<VectorPage>& pages,
                           double points, double text, glm::vec4 ground, glm::vec4 ink);
 

@@ -78,6 +78,17 @@ TEST(Panels, MoveEveryShapeOfAPage) {
 }
 
 // Rows are read from the top, and red is not blue.
+// A table that is longer than its place would cover the panel below.
+TEST(Panels, ALongPageIsSmallerRatherThanOverOthers) {
+    VectorPage page;
+    page.size = {100, 200};
+    page.marks = {{Rect{.box = {{0, 0}, {100, 200}}}}};
+    const VectorPage figure =
+        figureOfPanels({300, 200}, {{{20, 40}, {220, 140}, {20, 30}}}, {page}, 0.5, 9, glm::vec4(1), {0, 0, 0, 1});
+    EXPECT_EQ(std::get<Rect>(figure.marks[1].shape).box.lo, glm::dvec2(10, 20));
+    EXPECT_EQ(std::get<Rect>(figure.marks[1].shape).box.hi, glm::dvec2(35, 70));
+}
+
 TEST(Panels, ARasterPictureHasItsPixelsWhereTheyAre) {
     VectorPage page;
     page.size = {4, 2};

@@ -25,7 +25,7 @@ constexpr const char* kImportant[] = {
     "RMSE (of 255)", "stored bytes",     "PSNR",           "SSIM",         "differing",
     "samples",       "maximum (of 255)", "ms per picture", "texture bytes"};
 
-double positive(double value) {
+double positiveOrAbsent(double value) {
     return value > 0 ? value : std::nan("");
 }
 
@@ -46,15 +46,15 @@ Table compareTable(const std::vector<CompareRow>& rows, bool pictures) {
         if (!rows[i].failure.empty()) changes.words[i] = rows[i].failure; // why there is no picture
     add({.name = "reference", .kind = NumberKind::Flag, .shown = false}, &CompareRow::reference);
     TableColumn& time = add({.name = "ms per picture", .head = "ms", .shown = pictures},
-                            [](const CompareRow& row) { return positive(row.milliseconds); });
+                            [](const CompareRow& row) { return positiveOrAbsent(row.milliseconds); });
     for (const CompareRow& row : rows) time.resolutions.push_back(row.milliseconds < 10 ? 0.1 : 1);
     add({.name = "samples", .head = "Samples", .kind = NumberKind::Count, .shown = pictures},
-        [](const CompareRow& row) { return positive(row.samples); });
+        [](const CompareRow& row) { return positiveOrAbsent(row.samples); });
     add({.name = "texture bytes", .head = "Texture", .kind = NumberKind::Bytes, .shown = pictures},
-        [](const CompareRow& row) { return positive(row.bytes); });
+        [](const CompareRow& row) { return positiveOrAbsent(row.bytes); });
     const bool stored = std::ranges::any_of(rows, [](const CompareRow& row) { return row.storedBytes > 0; });
     add({.name = "stored bytes", .head = "File", .kind = NumberKind::Bytes, .shown = stored},
-        [](const CompareRow& row) { return positive(row.storedBytes); });
+        [](const CompareRow& row) { return positiveOrAbsent(row.storedBytes); });
     const auto addError = [&](const char* name, const char* head, const char* unit, double digits,
                               const char* reference, double CompareRow::*error) {
         TableColumn& column = add({.name = name, .head = head, .unit = unit, .shown = pictures},

@@ -261,7 +261,8 @@ BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balanc
 Table tableOf(const BalanceTable& balance) {
     Table table{.columns = {}, .names = 2, .notes = balance.notes};
     const auto add = [&](TableColumn column, auto of) { addColumn(table, balance.rows, std::move(column), of); };
-    add({.name = "parameter", .shown = false}, [&](const BalanceRow&) { return balance.parameter; });
+    add({.name = "parameter", .head = "Parameter", .shown = false},
+        [&](const BalanceRow&) { return balance.parameter; });
     add({.name = "unit", .shown = false}, [&](const BalanceRow&) { return balance.unit; });
     add({.name = "region", .head = "Region"}, &BalanceRow::region);
     add({.name = "surface", .head = "Surface"}, &BalanceRow::surface);

@@ -1,10 +1,10 @@
 #include "app/edits/label_names.h"
+#include "app/pages/table_page.h"
 #include "app/pane/figure.h"
 #include "app/pane/view_parts.h"
 #include "app/queries/async_query.h"
 #include "app/queries/statistics_query.h"
 #include "app/tables/table_view.h"
-#include "app/pages/table_page.h"
 #include "app/views/statistics/region_data.h"
 #include "volume/flow/flow_channels.h"
 
@@ -28,9 +28,11 @@ struct Part {
     volume::Summary volume::ChannelStatistics::*summary;
     double volume::JointHistogram::*correlation;
 };
-constexpr Part kAll{"all", &volume::ChannelStatistics::all, &volume::JointHistogram::correlation};
-constexpr Part kInside{"inside", &volume::ChannelStatistics::inside, &volume::JointHistogram::focusCorrelation};
-constexpr Part kOutside{"outside", &volume::ChannelStatistics::outside, &volume::JointHistogram::outsideCorrelation};
+constexpr Part kAllSamples{"all", &volume::ChannelStatistics::all, &volume::JointHistogram::correlation};
+constexpr Part kInsideSelection{"inside", &volume::ChannelStatistics::inside,
+                                &volume::JointHistogram::focusCorrelation};
+constexpr Part kOutsideSelection{"outside", &volume::ChannelStatistics::outside,
+                                 &volume::JointHistogram::outsideCorrelation};
 
 /// The joint histogram of two positions, null for a channel with itself.
 const volume::JointHistogram* jointOf(const volume::Statistics& statistics, std::size_t a, std::size_t b) {
@@ -71,8 +73,10 @@ struct TableForm {
 };
 
 Table statisticsTable(const volume::DatasetInfo& info, const StatisticsResult& result, const TableForm& form) {
-    std::vector<Part> parts{kAll};
-    if (result.brushed) parts = form.whole ? std::vector{kAll, kInside, kOutside} : std::vector{kInside, kOutside};
+    std::vector<Part> parts{kAllSamples};
+    if (result.brushed)
+        parts = form.whole ? std::vector{kAllSamples, kInsideSelection, kOutsideSelection}
+                           : std::vector{kInsideSelection, kOutsideSelection};
     const auto channelAt = [&](std::size_t i) { return info.channel(result.query.channels[i]); };
     std::vector<RegionRow> rows;
     for (std::size_t i = 0; i < form.shown; ++i)
@@ -96,8 +100,12 @@ Table statisticsTable(const volume::DatasetInfo& info, const StatisticsResult& r
             }
         column.resolutions.assign(column.numbers.size(), 0.001);
     }
-    if (result.brushed)
+    if (!result.brushed) { // then all rows are of all samples
+        std::ranges::find(table.columns, "region", &TableColumn::name)->shown = false;
+        table.names = 1;
+    } else {
         table.notes = {"inside and outside of the selection, samples weighted by their degree of interest"};
+    }
     return table;
 }
 
