@@ -13,13 +13,14 @@ using namespace shapes;
 
 namespace {
 
-constexpr double kThin = 0.7, kLine = 1.2, kHaloWidth = 1.8; // widths of lines, points
-constexpr double kDash = 5, kDashPeriod = 8, kDot = 2.2;
+constexpr double kPageThin = 0.7, kPageLine = 1.2, kPageHalo = 1.8; // widths of lines, points
+constexpr double kRampGap = 6, kRampWidth = 8, kRampText = 3;       // of a key of colours
+constexpr double kPageDash = 5, kPageDashPeriod = 8, kPageDot = 2.2;
 
 /// The ticks of an axis that have room: their texts lie along it, or each takes a line.
-TickLabels ticksAlong(const PlotAxis& axis, double length, bool lines, double text) {
+TickLabels pageTicks(const PlotAxis& axis, double length, bool lines, double text) {
     if (!axis.numbered) return {};
-    return fittingTicks(axis.range, length, text * (lines ? 1.4 : 1.2), true,
+    return fittingTicks(axis.range, length, text * (lines ? 0.8 : 1.2), true,
                         [&](const std::string& each) { return lines ? text : pageTextWidth(each, text); });
 }
 
@@ -32,6 +33,7 @@ public:
 
     std::size_t draw() {
         image();
+        if (keyRoom(plot_, form_) > 0) colorKey();
         if (plot_.framed) axes();
         const std::size_t before = out_.size();
         if (form_.outlines)
@@ -46,14 +48,14 @@ public:
                                   .color = plot_.image.width > 0 || !plot_.contours.empty() ? kOnPicture : inks_.text,
                                   .anchor = 0.5,
                                   .angle = each.angle,
-                                  .halo = plot_.framed ? kHaloWidth : 0,
+                                  .halo = plot_.framed ? kPageHalo : 0,
                                   .middle = true}});
         }
         if (form_.outlines)
             for (const PlotOutline& each : plot_.outlines) outline(each);
         for (const PlotSeries& series : plot_.series) series.bars ? bars(series) : line(series);
         if (std::ranges::any_of(plot_.series, &PlotSeries::bars) && plot_.y.range.lo < 0 && plot_.y.range.hi > 0)
-            stroke({{x0_, py(0)}, {x1_, py(0)}}, inks_.frame, kThin);
+            stroke({{x0_, py(0)}, {x1_, py(0)}}, inks_.frame, kPageThin);
         if (form_.cursor) cursor();
         return before;
     }
@@ -87,11 +89,11 @@ private:
     }
     static std::string noted(const PlotAxis& axis, const TickLabels& ticks, double length, double text) {
         const std::string note = ticks.note.empty() ? "" : "  " + ticks.note;
-        return fittedTitle(axis, length - pageTextWidth(note, text), text) + note;
+        return fittedAxisTitle(axis, length - pageTextWidth(note, text), text) + note;
     }
 
     void axes() {
-        rect({x0_, y1_}, {x1_, y0_}, inks_.frame, kThin);
+        rect({x0_, y1_}, {x1_, y0_}, inks_.frame, kPageThin);
         if (form_.axes) {
             below();
             beside();
@@ -105,11 +107,11 @@ private:
         }
     }
     void below() {
-        const TickLabels ticks = ticksAlong(plot_.x, x1_ - x0_, false, text_);
+        const TickLabels ticks = pageTicks(plot_.x, x1_ - x0_, false, text_);
         double free = -HUGE_VAL; // from here on there is no number
         for (std::size_t i = 0; i < ticks.values.size(); ++i) {
             const double x = px(ticks.values[i]), half = pageTextWidth(ticks.texts[i], text_) / 2;
-            stroke({{x, y0_}, {x, y0_ + points(4)}}, inks_.frame, kThin);
+            stroke({{x, y0_}, {x, y0_ + points(4)}}, inks_.frame, kPageThin);
             const double first = std::max(free, x0_ - place_.overhang) + half, last = x1_ + place_.overhang - half;
             if (!place_.numbersBelow || first > last || (i > 0 && x < first - half)) continue;
             words(std::clamp(x, first, last), y0_ + points(14), ticks.texts[i], 0.5);
@@ -123,22 +125,23 @@ private:
             words((x0_ + x1_) / 2, y0_ + points(30), noted(plot_.x, ticks, place_.left + x1_ - x0_, text_), 0.5);
     }
     void beside() {
-        const TickLabels ticks = ticksAlong(plot_.y, y0_ - y1_, true, text_);
+        const TickLabels ticks = pageTicks(plot_.y, y0_ - y1_, true, text_);
         double widest = 0, free = HUGE_VAL; // up to there is no number
         for (std::size_t i = 0; i < ticks.values.size(); ++i) {
             const double y = py(ticks.values[i]);
-            stroke({{x0_ - points(4), y}, {x0_, y}}, inks_.frame, kThin);
+            stroke({{x0_ - points(4), y}, {x0_, y}}, inks_.frame, kPageThin);
             widest = std::max(widest, pageTextWidth(ticks.texts[i], text_));
             if (!place_.numbersBeside || y > free) continue;
             words(x0_ - points(6), y + points(3), ticks.texts[i], 1);
             free = y - text_;
         }
         if (!place_.numbersBeside) return;
+        const double start = x0_ - place_.left + points(4); // of what reads along
         if (place_.up == UpTitle::Above)
-            words(x0_, y1_ - points(4), noted(plot_.y, ticks, x1_ - x0_, text_), 0);
+            words(start, y1_ - points(4), noted(plot_.y, ticks, x1_ - start, text_), 0);
         else if (place_.up == UpTitle::Across)
-            words(x0_ - points(10) - widest, (y0_ + y1_) / 2 + points(3),
-                  noted(plot_.y, ticks, place_.left - points(10) - widest, text_), 1);
+            words(start, (y0_ + y1_) / 2 + points(3), noted(plot_.y, ticks, place_.left - points(12) - widest, text_),
+                  0);
         else
             words(x0_ - place_.left + points(16), (y0_ + y1_) / 2, noted(plot_.y, ticks, y0_ - y1_, text_), 0.5, -90);
     }
@@ -147,20 +150,22 @@ private:
     void haloed(const std::vector<glm::dvec2>& values) {
         std::vector<glm::dvec2> way;
         for (const glm::dvec2& each : values) way.push_back(at(each));
-        stroke(way, kHalo, kHaloWidth);
-        stroke(std::move(way), kOnPicture, kThin);
+        stroke(way, kHalo, kPageHalo);
+        stroke(std::move(way), kOnPicture, kPageThin);
     }
     void closed(std::vector<glm::dvec2> way, glm::vec4 color, bool dashed) {
         if (!way.empty()) way.push_back(way.front());
         const std::vector<glm::dvec2> frame{{x0_, y1_}, {x1_, y1_}, {x1_, y0_}, {x0_, y0_}};
         for (std::vector<glm::dvec2>& piece : piecesWithin(way, frame)) {
             if (!dashed) {
-                stroke(std::move(piece), color, kLine);
+                stroke(std::move(piece), color, kPageLine);
                 continue;
             }
-            DashPattern dashes(points(kDash), points(kDashPeriod));
+            DashPattern dashes(points(kPageDash), points(kPageDashPeriod));
             for (std::size_t i = 1; i < piece.size(); ++i)
-                dashes.line(piece[i - 1], piece[i], [&](glm::dvec2 a, glm::dvec2 b) { stroke({a, b}, color, kLine); });
+                dashes.line(piece[i - 1], piece[i], [&](glm::dvec2 a, glm::dvec2 b) {
+                    stroke({a, b}, color, kPageLine);
+                });
         }
     }
     void outline(const PlotOutline& shown) {
@@ -169,7 +174,7 @@ private:
         closed(std::move(way), shown.color, shown.dashed);
         if (!shown.dot) return;
         const glm::dvec2 dot = at(*shown.dot);
-        if (dot.x >= x0_ && dot.x <= x1_ && dot.y >= y1_ && dot.y <= y0_) circle(*shown.dot, kDot, shown.color);
+        if (dot.x >= x0_ && dot.x <= x1_ && dot.y >= y1_ && dot.y <= y0_) circle(*shown.dot, kPageDot, shown.color);
     }
     /// Filled where it adds to the selection; ends that reach over the plot have no line.
     void band(const PlotBand& shown) {
@@ -179,9 +184,9 @@ private:
                      low = within(py(shown.y.lo), y1_, y0_), high = within(py(shown.y.hi), y1_, y0_);
         if (!shown.dashed) rect({left, high}, {right, low}, glm::vec4(shown.color, kFill));
         for (const double x : {left, right})
-            if (x > x0_ && x < x1_) stroke({{x, high}, {x, low}}, glm::vec4(shown.color, 1), kLine);
+            if (x > x0_ && x < x1_) stroke({{x, high}, {x, low}}, glm::vec4(shown.color, 1), kPageLine);
         for (const double y : {low, high})
-            if (y > y1_ && y < y0_) stroke({{left, y}, {right, y}}, glm::vec4(shown.color, 1), kLine);
+            if (y > y1_ && y < y0_) stroke({{left, y}, {right, y}}, glm::vec4(shown.color, 1), kPageLine);
     }
     /// From zero to their heights: side by side, or a single one between those of other series one unit away.
     void bars(const PlotSeries& series) {
@@ -198,10 +203,10 @@ private:
     void line(const PlotSeries& series) {
         std::vector<glm::dvec2> way;
         const auto end = [&] {
-            if (way.size() > 1) stroke(way, glm::vec4(series.color, 1), kLine);
+            if (way.size() > 1) stroke(way, glm::vec4(series.color, 1), kPageLine);
             if (way.size() == 1 && !series.dots)
                 out_.push_back(
-                    {Circle{.center = way[0], .radius = points(kLine), .color = glm::vec4(series.color, 1)}});
+                    {Circle{.center = way[0], .radius = points(kPageLine), .color = glm::vec4(series.color, 1)}});
             way.clear();
         };
         for (const glm::dvec2& point : series.points)
@@ -215,10 +220,10 @@ private:
     }
     void cursor() {
         if (plot_.cursorX && *plot_.cursorX >= plot_.x.range.lo && *plot_.cursorX <= plot_.x.range.hi)
-            stroke({{px(*plot_.cursorX), y1_}, {px(*plot_.cursorX), y0_}}, inks_.cursor, kThin);
+            stroke({{px(*plot_.cursorX), y1_}, {px(*plot_.cursorX), y0_}}, inks_.cursor, kPageThin);
         if (plot_.cursorY && *plot_.cursorY >= plot_.y.range.lo && *plot_.cursorY <= plot_.y.range.hi)
-            stroke({{x0_, py(*plot_.cursorY)}, {x1_, py(*plot_.cursorY)}}, inks_.cursor, kThin);
-        for (const glm::dvec2& mark : plot_.marks) circle(mark, 4.5, inks_.cursor, kLine);
+            stroke({{x0_, py(*plot_.cursorY)}, {x1_, py(*plot_.cursorY)}}, inks_.cursor, kPageThin);
+        for (const glm::dvec2& mark : plot_.marks) circle(mark, 4.5, inks_.cursor, kPageLine);
     }
     /// A picture with one pixel per cell, seen as they are.
     void image() {
@@ -226,6 +231,15 @@ private:
         if (image.width <= 0 || image.height <= 0) return;
         out_.push_back({Picture{
             .box = {{x0_, y1_}, {x1_, y0_}}, .image = {{image.width, image.height}, image.rgba}, .smooth = false}});
+    }
+
+    void colorKey() {
+        const PlotColorKey& key = plot_.key;
+        const glm::dvec2 lo{x1_ + points(kRampGap), y1_}, hi{x1_ + points(kRampGap + kRampWidth), y0_};
+        out_.push_back({Picture{.box = {lo, hi}, .image = {{1, static_cast<int>(key.rgba.size() / 4)}, key.rgba}}});
+        rect(lo, hi, inks_.frame, kPageThin);
+        words(hi.x + points(kRampText), y1_ + text_ * 2 * kMiddle, key.highest, 0);
+        words(hi.x + points(kRampText), y0_, key.lowest, 0);
     }
 
     const Plot& plot_;
@@ -244,19 +258,21 @@ PageInks pageInks(const PageForm& form) {
     return {grey(1), grey(0.133f), grey(0.267f), {0, 0.44f, 0.69f, 1}};
 }
 
-std::string axisTitle(const PlotAxis& axis) {
+std::string wholeAxisTitle(const PlotAxis& axis) {
     return titleWithUnit(axis.title, axis.unit);
 }
 
-std::string fittedTitle(const PlotAxis& axis, double length, double text) {
+std::string fittedAxisTitle(const PlotAxis& axis, double length, double text) {
     const auto fits = [&](const std::string& each) { return pageTextWidth(each, text) <= length; };
     std::string shown = axis.title;
-    if (shown.empty() || fits(axisTitle(axis))) return axisTitle(axis);
+    if (shown.empty() || fits(wholeAxisTitle(axis))) return wholeAxisTitle(axis);
     while (!shown.empty() && !fits(titleWithUnit(shown + "...", axis.unit))) {
         while ((static_cast<unsigned char>(shown.back()) & 0xc0) == 0x80) shown.pop_back(); // whole UTF-8 characters
         shown.pop_back();
     }
-    return titleWithUnit(shown + "...", axis.unit);
+    if (!shown.empty() || axis.unit.empty()) return titleWithUnit(shown + "...", axis.unit);
+    return fittedAxisTitle({.title = axis.title, .range = axis.range}, length,
+                           text); // rather the name than the unit alone
 }
 
 double titleLine(std::size_t lines, const PageForm& form) {
@@ -284,6 +300,12 @@ std::vector<std::string> titleLines(const Plot& plot, double width, const PageFo
         lines.push_back(line);
     }
     return lines;
+}
+
+double keyRoom(const Plot& plot, const PageForm& form) {
+    if (plot.key.rgba.empty() || !form.legend) return 0;
+    return (kRampGap + kRampWidth + kRampText) * form.text / kFigureText +
+           std::max(pageTextWidth(plot.key.highest, form.text), pageTextWidth(plot.key.lowest, form.text));
 }
 
 std::size_t addPlot(std::vector<Mark>& out, const Plot& plot, const PlotPlace& place, const PageForm& form) {

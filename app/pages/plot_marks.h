@@ -35,14 +35,17 @@ struct PageInks {
 PageInks pageInks(const PageForm& form);
 
 /// The title of an axis with its unit.
-std::string axisTitle(const PlotAxis& axis);
+std::string wholeAxisTitle(const PlotAxis& axis);
 /// The same within a length in points: the title is cut off before its unit.
-std::string fittedTitle(const PlotAxis& axis, double length, double text);
+std::string fittedAxisTitle(const PlotAxis& axis, double length, double text);
 
 /// Title and note of a plot in lines, which are no wider than a width where the page has a size.
 std::vector<std::string> titleLines(const Plot& plot, double width, const PageForm& form);
 /// From one of so many lines to the next, points.
 double titleLine(std::size_t lines, const PageForm& form);
+
+/// Room beside a plot for the key of its colours, points.
+double keyRoom(const Plot& plot, const PageForm& form);
 
 /// Adds a plot without its list of series; returns how many of the marks come before those of the data.
 std::size_t addPlot(std::vector<shapes::Mark>& out, const Plot& plot, const PlotPlace& place, const PageForm& form);

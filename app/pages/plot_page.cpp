@@ -18,20 +18,21 @@ using namespace shapes;
 namespace {
 
 // Room around a plot in points, for texts of kFigureText.
-constexpr double kLeft = 62, kBottom = 42, kTop = 22, kRight = 12, kGap = 5;
-constexpr double kLegendLine = 11, kKey = 8, kKeyGap = 3, kApart = 9; // lists of series: keys beside the names
-constexpr glm::dvec2 kLeast{8, 4};                                    // of a plot
+constexpr double kPageLeft = 62, kPageBottom = 42, kPageTop = 22, kPageRight = 12, kPageGap = 5;
+constexpr double kListLine = 11, kListKey = 8, kListKeyGap = 3,
+                 kListApart = 9;       // lists of series: keys beside the names
+constexpr glm::dvec2 kLeastPlot{8, 4}; // of a plot
 
 /// How plots stand on a page: all as large, in rows.
-struct Grid {
+struct PlotGrid {
     int columns = 1, rows = 1;
     bool sharedX = false, sharedY = false; ///< numbers stand below the last row, beside the first column
-    double left = 0, right = 0, top = 0, bottom = 0, gap = 0;
+    double left = 0, right = 0, top = 0, bottom = 0, gap = 0, between = 0;
     glm::dvec2 plot{0};
     UpTitle up = UpTitle::Beside;
     bool acrossBelow = false;
 
-    double pitchX() const { return plot.x + (sharedY ? gap : left + right); }
+    double pitchX() const { return plot.x + (sharedY ? between : left + right); }
     double pitchY() const { return plot.y + top + (sharedX ? gap : bottom); }
     glm::dvec2 size() const {
         return {left + right + plot.x + (columns - 1) * pitchX(), top + bottom + plot.y + (rows - 1) * pitchY()};
@@ -48,7 +49,7 @@ bool framedAt(const std::vector<Plot>& plots, int i) {
 
 /// Whether framed plots `step` apart have the same axis, those from `first` on up to `last`.
 template <class AxisOf>
-bool sameAxis(const std::vector<Plot>& plots, int first, int last, int step, const AxisOf& axisOf) {
+bool oneAxis(const std::vector<Plot>& plots, int first, int last, int step, const AxisOf& axisOf) {
     const PlotAxis* seen = nullptr;
     for (int i = first; i < last; i += step) {
         if (!framedAt(plots, i)) continue;
@@ -61,29 +62,33 @@ bool sameAxis(const std::vector<Plot>& plots, int first, int last, int step, con
 }
 
 /// Lays out plots in columns; `topRoom`: more room above each; `size`: of the page, 0: natural.
-class Layout {
+class PlotLayout {
 public:
-    Layout(const std::vector<Plot>& plots, const PageForm& form, glm::dvec2 size, bool shared)
+    PlotLayout(const std::vector<Plot>& plots, const PageForm& form, glm::dvec2 size, bool shared)
         : plots_(plots), form_(form), size_(size), shared_(shared), scale_(form.text / kFigureText) {}
 
-    Grid grid(int columns, double topRoom) const {
-        Grid grid;
+    PlotGrid grid(int columns, double topRoom) const {
+        PlotGrid grid;
         const int count = std::max(1, int(plots_.size()));
         grid.columns = std::clamp(columns, 1, count);
         grid.rows = (count + grid.columns - 1) / grid.columns;
         share(grid);
-        grid.gap = kGap * scale_;
+        double key = 0;
+        for (const Plot& plot : plots_) key = std::max(key, keyRoom(plot, form_));
+        grid.gap = kPageGap * scale_;
+        if (!natural()) grid.gap = std::min({grid.gap, size_.x / grid.columns / 8, size_.y / grid.rows / 8});
+        grid.between = grid.gap + key;
         if (natural() && !shared_) {
-            grid.left = kLeft * scale_;
-            grid.right = kRight * scale_;
-            grid.top = kTop * scale_ + topRoom;
-            grid.bottom = kBottom * scale_;
+            grid.left = kPageLeft * scale_;
+            grid.right = kPageRight * scale_ + key;
+            grid.top = kPageTop * scale_ + topRoom;
+            grid.bottom = kPageBottom * scale_;
             grid.plot = kFigurePlot * scale_;
             return grid;
         }
-        grid.right = kRight * scale_;
-        grid.left = kGap * scale_;
-        grid.bottom = kGap * scale_;
+        grid.right = kPageRight * scale_ + key;
+        grid.left = kPageGap * scale_;
+        grid.bottom = kPageGap * scale_;
         if (form_.axes) {
             grid.left = numbersBeside() + (10 + kFigureText) * scale_;
             grid.bottom = 34 * scale_;
@@ -98,12 +103,12 @@ public:
         return grid;
     }
 
-    Grid best(int columns, double topRoom) const {
+    PlotGrid best(int columns, double topRoom) const {
         if (columns > 0 || natural()) return grid(columns > 0 ? columns : 2, topRoom);
-        std::optional<Grid> found;
-        const auto worth = [](const Grid& each) { return std::min(each.plot.x / 2, each.plot.y); };
+        std::optional<PlotGrid> found;
+        const auto worth = [](const PlotGrid& each) { return std::min(each.plot.x / 2, each.plot.y); };
         for (int across = 1; across <= std::max(1, int(plots_.size())); ++across) {
-            const Grid tried = grid(across, topRoom);
+            const PlotGrid tried = grid(across, topRoom);
             if (!found || worth(tried) > worth(*found)) found = tried;
         }
         return *found;
@@ -112,18 +117,18 @@ public:
 private:
     bool natural() const { return size_.x <= 0; }
 
-    void share(Grid& grid) const {
+    void share(PlotGrid& grid) const {
         if (natural() && !shared_) return;
         const int count = int(plots_.size());
         grid.sharedX = grid.rows > 1;
         grid.sharedY = grid.columns > 1;
         for (int column = 0; column < grid.columns; ++column)
-            grid.sharedX = grid.sharedX && sameAxis(plots_, column, count, grid.columns,
-                                                    [](const Plot& plot) -> const PlotAxis& { return plot.x; });
+            grid.sharedX = grid.sharedX && oneAxis(plots_, column, count, grid.columns,
+                                                   [](const Plot& plot) -> const PlotAxis& { return plot.x; });
         for (int row = 0; row < grid.rows; ++row)
             grid.sharedY =
-                grid.sharedY && sameAxis(plots_, row * grid.columns, std::min(count, (row + 1) * grid.columns), 1,
-                                         [](const Plot& plot) -> const PlotAxis& { return plot.y; });
+                grid.sharedY && oneAxis(plots_, row * grid.columns, std::min(count, (row + 1) * grid.columns), 1,
+                                        [](const Plot& plot) -> const PlotAxis& { return plot.y; });
     }
     double numbersBeside() const {
         double widest = 0;
@@ -136,24 +141,25 @@ private:
     double widestTitle(bool below) const {
         double widest = 0;
         for (const Plot& plot : plots_)
-            if (plot.framed) widest = std::max(widest, pageTextWidth(axisTitle(below ? plot.x : plot.y), form_.text));
+            if (plot.framed)
+                widest = std::max(widest, pageTextWidth(wholeAxisTitle(below ? plot.x : plot.y), form_.text));
         return widest;
     }
-    double topOf(const Grid& grid) const {
+    double topOf(const PlotGrid& grid) const {
         std::size_t lines = 0;
         for (const Plot& plot : plots_)
             lines = std::max(lines, titleLines(plot, std::max(grid.plot.x, 8 * form_.text), form_).size());
         const double titles =
-            lines > 0 ? (7 * scale_ + form_.text + double(lines - 1) * titleLine(lines, form_)) : kGap * scale_;
+            lines > 0 ? (7 * scale_ + form_.text + double(lines - 1) * titleLine(lines, form_)) : 0.8 * grid.gap;
         return titles + (grid.up == UpTitle::Above ? form_.text * kLineHeight : 0);
     }
     /// Where the titles of axes have room, once it is known how large plots are.
-    void placeTitles(Grid& grid, bool last) const {
+    void placeTitles(PlotGrid& grid, bool last) const {
         const double up = widestTitle(false), below = widestTitle(true), text = form_.text;
         const double most = 0.45;
         if (!last && up > grid.plot.y && grid.plot.y < 12 * text) {
             grid.up = !grid.sharedY && grid.plot.y > 4.5 * text ? UpTitle::Above : UpTitle::Across;
-            grid.left = numbersBeside() + 4 * scale_;
+            grid.left = numbersBeside() + 8 * scale_;
             if (grid.up == UpTitle::Across)
                 grid.left = std::min(grid.left + up, std::max(grid.left + 4 * text, naturalOr(size_.x, up) * most));
         }
@@ -164,7 +170,7 @@ private:
     }
     static double naturalOr(double length, double natural) { return length > 0 ? length : 10 * natural; }
 
-    void fill(Grid& grid) const {
+    void fill(PlotGrid& grid) const {
         grid.plot = kFigurePlot * scale_;
         if (natural()) return;
         grid.plot = {0, 0};
@@ -178,10 +184,10 @@ private:
     double scale_;
 };
 
-PlotPlace placeOf(const std::vector<Plot>& plots, const Grid& grid, int i, const PageForm& form) {
+PlotPlace plotPlaceOf(const std::vector<Plot>& plots, const PlotGrid& grid, int i, const PageForm& form) {
     PlotPlace place{
         .box = grid.box(i), .acrossBelow = grid.acrossBelow, .up = grid.up, .left = grid.left, .bottom = grid.bottom};
-    place.overhang = grid.sharedY ? grid.gap / 2 : kRight * form.text / kFigureText;
+    place.overhang = grid.sharedY ? 0 : kPageRight * form.text / kFigureText;
     place.above = grid.up == UpTitle::Above && form.axes ? form.text * kLineHeight : 0;
     if (grid.sharedX) // the last of its column
         for (int later = i + grid.columns; later < int(plots.size()); later += grid.columns)
@@ -192,8 +198,8 @@ PlotPlace placeOf(const std::vector<Plot>& plots, const Grid& grid, int i, const
     return place;
 }
 
-double keyWidth(const PlotSeries& series, double text) {
-    return (kKey + kKeyGap) * text / kFigureText + pageTextWidth(series.name, text);
+double listWidth(const PlotSeries& series, double text) {
+    return (kListKey + kListKeyGap) * text / kFigureText + pageTextWidth(series.name, text);
 }
 
 /// A list of series in lines that are no wider than `width`, from the upper left corner; keys behind the names where
@@ -201,42 +207,43 @@ double keyWidth(const PlotSeries& series, double text) {
 glm::dvec2 listSeries(const std::vector<PlotSeries>& list, double width, const PageForm& form, glm::dvec2 at,
                       std::vector<Mark>* out, bool lines = false, bool right = false) {
     const double scale = form.text / kFigureText;
-    glm::dvec2 pen(0), size(0, kLegendLine * scale);
+    glm::dvec2 pen(0), size(0, kListLine * scale);
     double widest = 0;
-    for (const PlotSeries& series : list) widest = std::max(widest, keyWidth(series, form.text));
+    for (const PlotSeries& series : list) widest = std::max(widest, listWidth(series, form.text));
     for (const PlotSeries& series : list) {
-        const double own = keyWidth(series, form.text);
-        if (&series != list.data() && (lines || pen.x + own > width)) pen = {0, pen.y + kLegendLine * scale};
-        size = {std::max(size.x, pen.x + own), pen.y + kLegendLine * scale};
+        const double own = listWidth(series, form.text);
+        if (&series != list.data() && (lines || pen.x + own > width)) pen = {0, pen.y + kListLine * scale};
+        size = {std::max(size.x, pen.x + own), pen.y + kListLine * scale};
         if (out) {
-            const double edge = right ? at.x + widest - kKey * scale : at.x + pen.x, y = at.y + pen.y + 9 * scale;
-            out->push_back({Rect{.box = {{edge, y - 6 * scale}, {edge + kKey * scale, y - 2 * scale}},
+            const double edge = right ? at.x + widest - kListKey * scale : at.x + pen.x, y = at.y + pen.y + 9 * scale;
+            out->push_back({Rect{.box = {{edge, y - 6 * scale}, {edge + kListKey * scale, y - 2 * scale}},
                                  .color = glm::vec4(series.color, 1)}});
-            out->push_back({Words{.text = series.name,
-                                  .at = {right ? edge - kKeyGap * scale : edge + (kKey + kKeyGap) * scale, y},
-                                  .size = form.text,
-                                  .color = pageInks(form).text,
-                                  .anchor = right ? 1.0 : 0.0}});
+            out->push_back(
+                {Words{.text = series.name,
+                       .at = {right ? edge - kListKeyGap * scale : edge + (kListKey + kListKeyGap) * scale, y},
+                       .size = form.text,
+                       .color = pageInks(form).text,
+                       .anchor = right ? 1.0 : 0.0}});
         }
-        pen.x += own + kApart * scale;
+        pen.x += own + kListApart * scale;
     }
     return size;
 }
 
 /// Where the lists of series stand.
-struct Lists {
+struct SeriesLists {
     std::vector<std::optional<PageBox>> within; ///< by plot: in it
     double above = 0, below = 0;                ///< else room above each, or below all
 };
 
-Lists placeLists(const std::vector<Plot>& plots, const Grid& grid, const PageForm& form) {
-    Lists lists;
+SeriesLists placeLists(const std::vector<Plot>& plots, const PlotGrid& grid, const PageForm& form) {
+    SeriesLists lists;
     bool all = true, same = true;
     const Plot* first = nullptr;
     for (std::size_t i = 0; i < plots.size(); ++i) {
         lists.within.emplace_back();
         if (!form.legend || plots[i].series.size() < 2) continue;
-        const PlotPlace place = placeOf(plots, grid, int(i), form);
+        const PlotPlace place = plotPlaceOf(plots, grid, int(i), form);
         std::vector<Mark> marks;
         const std::size_t data = addPlot(marks, plots[i], place, form);
         const glm::dvec2 size = listSeries(plots[i].series, 0, form, {}, nullptr, true);
@@ -251,11 +258,12 @@ Lists placeLists(const std::vector<Plot>& plots, const Grid& grid, const PageFor
     if (all) return lists;
     if (same) {
         const double width = grid.size().x - grid.left - grid.right;
-        lists.below = listSeries(first->series, width, form, {}, nullptr).y + kGap * form.text / kFigureText;
+        lists.below = listSeries(first->series, width, form, {}, nullptr).y + kPageGap * form.text / kFigureText;
     } else {
         for (const Plot& plot : plots)
             if (plot.series.size() > 1)
-                lists.above = std::max(lists.above, listSeries(plot.series, grid.plot.x, form, {}, nullptr).y);
+                lists.above = std::max(lists.above, listSeries(plot.series, grid.plot.x, form, {}, nullptr).y +
+                                                        2 * form.text / kFigureText);
     }
     return lists;
 }
@@ -277,23 +285,23 @@ double pageTextWidth(const std::string& text, double size) {
 }
 
 glm::dvec2 plotArea(const std::vector<Plot>& plots, int columns, const PageForm& form, bool shared) {
-    return Layout(plots, form, form.size, shared).best(columns, 0).plot;
+    return PlotLayout(plots, form, form.size, shared).best(columns, 0).plot;
 }
 
 VectorPage plotPage(const std::vector<Plot>& plots, int columns, const PageForm& form, bool shared) {
-    Grid grid = Layout(plots, form, form.size, shared).best(columns, 0);
-    const Lists lists = placeLists(plots, grid, form);
+    PlotGrid grid = PlotLayout(plots, form, form.size, shared).best(columns, 0);
+    const SeriesLists lists = placeLists(plots, grid, form);
     if (lists.above > 0 || lists.below > 0) {
         const glm::dvec2 left(form.size.x, form.size.y > 0 ? form.size.y - lists.below : 0);
-        grid = Layout(plots, form, left, shared).grid(grid.columns, lists.above);
+        grid = PlotLayout(plots, form, left, shared).grid(grid.columns, lists.above);
     }
-    if (grid.plot.x < kLeast.x || grid.plot.y < kLeast.y) throwNoRoom(plots.size(), form);
+    if (grid.plot.x < kLeastPlot.x || grid.plot.y < kLeastPlot.y) throwNoRoom(plots.size(), form);
     VectorPage page;
     page.size = form.size.x > 0 ? form.size : grid.size() + glm::dvec2(0, lists.below);
     page.marks.push_back({Rect{.box = {{0, 0}, page.size}, .color = pageInks(form).ground}});
     for (std::size_t i = 0; i < plots.size(); ++i) {
         const Plot& plot = plots[i];
-        PlotPlace place = placeOf(plots, grid, int(i), form);
+        PlotPlace place = plotPlaceOf(plots, grid, int(i), form);
         place.above += lists.above;
         addPlot(page.marks, plot, place, form);
         if (!form.legend || plot.series.size() < 2 || lists.below > 0) continue;

@@ -13,14 +13,14 @@ namespace tessera::app {
 namespace {
 
 // Widths and radii in em, as pages have them in sizes of text.
-constexpr float kLine = 0.13f, kDot = 0.2f, kRing = 0.5f;
+constexpr float kPlotLine = 0.13f, kPlotDot = 0.2f, kPlotRing = 0.5f;
 
-ImU32 inkOf(glm::vec3 color) {
+ImU32 seriesInk(glm::vec3 color) {
     return toColor({double(color.r), double(color.g), double(color.b)});
 }
 
 /// Points along the lines of a plot, close enough to find out what they cross.
-std::vector<ImVec2> pointsAlong(const Plot& plot, const PlotFrame& frame) {
+std::vector<ImVec2> alongSeries(const Plot& plot, const PlotFrame& frame) {
     constexpr int kParts = 16;
     std::vector<ImVec2> along;
     for (const PlotSeries& series : plot.series)
@@ -50,18 +50,18 @@ void drawSeriesBars(ImDrawList& draw, const PlotSeries& series, const PlotFrame&
         // What is not 0 is at least visible.
         const float end = frame.pixel(bar.x, bar.y).y, top = bar.y > 0 ? std::min(zero - 1, end) : zero;
         draw.AddRectFilled({left, top}, {std::max(right, left + 1), bar.y > 0 ? zero : std::max(zero + 1, end)},
-                           inkOf(series.color));
+                           seriesInk(series.color));
     }
 }
 
 void drawSeriesLine(ImDrawList& draw, const PlotSeries& series, const PlotFrame& frame) {
-    const ImU32 color = inkOf(series.color);
+    const ImU32 color = seriesInk(series.color);
     std::vector<ImVec2> run;
     const auto flush = [&] {
         if (run.size() > 1)
-            draw.AddPolyline(run.data(), static_cast<int>(run.size()), color, 0, std::max(1.2f, em() * kLine));
+            draw.AddPolyline(run.data(), static_cast<int>(run.size()), color, 0, std::max(1.2f, em() * kPlotLine));
         if (series.dots || run.size() == 1)
-            for (const ImVec2 at : run) draw.AddCircleFilled(at, em() * kDot, color);
+            for (const ImVec2 at : run) draw.AddCircleFilled(at, em() * kPlotDot, color);
         run.clear();
     };
     for (const glm::dvec2& point : series.points)
@@ -119,11 +119,14 @@ void drawPlotNames(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, b
         names.emplace_back(plot.title + (titled ? "" : ", up: " + up), plotColors().text);
     else if (!plot.title.empty())
         names.emplace_back(plot.title, plotColors().text);
-    if (!titled && plot.series.size() > 1) names.emplace_back(up, plotColors().text);
+    const bool told = std::ranges::all_of(plot.series, [&](const PlotSeries& series) { // names with the unit
+        return !plot.y.unit.empty() && series.name.ends_with(titleWithUnit("", plot.y.unit));
+    });
+    if (!titled && plot.series.size() > 1 && !told) names.emplace_back(up, plotColors().text);
     for (const PlotSeries& series : plot.series) {
         if (single && titled && series.value.empty()) continue;
         names.emplace_back((single ? up : series.name) + (series.value.empty() ? "" : "  " + series.value),
-                           single ? plotColors().text : inkOf(series.color));
+                           single ? plotColors().text : seriesInk(series.color));
     }
     if (names.empty()) return;
     // A list, or where that is too high, in lines as wide as the plot.
@@ -141,7 +144,7 @@ void drawPlotNames(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, b
         pen.x += width + gap;
         size = {std::max(size.x, pen.x - gap), pen.y + line};
     }
-    const ImVec2 corner = freeCorner(frame, {size.x + gap, size.y + em() * 0.4f}, pointsAlong(plot, frame));
+    const ImVec2 corner = freeCorner(frame, {size.x + gap, size.y + em() * 0.4f}, alongSeries(plot, frame));
     const ImVec2 from{corner.x > 0 ? frame.max.x - em() * 0.4f - size.x : frame.min.x + em() * 0.4f,
                       corner.y > 0 ? std::max(frame.min.y, frame.max.y - size.y) : frame.min.y + em() * 0.2f};
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -163,8 +166,8 @@ void drawPlot(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, bool t
     for (const glm::dvec2& mark : plot.marks) {
         if (!std::isfinite(mark.x) || !std::isfinite(mark.y)) continue;
         const ImVec2 at = frame.pixel(mark.x, mark.y);
-        draw.AddCircle(at, em() * kRing, colors.backdrop, 24, em() * 0.25f);
-        draw.AddCircle(at, em() * kRing, colors.cursor, 24, em() * kLine);
+        draw.AddCircle(at, em() * kPlotRing, colors.backdrop, 24, em() * 0.25f);
+        draw.AddCircle(at, em() * kPlotRing, colors.cursor, 24, em() * kPlotLine);
     }
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, colors.frame);

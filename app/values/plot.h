@@ -40,6 +40,12 @@ struct PlotImage {
     std::vector<std::uint8_t> rgba;
 };
 
+/// What the colours of a picture stand for.
+struct PlotColorKey {
+    std::vector<std::uint8_t> rgba; ///< from the highest value to the lowest; none: there is no key
+    std::string highest = {}, lowest = {};
+};
+
 /// A text on a line, with a halo.
 struct PlotLabel {
     std::string text;
@@ -74,13 +80,14 @@ struct Plot {
     std::vector<PlotOutline> outlines = {};
     std::optional<double> cursorX = {}, cursorY = {}; ///< lines across the plot
     std::vector<PlotBand> brushed = {};
-    bool framed = true; ///< else what it holds stands without frame and axes
+    PlotColorKey key = {}; ///< of the picture
+    bool framed = true;    ///< else what it holds stands without frame and axes
 };
 
 /// Colour of the nth series of a plot, on a light or dark ground.
 inline glm::vec3 plotInk(std::size_t n, bool dark) {
-    static constexpr std::array<std::array<glm::vec3, 2>, 6> kInks{{{{{0.1f, 0.36f, 0.62f}, {0.45f, 0.68f, 0.98f}}},
-                                                                    {{{0.8f, 0.33f, 0.1f}, {1, 0.62f, 0.3f}}},
+    static constexpr std::array<std::array<glm::vec3, 2>, 6> kInks{{{{{0.8f, 0.33f, 0.1f}, {1, 0.62f, 0.3f}}},
+                                                                    {{{0.1f, 0.36f, 0.62f}, {0.45f, 0.68f, 0.98f}}},
                                                                     {{{0.15f, 0.5f, 0.25f}, {0.45f, 0.78f, 0.5f}}},
                                                                     {{{0.5f, 0.25f, 0.6f}, {0.78f, 0.6f, 0.92f}}},
                                                                     {{{0.5f, 0.4f, 0.1f}, {0.85f, 0.78f, 0.4f}}},

@@ -58,9 +58,8 @@ TEST_P(DrawnPageGl, ShowsWhatThePictureShows) {
     EXPECT_GT(words, 2) << "texts are texts";
 }
 
-INSTANTIATE_TEST_SUITE_P(Views, DrawnPageGl,
-                         testing::Values("", "volume", "slices", "shadowCube", "tesseract", "scatterMatrix",
-                                         "histogram", "statistics", "compare"),
+// Views with figures of their own are in view_pages_test.cpp.
+INSTANTIATE_TEST_SUITE_P(Views, DrawnPageGl, testing::Values("", "volume", "shadowCube", "tesseract", "compare"),
                          [](const auto& made) { return *made.param ? std::string(made.param) : "window"; });
 
 // Read by another reader of ImGui's triangles.

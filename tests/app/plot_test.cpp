@@ -1,4 +1,4 @@
-#include "app/pane/plot.h"
+#include "app/plots/plot_view.h"
 #include "app/ui/theme.h"
 #include "app/views/curves/profile_data.h"
 #include "tests/app/drawn_text.h"

@@ -120,7 +120,7 @@ TEST_F(ViewTables, HistogramsCountEachSampleInItsBin) {
         for (const Case& of : cases()) {
             SCOPED_TRACE(std::string(channel) + " at " + std::to_string(of.time));
             const TableText table = shownAt(of);
-            const std::string title = channel == std::string("T") ? "T [K]" : "c [mol/m³]";
+            const std::string unit = channel == std::string("T") ? "K" : "mol/m3";
             ASSERT_EQ(table.rows.size(), 37u);
             std::vector<double> count(37), focus(37);
             formula::forEachPlace([&](Place at) {
@@ -131,9 +131,10 @@ TEST_F(ViewTables, HistogramsCountEachSampleInItsBin) {
                 focus[std::size_t(bin)] += interest(of, at);
             });
             for (std::size_t i = 0; i < 37; ++i) {
-                EXPECT_NEAR(*table.number(i, "from"), range.lo + (range.hi - range.lo) * double(i) / 37,
+                EXPECT_EQ(table.text(i, "parameter"), channel);
+                EXPECT_NEAR(*table.number(i, "from [" + unit + "]"), range.lo + (range.hi - range.lo) * double(i) / 37,
                             1e-6 * range.hi);
-                EXPECT_EQ(table.number(i, title + " samples"), count[i]) << i;
+                EXPECT_EQ(table.number(i, "samples"), count[i]) << i;
                 if (of.brush) {
                     EXPECT_NEAR(*table.number(i, "in focus"), focus[i], 1e-6) << i;
                 }
@@ -163,8 +164,8 @@ TEST_F(ViewTables, ScatterplotsCountPairsInTheirBins) {
         const TableText table = shownAt(of);
         EXPECT_EQ(table.rows.size(), wanted.size());
         for (std::size_t row = 0; row < table.rows.size(); ++row) {
-            EXPECT_EQ(table.text(row, "x parameter"), "T [K]");
-            EXPECT_EQ(table.text(row, "y parameter"), "c [mol/m³]");
+            EXPECT_EQ(table.text(row, "x parameter") + table.text(row, "x unit"), "TK");
+            EXPECT_EQ(table.text(row, "y parameter") + table.text(row, "y unit"), "cmol/m3");
             const auto bin = [&](const char* head, Range range) {
                 return int((*table.number(row, head) - range.lo) / (range.hi - range.lo) * 19);
             };
@@ -192,12 +193,12 @@ TEST_F(ViewTables, ProfilesAreReadAlongTheirLine) {
             const glm::dvec3 at = glm::mix(view.points[0], view.points[1], along);
             EXPECT_NEAR(*table.number(i, "distance [m]"), length * along, 1e-9);
             for (int axis = 0; axis < 3; ++axis)
-                EXPECT_NEAR(*table.number(i, std::string(1, "xyz"[axis])), at[axis], 1e-9);
+                EXPECT_NEAR(*table.number(i, std::string(1, "xyz"[axis]) + " [m]"), at[axis], 1e-9);
             EXPECT_NEAR(*table.number(i, "T [K]"), between("T", at, of.time), 3e-4);
             if (at.x < 0.0129) {
-                EXPECT_NEAR(*table.number(i, "c [mol/m³]"), between("c", at, of.time), 3e-5);
+                EXPECT_NEAR(*table.number(i, "c [mol/m3]"), between("c", at, of.time), 3e-5);
             } else if (at.x > 0.0136) {
-                EXPECT_FALSE(table.number(i, "c [mol/m³]"));
+                EXPECT_FALSE(table.number(i, "c [mol/m3]"));
             }
         }
     }

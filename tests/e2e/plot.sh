@@ -29,6 +29,9 @@ printf 'U [V],mean(T) [K],U*j [W/m2]\n0.5,11,4500\n0.8,2,400\n0.9,1,90\n' > want
 diff <(grep -v '^#' by.csv) wanted || die "by voltage, with power"
 "$tessera" plot run_*.raw --over-time history.csv -o curve.svg && grep -q '<circle' curve.svg || die "svg"
 "$tessera" plot run_*.raw --over-time history.csv -o curve.pdf && [ "$(head -c 5 curve.pdf)" = %PDF- ] || die "pdf"
+"$tessera" plot run_*.raw --over-time history.csv --preset oneColumn --text-pt 6 -o small.svg &&
+    grep -q 'width="240.96pt" height="181.44pt"' small.svg && ! grep -o 'font-size="[0-9.]*"' small.svg | grep -qv '"6.00"' ||
+    die "the form of a figure: $(head -c 300 small.svg)"
 if command -v pdftotext > /dev/null; then # texts are texts
     pdftotext curve.pdf - | grep -qF 'j [A/m²]' || die "the axis of the PDF"
 fi

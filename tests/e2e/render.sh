@@ -73,6 +73,10 @@ for ending in svg pdf; do
     cmp <(pixels first.png) <(pixels from-$ending.png) || die "the session in the $ending gives another picture"
     "$tessera" info figure.$ending | grep -q '(session)' || die "info of a figure as $ending"
 done
+"$tessera" render cell.tsr --view histogram --preset oneColumn --text-pt 14 --ground white -o h.svg > /dev/null 2> err ||
+    die "a figure of a plot"
+grep -q 'width="240.96pt" height="181.44pt"' h.svg && ! grep -o 'font-size="[0-9.]*"' h.svg | grep -qv '"14.00"' ||
+    die "a figure of another form: $(head -c 300 h.svg)"
 if command -v rsvg-convert > /dev/null; then
     rsvg-convert figure.svg -o figure.svg.png 2> err && [ ! -s err ] || die "librsvg: $(cat err)"
 fi

@@ -337,7 +337,7 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
     }
     CompareCache& cache = cacheOf<CompareCache>(context, pane);
     const std::vector<CompareVariant> variants = shownVariants(view, context.session, context.source->info());
-    if (!context.figure) {
+    {
         ToolRow tools(context);
         drawCompareToolbar(context, tools, view, variants);
         exportMenu(context, tools,

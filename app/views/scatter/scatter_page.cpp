@@ -11,7 +11,7 @@ namespace tessera::app {
 
 namespace {
 
-volume::Channel channelAt(const volume::DatasetInfo& info, const StatisticsResult& result, std::size_t position) {
+volume::Channel queryChannel(const volume::DatasetInfo& info, const StatisticsResult& result, std::size_t position) {
     return info.channel(result.query.channels[position]);
 }
 
@@ -55,7 +55,7 @@ VectorPage matrixPage(const volume::DatasetInfo& info, const StatisticsResult& r
     for (std::size_t row = 0; row < shown; ++row)
         for (std::size_t column = 0; column < shown; ++column) {
             const auto axis = [&](std::size_t position) {
-                const volume::Channel own = channelAt(info, result, position);
+                const volume::Channel own = queryChannel(info, result, position);
                 return PlotAxis{.title = own.name, .range = result.query.ranges[position], .unit = own.unit};
             };
             const int pair = jointIndex(result.statistics, std::min(column, row), std::max(column, row));
@@ -97,8 +97,8 @@ Table matrixTable(const volume::DatasetInfo& info, const StatisticsResult& resul
     };
     const auto number = [&](std::size_t column, double value) { table.columns[column].numbers.push_back(value); };
     for (const volume::JointHistogram& joint : result.statistics.joint) {
-        const volume::Channel x = channelAt(info, result, std::size_t(joint.x)),
-                              y = channelAt(info, result, std::size_t(joint.y));
+        const volume::Channel x = queryChannel(info, result, std::size_t(joint.x)),
+                              y = queryChannel(info, result, std::size_t(joint.y));
         const auto middle = [&](Range range, std::size_t bin) {
             return range.lo + (range.hi - range.lo) * (double(bin) + 0.5) / joint.bins;
         };

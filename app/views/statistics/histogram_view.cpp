@@ -82,7 +82,7 @@ std::vector<PlotBand> brushedBands(const vis::Selection& selection, const PlotCh
     return bands;
 }
 
-HistogramLook lookOf(const ViewContext& context, const HistogramView& view, bool brushed) {
+HistogramLook histogramLook(const ViewContext& context, const HistogramView& view, bool brushed) {
     const auto ink = [](ImU32 color) {
         const ImVec4 c = ImGui::ColorConvertU32ToFloat4(color);
         return glm::vec3(c.x, c.y, c.z);
@@ -112,7 +112,7 @@ void drawHistogramPlot(ViewContext& context, HistogramCache& cache, const Histog
                  room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 4.5f)};
     const bool tall = room.y > em() * 8; // else without titles
     Plot plot = histogramPlot(channel, range, result ? &result->statistics.channels.front().histogram : nullptr,
-                              lookOf(context, view, result && result->brushed));
+                              histogramLook(context, view, result && result->brushed));
     if (context.decoration.cursor) plot.cursorX = sharedReadout(context).value(channel.name);
     const TitlePlace title = tall ? TitlePlace::Beside : TitlePlace::Nowhere;
     const PlotFrame frame{
@@ -155,7 +155,7 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
         exportMenu(context, tools,
                    {.name = channel.name + "-histogram",
                     .figure =
-                        [result, channel, look = lookOf(context, view, result->brushed),
+                        [result, channel, look = histogramLook(context, view, result->brushed),
                          bands = brushedBands(context.session.selection, {channel.name, {}}),
                          at = sharedReadout(context).value(channel.name)](const PageForm& form, const Progress&) {
                             const volume::Histogram& histogram = result->statistics.channels.front().histogram;

@@ -317,7 +317,7 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
     const std::optional<int> channel = resolveChannel(info, context.session, view.channel);
     if (!channel) return drawHint("No parameters", "This data set has no parameter to show.");
     TesseractCache& cache = cacheOf<TesseractCache>(context, pane);
-    if (!context.figure) drawToolbar(context, cache, view, info.channel(*channel).name);
+    drawToolbar(context, cache, view, info.channel(*channel).name);
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const float below = view.showControls && !context.figure && room.y > em() * 14 && room.x > em() * 12
                             ? slidersHeight(room.x) + ImGui::GetStyle().ItemSpacing.y
