@@ -8,14 +8,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
+#include <memory>
 #include <numbers>
 
 namespace tessera::app {
 
 namespace {
 
-constexpr int kCells = 96;       ///< along either edge of a picture
-constexpr float kOnWhite = 0.7f; ///< of light colours, which vanish on white
+constexpr int kPageCells = 96, kMostCells = 512; ///< along an edge of a picture
+constexpr double kCellsPerPoint = 2;             ///< where the size of the page is given
+constexpr float kOnWhite = 0.7f;                 ///< of light colours, which vanish on white
 constexpr glm::vec4 kEdgeOnLight{0.267f, 0.267f, 0.267f, 1}, kEdgeOnDark{0.733f, 0.733f, 0.733f, 1};
 
 bool inside(const volume::Box& box, glm::dvec3 place) {
@@ -35,13 +38,14 @@ std::vector<glm::dvec3> rowOf(const PlanePicture& picture, int count, const Shar
 }
 
 /// The colours of the parameter in cells; clear where values are absent.
-PlotImage cellImage(const volume::BrickSource& source, const PlanePicture& picture, const Progress& progress) {
+PlotImage cellImage(const volume::BrickSource& source, const PlanePicture& picture, glm::ivec2 cells,
+                    const Progress& progress) {
     const volume::Box& bounds = source.info().bounds;
-    PlotImage image{kCells, kCells, {}};
-    const auto middle = [](int i) { return (i + 0.5) / kCells; };
-    for (int j = kCells - 1; j >= 0; --j) {
-        progress.advance(middle(kCells - 1 - j));
-        const std::vector<glm::dvec3> row = rowOf(picture, kCells, middle, middle(j));
+    PlotImage image{cells.x, cells.y, {}};
+    const auto across = [&](int i) { return (i + 0.5) / cells.x; };
+    for (int j = cells.y - 1; j >= 0; --j) {
+        progress.advance(1 - (j + 1.0) / cells.y);
+        const std::vector<glm::dvec3> row = rowOf(picture, cells.x, across, (j + 0.5) / cells.y);
         const auto values = volume::probeAlong(source, picture.shows.channel, row, picture.time);
         for (std::size_t i = 0; i < row.size(); ++i) {
             const bool shown = values[i].interpolated && inside(bounds, row[i]);
@@ -161,11 +165,13 @@ VectorPage planesPage(const volume::BrickSource& source, const std::vector<Plane
     std::vector<Plot> plots;
     for (const PlanePicture& picture : pictures) plots.push_back(plotOf(source.info(), picture, form.dark));
     const glm::dvec2 size = plotArea(plots, columns, form);
+    const glm::ivec2 cells =
+        glm::clamp(form.size.x > 0 ? glm::ivec2(size * kCellsPerPoint) : glm::ivec2(0), kPageCells, kMostCells);
     const double each = 1.0 / static_cast<double>(std::max<std::size_t>(1, pictures.size()));
     for (std::size_t i = 0; i < pictures.size(); ++i) {
         const PlanePicture& picture = pictures[i];
         const Progress own = progress.part(static_cast<double>(i) * each, static_cast<double>(i + 1) * each);
-        plots[i].image = cellImage(source, picture, own.part(0, picture.lined ? 0.5 : 1));
+        plots[i].image = cellImage(source, picture, cells, own.part(0, picture.lined ? 0.5 : 1));
         if (picture.lined)
             addLines(plots[i], readContours(source, contourQuery(picture), own.part(0.5, 1)), picture, size, form.text);
     }
@@ -213,14 +219,15 @@ Table planesTable(const volume::BrickSource& source, const std::vector<PlanePict
 void exportPlanes(ViewContext& context, ToolRow& tools, const std::string& name, std::vector<PlanePicture> pictures,
                   int columns, std::vector<int> channels) {
     const auto source = context.numbers;
+    const auto shown = std::make_shared<const std::vector<PlanePicture>>(std::move(pictures));
     exportMenu(context, tools,
                {.name = name,
                 .figure =
-                    [source, pictures, columns](const PageForm& form, const Progress& progress) {
-                        return planesPage(*source, pictures, columns, form, progress);
+                    [source, shown, columns](const PageForm& form, const Progress& progress) {
+                        return planesPage(*source, *shown, columns, form, progress);
                     },
-                .table = [source, pictures, channels = std::move(channels)](
-                             const Progress& progress) { return planesTable(*source, pictures, channels, progress); }});
+                .table = [source, shown, channels = std::move(channels)](
+                             const Progress& progress) { return planesTable(*source, *shown, channels, progress); }});
 }
 
 } // namespace tessera::app
