@@ -24,7 +24,5 @@ function(tessera_shader_formulas text result)
       string(REGEX REPLACE "(^|[^A-Za-z0-9_])${ours}([^A-Za-z0-9_])" "\\1${theirs}\\2" text "${text}")
     endforeach()
   endwhile()
-  string(PREPEND text "#ifndef CHOOSE\n#define CHOOSE\nfloat choose(bool which, float a, float b) {\n"
-         "    return which ? a : b;\n}\n#endif\n")
-  set(${result} "${text}" PARENT_SCOPE)
+  set(${result} "#include \"lib/shading/choose.glsl\"\n${text}" PARENT_SCOPE)
 endfunction()

@@ -41,7 +41,34 @@ struct ViewExport {
     std::function<std::string(const Progress&)> csv = {}; ///< of a table that is not yet a value
 };
 
-/// Input of a view in one frame of the window. Views read and edit `session`, nothing else; the workbench compares it
+/// What a view says in one frame.
+struct ViewAnswers {
+    std::vector<std::string> messages = {}; ///< failures that a view adds, for the log
+    bool busy = false;                      ///< needs the next frame at once (refining, animating)
+    bool awaiting = false;                  ///< needs another frame once a job, samples or a program are there
+    bool postponed = false;                 ///< has work left for frames that are idle
+    bool behind = false;                    ///< shows an older state of the session until an answer is there
+    bool compiling = false;                 ///< its picture waits for a program of the renderer
+
+    /// Whether what is shown is not final.
+    bool unfinished() const { return busy || awaiting; }
+    /// Takes over the flags of a part of the view.
+    void join(const ViewAnswers& part) {
+        busy = busy || part.busy;
+        awaiting = awaiting || part.awaiting;
+        behind = behind || part.behind;
+        compiling = compiling || part.compiling;
+    }
+    /// Updates the flags from the state of a view's picture.
+    void follow(const vis::FrameStatus& status) {
+        busy = busy || !(status.complete || status.waits);
+        awaiting = awaiting || status.waits;
+        behind = behind || !status.current;
+        compiling = compiling || status.compiling;
+    }
+};
+
+/// What the window gives a view in one frame. Views read and edit `session`, nothing else; the workbench compares it
 /// with that of the previous frame and records the history.
 struct ViewContext {
     Session& session;
@@ -81,32 +108,12 @@ struct ViewContext {
         {};
     /// The key of a camera command picked in a menu for this view, 0 = none: acts as if pressed over its picture.
     int cameraKey = 0;
-    std::vector<std::string> messages = {}; ///< failures that a view adds, for the log
-    bool busy = false;                      ///< set by a view that needs the next frame at once (refining, animating)
-    bool awaiting = false;    ///< set by a view that needs another frame once a job, samples or a program are there
-    bool postponed = false;   ///< set by a view that has work left for frames that are idle
-    bool behind = false;      ///< set by a view that shows an older state of the session until an answer is there
-    bool compiling = false;   ///< set by a view whose picture waits for a program of the renderer
-    bool interacting = false; ///< some edit is in progress (mouse held on a control): draw at reduced size
+    bool interacting =
+        false; ///< some edit is in progress (mouse held on a control): draw at reduced size; views set it
+    ViewAnswers answers = {}; ///< what the view has to say
 
     /// Whether anybody can point at the pane, press and drag there: not so in a picture for a page.
     bool takesInput() const { return !figure; }
-    /// Whether what is shown is not final.
-    bool unfinished() const { return busy || awaiting; }
-    /// Takes the flags of a context for a part of the view over.
-    void join(const ViewContext& part) {
-        busy = busy || part.busy;
-        awaiting = awaiting || part.awaiting;
-        behind = behind || part.behind;
-        compiling = compiling || part.compiling;
-    }
-    /// Updates the flags from the state of a view's picture.
-    void follow(const vis::FrameStatus& status) {
-        busy = busy || !(status.complete || status.waits);
-        awaiting = awaiting || status.waits;
-        behind = behind || !status.current;
-        compiling = compiling || status.compiling;
-    }
 };
 
 /// The cache of a pane, made on first use.

@@ -129,7 +129,7 @@ void drawPicture(ViewContext& context, PlaneState& state, const PlanePicture& pi
     request.budgetMs = static_cast<double>(scene.render.limits.frameTime) * share * (request.moving ? 0.5 : 1);
     request.wait = context.headless;
     const vis::FrameStatus status = context.renderer.render(*state.target, scene, request);
-    context.follow(status);
+    context.answers.follow(status);
     addPicture(*ImGui::GetWindowDrawList(), status.texture, frame.plot.min, frame.plot.max);
 }
 

@@ -64,8 +64,8 @@ public:
     explicit AsyncQuery(const Keep& keep) : keep_(keep) {}
 
     /// The most exact answer to `query`; while there is none, the previous answer at this place if
-    /// compatible(previousQuery, query), else null. Sets context.awaiting while a better answer is on its way and
-    /// context.behind while there is none to this very query; headless, computes the exact answer at once.
+    /// compatible(previousQuery, query), else null. Sets context.answers.awaiting while a better answer is on its way
+    /// and context.answers.behind while there is none to this very query; headless, computes the exact answer at once.
     ///
     /// `make(data, query, level, progress)` returns the Result, on another thread. It may take `level` by reference and
     /// set it to the one it computed, and may throw Error, which is reported once. What failed or was cancelled is not
@@ -95,8 +95,8 @@ public:
             }
             return place.shown;
         }
-        context.awaiting = true;
-        context.behind = context.behind || !current;
+        context.answers.awaiting = true;
+        context.answers.behind = context.answers.behind || !current;
         if (mayStart(context, place, options, query, current != nullptr, compatible)) {
             const int next = current && options.nextLevel ? options.nextLevel(current->level) : 0;
             start(context.jobs, data, options, query, current ? next : options.firstLevel, make);

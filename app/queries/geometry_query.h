@@ -36,8 +36,8 @@ using GeometryQuery = std::variant<SurfaceQuery, FlowQuery>;
 class AsyncGeometry {
 public:
     /// The session's visible layers of this sort as far as they are made; while one is not, its last shape. Sets
-    /// context.awaiting while better ones are on their way; headless, makes them to the end. `moving`: take coarse
-    /// shapes that draw fast. A failure is reported once and leaves the layer out.
+    /// context.answers.awaiting while better ones are on their way; headless, makes them to the end. `moving`: take
+    /// coarse shapes that draw fast. A failure is reported once and leaves the layer out.
     std::vector<vis::GeometryLayer> get(ViewContext& context, const std::string& pane, bool moving);
 
 private:

@@ -8,7 +8,7 @@ namespace tessera::app {
 class AsyncScene {
 public:
     /// The session's scene with the theme's colours and the geometry of its layers, as far as it is made. Sets
-    /// context.awaiting while better shapes are on their way. `moving`: take what draws fast.
+    /// context.answers.awaiting while better shapes are on their way. `moving`: take what draws fast.
     vis::Scene get(ViewContext& context, const std::string& pane, bool moving);
 
 private:

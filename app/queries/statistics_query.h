@@ -57,7 +57,8 @@ struct StatisticsResult {
 class AsyncStatistics {
 public:
     /// The best answer so far: of this very query, else the last one with the same channels and bins while it is being
-    /// computed, else null. Sets context.awaiting while better ones are on their way; headless, computes to the end.
+    /// computed, else null. Sets context.answers.awaiting while better ones are on their way; headless, computes to the
+    /// end.
     std::shared_ptr<const StatisticsResult> get(ViewContext& context, const std::string& jobKey,
                                                 const BrushedQuery& query);
     /// Why the last query failed (damaged data), "" if it did not.

@@ -154,12 +154,12 @@ void PaneHost::drawPane(const ViewContext& frame, const std::string& pane, int r
         if (at++ == index) Kind::draw(context, pane, std::get<typename Kind::State>(found->second));
     });
     ImGui::PopID();
-    messages_.insert(messages_.end(), context.messages.begin(), context.messages.end());
-    working_ = working_ || context.unfinished();
-    busy_ = busy_ || context.unfinished() || context.postponed;
-    hurries_ = hurries_ || context.busy || (context.postponed && context.idle);
-    compiling_ = compiling_ || context.compiling;
-    if (paneDrawn) paneDrawn(pane, context.behind);
+    messages_.insert(messages_.end(), context.answers.messages.begin(), context.answers.messages.end());
+    working_ = working_ || context.answers.unfinished();
+    busy_ = busy_ || context.answers.unfinished() || context.answers.postponed;
+    hurries_ = hurries_ || context.answers.busy || (context.answers.postponed && context.idle);
+    compiling_ = compiling_ || context.answers.compiling;
+    if (paneDrawn) paneDrawn(pane, context.answers.behind);
 }
 
 void PaneHost::open(Session& session, const ViewState& view, float scale) {

@@ -127,8 +127,8 @@ protected:
             ImGui::Begin("page", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
             drawLibraryPage(context, page, "T", *source->info().findChannel("T"));
             ImGui::End();
-            waiting = context.postponed;
-            said = context.messages;
+            waiting = context.answers.postponed;
+            said = context.answers.messages;
         });
         jobs.wait();
         jobs.collect();

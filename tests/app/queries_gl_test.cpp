@@ -38,7 +38,7 @@ struct AsyncQueries : ViewsTest {
         for (int turn = 0; turn < 20 && asked > 0; ++turn) {
             ViewContext now = context();
             get(now);
-            busy = now.unfinished();
+            busy = now.answers.unfinished();
             asked = 0;
             for (const Jobs::Status& job : jobs.list()) {
                 if (job.key.find(key) == std::string::npos) continue;
@@ -58,7 +58,7 @@ struct AsyncQueries : ViewsTest {
         while (busy && std::chrono::steady_clock::now() - begin < std::chrono::minutes(1)) {
             ViewContext now = context();
             get(now);
-            busy = now.unfinished();
+            busy = now.answers.unfinished();
             jobs.wait();
             for (const std::string& text : jobs.collect()) messages.push_back(text);
         }
@@ -259,7 +259,7 @@ TEST_F(AsyncQueries, LevelsComeFromCoarseToExact) {
     for (int i = 0; i < 4; ++i) {
         ViewContext now = context();
         EXPECT_EQ(get(now)->query, i == 0 ? 7 : 8);
-        EXPECT_EQ(now.behind, i == 0);
+        EXPECT_EQ(now.answers.behind, i == 0);
         jobs.wait();
         jobs.collect();
     }
@@ -451,7 +451,7 @@ TEST_F(AsyncQueries, RenderersOfVariantsShareTheLimitsAndSpeak) {
         now.renderers = 1 + answers.renderers();
         answers.prepare(now, variants);
         answers.draw(now, "pane", 0, {32, 24}, false);
-        said.insert(said.end(), now.messages.begin(), now.messages.end());
+        said.insert(said.end(), now.answers.messages.begin(), now.answers.messages.end());
     };
     finish(get);
     std::filesystem::remove(path);

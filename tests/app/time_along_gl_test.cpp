@@ -35,7 +35,7 @@ struct TimeAlong : ViewsTest {
             ImGui::Begin("view", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
             function(context, "view", shown);
             ImGui::End();
-            messages.insert(messages.end(), context.messages.begin(), context.messages.end());
+            messages.insert(messages.end(), context.answers.messages.begin(), context.answers.messages.end());
         });
     }
 

@@ -38,7 +38,7 @@ protected:
         ImGui::Begin(pane, nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
         function(context, pane, view);
         ImGui::End();
-        busy = busy || context.unfinished();
+        busy = busy || context.answers.unfinished();
     }
     void frame(const std::function<void()>& body) {
         busy = false;

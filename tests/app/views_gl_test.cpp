@@ -123,7 +123,7 @@ TEST_F(Views, FlowComesAtOnceOrFromTheBackground) {
 
     context.headless = false;
     EXPECT_TRUE(later.get(context, "b", false).empty());
-    EXPECT_TRUE(context.awaiting && !context.busy) << "the job says when another frame is needed";
+    EXPECT_TRUE(context.answers.awaiting && !context.answers.busy) << "the job says when another frame is needed";
     jobs.wait();
     jobs.collect();
     const std::vector<vis::GeometryLayer> made = later.get(context, "b", false);
@@ -196,8 +196,7 @@ TEST_F(Views, CurvesOfSectionAveragesAreDrawnOverTheTitlesOfTheirPlot) {
     SectionCurvesQuery query;
     query.channels = {source->info().findChannel("T").value()};
     query.label = volume::labelChannel(source->info()).value_or(-1);
-    const std::vector<Plot> panels =
-        sectionPanels(source->info(), readSections(source, query), SectionMeasure::Mean);
+    const std::vector<Plot> panels = sectionPanels(source->info(), readSections(source, query), SectionMeasure::Mean);
     ASSERT_EQ(panels.size(), 1u);
     ASSERT_FALSE(panels[0].series.empty());
     const auto backdrop = cornersOf(plotColors().backdrop);

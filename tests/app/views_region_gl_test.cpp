@@ -40,7 +40,7 @@ protected:
             ImGui::SetNextWindowSize(size);
             ImGui::Begin("view", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
             function(context, "view", view);
-            busy = context.unfinished();
+            busy = context.answers.unfinished();
             ImGui::End();
         });
         drawn = ImGui::GetDrawData()->TotalVtxCount;

@@ -1,5 +1,6 @@
 #include "app/views/compare/compare_panes.h"
 
+#include "app/pane/inner_view.h"
 #include "app/pane/view_parts.h"
 
 #include <algorithm>
@@ -55,21 +56,12 @@ void drawComparedPane(ViewContext& context, const std::string& pane, const std::
     ViewState state = found->second;
     Decoration decoration = context.decoration;
     decoration.legend = decoration.legend && !std::holds_alternative<SlicesView>(state);
-    ViewContext own{.session = edited,
-                    .source = data ? data->source : context.source,
-                    .renderer = data ? *data->renderer : context.renderer,
-                    .jobs = context.jobs,
-                    .caches = cell.caches,
-                    .numbers = data ? data->numbers : context.numbers,
-                    .origin = data ? data->origin : context.origin,
-                    .iconFont = context.iconFont,
-                    .scale = context.scale,
-                    .headless = context.headless,
-                    .renderers = context.renderers,
-                    .figure = true,
-                    .decoration = decoration,
-                    .whiteGround = context.whiteGround,
-                    .interacting = context.interacting};
+    ViewContext own = innerContext(context, edited, data ? data->source : context.source,
+                                   data ? *data->renderer : context.renderer, cell.caches);
+    own.numbers = data ? data->numbers : context.numbers;
+    own.origin = data ? data->origin : context.origin;
+    own.figure = true;
+    own.decoration = decoration;
     ImGui::SetCursorScreenPos(box.min);
     ImGui::BeginChild("view", box.size, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
     drawState(own, pane + "/" + std::to_string(index), state);
@@ -78,9 +70,7 @@ void drawComparedPane(ViewContext& context, const std::string& pane, const std::
     // Drawing may have changed the list of views.
     const auto kept = context.session.views.find(shows);
     if (kept != context.session.views.end() && !(state == kept->second)) kept->second = state;
-    context.join(own);
-    context.interacting = context.interacting || own.interacting;
-    context.messages.insert(context.messages.end(), own.messages.begin(), own.messages.end());
+    takeAnswers(context, own);
 }
 
 CompareLegends paneLegends(const ViewContext& context, const std::string& shows,

@@ -2,6 +2,7 @@
 
 #include "app/data/open.h"
 #include "app/edits/compare_files.h"
+#include "app/pane/inner_view.h"
 #include "codec/container/json_text.h"
 #include "codec/remote/address.h"
 #include "vis/transfer/transfer_function.h"
@@ -97,7 +98,7 @@ bool ComparePictures::openCell(ViewContext& context, const std::string& pane, st
             return false;
         }
         if (!data->source) {
-            context.awaiting = true;
+            context.answers.awaiting = true;
             return false;
         }
         if (!data->renderer) {
@@ -116,19 +117,9 @@ void ComparePictures::drawCell(ViewContext& context, const std::string& pane, st
     CompareCell& cell = *cells_[index];
     cell.drawn = false;
     if (!openCell(context, pane, index)) return;
-    ViewContext own{.session = cell.session,
-                    .source = cell.data ? cell.data->source : context.source,
-                    .renderer = cell.data ? *cell.data->renderer : context.renderer,
-                    .jobs = context.jobs,
-                    .caches = context.caches,
-                    .iconFont = context.iconFont,
-                    .scale = context.scale,
-                    .headless = context.headless,
-                    .renderers = std::max(context.renderers, 1 + renderers()),
-                    .figure = context.figure,
-                    .decoration = context.decoration,
-                    .whiteGround = context.whiteGround,
-                    .interacting = context.interacting};
+    ViewContext own = innerContext(context, cell.session, cell.data ? cell.data->source : context.source,
+                                   cell.data ? *cell.data->renderer : context.renderer, context.caches);
+    own.renderers = std::max(context.renderers, 1 + renderers());
     if (!cell.target) cell.target = own.renderer.makeTarget();
     vis::FrameRequest request;
     request.size = size;
@@ -139,7 +130,7 @@ void ComparePictures::drawCell(ViewContext& context, const std::string& pane, st
     const double share = double(scene.render.limits.frameTime) / double(std::max<std::size_t>(cells_.size(), 1));
     request.budgetMs = first ? share : double(scene.render.limits.frameTime);
     if (!first && !request.wait && cell.sizeShown == size && refined_ != index && !cell.status.complete) {
-        cell.drawn = context.busy = true; // shown as it is until its turn
+        cell.drawn = context.answers.busy = true; // shown as it is until its turn
         return;
     }
     cell.sceneShown = scene;
@@ -149,13 +140,13 @@ void ComparePictures::drawCell(ViewContext& context, const std::string& pane, st
         std::vector<std::string>& said = cell.data->messages;
         for (std::string& text : own.renderer.takeMessages()) said.push_back(std::move(text));
         const std::string name = variantName(context.session, cell.variant);
-        for (const std::string& text : std::exchange(said, {})) context.messages.push_back(name + ": " + text);
+        for (const std::string& text : std::exchange(said, {})) context.answers.messages.push_back(name + ": " + text);
     }
     cell.shows = cell.status.complete || cell.status.milliseconds > 0;
     cell.drawn = true;
-    own.follow(cell.status);
-    context.join(own);
-    if (own.unfinished() || request.moving) return;
+    own.answers.follow(cell.status);
+    context.answers.join(own.answers);
+    if (own.answers.unfinished() || request.moving) return;
     if (cell.image && cell.image->size == size && cell.imageSource == own.source && cell.imageOf == scene) return;
     auto image = std::make_shared<vis::Image>();
     image->rgba = own.renderer.readPixels(*cell.target, image->size);

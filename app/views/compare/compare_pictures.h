@@ -109,7 +109,7 @@ public:
     void prepare(const ViewContext& context, const std::vector<CompareVariant>& variants);
     /// Opens the data of every variant and compares their samples, for views that draw the variants themselves.
     void open(ViewContext& context, const std::string& pane, std::size_t reference);
-    /// Draws every variant at one size; index 0 is the first. Sets context.busy while something is not final.
+    /// Draws every variant at one size; index 0 is the first. Sets context.answers.busy while something is not final.
     void draw(ViewContext& context, const std::string& pane, std::size_t reference, glm::ivec2 size, bool moving);
     std::vector<std::shared_ptr<CompareCell>>& cells() { return cells_; }
     const std::vector<std::shared_ptr<CompareCell>>& cells() const { return cells_; }

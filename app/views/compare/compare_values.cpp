@@ -83,8 +83,8 @@ bool CompareValues::draw(ViewContext& context, const Session& session, double to
     if (context.whiteGround) scene.background = glm::vec3(1);
     request.budgetMs = double(scene.render.limits.frameTime);
     status_ = renderer_->render(*target_, scene, request);
-    for (std::string& text : renderer_->takeMessages()) context.messages.push_back(std::move(text));
-    context.follow(status_);
+    for (std::string& text : renderer_->takeMessages()) context.answers.messages.push_back(std::move(text));
+    context.answers.follow(status_);
     return status_.complete || status_.milliseconds > 0;
 }
 

@@ -30,8 +30,8 @@ CompareQuery compareQuery(const CompareSide& own, const CompareSide& reference);
 
 class CompareValues {
 public:
-    /// Finds the difference, in the background under `jobKey` unless headless. Sets context.awaiting while it is on its
-    /// way.
+    /// Finds the difference, in the background under `jobKey` unless headless. Sets context.answers.awaiting while it
+    /// is on its way.
     void find(ViewContext& context, const std::string& jobKey, const CompareSide& own, const CompareSide& reference);
     /// Draws it in diverging colours from -top to top; false while there is nothing to show.
     bool draw(ViewContext& context, const Session& session, double top, glm::ivec2 size, bool moving);

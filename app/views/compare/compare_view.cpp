@@ -255,7 +255,7 @@ std::size_t turn(const Frame& frame) {
         cache.blinkStart = now;
         ++cache.blinkShown;
     }
-    frame.context.busy = true;
+    frame.context.answers.busy = true;
     return cache.blinkShown %= frame.variants.size();
 }
 
@@ -370,7 +370,7 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
         if (cache.pictures.cells()[shown[i]]->isOpening()) layout.legends[i].clear(); // presumed, to keep their room
     drawCompareLegends(*ImGui::GetWindowDrawList(), layout);
     // What was found while drawing, such as the range of other data, is in the next frame's legends.
-    if (context.decoration.legend && legendsOf(frame, shown) != legends) context.busy = true;
+    if (context.decoration.legend && legendsOf(frame, shown) != legends) context.answers.busy = true;
     cache.rows = cache.pictures.rows(context, frame.reference);
     if (areas.table > 0) {
         ImGui::SetCursorScreenPos({at.x, at.y + area.y});

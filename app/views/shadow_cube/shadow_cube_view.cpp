@@ -246,7 +246,7 @@ void drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& ca
             *cache.walls[i],
             wallScene(scene, frame.info.channel(shown.channel).name, wallOf(view, i), face, frame.world, shadow),
             request);
-        context.follow(status);
+        context.answers.follow(status);
         drawFace(draw, frame, face, status.texture);
         drawFaceTicks(draw, frame, axes, labels, face);
         drawMarks(draw, frame, context.session, context.decoration, i);
@@ -271,7 +271,7 @@ void drawObject(ViewContext& context, const std::string& pane, const CubeFrame& 
     request.wait = context.headless;
     scene.geometry = cache.geometry.get(context, pane, moving);
     const vis::FrameStatus status = context.renderer.render(*cache.target, scene, request);
-    context.follow(status);
+    context.answers.follow(status);
     addPicture(draw, status.texture, frame.min, frame.max());
     const SpaceFrame object = spaceFrame(frame.min, frame.max(), seen, frame.info.bounds, session.stretch);
     if (context.decoration.outlines) drawSpaceBrushes(draw, object, session.selection);

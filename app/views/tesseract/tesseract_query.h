@@ -22,7 +22,7 @@ struct TesseractQuery {
 class AsyncSamples {
 public:
     /// The best samples so far for a query, or of the former one, of former data too, while nothing is here; null at
-    /// first. Sets context.awaiting while better ones are on their way; headless, reads to the end.
+    /// first. Sets context.answers.awaiting while better ones are on their way; headless, reads to the end.
     std::shared_ptr<const volume::Samples4> get(ViewContext& context, const std::string& jobKey,
                                                 const TesseractQuery& query);
     /// Why the last query failed (damaged data), "" if it did not.

@@ -335,7 +335,7 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
     if (cache.drag != Drag::None) context.interacting = true;
     if (view.tour && !context.headless) {
         cache.tour += static_cast<double>(view.tourSpeed * std::min(ImGui::GetIO().DeltaTime, 0.1f));
-        context.busy = moving = true;
+        context.answers.busy = moving = true;
     }
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     if (!updateCloud(context, pane, cache, view, *channel)) {
@@ -368,7 +368,7 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
         cache.texture = cache.cloud.draw(cloud);
         cache.drawn = cloud;
     }
-    if (quick && cloud.share < 1) context.busy = true; // draw all points once it is at rest
+    if (quick && cloud.share < 1) context.answers.busy = true; // draw all points once it is at rest
 
     draw.PushClipRect(min, max, true);
     draw.AddRectFilled(min, max, context.whiteGround ? IM_COL32_WHITE : palette().plot);

@@ -221,7 +221,7 @@ void drawTimelineView(ViewContext& context, const std::string& pane, TimelineVie
     const bool keyed = !session.animation.tracks.empty();
     if ((many || keyed) && session.animation.playing && !context.headless) {
         playOn(cache.playback, session, info.times, double(ImGui::GetIO().DeltaTime));
-        context.busy = true;
+        context.answers.busy = true;
     }
     // A pane without room below the tools has the track among them.
     const bool among = many && ImGui::GetContentRegionAvail().y < ImGui::GetFrameHeightWithSpacing() + kTrack * em();

@@ -54,7 +54,7 @@ bool isScan(const volume::DatasetInfo& info, const volume::Channel& channel) {
 }
 
 void say(ViewContext& context, const Error& error) {
-    context.messages.emplace_back(error.what());
+    context.answers.messages.emplace_back(error.what());
 }
 
 void loadOwn(ViewContext& context, LibraryPage& page) {
@@ -62,7 +62,7 @@ void loadOwn(ViewContext& context, LibraryPage& page) {
     page.own = {};
     try {
         page.own = loadOwnFunctions(context.stateFolder);
-        for (const std::string& text : page.own.messages) context.messages.push_back(text);
+        for (const std::string& text : page.own.messages) context.answers.messages.push_back(text);
     } catch (const Error& error) {
         say(context, error);
     }
@@ -95,7 +95,8 @@ void drawSaving(ViewContext& context, LibraryPage& page, const vis::TransferFunc
     if ((entered || pressed) && named) {
         try {
             const std::string kept = saveOwnFunction(context.stateFolder, vis::recipeOf(page.name, function, values));
-            if (!kept.empty()) context.messages.push_back("transfer functions could not be read; kept as " + kept);
+            if (!kept.empty())
+                context.answers.messages.push_back("transfer functions could not be read; kept as " + kept);
         } catch (const Error& error) {
             say(context, error);
         }

@@ -79,7 +79,7 @@ bool LibraryPictures::draw(ViewContext& context, Picture& picture) {
 
 void LibraryPictures::work(ViewContext& context) {
     const auto missing = [](const Picture& picture) { return picture.wanted && picture.texture.name() == 0; };
-    const bool rests = context.headless || (context.idle && !context.unfinished() && !context.interacting &&
+    const bool rests = context.headless || (context.idle && !context.answers.unfinished() && !context.interacting &&
                                             !context.session.animation.playing && !handMoves());
     // The first one asked for lies last.
     for (auto next = pictures_.rbegin(); next != pictures_.rend(); ++next) {
@@ -87,8 +87,8 @@ void LibraryPictures::work(ViewContext& context) {
         if (!rests || !draw(context, *next)) break;
         if (!context.headless) break;
     }
-    context.postponed = context.postponed || std::ranges::any_of(pictures_, missing);
-    if (!context.postponed) target_.reset();
+    context.answers.postponed = context.answers.postponed || std::ranges::any_of(pictures_, missing);
+    if (!context.answers.postponed) target_.reset();
     while (pictures_.size() > kMostPictures && !pictures_.back().wanted) pictures_.pop_back();
 }
 

@@ -16,7 +16,8 @@ public:
     void begin(const ViewContext& context, int channel, int side);
     /// GL name of the picture of a function, 0 while there is none; it will be drawn.
     vis::TextureName get(const vis::TransferFunction& function);
-    /// Draws on one that was asked for in this frame; sets context.postponed while there are more. Headless, draws all.
+    /// Draws on one that was asked for in this frame; sets context.answers.postponed while there are more. Headless,
+    /// draws all.
     void work(ViewContext& context);
 
 private:

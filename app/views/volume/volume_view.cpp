@@ -1,6 +1,7 @@
 #include "app/edits/compare_files.h"
 #include "app/pane/axes3d.h"
 #include "app/pane/corner_legends.h"
+#include "app/pane/inner_view.h"
 #include "app/pane/scale_bar.h"
 #include "app/pane/view_parts.h"
 #include "app/queries/scene_query.h"
@@ -56,7 +57,7 @@ void drawFocusMenu(ViewContext& context, vis::ViewTarget* target, const PictureB
         if (pick)
             focusOn(camera, world.toWorld(pick->position));
         else
-            context.messages.emplace_back("Nothing is seen there that could be in focus.");
+            context.answers.messages.emplace_back("Nothing is seen there that could be in focus.");
     }
     if (ImGui::MenuItem("Focus on the cross-hair")) focusOn(camera, world.toWorld(context.session.cursor));
 }
@@ -148,7 +149,7 @@ public:
         request.budgetMs = all / std::max(context_.volumes, 1);
         scene.showBox = view_.showBox && shown_.box && framed();
         const vis::FrameStatus status = context_.renderer.render(*cache_.target, scene, request);
-        context_.follow(status);
+        context_.answers.follow(status);
 
         const InkOnPaper ink(scene);
         list_ = ImGui::GetWindowDrawList();
@@ -358,28 +359,14 @@ void drawBeside(ViewContext& context, const std::string& pane, VolumeView& view,
     }
     const Session before = sessionInSpace(context.session, context.numbers->info(), space->info());
     Session edited = before;
-    ViewContext own{.session = edited,
-                    .source = space,
-                    .renderer = *cache.renderer,
-                    .jobs = context.jobs,
-                    .caches = cache.caches,
-                    .iconFont = context.iconFont,
-                    .scale = context.scale,
-                    .headless = context.headless,
-                    .renderers = std::max(context.renderers, 2),
-                    .volumes = context.volumes,
-                    .figure = context.figure,
-                    .decoration = context.decoration,
-                    .whiteGround = context.whiteGround,
-                    .runCommand = context.runCommand,
-                    .cameraKey = context.cameraKey,
-                    .interacting = context.interacting};
+    ViewContext own = innerContext(context, edited, space, *cache.renderer, cache.caches);
+    own.renderers = std::max(context.renderers, 2);
+    own.runCommand = context.runCommand;
+    own.cameraKey = context.cameraKey;
     drawSpace(own, pane, view);
     takeFromSpace(context.session, before, edited, space->info());
-    for (std::string& text : cache.renderer->takeMessages()) own.messages.push_back(std::move(text));
-    for (std::string& text : own.messages) context.messages.push_back("data in space: " + std::move(text));
-    context.join(own);
-    context.interacting = context.interacting || own.interacting;
+    for (std::string& text : cache.renderer->takeMessages()) own.answers.messages.push_back(std::move(text));
+    takeAnswers(context, own, "data in space: ");
 }
 
 } // namespace

@@ -1,0 +1,4 @@
+// Decisions of vis/formulas, which are functions there.
+float choose(bool which, float a, float b) {
+    return which ? a : b;
+}
