@@ -28,7 +28,7 @@ bool inside(const volume::Box& box, glm::dvec3 place) {
     return true;
 }
 
-bool isLabel(const volume::DatasetInfo& info, int channel) {
+bool hasLabels(const volume::DatasetInfo& info, int channel) {
     return info.parameters[static_cast<std::size_t>(info.channel(channel).parameter)].categorical;
 }
 
@@ -173,7 +173,7 @@ VectorPage planesPage(const volume::BrickSource& source, const std::vector<Plane
         const int channel = pictures[i].shows.channel, next = static_cast<int>(i) + 1;
         const bool last = next % columns == 0 || next == static_cast<int>(pictures.size()) || // of those in a row
                           pictures[i + 1].shows.channel != channel;
-        if (last && !isLabel(source.info(), channel))
+        if (last && !hasLabels(source.info(), channel))
             plots.back().key = colorKey(pictures[i].function, pictures[i].range);
     }
     const glm::dvec2 size = plotArea(plots, columns, form);
