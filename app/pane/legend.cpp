@@ -247,4 +247,17 @@ void drawLegendRows(ImDrawList& draw, const std::vector<LegendEntry>& entries, I
     });
 }
 
+PlotColorKey colorKey(const vis::TransferFunction& function, Range range) {
+    constexpr int kSteps = 256;
+    const double digits = (range.hi - range.lo) / 100;
+    PlotColorKey key{.rgba = {}, .highest = formatNumber(range.hi, digits), .lowest = formatNumber(range.lo, digits)};
+    for (int i = 0; i < kSteps; ++i) {
+        const glm::dvec4 color = vis::evaluate(function, range, std::lerp(range.hi, range.lo, (i + 0.5) / kSteps));
+        for (int k = 0; k < 3; ++k)
+            key.rgba.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(color[k], 0.0, 1.0))));
+        key.rgba.push_back(255);
+    }
+    return key;
+}
+
 } // namespace tessera::app

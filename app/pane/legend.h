@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/pane/plot.h"
+#include "app/values/plot.h"
 #include "vis/transfer/transfer_function.h"
 
 #include <optional>
@@ -71,5 +72,8 @@ void legendBarItem(const LegendEntry& entry, bool shown);
 /// One narrow upright bar, highest value on top, with the values of its ends at its right; about five em wide.
 void drawLegendColumn(ImDrawList& draw, ImVec2 min, float height, const LegendEntry& entry);
 float legendColumnWidth(const LegendEntry& entry);
+
+/// The same for the plot of a picture in the colours of a function.
+PlotColorKey colorKey(const vis::TransferFunction& function, Range range);
 
 } // namespace tessera::app

@@ -1,6 +1,7 @@
 #include "app/planes/plane_export.h"
 
 #include "app/pages/plot_page.h"
+#include "app/pane/legend.h"
 #include "app/planes/contour_labels.h"
 #include "app/ui/ticks.h"
 #include "volume/reconstruct/probe.h"
@@ -25,6 +26,10 @@ bool inside(const volume::Box& box, glm::dvec3 place) {
     for (int axis = 0; axis < 3; ++axis)
         if (place[axis] < box.lo[axis] || place[axis] > box.hi[axis]) return false;
     return true;
+}
+
+bool hasLabels(const volume::DatasetInfo& info, int channel) {
+    return info.parameters[static_cast<std::size_t>(info.channel(channel).parameter)].categorical;
 }
 
 /// Places along a row of a grid over the whole picture; `shareX` and `shareY` of its edges, from the lower left.
@@ -163,7 +168,14 @@ void addSamples(PlaneColumns& columns, const volume::BrickSource& source, const 
 VectorPage planesPage(const volume::BrickSource& source, const std::vector<PlanePicture>& pictures, int columns,
                       const PageForm& form, const Progress& progress) {
     std::vector<Plot> plots;
-    for (const PlanePicture& picture : pictures) plots.push_back(plotOf(source.info(), picture, form.dark));
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+        plots.push_back(plotOf(source.info(), pictures[i], form.dark));
+        const int channel = pictures[i].shows.channel, next = static_cast<int>(i) + 1;
+        const bool last = next % columns == 0 || next == static_cast<int>(pictures.size()) || // of those in a row
+                          pictures[i + 1].shows.channel != channel;
+        if (last && !hasLabels(source.info(), channel))
+            plots.back().key = colorKey(pictures[i].function, pictures[i].range);
+    }
     const glm::dvec2 size = plotArea(plots, columns, form);
     const glm::ivec2 cells =
         glm::clamp(form.size.x > 0 ? glm::ivec2(size * kCellsPerPoint) : glm::ivec2(0), kPageCells, kMostCells);

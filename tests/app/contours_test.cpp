@@ -193,7 +193,7 @@ TEST(Contours, AreInTheSvgWithTheirValuesAndBothNames) {
         std::vector<PlanePicture> slices;
         for (const SliceAxes& axes : kSlicePlanes)
             slices.push_back(axisPlane(session, source->info(), axes, session.cursor[axes.normal], {0, view.lines}));
-        return svgOf(planesPage(*source, slices, 2, {}, progress));
+        return svgOf(planesPage(*source, slices, 2, {.legend = false}, progress));
     };
     const std::string plain = page({});
     EXPECT_EQ(plain.find("paint-order"), std::string::npos);

@@ -137,23 +137,6 @@ PlotImage imageOverTime(const volume::DatasetInfo& info, const Session& session,
     return image;
 }
 
-PlotColorKey profileColors(const Session& session, const volume::DatasetInfo& info, int channel) {
-    constexpr int kSteps = 256;
-    const volume::Channel own = info.channel(channel);
-    const vis::TransferFunction& function = transferOf(session, own.name);
-    const Range range = vis::effectiveRange(function, info.channelRange(own));
-    PlotColorKey key{.rgba = {},
-                     .highest = formatNumber(range.hi, (range.hi - range.lo) / 100),
-                     .lowest = formatNumber(range.lo, (range.hi - range.lo) / 100)};
-    for (int i = 0; i < kSteps; ++i) {
-        const glm::dvec4 color = vis::evaluate(function, range, std::lerp(range.hi, range.lo, (i + 0.5) / kSteps));
-        for (int k = 0; k < 3; ++k)
-            key.rgba.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(color[k], 0.0, 1.0))));
-        key.rgba.push_back(255);
-    }
-    return key;
-}
-
 } // namespace
 
 std::vector<Plot> profilePlots(const volume::DatasetInfo& info, const Session& session, const Profile& profile,
@@ -219,7 +202,8 @@ VectorPage profileDrawing(const volume::DatasetInfo& info, const Session& sessio
     std::vector<Plot> plots = profilePlots(info, session, profile, form.dark);
     for (std::size_t c = 0; c < plots.size() && profile.query.over == ProfileOver::LineAndTime; ++c) {
         plots[c].image = imageOverTime(info, session, profile, c);
-        plots[c].key = profileColors(session, info, profile.query.channels[c]);
+        const LegendEntry legend = legendOf(session, info, profile.query.channels[c]);
+        plots[c].key = colorKey(legend.function, legend.range);
     }
     markPlots(plots, info, session, profile, markedPlace(info, session, profile));
     return plotPage(plots, 0, form);
