@@ -80,5 +80,4 @@ void drawUntilDone(OffscreenFrames& target, Workbench& workbench, float scale);
 /// OffscreenFrames does. Throws MachineError also when the size is too large.
 vis::Image drawUntilDone(Workbench& workbench, glm::ivec2 size, float scale);
 
-
 } // namespace tessera::app
