@@ -49,11 +49,10 @@ ToolRow::~ToolRow() {
 }
 
 bool ToolRow::fits(float width) const {
-    return !context_.figure && places_.fits(width, ImGui::GetStyle().ItemSpacing.x);
+    return places_.fits(width, ImGui::GetStyle().ItemSpacing.x);
 }
 
 bool ToolRow::next(float width, float gap) {
-    if (context_.figure) return false;
     const float space = gap < 0 ? ImGui::GetStyle().ItemSpacing.x : gap;
     const ToolPlace place = places_.next(width, space);
     if (place == ToolPlace::SameRow) ImGui::SameLine(0, space);
