@@ -196,13 +196,12 @@ TEST_F(Views, CurvesOfSectionAveragesAreDrawnOverTheTitlesOfTheirPlot) {
     SectionCurvesQuery query;
     query.channels = {source->info().findChannel("T").value()};
     query.label = volume::labelChannel(source->info()).value_or(-1);
-    const std::vector<FigurePanel> panels =
-        sectionPanels(source->info(), readSections(source, query), SectionMeasure::Mean);
+    const std::vector<Plot> panels = sectionPanels(source->info(), readSections(source, query), SectionMeasure::Mean);
     ASSERT_EQ(panels.size(), 1u);
     ASSERT_FALSE(panels[0].series.empty());
     const auto backdrop = cornersOf(plotColors().backdrop);
     ASSERT_TRUE(backdrop);
-    for (const FigureSeries& series : panels[0].series) {
+    for (const PlotSeries& series : panels[0].series) {
         const auto curve = linesOf(toColor({series.color.r, series.color.g, series.color.b}));
         ASSERT_TRUE(curve) << series.name;
         EXPECT_GT(curve->first, backdrop->second) << series.name;
