@@ -53,10 +53,14 @@ bool ToolRow::fits(float width) const {
 }
 
 bool ToolRow::next(float width, float gap) {
+    return !context_.figure && nextText(width, gap);
+}
+
+bool ToolRow::nextText(float width, float gap) {
     const float space = gap < 0 ? ImGui::GetStyle().ItemSpacing.x : gap;
     const ToolPlace place = places_.next(width, space);
     if (place == ToolPlace::SameRow) ImGui::SameLine(0, space);
-    if (place != ToolPlace::Menu) return true;
+    if (place != ToolPlace::Menu || context_.figure) return place != ToolPlace::Menu;
     const bool first = menu_ == Menu::None;
     if (first) {
         if (places_.menuBeside()) ImGui::SameLine();

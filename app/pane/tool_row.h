@@ -50,6 +50,8 @@ public:
     /// figure.
     /// `gap`: pixels to the one before it; negative: as the style has it.
     bool next(float width, float gap = -1);
+    /// The same for a text that says what is shown, which a figure has too.
+    bool nextText(float width, float gap = -1);
     /// The width of the last tool, `least` so far, if it is widened to `most` as far as its row has room, pixels.
     float grow(float least, float most) { return inMenu() ? most : least + places_.grow(most - least); }
     /// Width of a row, pixels.

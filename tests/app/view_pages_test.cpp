@@ -154,5 +154,18 @@ TEST_F(ViewPages, TheSameCurvesAloneAndAsAPanelAreTheSameStrokes) {
     EXPECT_EQ(strokes(page(request)), twice);
 }
 
+TEST_F(ViewPages, ATimelineSaysItsTimeWithoutItsButtons) {
+    const std::string timeline = std::ranges::find(panes, "timeline", &decltype(panes)::value_type::first)->second;
+    PictureForm form;
+    form.size.width = 700, form.size.height = 160;
+    int times = 0;
+    for (const shapes::Words& each : shapesOn<shapes::Words>(page(pictureRequest(form, timeline)))) {
+        times += each.text.starts_with("t = ");
+        EXPECT_EQ(each.text.find("fps"), std::string::npos) << each.text;
+        EXPECT_EQ(each.text.find("Keyframe"), std::string::npos) << each.text;
+    }
+    EXPECT_EQ(times, 1);
+}
+
 } // namespace
 } // namespace tessera::app

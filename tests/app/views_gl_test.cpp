@@ -155,7 +155,8 @@ std::optional<std::pair<int, int>> cornersOf(ImU32 color) {
 TEST_F(Views, ACurveIsDrawnOverTheTitleOfItsPlot) {
     show(fuelCell(volume::LatticeKind::CC));
     profileView.channels = {"T"};
-    const ImU32 curve = plotColors().focus, backdrop = plotColors().backdrop;
+    const glm::vec3 ink = plotInk(0, true);
+    const ImU32 curve = toColor({double(ink.r), double(ink.g), double(ink.b)}), backdrop = plotColors().backdrop;
     for (const ProfileOver over : {ProfileOver::Line, ProfileOver::Time}) {
         profileView.over = over;
         for (int i = 0; i < 2; ++i) frame([&] { draw("profile", profileView, drawProfileView, {400, 140}); });

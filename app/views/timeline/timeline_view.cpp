@@ -182,7 +182,7 @@ void drawTrack(ViewContext& context, TimelineCache& cache, const volume::Dataset
 /// A text among the tools.
 void drawText(ToolRow& tools, const std::string& text, bool faint) {
     const float whole = ImGui::CalcTextSize(text.c_str()).x, least = std::min(whole, em() * 8);
-    if (!tools.next(least, em())) return;
+    if (!tools.nextText(least, em())) return;
     ImGui::AlignTextToFramePadding();
     if (faint) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
     fittedText(text, tools.grow(least, whole) + 1);
@@ -230,7 +230,7 @@ void drawTimelineView(ViewContext& context, const std::string& pane, TimelineVie
         drawButtons(context, tools, info.times, info.nearestTime(session.time));
         const auto track = [&] {
             const float least = em() * 9;
-            if (among && tools.next(least, em()))
+            if (among && tools.nextText(least, em()))
                 drawTrack(context, cache, info, {tools.grow(least, tools.room()), ImGui::GetFrameHeight()});
         };
         const bool scarce = among || tools.room() < em() * 48; // then the time comes before what is rarely changed
