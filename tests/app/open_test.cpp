@@ -254,8 +254,8 @@ TEST_F(OpenTest, AnAutosaveOpensTheFilesElsewhereThatWereAllowed) {
     request.paths = {in("autosave.tessera.json")};
     EXPECT_THROW(open(request), Error) << "as a session of somebody";
     const Opened again = open(recoveryRequest(in("autosave.tessera.json")));
-    ASSERT_TRUE(again.source);
-    EXPECT_EQ(again.source->info().lattice.size, glm::ivec3(2));
+    ASSERT_TRUE(again.numbers);
+    EXPECT_EQ(again.numbers->info().lattice.size, glm::ivec3(2));
 }
 
 TEST_F(OpenTest, RecentFilesAndAutosave) {
